@@ -1,0 +1,1 @@
+//! The egui front end: panels, commands, theme and renderers; also a native window.

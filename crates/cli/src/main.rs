@@ -1,0 +1,2 @@
+//! The enroute command.
+fn main() {}

@@ -1,0 +1,1 @@
+//! Plan dispatch, replanning, the model-based executive loop and the simulated world.

@@ -1,0 +1,1 @@
+//! Hierarchical constraint automata: compilation from control programs, stepping, trace.

@@ -1,0 +1,1 @@
+//! The Kirk planner: selection, open conditions, threats, explanations and the search trace.

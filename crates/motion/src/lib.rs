@@ -1,0 +1,1 @@
+//! Rapidly-exploring random trees, vehicle models, kinodynamics and local avoidance.

@@ -1,0 +1,1 @@
+//! A thin wasm module.

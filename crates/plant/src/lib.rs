@@ -1,0 +1,1 @@
+//! Component models, belief update and reactive planning.

@@ -1,0 +1,12 @@
+//! The Reactive Model-based Programming Language: trees, names, diagnostics and editor queries, for both notations.
+//!
+//! Parsing never fails: every stage returns a result and its diagnostics. Nothing here knows of networks or plans.
+
+pub mod diagnostic;
+pub mod program;
+pub mod rational;
+pub mod span;
+
+pub use diagnostic::{Code, Diagnostic, Edit, Fix, Severity};
+pub use rational::{Bound, Rational};
+pub use span::{LineColumn, LineIndex, Span};

@@ -1,0 +1,374 @@
+//! The meaning of a mission text, with names as written and a span on everything: what the network compiler reads.
+//!
+//! It is made from the syntax tree and holds only well-formed pieces; what was broken is left out and has a diagnostic.
+//! Calls are not expanded and bounds not evaluated here: both depend on the scenario and happen in `tpn`.
+
+use serde::{Deserialize, Serialize};
+use smol_str::SmolStr;
+
+use crate::rational::Rational;
+use crate::span::Span;
+
+/// A name and where it is written.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Name {
+    /// The name.
+    pub text: SmolStr,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// A mission file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Program {
+    /// Declared finite-domain state variables, in textual order.
+    pub variables: Vec<VariableDecl>,
+    /// Declared primitives.
+    pub primitives: Vec<PrimitiveDecl>,
+    /// Activity definitions.
+    pub activities: Vec<ActivityDecl>,
+    /// Scenarios; the first is the default.
+    pub scenarios: Vec<ScenarioDecl>,
+    /// Options, as declared or by default.
+    pub options: Options,
+    /// The world of the mission (SPEC 1.8).
+    pub world: World,
+}
+
+/// `var X : {V1, V2};`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct VariableDecl {
+    /// The variable.
+    pub name: Name,
+    /// Its domain, in textual order.
+    pub values: Vec<Name>,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// `primitive Name(p,…)[lo,hi] moves …;`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PrimitiveDecl {
+    /// The primitive.
+    pub name: Name,
+    /// Its formal parameters.
+    pub formals: Vec<Name>,
+    /// Its default duration; `[0,inf]` when absent.
+    pub bounds: Option<Bounds>,
+    /// Present if the primitive is a traverse.
+    pub moves: Option<Moves>,
+    /// The control program that the primitive runs when it is executed.
+    pub runs: Option<Name>,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// `moves V1, V2 speed (least, greatest)`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Moves {
+    /// The vehicles that move; the first leads.
+    pub vehicles: Vec<Name>,
+    /// Least and greatest speed in metres per second; the vehicle's own when absent.
+    pub speed_mps: Option<(Rational, Rational)>,
+    /// The clause.
+    pub span: Span,
+}
+
+/// `Name(params)[l,u] = { … }`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ActivityDecl {
+    /// The activity.
+    pub name: Name,
+    /// Its formal parameters.
+    pub formals: Vec<Name>,
+    /// Its header bounds.
+    pub bounds: HeaderBounds,
+    /// Its body.
+    pub body: Statement,
+    /// The whole definition.
+    pub span: Span,
+}
+
+/// The bounds in the header of an activity definition.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum HeaderBounds {
+    /// None written.
+    None,
+    /// Either side may be a bound parameter (a plain name, bound to the invocation's bound: default 0 and inf)
+    /// or an expression, intersected with the invocation's.
+    Sides {
+        /// The lower side.
+        lower: HeaderBound,
+        /// The upper side.
+        upper: HeaderBound,
+        /// With the brackets.
+        span: Span,
+    },
+}
+
+/// One side of a header's bounds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum HeaderBound {
+    /// Declares a bound parameter.
+    Parameter(Name),
+    /// Restricts the invocation.
+    Limit(Expr),
+}
+
+/// `scenario Name[lo,hi] = { … }`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ScenarioDecl {
+    /// The scenario.
+    pub name: Name,
+    /// The horizon.
+    pub bounds: Option<Bounds>,
+    /// Its threads.
+    pub body: Statement,
+    /// The whole definition.
+    pub span: Span,
+}
+
+/// `[lower, upper]`, not evaluated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Bounds {
+    /// The lower bound.
+    pub lower: Expr,
+    /// The upper bound.
+    pub upper: Expr,
+    /// With the brackets.
+    pub span: Span,
+}
+
+/// An expression in a bound.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Expr {
+    /// What it is.
+    pub kind: ExprKind,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// The kinds of expression.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum ExprKind {
+    /// A number.
+    Number(Rational),
+    /// `inf` or `∞`.
+    Infinity,
+    /// A bound parameter.
+    Name(SmolStr),
+    /// `e%`: a hundredth of `e`.
+    Percent(Box<Expr>),
+    /// `left op right`.
+    Binary(BinaryOp, Box<Expr>, Box<Expr>),
+}
+
+/// The arithmetic of bounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum BinaryOp {
+    /// `+`
+    Add,
+    /// `-`
+    Subtract,
+    /// `*`
+    Multiply,
+    /// `/`
+    Divide,
+}
+
+/// A statement with the bounds written behind it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Statement {
+    /// What it does.
+    pub kind: StatementKind,
+    /// The bounds written behind it.
+    pub bounds: Option<Bounds>,
+    /// Where it stands, with its bounds.
+    pub span: Span,
+}
+
+/// The kinds of statement. A block is the sequence or parallel it contains; bounds of a block stand on that statement.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum StatementKind {
+    /// `{ a; b; … }`; may be empty. A block with one statement that itself has bounds stays a one-element sequence.
+    Sequence(Vec<Statement>),
+    /// `a, b, …`, at least two.
+    Parallel(Vec<Statement>),
+    /// `choose { a, b, … }`, at least one.
+    Choose(Vec<Statement>),
+    /// `do body maintaining condition`
+    Maintaining(Box<Statement>, Condition),
+    /// `do body watching condition`
+    Watching(Box<Statement>, Condition),
+    /// `if condition thennext body`
+    IfThennext(Condition, Box<Statement>),
+    /// `Name(args)`, or a bare name that is a declared activity or primitive.
+    Call(Name, Vec<Argument>),
+    /// `c`, `tell c` (an assertion) or `ask c`.
+    Condition(LabelMode, Condition),
+    /// `delay`
+    Delay,
+}
+
+/// Whether a condition is asserted or required.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum LabelMode {
+    /// The condition is required to hold.
+    Ask,
+    /// The condition is asserted.
+    Tell,
+}
+
+/// An argument of a call.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Argument {
+    /// The name or the number.
+    pub value: ArgumentValue,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// What an argument is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum ArgumentValue {
+    /// A name: a formal of the surrounding activity, a location, or a symbol.
+    Name(SmolStr),
+    /// A number.
+    Number(Rational),
+}
+
+/// A literal: `X`, `X=V`, `X!=V`, or the negation of one. Negations are folded into `negated`.
+///
+/// `X_V` is still written as the author wrote it (`variable` = `X_V`, no value): how it splits depends on the file
+/// (SPEC 1.3) and on substitution of formals; [`crate::program::Program`]'s users resolve it after substitution.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Condition {
+    /// The variable, the atom, or a formal that stands for one.
+    pub variable: Name,
+    /// The value; an atom has none.
+    pub value: Option<Name>,
+    /// Whether the literal is negated an odd number of times (`not`, `!`, `!=`).
+    pub negated: bool,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// Options of a mission.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Options {
+    /// Least gap between conflicting intervals that planning orders (SPEC 5.3).
+    pub threat_gap: Rational,
+    /// Whether undeclared primitives are errors.
+    pub strict: bool,
+    /// The unit of time of the mission's bounds.
+    pub time_unit: TimeUnit,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { threat_gap: Rational::ONE, strict: false, time_unit: TimeUnit::Minute }
+    }
+}
+
+/// The unit of a mission's bounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum TimeUnit {
+    /// The papers' unit.
+    Minute,
+    /// `option time_unit = second;`
+    Second,
+}
+
+impl TimeUnit {
+    /// Seconds in one unit.
+    pub const fn seconds(self) -> i64 {
+        match self {
+            Self::Minute => 60,
+            Self::Second => 1,
+        }
+    }
+}
+
+/// The world of a mission (SPEC 1.8): metres east and metres north of the map's origin.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct World {
+    /// The terrain, if declared.
+    pub terrain: Option<TerrainDecl>,
+    /// Named places.
+    pub locations: Vec<LocationDecl>,
+    /// Obstacles.
+    pub obstacles: Vec<ObstacleDecl>,
+    /// Vehicles.
+    pub vehicles: Vec<VehicleDecl>,
+}
+
+/// `terrain "asset" cell 0.6 origin (0, 0);`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TerrainDecl {
+    /// The name of an asset or an imported map.
+    pub asset: SmolStr,
+    /// Where the asset is named, with its quotes.
+    pub asset_span: Span,
+    /// Metres per cell; 0.6 by default.
+    pub cell_m: f64,
+    /// Mission coordinates of the map's south-west corner, in metres.
+    pub origin_m: [f64; 2],
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// `location NAME (x, y);`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LocationDecl {
+    /// The place.
+    pub name: Name,
+    /// Metres east and north.
+    pub position_m: [f64; 2],
+    /// The numbers inside the parentheses, for edits.
+    pub numbers_span: Span,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// `obstacle NAME circle (x, y, r);` or `obstacle NAME polygon (x, y, …);`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ObstacleDecl {
+    /// The obstacle.
+    pub name: Name,
+    /// Its shape.
+    pub shape: ObstacleShape,
+    /// The numbers inside the parentheses, for edits.
+    pub numbers_span: Span,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// The shape of an obstacle, in metres.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum ObstacleShape {
+    /// A disc.
+    Circle {
+        /// The centre.
+        center_m: [f64; 2],
+        /// The radius.
+        radius_m: f64,
+    },
+    /// A simple polygon, at least three corners.
+    Polygon {
+        /// The corners, in textual order.
+        corners_m: Vec<[f64; 2]>,
+    },
+}
+
+/// `vehicle NAME : MODEL at LOCATION;`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct VehicleDecl {
+    /// The vehicle.
+    pub name: Name,
+    /// Its model: ATRV, ATRV-Jr or Blimp.
+    pub model: Name,
+    /// The location it starts from.
+    pub start: Name,
+    /// The whole declaration.
+    pub span: Span,
+}

@@ -1,0 +1,1 @@
+//! Simple temporal networks: incremental consistency with undo, explanations, windows, distances, dispatchable form.

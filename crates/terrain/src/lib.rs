@@ -1,0 +1,1 @@
+//! Elevation maps, their file formats, obstacles, slope and configuration space.

