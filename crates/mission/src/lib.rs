@@ -1,1 +1,16 @@
-//! The shared planning core: one mission from text to plan to paths, as an immutable snapshot.
+//! The shared planning core: one mission from text to plan to paths, incrementally, as an immutable snapshot.
+//!
+//! The page's worker, the native window and the command line all run [`Core`]; panels and reports read [`Snapshot`].
+//! No planning, motion or language rules are here: this crate connects the crates that have them, and keeps each
+//! stage's result so that an edit redoes only what it touched.
+
+pub mod problem;
+pub mod request;
+pub mod snapshot;
+
+pub use problem::{Problem, TextEdit, TextFix};
+pub use request::{Goal, Request, Response, SearchKind};
+pub use snapshot::{
+    Encounter, Keyframe, Leg, MapKey, Planning, Snapshot, Stage, Timings, Traverse, Undrivable,
+    VehicleMotion,
+};

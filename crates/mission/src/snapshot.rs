@@ -1,0 +1,180 @@
+//! Everything known of one revision of a mission, as immutable data that panels and reports read.
+
+use std::sync::Arc;
+
+use rmpl::Rational;
+use rmpl::program::Program;
+use serde::{Deserialize, Serialize};
+use smol_str::SmolStr;
+use tpn::{Network, OccurrenceId};
+
+use crate::problem::Problem;
+
+/// One revision of a mission, as far as it has been worked out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Snapshot {
+    /// The revision of the text this belongs to.
+    pub revision: u64,
+    /// How far this snapshot goes.
+    pub stage: Stage,
+    /// The text.
+    pub source: Arc<str>,
+    /// What is wrong with it, or could be.
+    pub problems: Vec<Problem>,
+    /// What it says, as far as it is well formed.
+    pub program: Arc<Program>,
+    /// The network, unless an error prevents one. Path vertices of planned traverses are part of it.
+    pub network: Option<Arc<Network>>,
+    /// What planning found; absent before it ran, or without a network.
+    pub planning: Option<Arc<Planning>>,
+    /// The ground, if the mission names one.
+    pub map: Option<MapKey>,
+    /// The traverses of the plan, in order of departure.
+    pub traverses: Vec<Traverse>,
+    /// Where every vehicle is over time, under the earliest schedule of the plan.
+    pub motions: Vec<VehicleMotion>,
+    /// Traverses whose vehicles come within their safety radius of each other.
+    pub encounters: Vec<Encounter>,
+    /// How long the stages took.
+    pub timings: Timings,
+}
+
+/// How far a snapshot goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Stage {
+    /// The text is read and the network compiled, if it could be.
+    Compiled,
+    /// Planned, with paths where the plan has traverses: nothing more will come for this revision.
+    Complete,
+}
+
+/// What planning found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Planning {
+    /// The plan, if there is one.
+    pub plan: Option<tpn::Plan>,
+    /// Traverses whose alternatives were given up because no path fits, with the reason.
+    pub undrivable: Vec<Undrivable>,
+}
+
+/// A traverse that could not be driven.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Undrivable {
+    /// Which one.
+    pub occurrence: OccurrenceId,
+    /// The leg, from 1.
+    pub leg: u32,
+    /// Why, for the author.
+    pub reason: String,
+}
+
+/// Names a map so that it is sent to the page only once.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct MapKey {
+    /// The asset or the imported file.
+    pub asset: SmolStr,
+    /// Metres per cell in millimetres.
+    pub cell_mm: u32,
+    /// Mission coordinates of the south-west corner in millimetres.
+    pub origin_mm: [i64; 2],
+    /// Counts imports under the same name.
+    pub version: u32,
+}
+
+/// A traverse of the plan with its path.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Traverse {
+    /// The activity.
+    pub occurrence: OccurrenceId,
+    /// The vehicles, as indices into the program's world; the first leads.
+    pub vehicles: Vec<u32>,
+    /// The legs between waypoints.
+    pub legs: Vec<Leg>,
+    /// The whole length in metres.
+    pub length_m: f64,
+    /// The least distance from the leader's path to an obstacle, in metres, beyond the vehicle's own radius.
+    pub clearance_m: f64,
+    /// The steepest slope along the path, in radians.
+    pub slope_max_rad: f64,
+}
+
+/// The path between two waypoints.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Leg {
+    /// The name of the location it leads to.
+    pub to: SmolStr,
+    /// The path, waypoints included, in metres.
+    pub points_m: Vec<[f64; 2]>,
+    /// The search tree that found it, as segments, for display.
+    pub tree_m: Arc<Vec<[[f64; 2]; 2]>>,
+    /// Samples that the search drew.
+    pub samples: u32,
+}
+
+/// Where a vehicle is over time: still between keyframes with equal positions, otherwise at constant speed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct VehicleMotion {
+    /// Index into the program's world.
+    pub vehicle: u32,
+    /// Times in mission units from the start, ascending, and positions in metres.
+    pub keyframes: Vec<Keyframe>,
+}
+
+/// A place at a time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Keyframe {
+    /// In mission time units from the start.
+    pub time: Rational,
+    /// In metres.
+    pub position_m: [f64; 2],
+    /// Direction of travel in radians, counter-clockwise from east.
+    pub heading_rad: f64,
+}
+
+/// Two vehicles too near each other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Encounter {
+    /// The vehicles, as indices into the program's world.
+    pub vehicles: [u32; 2],
+    /// When they are nearest, in mission units.
+    pub time: f64,
+    /// Half way between them, in metres.
+    pub position_m: [f64; 2],
+    /// How near they come, in metres, from centre to centre.
+    pub distance_m: f64,
+}
+
+/// Milliseconds per stage, as measured by the host; zero where it has no clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Timings {
+    /// Reading the text.
+    pub parse_millis: f64,
+    /// Compiling the network.
+    pub compile_millis: f64,
+    /// Planning, paths included.
+    pub plan_millis: f64,
+}
+
+impl VehicleMotion {
+    /// Where the vehicle is at `time`, in mission units, and its heading in radians; `None` without keyframes.
+    pub fn at(&self, time: f64) -> Option<([f64; 2], f64)> {
+        let seconds = |frame: &Keyframe| *frame.time.numer() as f64 / *frame.time.denom() as f64;
+        let after = self
+            .keyframes
+            .partition_point(|frame| seconds(frame) <= time);
+        let before = self.keyframes.get(after.saturating_sub(1))?;
+        let Some(next) = self.keyframes.get(after).filter(|_| after > 0) else {
+            return Some((before.position_m, before.heading_rad));
+        };
+        let (from, to) = (seconds(before), seconds(next));
+        let part = if to > from {
+            (time - from) / (to - from)
+        } else {
+            0.0
+        };
+        let mix = |axis: usize| {
+            before.position_m[axis] + part * (next.position_m[axis] - before.position_m[axis])
+        };
+        Some(([mix(0), mix(1)], before.heading_rad))
+    }
+}
