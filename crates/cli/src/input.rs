@@ -1,0 +1,41 @@
+//! Reading the files that commands are given; `-` is standard input.
+
+use std::io::Read as _;
+use std::path::Path;
+
+use anyhow::Context as _;
+
+/// No program text is this long; a larger file is a mistake, and is refused before it is read.
+const LONGEST_TEXT_BYTES: u64 = 64 << 20;
+
+/// The text of `path`, which must be UTF-8.
+pub fn read_text(path: &Path) -> anyhow::Result<String> {
+    let bytes = read_bytes(path, LONGEST_TEXT_BYTES)?;
+    String::from_utf8(bytes).map_err(|error| {
+        anyhow::anyhow!(
+            "{} is not UTF-8 text: the first bad byte is at offset {}",
+            path.display(),
+            error.utf8_error().valid_up_to()
+        )
+    })
+}
+
+/// The bytes of `path`, refused when there are more than `most`.
+pub fn read_bytes(path: &Path, most: u64) -> anyhow::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    if path == Path::new("-") {
+        std::io::stdin().take(most + 1).read_to_end(&mut bytes).context("cannot read standard input")?;
+    } else {
+        std::fs::File::open(path)
+            .and_then(|file| file.take(most + 1).read_to_end(&mut bytes))
+            .with_context(|| format!("cannot read {}", path.display()))?;
+    }
+    anyhow::ensure!(bytes.len() as u64 <= most, "{} is larger than {} MiB", path.display(), most >> 20);
+    Ok(bytes)
+}
+
+/// A JSON document read from `path`.
+pub fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> anyhow::Result<T> {
+    let text = read_text(path)?;
+    serde_json::from_str(&text).with_context(|| format!("{} is not the JSON that was expected", path.display()))
+}

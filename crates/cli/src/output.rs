@@ -1,0 +1,113 @@
+//! How every command answers: exit status, JSON documents with diagnostics, and text for people (DESIGN 4.2).
+
+use std::io::{IsTerminal as _, Write as _};
+use std::process::ExitCode;
+
+use clap::ValueEnum;
+use mission::Problem;
+use rmpl::Severity;
+use serde_json::{Map, Value, json};
+
+/// Done, and the answer is yes.
+pub const YES: u8 = 0;
+/// Done, and the answer is no: no plan, plan invalid, not consistent.
+pub const NO: u8 = 1;
+/// The input or the call is wrong.
+pub const WRONG: u8 = 2;
+/// A limit was reached.
+pub const LIMIT: u8 = 3;
+
+/// For whom the answer is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// For people.
+    #[default]
+    Text,
+    /// For programs.
+    Json,
+}
+
+/// A JSON document `enroute-<kind>/1` with its diagnostics and the members of `body`, an object.
+pub fn document(kind: &str, problems: &[Problem], body: Value) -> Value {
+    let mut members = Map::new();
+    members.insert("format".into(), json!(format!("enroute-{kind}/1")));
+    members.insert("diagnostics".into(), Value::Array(problems.iter().map(problem_json).collect()));
+    if let Value::Object(body) = body {
+        members.extend(body);
+    }
+    Value::Object(members)
+}
+
+fn problem_json(problem: &Problem) -> Value {
+    json!({
+        "code": problem.code,
+        "severity": problem.severity,
+        "message": problem.message,
+        "span": {
+            "start": problem.span.start,
+            "end": problem.span.end,
+            "line": problem.line,
+            "column": problem.column,
+        },
+        "hint": problem.hint,
+    })
+}
+
+/// Prints a JSON document on standard output.
+pub fn print_json(value: &Value) -> anyhow::Result<()> {
+    print_text(&format!("{}\n", serde_json::to_string_pretty(value)?))
+}
+
+/// Prints text on standard output; a reader that has gone away ends the output quietly.
+pub fn print_text(text: &str) -> anyhow::Result<()> {
+    match std::io::stdout().lock().write_all(text.as_bytes()) {
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        result => Ok(result?),
+    }
+}
+
+/// Prints diagnostics on standard error with the lines they are about, coloured only on a terminal.
+pub fn print_problems(name: &str, source: &str, problems: &[Problem]) -> anyhow::Result<()> {
+    let colored = std::io::stderr().is_terminal();
+    let mut text = String::new();
+    for problem in problems {
+        text.push_str(&describe(name, source, problem, colored));
+    }
+    std::io::stderr().lock().write_all(text.as_bytes())?;
+    Ok(())
+}
+
+fn describe(name: &str, source: &str, problem: &Problem, colored: bool) -> String {
+    let (word, color) = match problem.severity {
+        Severity::Error => ("error", "\x1b[1;31m"),
+        Severity::Warning => ("warning", "\x1b[1;33m"),
+        Severity::Note => ("note", "\x1b[1;36m"),
+    };
+    let (on, off) = if colored { (color, "\x1b[0m") } else { ("", "") };
+    let line_text = source.lines().nth(problem.line as usize - 1).unwrap_or("");
+    let in_span = source.get(problem.span.range()).unwrap_or("");
+    let first_line = in_span.lines().next().unwrap_or("");
+    let marks = "^".repeat(first_line.chars().count().max(1));
+    let margin = problem.line.to_string();
+    let blank = " ".repeat(margin.len());
+    let before: String = line_text
+        .chars()
+        .take(problem.column as usize - 1)
+        .map(|character| if character == '\t' { '\t' } else { ' ' })
+        .collect();
+    let hint = problem.hint.as_ref().map(|hint| format!("{blank} = hint: {hint}\n")).unwrap_or_default();
+    format!(
+        "{on}{word}[{}]{off}: {}\n{blank}--> {name}:{}:{}\n{blank} |\n{margin} | {line_text}\n{blank} | {before}{on}{marks}{off}\n{hint}",
+        problem.code, problem.message, problem.line, problem.column
+    )
+}
+
+/// Whether any of `problems` is an error.
+pub fn any_error(problems: &[Problem]) -> bool {
+    problems.iter().any(|problem| problem.severity == Severity::Error)
+}
+
+/// The process's exit status.
+pub fn exit(status: u8) -> ExitCode {
+    ExitCode::from(status)
+}
