@@ -1,0 +1,442 @@
+//! The places where a disc-shaped vehicle can be, answered exactly.
+//!
+//! A vehicle is a point and obstacles are grown by its radius, so its heading doesn't matter (SPEC 7.1). Obstacles are
+//! whole square cells. The clearance map of cell centres only decides what is far from every border; near one, the
+//! query measures the distance to the squares themselves. Nothing is sampled.
+
+use serde::{Deserialize, Serialize};
+
+use crate::connectivity::{self, Regions};
+use crate::distance::{HALF_DIAGONAL, distance_to_occupied};
+use crate::frame::{Cell, GridFrame};
+use crate::occupancy::{CellState, Occupancy};
+
+/// Why a vehicle can't be at a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Collision {
+    /// The point is not on the map.
+    OutsideMap,
+    /// Too near to a cell, or in it.
+    Cell {
+        /// The cell that is nearest to the point.
+        cell: Cell,
+        /// What is in it.
+        state: CellState,
+    },
+}
+
+/// Where a vehicle of some radius can be on a map.
+///
+/// A point is free when it lies on the map, not in an occupied cell, and no nearer to one than the radius. The border
+/// of the map is no obstacle: the vehicle's centre has to stay on the map. A cell holds its west and south border, as
+/// in [`GridFrame::cell_at`]; a vehicle of radius 0 can't slip between two occupied cells that share a corner.
+#[derive(Clone, Debug)]
+pub struct ConfigurationSpace {
+    occupancy: Occupancy,
+    radius_m: f64,
+    /// In cells, from cell centres to the nearest occupied square; minus the distance to the nearest free one inside.
+    clearance: Vec<f32>,
+    flags: Vec<u8>,
+    regions: Regions,
+    /// The vehicle's radius in cells.
+    pub(crate) radius: f64,
+}
+
+const OCCUPIED: u8 = 1;
+/// An occupied cell with a free neighbour: the nearest occupied cell of a free point is one of these.
+const BORDER: u8 = 2;
+
+/// Distances below this many cells are rounding, not geometry.
+const TOLERANCE: f64 = 1e-9;
+/// Covers the rounding of clearances to single precision.
+const CLEARANCE_ROUNDING: f64 = 2e-3;
+
+impl ConfigurationSpace {
+    /// The free places of a vehicle whose circumradius with its margin is `radius_m`. Linear in the number of cells.
+    pub fn new(occupancy: Occupancy, radius_m: f64) -> Self {
+        let frame = *occupancy.frame();
+        let (width, height) = (frame.width as usize, frame.height as usize);
+        let occupied: Vec<bool> = occupancy.states().iter().map(|&state| state != CellState::Free).collect();
+        let free: Vec<bool> = occupied.iter().map(|occupied| !occupied).collect();
+        let mut clearance = distance_to_occupied(width, height, &occupied);
+        for (outside, inside) in clearance.iter_mut().zip(distance_to_occupied(width, height, &free)) {
+            if *outside == 0.0 {
+                *outside = -inside;
+            }
+        }
+        let radius = (radius_m / frame.cell_size_m).max(0.0);
+        let flags = border_flags(width, height, &occupied);
+        let regions = Regions::label(width, height, |index| {
+            possibly_free(radius, f64::from(clearance[index]), flags[index] & OCCUPIED != 0)
+        });
+        Self { occupancy, radius_m: radius_m.max(0.0), clearance, flags, regions, radius }
+    }
+
+    /// Where the map lies.
+    pub const fn frame(&self) -> &GridFrame {
+        self.occupancy.frame()
+    }
+
+    /// The cells behind this space.
+    pub const fn occupancy(&self) -> &Occupancy {
+        &self.occupancy
+    }
+
+    /// The vehicle's radius with its margin, in metres.
+    pub const fn radius_m(&self) -> f64 {
+        self.radius_m
+    }
+
+    /// For display: metres from each cell's centre to the nearest obstacle less the radius, row by row from the south;
+    /// negative where the vehicle can't be, infinite on a map without obstacles.
+    pub fn clearance_map_m(&self) -> Vec<f32> {
+        let size = self.frame().cell_size_m;
+        self.clearance.iter().map(|&cells| (f64::from(cells) * size - self.radius_m) as f32).collect()
+    }
+
+    /// Metres from the vehicle's rim to the nearest obstacle when its centre is at a point; negative in collision
+    /// and infinite on a map without obstacles. `None` outside the map. Exact outside obstacles; inside one, the depth
+    /// is that of the cell's centre.
+    pub fn clearance_m(&self, point_m: [f64; 2]) -> Option<f64> {
+        let cell = self.frame().cell_at(point_m)?;
+        let point = self.frame().to_cells(point_m);
+        let distance = if self.is_occupied(cell) {
+            f64::from(self.clearance[self.frame().index(cell)])
+        } else {
+            self.nearest_occupied(point, cell).map_or(f64::INFINITY, |(distance, _)| distance)
+        };
+        Some(distance * self.frame().cell_size_m - self.radius_m)
+    }
+
+    /// Whether the vehicle's centre can be at a point.
+    pub fn is_free(&self, point_m: [f64; 2]) -> bool {
+        let Some(cell) = self.frame().cell_at(point_m) else { return false };
+        self.is_free_in_cell(self.frame().to_cells(point_m), cell)
+    }
+
+    /// What is in the way of a vehicle at a point; `None` when it is free.
+    pub fn collision_at(&self, point_m: [f64; 2]) -> Option<Collision> {
+        let Some(own) = self.frame().cell_at(point_m) else { return Some(Collision::OutsideMap) };
+        let point = self.frame().to_cells(point_m);
+        if self.is_free_in_cell(point, own) {
+            return None;
+        }
+        let cell = if self.is_occupied(own) {
+            own
+        } else {
+            self.nearest_occupied(point, own).map_or(own, |(_, cell)| cell)
+        };
+        Some(Collision::Cell { cell, state: self.occupancy.state(cell) })
+    }
+
+    /// Whether the vehicle's centre can move straight from one point to another: every point between is free, to
+    /// within a billionth of a cell. Time is proportional to the number of cells passed near obstacles.
+    pub fn is_segment_free(&self, from_m: [f64; 2], to_m: [f64; 2]) -> bool {
+        let (Some(first), Some(_)) = (self.frame().cell_at(from_m), self.frame().cell_at(to_m)) else {
+            return false;
+        };
+        let (from, to) = (self.frame().to_cells(from_m), self.frame().to_cells(to_m));
+        let offset = [to[0] - from[0], to[1] - from[1]];
+        let length = (offset[0] * offset[0] + offset[1] * offset[1]).sqrt();
+        if length == 0.0 {
+            return self.is_free_in_cell(from, first);
+        }
+        let walk = Walk { from, direction: [offset[0] / length, offset[1] / length], length };
+        self.walk_is_free(&walk) && self.is_free(to_m)
+    }
+
+    /// The least clearance in metres along a straight segment, to within a hundredth of a cell and never more than it
+    /// really is by that: for display and reports. `None` when an end is outside the map.
+    pub fn segment_clearance_m(&self, from_m: [f64; 2], to_m: [f64; 2]) -> Option<f64> {
+        let tolerance = 0.01 * self.frame().cell_size_m;
+        let mut least = self.clearance_m(from_m)?.min(self.clearance_m(to_m)?);
+        let mut pieces = vec![(from_m, to_m)];
+        while let Some((a, b)) = pieces.pop() {
+            let length = ((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1])).sqrt();
+            let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+            let clearance = self.clearance_m(middle)?;
+            least = least.min(clearance);
+            // Clearance changes by no more than the way moved.
+            if clearance - 0.5 * length < least - tolerance {
+                pieces.push((a, middle));
+                pieces.push((middle, b));
+            }
+        }
+        Some(least)
+    }
+
+    /// Whether it is proved that no path joins two points: an outer bound of the free places falls into pieces, and
+    /// the points lie in different ones. `false` proves nothing. Constant time.
+    pub fn are_separated(&self, a_m: [f64; 2], b_m: [f64; 2]) -> bool {
+        let (Some(a), Some(b)) = (self.frame().cell_at(a_m), self.frame().cell_at(b_m)) else { return true };
+        !self.regions.joined(self.frame().index(a), self.frame().index(b))
+    }
+
+    /// Like [`Self::are_separated`] with a sixteen times finer outer bound, which also sees gaps that are only a little
+    /// too narrow for the vehicle. Linear in the number of cells: for use when a search has failed.
+    pub fn are_separated_finely(&self, a_m: [f64; 2], b_m: [f64; 2]) -> bool {
+        self.are_separated(a_m, b_m) || connectivity::are_separated_finely(self, a_m, b_m)
+    }
+
+    pub(crate) fn is_occupied(&self, cell: Cell) -> bool {
+        self.flags[self.frame().index(cell)] & OCCUPIED != 0
+    }
+
+    /// Cells from the centre of a cell to the nearest occupied square.
+    pub(crate) fn center_clearance(&self, cell: Cell) -> f64 {
+        f64::from(self.clearance[self.frame().index(cell)])
+    }
+
+    /// Whether a point in units of cells, which lies in `cell`, is free.
+    fn is_free_in_cell(&self, point: [f64; 2], cell: Cell) -> bool {
+        if self.is_occupied(cell) {
+            return false;
+        }
+        let center = self.center_clearance(cell);
+        self.radius == 0.0
+            || center - HALF_DIAGONAL - CLEARANCE_ROUNDING >= self.radius
+            || !self.near_border_cell(cell, |low| point_to_cell(point, low))
+    }
+
+    /// The distance from a point in units of cells to the nearest occupied square, and its cell.
+    pub(crate) fn nearest_occupied(&self, point: [f64; 2], own: Cell) -> Option<(f64, Cell)> {
+        let center = self.center_clearance(own);
+        if center == f64::INFINITY {
+            return None;
+        }
+        let reach = center + HALF_DIAGONAL + CLEARANCE_ROUNDING;
+        let mut nearest: Option<(f64, Cell)> = None;
+        for cell in self.border_cells_near(own, reach) {
+            let squared = point_to_cell(point, [f64::from(cell.column), f64::from(cell.row)]);
+            if nearest.is_none_or(|(least, _)| squared < least) {
+                nearest = Some((squared, cell));
+            }
+        }
+        nearest.map(|(squared, cell)| (squared.sqrt(), cell))
+    }
+
+    /// The occupied border cells whose square comes within `reach` of the square of `own`, or somewhat farther away.
+    fn border_cells_near(&self, own: Cell, reach: f64) -> impl Iterator<Item = Cell> + '_ {
+        let frame = self.frame();
+        let cells = (reach.ceil() + 1.0).min(1e9) as u32;
+        let columns =
+            own.column.saturating_sub(cells)..=(own.column.saturating_add(cells)).min(frame.width - 1);
+        let rows = own.row.saturating_sub(cells)..=(own.row.saturating_add(cells)).min(frame.height - 1);
+        rows.flat_map(move |row| columns.clone().map(move |column| Cell { column, row }))
+            .filter(|&cell| self.flags[self.frame().index(cell)] & BORDER != 0)
+    }
+
+    /// Whether some occupied border cell around `own` is nearer than the radius by a measure of squared distance.
+    fn near_border_cell(&self, own: Cell, squared_distance: impl Fn([f64; 2]) -> f64) -> bool {
+        let limit = (self.radius - TOLERANCE).max(0.0);
+        let limit = limit * limit;
+        let width = self.frame().width as usize;
+        let cells = self.radius.ceil() as usize;
+        let (column, row) = (own.column as usize, own.row as usize);
+        let columns = column.saturating_sub(cells)..(column + cells + 1).min(width);
+        for row in row.saturating_sub(cells)..(row + cells + 1).min(self.frame().height as usize) {
+            let flags = &self.flags[row * width + columns.start..row * width + columns.end];
+            for (offset, &flag) in flags.iter().enumerate() {
+                if flag & BORDER != 0
+                    && squared_distance([(columns.start + offset) as f64, row as f64]) < limit
+                {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    /// Follows a segment from cell to cell, leaping over what the clearance map shows to be free.
+    fn walk_is_free(&self, walk: &Walk) -> bool {
+        let mut at = 0.0;
+        loop {
+            let mut cursor = walk.cursor(at, self.frame());
+            // Near obstacles, from border to border.
+            loop {
+                let clearance = self.center_clearance(cursor.cell());
+                let spare = clearance - self.radius - HALF_DIAGONAL - CLEARANCE_ROUNDING;
+                if spare >= 1.0 {
+                    at = cursor.at + spare;
+                    break;
+                }
+                let next = walk.crossing(&cursor);
+                let end = next.min(walk.length);
+                if spare < 0.0 && !self.piece_is_free(walk, cursor.cell(), clearance, cursor.at, end) {
+                    return false;
+                }
+                if next >= walk.length {
+                    return true;
+                }
+                if !self.cross(walk, &mut cursor, next) {
+                    return false;
+                }
+                if !cursor.in_frame(self.frame()) {
+                    // Both ends are on the map: rounding placed a crossing just before an end on its border.
+                    return true;
+                }
+            }
+            if at >= walk.length {
+                return true;
+            }
+        }
+    }
+
+    /// Whether the piece of a segment that lies in a cell is free.
+    fn piece_is_free(&self, walk: &Walk, cell: Cell, clearance: f64, start: f64, end: f64) -> bool {
+        if self.is_occupied(cell) {
+            return false;
+        }
+        if self.radius == 0.0 {
+            return true;
+        }
+        if clearance + HALF_DIAGONAL + CLEARANCE_ROUNDING < self.radius {
+            return false;
+        }
+        let (a, b) = (walk.point(start), walk.point(end));
+        !self.near_border_cell(cell, |low| segment_to_cell(a, b, low))
+    }
+
+    /// Moves the cursor over the border that the segment crosses at `next`; `false` when it slips through a corner
+    /// beside an occupied cell.
+    fn cross(&self, walk: &Walk, cursor: &mut Cursor, next: f64) -> bool {
+        let before = *cursor;
+        let axis = usize::from(cursor.crossings[1] < cursor.crossings[0]);
+        let corner = (cursor.crossings[0] - cursor.crossings[1]).abs() <= TOLERANCE;
+        walk.advance(cursor, axis, next);
+        if corner {
+            let mut other = before;
+            walk.advance(&mut other, 1 - axis, next);
+            let occupied = |cursor: &Cursor| cursor.in_frame(self.frame()) && self.is_occupied(cursor.cell());
+            if occupied(cursor) || occupied(&other) {
+                return false;
+            }
+            walk.advance(cursor, 1 - axis, next);
+        }
+        true
+    }
+}
+
+/// Whether some point of a cell may be free: an outer bound.
+fn possibly_free(radius: f64, clearance: f64, occupied: bool) -> bool {
+    !occupied && clearance + HALF_DIAGONAL + CLEARANCE_ROUNDING >= radius
+}
+
+fn border_flags(width: usize, height: usize, occupied: &[bool]) -> Vec<u8> {
+    let mut flags = vec![0; occupied.len()];
+    for row in 0..height {
+        for column in 0..width {
+            let index = row * width + column;
+            if occupied[index] {
+                let beside_free = (column > 0 && !occupied[index - 1])
+                    || (column + 1 < width && !occupied[index + 1])
+                    || (row > 0 && !occupied[index - width])
+                    || (row + 1 < height && !occupied[index + width]);
+                flags[index] = if beside_free { OCCUPIED | BORDER } else { OCCUPIED };
+            }
+        }
+    }
+    flags
+}
+
+/// A segment in units of cells.
+struct Walk {
+    from: [f64; 2],
+    direction: [f64; 2],
+    length: f64,
+}
+
+/// A cell on a walk, and where the walk leaves it.
+#[derive(Clone, Copy)]
+struct Cursor {
+    cell: [i64; 2],
+    /// How far along the segment.
+    at: f64,
+    /// How far along the segment it crosses the next border to the side, and the next one up or down.
+    crossings: [f64; 2],
+}
+
+impl Cursor {
+    const fn cell(&self) -> Cell {
+        Cell { column: self.cell[0] as u32, row: self.cell[1] as u32 }
+    }
+
+    fn in_frame(&self, frame: &GridFrame) -> bool {
+        let inside = |value: i64, size: u32| value >= 0 && value < i64::from(size);
+        inside(self.cell[0], frame.width) && inside(self.cell[1], frame.height)
+    }
+}
+
+impl Walk {
+    fn point(&self, at: f64) -> [f64; 2] {
+        [self.from[0] + self.direction[0] * at, self.from[1] + self.direction[1] * at]
+    }
+
+    fn cursor(&self, at: f64, frame: &GridFrame) -> Cursor {
+        let point = self.point(at);
+        let clamp = |value: f64, size: u32| (value.floor() as i64).clamp(0, i64::from(size) - 1);
+        let cell = [clamp(point[0], frame.width), clamp(point[1], frame.height)];
+        let mut cursor = Cursor { cell, at, crossings: [0.0; 2] };
+        for axis in 0..2 {
+            cursor.crossings[axis] = self.crossing_of(axis, cell[axis]);
+        }
+        cursor
+    }
+
+    /// How far along the segment it leaves a column (axis 0) or row (axis 1).
+    fn crossing_of(&self, axis: usize, cell: i64) -> f64 {
+        let direction = self.direction[axis];
+        if direction > 0.0 {
+            ((cell + 1) as f64 - self.from[axis]) / direction
+        } else if direction < 0.0 {
+            (cell as f64 - self.from[axis]) / direction
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// How far along the segment it leaves the cursor's cell.
+    fn crossing(&self, cursor: &Cursor) -> f64 {
+        cursor.crossings[0].min(cursor.crossings[1]).max(cursor.at)
+    }
+
+    fn advance(&self, cursor: &mut Cursor, axis: usize, at: f64) {
+        cursor.cell[axis] += if self.direction[axis] > 0.0 { 1 } else { -1 };
+        cursor.crossings[axis] = self.crossing_of(axis, cursor.cell[axis]);
+        cursor.at = at;
+    }
+}
+
+/// The squared distance from a point to the unit square with this south-west corner.
+fn point_to_cell(point: [f64; 2], low: [f64; 2]) -> f64 {
+    let outside = |value: f64, low: f64| (low - value).max(value - low - 1.0).max(0.0);
+    let (across, along) = (outside(point[0], low[0]), outside(point[1], low[1]));
+    across * across + along * along
+}
+
+/// The squared distance between a segment and the unit square with this south-west corner. When they don't meet, the
+/// least distance is at an end of the segment or at a corner of the square.
+fn segment_to_cell(a: [f64; 2], b: [f64; 2], low: [f64; 2]) -> f64 {
+    let high = [low[0] + 1.0, low[1] + 1.0];
+    if crate::obstacle::segment_meets_box(a, b, low, high) {
+        return 0.0;
+    }
+    let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
+    corners
+        .iter()
+        .map(|&corner| point_to_segment(corner, a, b))
+        .fold(point_to_cell(a, low).min(point_to_cell(b, low)), f64::min)
+}
+
+fn point_to_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
+    let side = [b[0] - a[0], b[1] - a[1]];
+    let offset = [point[0] - a[0], point[1] - a[1]];
+    let squared = side[0] * side[0] + side[1] * side[1];
+    let share = if squared > 0.0 {
+        ((offset[0] * side[0] + offset[1] * side[1]) / squared).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    let rest = [offset[0] - side[0] * share, offset[1] - side[1] * share];
+    rest[0] * rest[0] + rest[1] * rest[1]
+}

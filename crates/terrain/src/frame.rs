@@ -1,0 +1,95 @@
+//! Where a grid lies in the world: its cells, its corner, and the way between metres and cells.
+
+use serde::{Deserialize, Serialize};
+
+/// One cell of a grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Cell {
+    /// From 0 in the west.
+    pub column: u32,
+    /// From 0 in the south.
+    pub row: u32,
+}
+
+/// The extent of a grid of square cells. A value of a cell belongs to the cell's centre.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GridFrame {
+    /// Cells from west to east.
+    pub width: u32,
+    /// Cells from south to north.
+    pub height: u32,
+    /// The side of a cell in metres.
+    pub cell_size_m: f64,
+    /// The south-west corner of the grid in metres east and north.
+    pub origin_m: [f64; 2],
+}
+
+impl GridFrame {
+    /// A frame whose south-west corner is the origin.
+    pub const fn new(width: u32, height: u32, cell_size_m: f64) -> Self {
+        Self { width, height, cell_size_m, origin_m: [0.0, 0.0] }
+    }
+
+    /// The number of cells.
+    pub const fn cell_count(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+
+    /// Metres from west to east and from south to north.
+    pub fn extent_m(&self) -> [f64; 2] {
+        [f64::from(self.width) * self.cell_size_m, f64::from(self.height) * self.cell_size_m]
+    }
+
+    /// The north-east corner in metres.
+    pub fn far_corner_m(&self) -> [f64; 2] {
+        let extent = self.extent_m();
+        [self.origin_m[0] + extent[0], self.origin_m[1] + extent[1]]
+    }
+
+    /// The place of a cell in row-major storage, southernmost row first.
+    pub const fn index(&self, cell: Cell) -> usize {
+        cell.row as usize * self.width as usize + cell.column as usize
+    }
+
+    /// The cell at a place in row-major storage.
+    pub const fn cell(&self, index: usize) -> Cell {
+        Cell { column: (index % self.width as usize) as u32, row: (index / self.width as usize) as u32 }
+    }
+
+    /// A point in units of cells from the south-west corner.
+    pub fn to_cells(&self, point_m: [f64; 2]) -> [f64; 2] {
+        [
+            (point_m[0] - self.origin_m[0]) / self.cell_size_m,
+            (point_m[1] - self.origin_m[1]) / self.cell_size_m,
+        ]
+    }
+
+    /// A point given in units of cells from the south-west corner, in metres.
+    pub fn to_metres(&self, point_cells: [f64; 2]) -> [f64; 2] {
+        [
+            self.origin_m[0] + point_cells[0] * self.cell_size_m,
+            self.origin_m[1] + point_cells[1] * self.cell_size_m,
+        ]
+    }
+
+    /// Whether a point lies in the grid or on its border.
+    pub fn contains(&self, point_m: [f64; 2]) -> bool {
+        let far = self.far_corner_m();
+        (0..2).all(|axis| point_m[axis] >= self.origin_m[axis] && point_m[axis] <= far[axis])
+    }
+
+    /// The cell that holds a point. A cell holds its west and south border; the grid's east and north border belong
+    /// to its last cells. `None` outside the grid and for a point that is not a number.
+    pub fn cell_at(&self, point_m: [f64; 2]) -> Option<Cell> {
+        if self.width == 0 || self.height == 0 || !self.contains(point_m) {
+            return None;
+        }
+        let [x, y] = self.to_cells(point_m);
+        Some(Cell { column: (x as u32).min(self.width - 1), row: (y as u32).min(self.height - 1) })
+    }
+
+    /// The centre of a cell in metres.
+    pub fn center_m(&self, cell: Cell) -> [f64; 2] {
+        self.to_metres([f64::from(cell.column) + 0.5, f64::from(cell.row) + 0.5])
+    }
+}
