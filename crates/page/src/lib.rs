@@ -30,12 +30,7 @@ pub async fn start(canvas: web_sys::HtmlCanvasElement) -> Result<(), JsValue> {
         .start(
             canvas,
             eframe::WebOptions::default(),
-            Box::new(|_| {
-                Ok(Box::new(Minimal {
-                    text: String::new(),
-                    revision: 0,
-                }))
-            }),
+            Box::new(|_| Ok(Box::new(Minimal { text: String::new(), revision: 0 }))),
         )
         .await
 }

@@ -1,0 +1,8 @@
+//! What the developer commands are made of: building the page, serving it, and driving it in a browser.
+//!
+//! The `xtask` binary and the page's end-to-end tests share this; nothing of it is part of the product.
+
+pub mod browser;
+pub mod process;
+pub mod server;
+pub mod site;
