@@ -2,11 +2,14 @@
 //!
 //! Nothing here decides what a plan is; planning is `kirk`, checking is `verify`.
 
+pub mod compile;
 pub mod network;
 pub mod plan;
 
+pub use compile::{Top, compile, merge_diagnostics};
 pub use network::{
-    Arc, ArcId, ArcKind, Block, BlockId, BlockKind, Decision, DecisionId, EventEnd, EventRef, Label, LabelId, Literal,
-    Network, Node, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Role, ValueId, ValueSet, Variable, VariableId,
+    Arc, ArcId, ArcKind, Block, BlockId, BlockKind, Decision, DecisionId, EventEnd, EventRef, Label, LabelId,
+    Literal, Network, Node, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Role, ValueId, ValueSet,
+    Variable, VariableId,
 };
 pub use plan::{CausalLink, Choice, Ordering, Plan, Window};

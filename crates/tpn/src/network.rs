@@ -37,7 +37,7 @@ id! {
     DecisionId;
     /// A labelled interval: one label of one arc, in textual order of the arcs.
     LabelId;
-    /// One occurrence of an activity, assertion, delay or scenario, in textual expansion order.
+    /// One occurrence of an activity, assertion, delay, scenario or conditional scope, in textual expansion order.
     OccurrenceId;
     /// A state variable.
     VariableId;
@@ -253,7 +253,9 @@ impl ValueSet {
                 inside.iter().all(|value| outside.binary_search(value).is_err())
             }
             (Self::NotIn(_), Self::In(_)) => false,
-            (Self::NotIn(left), Self::NotIn(right)) => right.iter().all(|value| left.binary_search(value).is_ok()),
+            (Self::NotIn(left), Self::NotIn(right)) => {
+                right.iter().all(|value| left.binary_search(value).is_ok())
+            }
         }
     }
 }
@@ -320,6 +322,9 @@ pub enum OccurrenceKind {
     Delay,
     /// The scenario itself, or the activity planned for.
     Scenario,
+    /// A `do` or an `if` whose condition is no activity's own: `do#1`, `if#1`. It names the labelled interval and has
+    /// no events of its own, so it appears in no windows.
+    Scope,
 }
 
 /// A piece of the program's structure, between its first and its last event.

@@ -1,0 +1,737 @@
+//! The compile rules of SPEC 3.3, one function per construct, over the program with its calls expanded.
+
+use std::collections::BTreeMap;
+
+use rmpl::program::{
+    ActivityDecl, ArgumentValue, Bounds, Condition, HeaderBound, HeaderBounds, LabelMode, Name,
+    PrimitiveDecl, Program, ScenarioDecl, Statement, StatementKind,
+};
+use rmpl::{Bound, Diagnostic, Rational, Span};
+use smol_str::SmolStr;
+
+use super::bounds::{self, Interval};
+use super::build::Builder;
+use super::names::{Fact, Vocabulary};
+use super::scope::{Scope, argument_text};
+use super::{E_LIMIT, E_UNDEF, statics};
+use crate::network::{ArcId, ArcKind, BlockId, BlockKind, Network, NodeId, OccurrenceId, OccurrenceKind};
+
+/// Networks grow no larger than this many nodes, so that a few lines of doubling calls cannot exhaust the memory.
+const MOST_NODES: usize = 500_000;
+/// Statements nest no deeper than this, instances included, so that no text can exhaust the stack.
+const DEEPEST: usize = 200;
+
+/// What kind of node stands at an end of a piece, which decides what may share the node (rule M).
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum End {
+    /// The start or end of an activity or assertion: shares its node only with a delay.
+    Event,
+    /// A fork, join, merge, decision or wrapper: shares its node with other structure.
+    Structural,
+    /// The start or end of a delay: waiting is no event of its own, so it shares its neighbour's node.
+    Delay,
+}
+
+/// Where a piece begins.
+#[derive(Clone, Copy)]
+enum Entry {
+    /// At a new node.
+    Free,
+    /// At `node` if the two may share it, otherwise at a new node behind an arc `[0,0]` of kind `link`.
+    After { node: NodeId, end: End, link: ArcKind },
+}
+
+/// A compiled piece of the program.
+struct Piece {
+    start: NodeId,
+    end: NodeId,
+    end_kind: End,
+    block: BlockId,
+    /// The arc, if the piece is a single one.
+    arc: Option<ArcId>,
+    /// The activity or assertion that the piece is, if it is one.
+    occurrence: Option<OccurrenceId>,
+}
+
+/// Expands a program into a network.
+pub(super) struct Expander<'program> {
+    program: &'program Program,
+    vocabulary: Vocabulary<'program>,
+    activities: BTreeMap<&'program str, &'program ActivityDecl>,
+    primitives: BTreeMap<&'program str, &'program PrimitiveDecl>,
+    builder: Builder,
+    diagnostics: Vec<Diagnostic>,
+    /// The activities being expanded, outermost first.
+    active: Vec<&'program str>,
+    depth: usize,
+    is_cut_off: bool,
+}
+
+/// The outermost piece.
+pub(super) struct Root {
+    block: BlockId,
+    start: NodeId,
+    end: NodeId,
+}
+
+impl<'program> Expander<'program> {
+    pub(super) fn new(program: &'program Program) -> Self {
+        let mut activities = BTreeMap::new();
+        for activity in &program.activities {
+            activities.entry(activity.name.text.as_str()).or_insert(activity);
+        }
+        let mut primitives = BTreeMap::new();
+        for primitive in &program.primitives {
+            primitives.entry(primitive.name.text.as_str()).or_insert(primitive);
+        }
+        Self {
+            program,
+            vocabulary: Vocabulary::new(program),
+            activities,
+            primitives,
+            builder: Builder::default(),
+            diagnostics: Vec::new(),
+            active: Vec::new(),
+            depth: 0,
+            is_cut_off: false,
+        }
+    }
+
+    pub(super) fn scenario(&mut self, scenario: &'program ScenarioDecl) -> Root {
+        let occurrence = self.builder.occurrence(
+            "scenario".into(),
+            OccurrenceKind::Scenario,
+            Vec::new(),
+            None,
+            scenario.span,
+        );
+        let scope = Scope::new(Some(occurrence), &[], &[]);
+        let horizon = scenario.bounds.as_ref().map(|written| {
+            let interval = self.interval(written, &scope);
+            let arc = self.builder.reserve(ArcKind::Span, interval, written.span);
+            self.builder.own(occurrence, arc);
+            arc
+        });
+        let piece = self.spanned(&scenario.body, false, Entry::Free, &scope, horizon);
+        self.builder.place(occurrence, piece.start, piece.end);
+        let kind = BlockKind::Scope {
+            child: piece.block,
+            arcs: horizon.into_iter().collect(),
+            occurrence: Some(occurrence),
+        };
+        let block = self.builder.block(kind, piece.start, piece.end, Some(scenario.span));
+        Root { block, start: piece.start, end: piece.end }
+    }
+
+    pub(super) fn top_activity(
+        &mut self,
+        name: &SmolStr,
+        lower: Rational,
+        upper: Bound,
+    ) -> Result<Root, Diagnostic> {
+        let activity = self.activities.get(name.as_str()).copied();
+        let primitive = self.primitives.get(name.as_str()).copied();
+        let piece = if let Some(activity) = activity {
+            let interval = bounds::checked_interval(Bound::Finite(lower), upper, activity.name.span)?;
+            let arguments = themselves(&activity.formals);
+            let call =
+                Invocation { name: &activity.name, interval, bounds_span: None, span: activity.name.span };
+            self.instance(
+                activity,
+                &arguments,
+                &call,
+                Entry::Free,
+                &Scope::default(),
+                OccurrenceKind::Scenario,
+            )
+        } else if let Some(primitive) = primitive {
+            let interval = bounds::checked_interval(Bound::Finite(lower), upper, primitive.name.span)?;
+            let arguments = themselves(&primitive.formals);
+            let call =
+                Invocation { name: &primitive.name, interval, bounds_span: None, span: primitive.name.span };
+            self.primitive(&primitive.name.text, &arguments, &call, Entry::Free, &Scope::default())
+        } else {
+            return Err(Diagnostic::error(
+                E_UNDEF,
+                Span::default(),
+                format!("there is no activity `{name}`"),
+            ));
+        };
+        Ok(Root { block: piece.block, start: piece.start, end: piece.end })
+    }
+
+    pub(super) fn finish(self, root: Option<Root>) -> (Option<Network>, Vec<Diagnostic>) {
+        let network = root.filter(|_| !self.is_cut_off).map(|root| {
+            let gap = self.program.options.threat_gap;
+            self.builder.finish(&self.vocabulary, root.block, (root.start, root.end), gap)
+        });
+        (network, self.diagnostics)
+    }
+
+    fn statement(&mut self, statement: &'program Statement, entry: Entry, scope: &Scope) -> Piece {
+        if self.is_too_large(statement.span) {
+            return self.nothing(statement.span, entry);
+        }
+        self.depth += 1;
+        let piece = match (&statement.kind, &statement.bounds) {
+            (StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay, _)
+            | (_, None) => self.unbounded(statement, entry, scope),
+            (_, Some(written)) => {
+                let interval = self.interval(written, scope);
+                let arc = self.builder.reserve(ArcKind::Span, interval, written.span);
+                let piece = self.spanned(statement, true, entry, scope, Some(arc));
+                self.scope_block(&piece, arc, statement.span)
+            }
+        };
+        self.depth -= 1;
+        piece
+    }
+
+    /// `statement` without the bounds of a composite; its own bounds if it is a single arc.
+    fn unbounded(&mut self, statement: &'program Statement, entry: Entry, scope: &Scope) -> Piece {
+        let (span, written) = (statement.span, statement.bounds.as_ref());
+        match &statement.kind {
+            StatementKind::Sequence(items) => self.sequence(items, span, entry, scope),
+            StatementKind::Parallel(branches) => self.parallel(branches, span, entry, scope),
+            StatementKind::Choose(alternatives) => self.choose(alternatives, span, entry, scope),
+            StatementKind::Maintaining(body, condition) => {
+                self.conditional(body, condition, LabelMode::Ask, span, entry, scope)
+            }
+            StatementKind::Watching(body, condition) => {
+                self.conditional(body, condition, LabelMode::Tell, span, entry, scope)
+            }
+            StatementKind::IfThennext(condition, body) => self.guard(condition, body, span, entry, scope),
+            StatementKind::Call(name, arguments) => {
+                let arguments = scope.arguments(arguments);
+                self.call(name, &arguments, written, span, entry, scope)
+            }
+            StatementKind::Condition(mode, condition) => {
+                if let Some(name) = self.called_formal(*mode, condition, scope) {
+                    return self.call(&name, &[], written, span, entry, scope);
+                }
+                self.assertion(*mode, condition, written, span, entry, scope)
+            }
+            StatementKind::Delay => {
+                let interval = written.map_or(Interval::ANY, |written| self.interval(written, scope));
+                let arc_span = written.map_or(span, |written| written.span);
+                let occurrence = self.builder.occurrence(
+                    "delay".into(),
+                    OccurrenceKind::Delay,
+                    Vec::new(),
+                    scope.occurrence,
+                    span,
+                );
+                self.leaf(occurrence, ArcKind::Delay, interval, arc_span, span, entry)
+            }
+        }
+    }
+
+    fn sequence(&mut self, items: &'program [Statement], span: Span, entry: Entry, scope: &Scope) -> Piece {
+        let mut pieces: Vec<Piece> = Vec::with_capacity(items.len());
+        for item in items {
+            let entry = match pieces.last() {
+                None => entry,
+                Some(last) => Entry::After { node: last.end, end: last.end_kind, link: ArcKind::Glue },
+            };
+            let piece = self.statement(item, entry, scope);
+            pieces.push(piece);
+        }
+        if pieces.len() == 1 {
+            return pieces.swap_remove(0);
+        }
+        let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else {
+            return self.nothing(span, entry);
+        };
+        let (start, end, end_kind) = (first.start, last.end, last.end_kind);
+        let children = pieces.iter().map(|piece| piece.block).collect();
+        let block = self.builder.block(BlockKind::Sequence { children }, start, end, Some(span));
+        Piece { start, end, end_kind, block, arc: None, occurrence: None }
+    }
+
+    fn parallel(
+        &mut self,
+        branches: &'program [Statement],
+        span: Span,
+        entry: Entry,
+        scope: &Scope,
+    ) -> Piece {
+        let fork = self.enter(entry, End::Structural, span);
+        let mut ends = Vec::with_capacity(branches.len());
+        let mut blocks = Vec::with_capacity(branches.len());
+        for branch in branches {
+            let entry = Entry::After { node: fork, end: End::Event, link: ArcKind::Fork };
+            let piece = self.statement(branch, entry, scope);
+            ends.push((piece.end, branch.span));
+            blocks.push(piece.block);
+        }
+        let join = self.builder.node();
+        for (end, span) in ends {
+            self.builder.arc(end, join, ArcKind::Join, Interval::ANY, span);
+        }
+        let block = self.builder.block(BlockKind::Parallel { branches: blocks }, fork, join, Some(span));
+        Piece { start: fork, end: join, end_kind: End::Structural, block, arc: None, occurrence: None }
+    }
+
+    fn choose(
+        &mut self,
+        alternatives: &'program [Statement],
+        span: Span,
+        entry: Entry,
+        scope: &Scope,
+    ) -> Piece {
+        if alternatives.is_empty() {
+            return self.nothing(span, entry);
+        }
+        let node = self.enter(entry, End::Structural, span);
+        let decision = self.builder.decision(node, span);
+        let mut ends = Vec::with_capacity(alternatives.len());
+        let mut blocks = Vec::with_capacity(alternatives.len());
+        for alternative in alternatives {
+            let arc = self.builder.reserve(ArcKind::Choice, Interval::ZERO, alternative.span);
+            self.builder.alternative(decision, arc, alternative.span);
+            let piece = self.statement(alternative, Entry::Free, scope);
+            self.builder.connect(arc, node, piece.start);
+            ends.push((piece.end, alternative.span));
+            blocks.push(piece.block);
+        }
+        let merge = self.builder.node();
+        for (end, span) in ends {
+            self.builder.arc(end, merge, ArcKind::Merge, Interval::ZERO, span);
+        }
+        let kind = BlockKind::Choose { decision, alternatives: blocks };
+        let block = self.builder.block(kind, node, merge, Some(span));
+        Piece { start: node, end: merge, end_kind: End::Structural, block, arc: None, occurrence: None }
+    }
+
+    /// `do body maintaining c` requires `c`, `do body watching c` asserts its negation (SPEC 3.7).
+    fn conditional(
+        &mut self,
+        body: &'program Statement,
+        condition: &'program Condition,
+        mode: LabelMode,
+        span: Span,
+        entry: Entry,
+        scope: &Scope,
+    ) -> Piece {
+        let fact = self.fact(condition, scope).map(|fact| match mode {
+            LabelMode::Ask => fact,
+            LabelMode::Tell => fact.negation(),
+        });
+        if self.is_single_arc(body, scope) {
+            let piece = self.statement(body, entry, scope);
+            if let (Some(arc), Some(fact)) = (piece.arc, fact) {
+                self.builder.label(arc, mode, fact, piece.occurrence, condition.span);
+            }
+            return piece;
+        }
+        let owner = (!self.is_instance(body, scope)).then(|| {
+            self.builder.occurrence("do".into(), OccurrenceKind::Scope, Vec::new(), scope.occurrence, span)
+        });
+        let arc = self.builder.reserve(ArcKind::Span, Interval::ANY, span);
+        let piece = self.spanned(body, false, entry, scope, Some(arc));
+        if let Some(owner) = owner {
+            self.builder.place(owner, piece.start, piece.end);
+            self.builder.own(owner, arc);
+        }
+        if let Some(fact) = fact {
+            self.builder.label(arc, mode, fact, owner.or(piece.occurrence), condition.span);
+        }
+        self.scope_block(&piece, arc, span)
+    }
+
+    fn guard(
+        &mut self,
+        condition: &'program Condition,
+        body: &'program Statement,
+        span: Span,
+        entry: Entry,
+        scope: &Scope,
+    ) -> Piece {
+        let start = self.enter(entry, End::Structural, span);
+        let arc = self.builder.reserve(ArcKind::Point, Interval::ZERO, condition.span);
+        let owner =
+            self.builder.occurrence("if".into(), OccurrenceKind::Scope, Vec::new(), scope.occurrence, span);
+        self.builder.own(owner, arc);
+        if let Some(fact) = self.fact(condition, scope) {
+            self.builder.label(arc, LabelMode::Ask, fact, Some(owner), condition.span);
+        }
+        let piece = self.statement(body, Entry::Free, scope);
+        self.builder.connect(arc, start, piece.start);
+        self.builder.place(owner, start, piece.start);
+        let kind = BlockKind::Guard { arc, child: piece.block };
+        let block = self.builder.block(kind, start, piece.end, Some(span));
+        Piece { start, end: piece.end, end_kind: piece.end_kind, block, arc: None, occurrence: None }
+    }
+
+    fn call(
+        &mut self,
+        name: &Name,
+        arguments: &[ArgumentValue],
+        written: Option<&'program Bounds>,
+        span: Span,
+        entry: Entry,
+        scope: &Scope,
+    ) -> Piece {
+        let interval = written.map_or(Interval::ANY, |written| self.interval(written, scope));
+        let callee = scope.name(&name.text);
+        let call = Invocation { name, interval, bounds_span: written.map(|written| written.span), span };
+        let Some(&activity) = self.activities.get(callee.as_str()) else {
+            return self.primitive(&callee, arguments, &call, entry, scope);
+        };
+        // Static recursion was refused before; names that are passed as arguments can still close a circle.
+        if self.active.contains(&activity.name.text.as_str()) {
+            let message =
+                format!("activities may not call themselves, and `{callee}` does through its arguments");
+            self.diagnostics.push(Diagnostic::error(statics::E_RECURSION, name.span, message));
+            return self.nothing(span, entry);
+        }
+        self.instance(activity, arguments, &call, entry, scope, OccurrenceKind::Activity)
+    }
+
+    fn instance(
+        &mut self,
+        activity: &'program ActivityDecl,
+        arguments: &[ArgumentValue],
+        call: &Invocation<'_>,
+        entry: Entry,
+        around: &Scope,
+        kind: OccurrenceKind,
+    ) -> Piece {
+        let texts = arguments.iter().map(argument_text).collect();
+        let occurrence =
+            self.builder.occurrence(activity.name.text.clone(), kind, texts, around.occurrence, call.span);
+        let mut scope = Scope::new(Some(occurrence), &activity.formals, arguments);
+        let (interval, span) = self.header(activity, call, &mut scope);
+        let start = self.enter(entry, End::Event, call.span);
+        let arc = self.builder.reserve(ArcKind::Composite, interval, span);
+        self.builder.own(occurrence, arc);
+        self.active.push(activity.name.text.as_str());
+        let entry = Entry::After { node: start, end: End::Event, link: ArcKind::Glue };
+        let body = self.statement(&activity.body, entry, &scope);
+        self.active.pop();
+        let end = self.builder.node();
+        self.builder.arc(body.end, end, ArcKind::Glue, Interval::ZERO, activity.body.span);
+        self.builder.connect(arc, start, end);
+        self.builder.place(occurrence, start, end);
+        let kind = BlockKind::Scope { child: body.block, arcs: vec![arc], occurrence: Some(occurrence) };
+        let block = self.builder.block(kind, start, end, Some(call.span));
+        Piece { start, end, end_kind: End::Event, block, arc: None, occurrence: Some(occurrence) }
+    }
+
+    /// The bounds of an instance (SPEC 1.4), and where they are written; binds the header's bound parameters.
+    fn header(
+        &mut self,
+        activity: &'program ActivityDecl,
+        call: &Invocation<'_>,
+        scope: &mut Scope,
+    ) -> (Interval, Span) {
+        let call_span = call.bounds_span.unwrap_or(call.span);
+        let HeaderBounds::Sides { lower, upper, span } = &activity.bounds else {
+            return (call.interval, call_span);
+        };
+        if let HeaderBound::Parameter(name) = lower {
+            scope.bind(&name.text, Bound::Finite(call.interval.lower));
+        }
+        if let HeaderBound::Parameter(name) = upper {
+            scope.bind(&name.text, call.interval.upper);
+        }
+        let value = |side: &HeaderBound, default: Bound| match side {
+            HeaderBound::Parameter(_) => Ok((default, false)),
+            HeaderBound::Limit(expr) => {
+                bounds::value(expr, &|name| scope.bound(name)).map(|value| (value, true))
+            }
+        };
+        let sides = value(lower, Bound::ZERO).and_then(|least| Ok((least, value(upper, Bound::Infinite)?)));
+        let ((least, limits_lower), (greatest, limits_upper)) = match sides {
+            Ok(sides) => sides,
+            Err(error) => {
+                self.diagnostics.push(error);
+                return (call.interval, call_span);
+            }
+        };
+        let limit = match bounds::checked_interval(least, greatest, *span) {
+            Ok(limit) => limit,
+            Err(error) => {
+                self.diagnostics.push(error);
+                return (call.interval, call_span);
+            }
+        };
+        let limits = limits_lower || limits_upper;
+        let arc_span = if limits { call.bounds_span.unwrap_or(*span) } else { call_span };
+        (self.intersect(call, limit, *span), arc_span)
+    }
+
+    /// A primitive, declared or not: its declared bounds intersected with those of the call.
+    fn primitive(
+        &mut self,
+        callee: &SmolStr,
+        arguments: &[ArgumentValue],
+        call: &Invocation<'_>,
+        entry: Entry,
+        around: &Scope,
+    ) -> Piece {
+        let declared = self.primitives.get(callee.as_str()).copied();
+        let declared_bounds =
+            declared.and_then(|declared| declared.bounds.as_ref().map(|written| (declared, written)));
+        let mut interval = call.interval;
+        let mut arc_span = call.bounds_span.unwrap_or(call.span);
+        if let Some((declared, written)) = declared_bounds {
+            let scope = Scope::new(None, &declared.formals, arguments);
+            let limit = self.interval(written, &scope);
+            interval = self.intersect(call, limit, written.span);
+            arc_span = call.bounds_span.unwrap_or(written.span);
+        }
+        let texts = arguments.iter().map(argument_text).collect();
+        let occurrence = self.builder.occurrence(
+            callee.clone(),
+            OccurrenceKind::Primitive,
+            texts,
+            around.occurrence,
+            call.span,
+        );
+        self.leaf(occurrence, ArcKind::Activity, interval, arc_span, call.span, entry)
+    }
+
+    fn intersect(&mut self, call: &Invocation<'_>, limit: Interval, declared_span: Span) -> Interval {
+        call.interval.intersect(limit).unwrap_or_else(|| {
+            let message = format!(
+                "`{}` takes {limit}, and is called with {}: no duration is in both",
+                call.name.text, call.interval
+            );
+            let span = call.bounds_span.unwrap_or(if call.span == Span::default() {
+                declared_span
+            } else {
+                call.span
+            });
+            self.diagnostics.push(Diagnostic::error(bounds::E_BOUNDS, span, message));
+            limit
+        })
+    }
+
+    fn assertion(
+        &mut self,
+        mode: LabelMode,
+        condition: &'program Condition,
+        written: Option<&'program Bounds>,
+        span: Span,
+        entry: Entry,
+        scope: &Scope,
+    ) -> Piece {
+        let interval = written.map_or(Interval::ZERO, |written| self.interval(written, scope));
+        let arc_span = written.map_or(span, |written| written.span);
+        let fact = self.fact(condition, scope);
+        let text = fact.as_ref().map_or_else(|| condition.variable.text.clone(), Fact::text);
+        let activity = match mode {
+            LabelMode::Ask => format!("Ask({text})"),
+            LabelMode::Tell => format!("Tell({text})"),
+        };
+        let occurrence = self.builder.occurrence(
+            activity.into(),
+            OccurrenceKind::Assertion,
+            Vec::new(),
+            scope.occurrence,
+            span,
+        );
+        let piece = self.leaf(occurrence, ArcKind::Assertion, interval, arc_span, span, entry);
+        if let (Some(arc), Some(fact)) = (piece.arc, fact) {
+            self.builder.label(arc, mode, fact, Some(occurrence), condition.span);
+        }
+        piece
+    }
+
+    /// One arc between two events.
+    fn leaf(
+        &mut self,
+        occurrence: OccurrenceId,
+        kind: ArcKind,
+        interval: Interval,
+        arc_span: Span,
+        span: Span,
+        entry: Entry,
+    ) -> Piece {
+        let end_kind = if kind == ArcKind::Delay { End::Delay } else { End::Event };
+        let start = self.enter(entry, end_kind, span);
+        let end = self.builder.node();
+        let arc = self.builder.arc(start, end, kind, interval, arc_span);
+        self.builder.own(occurrence, arc);
+        self.builder.place(occurrence, start, end);
+        let block = self.builder.block(BlockKind::Leaf { arc }, start, end, Some(span));
+        Piece { start, end, end_kind, block, arc: Some(arc), occurrence: Some(occurrence) }
+    }
+
+    /// An empty block.
+    fn nothing(&mut self, span: Span, entry: Entry) -> Piece {
+        let start = self.enter(entry, End::Structural, span);
+        let end = self.builder.node();
+        let arc = self.builder.arc(start, end, ArcKind::Glue, Interval::ZERO, span);
+        let block = self.builder.block(BlockKind::Leaf { arc }, start, end, Some(span));
+        Piece { start, end, end_kind: End::Structural, block, arc: None, occurrence: None }
+    }
+
+    /// `statement` with `arc` from its start to its end; without its own bounds if `arc` is what stands for them. If it
+    /// starts with a decision it gets a node around each end, because only alternatives may leave a decision (SPEC 3.1).
+    fn spanned(
+        &mut self,
+        statement: &'program Statement,
+        is_own_bounds: bool,
+        entry: Entry,
+        scope: &Scope,
+        arc: Option<ArcId>,
+    ) -> Piece {
+        let inner = |expander: &mut Self, entry: Entry| {
+            if is_own_bounds {
+                expander.unbounded(statement, entry, scope)
+            } else {
+                expander.statement(statement, entry, scope)
+            }
+        };
+        let piece = if starts_with_decision(statement, is_own_bounds) {
+            let start = self.enter(entry, End::Structural, statement.span);
+            let before = self.builder.reserve(ArcKind::Glue, Interval::ZERO, statement.span);
+            let piece = inner(self, Entry::Free);
+            self.builder.connect(before, start, piece.start);
+            let end = self.builder.node();
+            self.builder.arc(piece.end, end, ArcKind::Glue, Interval::ZERO, statement.span);
+            Piece { start, end, end_kind: End::Structural, ..piece }
+        } else {
+            inner(self, entry)
+        };
+        if let Some(arc) = arc {
+            self.builder.connect(arc, piece.start, piece.end);
+        }
+        piece
+    }
+
+    fn scope_block(&mut self, piece: &Piece, arc: ArcId, span: Span) -> Piece {
+        let kind = BlockKind::Scope { child: piece.block, arcs: vec![arc], occurrence: None };
+        let block = self.builder.block(kind, piece.start, piece.end, Some(span));
+        Piece {
+            start: piece.start,
+            end: piece.end,
+            end_kind: piece.end_kind,
+            block,
+            arc: None,
+            occurrence: None,
+        }
+    }
+
+    /// The first node of a piece.
+    fn enter(&mut self, entry: Entry, wants: End, span: Span) -> NodeId {
+        let Entry::After { node, end, link } = entry else { return self.builder.node() };
+        let may_share =
+            end == End::Delay || wants == End::Delay || (end, wants) == (End::Structural, End::Structural);
+        if may_share {
+            return node;
+        }
+        let start = self.builder.node();
+        self.builder.arc(node, start, link, Interval::ZERO, span);
+        start
+    }
+
+    /// Whether the piece will be a single arc that can carry a label itself.
+    fn is_single_arc(&self, statement: &Statement, scope: &Scope) -> bool {
+        match &statement.kind {
+            StatementKind::Delay => true,
+            StatementKind::Condition(mode, condition) => self
+                .called_formal(*mode, condition, scope)
+                .is_none_or(|name| !self.activities.contains_key(scope.name(&name.text).as_str())),
+            StatementKind::Call(name, _) => !self.activities.contains_key(scope.name(&name.text).as_str()),
+            StatementKind::Sequence(items) => match items.as_slice() {
+                [only] => statement.bounds.is_none() && self.is_single_arc(only, scope),
+                _ => false,
+            },
+            StatementKind::Maintaining(body, _) | StatementKind::Watching(body, _) => {
+                statement.bounds.is_none() && self.is_single_arc(body, scope)
+            }
+            StatementKind::Parallel(_) | StatementKind::Choose(_) | StatementKind::IfThennext(..) => false,
+        }
+    }
+
+    /// Whether the piece will be one instance of a defined activity, whose name the interval can carry.
+    fn is_instance(&self, statement: &Statement, scope: &Scope) -> bool {
+        match &statement.kind {
+            StatementKind::Call(name, _) => self.activities.contains_key(scope.name(&name.text).as_str()),
+            StatementKind::Condition(mode, condition) => self
+                .called_formal(*mode, condition, scope)
+                .is_some_and(|name| self.activities.contains_key(scope.name(&name.text).as_str())),
+            StatementKind::Sequence(items) => match items.as_slice() {
+                [only] => statement.bounds.is_none() && self.is_instance(only, scope),
+                _ => false,
+            },
+            _ => false,
+        }
+    }
+
+    /// A bare name that is a formal and stands for an activity is a call of it (SPEC 1.3, 1.4).
+    fn called_formal(&self, mode: LabelMode, condition: &Condition, scope: &Scope) -> Option<Name> {
+        if mode != LabelMode::Tell || condition.negated || condition.value.is_some() {
+            return None;
+        }
+        let Some(ArgumentValue::Name(callee)) = scope.argument(&condition.variable.text) else { return None };
+        let takes_none = match (self.activities.get(callee.as_str()), self.primitives.get(callee.as_str())) {
+            (Some(activity), _) => activity.formals.is_empty(),
+            (None, Some(primitive)) => primitive.formals.is_empty(),
+            (None, None) => false,
+        };
+        takes_none.then(|| condition.variable.clone())
+    }
+
+    fn fact(&mut self, condition: &Condition, scope: &Scope) -> Option<Fact> {
+        match self.vocabulary.fact(condition, &|name| scope.argument(name)) {
+            Ok(fact) => Some(fact),
+            Err(error) => {
+                self.diagnostics.push(error);
+                None
+            }
+        }
+    }
+
+    /// The value of written bounds; anything, with a diagnostic, if they have none.
+    fn interval(&mut self, written: &Bounds, scope: &Scope) -> Interval {
+        bounds::interval(written, &|name| scope.bound(name)).unwrap_or_else(|error| {
+            self.diagnostics.push(error);
+            Interval::ANY
+        })
+    }
+
+    fn is_too_large(&mut self, span: Span) -> bool {
+        let is_deep = self.depth >= DEEPEST;
+        if !self.is_cut_off && (is_deep || self.builder.node_count() >= MOST_NODES) {
+            self.is_cut_off = true;
+            let message = if is_deep {
+                format!("statements and calls are nested deeper than {DEEPEST} levels")
+            } else {
+                format!("with its calls expanded, the mission has more than {MOST_NODES} events")
+            };
+            self.diagnostics.push(Diagnostic::error(E_LIMIT, span, message));
+        }
+        self.is_cut_off
+    }
+}
+
+/// A call with its bounds evaluated.
+struct Invocation<'call> {
+    name: &'call Name,
+    interval: Interval,
+    bounds_span: Option<Span>,
+    span: Span,
+}
+
+/// Formals of a top activity stand for themselves.
+fn themselves(formals: &[Name]) -> Vec<ArgumentValue> {
+    formals.iter().map(|formal| ArgumentValue::Name(formal.text.clone())).collect()
+}
+
+/// Whether the first node of the piece will be a decision; `is_bounded_outside` when its bounds are already dealt with.
+fn starts_with_decision(statement: &Statement, is_bounded_outside: bool) -> bool {
+    if statement.bounds.is_some() && !is_bounded_outside {
+        return false;
+    }
+    match &statement.kind {
+        StatementKind::Choose(alternatives) => !alternatives.is_empty(),
+        StatementKind::Sequence(items) => {
+            items.first().is_some_and(|first| starts_with_decision(first, false))
+        }
+        _ => false,
+    }
+}

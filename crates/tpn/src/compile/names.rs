@@ -1,0 +1,211 @@
+//! What the names in conditions stand for: substitution of formals, the `X_V` rule (SPEC 1.3), domains and value sets.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use rmpl::program::{ArgumentValue, Condition, Program, Statement, StatementKind};
+use rmpl::{Code, Diagnostic};
+use smol_str::SmolStr;
+
+use crate::network::{Literal, ValueId, ValueSet, Variable, VariableId};
+
+/// A value is outside its variable's domain.
+pub(super) const E_VALUE: Code = Code("E-VALUE");
+
+/// A literal after substitution and the `X_V` rule: `X=V` or the atom `X`, perhaps negated.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Fact {
+    pub(super) variable: SmolStr,
+    pub(super) value: Option<SmolStr>,
+    pub(super) negated: bool,
+}
+
+impl Fact {
+    /// The fact that holds exactly when this one does not.
+    pub(super) fn negation(self) -> Self {
+        Self { negated: !self.negated, ..self }
+    }
+
+    /// As the contracts print it (DESIGN 4.1).
+    pub(super) fn text(&self) -> SmolStr {
+        let positive = match &self.value {
+            Some(value) => format!("{}={value}", self.variable),
+            None => self.variable.to_string(),
+        };
+        if self.negated { format!("not({positive})").into() } else { positive.into() }
+    }
+}
+
+/// What a file says of variables.
+pub(super) struct Vocabulary<'program> {
+    domains: BTreeMap<&'program str, Vec<&'program str>>,
+    /// Undeclared variables that some literal `X=…` of the file speaks of.
+    compared: BTreeSet<&'program str>,
+}
+
+impl<'program> Vocabulary<'program> {
+    /// Reads declarations and literals in one pass.
+    pub(super) fn new(program: &'program Program) -> Self {
+        let mut domains = BTreeMap::new();
+        for declared in &program.variables {
+            let values = declared.values.iter().map(|value| value.text.as_str()).collect();
+            domains.entry(declared.name.text.as_str()).or_insert(values);
+        }
+        let mut compared = BTreeSet::new();
+        let bodies = program.activities.iter().map(|activity| &activity.body);
+        for body in bodies.chain(program.scenarios.iter().map(|scenario| &scenario.body)) {
+            for_each_condition(body, &mut |condition| {
+                if condition.value.is_some() {
+                    compared.insert(condition.variable.text.as_str());
+                }
+            });
+        }
+        Self { domains, compared }
+    }
+
+    /// What `condition` says where `substitute` gives the arguments of formals.
+    pub(super) fn fact(
+        &self,
+        condition: &Condition,
+        substitute: &dyn Fn(&str) -> Option<ArgumentValue>,
+    ) -> Result<Fact, Diagnostic> {
+        let text = |name: &SmolStr| match substitute(name) {
+            Some(ArgumentValue::Name(argument)) => argument,
+            Some(ArgumentValue::Number(number)) => rmpl::rational::display(number).into(),
+            None => name.clone(),
+        };
+        let negated = condition.negated;
+        let variable = text(&condition.variable.text);
+        let fact = match &condition.value {
+            Some(value) => Fact { variable, value: Some(text(&value.text)), negated },
+            None => match self.split(&variable) {
+                Some((variable, value)) => {
+                    Fact { variable: variable.into(), value: Some(value.into()), negated }
+                }
+                None => Fact { variable, value: None, negated },
+            },
+        };
+        self.check(&fact, condition)?;
+        Ok(fact)
+    }
+
+    /// The `X_V` rule.
+    fn split<'name>(&self, name: &'name str) -> Option<(&'name str, &'name str)> {
+        if self.domains.contains_key(name) {
+            return None;
+        }
+        let (variable, value) = name.rsplit_once('_')?;
+        let is_value = match self.domains.get(variable) {
+            Some(domain) => domain.contains(&value),
+            None => self.compared.contains(variable) && !value.is_empty(),
+        };
+        is_value.then_some((variable, value))
+    }
+
+    fn check(&self, fact: &Fact, condition: &Condition) -> Result<(), Diagnostic> {
+        let Some(domain) = self.domains.get(fact.variable.as_str()) else { return Ok(()) };
+        let value = fact.value.as_deref().unwrap_or("true");
+        if domain.contains(&value) {
+            return Ok(());
+        }
+        let span = condition.value.as_ref().map_or(condition.span, |value| value.span);
+        let message = match &fact.value {
+            Some(value) => format!("`{value}` is not a value of `{}`", fact.variable),
+            None => format!("`{}` is a variable: say which value it has", fact.variable),
+        };
+        let hint = format!("`{}` is one of {}", fact.variable, domain.join(", "));
+        Err(Diagnostic::error(E_VALUE, span, message).with_hint(hint))
+    }
+
+    /// Gives every variable that `facts` speak of an id, in order of first mention, and every fact its literal.
+    pub(super) fn literals(&self, facts: &[Fact]) -> (Vec<Variable>, Vec<Literal>) {
+        let mut ids: BTreeMap<&str, usize> = BTreeMap::new();
+        let mut tables: Vec<Table> = Vec::new();
+        for fact in facts {
+            let at = *ids.entry(&fact.variable).or_insert_with(|| {
+                tables.push(Table::new(&fact.variable, self.domains.get(fact.variable.as_str())));
+                tables.len() - 1
+            });
+            tables[at].mention(fact.value.as_deref());
+        }
+        for table in &mut tables {
+            table.close_if_boolean();
+        }
+        let literals = facts
+            .iter()
+            .map(|fact| {
+                let at = ids[fact.variable.as_str()];
+                Literal { variable: VariableId::from_index(at), values: tables[at].set(fact) }
+            })
+            .collect();
+        (tables.into_iter().map(|table| table.variable).collect(), literals)
+    }
+}
+
+/// A variable while its values are being collected.
+struct Table {
+    variable: Variable,
+    values: BTreeMap<SmolStr, ValueId>,
+    has_atom: bool,
+}
+
+impl Table {
+    fn new(name: &SmolStr, domain: Option<&Vec<&str>>) -> Self {
+        let variable = Variable { name: name.clone(), values: Vec::new(), closed: domain.is_some() };
+        let mut table = Self { variable, values: BTreeMap::new(), has_atom: false };
+        for value in domain.into_iter().flatten() {
+            table.add(value);
+        }
+        table
+    }
+
+    fn add(&mut self, value: &str) {
+        if !self.values.contains_key(value) {
+            self.values.insert(value.into(), ValueId::from_index(self.variable.values.len()));
+            self.variable.values.push(value.into());
+        }
+    }
+
+    fn mention(&mut self, value: Option<&str>) {
+        self.has_atom |= value.is_none();
+        self.add(value.unwrap_or("true"));
+    }
+
+    /// An atom that is never compared with another value is Boolean: its domain is `false`, `true`.
+    fn close_if_boolean(&mut self) {
+        let two_valued = self.variable.values.iter().all(|value| value == "true" || value == "false");
+        if !self.variable.closed && self.has_atom && two_valued {
+            self.add("false");
+            self.variable.closed = true;
+        }
+    }
+
+    fn set(&self, fact: &Fact) -> ValueSet {
+        let value = self.values[fact.value.as_deref().unwrap_or("true")];
+        match (fact.negated, self.variable.closed) {
+            (false, _) => ValueSet::In(vec![value]),
+            (true, false) => ValueSet::NotIn(vec![value]),
+            (true, true) => {
+                let all = (0..self.variable.values.len()).map(ValueId::from_index);
+                ValueSet::In(all.filter(|&other| other != value).collect())
+            }
+        }
+    }
+}
+
+fn for_each_condition<'program>(statement: &'program Statement, visit: &mut dyn FnMut(&'program Condition)) {
+    match &statement.kind {
+        StatementKind::Sequence(items) | StatementKind::Parallel(items) | StatementKind::Choose(items) => {
+            for item in items {
+                for_each_condition(item, visit);
+            }
+        }
+        StatementKind::Maintaining(body, condition)
+        | StatementKind::Watching(body, condition)
+        | StatementKind::IfThennext(condition, body) => {
+            visit(condition);
+            for_each_condition(body, visit);
+        }
+        StatementKind::Condition(_, condition) => visit(condition),
+        StatementKind::Call(..) | StatementKind::Delay => {}
+    }
+}
