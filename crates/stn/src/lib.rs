@@ -1,1 +1,20 @@
-//! Simple temporal networks: incremental consistency with undo, explanations, windows, distances, dispatchable form.
+//! Simple temporal networks (STNs) over exact integer time: incremental consistency with undo, negative cycles as
+//! explanations, windows, distances, rigid components, the dispatchable form, and windows during execution.
+//!
+//! A constraint `to − from ≤ weight` is an edge `from → to` of the distance graph. Nothing here knows about plans.
+//! Arithmetic is checked everywhere: what does not fit into 64 bits is reported as [`Inconsistency::Overflow`] or
+//! [`Overflow`], never wrapped.
+
+mod bulk;
+mod dispatch;
+mod distance;
+mod execution;
+mod format;
+mod heap;
+mod network;
+
+pub use dispatch::{DispatchEdge, Dispatchable, RigidComponent, dispatchable, rigid_components};
+pub use distance::{DistanceMatrix, INFINITE};
+pub use execution::{Execution, ExecutionWindows, execution_windows};
+pub use format::{Document, DocumentEdge, ParseError, parse};
+pub use network::{Checkpoint, CycleEdge, Inconsistency, Overflow, PointId, Stn, Tag, Window};

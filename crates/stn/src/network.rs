@@ -1,0 +1,310 @@
+//! The network itself: flat storage, insertion with incremental consistency, undo, and negative cycles.
+//!
+//! The algorithm is Cotton and Maler's (Fast and flexible difference constraint propagation for DPLL(T), 2006): a
+//! feasible potential is repaired by a Dijkstra search that visits only the points whose potential must fall.
+//! Removing edges keeps a potential feasible, so undo only takes edges back: the edge list is the trail.
+
+use crate::heap::Heap;
+
+/// A time point of the network.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct PointId(pub u32);
+
+impl PointId {
+    /// The position in vectors indexed by time point.
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// What the caller calls a constraint; negative cycles are told in tags.
+pub type Tag = u32;
+
+/// How many edges there were at some moment; see [`Stn::rollback`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Checkpoint(u32);
+
+/// Why a constraint could not be added.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Inconsistency {
+    /// It closes a cycle of negative weight: [`Stn::cycle`] has it.
+    NegativeCycle,
+    /// A distance does not fit into 64 bits.
+    Overflow,
+}
+
+/// A distance does not fit into 64 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Overflow;
+
+impl std::fmt::Display for Overflow {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("a time does not fit into 64 bits")
+    }
+}
+
+impl std::error::Error for Overflow {}
+
+/// One edge of a negative cycle: `to − from ≤ weight`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CycleEdge {
+    /// The earlier end of the edge.
+    pub from: PointId,
+    /// The later end of the edge.
+    pub to: PointId,
+    /// Its weight.
+    pub weight: i64,
+    /// The tag it was inserted with.
+    pub tag: Tag,
+}
+
+/// When a time point may happen, relative to another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// At the earliest; `None` if not bounded.
+    pub earliest: Option<i64>,
+    /// At the latest; `None` if not bounded.
+    pub latest: Option<i64>,
+}
+
+pub(crate) const NONE: u32 = u32::MAX;
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Edge {
+    pub(crate) weight: i64,
+    pub(crate) from: u32,
+    pub(crate) to: u32,
+    pub(crate) next_out: u32,
+    pub(crate) next_in: u32,
+    pub(crate) tag: Tag,
+}
+
+/// A simple temporal network that is consistent at all times, except between [`Stn::push`] and [`Stn::settle`].
+#[derive(Clone, Debug, Default)]
+pub struct Stn {
+    pub(crate) edges: Vec<Edge>,
+    pub(crate) first_out: Vec<u32>,
+    pub(crate) first_in: Vec<u32>,
+    /// Feasible: `potential[from] + weight ≥ potential[to]` for every edge. It is also a schedule.
+    pub(crate) potential: Vec<i64>,
+    pub(crate) cycle: Vec<CycleEdge>,
+    pub(crate) heap: Heap,
+    /// How far a point must fall, valid where `stamp` is the current one.
+    fall: Vec<i64>,
+    pub(crate) parent: Vec<u32>,
+    stamp: Vec<u32>,
+    done: Vec<u32>,
+    now: u32,
+    changed: Vec<(u32, i64)>,
+    pub(crate) scratch: Vec<i64>,
+    pub(crate) dirty: Vec<bool>,
+}
+
+impl Stn {
+    /// A network of `points` time points without constraints.
+    pub fn new(points: usize) -> Self {
+        let mut stn = Self::default();
+        stn.resize(points);
+        stn
+    }
+
+    /// Adds time points until there are `points`.
+    pub fn resize(&mut self, points: usize) {
+        self.first_out.resize(points, NONE);
+        self.first_in.resize(points, NONE);
+        self.potential.resize(points, 0);
+        self.fall.resize(points, 0);
+        self.parent.resize(points, NONE);
+        self.stamp.resize(points, 0);
+        self.done.resize(points, 0);
+        self.dirty.resize(points, false);
+    }
+
+    /// Makes room for `edges` more edges, so that inserting them does not allocate.
+    pub fn reserve(&mut self, edges: usize) {
+        self.edges.reserve(edges);
+    }
+
+    /// How many time points there are.
+    pub fn num_points(&self) -> usize {
+        self.potential.len()
+    }
+
+    /// How many edges there are.
+    pub fn num_edges(&self) -> usize {
+        self.edges.len()
+    }
+
+    /// A schedule that keeps every constraint: one consistent time per point, of no particular origin.
+    pub fn schedule(&self) -> &[i64] {
+        &self.potential
+    }
+
+    /// How many points moved in the last insertion.
+    pub fn num_changed(&self) -> usize {
+        self.changed.len()
+    }
+
+    /// The tag of an edge, by position.
+    pub fn edge(&self, position: usize) -> Option<CycleEdge> {
+        self.edges.get(position).map(Edge::describe)
+    }
+
+    /// The negative cycle of the last failed insertion, in order; each edge's `to` is the next one's `from`.
+    pub fn cycle(&self) -> &[CycleEdge] {
+        &self.cycle
+    }
+
+    /// A place to come back to with [`Stn::rollback`].
+    pub fn checkpoint(&self) -> Checkpoint {
+        Checkpoint(self.edges.len() as u32)
+    }
+
+    /// Takes back every edge inserted since `checkpoint`, in time linear in their number.
+    pub fn rollback(&mut self, checkpoint: Checkpoint) {
+        while self.edges.len() > checkpoint.0 as usize {
+            let Some(edge) = self.edges.pop() else { return };
+            self.first_out[edge.from as usize] = edge.next_out;
+            self.first_in[edge.to as usize] = edge.next_in;
+        }
+    }
+
+    /// Adds `lower ≤ to − from ≤ upper`; `None` is no upper bound. On failure nothing has changed.
+    pub fn constrain(
+        &mut self,
+        from: PointId,
+        to: PointId,
+        lower: i64,
+        upper: Option<i64>,
+        tag: Tag,
+    ) -> Result<(), Inconsistency> {
+        let checkpoint = self.checkpoint();
+        if let Some(upper) = upper {
+            self.insert(from, to, upper, tag)?;
+        }
+        let result = lower.checked_neg().ok_or(Inconsistency::Overflow);
+        let result = result.and_then(|weight| self.insert(to, from, weight, tag));
+        if result.is_err() {
+            self.rollback(checkpoint);
+        }
+        result
+    }
+
+    /// Adds `to − from ≤ weight` and restores consistency. On failure the edge is not inserted.
+    ///
+    /// Takes `O(k log k + edges at k points)` time for the `k` points that must move.
+    pub fn insert(&mut self, from: PointId, to: PointId, weight: i64, tag: Tag) -> Result<(), Inconsistency> {
+        self.repair(from.0, to.0, weight, tag)?;
+        self.push(from, to, weight, tag);
+        Ok(())
+    }
+
+    /// Whether `to − from ≤ weight` could be added. The network stays as it is; if not, [`Stn::cycle`] says why.
+    pub fn admits(&mut self, from: PointId, to: PointId, weight: i64, tag: Tag) -> Result<(), Inconsistency> {
+        // The repaired potential is feasible for the edges that are there, too, but is undone: a query that moved the
+        // schedule would make later answers cost differently for no reason.
+        self.repair(from.0, to.0, weight, tag)?;
+        self.restore();
+        Ok(())
+    }
+
+    /// Adds an edge without restoring consistency: [`Stn::settle`] must follow before anything else is asked.
+    pub fn push(&mut self, from: PointId, to: PointId, weight: i64, tag: Tag) {
+        let position = self.edges.len() as u32;
+        let (first_out, first_in) = (&mut self.first_out[from.index()], &mut self.first_in[to.index()]);
+        self.edges.push(Edge { weight, from: from.0, to: to.0, next_out: *first_out, next_in: *first_in, tag });
+        *first_out = position;
+        *first_in = position;
+    }
+
+    /// Lowers potentials until the edge that is about to be inserted holds, or finds the cycle it closes.
+    fn repair(&mut self, from: u32, to: u32, weight: i64, tag: Tag) -> Result<(), Inconsistency> {
+        self.changed.clear();
+        let reached = self.potential[from as usize].checked_add(weight).ok_or(Inconsistency::Overflow)?;
+        let fall = reached.checked_sub(self.potential[to as usize]).ok_or(Inconsistency::Overflow)?;
+        if fall >= 0 {
+            return Ok(());
+        }
+        let new_edge = CycleEdge { from: PointId(from), to: PointId(to), weight, tag };
+        if from == to {
+            self.cycle.clear();
+            self.cycle.push(new_edge);
+            return Err(Inconsistency::NegativeCycle);
+        }
+        self.next_stamp();
+        self.heap.clear();
+        self.fall[to as usize] = fall;
+        self.stamp[to as usize] = self.now;
+        self.parent[to as usize] = NONE;
+        self.heap.push(fall, to);
+        while let Some((fall, point)) = self.heap.pop() {
+            if self.done[point as usize] == self.now || self.fall[point as usize] != fall {
+                continue;
+            }
+            self.done[point as usize] = self.now;
+            let old = self.potential[point as usize];
+            let new = old + fall;
+            self.changed.push((point, old));
+            self.potential[point as usize] = new;
+            let mut next = self.first_out[point as usize];
+            while next != NONE {
+                let edge = self.edges[next as usize];
+                let target = edge.to as usize;
+                let fall = new.checked_add(edge.weight).and_then(|time| time.checked_sub(self.potential[target]));
+                let Some(fall) = fall else {
+                    self.restore();
+                    return Err(Inconsistency::Overflow);
+                };
+                let falls_further = fall < 0
+                    && self.done[target] != self.now
+                    && (self.stamp[target] != self.now || fall < self.fall[target]);
+                if falls_further {
+                    self.fall[target] = fall;
+                    self.stamp[target] = self.now;
+                    self.parent[target] = next;
+                    if edge.to == from {
+                        self.collect_cycle(new_edge);
+                        self.restore();
+                        return Err(Inconsistency::NegativeCycle);
+                    }
+                    self.heap.push(fall, edge.to);
+                }
+                next = edge.next_out;
+            }
+        }
+        Ok(())
+    }
+
+    fn collect_cycle(&mut self, new_edge: CycleEdge) {
+        self.cycle.clear();
+        let mut point = new_edge.from.0;
+        while point != new_edge.to.0 {
+            let edge = self.edges[self.parent[point as usize] as usize];
+            self.cycle.push(edge.describe());
+            point = edge.from;
+        }
+        self.cycle.push(new_edge);
+        self.cycle.reverse();
+    }
+
+    fn restore(&mut self) {
+        while let Some((point, potential)) = self.changed.pop() {
+            self.potential[point as usize] = potential;
+        }
+    }
+
+    fn next_stamp(&mut self) {
+        if self.now == u32::MAX {
+            self.stamp.fill(0);
+            self.done.fill(0);
+            self.now = 0;
+        }
+        self.now += 1;
+    }
+}
+
+impl Edge {
+    pub(crate) fn describe(&self) -> CycleEdge {
+        CycleEdge { from: PointId(self.from), to: PointId(self.to), weight: self.weight, tag: self.tag }
+    }
+}
