@@ -3,10 +3,17 @@
 //! Parsing never fails: every stage returns a result and its diagnostics. Nothing here knows of networks or plans.
 
 pub mod diagnostic;
+pub mod diagnostics;
+pub mod explanation;
+mod lower;
+pub mod parse;
+mod parser;
 pub mod program;
 pub mod rational;
 pub mod span;
+pub mod syntax;
 
 pub use diagnostic::{Code, Diagnostic, Edit, Fix, Severity};
+pub use parse::{Parse, parse};
 pub use rational::{Bound, Rational};
 pub use span::{LineColumn, LineIndex, Span};

@@ -1,0 +1,69 @@
+//! `E-LEX`: characters that no token is made of.
+
+use crate::diagnostic::{Code, Diagnostic};
+use crate::parser::replacement;
+use crate::span::Span;
+use crate::syntax::{LexProblem, LexProblemKind};
+
+/// The code.
+pub const CODE: Code = Code("E-LEX");
+
+/// What the lexer could not read, in the author's terms. `text` is the text that the problem's offsets count in.
+pub(crate) fn diagnostic(problem: LexProblem, text: &str) -> Diagnostic {
+    let span = Span::new(problem.start, problem.end);
+    let written = text.get(span.range()).unwrap_or("");
+    match problem.kind {
+        LexProblemKind::Unknown => unknown(span, written),
+        LexProblemKind::ForeignName => foreign_name(span, written),
+        LexProblemKind::UnclosedComment => Diagnostic::error(CODE, span, "this comment is never closed")
+            .with_hint("write `*/` where it ends; from here on everything is taken for a comment"),
+        LexProblemKind::UnclosedString => {
+            Diagnostic::error(CODE, span, "this text in quotes is not closed on its line")
+                .with_fix(crate::parser::insertion("Insert `\"`", span.end, "\""))
+        }
+        LexProblemKind::HugeNumber => {
+            Diagnostic::error(CODE, span, "this number has more digits than can be kept exactly")
+                .with_hint("numbers have at most 14 digits")
+        }
+    }
+}
+
+fn unknown(span: Span, written: &str) -> Diagnostic {
+    let shown: String = written.chars().take(12).flat_map(char::escape_debug).collect();
+    let plural = if written.chars().count() > 1 { "these characters have" } else { "this character has" };
+    let mut diagnostic = Diagnostic::error(CODE, span, format!("{plural} no meaning here: `{shown}`"));
+    if let Some(plain) = plain_form(written) {
+        diagnostic = diagnostic.with_fix(replacement(format!("Replace with `{plain}`"), span, plain));
+    }
+    diagnostic.with_fix(replacement("Remove", span, ""))
+}
+
+fn foreign_name(span: Span, written: &str) -> Diagnostic {
+    let plain: String = written.chars().map(|letter| if is_dash(letter) { '-' } else { letter }).collect();
+    let diagnostic =
+        Diagnostic::error(CODE, span, format!("the name `{written}` has characters that names cannot have"))
+            .with_hint("names are made of the letters A to Z, digits, `_`, and single hyphens between them");
+    if plain.is_ascii() {
+        return diagnostic.with_fix(replacement(format!("Replace with `{plain}`"), span, plain));
+    }
+    diagnostic
+}
+
+fn is_dash(letter: char) -> bool {
+    matches!(letter, '\u{2010}'..='\u{2015}' | '\u{2212}')
+}
+
+/// The character that word processors and papers print otherwise.
+fn plain_form(written: &str) -> Option<&'static str> {
+    Some(match written {
+        "“" | "”" | "„" => "\"",
+        "–" | "−" | "—" | "‐" => "-",
+        "≠" => "!=",
+        "×" | "·" => "*",
+        "÷" => "/",
+        "¬" => "not ",
+        "，" => ",",
+        "；" => ";",
+        _ => return None,
+    })
+}

@@ -1,0 +1,101 @@
+//! `E-SYNTAX`: text that does not follow the grammar (SPEC 1.2).
+
+use crate::diagnostic::{Code, Diagnostic};
+use crate::parser::{insertion, replacement};
+use crate::span::Span;
+
+/// The code.
+pub const CODE: Code = Code("E-SYNTAX");
+
+/// What stands where something else should.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Found<'t> {
+    /// A token with this text.
+    Text(&'t str),
+    /// Nothing: the text ends.
+    End,
+}
+
+impl Found<'_> {
+    fn describe(self) -> String {
+        match self {
+            Self::Text(text) => format!("found `{text}`"),
+            Self::End => "the text ends here".to_owned(),
+        }
+    }
+}
+
+fn error(span: Span, message: impl Into<String>) -> Diagnostic {
+    Diagnostic::error(CODE, span, message)
+}
+
+/// `wanted` should stand at `span`.
+pub(crate) fn expected(wanted: &str, found: Found<'_>, span: Span) -> Diagnostic {
+    error(span, format!("expected {wanted}, {}", found.describe()))
+}
+
+/// `wanted` is missing at `place`, which lies just behind `span`.
+pub(crate) fn missing(wanted: &str, found: Found<'_>, span: Span, place: u32, text: &str) -> Diagnostic {
+    error(span, format!("expected {wanted} behind this, {}", found.describe()))
+        .with_fix(insertion(format!("Insert `{}`", text.trim()), place, text))
+}
+
+pub(crate) fn too_deep(span: Span) -> Diagnostic {
+    error(span, "this nests too deeply or joins too many parts")
+        .with_hint("give a part of it a name: define an activity and call it")
+}
+
+pub(crate) fn unmatched_brace(span: Span) -> Diagnostic {
+    error(span, "this `}` closes nothing").with_fix(replacement("Remove `}`", span, ""))
+}
+
+pub(crate) fn stray_semicolon(span: Span) -> Diagnostic {
+    error(span, "this `;` ends nothing").with_fix(replacement("Remove `;`", span, ""))
+}
+
+pub(crate) fn empty_statement(span: Span) -> Diagnostic {
+    error(span, "there is no statement before this `;`").with_fix(replacement("Remove `;`", span, ""))
+}
+
+pub(crate) fn no_declaration(found: Found<'_>, span: Span) -> Diagnostic {
+    error(span, format!("expected a declaration, {}", found.describe())).with_hint(
+        "a file holds `var`, `primitive`, `option`, `scenario`, definitions such as `Survey() = { … }`, and the \
+         world's `terrain`, `location`, `obstacle` and `vehicle`",
+    )
+}
+
+pub(crate) fn primitive_with_body(span: Span) -> Diagnostic {
+    error(span, "a primitive has no body")
+        .with_hint("leave out the word `primitive` to define an activity, or end the declaration with `;`")
+}
+
+pub(crate) fn keyword_as_name(word: &str, span: Span) -> Diagnostic {
+    error(span, format!("`{word}` is a word of the language and cannot be a name"))
+        .with_fix(replacement(format!("Rename to `{word}_`"), span, format!("{word}_")))
+}
+
+pub(crate) fn unclosed_brace(opened: Span, place: u32) -> Diagnostic {
+    error(opened, "this `{` is never closed").with_fix(insertion("Insert `}`", place, " }"))
+}
+
+pub(crate) fn unclosed_bracket(opened: Span, place: u32) -> Diagnostic {
+    error(opened, "this `[` is never closed").with_fix(insertion("Insert `]`", place, "]"))
+}
+
+pub(crate) fn empty_choice(span: Span) -> Diagnostic {
+    error(span, "a `choose` needs at least one alternative")
+}
+
+pub(crate) fn one_bound(span: Span) -> Diagnostic {
+    error(span, "bounds have two sides, and the upper one is missing")
+        .with_hint("write `[lower, upper]`; `inf` leaves the upper side open")
+        .with_fix(insertion("Insert `, inf`", span.start, ", inf"))
+}
+
+pub(crate) fn negative_bound(span: Span) -> Diagnostic {
+    error(span, "a bound cannot be negative").with_fix(replacement("Remove `-`", span, ""))
+}
+
+pub(crate) fn double_equals(span: Span) -> Diagnostic {
+    error(span, "a value is compared with a single `=`").with_fix(replacement("Remove `=`", span, ""))
+}

@@ -1,0 +1,158 @@
+//! Declarations.
+
+use smol_str::SmolStr;
+
+use crate::program::{
+    ActivityDecl, LocationDecl, Moves, Name, ObstacleDecl, ObstacleShape, PrimitiveDecl, ScenarioDecl,
+    TerrainDecl, VariableDecl, VehicleDecl,
+};
+use crate::span::Span;
+use crate::syntax::{SyntaxKind, SyntaxNode};
+
+use super::bounds::{bounds_in, header_bounds_in};
+use super::statement::signed;
+use super::{Lowering, OptionDecl, OptionValue, name_of, names, rational};
+
+/// Metres per cell of a terrain that does not say (SPEC 1.8).
+const DEFAULT_CELL_M: f64 = 0.6;
+
+impl Lowering<'_> {
+    pub(super) fn activity(&mut self, node: SyntaxNode<'_>) -> Option<ActivityDecl> {
+        let name = names(node).next()?;
+        Some(ActivityDecl {
+            name,
+            formals: formals(node),
+            bounds: header_bounds_in(node),
+            body: self.block(node.child(SyntaxKind::Block)?),
+            span: node.span(),
+        })
+    }
+
+    pub(super) fn scenario(&mut self, node: SyntaxNode<'_>) -> Option<ScenarioDecl> {
+        Some(ScenarioDecl {
+            name: names(node).next()?,
+            bounds: bounds_in(node),
+            body: self.block(node.child(SyntaxKind::Block)?),
+            span: node.span(),
+        })
+    }
+}
+
+fn formals(node: SyntaxNode<'_>) -> Vec<Name> {
+    node.child(SyntaxKind::Formals).map(|formals| names(formals).collect()).unwrap_or_default()
+}
+
+pub(super) fn variable(node: SyntaxNode<'_>) -> Option<VariableDecl> {
+    let name = names(node).next()?;
+    let values = names(node.child(SyntaxKind::Domain)?).collect();
+    Some(VariableDecl { name, values, span: node.span() })
+}
+
+pub(super) fn primitive(node: SyntaxNode<'_>) -> Option<PrimitiveDecl> {
+    Some(PrimitiveDecl {
+        name: names(node).next()?,
+        formals: formals(node),
+        bounds: bounds_in(node),
+        moves: node.child(SyntaxKind::Moves).and_then(moves),
+        runs: node.child(SyntaxKind::Runs).and_then(|runs| names(runs).nth(1)),
+        span: node.span(),
+    })
+}
+
+fn moves(node: SyntaxNode<'_>) -> Option<Moves> {
+    // The first name is the word `moves` itself.
+    let vehicles: Vec<Name> = names(node).skip(1).collect();
+    let speeds = node.child(SyntaxKind::Speed).and_then(|speed| speed.child(SyntaxKind::Coordinates));
+    let speeds: Vec<_> = speeds.map(numbers).unwrap_or_default();
+    let speed_mps = match speeds.as_slice() {
+        [(false, least, _), (false, greatest, _)] => Some((*least, *greatest)),
+        _ => None,
+    };
+    (!vehicles.is_empty()).then_some(Moves { vehicles, speed_mps, span: node.span() })
+}
+
+pub(super) fn option(node: SyntaxNode<'_>) -> Option<OptionDecl> {
+    let mut tokens = node.own_tokens().filter(|token| token.kind != SyntaxKind::OptionKeyword);
+    let name = name_of(tokens.next().filter(|token| token.kind == SyntaxKind::Name)?);
+    let value = tokens.find(|token| matches!(token.kind, SyntaxKind::Number | SyntaxKind::Name))?;
+    let meaning = match value.kind {
+        SyntaxKind::Number => OptionValue::Number(rational(value.text)?),
+        _ => OptionValue::Name(SmolStr::new(value.text)),
+    };
+    Some(OptionDecl { name, value: meaning, value_span: value.span })
+}
+
+/// The numbers in `node`: whether each is negative, its magnitude, and where it stands with its sign.
+fn numbers(node: SyntaxNode<'_>) -> Vec<(bool, crate::rational::Rational, Span)> {
+    let mut found = Vec::new();
+    let mut minus: Option<Span> = None;
+    for token in node.own_tokens() {
+        match token.kind {
+            SyntaxKind::Minus => minus = Some(token.span),
+            SyntaxKind::Number => {
+                if let Some(magnitude) = rational(token.text) {
+                    let span = minus.map_or(token.span, |sign| sign.cover(token.span));
+                    found.push((minus.is_some(), magnitude, span));
+                }
+                minus = None;
+            }
+            _ => minus = None,
+        }
+    }
+    found
+}
+
+/// The metres in `( … )`, and the span inside the parentheses.
+fn coordinates(node: SyntaxNode<'_>) -> Option<(Vec<f64>, Span)> {
+    let node = node.child(SyntaxKind::Coordinates)?;
+    let open = node.token(SyntaxKind::LeftParen)?;
+    let end = node.token(SyntaxKind::RightParen).map_or(node.span().end, |close| close.span.start);
+    let metres = numbers(node).into_iter().map(|(negative, magnitude, _)| signed(negative, magnitude)).collect();
+    Some((metres, Span::new(open.span.end, end)))
+}
+
+pub(super) fn terrain(node: SyntaxNode<'_>) -> Option<TerrainDecl> {
+    let asset = node.token(SyntaxKind::String)?;
+    let cell = node.child(SyntaxKind::Cell).and_then(|cell| numbers(cell).first().copied());
+    let origin = node.child(SyntaxKind::Origin).and_then(coordinates);
+    let origin_m = match origin.as_ref().map(|(metres, _)| metres.as_slice()) {
+        Some(&[east, north]) => [east, north],
+        _ => [0.0, 0.0],
+    };
+    Some(TerrainDecl {
+        asset: SmolStr::new(asset.text.trim_matches('"')),
+        asset_span: asset.span,
+        cell_m: cell.map_or(DEFAULT_CELL_M, |(negative, magnitude, _)| signed(negative, magnitude)),
+        origin_m,
+        span: node.span(),
+    })
+}
+
+pub(super) fn location(node: SyntaxNode<'_>) -> Option<LocationDecl> {
+    // The first name is the word `location` itself.
+    let name = names(node).nth(1)?;
+    let (metres, numbers_span) = coordinates(node)?;
+    let &[east, north] = metres.as_slice() else { return None };
+    Some(LocationDecl { name, position_m: [east, north], numbers_span, span: node.span() })
+}
+
+pub(super) fn obstacle(node: SyntaxNode<'_>) -> Option<ObstacleDecl> {
+    let mut words = names(node).skip(1);
+    let (name, shape) = (words.next()?, words.next()?);
+    let (metres, numbers_span) = coordinates(node)?;
+    let shape = match (shape.text.as_str(), metres.as_slice()) {
+        ("circle", &[east, north, radius_m]) => ObstacleShape::Circle { center_m: [east, north], radius_m },
+        ("polygon", corners) if corners.len() >= 6 && corners.len() % 2 == 0 => ObstacleShape::Polygon {
+            corners_m: corners.chunks_exact(2).filter_map(|corner| <[f64; 2]>::try_from(corner).ok()).collect(),
+        },
+        _ => return None,
+    };
+    Some(ObstacleDecl { name, shape, numbers_span, span: node.span() })
+}
+
+pub(super) fn vehicle(node: SyntaxNode<'_>) -> Option<VehicleDecl> {
+    let mut words = names(node).skip(1);
+    let (name, model) = (words.next()?, words.next()?);
+    let start = names(node.child(SyntaxKind::At)?).nth(1)?;
+    Some(VehicleDecl { name, model, start, span: node.span() })
+}

@@ -1,0 +1,93 @@
+//! From the syntax tree to meaning: the pieces of [`crate::program`], with what is broken left out.
+
+mod bounds;
+mod declaration;
+mod statement;
+
+use smol_str::SmolStr;
+
+use crate::program::{
+    ActivityDecl, LocationDecl, Name, ObstacleDecl, PrimitiveDecl, ScenarioDecl, TerrainDecl, VariableDecl,
+    VehicleDecl,
+};
+use crate::rational::Rational;
+use crate::span::Span;
+use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
+
+/// What one declaration declares.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Item {
+    Variable(VariableDecl),
+    Primitive(PrimitiveDecl),
+    Activity(ActivityDecl),
+    Scenario(ScenarioDecl),
+    Option(OptionDecl),
+    Terrain(TerrainDecl),
+    Location(LocationDecl),
+    Obstacle(ObstacleDecl),
+    Vehicle(VehicleDecl),
+}
+
+/// `option name = value;`
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct OptionDecl {
+    pub(crate) name: Name,
+    pub(crate) value: OptionValue,
+    pub(crate) value_span: Span,
+}
+
+/// What an option is set to.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum OptionValue {
+    Number(Rational),
+    Name(SmolStr),
+}
+
+/// What lowering needs to know of the rest of the file, and what it finds on its way.
+pub(crate) struct Lowering<'a> {
+    /// Whether a bare name is an activity or a primitive of the file (SPEC 1.3).
+    pub(crate) is_callable: &'a dyn Fn(&str) -> bool,
+    /// Starts of the names that stand alone as statements, in textual order.
+    pub(crate) bare_names: Vec<u32>,
+}
+
+impl Lowering<'_> {
+    /// What the declaration under `root` declares, if enough of it is there.
+    pub(crate) fn item(&mut self, root: SyntaxNode<'_>) -> Option<Item> {
+        let node = root.children().find(|child| child.kind().is_declaration())?;
+        match node.kind() {
+            SyntaxKind::VariableDecl => declaration::variable(node).map(Item::Variable),
+            SyntaxKind::PrimitiveDecl => declaration::primitive(node).map(Item::Primitive),
+            SyntaxKind::OptionDecl => declaration::option(node).map(Item::Option),
+            SyntaxKind::ActivityDecl => self.activity(node).map(Item::Activity),
+            SyntaxKind::ScenarioDecl => self.scenario(node).map(Item::Scenario),
+            SyntaxKind::TerrainDecl => declaration::terrain(node).map(Item::Terrain),
+            SyntaxKind::LocationDecl => declaration::location(node).map(Item::Location),
+            SyntaxKind::ObstacleDecl => declaration::obstacle(node).map(Item::Obstacle),
+            _ => declaration::vehicle(node).map(Item::Vehicle),
+        }
+    }
+}
+
+fn name_of(token: SyntaxToken<'_>) -> Name {
+    Name { text: SmolStr::new(token.text), span: token.span }
+}
+
+/// The names that stand directly in `node`, in textual order.
+fn names(node: SyntaxNode<'_>) -> impl Iterator<Item = Name> {
+    node.own_tokens().filter(|token| token.kind == SyntaxKind::Name).map(name_of)
+}
+
+/// An unsigned number, exactly; `None` when it has too many digits.
+pub(crate) fn rational(text: &str) -> Option<Rational> {
+    let (whole, fraction) = text.split_once('.').unwrap_or((text, ""));
+    let mut numerator: i64 = 0;
+    for digit in whole.bytes().chain(fraction.bytes()) {
+        numerator = numerator.checked_mul(10)?.checked_add(i64::from(digit.wrapping_sub(b'0')))?;
+    }
+    if fraction.is_empty() {
+        return Some(Rational::from_integer(numerator));
+    }
+    let denominator = 10_i64.checked_pow(u32::try_from(fraction.len()).ok()?)?;
+    Some(Rational::new(numerator, denominator))
+}

@@ -1,0 +1,150 @@
+//! Bounds and their arithmetic (SPEC 1.2, 1.5).
+
+use super::{MAX_OPERANDS, Parser};
+use crate::diagnostics::syntax;
+use crate::span::Span;
+use crate::syntax::SyntaxKind;
+
+impl Parser<'_> {
+    /// `[lower, upper]`
+    pub(super) fn bounds(&mut self) {
+        let node = self.open();
+        let bracket = self.span_of(self.current);
+        self.bump();
+        self.sum();
+        if self.eat(SyntaxKind::Comma) {
+            self.sum();
+        } else if self.at(SyntaxKind::RightBracket) {
+            let diagnostic = syntax::one_bound(self.here());
+            self.report(diagnostic);
+        } else if self.at_operand() {
+            self.report_missing("`,` between the bounds", ",");
+            self.sum();
+        } else {
+            self.missing_bracket(bracket);
+        }
+        if !self.at(SyntaxKind::RightBracket) {
+            self.missing_bracket(bracket);
+        }
+        self.eat(SyntaxKind::RightBracket);
+        self.close(node, SyntaxKind::Bounds);
+    }
+
+    fn missing_bracket(&mut self, opened: Span) {
+        let ends_statement = matches!(
+            self.kind,
+            SyntaxKind::Semicolon
+                | SyntaxKind::LeftBrace
+                | SyntaxKind::RightBrace
+                | SyntaxKind::Equals
+                | SyntaxKind::End
+                | SyntaxKind::MaintainingKeyword
+                | SyntaxKind::WatchingKeyword
+        );
+        if ends_statement || self.at_declaration_at_line_start() {
+            let diagnostic = syntax::unclosed_bracket(opened, self.previous_end());
+            self.report(diagnostic);
+        } else {
+            self.report_expected("`]`");
+        }
+        self.skip_until(|parser| {
+            matches!(
+                parser.kind,
+                SyntaxKind::RightBracket
+                    | SyntaxKind::Semicolon
+                    | SyntaxKind::LeftBrace
+                    | SyntaxKind::RightBrace
+                    | SyntaxKind::Equals
+                    | SyntaxKind::MaintainingKeyword
+                    | SyntaxKind::WatchingKeyword
+            ) || parser.at_declaration_at_line_start()
+        });
+        self.hush();
+    }
+
+    fn at_operand(&self) -> bool {
+        matches!(
+            self.kind,
+            SyntaxKind::Number | SyntaxKind::Infinity | SyntaxKind::Name | SyntaxKind::LeftParen
+        )
+    }
+
+    fn sum(&mut self) {
+        let mark = self.next_mark();
+        self.product();
+        self.chain(mark, SyntaxKind::Sum, [SyntaxKind::Plus, SyntaxKind::Minus], Self::product);
+    }
+
+    fn product(&mut self) {
+        let mark = self.next_mark();
+        self.percent();
+        self.chain(mark, SyntaxKind::Product, [SyntaxKind::Star, SyntaxKind::Slash], Self::percent);
+    }
+
+    /// Further operands behind the one at `mark`, in one node.
+    fn chain(
+        &mut self,
+        mark: super::Mark,
+        kind: SyntaxKind,
+        operators: [SyntaxKind; 2],
+        operand: impl Fn(&mut Self),
+    ) {
+        if !operators.contains(&self.kind) {
+            return;
+        }
+        let node = self.open_around(mark);
+        let mut operands = 1;
+        while operators.contains(&self.kind) {
+            operands += 1;
+            if operands == MAX_OPERANDS {
+                let diagnostic = syntax::too_deep(self.here());
+                self.report(diagnostic);
+                self.skip_until(|parser| {
+                    matches!(parser.kind, SyntaxKind::RightBracket | SyntaxKind::Comma)
+                        || parser.at_statement_end()
+                });
+                break;
+            }
+            self.bump();
+            operand(self);
+        }
+        self.close(node, kind);
+    }
+
+    fn percent(&mut self) {
+        let mark = self.next_mark();
+        self.operand();
+        if self.at(SyntaxKind::Percent) {
+            let node = self.open_around(mark);
+            self.bump();
+            self.close(node, SyntaxKind::PercentOf);
+        }
+    }
+
+    fn operand(&mut self) {
+        match self.kind {
+            SyntaxKind::Number | SyntaxKind::Infinity | SyntaxKind::Name => {
+                let node = self.open();
+                self.bump();
+                self.close(node, SyntaxKind::Operand);
+            }
+            SyntaxKind::LeftParen => {
+                let node = self.open();
+                self.bump();
+                self.nested(Self::sum);
+                self.expect_behind(SyntaxKind::RightParen, ")");
+                self.close(node, SyntaxKind::Grouped);
+            }
+            SyntaxKind::Minus => {
+                let diagnostic = syntax::negative_bound(self.here());
+                self.report(diagnostic);
+                self.bump();
+                self.hush();
+                if self.at_operand() {
+                    self.operand();
+                }
+            }
+            _ => self.report_expected("a bound: a number, `inf` or a name"),
+        }
+    }
+}

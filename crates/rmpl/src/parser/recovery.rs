@@ -1,0 +1,158 @@
+//! Where the parser goes on after a mistake.
+
+use super::Parser;
+use crate::syntax::SyntaxKind;
+
+/// How far a header is looked along, so that text without any sense is still read in linear time.
+const LONGEST_HEADER_TOKENS: u32 = 256;
+
+impl Parser<'_> {
+    /// Accepts tokens into a skipped node until `stop` or the end of the text; groups in brackets are skipped whole.
+    pub(super) fn skip_until(&mut self, stop: impl Fn(&mut Self) -> bool) {
+        if self.at(SyntaxKind::End) || stop(self) {
+            return;
+        }
+        let node = self.open();
+        while !self.at(SyntaxKind::End) && !stop(self) {
+            self.skip_group_or_token();
+        }
+        self.close(node, SyntaxKind::Skipped);
+        self.hush();
+    }
+
+    /// Accepts one token, or all of a group if it opens one.
+    pub(super) fn skip_group_or_token(&mut self) {
+        let mut depth = 0_u32;
+        loop {
+            match self.kind {
+                SyntaxKind::LeftBrace | SyntaxKind::LeftParen | SyntaxKind::LeftBracket => depth += 1,
+                SyntaxKind::RightBrace | SyntaxKind::RightParen | SyntaxKind::RightBracket => {
+                    depth = depth.saturating_sub(1);
+                }
+                SyntaxKind::End => return,
+                _ => {}
+            }
+            self.bump();
+            if depth == 0 || self.at_declaration_at_line_start() {
+                return;
+            }
+        }
+    }
+
+    /// Whether the current token can begin a statement.
+    pub(super) fn at_statement_start(&self) -> bool {
+        matches!(
+            self.kind,
+            SyntaxKind::Name
+                | SyntaxKind::LeftBrace
+                | SyntaxKind::LeftParen
+                | SyntaxKind::ChooseKeyword
+                | SyntaxKind::DoKeyword
+                | SyntaxKind::IfKeyword
+                | SyntaxKind::DelayKeyword
+                | SyntaxKind::NotKeyword
+                | SyntaxKind::Bang
+                | SyntaxKind::TellKeyword
+                | SyntaxKind::AskKeyword
+        )
+    }
+
+    /// Whether the current token ends a statement or a group of them.
+    pub(super) fn at_statement_end(&mut self) -> bool {
+        matches!(self.kind, SyntaxKind::Semicolon | SyntaxKind::Comma | SyntaxKind::RightBrace | SyntaxKind::End)
+            || self.at_declaration_at_line_start()
+    }
+
+    /// Whether a declaration certainly begins here: in a block, this means that a brace was left open.
+    pub(super) fn at_declaration_at_line_start(&mut self) -> bool {
+        match self.kind {
+            SyntaxKind::VarKeyword
+            | SyntaxKind::PrimitiveKeyword
+            | SyntaxKind::ScenarioKeyword
+            | SyntaxKind::OptionKeyword => true,
+            SyntaxKind::Name => self.begins_line() && (self.at_world_declaration() || self.at_definition(true)),
+            _ => false,
+        }
+    }
+
+    fn begins_line(&self) -> bool {
+        let start = self.start_of(self.current) as usize;
+        start == 0 || self.text.as_bytes().get(start - 1) == Some(&b'\n')
+    }
+
+    /// Whether `Name( … ) [ … ] = {` begins here; if not `strict`, a missing `=` or `{` is forgiven.
+    pub(super) fn at_definition(&mut self, strict: bool) -> bool {
+        if !self.at(SyntaxKind::Name) {
+            return false;
+        }
+        let mut index = self.index_after(self.current);
+        let called = self.kind_at(index) == SyntaxKind::LeftParen;
+        if called {
+            index = self.index_after_group(index, SyntaxKind::LeftParen, SyntaxKind::RightParen);
+        }
+        if self.kind_at(index) == SyntaxKind::LeftBracket {
+            index = self.index_after_group(index, SyntaxKind::LeftBracket, SyntaxKind::RightBracket);
+        }
+        match self.kind_at(index) {
+            SyntaxKind::Equals => {
+                let after = self.index_after(index);
+                self.kind_at(after) == SyntaxKind::LeftBrace || (!strict && called)
+            }
+            SyntaxKind::LeftBrace => !strict && called,
+            _ => false,
+        }
+    }
+
+    /// The index behind the flat group that opens at `index`; stops at what no such group contains.
+    fn index_after_group(&mut self, index: u32, open: SyntaxKind, close: SyntaxKind) -> u32 {
+        let mut index = index;
+        let mut depth = 0_u32;
+        for _ in 0..LONGEST_HEADER_TOKENS {
+            let kind = self.kind_at(index);
+            if kind == open {
+                depth += 1;
+            } else if kind == close {
+                depth = depth.saturating_sub(1);
+            } else if matches!(
+                kind,
+                SyntaxKind::End | SyntaxKind::Semicolon | SyntaxKind::LeftBrace | SyntaxKind::RightBrace
+            ) {
+                return index;
+            }
+            index = self.index_after(index);
+            if depth == 0 {
+                return index;
+            }
+        }
+        index
+    }
+
+    /// Whether a world declaration begins here: its first word is a keyword only before what must follow it.
+    pub(super) fn at_world_declaration(&mut self) -> bool {
+        if !self.at(SyntaxKind::Name) {
+            return false;
+        }
+        match self.current_text() {
+            "terrain" => self.peek() == SyntaxKind::String || self.at_definition_of_nothing(),
+            "location" | "obstacle" | "vehicle" => self.peek() == SyntaxKind::Name || self.at_definition_of_nothing(),
+            _ => false,
+        }
+    }
+
+    /// Whether the word stands alone before `;`, as in a declaration that is being typed.
+    fn at_definition_of_nothing(&mut self) -> bool {
+        self.peek() == SyntaxKind::Semicolon && self.begins_line()
+    }
+
+    /// Whether any declaration begins here.
+    pub(super) fn at_file_item(&mut self) -> bool {
+        matches!(
+            self.kind,
+            SyntaxKind::VarKeyword
+                | SyntaxKind::PrimitiveKeyword
+                | SyntaxKind::ScenarioKeyword
+                | SyntaxKind::OptionKeyword
+        ) || self.at_world_declaration()
+            || self.at_definition(false)
+    }
+}

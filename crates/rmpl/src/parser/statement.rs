@@ -1,0 +1,295 @@
+//! Statements (SPEC 1.2, 1.3): blocks, choices, `do`, `if`, calls, assertions and delays.
+
+use super::Parser;
+use crate::diagnostics::syntax;
+use crate::span::Span;
+use crate::syntax::SyntaxKind;
+
+impl Parser<'_> {
+    /// `{ a; b, c; … }`
+    pub(super) fn block(&mut self) {
+        let node = self.open();
+        let brace = self.span_of(self.current);
+        self.bump();
+        self.nested(|parser| {
+            parser.steps();
+        });
+        self.close_brace(brace);
+        self.close(node, SyntaxKind::Block);
+    }
+
+    fn close_brace(&mut self, opened: Span) {
+        if self.eat(SyntaxKind::RightBrace) {
+            return;
+        }
+        let place = self.previous_end();
+        self.report(syntax::unclosed_brace(opened, place));
+    }
+
+    /// Steps separated by `;`, with an optional `;` behind the last.
+    fn steps(&mut self) {
+        loop {
+            self.stray_separators();
+            if self.at_block_end() {
+                return;
+            }
+            self.step();
+            if self.eat(SyntaxKind::Semicolon) {
+                continue;
+            }
+            if self.at_block_end() {
+                return;
+            }
+            self.between_statements("`;` or `,`", ";");
+        }
+    }
+
+    fn at_block_end(&mut self) -> bool {
+        matches!(self.kind, SyntaxKind::RightBrace | SyntaxKind::End) || self.at_declaration_at_line_start()
+    }
+
+    /// Reports `;` and `,` where a statement should begin, and accepts them.
+    fn stray_separators(&mut self) {
+        while matches!(self.kind, SyntaxKind::Semicolon | SyntaxKind::Comma) {
+            let diagnostic = if self.at(SyntaxKind::Semicolon) {
+                syntax::empty_statement(self.here())
+            } else {
+                syntax::expected("a statement", self.found(), self.here())
+            };
+            self.report(diagnostic);
+            self.bump();
+            self.hush();
+        }
+    }
+
+    /// After a statement that no separator follows: reports, and goes on where the next one can begin.
+    fn between_statements(&mut self, wanted: &str, insertion: &str) {
+        if self.at_statement_start() {
+            self.report_missing(wanted, insertion);
+            return;
+        }
+        self.report_expected(wanted);
+        self.skip_until(Self::at_statement_end);
+        self.eat(SyntaxKind::Semicolon);
+        self.hush();
+    }
+
+    /// Statements separated by `,`, which bind tighter than `;`.
+    fn step(&mut self) {
+        let mark = self.next_mark();
+        self.statement();
+        if !self.at(SyntaxKind::Comma) {
+            return;
+        }
+        let node = self.open_around(mark);
+        while self.eat(SyntaxKind::Comma) {
+            if self.at(SyntaxKind::Comma) || self.at(SyntaxKind::Semicolon) || self.at_block_end() {
+                self.report_expected("a statement behind `,`");
+                continue;
+            }
+            self.statement();
+        }
+        self.close(node, SyntaxKind::Parallel);
+    }
+
+    /// A core statement and the bounds behind it.
+    pub(super) fn statement(&mut self) {
+        let node = self.open();
+        self.core();
+        if self.at(SyntaxKind::LeftBracket) {
+            self.bounds();
+        }
+        self.close(node, SyntaxKind::Statement);
+    }
+
+    fn core(&mut self) {
+        match self.kind {
+            SyntaxKind::LeftBrace => self.block(),
+            SyntaxKind::ChooseKeyword => self.choose(),
+            SyntaxKind::DoKeyword => self.do_statement(),
+            SyntaxKind::IfKeyword => self.if_statement(),
+            SyntaxKind::DelayKeyword => {
+                let node = self.open();
+                self.bump();
+                self.close(node, SyntaxKind::Delay);
+            }
+            SyntaxKind::Name => self.call_or_assertion(),
+            SyntaxKind::NotKeyword
+            | SyntaxKind::Bang
+            | SyntaxKind::LeftParen
+            | SyntaxKind::TellKeyword
+            | SyntaxKind::AskKeyword => self.assertion(),
+            _ => {
+                self.report_expected("a statement");
+                if !self.at_statement_end() {
+                    self.skip_until(|parser| {
+                        parser.at_statement_end()
+                            || matches!(parser.kind, SyntaxKind::LeftBrace | SyntaxKind::LeftBracket)
+                            || parser.at_statement_start()
+                    });
+                }
+            }
+        }
+    }
+
+    fn choose(&mut self) {
+        let node = self.open();
+        self.bump();
+        if self.at(SyntaxKind::LeftBrace) {
+            let brace = self.span_of(self.current);
+            self.bump();
+            self.nested(Self::alternatives);
+            self.close_brace(brace);
+        } else {
+            self.report_missing("`{` behind `choose`", " {");
+        }
+        self.close(node, SyntaxKind::Choose);
+    }
+
+    fn alternatives(&mut self) {
+        if self.at_block_end() {
+            let diagnostic = syntax::empty_choice(self.here());
+            self.report(diagnostic);
+            return;
+        }
+        loop {
+            self.alternative();
+            if self.eat(SyntaxKind::Comma) {
+                if self.at_block_end() {
+                    self.report_expected("another alternative behind `,`");
+                    return;
+                }
+                continue;
+            }
+            if self.at_block_end() {
+                return;
+            }
+            self.between_statements("`,` between the alternatives", ",");
+            if self.at_block_end() {
+                return;
+            }
+            self.eat(SyntaxKind::Comma);
+        }
+    }
+
+    /// Statements separated by `;`, with an optional `;` behind the last.
+    fn alternative(&mut self) {
+        let node = self.open();
+        loop {
+            while self.at(SyntaxKind::Semicolon) {
+                let diagnostic = syntax::empty_statement(self.here());
+                self.report(diagnostic);
+                self.bump();
+                self.hush();
+            }
+            self.statement();
+            if !self.eat(SyntaxKind::Semicolon) || self.at(SyntaxKind::Comma) || self.at_block_end() {
+                break;
+            }
+        }
+        self.close(node, SyntaxKind::Alternative);
+    }
+
+    fn do_statement(&mut self) {
+        let node = self.open();
+        self.bump();
+        self.nested(Self::statement);
+        if matches!(self.kind, SyntaxKind::MaintainingKeyword | SyntaxKind::WatchingKeyword) {
+            self.bump();
+            self.condition();
+        } else {
+            self.report_expected_keyword("`maintaining` or `watching`", None);
+        }
+        self.close(node, SyntaxKind::Do);
+    }
+
+    fn if_statement(&mut self) {
+        let node = self.open();
+        self.bump();
+        self.condition();
+        if !self.eat(SyntaxKind::ThennextKeyword) {
+            self.report_expected_keyword("`thennext`", Some("thennext "));
+        }
+        if self.at_statement_end() {
+            self.report_expected("a statement behind `thennext`");
+        } else {
+            self.nested(Self::statement);
+        }
+        self.close(node, SyntaxKind::If);
+    }
+
+    fn report_expected_keyword(&mut self, wanted: &str, insertion: Option<&str>) {
+        let mut diagnostic = syntax::expected(wanted, self.found(), self.here());
+        if let Some(insertion) = insertion.filter(|_| self.at_statement_start()) {
+            let place = self.start_of(self.current);
+            diagnostic = diagnostic.with_fix(super::insertion(format!("Insert {wanted}"), place, insertion));
+        }
+        self.report(diagnostic);
+    }
+
+    fn call_or_assertion(&mut self) {
+        match self.peek() {
+            SyntaxKind::LeftParen => {
+                let node = self.open();
+                self.bump();
+                self.arguments();
+                self.close(node, SyntaxKind::Call);
+            }
+            SyntaxKind::Equals | SyntaxKind::NotEquals => self.assertion(),
+            _ => {
+                let node = self.open();
+                self.bump();
+                self.close(node, SyntaxKind::BareName);
+            }
+        }
+    }
+
+    fn arguments(&mut self) {
+        let node = self.open();
+        self.bump();
+        while !self.at(SyntaxKind::RightParen) {
+            self.argument();
+            if self.eat(SyntaxKind::Comma) {
+                if self.at(SyntaxKind::RightParen) {
+                    self.report_expected("an argument behind `,`");
+                }
+                continue;
+            }
+            if matches!(self.kind, SyntaxKind::Name | SyntaxKind::Number | SyntaxKind::Minus)
+                && !self.at_declaration_at_line_start()
+                && self.reported_at != Some(self.current)
+            {
+                self.report_missing("`,`", ",");
+                continue;
+            }
+            break;
+        }
+        if !self.at(SyntaxKind::RightParen) && self.reported_at == Some(self.current) {
+            self.skip_until(|parser| {
+                matches!(parser.kind, SyntaxKind::RightParen | SyntaxKind::LeftBracket | SyntaxKind::LeftBrace)
+                    || (parser.at_statement_end() && !parser.at(SyntaxKind::Comma))
+            });
+        }
+        self.expect_behind(SyntaxKind::RightParen, ")");
+        self.close(node, SyntaxKind::Arguments);
+    }
+
+    fn argument(&mut self) {
+        let node = self.open();
+        let signed = self.eat(SyntaxKind::Minus);
+        let found = self.eat(SyntaxKind::Number) || (!signed && self.eat(SyntaxKind::Name));
+        if !found {
+            self.report_expected(if signed { "a number" } else { "a name or a number" });
+        }
+        self.close(node, SyntaxKind::Argument);
+    }
+
+    fn assertion(&mut self) {
+        let node = self.open();
+        if matches!(self.kind, SyntaxKind::TellKeyword | SyntaxKind::AskKeyword) {
+            self.bump();
+        }
+        self.condition();
+        self.close(node, SyntaxKind::Assertion);
+    }
+}

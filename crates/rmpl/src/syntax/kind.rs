@@ -1,0 +1,247 @@
+//! The kinds of token and of node that a mission text is made of.
+
+/// The kind of a token or of a node of the syntax tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum SyntaxKind {
+    /// Spaces, tabs and line ends.
+    Whitespace,
+    /// `// …`
+    LineComment,
+    /// `/* … */`
+    BlockComment,
+    /// Characters that begin no token; the lexer has reported them.
+    Unknown,
+    /// The end of the text; it has no width.
+    End,
+
+    /// A name that is no keyword.
+    Name,
+    /// An unsigned number.
+    Number,
+    /// `"…"`
+    String,
+    /// `inf` or `∞`
+    Infinity,
+    /// `{`
+    LeftBrace,
+    /// `}`
+    RightBrace,
+    /// `[`
+    LeftBracket,
+    /// `]`
+    RightBracket,
+    /// `(`
+    LeftParen,
+    /// `)`
+    RightParen,
+    /// `,`
+    Comma,
+    /// `;`
+    Semicolon,
+    /// `:`
+    Colon,
+    /// `=`
+    Equals,
+    /// `!=`
+    NotEquals,
+    /// `!`
+    Bang,
+    /// `%`
+    Percent,
+    /// `+`
+    Plus,
+    /// `-`
+    Minus,
+    /// `*`
+    Star,
+    /// `/`
+    Slash,
+    /// `choose`
+    ChooseKeyword,
+    /// `do`
+    DoKeyword,
+    /// `maintaining`
+    MaintainingKeyword,
+    /// `watching`
+    WatchingKeyword,
+    /// `if`
+    IfKeyword,
+    /// `thennext`
+    ThennextKeyword,
+    /// `var`
+    VarKeyword,
+    /// `primitive`
+    PrimitiveKeyword,
+    /// `scenario`
+    ScenarioKeyword,
+    /// `option`
+    OptionKeyword,
+    /// `delay`
+    DelayKeyword,
+    /// `not`
+    NotKeyword,
+    /// `tell`
+    TellKeyword,
+    /// `ask`
+    AskKeyword,
+
+    /// A declaration with the comments that belong to it.
+    Root,
+    /// `var X : { … };`
+    VariableDecl,
+    /// `primitive Name(…) … ;`
+    PrimitiveDecl,
+    /// `option name = value;`
+    OptionDecl,
+    /// `Name(…) … = { … }`
+    ActivityDecl,
+    /// `scenario Name … = { … }`
+    ScenarioDecl,
+    /// `terrain "…" … ;`
+    TerrainDecl,
+    /// `location NAME (…);`
+    LocationDecl,
+    /// `obstacle NAME … ;`
+    ObstacleDecl,
+    /// `vehicle NAME : … ;`
+    VehicleDecl,
+    /// Text that is no declaration; it has been reported.
+    Garbage,
+    /// `(p, q)` in a header.
+    Formals,
+    /// `{V1, V2}` of a variable.
+    Domain,
+    /// `moves … speed(…)`
+    Moves,
+    /// `speed (a, b)`
+    Speed,
+    /// `runs Name`
+    Runs,
+    /// `(x, y, …)` of a world declaration.
+    Coordinates,
+    /// `cell 0.6`
+    Cell,
+    /// `origin (x, y)`
+    Origin,
+    /// `at NAME`
+    At,
+
+    /// `[lower, upper]`
+    Bounds,
+    /// Operands joined by `+` and `-`.
+    Sum,
+    /// Operands joined by `*` and `/`.
+    Product,
+    /// An operand followed by `%`.
+    PercentOf,
+    /// `( … )` in a bound.
+    Grouped,
+    /// A number, `inf` or a name in a bound.
+    Operand,
+
+    /// A core statement with the bounds behind it.
+    Statement,
+    /// `{ … }`
+    Block,
+    /// Statements separated by `,`.
+    Parallel,
+    /// `choose { … }`
+    Choose,
+    /// One alternative of a choice.
+    Alternative,
+    /// `do … maintaining …` or `do … watching …`
+    Do,
+    /// `if … thennext …`
+    If,
+    /// `Name( … )`
+    Call,
+    /// `( … )` of a call.
+    Arguments,
+    /// A name or a number handed to a call.
+    Argument,
+    /// A condition as a statement, with `tell` or `ask` if written.
+    Assertion,
+    /// A name alone: a call or an assertion, as the file declares it.
+    BareName,
+    /// `delay`
+    Delay,
+    /// A condition with its negations and parentheses.
+    Condition,
+    /// Tokens that were skipped to recover.
+    Skipped,
+}
+
+impl SyntaxKind {
+    /// Whether the grammar looks past it.
+    pub const fn is_trivia(self) -> bool {
+        matches!(self, Self::Whitespace | Self::LineComment | Self::BlockComment | Self::Unknown)
+    }
+
+    /// Whether it is a comment.
+    pub const fn is_comment(self) -> bool {
+        matches!(self, Self::LineComment | Self::BlockComment)
+    }
+
+    /// Whether it is a reserved word; `inf` counts, `∞` is the same token.
+    pub const fn is_keyword(self) -> bool {
+        self as u8 >= Self::ChooseKeyword as u8 && self as u8 <= Self::AskKeyword as u8
+    }
+
+    /// Whether it is a declaration, which stands directly under the root.
+    pub const fn is_declaration(self) -> bool {
+        self as u8 >= Self::VariableDecl as u8 && self as u8 <= Self::VehicleDecl as u8
+    }
+
+    /// The reserved word spelled `text`.
+    pub fn keyword(text: &str) -> Option<Self> {
+        Some(match text {
+            "choose" => Self::ChooseKeyword,
+            "do" => Self::DoKeyword,
+            "maintaining" => Self::MaintainingKeyword,
+            "watching" => Self::WatchingKeyword,
+            "if" => Self::IfKeyword,
+            "thennext" => Self::ThennextKeyword,
+            "var" => Self::VarKeyword,
+            "primitive" => Self::PrimitiveKeyword,
+            "scenario" => Self::ScenarioKeyword,
+            "option" => Self::OptionKeyword,
+            "delay" => Self::DelayKeyword,
+            "not" => Self::NotKeyword,
+            "tell" => Self::TellKeyword,
+            "ask" => Self::AskKeyword,
+            "inf" => Self::Infinity,
+            _ => return None,
+        })
+    }
+
+    /// How a message calls the token.
+    pub const fn describe(self) -> &'static str {
+        match self {
+            Self::Name => "a name",
+            Self::Number => "a number",
+            Self::String => "a text in quotes",
+            Self::Infinity => "`inf`",
+            Self::LeftBrace => "`{`",
+            Self::RightBrace => "`}`",
+            Self::LeftBracket => "`[`",
+            Self::RightBracket => "`]`",
+            Self::LeftParen => "`(`",
+            Self::RightParen => "`)`",
+            Self::Comma => "`,`",
+            Self::Semicolon => "`;`",
+            Self::Colon => "`:`",
+            Self::Equals => "`=`",
+            Self::NotEquals => "`!=`",
+            Self::Bang => "`!`",
+            Self::Percent => "`%`",
+            Self::Plus => "`+`",
+            Self::Minus => "`-`",
+            Self::Star => "`*`",
+            Self::Slash => "`/`",
+            Self::ThennextKeyword => "`thennext`",
+            Self::End => "the end of the text",
+            _ => "this",
+        }
+    }
+}
