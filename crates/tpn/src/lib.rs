@@ -3,6 +3,7 @@
 //! Nothing here decides what a plan is; planning is `kirk`, checking is `verify`.
 
 pub mod compile;
+pub mod generate;
 pub mod network;
 pub mod plan;
 

@@ -35,13 +35,13 @@ pub(super) fn check(program: &Program) -> Vec<Diagnostic> {
             check_bounds(&Bounds { lower: lower.clone(), upper: upper.clone(), span: *span });
         }
         for_each_statement(&activity.body, &mut |statement| {
-            statement.bounds.iter().for_each(&mut check_bounds)
+            statement.bounds.iter().for_each(&mut check_bounds);
         });
     }
     for scenario in &program.scenarios {
         scenario.bounds.iter().for_each(&mut check_bounds);
         for_each_statement(&scenario.body, &mut |statement| {
-            statement.bounds.iter().for_each(&mut check_bounds)
+            statement.bounds.iter().for_each(&mut check_bounds);
         });
     }
     found
