@@ -1,1 +1,34 @@
 //! Rapidly-exploring random trees, vehicle models, kinodynamics and local avoidance.
+//!
+//! The way from a mission's declarations to a path:
+//!
+//! 1. [`vehicle_model`] gives the [`VehicleModel`] that a `vehicle` declaration names, and
+//!    [`VehicleModel::configuration_space`] where it can be on a terrain with obstacles.
+//! 2. [`plan_leg`] finds a short path between two waypoints, or says why there is none; [`Search`] is the same one
+//!    sample at a time, with its trees, for display.
+//! 3. [`time_path`] gives each segment of the path its least and greatest duration.
+//!
+//! Nothing here reads a clock or draws unseeded numbers: the same call gives the same bits natively and in wasm.
+
+mod geometry;
+mod leg;
+mod nearest;
+mod path;
+mod rrt;
+mod rrt_connect;
+mod search;
+mod shortcut;
+mod timing;
+mod tree;
+mod vehicle;
+
+pub use leg::{Leg, LegFailure, plan_leg, plan_legs};
+pub use nearest::PointTree;
+pub use path::Path;
+pub use search::{
+    Event, Failure, Growth, PlannerKind, Query, Search, SearchResult, Settings, Statistics, find_path,
+};
+pub use shortcut::{ShortcutSettings, shorten};
+pub use timing::{SegmentTiming, SpeedLimits, duration_millis, time_path};
+pub use tree::{Root, Tree, Vertex};
+pub use vehicle::{Drive, VEHICLE_MODELS, VehicleModel, vehicle_model};

@@ -38,6 +38,8 @@ pub struct ConfigurationSpace {
     clearance: Vec<f32>,
     flags: Vec<u8>,
     regions: Regions,
+    /// The corners of the least box of cells around every cell that isn't occupied, in metres.
+    free_box_m: [[f64; 2]; 2],
     /// The vehicle's radius in cells.
     pub(crate) radius: f64,
 }
@@ -69,7 +71,8 @@ impl ConfigurationSpace {
         let regions = Regions::label(width, height, |index| {
             possibly_free(radius, f64::from(clearance[index]), flags[index] & OCCUPIED != 0)
         });
-        Self { occupancy, radius_m: radius_m.max(0.0), clearance, flags, regions, radius }
+        let free_box_m = free_box_m(&frame, &free);
+        Self { occupancy, radius_m: radius_m.max(0.0), clearance, flags, regions, free_box_m, radius }
     }
 
     /// Where the map lies.
@@ -85,6 +88,11 @@ impl ConfigurationSpace {
     /// The vehicle's radius with its margin, in metres.
     pub const fn radius_m(&self) -> f64 {
         self.radius_m
+    }
+
+    /// The south-west and north-east corners of the least box around the free places, in metres: where to sample.
+    pub const fn free_box_m(&self) -> [[f64; 2]; 2] {
+        self.free_box_m
     }
 
     /// For display: metres from each cell's centre to the nearest obstacle less the radius, row by row from the south;
@@ -260,7 +268,7 @@ impl ConfigurationSpace {
                     at = cursor.at + spare;
                     break;
                 }
-                let next = walk.crossing(&cursor);
+                let next = cursor.crossing();
                 let end = next.min(walk.length);
                 if spare < 0.0 && !self.piece_is_free(walk, cursor.cell(), clearance, cursor.at, end) {
                     return false;
@@ -322,6 +330,19 @@ fn possibly_free(radius: f64, clearance: f64, occupied: bool) -> bool {
     !occupied && clearance + HALF_DIAGONAL + CLEARANCE_ROUNDING >= radius
 }
 
+fn free_box_m(frame: &GridFrame, free: &[bool]) -> [[f64; 2]; 2] {
+    let (mut low, mut high) = ([u32::MAX; 2], [0; 2]);
+    for (index, _) in free.iter().enumerate().filter(|(_, free)| **free) {
+        let Cell { column, row } = frame.cell(index);
+        low = [low[0].min(column), low[1].min(row)];
+        high = [high[0].max(column + 1), high[1].max(row + 1)];
+    }
+    if low[0] > high[0] {
+        return [frame.origin_m, frame.origin_m];
+    }
+    [low, high].map(|corner| frame.to_metres(corner.map(f64::from)))
+}
+
 fn border_flags(width: usize, height: usize, occupied: &[bool]) -> Vec<u8> {
     let mut flags = vec![0; occupied.len()];
     for row in 0..height {
@@ -357,6 +378,11 @@ struct Cursor {
 }
 
 impl Cursor {
+    /// How far along the segment it leaves this cell.
+    fn crossing(&self) -> f64 {
+        self.crossings[0].min(self.crossings[1]).max(self.at)
+    }
+
     const fn cell(&self) -> Cell {
         Cell { column: self.cell[0] as u32, row: self.cell[1] as u32 }
     }
@@ -377,9 +403,7 @@ impl Walk {
         let clamp = |value: f64, size: u32| (value.floor() as i64).clamp(0, i64::from(size) - 1);
         let cell = [clamp(point[0], frame.width), clamp(point[1], frame.height)];
         let mut cursor = Cursor { cell, at, crossings: [0.0; 2] };
-        for axis in 0..2 {
-            cursor.crossings[axis] = self.crossing_of(axis, cell[axis]);
-        }
+        cursor.crossings = [self.crossing_of(0, cell[0]), self.crossing_of(1, cell[1])];
         cursor
     }
 
@@ -393,11 +417,6 @@ impl Walk {
         } else {
             f64::INFINITY
         }
-    }
-
-    /// How far along the segment it leaves the cursor's cell.
-    fn crossing(&self, cursor: &Cursor) -> f64 {
-        cursor.crossings[0].min(cursor.crossings[1]).max(cursor.at)
     }
 
     fn advance(&self, cursor: &mut Cursor, axis: usize, at: f64) {

@@ -1,0 +1,139 @@
+//! Shortening a path: straight pieces between any two of its points where the way is free.
+//!
+//! Random shortcuts (Geraerts and Overmars 2007) find the coarse shape, then every corner is cut as far as obstacles
+//! allow, round after round. The path stays in the class of paths that obstacles separate from others, so this is no
+//! search for the shortest path of all.
+
+use serde::{Deserialize, Serialize};
+use terrain::{ConfigurationSpace, Random};
+
+use crate::geometry::{between, distance};
+use crate::path::Path;
+
+/// How much to try.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ShortcutSettings {
+    /// Random shortcuts tried.
+    pub attempts: u32,
+    /// Rounds of cutting every corner; they end early when a round gains less than a ten-thousandth.
+    pub corner_rounds: u32,
+    /// Where random choices come from.
+    pub seed: u64,
+}
+
+impl Default for ShortcutSettings {
+    fn default() -> Self {
+        Self { attempts: 200, corner_rounds: 30, seed: 1 }
+    }
+}
+
+/// A path between the same ends that is no longer and as free as the given one. A path that is not free is only
+/// shortened where it can be.
+pub fn shorten(space: &ConfigurationSpace, path: &Path, settings: &ShortcutSettings) -> Path {
+    let mut points = path.points_m.clone();
+    points.dedup();
+    skip_corners(space, &mut points);
+    let mut random = Random::from_seed(settings.seed);
+    for _ in 0..settings.attempts {
+        if points.len() < 3 {
+            break;
+        }
+        random_shortcut(space, &mut points, &mut random);
+    }
+    skip_corners(space, &mut points);
+    for _ in 0..settings.corner_rounds {
+        if points.len() < 3 {
+            break;
+        }
+        let before = length(&points);
+        cut_corners(space, &mut points);
+        skip_corners(space, &mut points);
+        if length(&points) > before * (1.0 - 1e-4) {
+            break;
+        }
+    }
+    Path::new(points)
+}
+
+fn length(points: &[[f64; 2]]) -> f64 {
+    points.windows(2).map(|pair| distance(pair[0], pair[1])).sum()
+}
+
+/// Leaves out every corner that the straight way around it makes needless.
+fn skip_corners(space: &ConfigurationSpace, points: &mut Vec<[f64; 2]>) {
+    let mut kept = 0;
+    while kept + 2 < points.len() {
+        // The farthest point in sight, looked for by doubling and then stepping back.
+        let mut reach = 2;
+        let mut seen = 1;
+        while kept + reach < points.len() && space.is_segment_free(points[kept], points[kept + reach]) {
+            seen = reach;
+            reach *= 2;
+        }
+        let mut high = reach.min(points.len() - kept);
+        while high > seen + 1 {
+            let middle = seen + (high - seen) / 2;
+            if space.is_segment_free(points[kept], points[kept + middle]) {
+                seen = middle;
+            } else {
+                high = middle;
+            }
+        }
+        points.drain(kept + 1..kept + seen);
+        kept += 1;
+    }
+}
+
+/// Tries to go straight between two random points of the path.
+fn random_shortcut(space: &ConfigurationSpace, points: &mut Vec<[f64; 2]>, random: &mut Random) {
+    let total = length(points);
+    let (a, b) = (random.unit() * total, random.unit() * total);
+    let (first, second) = (locate(points, a.min(b)), locate(points, a.max(b)));
+    if first.0 == second.0 || !space.is_segment_free(first.1, second.1) {
+        return;
+    }
+    points.splice(first.0 + 1..=second.0, [first.1, second.1]);
+    points.dedup();
+}
+
+/// The segment and the point at a distance along the path.
+fn locate(points: &[[f64; 2]], distance_m: f64) -> (usize, [f64; 2]) {
+    let mut rest = distance_m;
+    for (index, pair) in points.windows(2).enumerate() {
+        let length = distance(pair[0], pair[1]);
+        if rest <= length && length > 0.0 {
+            return (index, between(pair[0], pair[1], rest / length));
+        }
+        rest -= length;
+    }
+    (points.len() - 2, points[points.len() - 1])
+}
+
+/// Cuts every corner as far as obstacles allow.
+fn cut_corners(space: &ConfigurationSpace, points: &mut Vec<[f64; 2]>) {
+    const HALVINGS: u32 = 7;
+    let mut cut = Vec::with_capacity(2 * points.len());
+    cut.push(points[0]);
+    for index in 1..points.len() - 1 {
+        let (before, corner, after) = (cut[cut.len() - 1], points[index], points[index + 1]);
+        // Equal shares of both sides, found by halving; the whole of a side is left to skipping.
+        let (mut free, mut blocked) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let share = 0.5 * (free + blocked);
+            if space.is_segment_free(between(corner, before, share), between(corner, after, share)) {
+                free = share;
+            } else {
+                blocked = share;
+            }
+        }
+        if free > 0.0 {
+            cut.push(between(corner, before, free));
+            cut.push(between(corner, after, free));
+        } else {
+            cut.push(corner);
+        }
+    }
+    cut.push(points[points.len() - 1]);
+    cut.dedup();
+    *points = cut;
+}

@@ -1,0 +1,197 @@
+//! The vehicle models that a mission can name (SPEC 1.8, 7.1). Every field can be changed by whoever makes a model.
+
+use serde::Serialize;
+use terrain::{ConfigurationSpace, Obstacle, Occupancy, Terrain, Traversability};
+
+/// What a vehicle is and can do.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct VehicleModel {
+    /// The name in a `vehicle` declaration.
+    pub name: &'static str,
+    /// From front to back in metres.
+    pub length_m: f64,
+    /// From side to side in metres.
+    pub width_m: f64,
+    /// From the ground to the top, or for a blimp of its hull, in metres.
+    pub height_m: f64,
+    /// Radius in metres of the least disc around the vehicle's centre that holds it in every heading.
+    pub circumradius_m: f64,
+    /// What is kept free around that disc, in metres.
+    pub margin_m: f64,
+    /// Greatest speed in metres per second.
+    pub speed_mps: f64,
+    /// Greatest turning rate in radians per second.
+    pub turn_rate_rps: f64,
+    /// Greatest acceleration and deceleration in metres per second squared.
+    pub acceleration_mps2: f64,
+    /// Greatest change of the turning rate in radians per second squared.
+    pub turn_acceleration_rps2: f64,
+    /// How it moves.
+    pub drive: Drive,
+}
+
+/// How a vehicle moves.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub enum Drive {
+    /// Wheels that turn the vehicle by running at different speeds.
+    SkidSteer {
+        /// Between the left and right wheels in metres.
+        track_m: f64,
+        /// Effective track over geometric track: wheels slip sideways in a turn (SPEC 7.2).
+        slip: f64,
+        /// Wheel radius in metres.
+        wheel_radius_m: f64,
+        /// Greatest climb, in metres up for each metre forward.
+        greatest_grade: f64,
+        /// Least diameter of a rock that it can't pass over, in metres.
+        rock_diameter_m: f64,
+    },
+    /// Flight in a band of altitudes over the lowest ground of the map.
+    Flight {
+        /// Least and greatest altitude over the map's lowest ground, in metres.
+        altitude_band_m: [f64; 2],
+        /// Least height over the ground below, in metres.
+        ground_clearance_m: f64,
+        /// Greatest speed up or down in metres per second.
+        climb_mps: f64,
+    },
+}
+
+/// The models of the paper's mission. Dimensions and speeds of the rovers are those of SPEC 7.1; grades, rock sizes,
+/// margins and the whole blimp (about the size of outdoor research blimps of those years) are this project's choice.
+pub const VEHICLE_MODELS: [VehicleModel; 3] = [
+    VehicleModel {
+        name: "ATRV",
+        length_m: 1.02,
+        width_m: 0.84,
+        height_m: 0.65,
+        circumradius_m: 0.661,
+        margin_m: 0.1,
+        speed_mps: 0.8,
+        turn_rate_rps: 0.4,
+        acceleration_mps2: 0.5,
+        turn_acceleration_rps2: 1.0,
+        drive: Drive::SkidSteer {
+            track_m: 0.62,
+            slip: 1.75,
+            wheel_radius_m: 0.2,
+            greatest_grade: 0.364,
+            rock_diameter_m: 0.5,
+        },
+    },
+    VehicleModel {
+        name: "ATRV-Jr",
+        length_m: 0.80,
+        width_m: 0.65,
+        height_m: 0.55,
+        circumradius_m: 0.515,
+        margin_m: 0.1,
+        speed_mps: 1.0,
+        turn_rate_rps: 0.5,
+        acceleration_mps2: 0.6,
+        turn_acceleration_rps2: 2.6,
+        drive: Drive::SkidSteer {
+            track_m: 0.50,
+            slip: 1.75,
+            wheel_radius_m: 0.155,
+            greatest_grade: 0.364,
+            rock_diameter_m: 0.4,
+        },
+    },
+    VehicleModel {
+        name: "Blimp",
+        length_m: 8.0,
+        width_m: 2.0,
+        height_m: 2.4,
+        circumradius_m: 4.124,
+        margin_m: 0.5,
+        speed_mps: 4.0,
+        turn_rate_rps: 0.3,
+        acceleration_mps2: 0.4,
+        turn_acceleration_rps2: 0.2,
+        drive: Drive::Flight { altitude_band_m: [10.0, 40.0], ground_clearance_m: 5.0, climb_mps: 0.8 },
+    },
+];
+
+/// The model of this name.
+pub fn vehicle_model(name: &str) -> Option<&'static VehicleModel> {
+    VEHICLE_MODELS.iter().find(|model| model.name == name)
+}
+
+impl VehicleModel {
+    /// The radius by which obstacles are grown: circumradius and margin, in metres.
+    pub fn radius_m(&self) -> f64 {
+        self.circumradius_m + self.margin_m
+    }
+
+    /// What the vehicle asks of the ground of a map.
+    pub fn traversability(&self, terrain: &Terrain) -> Traversability {
+        match self.drive {
+            Drive::SkidSteer { greatest_grade, rock_diameter_m, .. } => {
+                Traversability::Ground { greatest_grade, rock_diameter_m }
+            }
+            Drive::Flight { altitude_band_m, ground_clearance_m, .. } => {
+                let lowest = terrain.height_range_m().map_or(0.0, |[low, _]| f64::from(low));
+                Traversability::Air { greatest_ground_m: lowest + altitude_band_m[1] - ground_clearance_m }
+            }
+        }
+    }
+
+    /// Where the vehicle can be on a map with declared obstacles. Linear in the number of cells (about 10 ms for half a
+    /// million): keep it while neither changes.
+    pub fn configuration_space(&self, terrain: &Terrain, obstacles: &[Obstacle]) -> ConfigurationSpace {
+        let occupancy = Occupancy::of_terrain(terrain, obstacles, &self.traversability(terrain));
+        ConfigurationSpace::new(occupancy, self.radius_m())
+    }
+
+    /// The greatest speed in metres per second on ground that rises `grade` metres for each metre along the way. It
+    /// falls to half at the greatest grade, and a descent is driven as slowly as the climb.
+    pub fn speed_on_grade_mps(&self, grade: f64) -> f64 {
+        match self.drive {
+            Drive::SkidSteer { greatest_grade, .. } => {
+                self.speed_mps * (1.0 - 0.5 * (grade.abs() / greatest_grade).min(1.0))
+            }
+            Drive::Flight { .. } => self.speed_mps,
+        }
+    }
+
+    /// The distance in metres in which it stops from a speed: v² / 2a.
+    pub fn stopping_distance_m(&self, speed_mps: f64) -> f64 {
+        speed_mps * speed_mps / (2.0 * self.acceleration_mps2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_circumradius_holds_the_vehicle_in_every_heading() {
+        for model in &VEHICLE_MODELS {
+            let half_diagonal =
+                0.5 * (model.length_m * model.length_m + model.width_m * model.width_m).sqrt();
+            assert!((model.circumradius_m - half_diagonal).abs() < 0.001, "{}", model.name);
+        }
+    }
+
+    #[test]
+    fn a_rover_climbs_slower_and_a_blimp_does_not_care() {
+        let rover = vehicle_model("ATRV").unwrap();
+        assert_eq!(rover.speed_on_grade_mps(0.0), 0.8);
+        assert!((rover.speed_on_grade_mps(-0.182) - 0.6).abs() < 1e-9);
+        assert_eq!(rover.speed_on_grade_mps(2.0), 0.4);
+        assert_eq!(vehicle_model("Blimp").unwrap().speed_on_grade_mps(2.0), 4.0);
+        assert_eq!(vehicle_model("Tank"), None);
+    }
+
+    #[test]
+    fn a_blimp_flies_over_obstacles_that_stop_a_rover() {
+        let terrain = Terrain::flat(terrain::GridFrame::new(60, 60, 0.6));
+        let rock = [Obstacle::Circle { center_m: [18.0, 18.0], radius_m: 3.0 }];
+        let free = |name: &str| {
+            vehicle_model(name).unwrap().configuration_space(&terrain, &rock).is_free([18.0, 18.0])
+        };
+        assert!(!free("ATRV"));
+        assert!(free("Blimp"));
+    }
+}
