@@ -1,0 +1,188 @@
+//! Phase 2 at a complete choice: the requirements to close and the conflicting pairs to order (SPEC 5.2, 5.3).
+
+use stn::{Inconsistency, Overflow};
+
+use crate::failure::FailureKind;
+use crate::model::{Context, INFINITE, NONE};
+use crate::search::{Engine, LEVEL_TAG};
+use crate::structure::Relation;
+
+/// What the present complete choice has to satisfy.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Leaf {
+    /// Whether the rest belongs to the present choice.
+    pub(crate) is_ready: bool,
+    /// Selected requirements, in textual order.
+    pub(crate) asks: Vec<u32>,
+    /// Conflicting pairs of selected labels, in textual order.
+    pub(crate) pairs: Vec<(u32, u32)>,
+    has_pairs: bool,
+    /// For each pair that has been passed: whether the second comes first.
+    pub(crate) is_swapped: Vec<bool>,
+    /// Distances from and to the start before any link or order: still bounds with them.
+    from_start: Vec<i64>,
+    to_start: Vec<i64>,
+    has_windows: bool,
+}
+
+impl Engine<'_> {
+    /// Prepares phase 2. `false` if the selection is inconsistent, or contradicts itself on one arc.
+    pub(crate) fn make_leaf(&mut self) -> Result<bool, Overflow> {
+        self.stats.leaves += 1;
+        self.conflict.clear();
+        self.leaf.has_pairs = false;
+        self.leaf.has_windows = false;
+        if self.has_structure() {
+            self.select_chosen();
+            if !self.settle_selected()? {
+                self.meet_dead_end(FailureKind::Temporal);
+                return Ok(false);
+            }
+        }
+        let model = self.model;
+        let labels = 0..model.conditions.labels.len() as u32;
+        self.leaf.asks.clear();
+        for label in labels {
+            if model.conditions.labels[label as usize].is_ask
+                && self.is_selected_label(label)
+                && self.is_active(label)
+            {
+                self.leaf.asks.push(label);
+            }
+        }
+        for &(left, right) in &model.conditions.self_conflicting {
+            if self.is_selected_label(left) && self.is_active(left) && self.is_active(right) {
+                self.blame_context(self.context(model.conditions.labels[left as usize].arc));
+                self.dead_ends.add_label(left);
+                self.dead_ends.add_label(right);
+                self.meet_dead_end(FailureKind::Threat);
+                return Ok(false);
+            }
+        }
+        self.leaf.is_ready = true;
+        Ok(true)
+    }
+
+    /// The first pair at `from` or later that is in neither order yet, with its position.
+    pub(crate) fn next_threat(&mut self, from: u32) -> Result<Option<(u32, u32, u32)>, Overflow> {
+        if !self.leaf.has_pairs {
+            self.find_pairs();
+        }
+        for position in from..self.leaf.pairs.len() as u32 {
+            let (left, right) = self.leaf.pairs[position as usize];
+            match self.relation(left, right)? {
+                Relation::Before => self.leaf.is_swapped[position as usize] = false,
+                Relation::After => self.leaf.is_swapped[position as usize] = true,
+                Relation::Open => return Ok(Some((position, left, right))),
+            }
+        }
+        Ok(None)
+    }
+
+    /// All selected arcs of the present choices, pushed but not propagated.
+    fn select_chosen(&mut self) {
+        let model = self.model;
+        self.deselect(0, 0);
+        self.stn.clear();
+        let mut stack = vec![model.start];
+        self.select_node(model.start, Context::ALWAYS);
+        while let Some(node) = stack.pop() {
+            let decision = model.decision_of[node as usize];
+            let arcs = if decision == NONE {
+                model.out_arcs(node)
+            } else {
+                let alternative = self.chosen[decision as usize] as usize;
+                std::slice::from_ref(&model.decisions[decision as usize].alternatives[alternative])
+            };
+            for &arc in arcs {
+                self.is_selected_arc[arc as usize] = true;
+                self.selected_arcs.push(arc);
+                self.push_arc(arc);
+                let target = model.arcs[arc as usize].to;
+                if self.select_node(target, Context::ALWAYS) {
+                    stack.push(target);
+                }
+            }
+        }
+    }
+
+    fn find_pairs(&mut self) {
+        self.leaf.has_pairs = true;
+        self.leaf.pairs.clear();
+        let conditions = &self.model.conditions;
+        for left in 0..conditions.labels.len() as u32 {
+            if !self.is_selected_label(left) || !self.is_active(left) {
+                continue;
+            }
+            for right in conditions.later_conflicts(left) {
+                if self.is_selected_label(right) && self.is_active(right) {
+                    self.leaf.pairs.push((left, right));
+                }
+            }
+        }
+        self.leaf.is_swapped.clear();
+        self.leaf.is_swapped.resize(self.leaf.pairs.len(), false);
+    }
+
+    /// Which of two intervals is over before the other begins, in every schedule (SPEC 5.3).
+    fn relation(&mut self, left: u32, right: u32) -> Result<Relation, Overflow> {
+        let (left_start, left_end) = self.model.interval(left);
+        let (right_start, right_end) = self.model.interval(right);
+        let (gap_after_left, gap_after_right) =
+            (self.model.least_gap_after(left), self.model.least_gap_after(right));
+        if let Some(structure) = &self.model.structure {
+            let arc = |label: u32| self.model.conditions.labels[label as usize].arc;
+            match structure.relation(arc(left), arc(right)) {
+                Relation::Before if gap_after_left == 0 => return Ok(Relation::Before),
+                Relation::After if gap_after_right == 0 => return Ok(Relation::After),
+                _ => {}
+            }
+        }
+        self.find_windows()?;
+        if self.ends_by(left_end, right_start, gap_after_left) {
+            return Ok(Relation::Before);
+        }
+        if self.ends_by(right_end, left_start, gap_after_right) {
+            return Ok(Relation::After);
+        }
+        if self.is_entailed(left_end, right_start, gap_after_left)? {
+            return Ok(Relation::Before);
+        }
+        if self.is_entailed(right_end, left_start, gap_after_right)? {
+            return Ok(Relation::After);
+        }
+        Ok(Relation::Open)
+    }
+
+    fn find_windows(&mut self) -> Result<(), Overflow> {
+        if self.leaf.has_windows {
+            return Ok(());
+        }
+        self.leaf.has_windows = true;
+        let start = stn::PointId(self.model.start);
+        let Self { stn, leaf, model, .. } = self;
+        stn.sweep_distances(start, &model.order, &mut leaf.from_start, &mut leaf.to_start)
+    }
+
+    /// Whether windows alone put `end` at least `gap` before `start`.
+    fn ends_by(&self, end: stn::PointId, start: stn::PointId, gap: i64) -> bool {
+        let latest_end = self.leaf.from_start[end.index()];
+        let earliest_start = self.leaf.to_start[start.index()];
+        latest_end != INFINITE
+            && earliest_start != INFINITE
+            && latest_end.checked_add(gap).is_some_and(|time| time <= -earliest_start)
+    }
+
+    /// Whether every schedule has `start − end ≥ gap`.
+    fn is_entailed(&mut self, end: stn::PointId, start: stn::PointId, gap: i64) -> Result<bool, Overflow> {
+        let schedule = self.stn.schedule();
+        if schedule[start.index()].checked_sub(schedule[end.index()]).ok_or(Overflow)? < gap {
+            return Ok(false);
+        }
+        match self.stn.admits(end, start, gap - 1, LEVEL_TAG) {
+            Ok(()) => Ok(false),
+            Err(Inconsistency::NegativeCycle) => Ok(true),
+            Err(Inconsistency::Overflow) => Err(Overflow),
+        }
+    }
+}

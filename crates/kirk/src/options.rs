@@ -1,0 +1,142 @@
+//! What planning is asked for, when it must stop, and what it answers.
+
+use rmpl::Rational;
+use serde::{Deserialize, Serialize};
+use tpn::Plan;
+
+use crate::failure::Failure;
+use crate::trace::Trace;
+
+/// How to search. Both find the same first plan.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Search {
+    /// The paper's: on failure undo the last choice (SPEC 5.1 to 5.4).
+    Chronological,
+    /// Learns from each failure which choices caused it, jumps back to the last of them, and never repeats them
+    /// (SPEC 5.6).
+    #[default]
+    ConflictDirected,
+}
+
+/// What planning is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Options {
+    /// How to search.
+    pub search: Search,
+    /// The least gap between ordered intervals; the network's own if `None` (SPEC 5.3).
+    pub threat_gap: Option<Rational>,
+    /// Every distinct plan instead of the first one.
+    pub all: bool,
+    /// How many plans to stop at, if `all`.
+    pub max_plans: usize,
+    /// Whether to record the search, and how many events at most.
+    pub trace_events: Option<usize>,
+    /// Whether to explain why there is no plan, if there is none.
+    pub explain: bool,
+    /// Whether to look for bounds whose relaxation gives a plan, if there is none; needs `explain`.
+    pub relax: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            search: Search::default(),
+            threat_gap: None,
+            all: false,
+            max_plans: 10_000,
+            trace_events: None,
+            explain: true,
+            relax: true,
+        }
+    }
+}
+
+/// Decides when a search must stop without an answer. Asked once per alternative tried.
+pub trait Termination {
+    /// Whether to stop now.
+    fn should_stop(&mut self, stats: &Stats) -> bool;
+}
+
+/// Searches to the end.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Unlimited;
+
+impl Termination for Unlimited {
+    fn should_stop(&mut self, _: &Stats) -> bool {
+        false
+    }
+}
+
+/// Stops after so many alternatives have been tried.
+#[derive(Clone, Copy, Debug)]
+pub struct ExpansionLimit(pub u64);
+
+impl Termination for ExpansionLimit {
+    fn should_stop(&mut self, stats: &Stats) -> bool {
+        stats.expanded >= self.0
+    }
+}
+
+impl<F: FnMut(&Stats) -> bool> Termination for F {
+    fn should_stop(&mut self, stats: &Stats) -> bool {
+        self(stats)
+    }
+}
+
+/// How much work a search was.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Stats {
+    /// Nodes of the network.
+    pub nodes: u64,
+    /// Arcs of the network.
+    pub arcs: u64,
+    /// Decisions of the network.
+    pub decisions: u64,
+    /// Alternatives tried: of decisions, links and orderings.
+    pub expanded: u64,
+    /// Choice points returned to.
+    pub backtracks: u64,
+    /// Choice points jumped over on the way back.
+    pub jumped_over: u64,
+    /// Dead ends met.
+    pub conflicts: u64,
+    /// Nogoods learned.
+    pub nogoods: u64,
+    /// Complete choices whose conditions and threats were looked at.
+    pub leaves: u64,
+    /// Causal links tried.
+    pub links_tried: u64,
+    /// Orderings tried.
+    pub orderings_tried: u64,
+}
+
+/// How planning ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Status {
+    /// There is a plan.
+    Plan,
+    /// There is none.
+    NoPlan,
+    /// The termination condition stopped the search before it had an answer (or all the plans asked for).
+    Limit,
+    /// A time does not fit into 64 bits after scaling by the common denominator.
+    Error,
+}
+
+/// The answer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// How planning ended.
+    pub status: Status,
+    /// The plans: none, the canonical one (SPEC 5.4), or all distinct ones in the order they were found, the canonical
+    /// one first.
+    pub plans: Vec<Plan>,
+    /// Why there is none.
+    pub failure: Option<Failure>,
+    /// How much work it was.
+    pub stats: Stats,
+    /// The search, if it was asked for.
+    pub trace: Option<Trace>,
+}
