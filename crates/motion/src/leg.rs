@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use terrain::ConfigurationSpace;
 
+use crate::geometry::distance;
 use crate::path::Path;
 use crate::search::{Failure, PlannerKind, Query, Settings, Statistics, find_path};
 use crate::shortcut::ShortcutSettings;
@@ -25,18 +26,40 @@ pub struct LegFailure {
     pub failure: Failure,
 }
 
-/// A short path between two waypoints. With the seed's own RRT-Connect; the result depends on nothing but the
-/// arguments, so a caller can keep it under them. Another seed may find a shorter path, or one where this seed failed.
+/// How often a leg is searched: obstacles leave several ways around, and one search takes any of them.
+const TRIES: u64 = 6;
+
+/// A short path between two waypoints: the shortest of a few found by RRT-Connect and shortened. The result depends on
+/// nothing but the arguments, so a caller can keep it under them. Another seed may find a shorter path, or one where
+/// this seed failed.
 pub fn plan_leg(
     space: &ConfigurationSpace,
     query: Query,
     seed: u64,
     stop: &mut dyn FnMut(&Statistics) -> bool,
 ) -> Result<Leg, Failure> {
-    let settings = Settings { seed, ..Settings::of(PlannerKind::RrtConnect) };
-    let shortcut = ShortcutSettings { seed, ..ShortcutSettings::default() };
-    let result = find_path(space, query, &settings, Some(&shortcut), stop);
-    Ok(Leg { path: result.path?, statistics: result.statistics })
+    let straight = distance(query.start_m, query.goal_m);
+    let mut best: Option<(f64, Leg)> = None;
+    for attempt in 0..TRIES {
+        let seed = seed.wrapping_mul(TRIES).wrapping_add(attempt);
+        let settings = Settings { seed, ..Settings::of(PlannerKind::RrtConnect) };
+        let shortcut = ShortcutSettings { seed, ..ShortcutSettings::default() };
+        let result = find_path(space, query, &settings, Some(&shortcut), stop);
+        let path = match (result.path, &best) {
+            (Ok(path), _) => path,
+            // What one search found is good although a further one did not finish.
+            (Err(_), Some(_)) => break,
+            (Err(failure), None) => return Err(failure),
+        };
+        let length = path.length_m();
+        if best.as_ref().is_none_or(|(least, _)| length < *least) {
+            best = Some((length, Leg { path, statistics: result.statistics }));
+        }
+        if length <= straight * (1.0 + 1e-9) {
+            break;
+        }
+    }
+    best.map(|(_, leg)| leg).ok_or(Failure::NotFound { samples: 0 })
 }
 
 /// Paths from each waypoint to the next.

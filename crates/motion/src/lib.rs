@@ -10,18 +10,23 @@
 //!
 //! Nothing here reads a clock or draws unseeded numbers: the same call gives the same bits natively and in wasm.
 
+mod altitude;
 mod geometry;
+mod kinodynamic;
 mod leg;
 mod nearest;
 mod path;
 mod rrt;
 mod rrt_connect;
+mod rrt_star;
 mod search;
 mod shortcut;
 mod timing;
+mod trajectory;
 mod tree;
 mod vehicle;
 
+pub use altitude::path_in_space;
 pub use leg::{Leg, LegFailure, plan_leg, plan_legs};
 pub use nearest::PointTree;
 pub use path::Path;
@@ -30,5 +35,6 @@ pub use search::{
 };
 pub use shortcut::{ShortcutSettings, shorten};
 pub use timing::{SegmentTiming, SpeedLimits, duration_millis, time_path};
+pub use trajectory::{DriveLimits, MotionState, TimedState, Trajectory, drive_path, heading_difference};
 pub use tree::{Root, Tree, Vertex};
 pub use vehicle::{Drive, VEHICLE_MODELS, VehicleModel, vehicle_model};

@@ -3,11 +3,16 @@
 use serde::{Deserialize, Serialize};
 use terrain::{Collision, ConfigurationSpace, Random};
 
+use crate::geometry::distance;
+use crate::kinodynamic::Kinodynamic;
 use crate::path::Path;
 use crate::rrt::Rrt;
 use crate::rrt_connect::RrtConnect;
+use crate::rrt_star::RrtStar;
 use crate::shortcut::{ShortcutSettings, shorten};
+use crate::trajectory::{DriveLimits, Trajectory};
 use crate::tree::Tree;
+use crate::vehicle::VEHICLE_MODELS;
 
 /// The planners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -16,6 +21,10 @@ pub enum PlannerKind {
     Rrt,
     /// A tree from each end, each reaching for the other (Kuffner and `LaValle` 2000).
     RrtConnect,
+    /// RRT* with informed sampling: goes on to shorten its path.
+    RrtStar,
+    /// An RRT of motions within the limits of a skid-steer vehicle, at rest at both ends.
+    Kinodynamic,
 }
 
 /// Where from and where to, in metres.
@@ -38,14 +47,26 @@ pub struct Settings {
     pub goal_bias: f64,
     /// How many samples are drawn at most (N).
     pub greatest_samples: u32,
+    /// How many samples RRT* draws after its first path to shorten it.
+    pub improving_samples: u32,
+    /// What the vehicle of the kinodynamic planner can do.
+    pub limits: DriveLimits,
     /// Where random choices come from.
     pub seed: u64,
 }
 
 impl Settings {
-    /// Settings for a planner: edges of 6 m, goal bias 0.05, at most 50,000 samples, seed 1.
-    pub const fn of(planner: PlannerKind) -> Self {
-        Self { planner, step_m: 6.0, goal_bias: 0.05, greatest_samples: 50_000, seed: 1 }
+    /// Settings for a planner: edges of 6 m, goal bias 0.05, at most 50,000 samples, 3,000 to improve, an ATRV, seed 1.
+    pub fn of(planner: PlannerKind) -> Self {
+        Self {
+            planner,
+            step_m: 6.0,
+            goal_bias: 0.05,
+            greatest_samples: 50_000,
+            improving_samples: 3_000,
+            limits: DriveLimits::of(&VEHICLE_MODELS[0]),
+            seed: 1,
+        }
     }
 }
 
@@ -184,6 +205,8 @@ pub struct Search {
 enum Planner {
     Rrt(Rrt),
     RrtConnect(RrtConnect),
+    RrtStar(RrtStar),
+    Kinodynamic(Kinodynamic),
 }
 
 /// What a search came to.
@@ -191,6 +214,8 @@ enum Planner {
 pub struct SearchResult {
     /// The path as found, or why there is none.
     pub path: Result<Path, Failure>,
+    /// The motion along the path, from the kinodynamic planner.
+    pub trajectory: Option<Trajectory>,
     /// The trees that were grown; none when an end was in collision or the goal enclosed.
     pub trees: Vec<Tree>,
     /// Counts.
@@ -212,6 +237,8 @@ impl Search {
         let planner = match settings.planner {
             PlannerKind::Rrt => Planner::Rrt(Rrt::new(query)),
             PlannerKind::RrtConnect => Planner::RrtConnect(RrtConnect::new(query)),
+            PlannerKind::RrtStar => Planner::RrtStar(RrtStar::new(query)),
+            PlannerKind::Kinodynamic => Planner::Kinodynamic(Kinodynamic::new(query)),
         };
         let random = Random::from_seed(settings.seed);
         Ok(Self { query, settings, random, statistics: Statistics::default(), planner })
@@ -230,6 +257,8 @@ impl Search {
         let event = match &mut self.planner {
             Planner::Rrt(planner) => planner.step(&mut context),
             Planner::RrtConnect(planner) => planner.step(&mut context),
+            Planner::RrtStar(planner) => planner.step(&mut context),
+            Planner::Kinodynamic(planner) => planner.step(&mut context),
         };
         if let Growth::Found { .. } = event.growth
             && self.statistics.samples_to_first_path.is_none()
@@ -239,10 +268,19 @@ impl Search {
         event
     }
 
-    /// Whether further samples can't change anything: a path is found and the planner doesn't improve paths, or the
-    /// samples are used up.
+    /// Whether further samples can't or shall not change anything: a path is found and the planner doesn't shorten
+    /// paths or has had its samples for that, or all samples are used up.
     pub fn is_finished(&self) -> bool {
-        self.statistics.samples >= self.settings.greatest_samples || self.path().is_some()
+        let Statistics { samples, samples_to_first_path, .. } = self.statistics;
+        let satisfied = samples_to_first_path.is_some_and(|first| match &self.planner {
+            Planner::RrtStar(planner) => {
+                let straight = distance(self.query.start_m, self.query.goal_m);
+                samples - first >= self.settings.improving_samples
+                    || planner.length_m().is_some_and(|length| length <= straight * (1.0 + 1e-9))
+            }
+            _ => true,
+        });
+        satisfied || samples >= self.settings.greatest_samples
     }
 
     /// The best path so far.
@@ -250,6 +288,16 @@ impl Search {
         match &self.planner {
             Planner::Rrt(planner) => planner.path(),
             Planner::RrtConnect(planner) => planner.path(),
+            Planner::RrtStar(planner) => planner.path(),
+            Planner::Kinodynamic(planner) => planner.path(),
+        }
+    }
+
+    /// The motion along the path, when the planner is kinodynamic and has found one.
+    pub fn trajectory(&self) -> Option<Trajectory> {
+        match &self.planner {
+            Planner::Kinodynamic(planner) => planner.trajectory(),
+            _ => None,
         }
     }
 
@@ -258,6 +306,8 @@ impl Search {
         match &self.planner {
             Planner::Rrt(planner) => vec![planner.tree()],
             Planner::RrtConnect(planner) => planner.trees().iter().collect(),
+            Planner::RrtStar(planner) => vec![planner.tree()],
+            Planner::Kinodynamic(planner) => vec![planner.tree()],
         }
     }
 
@@ -291,15 +341,19 @@ impl Search {
             }
         });
         let statistics = self.statistics();
+        let trajectory = self.trajectory();
         let trees = match self.planner {
             Planner::Rrt(planner) => vec![planner.into_tree()],
             Planner::RrtConnect(planner) => planner.into_trees().into(),
+            Planner::RrtStar(planner) => vec![planner.into_tree()],
+            Planner::Kinodynamic(planner) => vec![planner.into_tree()],
         };
-        SearchResult { path, trees, statistics }
+        SearchResult { path, trajectory, trees, statistics }
     }
 }
 
-/// Finds a path and, if `shortcut` is given, shortens it.
+/// Finds a path and, if `shortcut` is given, shortens it. The path of a motion is left as it is: a straight shortcut
+/// would not be within the vehicle's limits.
 pub fn find_path(
     space: &ConfigurationSpace,
     query: Query,
@@ -310,10 +364,15 @@ pub fn find_path(
     let mut result = match Search::new(space, query, *settings) {
         Ok(search) => search.run(space, stop),
         Err(failure) => {
-            SearchResult { path: Err(failure), trees: Vec::new(), statistics: Statistics::default() }
+            return SearchResult {
+                path: Err(failure),
+                trajectory: None,
+                trees: Vec::new(),
+                statistics: Statistics::default(),
+            };
         }
     };
-    if let (Ok(path), Some(shortcut)) = (&mut result.path, shortcut) {
+    if let (Ok(path), Some(shortcut), None) = (&mut result.path, shortcut, &result.trajectory) {
         *path = shorten(space, path, shortcut);
     }
     result

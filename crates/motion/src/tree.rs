@@ -22,18 +22,21 @@ pub struct Vertex {
     pub parent: Option<u32>,
 }
 
-/// A tree of free points joined by free straight edges; the first vertex is the root.
+/// A tree of free points joined by free edges; the first vertex is the root.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tree {
     /// Where it starts.
     pub root: Root,
     /// In order of growth. RRT* changes parents later on.
     pub vertices: Vec<Vertex>,
+    /// For a tree of motions, the points from each vertex's parent, without it, to the vertex; empty for a tree with
+    /// straight edges.
+    pub curves: Vec<Vec<[f64; 2]>>,
 }
 
 impl Tree {
     pub(crate) fn new(root: Root, point_m: [f64; 2]) -> Self {
-        Self { root, vertices: vec![Vertex { point_m, parent: None }] }
+        Self { root, vertices: vec![Vertex { point_m, parent: None }], curves: Vec::new() }
     }
 
     pub(crate) fn add(&mut self, point_m: [f64; 2], parent: u32) -> u32 {

@@ -2,12 +2,13 @@
 //! repeat, and failures say what is known.
 
 use motion::{
-    Failure, Growth, Path, PlannerKind, Query, Root, Search, Settings, ShortcutSettings, Statistics, Tree,
-    find_path, plan_legs, shorten,
+    DriveLimits, Failure, Growth, Path, PlannerKind, Query, Root, Search, Settings, ShortcutSettings,
+    Statistics, Trajectory, Tree, drive_path, find_path, plan_legs, shorten, vehicle_model,
 };
 use terrain::{Cell, CellState, Collision, ConfigurationSpace, GridFrame, Obstacle, Occupancy, Random};
 
-const PLANNERS: [PlannerKind; 2] = [PlannerKind::Rrt, PlannerKind::RrtConnect];
+const PLANNERS: [PlannerKind; 4] =
+    [PlannerKind::Rrt, PlannerKind::RrtConnect, PlannerKind::RrtStar, PlannerKind::Kinodynamic];
 
 /// A map with random discs, and the obstacle cells for a check that shares nothing with the space.
 fn random_space(seed: u64, radius_m: f64) -> ConfigurationSpace {
@@ -67,12 +68,21 @@ fn assert_tree_is_sound(space: &ConfigurationSpace, tree: &Tree, query: &Query, 
     assert_eq!(tree.vertices[0].parent, None);
     for (index, vertex) in tree.vertices.iter().enumerate().skip(1) {
         let parent = vertex.parent.expect("only the root has no parent");
-        let from = tree.vertices[parent as usize].point_m;
-        let length = (from[0] - vertex.point_m[0]).hypot(from[1] - vertex.point_m[1]);
-        assert!(length <= step_m + 1e-9, "edge {index} is {length} m long");
-        assert_clear(space, &Path::new(vec![from, vertex.point_m]), "a tree edge");
+        let mut points = vec![tree.vertices[parent as usize].point_m];
+        match tree.curves.get(index) {
+            Some(curve) => points.extend(curve),
+            None => points.push(vertex.point_m),
+        }
+        assert_eq!(points.last(), Some(&vertex.point_m));
+        let edge = Path::new(points);
+        assert!(edge.length_m() <= step_m * 1.05, "edge {index} is {} m long", edge.length_m());
+        assert_clear(space, &edge, "a tree edge");
         assert_eq!(tree.path_to(index as u32).points_m.first(), Some(&root));
     }
+}
+
+fn settings(planner: PlannerKind, seed: u64) -> Settings {
+    Settings { seed, improving_samples: 400, ..Settings::of(planner) }
 }
 
 fn never(_: &Statistics) -> bool {
@@ -88,7 +98,7 @@ fn paths_have_exact_ends_and_keep_their_clearance() {
             let mut random = Random::from_seed(seed + 77);
             let query =
                 Query { start_m: free_point(&space, &mut random), goal_m: free_point(&space, &mut random) };
-            let settings = Settings { seed, ..Settings::of(planner) };
+            let settings = settings(planner, seed);
             let result = find_path(&space, query, &settings, None, &mut never);
             let what = format!("{planner:?}, seed {seed}");
             let path = match result.path {
@@ -121,7 +131,7 @@ fn the_same_seed_gives_the_same_path_and_another_seed_another() {
     let query = Query { start_m: [-18.0, 37.0], goal_m: [60.0, 98.0] };
     for planner in PLANNERS {
         let run = |seed| {
-            let settings = Settings { seed, ..Settings::of(planner) };
+            let settings = settings(planner, seed);
             find_path(&space, query, &settings, Some(&ShortcutSettings::default()), &mut never)
         };
         assert_eq!(run(5), run(5), "{planner:?}");
@@ -134,7 +144,7 @@ fn stepping_one_by_one_gives_what_running_gives() {
     let space = random_space(4, 0.7);
     let query = Query { start_m: [-18.0, 37.0], goal_m: [60.0, 98.0] };
     for planner in PLANNERS {
-        let settings = Settings::of(planner);
+        let settings = settings(planner, 1);
         let mut search = Search::new(&space, query, settings).unwrap();
         let mut vertices = search.trees().len();
         while !search.is_finished() {
@@ -231,8 +241,8 @@ fn a_caller_can_stop_a_search() {
 fn a_path_in_the_open_becomes_a_straight_line() {
     let space = ConfigurationSpace::new(Occupancy::free(GridFrame::new(200, 200, 0.6)), 0.7);
     let query = Query { start_m: [10.0, 10.0], goal_m: [110.0, 90.0] };
-    for planner in PLANNERS {
-        let settings = Settings::of(planner);
+    for planner in [PlannerKind::Rrt, PlannerKind::RrtConnect, PlannerKind::RrtStar] {
+        let settings = settings(planner, 1);
         let result = find_path(&space, query, &settings, Some(&ShortcutSettings::default()), &mut never);
         assert_eq!(result.path.unwrap().points_m, [query.start_m, query.goal_m], "{planner:?}");
     }
@@ -270,4 +280,83 @@ fn legs_join_at_waypoints_and_a_failure_names_its_leg() {
     let blocked = [[3.0, 3.0], [36.0, 4.0], [20.0, 20.0]];
     let failure = plan_legs(&space, &blocked, 3, &mut never).unwrap_err();
     assert_eq!((failure.leg, failure.failure), (1, Failure::GoalEnclosed));
+}
+
+#[test]
+fn rrt_star_gets_shorter_with_more_samples_and_its_lengths_are_those_of_its_path() {
+    let space = random_space(4, 0.7);
+    let query = Query { start_m: [-18.0, 37.0], goal_m: [60.0, 98.0] };
+    let mut search = Search::new(&space, query, Settings::of(PlannerKind::RrtStar)).unwrap();
+    let mut found = Vec::new();
+    while !search.is_finished() {
+        if let Growth::Found { length_m, .. } = search.step(&space).growth {
+            let path = search.path().unwrap();
+            assert!((path.length_m() - length_m).abs() < 1e-6);
+            found.push(length_m);
+        }
+    }
+    assert!(found.len() > 3, "{found:?}");
+    assert!(found.windows(2).all(|pair| pair[1] < pair[0]), "{found:?}");
+    let straight = (78.0_f64 * 78.0 + 61.0 * 61.0).sqrt();
+    assert!(found[found.len() - 1] < 1.08 * straight, "{found:?}");
+}
+
+#[test]
+fn a_motion_stays_within_the_limits_of_its_vehicle_and_rests_at_both_ends() {
+    for (name, seed) in [("ATRV", 2), ("ATRV-Jr", 3), ("ATRV", 5)] {
+        let space = random_space(seed, 0.8);
+        let mut random = Random::from_seed(seed);
+        let query =
+            Query { start_m: free_point(&space, &mut random), goal_m: free_point(&space, &mut random) };
+        let limits = DriveLimits::of(vehicle_model(name).unwrap());
+        let settings = Settings { limits, ..settings(PlannerKind::Kinodynamic, seed) };
+        let result = find_path(&space, query, &settings, None, &mut never);
+        let trajectory = result.trajectory.unwrap();
+        assert_eq!(trajectory.path(), result.path.unwrap());
+        assert_within_limits(&trajectory, &limits);
+        let (first, last) = (trajectory.states[0].state, trajectory.states.last().unwrap().state);
+        assert_eq!((first.position_m, first.speed_mps), (query.start_m, 0.0));
+        assert_eq!((last.position_m, last.speed_mps, last.turn_rate_rps), (query.goal_m, 0.0, 0.0));
+    }
+}
+
+/// Checks every step of a trajectory by differences, independently of how it was made.
+fn assert_within_limits(trajectory: &Trajectory, limits: &DriveLimits) {
+    let slack = 1e-9;
+    for pair in trajectory.states.windows(2) {
+        let (before, after) = (pair[0].state, pair[1].state);
+        let seconds = pair[1].time_s - pair[0].time_s;
+        assert!(seconds > 0.0 && seconds <= Trajectory::STEP_S + slack);
+        assert!((after.speed_mps - before.speed_mps).abs() <= limits.acceleration_mps2 * seconds + slack);
+        let turn = (after.turn_rate_rps - before.turn_rate_rps).abs();
+        assert!(turn <= limits.turn_acceleration_rps2 * seconds + slack);
+        assert!(after.turn_rate_rps.abs() <= limits.turn_rate_rps + slack);
+        let wheels = after.speed_mps.abs() + after.turn_rate_rps.abs() * limits.half_track_m;
+        assert!(wheels <= limits.speed_mps + slack, "a wheel runs at {wheels} m/s");
+        let moved = [after.position_m[0] - before.position_m[0], after.position_m[1] - before.position_m[1]];
+        let way = moved[0].hypot(moved[1]);
+        assert!(way <= before.speed_mps.max(after.speed_mps) * seconds + 1e-3, "{way} m in {seconds} s");
+        assert!((after.heading_rad - before.heading_rad).abs() <= limits.turn_rate_rps * seconds + slack);
+        // It moves where it looks, never sideways.
+        let middle = 0.5 * (before.heading_rad + after.heading_rad);
+        let sideways = moved[1] * middle.cos() - moved[0] * middle.sin();
+        assert!(sideways.abs() < 1e-6, "{sideways} m sideways");
+    }
+}
+
+#[test]
+fn driving_a_path_passes_its_corners_within_the_limits() {
+    let limits = DriveLimits::of(vehicle_model("ATRV-Jr").unwrap());
+    let path = Path::new(vec![[0.0, 0.0], [10.0, 0.0], [10.0, 0.2], [-3.0, 7.0]]);
+    let trajectory = drive_path(&path, 2.0, &limits);
+    assert_within_limits(&trajectory, &limits);
+    for &corner in &path.points_m {
+        assert!(trajectory.states.iter().any(|timed| timed.state.position_m == corner), "{corner:?}");
+    }
+    // 10 m at 1 m/s with ramps of 0.6 m/s²: 10 s and 1 / 0.6 s for the ramps.
+    let arrival = trajectory.states.iter().find(|timed| timed.state.position_m == [10.0, 0.0]).unwrap();
+    let departure = trajectory.states.iter().rfind(|timed| timed.state.position_m == [0.0, 0.0]).unwrap();
+    assert!((arrival.time_s - departure.time_s - 10.0 - 1.0 / 0.6).abs() < 1e-6);
+    assert_eq!(trajectory.state_at(-1.0).unwrap().position_m, [0.0, 0.0]);
+    assert_eq!(trajectory.state_at(1e9).unwrap().position_m, [-3.0, 7.0]);
 }
