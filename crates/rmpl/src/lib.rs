@@ -2,6 +2,8 @@
 //!
 //! Parsing never fails: every stage returns a result and its diagnostics. Nothing here knows of networks or plans.
 
+mod analysis;
+pub mod control;
 pub mod diagnostic;
 pub mod diagnostics;
 pub mod explanation;
@@ -14,6 +16,8 @@ pub mod span;
 pub mod syntax;
 
 pub use diagnostic::{Code, Diagnostic, Edit, Fix, Severity};
+pub use diagnostics::explain;
+pub use explanation::Explanation;
 pub use parse::{Parse, parse};
 pub use rational::{Bound, Rational};
 pub use span::{LineColumn, LineIndex, Span};

@@ -3,9 +3,14 @@
 //! The text is cut into declarations, each with its own tree and relative offsets. An edit parses again only the
 //! declarations whose parsing looked at the changed bytes; everything else is shared.
 
+use std::ops::Range;
 use std::sync::Arc;
 
-use crate::diagnostic::{Diagnostic, Edit};
+use rustc_hash::FxHashSet;
+
+use crate::analysis::local::local_diagnostics;
+use crate::analysis::{Checked, DeclarationKey, Index, Names, Summary, check, recursion, summarize};
+use crate::diagnostic::{Diagnostic, Edit, Severity};
 use crate::lower::{Item, Lowering, OptionValue};
 use crate::parser::parse_declaration;
 use crate::program::{Program, TimeUnit};
@@ -19,17 +24,22 @@ pub fn parse(text: &str) -> Parse {
 }
 
 /// A mission text with its trees and what follows from them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Parse {
     text: String,
     places: Vec<Place>,
+    names: Names,
+    index: Index,
+    circles: Vec<(DeclarationKey, Diagnostic)>,
 }
 
 /// Where a declaration stands.
 #[derive(Clone, Debug)]
 struct Place {
     start: u32,
+    key: DeclarationKey,
     declaration: Arc<Declaration>,
+    checked: Arc<Checked>,
 }
 
 impl Place {
@@ -45,13 +55,17 @@ pub(crate) struct Declaration {
     tree: DeclarationTree,
     diagnostics: Vec<Diagnostic>,
     item: Option<Item>,
+    summary: Summary,
+    /// Whether it has no errors of its own.
+    is_sound: bool,
     reach: u32,
 }
 
 impl Parse {
     fn new(text: String) -> Self {
-        let mut parse = Self { text, places: Vec::new() };
-        parse.places = declarations_from(&parse.text, 0, |_| false).0;
+        let mut parse = Self { text, ..Self::default() };
+        let fresh = parse.read_declarations(0, |_, _| false);
+        parse.exchange(0..0, fresh);
         parse
     }
 
@@ -73,8 +87,7 @@ impl Parse {
         // Beyond the edit, places of the old text are found `shift` further on.
         let shift = edit.text.len() as i64 - (end - start) as i64;
         let mut resume = first;
-        let old = &self.places;
-        let (fresh, _) = declarations_from(&self.text, from, |at| {
+        let fresh = self.read_declarations(from, |old, at| {
             let Ok(old_start) = u32::try_from(i64::from(at) - shift) else { return false };
             if (at as usize) < new_end || old_start < end as u32 {
                 return false;
@@ -85,14 +98,87 @@ impl Parse {
             old.get(resume).is_some_and(|place| place.start == old_start)
         });
         // Everything was parsed to the end of the text unless the parser met an old boundary.
-        let met = fresh.last().map_or(from, |place| place.start + place.declaration.tree.len());
+        let met = fresh.last().map_or(from, |(start, declaration)| start + declaration.tree.len());
         if met as usize == self.text.len() {
             resume = self.places.len();
         }
         for place in self.places.iter_mut().skip(resume) {
             place.start = (i64::from(place.start) + shift) as u32;
         }
-        self.places.splice(first..resume, fresh);
+        self.exchange(first..resume, fresh);
+    }
+
+    /// Parses declarations from `start` on, until `meets` accepts the start of the next one or the text ends.
+    fn read_declarations(
+        &mut self,
+        start: u32,
+        mut meets: impl FnMut(&[Place], u32) -> bool,
+    ) -> Vec<(u32, Declaration)> {
+        let mut found = Vec::new();
+        let mut at = start;
+        while (at as usize) < self.text.len() && !meets(&self.places, at) {
+            let declaration = Declaration::read(self.text.get(at as usize..).unwrap_or(""), &mut self.names);
+            let length = declaration.tree.len().max(1);
+            found.push((at, declaration));
+            at += length;
+        }
+        found
+    }
+
+    /// Puts fresh declarations in place of old ones and brings the diagnostics of the whole file up to date.
+    fn exchange(&mut self, old: Range<usize>, fresh: Vec<(u32, Declaration)>) {
+        let removed: Vec<Place> = self.places.get(old.clone()).unwrap_or_default().to_vec();
+        let mut keys: Vec<DeclarationKey> = removed.iter().rev().map(|place| place.key).collect();
+        let unchecked = Arc::new(Checked::default());
+        let fresh: Vec<Place> = fresh
+            .into_iter()
+            .map(|(start, declaration)| Place {
+                start,
+                key: keys.pop().unwrap_or_else(|| self.index.new_key()),
+                declaration: Arc::new(declaration),
+                checked: Arc::clone(&unchecked),
+            })
+            .collect();
+        let summaries = |place: &Place| (place.key, Arc::clone(&place.declaration));
+        let (before, after): (Vec<_>, Vec<_>) =
+            (removed.iter().map(summaries).collect(), fresh.iter().map(summaries).collect());
+        self.index.exchange(
+            &self.names,
+            before.iter().map(|(key, declaration)| (*key, &declaration.summary)),
+            after.iter().map(|(key, declaration)| (*key, &declaration.summary)),
+        );
+        self.index.release(keys);
+        let changed = old.start..old.start + fresh.len();
+        self.places.splice(old, fresh);
+        for (position, place) in self.places.iter().enumerate() {
+            self.index.set_position(place.key, position as u32);
+        }
+        self.check_again(&changed);
+    }
+
+    fn check_again(&mut self, changed: &Range<usize>) {
+        let may_concern_others = self.index.has_changed();
+        for (position, place) in self.places.iter_mut().enumerate() {
+            let checked = &place.checked;
+            let declaration = &place.declaration;
+            let is_stale = changed.contains(&position)
+                || (may_concern_others
+                    && self.index.is_stale(&declaration.summary, checked.revision, checked.depends_on_names));
+            if is_stale {
+                place.checked = Arc::new(check(
+                    place.key,
+                    &declaration.summary,
+                    declaration.item.as_ref(),
+                    declaration.is_sound,
+                    &self.names,
+                    &self.index,
+                ));
+            }
+        }
+        if self.index.take_calls_changed() {
+            let summaries = self.places.iter().map(|place| (place.key, &place.declaration.summary));
+            self.circles = recursion(&self.names, &self.index, summaries);
+        }
     }
 
     fn end_of_places(&self) -> u32 {
@@ -113,15 +199,26 @@ impl Parse {
     /// Everything there is to tell the author, in textual order.
     pub fn diagnostics(&self) -> Vec<Diagnostic> {
         let mut all = Vec::new();
+        let mut told = FxHashSet::default();
         for place in &self.places {
-            all.extend(place.declaration.diagnostics.iter().map(|diagnostic| diagnostic.clone().moved(place.start)));
+            let first = all.len();
+            let own = place.declaration.diagnostics.iter();
+            let shown = place.checked.diagnostics.iter().filter_map(|(once, diagnostic)| {
+                once.is_none_or(|once| told.insert(once)).then_some(diagnostic)
+            });
+            let circles = self.circles.iter().filter(|(key, _)| *key == place.key);
+            let here = own.chain(shown).chain(circles.map(|(_, diagnostic)| diagnostic));
+            all.extend(here.map(|diagnostic| diagnostic.clone().moved(place.start)));
+            if let Some(here) = all.get_mut(first..) {
+                here.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.severity));
+            }
         }
         all
     }
 
     /// What the text means, as far as it is well formed.
     pub fn program(&self) -> Program {
-        let mut callables = rustc_hash::FxHashSet::default();
+        let mut callables = FxHashSet::default();
         for place in &self.places {
             match &place.declaration.item {
                 Some(Item::Primitive(decl)) => callables.insert(decl.name.text.as_str()),
@@ -165,22 +262,24 @@ fn add(program: &mut Program, item: Item) {
     }
 }
 
-/// The declarations from `start` on, until `meets` accepts the start of the next one or the text ends.
-fn declarations_from(text: &str, start: u32, mut meets: impl FnMut(u32) -> bool) -> (Vec<Place>, u32) {
-    let mut places = Vec::new();
-    let mut at = start;
-    while (at as usize) < text.len() && !meets(at) {
-        let rest = text.get(at as usize..).unwrap_or("");
-        let parsed = parse_declaration(rest);
-        let length = parsed.tree.len().max(1);
-        let own_text = rest.get(..length as usize).unwrap_or("");
+impl Declaration {
+    /// Reads the declaration at the start of `text`.
+    fn read(text: &str, names: &mut Names) -> Self {
+        let parsed = parse_declaration(text);
+        let root = parsed.tree.root(text.get(..parsed.tree.len() as usize).unwrap_or(""), 0);
         let mut lowering = Lowering { is_callable: &|_| false, bare_names: Vec::new() };
-        let item = lowering.item(parsed.tree.root(own_text, 0));
-        let declaration = Declaration { tree: parsed.tree, diagnostics: parsed.diagnostics, item, reach: parsed.reach };
-        places.push(Place { start: at, declaration: Arc::new(declaration) });
-        at += length;
+        let item = lowering.item(root);
+        let mut diagnostics = parsed.diagnostics;
+        let mut is_sound = diagnostics.is_empty();
+        if let Some(item) = &item {
+            let local = local_diagnostics(item, root);
+            is_sound &= local.iter().all(|diagnostic| diagnostic.severity != Severity::Error);
+            diagnostics
+                .extend(local.into_iter().filter(|found| is_sound || found.severity == Severity::Error));
+        }
+        let summary = summarize(item.as_ref(), &lowering.bare_names, names);
+        Self { tree: parsed.tree, diagnostics, item, summary, is_sound, reach: parsed.reach }
     }
-    (places, at)
 }
 
 fn floor_boundary(text: &str, offset: u32) -> usize {

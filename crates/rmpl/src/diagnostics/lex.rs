@@ -1,12 +1,27 @@
 //! `E-LEX`: characters that no token is made of.
 
-use crate::diagnostic::{Code, Diagnostic};
+use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::explanation::Explanation;
 use crate::parser::replacement;
 use crate::span::Span;
 use crate::syntax::{LexProblem, LexProblemKind};
 
 /// The code.
 pub const CODE: Code = Code("E-LEX");
+
+/// What it means, with an example.
+pub const EXPLANATION: Explanation = Explanation {
+    code: CODE,
+    severity: Severity::Error,
+    title: "text that no token is made of",
+    meaning: "A character, a comment, a text in quotes or a number cannot be read. Names are made of the letters A to Z, digits, `_`,
+and single hyphens between them; word processors and papers often put other dashes and quotes in their place.",
+    example: "primitive Group–Wait()[0,54];
+scenario Day[0,60] = { Group–Wait() }",
+    fix: "Write the plain character. Where the plain form is known, a quick fix puts it there.",
+    mended: "primitive Group-Wait()[0,54];
+scenario Day[0,60] = { Group-Wait() }",
+};
 
 /// What the lexer could not read, in the author's terms. `text` is the text that the problem's offsets count in.
 pub(crate) fn diagnostic(problem: LexProblem, text: &str) -> Diagnostic {

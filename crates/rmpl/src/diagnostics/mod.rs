@@ -1,4 +1,54 @@
 //! The kinds of diagnostic of SPEC 1.7, one file each: what it means, an example, its fix, and how it is worded.
 
+pub mod arity;
+pub mod bounds;
+pub mod choice;
+pub mod duplicate;
 pub mod lex;
+pub mod mixed;
+pub mod no_scenario;
+pub mod option;
+pub mod recursion;
+pub mod similar;
+pub mod slack;
+pub mod support;
 pub mod syntax;
+pub mod together;
+pub mod traverse;
+pub mod undefined;
+pub mod unknown_name;
+pub mod unused;
+pub mod value;
+pub mod window;
+
+use crate::explanation::Explanation;
+
+/// Every kind of diagnostic that speaks of the infix notation, errors first.
+pub const EXPLANATIONS: &[&Explanation] = &[
+    &lex::EXPLANATION,
+    &syntax::EXPLANATION,
+    &duplicate::EXPLANATION,
+    &undefined::EXPLANATION,
+    &arity::EXPLANATION,
+    &unknown_name::EXPLANATION,
+    &bounds::EXPLANATION,
+    &value::EXPLANATION,
+    &recursion::EXPLANATION,
+    &no_scenario::EXPLANATION,
+    &undefined::WARNING_EXPLANATION,
+    &similar::EXPLANATION,
+    &mixed::EXPLANATION,
+    &choice::EXPLANATION,
+    &support::EXPLANATION,
+    &together::EXPLANATION,
+    &window::EXPLANATION,
+    &slack::EXPLANATION,
+    &unused::EXPLANATION,
+    &option::EXPLANATION,
+    &traverse::EXPLANATION,
+];
+
+/// The manual page of a code such as `E-BOUNDS`; upper and lower case are the same.
+pub fn explain(code: &str) -> Option<&'static Explanation> {
+    EXPLANATIONS.iter().copied().find(|explanation| explanation.code.0.eq_ignore_ascii_case(code.trim()))
+}

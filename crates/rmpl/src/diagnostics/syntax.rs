@@ -1,11 +1,27 @@
 //! `E-SYNTAX`: text that does not follow the grammar (SPEC 1.2).
 
-use crate::diagnostic::{Code, Diagnostic};
+use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::explanation::Explanation;
 use crate::parser::{insertion, replacement};
 use crate::span::Span;
 
 /// The code.
 pub const CODE: Code = Code("E-SYNTAX");
+
+/// What it means, with an example.
+pub const EXPLANATION: Explanation = Explanation {
+    code: CODE,
+    severity: Severity::Error,
+    title: "text that does not follow the grammar",
+    meaning: "Something is missing, or stands where it cannot. The message names what was expected at the marked place. Reading goes
+on behind it, so that one slip of the pen is reported once.",
+    example: "primitive Drive()[20,30];
+scenario Day[0,60] = { if LIGHT Drive() }",
+    fix: "Add what is missing or remove what is too much. A sequence separates its statements with `;`, a parallel with `,`, and
+bounds have two sides.",
+    mended: "primitive Drive()[20,30];
+scenario Day[0,60] = { if LIGHT thennext Drive(), LIGHT [60,60] }",
+};
 
 /// What stands where something else should.
 #[derive(Clone, Copy, Debug)]

@@ -1,0 +1,343 @@
+//! What all declarations together declare and use, counted per name, so that one declaration can be exchanged.
+
+use crate::span::Span;
+
+use super::names::{Names, Symbol};
+use super::summary::{Definition, Literal, Summary, UseKind};
+use crate::program::LabelMode;
+
+/// A declaration, as long as it is not parsed again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) struct DeclarationKey(pub(crate) u32);
+
+impl DeclarationKey {
+    pub(crate) const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Names of different kinds do not meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) enum Namespace {
+    /// Activities and primitives.
+    Callable,
+    Variable,
+    Scenario,
+    Option,
+    Terrain,
+    Location,
+    Obstacle,
+    Vehicle,
+}
+
+/// A condition that something in the file asserts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Told {
+    pub(crate) value: Option<Symbol>,
+    pub(crate) negated: bool,
+    /// It is written `X_V`, and is about `X` only if the file makes it so.
+    pub(crate) is_split: bool,
+    /// A parameter stands for the value.
+    pub(crate) is_any: bool,
+    count: u32,
+}
+
+/// What a file says about one name.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Facts {
+    pub(crate) definitions: Vec<(Namespace, DeclarationKey)>,
+    pub(crate) calls: u32,
+    pub(crate) arguments: u32,
+    pub(crate) starts: u32,
+    pub(crate) vehicles: u32,
+    /// Conditions about the name, those written `X_V` included.
+    pub(crate) literals: u32,
+    /// Conditions that compare it with a value.
+    pub(crate) compared: u32,
+    pub(crate) told: Vec<Told>,
+    definition_fingerprint: u64,
+    told_fingerprint: u64,
+    changed_at: u32,
+}
+
+/// What the check of a declaration can see of a name.
+type Visible = (u64, u64, [bool; 4]);
+
+impl Facts {
+    fn visible(&self) -> Visible {
+        let used = [self.calls > 0, self.arguments + self.starts > 0, self.literals > 0, self.compared > 0];
+        (self.definition_fingerprint, self.told_fingerprint, used)
+    }
+
+    pub(crate) fn definition(&self, namespace: Namespace) -> Option<DeclarationKey> {
+        self.definitions.iter().find(|(found, _)| *found == namespace).map(|&(_, key)| key)
+    }
+}
+
+/// All facts of a file.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Index {
+    facts: Vec<Facts>,
+    /// The definition of each declaration, by key.
+    definitions: Vec<Option<Definition>>,
+    /// The position of each declaration in the text, by key.
+    order: Vec<u32>,
+    revision: u32,
+    pub(crate) scenarios: u32,
+    strict: u32,
+    /// Assertions whose variable is a parameter: they may be about anything.
+    pub(crate) told_of_formals: u32,
+    global_changed_at: u32,
+    names_changed_at: u32,
+    last_change: u32,
+    calls_changed: bool,
+    free_keys: Vec<DeclarationKey>,
+}
+
+impl Index {
+    pub(crate) fn facts(&self, symbol: Symbol) -> &Facts {
+        static NOTHING: Facts = Facts {
+            definitions: Vec::new(),
+            calls: 0,
+            arguments: 0,
+            starts: 0,
+            vehicles: 0,
+            literals: 0,
+            compared: 0,
+            told: Vec::new(),
+            definition_fingerprint: 0,
+            told_fingerprint: 0,
+            changed_at: 0,
+        };
+        self.facts.get(symbol.index()).unwrap_or(&NOTHING)
+    }
+
+    pub(crate) const fn is_strict(&self) -> bool {
+        self.strict > 0
+    }
+
+    pub(crate) const fn revision(&self) -> u32 {
+        self.revision
+    }
+
+    pub(crate) fn new_key(&mut self) -> DeclarationKey {
+        if let Some(key) = self.free_keys.pop() {
+            return key;
+        }
+        self.definitions.push(None);
+        self.order.push(u32::MAX);
+        DeclarationKey(self.definitions.len() as u32 - 1)
+    }
+
+    /// Takes back keys of declarations that are gone.
+    pub(crate) fn release(&mut self, keys: Vec<DeclarationKey>) {
+        self.free_keys.extend(keys);
+    }
+
+    /// How many keys were ever given out.
+    pub(crate) fn keys(&self) -> usize {
+        self.definitions.len()
+    }
+
+    pub(crate) fn set_position(&mut self, key: DeclarationKey, position: u32) {
+        if let Some(slot) = self.order.get_mut(key.index()) {
+            *slot = position;
+        }
+    }
+
+    pub(crate) fn position(&self, key: DeclarationKey) -> u32 {
+        self.order.get(key.index()).copied().unwrap_or(u32::MAX)
+    }
+
+    /// The definition of `symbol` that counts: the first in the text.
+    pub(crate) fn definition(&self, namespace: Namespace, symbol: Symbol) -> Option<&Definition> {
+        self.first_key(namespace, symbol).and_then(|key| self.definitions.get(key.index())?.as_ref())
+    }
+
+    pub(crate) fn first_key(&self, namespace: Namespace, symbol: Symbol) -> Option<DeclarationKey> {
+        let found = self.facts(symbol).definitions.iter().filter(|(found, _)| *found == namespace);
+        found.map(|&(_, key)| key).min_by_key(|&key| self.position(key))
+    }
+
+    /// All names defined in `namespace`, in the order in which they were first met.
+    pub(crate) fn defined<'a>(
+        &'a self,
+        names: &'a Names,
+        namespace: Namespace,
+    ) -> impl Iterator<Item = Symbol> + 'a {
+        names.all().filter(move |&symbol| self.facts(symbol).definition(namespace).is_some())
+    }
+
+    /// Whether something that the check depended on has changed since revision `at`.
+    pub(crate) fn is_stale(&self, summary: &Summary, at: u32, depends_on_names: bool) -> bool {
+        let newer = |symbol: Symbol| self.facts(symbol).changed_at > at;
+        self.global_changed_at > at
+            || (depends_on_names && self.names_changed_at > at)
+            || summary.symbols().any(newer)
+    }
+
+    /// Whether the last exchange changed anything that checks of other declarations can see.
+    pub(crate) const fn has_changed(&self) -> bool {
+        self.last_change == self.revision
+    }
+
+    /// Whether who calls whom has changed since this was asked last.
+    pub(crate) fn take_calls_changed(&mut self) -> bool {
+        std::mem::take(&mut self.calls_changed)
+    }
+
+    /// Exchanges declarations, and notes what changed for the others.
+    pub(crate) fn exchange<'a>(
+        &mut self,
+        names: &Names,
+        old: impl Iterator<Item = (DeclarationKey, &'a Summary)> + Clone,
+        new: impl Iterator<Item = (DeclarationKey, &'a Summary)> + Clone,
+    ) {
+        self.revision += 1;
+        self.facts.resize_with(names.len(), Facts::default);
+        let is_first = self.revision == 1;
+        let mut touched: Vec<Symbol> = Vec::new();
+        if !is_first {
+            touched.extend(old.clone().chain(new.clone()).flat_map(|(_, summary)| summary.symbols()));
+            touched.sort_unstable();
+            touched.dedup();
+        }
+        let before: Vec<Visible> = touched.iter().map(|&symbol| self.facts(symbol).visible()).collect();
+        let global_before = (self.scenarios > 0, self.strict > 0, self.told_of_formals > 0);
+        let calls_before = fingerprint_of_calls(old.clone());
+        self.calls_changed |= is_first || calls_before != fingerprint_of_calls(new.clone());
+        for (key, summary) in old {
+            self.count(key, summary, false);
+        }
+        for (key, summary) in new {
+            self.count(key, summary, true);
+        }
+        for (symbol, before) in touched.into_iter().zip(before) {
+            let after = self.facts(symbol).visible();
+            if before.0 != after.0 {
+                self.names_changed_at = self.revision;
+                self.calls_changed = true;
+            }
+            if before != after && let Some(facts) = self.facts.get_mut(symbol.index()) {
+                facts.changed_at = self.revision;
+                self.last_change = self.revision;
+            }
+        }
+        if global_before != (self.scenarios > 0, self.strict > 0, self.told_of_formals > 0) {
+            self.global_changed_at = self.revision;
+            self.last_change = self.revision;
+        }
+    }
+
+    /// Adds what `summary` says, or takes it away.
+    fn count(&mut self, key: DeclarationKey, summary: &Summary, is_added: bool) {
+        let step = |count: &mut u32| {
+            *count = if is_added { *count + 1 } else { count.saturating_sub(1) };
+        };
+        if let Some(definition) = &summary.definition {
+            let facts = &mut self.facts[definition.name.index()];
+            if is_added {
+                facts.definitions.push((definition.namespace, key));
+                facts.definition_fingerprint = facts.definition_fingerprint.wrapping_add(definition.fingerprint);
+            } else {
+                facts.definitions.retain(|&(_, other)| other != key);
+                facts.definition_fingerprint = facts.definition_fingerprint.wrapping_sub(definition.fingerprint);
+            }
+            if definition.namespace == Namespace::Scenario {
+                step(&mut self.scenarios);
+            }
+        }
+        if let Some(slot) = self.definitions.get_mut(key.index()) {
+            *slot = summary.definition.clone().filter(|_| is_added);
+        }
+        if summary.strict == Some(true) {
+            step(&mut self.strict);
+        }
+        for call in &summary.calls {
+            step(&mut self.facts[call.name.index()].calls);
+        }
+        for used in &summary.uses {
+            let facts = &mut self.facts[used.name.index()];
+            match used.kind {
+                UseKind::Argument(_) => step(&mut facts.arguments),
+                UseKind::Start => step(&mut facts.starts),
+                UseKind::Vehicle => step(&mut facts.vehicles),
+            }
+        }
+        for literal in &summary.literals {
+            self.count_literal(literal, is_added);
+        }
+    }
+
+    fn count_literal(&mut self, literal: &Literal, is_added: bool) {
+        let step = |count: &mut u32| {
+            *count = if is_added { *count + 1 } else { count.saturating_sub(1) };
+        };
+        if literal.variable_is_formal {
+            if literal.mode == LabelMode::Tell {
+                step(&mut self.told_of_formals);
+            }
+            return;
+        }
+        step(&mut self.facts[literal.variable.index()].literals);
+        if literal.value.is_some() {
+            step(&mut self.facts[literal.variable.index()].compared);
+        }
+        if let Some((variable, _)) = literal.split {
+            step(&mut self.facts[variable.index()].literals);
+        }
+        if literal.mode != LabelMode::Tell {
+            return;
+        }
+        let told = Told {
+            value: literal.value.map(|(value, _)| value),
+            negated: literal.negated,
+            is_split: false,
+            is_any: literal.value_is_formal,
+            count: 0,
+        };
+        self.facts[literal.variable.index()].tell(told, is_added);
+        if let Some((variable, value)) = literal.split {
+            let told = Told { value: Some(value), is_split: true, ..told };
+            self.facts[variable.index()].tell(told, is_added);
+        }
+    }
+
+    /// Where the definition that counts stands, relative to its declaration.
+    pub(crate) fn definition_span(&self, namespace: Namespace, symbol: Symbol) -> Option<(DeclarationKey, Span)> {
+        let key = self.first_key(namespace, symbol)?;
+        Some((key, self.definitions.get(key.index())?.as_ref()?.span))
+    }
+}
+
+impl Facts {
+    fn tell(&mut self, told: Told, is_added: bool) {
+        let same = |other: &Told| Told { count: 0, ..*other } == told;
+        if let Some(at) = self.told.iter().position(same) {
+            let entry = &mut self.told[at];
+            entry.count = if is_added { entry.count + 1 } else { entry.count.saturating_sub(1) };
+            if entry.count == 0 {
+                self.told.swap_remove(at);
+                self.told_fingerprint = self.told_fingerprint.wrapping_sub(told.fingerprint());
+            }
+        } else if is_added {
+            self.told.push(Told { count: 1, ..told });
+            self.told_fingerprint = self.told_fingerprint.wrapping_add(told.fingerprint());
+        }
+    }
+}
+
+impl Told {
+    fn fingerprint(self) -> u64 {
+        let value = self.value.map_or(0, |value| value.index() as u64 + 1);
+        let flags = u64::from(self.negated) | u64::from(self.is_split) << 1 | u64::from(self.is_any) << 2;
+        (value << 3 | flags).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    }
+}
+
+fn fingerprint_of_calls<'a>(summaries: impl Iterator<Item = (DeclarationKey, &'a Summary)>) -> u64 {
+    let owner = |summary: &Summary| summary.definition.as_ref().map_or(0, |it| it.name.index() as u64 + 1);
+    summaries.fold(0, |sum, (_, summary)| {
+        sum.wrapping_add(summary.call_fingerprint.wrapping_mul(owner(summary).wrapping_mul(2) | 1))
+    })
+}

@@ -1,0 +1,229 @@
+//! What one declaration says wrongly by itself, whatever the rest of the file says.
+
+use num_traits::Signed as _;
+
+use crate::diagnostic::Diagnostic;
+use crate::diagnostics::{bounds, choice, duplicate, mixed, option, unknown_name, value};
+use crate::lower::{Item, OptionDecl, OptionValue};
+use crate::program::{
+    Bounds, Expr, ExprKind, HeaderBound, HeaderBounds, Name, ObstacleShape, Statement, StatementKind,
+};
+use crate::rational::{Bound, Rational};
+use crate::span::Span;
+use crate::syntax::{Element, SyntaxKind, SyntaxNode};
+
+use super::constant::{self, ConstantError};
+
+/// The vehicle models of SPEC 1.8.
+pub(crate) const VEHICLE_MODELS: [&str; 3] = ["ATRV", "ATRV-Jr", "Blimp"];
+
+/// All of it, in no particular order.
+pub(crate) fn local_diagnostics(item: &Item, root: SyntaxNode<'_>) -> Vec<Diagnostic> {
+    let mut local = Local { bound_names: Vec::new(), found: Vec::new() };
+    local.item(item);
+    if matches!(item, Item::Activity(_) | Item::Scenario(_)) {
+        local.separators(root);
+    }
+    local.found
+}
+
+struct Local {
+    bound_names: Vec<Name>,
+    found: Vec<Diagnostic>,
+}
+
+impl Local {
+    fn item(&mut self, item: &Item) {
+        match item {
+            Item::Variable(decl) => self.distinct(&decl.values, "value"),
+            Item::Primitive(decl) => {
+                self.distinct(&decl.formals, "parameter");
+                self.bounds(decl.bounds.as_ref());
+                if let Some(moves) = &decl.moves {
+                    self.distinct(&moves.vehicles, "vehicle");
+                    if let Some((least, greatest)) = moves.speed_mps
+                        && (least > greatest || !greatest.is_positive())
+                    {
+                        self.found.push(value::speeds(moves.span));
+                    }
+                }
+            }
+            Item::Activity(decl) => {
+                self.header(&decl.bounds);
+                let mut names = decl.formals.clone();
+                names.extend(self.bound_names.iter().cloned());
+                self.distinct(&names, "parameter");
+                self.statement(&decl.body);
+            }
+            Item::Scenario(decl) => {
+                self.bounds(decl.bounds.as_ref());
+                self.statement(&decl.body);
+            }
+            Item::Option(decl) => self.option(decl),
+            Item::Terrain(decl) => {
+                if decl.cell_m <= 0.0 {
+                    self.found.push(value::not_positive("the size of a cell", decl.span));
+                }
+            }
+            Item::Obstacle(decl) => {
+                if let ObstacleShape::Circle { radius_m, .. } = decl.shape
+                    && radius_m <= 0.0
+                {
+                    self.found.push(value::not_positive("the radius", decl.numbers_span));
+                }
+            }
+            Item::Vehicle(decl) => {
+                if !VEHICLE_MODELS.contains(&decl.model.text.as_str()) {
+                    self.found.push(value::model(&decl.model, &VEHICLE_MODELS));
+                }
+            }
+            Item::Location(_) => {}
+        }
+    }
+
+    fn distinct(&mut self, names: &[Name], what: &str) {
+        for (index, name) in names.iter().enumerate() {
+            if names.iter().take(index).any(|earlier| earlier.text == name.text) {
+                self.found.push(duplicate::in_list(name, what));
+            }
+        }
+    }
+
+    fn option(&mut self, decl: &OptionDecl) {
+        let name = decl.name.text.as_str();
+        let is_fine = match (name, &decl.value) {
+            ("threat_gap", OptionValue::Number(_)) => true,
+            ("strict", OptionValue::Number(flag)) => *flag == Rational::ZERO || *flag == Rational::ONE,
+            ("time_unit", OptionValue::Name(unit)) => unit == "minute" || unit == "second",
+            ("threat_gap" | "strict" | "time_unit", _) => false,
+            _ => {
+                self.found.push(option::unknown(&decl.name));
+                return;
+            }
+        };
+        if !is_fine {
+            let wanted = match name {
+                "threat_gap" => "a number of time units",
+                "strict" => "0 or 1",
+                _ => "`minute` or `second`",
+            };
+            self.found.push(value::option(name, wanted, decl.value_span));
+        }
+    }
+
+    // Bounds.
+
+    fn header(&mut self, header: &HeaderBounds) {
+        let HeaderBounds::Sides { lower, upper, span } = header else { return };
+        for side in [lower, upper] {
+            if let HeaderBound::Parameter(name) = side {
+                self.bound_names.push(name.clone());
+            }
+        }
+        let limit = |side: &HeaderBound| match side {
+            HeaderBound::Limit(limit) => Some(limit.clone()),
+            HeaderBound::Parameter(_) => None,
+        };
+        let (lower, upper) = (limit(lower), limit(upper));
+        for side in lower.iter().chain(&upper) {
+            self.known_names(side);
+        }
+        self.sides(lower.as_ref(), upper.as_ref(), *span);
+    }
+
+    fn bounds(&mut self, bounds: Option<&Bounds>) {
+        let Some(bounds) = bounds else { return };
+        self.known_names(&bounds.lower);
+        self.known_names(&bounds.upper);
+        self.sides(Some(&bounds.lower), Some(&bounds.upper), bounds.span);
+    }
+
+    fn known_names(&mut self, expr: &Expr) {
+        match &expr.kind {
+            ExprKind::Name(text) => {
+                if self.bound_names.iter().all(|name| name.text != *text) {
+                    self.found.push(unknown_name::unknown(text, expr.span, &self.bound_names));
+                }
+            }
+            ExprKind::Percent(inner) => self.known_names(inner),
+            ExprKind::Binary(_, left, right) => {
+                self.known_names(left);
+                self.known_names(right);
+            }
+            ExprKind::Number(_) | ExprKind::Infinity => {}
+        }
+    }
+
+    /// Checks the sides that are constants; one mistake is reported once.
+    fn sides(&mut self, lower: Option<&Expr>, upper: Option<&Expr>, span: Span) {
+        let mut values = [None, None];
+        for (slot, side) in values.iter_mut().zip([lower, upper]) {
+            let Some(side) = side else { continue };
+            match constant::evaluate(side) {
+                Ok(Bound::Finite(time)) if time.is_negative() => {
+                    self.found.push(bounds::negative(time, side.span));
+                    return;
+                }
+                Ok(value) => *slot = Some(value),
+                Err(ConstantError::NotConstant) => {}
+                Err(ConstantError::Undefined) => {
+                    self.found.push(bounds::undefined(side.span));
+                    return;
+                }
+                Err(ConstantError::TooLarge) => {
+                    self.found.push(bounds::too_large(side.span));
+                    return;
+                }
+            }
+        }
+        match (values, lower, upper) {
+            ([Some(Bound::Infinite), _], Some(lower), _) => self.found.push(bounds::endless(lower.span)),
+            ([Some(low), Some(high)], Some(lower), Some(upper)) if low > high => {
+                self.found.push(bounds::reversed((low, lower.span), (high, upper.span), span));
+            }
+            _ => {}
+        }
+    }
+
+    fn statement(&mut self, statement: &Statement) {
+        self.bounds(statement.bounds.as_ref());
+        match &statement.kind {
+            StatementKind::Sequence(parts) | StatementKind::Parallel(parts) => {
+                parts.iter().for_each(|part| self.statement(part));
+            }
+            StatementKind::Choose(alternatives) => {
+                if let [only] = alternatives.as_slice() {
+                    self.found.push(choice::one_alternative(statement.span, only.span));
+                }
+                alternatives.iter().for_each(|part| self.statement(part));
+            }
+            StatementKind::Maintaining(body, _)
+            | StatementKind::Watching(body, _)
+            | StatementKind::IfThennext(_, body) => self.statement(body),
+            StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay => {}
+        }
+    }
+
+    // Separators.
+
+    /// Blocks in which `,` and `;` meet without braces between them.
+    fn separators(&mut self, root: SyntaxNode<'_>) {
+        for block in root.descendants().filter(|node| node.kind() == SyntaxKind::Block) {
+            let steps = |child: &SyntaxNode<'_>| {
+                matches!(child.kind(), SyntaxKind::Statement | SyntaxKind::Parallel)
+            };
+            if block.children().filter(steps).count() < 2 {
+                continue;
+            }
+            let mut parallels = block.children().filter(|child| child.kind() == SyntaxKind::Parallel);
+            if let Some(parallel) = parallels.next() {
+                let comma = parallel.elements().find_map(|element| match element {
+                    Element::Token(token) if token.kind == SyntaxKind::Comma => Some(token.span),
+                    _ => None,
+                });
+                let spans = std::iter::once(parallel.span()).chain(parallels.map(SyntaxNode::span)).collect();
+                self.found.push(mixed::mixed(comma.unwrap_or_else(|| parallel.span()), spans));
+            }
+        }
+    }
+}

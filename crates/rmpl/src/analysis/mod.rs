@@ -1,0 +1,19 @@
+//! What a mission text means as a whole: names, their uses, and the diagnostics that follow from them.
+//!
+//! Each declaration is summarised once, when it is parsed; the index counts what all summaries declare and use; a
+//! declaration is checked again only when something that it mentions has changed.
+
+mod check;
+pub(crate) mod constant;
+mod index;
+pub(crate) mod local;
+mod names;
+mod recursion;
+mod summary;
+mod structure;
+
+pub(crate) use check::{Checked, check};
+pub(crate) use index::{DeclarationKey, Index, Namespace};
+pub(crate) use names::{Names, edit_distance_at_most};
+pub(crate) use recursion::recursion;
+pub(crate) use summary::{Call, Literal, Summary, summarize};

@@ -1,0 +1,35 @@
+//! `W-CHOICE`: a choice with one alternative.
+
+use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::explanation::Explanation;
+use crate::parser::replacement;
+use crate::span::Span;
+
+/// The code.
+pub const CODE: Code = Code("W-CHOICE");
+
+/// What it means, with an example.
+pub const EXPLANATION: Explanation = Explanation {
+    code: CODE,
+    severity: Severity::Warning,
+    title: "a choice with one alternative",
+    meaning: "A `choose` with a single alternative leaves nothing to choose. Often the alternatives were separated with `;`, which makes
+a sequence, instead of `,`.",
+    example: "primitive Drive()[20,30];
+primitive Wait()[20,30];
+scenario Day[0,60] = { choose { Drive(); Wait() } }",
+    fix: "Separate alternatives with `,`, or leave out the word `choose`.",
+    mended: "primitive Drive()[20,30];
+primitive Wait()[20,30];
+scenario Day[0,60] = { choose { Drive(), Wait() } }",
+};
+
+/// A `choose` at `choose` with the single alternative at `only`.
+pub(crate) fn one_alternative(choose: Span, only: Span) -> Diagnostic {
+    let word = Span::new(choose.start, choose.start + "choose".len() as u32);
+    let mut diagnostic = Diagnostic::warning(CODE, word, "there is only one alternative to choose");
+    if only.start > word.end {
+        diagnostic = diagnostic.with_fix(replacement("Remove `choose`", word, ""));
+    }
+    diagnostic.with_hint("alternatives are separated by `,`; `;` makes a sequence")
+}

@@ -1,0 +1,46 @@
+//! `E-DUP`: a name is declared twice.
+
+use crate::analysis::Namespace;
+use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::explanation::Explanation;
+use crate::program::Name;
+use crate::span::Span;
+
+/// The code.
+pub const CODE: Code = Code("E-DUP");
+
+/// What it means, with an example.
+pub const EXPLANATION: Explanation = Explanation {
+    code: CODE,
+    severity: Severity::Error,
+    title: "a name is declared twice",
+    meaning: "Activities and primitives share their names, because both are called; variables, scenarios, locations, obstacles and
+vehicles each have names of their own. Within one of these kinds a name has one declaration, and so has each option.
+The parameters in one header must differ as well. The first declaration counts.",
+    example: "primitive Drive()[20,30];
+primitive Drive()[25,40];
+scenario Day[0,60] = { Drive() }",
+    fix: "Rename one of the two, or remove it.",
+    mended: "primitive Drive()[20,30];
+scenario Day[0,60] = { Drive() }",
+};
+
+/// A declaration whose name is taken.
+pub(crate) fn declaration(namespace: Namespace, name: &str, span: Span) -> Diagnostic {
+    let message = match namespace {
+        Namespace::Callable => format!("an activity or primitive `{name}` is declared before this one"),
+        Namespace::Variable => format!("the variable `{name}` is declared before"),
+        Namespace::Scenario => format!("a scenario `{name}` is declared before this one"),
+        Namespace::Option => format!("the option `{name}` is set before"),
+        Namespace::Terrain => "a terrain is declared before this one".to_owned(),
+        Namespace::Location => format!("a location `{name}` is declared before this one"),
+        Namespace::Obstacle => format!("an obstacle `{name}` is declared before this one"),
+        Namespace::Vehicle => format!("a vehicle `{name}` is declared before this one"),
+    };
+    Diagnostic::error(CODE, span, message).with_hint("the first declaration counts; rename or remove this one")
+}
+
+/// A name that stands twice in one list.
+pub(crate) fn in_list(name: &Name, what: &str) -> Diagnostic {
+    Diagnostic::error(CODE, name.span, format!("the {what} `{}` stands here twice", name.text))
+}

@@ -1,0 +1,35 @@
+//! `W-OPTION`: an unknown option.
+
+use crate::analysis::edit_distance_at_most;
+use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::explanation::Explanation;
+use crate::parser::replacement;
+use crate::program::Name;
+
+/// The code.
+pub const CODE: Code = Code("W-OPTION");
+
+/// What it means, with an example.
+pub const EXPLANATION: Explanation = Explanation {
+    code: CODE,
+    severity: Severity::Warning,
+    title: "an unknown option",
+    meaning: "The option is kept, but nothing reads it. The options are `threat_gap`, `strict` and `time_unit`.",
+    example: "option threat_gpa = 2;
+scenario Day[0,60] = { LIGHT [10,20] }",
+    fix: "Correct its name, or remove it.",
+    mended: "option threat_gap = 2;
+scenario Day[0,60] = { LIGHT [10,20] }",
+};
+
+/// An option that nothing reads.
+pub(crate) fn unknown(name: &Name) -> Diagnostic {
+    let known = ["threat_gap", "strict", "time_unit"];
+    let diagnostic = Diagnostic::warning(CODE, name.span, format!("there is no option `{}`", name.text))
+        .with_hint(format!("the options are {}", known.join(", ")));
+    let nearest = known.iter().filter_map(|known| Some((edit_distance_at_most(&name.text, known, 3)?, known)));
+    match nearest.min() {
+        Some((_, known)) => diagnostic.with_fix(replacement(format!("Change to `{known}`"), name.span, *known)),
+        None => diagnostic,
+    }
+}

@@ -1,0 +1,33 @@
+//! `E-RECURSION`: activities that call themselves.
+
+use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::explanation::Explanation;
+use crate::span::Span;
+
+/// The code.
+pub const CODE: Code = Code("E-RECURSION");
+
+/// What it means, with an example.
+pub const EXPLANATION: Explanation = Explanation {
+    code: CODE,
+    severity: Severity::Error,
+    title: "activities that call themselves",
+    meaning: "Every call is expanded into the network, and a plan is a finite network: an activity cannot call itself, directly or
+through others.",
+    example: "primitive Drive()[20,30];
+Patrol() = { Drive(); Patrol() }
+scenario Day[0,60] = { Patrol() }",
+    fix: "Write the repetitions out, one after the other.",
+    mended: "primitive Drive()[20,30];
+Patrol() = { Drive(); Drive() }
+scenario Day[0,60] = { Patrol() }",
+};
+
+/// A circle of calls: the activities of the circle, and the call that closes it.
+pub(crate) fn circle(way: &[&str], call: Span) -> Diagnostic {
+    let first = way.first().copied().unwrap_or_default();
+    let steps: Vec<String> = way.iter().chain([&first]).map(|name| format!("`{name}`")).collect();
+    let message = format!("activities may not call themselves, and `{first}` does: {}", steps.join(" calls "));
+    Diagnostic::error(CODE, call, message)
+        .with_hint("a network is finite: write repetitions out, one after the other")
+}

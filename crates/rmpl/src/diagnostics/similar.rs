@@ -1,0 +1,49 @@
+//! `W-SIMILAR`: an undeclared name that looks like a declared one.
+
+use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::explanation::Explanation;
+use crate::parser::replacement;
+use crate::span::Span;
+
+/// The code.
+pub const CODE: Code = Code("W-SIMILAR");
+
+/// What it means, with an example.
+pub const EXPLANATION: Explanation = Explanation {
+    code: CODE,
+    severity: Severity::Warning,
+    title: "an undeclared name that looks like a declared one",
+    meaning: "The name is legal, but it is not declared, and another name that is declared differs from it by a letter or two. As
+written, the two have nothing to do with each other.",
+    example: "var PATH : {OPEN, SHUT};
+scenario Day[0,60] = { PATH=OPEN [10,20]; PAHT=SHUT [10,20] }",
+    fix: "Correct the name, or declare it.",
+    mended: "var PATH : {OPEN, SHUT};
+scenario Day[0,60] = { PATH=OPEN [10,20]; PATH=SHUT [10,20] }",
+};
+
+pub(crate) fn variable(written: &str, nearest: &str, span: Span) -> Diagnostic {
+    alike(format!("`{written}` is not declared, but looks like `{nearest}`"), nearest, span)
+}
+
+pub(crate) fn callable(written: &str, nearest: &str, span: Span) -> Diagnostic {
+    let message = format!("this asserts the condition `{written}`, which looks like the activity `{nearest}`");
+    alike(message, nearest, span)
+}
+
+pub(crate) fn location(written: &str, nearest: &str, span: Span) -> Diagnostic {
+    alike(format!("there is no location `{written}`, but there is `{nearest}`"), nearest, span)
+}
+
+fn alike(message: String, nearest: &str, span: Span) -> Diagnostic {
+    Diagnostic::warning(CODE, span, message)
+        .with_hint(format!("did you mean `{nearest}`?"))
+        .with_fix(replacement(format!("Change to `{nearest}`"), span, nearest))
+}
+
+/// `X_V` where `X` is declared without a value `V`.
+pub(crate) fn value(written: &str, variable: &str, domain: &[&str], span: Span) -> Diagnostic {
+    let message = format!("`{written}` is a condition of its own: `{variable}` has no such value");
+    Diagnostic::warning(CODE, span, message)
+        .with_hint(format!("`{variable}` is one of {}", domain.join(", ")))
+}

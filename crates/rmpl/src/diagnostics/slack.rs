@@ -1,0 +1,30 @@
+//! `W-SLACK`: a bound that can never bind.
+
+use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::explanation::Explanation;
+use crate::parser::replacement;
+use crate::rational::{Bound, Rational, display};
+use crate::span::Span;
+
+/// The code.
+pub const CODE: Code = Code("W-SLACK");
+
+/// What it means, with an example.
+pub const EXPLANATION: Explanation = Explanation {
+    code: CODE,
+    severity: Severity::Warning,
+    title: "a bound that can never bind",
+    meaning: "Whatever is planned, the part lasts no shorter and no longer than these bounds allow: they exclude nothing. Often the
+bounds of another part were meant, or a time is in the wrong unit.",
+    example: "primitive Drive()[20,30];
+scenario Day[0,60] = { Drive()[10,40] }",
+    fix: "Remove the bounds, or correct them.",
+    mended: "primitive Drive()[20,30];
+scenario Day[0,60] = { Drive()[25,40] }",
+};
+
+/// Bounds at `span` around something that lasts `own` anyway.
+pub(crate) fn never_binds(own: (Rational, Bound), span: Span) -> Diagnostic {
+    let message = format!("these bounds exclude nothing: this lasts [{},{}] anyway", display(own.0), own.1);
+    Diagnostic::warning(CODE, span, message).with_fix(replacement("Remove the bounds", span, ""))
+}

@@ -1,0 +1,35 @@
+//! `W-SUPPORT`: an Ask that no Tell of the file can support.
+
+use crate::analysis::{Literal, Names};
+use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::explanation::Explanation;
+
+/// The code.
+pub const CODE: Code = Code("W-SUPPORT");
+
+/// What it means, with an example.
+pub const EXPLANATION: Explanation = Explanation {
+    code: CODE,
+    severity: Severity::Warning,
+    title: "a condition that nothing can make true",
+    meaning: "`do … maintaining c`, `if c thennext …` and `ask c` need an assertion of `c` that contains them. No assertion in the file
+can be that: every plan with this part fails. A part that is one alternative of a choice is never chosen.",
+    example: "primitive Drive()[20,30];
+scenario Day[0,60] = { do { Drive() } maintaining LIGHT }",
+    fix: "Assert the condition in a parallel branch, with the time for which it holds, or correct its name.",
+    mended: "primitive Drive()[20,30];
+scenario Day[0,60] = { { delay; do { Drive() } maintaining LIGHT }, LIGHT [40,40] }",
+};
+
+/// An Ask that no Tell of the file can support.
+pub(crate) fn never(literal: &Literal, name: &str, names: &Names) -> Diagnostic {
+    let mut condition = match literal.value {
+        Some((value, _)) => format!("{name}={}", names.text(value)),
+        None => name.to_owned(),
+    };
+    if literal.negated {
+        condition = format!("not({condition})");
+    }
+    Diagnostic::warning(CODE, literal.span, format!("nothing in this file can make `{condition}` true"))
+        .with_hint(format!("assert it in a parallel branch, as in `{{ delay; {condition} [10,20] }}`"))
+}

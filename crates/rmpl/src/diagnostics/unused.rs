@@ -1,0 +1,28 @@
+//! `W-UNUSED`: a declaration that nothing uses.
+
+use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::explanation::Explanation;
+use crate::span::Span;
+
+/// The code.
+pub const CODE: Code = Code("W-UNUSED");
+
+/// What it means, with an example.
+pub const EXPLANATION: Explanation = Explanation {
+    code: CODE,
+    severity: Severity::Warning,
+    title: "a declaration that nothing uses",
+    meaning: "No scenario or activity of the file calls, asserts or visits this. A misspelled use of the name is the usual reason.",
+    example: "primitive Drive()[20,30];
+primitive Drill()[20,30];
+scenario Day[0,60] = { Drive() }",
+    fix: "Use it, or remove it.",
+    mended: "primitive Drive()[20,30];
+primitive Drill()[20,30];
+scenario Day[0,60] = { Drive(); Drill() }",
+};
+
+/// A declaration that nothing uses.
+pub(crate) fn unused(what: &str, name: &str, span: Span) -> Diagnostic {
+    Diagnostic::warning(CODE, span, format!("the {what} `{name}` is never used"))
+}

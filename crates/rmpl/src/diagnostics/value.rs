@@ -1,0 +1,76 @@
+//! `E-VALUE`: a value outside what is allowed.
+
+use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::explanation::Explanation;
+use crate::parser::{insertion, replacement};
+use crate::program::Name;
+use crate::span::Span;
+
+/// The code.
+pub const CODE: Code = Code("E-VALUE");
+
+/// What it means, with an example.
+pub const EXPLANATION: Explanation = Explanation {
+    code: CODE,
+    severity: Severity::Error,
+    title: "a value outside what is allowed",
+    meaning: "A variable that is declared with a domain has no other values, and a condition on it says which value it means. Options,
+vehicle models and measures have allowed values as well.",
+    example: "var PATH : {OPEN, SHUT};
+scenario Day[0,60] = { PATH=OPNE [10,20] }",
+    fix: "Correct the value, or add it to the domain.",
+    mended: "var PATH : {OPEN, SHUT};
+scenario Day[0,60] = { PATH=OPEN [10,20] }",
+};
+
+/// A value that the domain does not have.
+pub(crate) fn outside_domain(
+    variable: &str,
+    value: &str,
+    span: Span,
+    domain: &[&str],
+    nearest: Option<&str>,
+) -> Diagnostic {
+    let diagnostic = Diagnostic::error(CODE, span, format!("`{value}` is not a value of `{variable}`"))
+        .with_hint(format!("`{variable}` is one of {}", domain.join(", ")));
+    match nearest {
+        Some(nearest) => {
+            diagnostic.with_fix(replacement(format!("Change to `{nearest}`"), span, nearest))
+        }
+        None => diagnostic,
+    }
+}
+
+/// A variable with a domain that stands without a value.
+pub(crate) fn no_value(variable: &str, span: Span, domain: &[&str]) -> Diagnostic {
+    let diagnostic =
+        Diagnostic::error(CODE, span, format!("`{variable}` is a variable: say which value it has"))
+            .with_hint(format!("`{variable}` is one of {}", domain.join(", ")));
+    domain.iter().take(MOST_FIXES).fold(diagnostic, |diagnostic, value| {
+        diagnostic.with_fix(insertion(format!("Write `{variable}={value}`"), span.end, format!("={value}")))
+    })
+}
+
+/// How many values are offered as fixes.
+const MOST_FIXES: usize = 5;
+
+pub(crate) fn option(name: &str, wanted: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(CODE, span, format!("the option `{name}` is {wanted}"))
+}
+
+pub(crate) fn model(model: &Name, models: &[&str]) -> Diagnostic {
+    let diagnostic =
+        Diagnostic::error(CODE, model.span, format!("there is no vehicle model `{}`", model.text))
+            .with_hint(format!("the models are {}", models.join(", ")));
+    models.iter().fold(diagnostic, |diagnostic, known| {
+        diagnostic.with_fix(replacement(format!("Change to `{known}`"), model.span, *known))
+    })
+}
+
+pub(crate) fn not_positive(what: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(CODE, span, format!("{what} must be greater than 0"))
+}
+
+pub(crate) fn speeds(span: Span) -> Diagnostic {
+    Diagnostic::error(CODE, span, "the speeds must be the least and the greatest, in this order, and not zero")
+}
