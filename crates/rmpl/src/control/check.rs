@@ -1,0 +1,256 @@
+//! Names between definitions: duplicates, unknown forms, calls with the wrong number of arguments, recursion.
+
+use std::collections::BTreeMap;
+
+use crate::diagnostic::{Code, Diagnostic, Edit, Fix};
+
+use super::read_program::Reader;
+use super::suggest::nearest;
+use super::syntax::{
+    Argument, Constraint, ConstraintKind, ControlFile, Definition, Expression, ExpressionKind, Name,
+};
+
+/// Checks the definitions of a text against each other.
+pub(super) fn check(file: &ControlFile) -> Vec<Diagnostic> {
+    let mut checker = Checker { file, known: BTreeMap::new(), diagnostics: Vec::new() };
+    for definition in &file.definitions {
+        if checker.known.insert(definition.name.text.as_str(), definition).is_some() {
+            let message = format!("`{}` is defined twice", definition.name.text);
+            checker.diagnostics.push(Diagnostic::error(Code("E-DUP"), definition.name.span, message));
+        }
+    }
+    for definition in &file.definitions {
+        checker.expression(&definition.body, definition);
+    }
+    checker.recursion();
+    checker.diagnostics
+}
+
+struct Checker<'file> {
+    file: &'file ControlFile,
+    known: BTreeMap<&'file str, &'file Definition>,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl<'file> Checker<'file> {
+    fn error(&mut self, code: &'static str, name: &Name, message: String, hint: Option<String>) {
+        let mut diagnostic = Diagnostic::error(Code(code), name.span, message);
+        diagnostic.hint = hint;
+        self.diagnostics.push(diagnostic);
+    }
+
+    fn expression(&mut self, expression: &'file Expression, within: &'file Definition) {
+        match &expression.kind {
+            ExpressionKind::Assert(constraint) => self.constraint(constraint, within),
+            ExpressionKind::Parallel(parts) | ExpressionKind::Sequence(parts) => {
+                parts.iter().for_each(|part| self.expression(part, within));
+            }
+            ExpressionKind::Always(body) => self.expression(body, within),
+            ExpressionKind::IfThenNext { guard, then, otherwise } => {
+                self.constraint(&guard.constraint, within);
+                self.expression(then, within);
+                otherwise.iter().for_each(|otherwise| self.expression(otherwise, within));
+            }
+            ExpressionKind::UnlessThenNext { guard, body }
+            | ExpressionKind::WhenDoNext { guard, body }
+            | ExpressionKind::WheneverDoNext { guard, body }
+            | ExpressionKind::DoWatching { guard, body } => {
+                self.constraint(&guard.constraint, within);
+                self.expression(body, within);
+            }
+            ExpressionKind::Call { name, arguments, bare } => self.call(name, arguments, *bare, within),
+            ExpressionKind::Unreadable => {}
+        }
+    }
+
+    fn constraint(&mut self, constraint: &'file Constraint, within: &'file Definition) {
+        match &constraint.kind {
+            ConstraintKind::Not(inner) => self.constraint(inner, within),
+            ConstraintKind::And(parts) | ConstraintKind::Or(parts) => {
+                parts.iter().for_each(|part| self.constraint(part, within));
+            }
+            ConstraintKind::Parameter(name) if !is_parameter(name, within) => {
+                let hint = nearest(&name.text, within.parameters.iter().map(|known| known.text.as_str()))
+                    .map(|known| format!("did you mean the parameter `{known}`?"))
+                    .unwrap_or_else(|| "a constraint reads `(variable = value)`".into());
+                self.error(
+                    "E-UNDEF",
+                    name,
+                    format!("`{}` is no constraint and no parameter", name.text),
+                    Some(hint),
+                );
+            }
+            _ => {}
+        }
+    }
+
+    fn call(
+        &mut self,
+        name: &'file Name,
+        arguments: &'file [Argument],
+        bare: bool,
+        within: &'file Definition,
+    ) {
+        for argument in arguments {
+            match argument {
+                Argument::Expression(expression) => self.expression(expression, within),
+                Argument::Guard(guard) => self.constraint(&guard.constraint, within),
+                Argument::Word(_) => {}
+            }
+        }
+        if is_parameter(name, within) {
+            if !arguments.is_empty() {
+                self.error(
+                    "E-ARITY",
+                    name,
+                    format!("the parameter `{}` takes no arguments", name.text),
+                    None,
+                );
+            }
+            return;
+        }
+        let Some(definition) = self.known.get(name.text.as_str()) else {
+            return self.unknown(name, arguments);
+        };
+        if bare {
+            let fix = Fix {
+                label: format!("Write `({})`", name.text),
+                edits: vec![Edit { span: name.span, text: format!("({})", name.text) }],
+            };
+            let message = format!("a definition is called in parentheses: `({})`", name.text);
+            self.diagnostics.push(Diagnostic::error(Code("E-FORM"), name.span, message).with_fix(fix));
+            return;
+        }
+        let wanted = definition.parameters.len();
+        if wanted != arguments.len() {
+            let plural = if wanted == 1 { "argument" } else { "arguments" };
+            let given = match arguments.len() {
+                1 => "1 is".to_owned(),
+                count => format!("{count} are"),
+            };
+            let message = format!("`{}` takes {wanted} {plural}, but {given} given", name.text);
+            self.error("E-ARITY", name, message, None);
+        }
+    }
+
+    fn unknown(&mut self, name: &Name, arguments: &[Argument]) {
+        if let Some(hint) = Reader::keyword_hint(&name.text) {
+            return self.error(
+                "E-FORM",
+                name,
+                format!("`{}` is no construct of the language", name.text),
+                Some(hint),
+            );
+        }
+        let hint =
+            nearest(&name.text, self.known.keys().copied()).map(|known| format!("did you mean `{known}`?"));
+        let has_parts = arguments.iter().any(|argument| !matches!(argument, Argument::Word(_)));
+        if has_parts && hint.is_none() {
+            let message = format!(
+                "`{}` is no construct of the language and no definition of that name exists",
+                name.text
+            );
+            return self.error("E-FORM", name, message, None);
+        }
+        let hint = match (hint, arguments) {
+            (None, [Argument::Word(value)]) => {
+                Some(format!("did you mean `({} = {})`?", name.text, value.text))
+            }
+            (hint, _) => hint,
+        };
+        self.error("E-UNDEF", name, format!("no definition is called `{}`", name.text), hint);
+    }
+
+    /// One diagnostic per cycle of calls, at the definition of it that comes first in the text.
+    fn recursion(&mut self) {
+        let file = self.file;
+        let calls: BTreeMap<&str, Vec<&Name>> = file
+            .definitions
+            .iter()
+            .map(|definition| {
+                let mut names = Vec::new();
+                called(&definition.body, &mut names);
+                names.retain(|name| !is_parameter(name, definition));
+                (definition.name.text.as_str(), names)
+            })
+            .collect();
+        let mut reported: Vec<&str> = Vec::new();
+        for definition in &file.definitions {
+            let start = definition.name.text.as_str();
+            let Some(cycle) = cycle_through(start, &calls) else { continue };
+            if cycle.iter().any(|name| reported.contains(&name.text.as_str())) {
+                continue;
+            }
+            reported.extend(cycle.iter().map(|name| name.text.as_str()));
+            let path: Vec<&str> =
+                std::iter::once(start).chain(cycle.iter().map(|name| name.text.as_str())).collect();
+            let Some(first) = cycle.first() else { continue };
+            let message = if path.len() == 2 {
+                format!("`{start}` calls itself")
+            } else {
+                format!("these definitions call each other in a circle: {}", path.join(" → "))
+            };
+            self.error(
+                "E-RECURSION",
+                first,
+                message,
+                Some("an automaton is finite: repeat with ALWAYS or WHENEVER-DONEXT".into()),
+            );
+        }
+    }
+}
+
+fn is_parameter(name: &Name, within: &Definition) -> bool {
+    within.parameters.iter().any(|parameter| parameter.text == name.text)
+}
+
+fn called<'file>(expression: &'file Expression, into: &mut Vec<&'file Name>) {
+    match &expression.kind {
+        ExpressionKind::Assert(_) | ExpressionKind::Unreadable => {}
+        ExpressionKind::Parallel(parts) | ExpressionKind::Sequence(parts) => {
+            parts.iter().for_each(|part| called(part, into));
+        }
+        ExpressionKind::IfThenNext { then, otherwise, .. } => {
+            called(then, into);
+            otherwise.iter().for_each(|otherwise| called(otherwise, into));
+        }
+        ExpressionKind::Always(body)
+        | ExpressionKind::UnlessThenNext { body, .. }
+        | ExpressionKind::WhenDoNext { body, .. }
+        | ExpressionKind::WheneverDoNext { body, .. }
+        | ExpressionKind::DoWatching { body, .. } => called(body, into),
+        ExpressionKind::Call { name, arguments, .. } => {
+            into.push(name);
+            for argument in arguments {
+                if let Argument::Expression(inner) = argument {
+                    called(inner, into);
+                }
+            }
+        }
+    }
+}
+
+/// A shortest path of calls from `start` back to itself.
+fn cycle_through<'file>(
+    start: &str,
+    calls: &BTreeMap<&'file str, Vec<&'file Name>>,
+) -> Option<Vec<&'file Name>> {
+    let mut paths: Vec<Vec<&Name>> = calls.get(start)?.iter().map(|name| vec![*name]).collect();
+    let mut seen: Vec<&str> = Vec::new();
+    let mut at = 0;
+    while let Some(path) = paths.get(at).cloned() {
+        at += 1;
+        let last = path.last()?.text.as_str();
+        if last == start {
+            return Some(path);
+        }
+        if seen.contains(&last) {
+            continue;
+        }
+        seen.push(last);
+        for next in calls.get(last).into_iter().flatten() {
+            paths.push(path.iter().copied().chain([*next]).collect());
+        }
+    }
+    None
+}

@@ -1,0 +1,67 @@
+//! Control programs and plant models in prefix notation (SPEC 2): from text to typed trees and back.
+//!
+//! Parsing never fails: every stage returns a result and diagnostics. Automata and plants are other crates' business.
+
+mod check;
+mod detect;
+mod display;
+mod expand;
+mod format;
+mod highlight;
+mod keyword;
+mod lexer;
+mod read_constraint;
+mod read_model;
+mod read_program;
+mod suggest;
+mod syntax;
+mod tree;
+
+pub use detect::is_control_text;
+pub use expand::expand_main;
+pub use format::format;
+pub use highlight::{Highlight, HighlightKind, highlight};
+pub use keyword::{EXPRESSION_KEYWORDS, MODEL_KEYWORDS};
+pub use lexer::{Token, TokenKind, lex};
+pub use suggest::nearest;
+pub use syntax::{
+    Argument, Class, Constraint, ConstraintKind, ControlFile, Definition, Expression, ExpressionKind, Field,
+    FieldKind, Guard, Instance, Name,
+};
+pub use tree::{List, Node, Tree};
+
+use crate::diagnostic::Diagnostic;
+
+/// What parsing a text gives: the tokens (whose texts joined are the text), the typed tree, and what is wrong.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ParsedControl {
+    /// All tokens, blanks and comments included.
+    pub tokens: Vec<Token>,
+    /// Matched parentheses over the tokens.
+    pub tree: Tree,
+    /// What the text says.
+    pub file: ControlFile,
+    /// What is wrong with it, in textual order.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl ParsedControl {
+    /// Whether any diagnostic is an error.
+    pub fn has_errors(&self) -> bool {
+        self.diagnostics.iter().any(|diagnostic| diagnostic.severity == crate::Severity::Error)
+    }
+}
+
+/// Reads a control program, a plant model, or both in one text (SPEC 2). Linear in the length of the text.
+pub fn parse(text: &str) -> ParsedControl {
+    let tokens = lex(text);
+    let (tree, mut diagnostics) = tree::build(text, &tokens);
+    let (file, found) = read_program::read(text, &tree);
+    diagnostics.extend(found);
+    diagnostics.extend(check::check(&file));
+    diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
+    ParsedControl { tokens, tree, file, diagnostics }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,247 @@
+//! Reading the model part: classes with their fields, and components (SPEC 2.2).
+
+use crate::span::Span;
+
+use super::keyword;
+use super::read_program::Reader;
+use super::suggest::nearest;
+use super::syntax::{Class, Field, FieldKind, Instance, Name};
+use super::tree::{List, Node};
+
+const FIELD_KEYWORDS: [&str; 6] = ["VAR", "COMMAND", "PORT", "MODE", "TRANSITION", "FAULT"];
+
+impl Reader<'_> {
+    /// Reads `(DEFCLASS name (supers) fields)`.
+    pub(super) fn class(&mut self, list: &List) -> Option<Class> {
+        let [_, name, Node::List(supers), fields @ ..] = list.items.as_slice() else {
+            self.shape(
+                "E-ARITY",
+                list,
+                "DEFCLASS takes a name, the classes it extends in parentheses, and fields",
+                "(DEFCLASS Valve () (MODE Open true))",
+            );
+            return None;
+        };
+        let name = self.required_name(name, "the name of a class")?;
+        let supers = self.names(&supers.items, "the name of a class");
+        let fields = fields.iter().filter_map(|field| self.field(field)).collect();
+        Some(Class { name, supers, fields, span: list.span })
+    }
+
+    /// Reads `(DEFINSTANCE name class (port component)… [INIT mode])`.
+    pub(super) fn instance(&mut self, list: &List) -> Option<Instance> {
+        let [_, name, class, rest @ ..] = list.items.as_slice() else {
+            self.shape(
+                "E-ARITY",
+                list,
+                "DEFINSTANCE takes a name, a class, and what is at its ports",
+                "(DEFINSTANCE ValveA Valve (driver DriverA) INIT Closed)",
+            );
+            return None;
+        };
+        let name = self.required_name(name, "the name of a component")?;
+        let class = self.required_name(class, "the name of a class")?;
+        let mut instance = Instance { name, class, ports: Vec::new(), initial: None, span: list.span };
+        let mut rest = rest.iter();
+        while let Some(node) = rest.next() {
+            match node {
+                Node::List(port) => {
+                    if let [port, component] = port.items.as_slice() {
+                        let port = self.required_name(port, "the name of a port")?;
+                        let component = self.required_name(component, "the name of a component")?;
+                        instance.ports.push((port, component));
+                    } else {
+                        self.shape(
+                            "E-ARITY",
+                            port,
+                            "a port takes its name and a component",
+                            "(driver DriverA)",
+                        );
+                    }
+                }
+                Node::Leaf(_) if self.is_word(node, "INIT") => match rest.next() {
+                    Some(mode) => instance.initial = self.required_name(mode, "a mode"),
+                    None => {
+                        self.error("E-ARITY", node.span(), "a mode is missing after INIT");
+                    }
+                },
+                Node::Leaf(_) => {
+                    self.error(
+                        "E-SYNTAX",
+                        node.span(),
+                        "a port `(name component)` or `INIT mode` is expected here",
+                    );
+                }
+            }
+        }
+        Some(instance)
+    }
+
+    fn field(&mut self, node: &Node) -> Option<Field> {
+        let span = node.span();
+        let Node::List(list) = node else {
+            self.error("E-SYNTAX", span, "a field in parentheses is expected here").hint = Some(field_hint());
+            return None;
+        };
+        let Some((word, word_span)) = list.items.first().and_then(|head| keyword::word(self.text, head))
+        else {
+            self.error("E-FORM", span, "a field starts with its kind").hint = Some(field_hint());
+            return None;
+        };
+        let upper = word.to_ascii_uppercase();
+        let kind = match upper.as_str() {
+            "VAR" => self.variable(list),
+            "COMMAND" => self.command(list),
+            "PORT" => self.port(list),
+            "MODE" => self.mode(list),
+            "TRANSITION" => self.transition(list),
+            "FAULT" => self.fault(list),
+            _ => {
+                let hint = nearest(&upper, FIELD_KEYWORDS)
+                    .map_or_else(field_hint, |known| format!("did you mean {known}?"));
+                self.error("E-FORM", word_span, format!("`{word}` is no kind of field")).hint = Some(hint);
+                None
+            }
+        }?;
+        Some(Field { kind, span })
+    }
+
+    fn variable(&mut self, list: &List) -> Option<FieldKind> {
+        let [_, name, Node::List(values), rest @ ..] = list.items.as_slice() else {
+            self.shape(
+                "E-ARITY",
+                list,
+                "VAR takes a name and its values in braces",
+                "(VAR thrust {zero full} OBSERVABLE)",
+            );
+            return None;
+        };
+        let name = self.required_name(name, "the name of a variable")?;
+        let values = self.domain(values)?;
+        let mut observable = false;
+        let mut shows = None;
+        let mut rest = rest.iter();
+        while let Some(node) = rest.next() {
+            if self.is_word(node, "OBSERVABLE") {
+                observable = true;
+            } else if self.is_word(node, "SHOWS") {
+                match rest.next() {
+                    Some(value) => shows = self.required_name(value, "a value"),
+                    None => {
+                        self.error("E-ARITY", node.span(), "a value is missing after SHOWS");
+                    }
+                }
+            } else {
+                self.error("E-SYNTAX", node.span(), "only OBSERVABLE and SHOWS may follow the values");
+            }
+        }
+        Some(FieldKind::Variable { name, values, observable, shows })
+    }
+
+    fn command(&mut self, list: &List) -> Option<FieldKind> {
+        let [_, name, Node::List(values)] = list.items.as_slice() else {
+            self.shape(
+                "E-ARITY",
+                list,
+                "COMMAND takes a name and its values in braces, idle value first",
+                "(COMMAND cmd {none open close})",
+            );
+            return None;
+        };
+        let name = self.required_name(name, "the name of a command")?;
+        Some(FieldKind::Command { name, values: self.domain(values)? })
+    }
+
+    fn port(&mut self, list: &List) -> Option<FieldKind> {
+        let [_, name, class] = list.items.as_slice() else {
+            self.shape("E-ARITY", list, "PORT takes a name and a class", "(PORT driver Driver)");
+            return None;
+        };
+        let name = self.required_name(name, "the name of a port")?;
+        Some(FieldKind::Port { name, class: self.required_name(class, "the name of a class")? })
+    }
+
+    fn mode(&mut self, list: &List) -> Option<FieldKind> {
+        let [_, name, constraint] = list.items.as_slice() else {
+            self.shape("E-ARITY", list, "MODE takes a name and a constraint", "(MODE Open true)");
+            return None;
+        };
+        let name = self.required_name(name, "the name of a mode")?;
+        Some(FieldKind::Mode { name, constraint: self.constraint(constraint) })
+    }
+
+    fn transition(&mut self, list: &List) -> Option<FieldKind> {
+        let [_, from, to, guard] = list.items.as_slice() else {
+            self.shape(
+                "E-ARITY",
+                list,
+                "TRANSITION takes two modes and a guard",
+                "(TRANSITION Closed Open (cmd = open))",
+            );
+            return None;
+        };
+        let from = self.required_name(from, "a mode")?;
+        let to = self.required_name(to, "a mode")?;
+        Some(FieldKind::Transition { from, to, guard: self.constraint(guard) })
+    }
+
+    fn fault(&mut self, list: &List) -> Option<FieldKind> {
+        let [_, from, to, probability] = list.items.as_slice() else {
+            self.shape(
+                "E-ARITY",
+                list,
+                "FAULT takes two modes and a probability per step",
+                "(FAULT Open Stuck 0.01)",
+            );
+            return None;
+        };
+        let from = self.required_name(from, "a mode")?;
+        let to = self.required_name(to, "a mode")?;
+        Some(FieldKind::Fault { from, to, probability: self.required_name(probability, "a probability")? })
+    }
+
+    fn domain(&mut self, list: &List) -> Option<Vec<Name>> {
+        let items: Vec<Node> = list.items.clone();
+        let values = self.names(&items, "a value");
+        if values.is_empty() {
+            self.error("E-ARITY", list.span, "a domain has at least one value");
+            return None;
+        }
+        for (at, value) in values.iter().enumerate() {
+            if values.iter().take(at).any(|earlier| earlier.text == value.text) {
+                self.error("E-DUP", value.span, format!("the value `{}` is listed twice", value.text));
+                return None;
+            }
+        }
+        Some(values)
+    }
+
+    fn names(&mut self, items: &[Node], what: &str) -> Vec<Name> {
+        items
+            .iter()
+            .filter(|node| !matches!(node, Node::Leaf(token) if token.kind == super::lexer::TokenKind::Comma))
+            .filter_map(|node| self.required_name(node, what))
+            .collect()
+    }
+
+    fn required_name(&mut self, node: &Node, what: &str) -> Option<Name> {
+        let name = self.name(node);
+        if name.is_none() {
+            self.error("E-SYNTAX", node.span(), format!("{what} is expected here"));
+        }
+        name
+    }
+
+    fn is_word(&self, node: &Node, upper: &str) -> bool {
+        keyword::word(self.text, node).is_some_and(|(word, _)| word.eq_ignore_ascii_case(upper))
+    }
+
+    fn shape(&mut self, code: &'static str, list: &List, message: &str, example: &str) {
+        let span = list.items.first().map_or(list.span, |head| Span::new(list.span.start, head.span().end));
+        self.error(code, span, message).hint = Some(format!("for example `{example}`"));
+    }
+}
+
+fn field_hint() -> String {
+    format!("fields are {}", FIELD_KEYWORDS.join(", "))
+}

@@ -1,0 +1,181 @@
+//! The notation as authors meet it: the paper's listing, its damage, and one diagnostic per mistake.
+
+use super::*;
+
+const ORBIT: &str = "OrbitInsert ()::
+(do -watching ((EngineA = Firing) OR ( EngineB = Firing))
+(parallel
+(EngineA = Standby)
+(EngineB = Standby)
+(Camera = Off)
+(do -watching (EngineA = Failed)
+(when -donext ( (EngineA = Standby) AND
+(Camera = Off) )
+(EngineA = Firing) ))
+(when -donext ( (EngineA = Failed) AND
+(EngineB = Standby) AND
+(Camera = Off) )
+(EngineB = Firing) )))
+";
+
+fn codes(text: &str) -> Vec<&'static str> {
+    let parsed = parse(text);
+    let mut found: Vec<&'static str> =
+        parsed.diagnostics.iter().map(|diagnostic| diagnostic.code.0).collect();
+    if found.is_empty() {
+        found.extend(expand_main(&parsed.file).1.iter().map(|diagnostic| diagnostic.code.0));
+    }
+    found
+}
+
+#[test]
+fn the_listing_of_the_paper_is_read_with_its_torn_keywords() {
+    let parsed = parse(ORBIT);
+    assert_eq!(parsed.diagnostics, []);
+    let main = parsed.file.main().expect("one definition");
+    assert_eq!(main.name.text, "OrbitInsert");
+    let ExpressionKind::DoWatching { guard, body } = &main.body.kind else { panic!("{:?}", main.body.kind) };
+    assert_eq!(guard.to_string(), "(EngineA=Firing OR EngineB=Firing)");
+    assert!(!guard.non_entailed, "the listing has no overbars");
+    let ExpressionKind::Parallel(parts) = &body.kind else { panic!("{:?}", body.kind) };
+    assert_eq!(parts.len(), 5);
+}
+
+#[test]
+fn each_mistake_gives_one_diagnostic_with_its_code() {
+    for (text, code) in [
+        ("(PARALLEL (x = a)", "E-SYNTAX"),
+        ("(PARALLEL (x = a)))", "E-SYNTAX"),
+        ("(WHEN-DONEXT (x = a))", "E-ARITY"),
+        ("(IF-THENNEXT (x = a) (y = a) (y = b))", "E-ARITY"),
+        ("(REPEAT (x = a))", "E-FORM"),
+        ("(PARALEL (x = a))", "E-FORM"),
+        ("~(x = a)", "E-CONSTRAINT"),
+        ("(PARALLEL (x = a) ~(y = b))", "E-CONSTRAINT"),
+        ("((x = a) AND (y = b) OR (z = c))", "E-CONSTRAINT"),
+        ("(x = )", "E-CONSTRAINT"),
+        ("(SEQUENCE (x = a) (Foo))", "E-UNDEF"),
+        ("A ():: (x = a)\nA ():: (x = b)", "E-DUP"),
+        ("A ():: (SEQUENCE (x = a) (A))", "E-RECURSION"),
+        ("A ():: (B)\nB ():: (A)", "E-RECURSION"),
+        ("P (c):: (WHEN-DONEXT c (x = a))\nM ():: (P)", "E-ARITY"),
+        ("P (c):: (WHEN-DONEXT c (x = a))\nM ():: (P (ALWAYS true))", "E-CONSTRAINT"),
+        ("(WHEN-DONEXT (x = a) @ (y = b))", "E-LEX"),
+        ("(WHEN-DONEXT () (y = b))", "E-SYNTAX"),
+        ("", "E-UNDEF"),
+    ] {
+        assert_eq!(codes(text), [code], "{text}");
+    }
+}
+
+#[test]
+fn a_definition_after_an_open_parenthesis_is_still_read() {
+    let parsed = parse("A ():: (PARALLEL (x = a)\nB ():: (WHEN-DONEXT (x = a) (y = b))\n");
+    assert_eq!(parsed.diagnostics.len(), 1);
+    assert_eq!(parsed.file.definitions.len(), 2);
+}
+
+#[test]
+fn macros_take_names_constraints_guards_and_expressions() {
+    let text = "Await (S):: (DO-WATCHING S (ALWAYS true))
+Go (Engine mode body):: (SEQUENCE (Await (Engine = mode)) body)
+Unless (c body):: (IF-THENNEXT c body)
+Main ():: (PARALLEL (Go EngineA Standby (x = a)) (Unless ~(c = on) (y = b)))";
+    let parsed = parse(text);
+    assert_eq!(parsed.diagnostics, []);
+    let (body, problems) = expand_main(&parsed.file);
+    assert_eq!(problems, []);
+    let Some(Expression { kind: ExpressionKind::Parallel(parts), .. }) = body else { panic!("not parallel") };
+    let [
+        Expression { kind: ExpressionKind::Sequence(go), .. },
+        Expression { kind: ExpressionKind::IfThenNext { guard, .. }, .. },
+    ] = parts.as_slice()
+    else {
+        panic!("{parts:?}")
+    };
+    assert!(
+        matches!(&go[0].kind, ExpressionKind::DoWatching { guard, .. } if guard.to_string() == "EngineA=Standby")
+    );
+    assert!(matches!(&go[1].kind, ExpressionKind::Assert(c) if c.to_string() == "x=a"));
+    assert_eq!(guard.to_string(), "~c=on");
+}
+
+#[test]
+fn every_beginning_of_a_text_is_read_without_panic_and_without_loss() {
+    let model = "(DEFCLASS A (B) (VAR v {x y} OBSERVABLE SHOWS x) (MODE M (v = x)) (FAULT M N 0.1))\n(DEFINSTANCE a A (p b) INIT M)";
+    for text in [ORBIT, model] {
+        for end in 0..=text.len() {
+            let part = &text[..end];
+            let parsed = parse(part);
+            let joined: String = parsed.tokens.iter().map(|token| &part[token.span.range()]).collect();
+            assert_eq!(joined, part);
+            let _ = expand_main(&parsed.file);
+            let _ = is_control_text(part);
+        }
+    }
+    let deep = "(NOT ".repeat(5000);
+    assert!(parse(&deep).has_errors());
+}
+
+#[test]
+fn the_notation_of_a_text_is_recognised_with_comments_and_when_broken() {
+    for text in [
+        ORBIT,
+        "; scenario of the engine; with drivers\n(DEFCLASS Engine () (MODE Off true))",
+        "(WHEN-DONEXT (c = on) (x = go))",
+        "(x = a)",
+        "(PARALLEL (x = a)",
+        "A ():: (SEQUENCE (x",
+        "Pause ():: true",
+    ] {
+        assert!(is_control_text(text), "{text}");
+    }
+    for text in [
+        "",
+        "// a mission (DO-WATCHING)\nA()[l,u] = { B()[1,2]; C() }",
+        "primitive A(); primitive B();\nscenario S[0,10] = { A(); B() }",
+        "var X : {A, B};",
+        "A() = { do { B() } watching (X=OK) }",
+        "scenario S = { if (X=OK) thennext A()",
+    ] {
+        assert!(!is_control_text(text), "{text}");
+    }
+}
+
+#[test]
+fn formatting_keeps_the_meaning_and_settles_at_once() {
+    let commented = "; head\n\nA (c, d):: ; why\n(parallel (x = a) ; one\n (when -donext ~(y = b) (z = c)) ; two\n)\n; tail";
+    let long = format!(
+        "(SEQUENCE {})",
+        "(IF-THENNEXT-ELSENEXT ((aaaaaaaa = b) AND (cccccccccc = d)) (eeeeeeee = f) (ggggg = h)) ".repeat(4)
+    );
+    for text in [ORBIT, commented, &long] {
+        let once = format(text);
+        assert_eq!(format(&once), once, "{once}");
+        let meaning = |text: &str| {
+            let parsed = parse(text);
+            assert_eq!(parsed.diagnostics, [], "{text}");
+            let comments: Vec<String> = parsed
+                .tokens
+                .iter()
+                .filter(|token| token.kind == TokenKind::Comment)
+                .map(|token| text[token.span.range()].trim_end().to_owned())
+                .collect();
+            (outline(&parsed.file), comments)
+        };
+        assert_eq!(meaning(&once), meaning(text), "{once}");
+        assert!(once.lines().all(|line| line.chars().count() <= 100), "{once}");
+    }
+}
+
+/// The tree without its spans.
+fn outline(file: &ControlFile) -> String {
+    let text = format!("{file:?}");
+    let mut bare = String::new();
+    let mut rest = text.as_str();
+    while let Some((before, after)) = rest.split_once("Span {") {
+        bare.push_str(before);
+        rest = after.split_once('}').map_or("", |(_, rest)| rest);
+    }
+    bare + rest
+}
