@@ -4,7 +4,7 @@ use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;
 use crate::parser::replacement;
 use crate::span::Span;
-use crate::syntax::{LexProblem, LexProblemKind};
+use crate::syntax::{LexProblem, LexProblemKind, is_dash};
 
 /// The code.
 pub const CODE: Code = Code("E-LEX");
@@ -16,7 +16,7 @@ pub const EXPLANATION: Explanation = Explanation {
     title: "text that no token is made of",
     meaning: "A character, a comment, a text in quotes or a number cannot be read. Names are made of the letters A to Z, digits, `_`,
 and single hyphens between them; word processors and papers often put other dashes and quotes in their place.",
-    example: "primitive Group–Wait()[0,54];
+    example: "primitive Group-Wait()[0,54];
 scenario Day[0,60] = { Group–Wait() }",
     fix: "Write the plain character. Where the plain form is known, a quick fix puts it there.",
     mended: "primitive Group-Wait()[0,54];
@@ -62,10 +62,6 @@ fn foreign_name(span: Span, written: &str) -> Diagnostic {
         return diagnostic.with_fix(replacement(format!("Replace with `{plain}`"), span, plain));
     }
     diagnostic
-}
-
-fn is_dash(letter: char) -> bool {
-    matches!(letter, '\u{2010}'..='\u{2015}' | '\u{2212}')
 }
 
 /// The character that word processors and papers print otherwise.

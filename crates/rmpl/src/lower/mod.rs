@@ -12,7 +12,7 @@ use crate::program::{
 };
 use crate::rational::Rational;
 use crate::span::Span;
-use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
+use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken, is_dash};
 
 /// What one declaration declares.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,8 +69,14 @@ impl Lowering<'_> {
     }
 }
 
+/// A name as it was meant: dashes that stand for a hyphen have been reported.
 fn name_of(token: SyntaxToken<'_>) -> Name {
-    Name { text: SmolStr::new(token.text), span: token.span }
+    let text = if token.text.is_ascii() {
+        SmolStr::new(token.text)
+    } else {
+        token.text.chars().map(|letter| if is_dash(letter) { '-' } else { letter }).collect()
+    };
+    Name { text, span: token.span }
 }
 
 /// The names that stand directly in `node`, in textual order.

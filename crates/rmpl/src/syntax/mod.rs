@@ -7,6 +7,6 @@ mod lexer;
 mod tree;
 
 pub use kind::SyntaxKind;
-pub(crate) use lexer::{LexProblem, LexProblemKind, Lexer};
+pub(crate) use lexer::{LexProblem, LexProblemKind, Lexer, is_dash};
 pub(crate) use tree::RawNode;
 pub use tree::{DeclarationTree, Element, SyntaxNode, SyntaxToken, Token};

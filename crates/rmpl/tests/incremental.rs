@@ -1,0 +1,78 @@
+//! After any edits a text is as current as if it had been read afresh, and any text is read without loss.
+
+use proptest::prelude::*;
+use rmpl::{Edit, Parse, Span, parse};
+
+const MISSIONS: [&str; 4] = [
+    include_str!("../../../assets/missions/enroute.rmpl"),
+    include_str!("../../../assets/missions/threats.rmpl"),
+    include_str!("../../../tests/conformance/t30_second_search_example.rmpl"),
+    "option strict = 1;\nvar P : {OK, BAD};\nA(x)[l,u] = { B()[l,u*2]; C }\nC() = { P_OK [1,2], { delay; tell not(P=BAD) } }\nscenario S[0,9] = { A(P); if P!=BAD thennext C() }\n",
+];
+
+/// Pieces of text that turn up when people type, and others that should not matter.
+const PIECES: [&str; 28] = [
+    "", " ", "\n", ";", ",", "{", "}", "[", "]", "(", ")", "=", "%", "-", "x", "A()", "P=OK", "[0,5]", "//", "/*", "*/",
+    "choose {", "var Q : {A, B};", "scenario T = {", "thennext ", "\"", "∞", "é",
+];
+
+fn held(parse: &Parse) -> String {
+    parse.declarations().flat_map(|tree| tree.tokens()).map(|token| token.text).collect()
+}
+
+fn assert_same_as_fresh(edited: &Parse) {
+    let fresh = parse(edited.text());
+    assert_eq!(held(edited), edited.text());
+    assert_eq!(edited.diagnostics(), fresh.diagnostics(), "in {:?}", edited.text());
+    assert_eq!(edited.program(), fresh.program(), "in {:?}", edited.text());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 768, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_text_is_held_byte_for_byte(text in "\\PC{0,200}") {
+        prop_assert_eq!(held(&parse(&text)), text);
+    }
+
+    #[test]
+    fn any_bytes_are_held_once_they_are_text(bytes in proptest::collection::vec(any::<u8>(), 0..300)) {
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        prop_assert_eq!(held(&parse(&text)), text);
+    }
+
+    #[test]
+    fn edits_leave_a_parse_as_current_as_a_fresh_one(
+        mission in 0..MISSIONS.len(),
+        edits in proptest::collection::vec((any::<u32>(), 0_u32..12, 0..PIECES.len()), 1..8),
+    ) {
+        let mut edited = parse(MISSIONS[mission]);
+        for (at, length, piece) in edits {
+            let start = at % (edited.text().len() as u32 + 1);
+            edited.edit(&Edit { span: Span::new(start, start + length), text: PIECES[piece].to_owned() });
+            assert_same_as_fresh(&edited);
+        }
+    }
+}
+
+#[test]
+fn typing_a_mission_letter_by_letter_keeps_it_current() {
+    let mut edited = parse("");
+    for (at, letter) in MISSIONS[3].char_indices() {
+        edited.edit(&Edit { span: Span::new(at as u32, at as u32), text: letter.to_string() });
+        assert_same_as_fresh(&edited);
+    }
+}
+
+#[test]
+fn deep_nesting_is_reported_and_not_followed() {
+    for (open, close) in [("{", "}"), ("(", ")"), ("do ", ""), ("if c thennext ", ""), ("not ", ""), ("choose {", "}")] {
+        let text = format!("scenario S = {{ {}c{} }}", open.repeat(5000), close.repeat(5000));
+        let parse = parse(&text);
+        assert_eq!(held(&parse), text);
+        assert!(!parse.diagnostics().is_empty(), "{open}");
+        let _ = parse.program();
+    }
+    let sum = format!("primitive A()[0{}, inf];", "+1".repeat(20_000));
+    assert_eq!(parse(&sum).diagnostics().len(), 1);
+}
