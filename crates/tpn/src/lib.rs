@@ -5,7 +5,13 @@
 pub mod compile;
 pub mod generate;
 pub mod network;
+pub mod network_json;
+pub mod number;
+pub mod path;
 pub mod plan;
+pub mod plan_json;
+pub mod selection;
+pub mod text;
 
 pub use compile::{Top, compile, merge_diagnostics};
 pub use network::{

@@ -1,0 +1,467 @@
+//! Networks in the JSON of DESIGN 4.2, written with everything planning needs, and read back.
+
+use std::collections::BTreeMap;
+
+use rmpl::program::LabelMode;
+use rmpl::{Bound, Rational};
+use serde_json::{Map, Value, json};
+use smol_str::SmolStr;
+
+use crate::network::{
+    Arc, ArcId, ArcKind, Decision, DecisionId, EventEnd, EventRef, Label, LabelId, Literal, Network, Node,
+    NodeId, Occurrence, OccurrenceId, OccurrenceKind, Role, ValueId, ValueSet, Variable, VariableId,
+};
+use crate::number::{bound_from_json, bound_to_json, time_from_json, time_to_json};
+use crate::text::kind_name;
+
+/// Why a JSON document is no network.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{place}: {problem}")]
+pub struct NetworkError {
+    /// Which part of the document.
+    pub place: String,
+    /// What is wrong with it.
+    pub problem: String,
+}
+
+/// The members of an `enroute-tpn/1` document: `nodes`, `arcs`, `start`, `end`, and with them `occurrences`,
+/// `variables` and `threat_gap`, so that the network can be read back and planned.
+pub fn network_to_json(network: &Network) -> Value {
+    let nodes: Vec<Value> = (network.nodes.iter().enumerate())
+        .map(|(id, node)| {
+            let events: Vec<String> = node.events.iter().map(|&event| network.event_name(event)).collect();
+            let mut members = object(json!({"id": id, "role": node.role, "events": events}));
+            if let Some(decision) = node.decision {
+                members.insert("decision".into(), Network::decision_name(decision).into());
+            }
+            Value::Object(members)
+        })
+        .collect();
+    let arcs: Vec<Value> =
+        network.arcs.iter().enumerate().map(|(id, arc)| arc_to_json(network, id, arc)).collect();
+    let occurrences: Vec<Value> = (network.occurrences.iter())
+        .map(|occurrence| {
+            json!({
+                "name": occurrence.name,
+                "activity": occurrence.activity,
+                "kind": occurrence.kind,
+                "start": occurrence.start.0,
+                "end": occurrence.end.0,
+                "arc": occurrence.arc.map(|arc| arc.0),
+                "arguments": occurrence.arguments,
+                "parent": occurrence.parent.map(|parent| parent.0),
+            })
+        })
+        .collect();
+    json!({
+        "nodes": nodes,
+        "arcs": arcs,
+        "start": network.start.0,
+        "end": network.end.0,
+        "occurrences": occurrences,
+        "variables": network.variables,
+        "threat_gap": time_to_json(network.threat_gap),
+    })
+}
+
+fn arc_to_json(network: &Network, id: usize, arc: &Arc) -> Value {
+    let labels: Vec<Value> = (arc.labels.iter())
+        .map(|&label| {
+            let label = &network.labels[label.index()];
+            let mut members = object(json!({"type": mode_name(label.mode), "literal": label.text}));
+            if let Some(owner) = label.owner {
+                members.insert("owner".into(), network.occurrences[owner.index()].name.as_str().into());
+            }
+            Value::Object(members)
+        })
+        .collect();
+    let mut members = object(json!({
+        "id": id,
+        "from": arc.from.0,
+        "to": arc.to.0,
+        "lower": time_to_json(arc.lower),
+        "upper": bound_to_json(arc.upper),
+        "kind": kind_name(arc.kind),
+        "labels": labels,
+    }));
+    if let Some(occurrence) = arc.occurrence {
+        members.insert("activity".into(), network.occurrences[occurrence.index()].name.as_str().into());
+    }
+    if let Some((decision, alternative)) = arc.choice {
+        members.insert("decision".into(), Network::decision_name(decision).into());
+        members.insert("alternative".into(), alternative.into());
+    }
+    Value::Object(members)
+}
+
+/// Reads a network that [`network_to_json`] wrote; of a document without `occurrences` and `variables`, they are made
+/// from the events and labels. Structure and places in a text are not part of the document.
+pub fn network_from_json(document: &Value) -> Result<Network, NetworkError> {
+    let mut reader = Reader::default();
+    let nodes = list(document, "nodes")?;
+    let arcs = list(document, "arcs")?;
+    reader.nodes = vec![Node::default(); nodes.len()];
+    reader.read_occurrences(document, arcs.len())?;
+    for (index, node) in nodes.iter().enumerate() {
+        reader.read_node(index, node)?;
+    }
+    let variables: Vec<Variable> = match document.get("variables") {
+        Some(variables) => serde_json::from_value(variables.clone())
+            .map_err(|problem| error("variables", &problem.to_string()))?,
+        None => Vec::new(),
+    };
+    let mut vocabulary = Vocabulary { is_complete: document.get("variables").is_some(), variables };
+    for (index, arc) in arcs.iter().enumerate() {
+        reader.read_arc(index, arc, &mut vocabulary)?;
+    }
+    reader.check_decisions()?;
+    let start = reader.node_id(document.get("start"), "start")?;
+    let end = reader.node_id(document.get("end"), "end")?;
+    let threat_gap = match document.get("threat_gap") {
+        Some(gap) => time_from_json(gap).ok_or_else(|| error("threat_gap", "is no exact time"))?,
+        None => Rational::from_integer(1),
+    };
+    Ok(Network {
+        nodes: reader.nodes,
+        arcs: reader.arcs,
+        labels: reader.labels,
+        decisions: reader.decisions,
+        occurrences: reader.occurrences,
+        variables: vocabulary.variables,
+        blocks: Vec::new(),
+        root: None,
+        start,
+        end,
+        threat_gap,
+    })
+}
+
+#[derive(Default)]
+struct Reader {
+    nodes: Vec<Node>,
+    arcs: Vec<Arc>,
+    labels: Vec<Label>,
+    decisions: Vec<Decision>,
+    occurrences: Vec<Occurrence>,
+    by_name: BTreeMap<SmolStr, OccurrenceId>,
+}
+
+impl Reader {
+    fn read_occurrences(&mut self, document: &Value, arc_count: usize) -> Result<(), NetworkError> {
+        let Some(occurrences) = document.get("occurrences").and_then(Value::as_array) else { return Ok(()) };
+        for (index, value) in occurrences.iter().enumerate() {
+            let place = format!("occurrences[{index}]");
+            let kind: OccurrenceKind = serde_json::from_value(value.get("kind").cloned().unwrap_or_default())
+                .map_err(|problem| error(&place, &problem.to_string()))?;
+            let small = |member: &str, limit: usize| -> Result<Option<u32>, NetworkError> {
+                match value.get(member) {
+                    None | Some(Value::Null) => Ok(None),
+                    Some(number) => match number.as_u64().filter(|&number| number < limit as u64) {
+                        Some(number) => Ok(Some(number as u32)),
+                        None => Err(error(&place, &format!("`{member}` is out of range"))),
+                    },
+                }
+            };
+            let arguments = value.get("arguments").and_then(Value::as_array).into_iter().flatten();
+            self.add_occurrence(Occurrence {
+                name: text(value, "name", &place)?,
+                activity: text(value, "activity", &place)?,
+                kind,
+                start: self.node_id(value.get("start"), &place)?,
+                end: self.node_id(value.get("end"), &place)?,
+                arc: small("arc", arc_count)?.map(ArcId),
+                arguments: arguments.filter_map(|argument| argument.as_str().map(SmolStr::new)).collect(),
+                parent: small("parent", index)?.map(OccurrenceId),
+                span: None,
+            });
+        }
+        Ok(())
+    }
+
+    fn add_occurrence(&mut self, occurrence: Occurrence) -> OccurrenceId {
+        let id = OccurrenceId::from_index(self.occurrences.len());
+        self.by_name.insert(occurrence.name.clone(), id);
+        self.occurrences.push(occurrence);
+        id
+    }
+
+    fn read_node(&mut self, index: usize, value: &Value) -> Result<(), NetworkError> {
+        let place = format!("nodes[{index}]");
+        if value.get("id").is_some_and(|id| id.as_u64() != Some(index as u64)) {
+            return Err(error(&place, "ids count nodes from 0, in order"));
+        }
+        if let Some(role) = value.get("role") {
+            self.nodes[index].role = serde_json::from_value(role.clone())
+                .map_err(|problem| error(&place, &problem.to_string()))?;
+        }
+        if let Some(name) = value.get("decision") {
+            let decision = decision_id(Some(name), &place)?;
+            self.decision_at(decision, &place)?.node = NodeId::from_index(index);
+            self.nodes[index].decision = Some(decision);
+            self.nodes[index].role = Role::Decision;
+        }
+        for event in value.get("events").and_then(Value::as_array).into_iter().flatten() {
+            let event = event.as_str().ok_or_else(|| error(&place, "an event is a name"))?;
+            let event = self.event(event, NodeId::from_index(index), &place)?;
+            self.nodes[index].events.push(event);
+        }
+        Ok(())
+    }
+
+    fn event(&mut self, name: &str, node: NodeId, place: &str) -> Result<EventRef, NetworkError> {
+        let (name, end) =
+            split_event(name).ok_or_else(|| error(place, &format!("`{name}` is no event's name")))?;
+        let occurrence = match self.by_name.get(name) {
+            Some(&known) => known,
+            None => self.add_occurrence(Occurrence {
+                name: name.into(),
+                activity: name.rsplit_once('#').map_or(name, |(activity, _)| activity).into(),
+                kind: kind_by_name(name),
+                start: node,
+                end: node,
+                arc: None,
+                arguments: Vec::new(),
+                parent: None,
+                span: None,
+            }),
+        };
+        match end {
+            EventEnd::Start => self.occurrences[occurrence.index()].start = node,
+            EventEnd::End => self.occurrences[occurrence.index()].end = node,
+            EventEnd::PathVertex { .. } => {}
+        }
+        Ok(EventRef { occurrence, end })
+    }
+
+    fn read_arc(
+        &mut self,
+        index: usize,
+        value: &Value,
+        vocabulary: &mut Vocabulary,
+    ) -> Result<(), NetworkError> {
+        let place = format!("arcs[{index}]");
+        let id = ArcId::from_index(index);
+        if value.get("id").is_some_and(|id| id.as_u64() != Some(index as u64)) {
+            return Err(error(&place, "ids count arcs from 0, in order"));
+        }
+        let (from, to) = (self.node_id(value.get("from"), &place)?, self.node_id(value.get("to"), &place)?);
+        let lower =
+            value.get("lower").and_then(time_from_json).ok_or_else(|| error(&place, "`lower` is no time"))?;
+        let upper = value
+            .get("upper")
+            .and_then(bound_from_json)
+            .ok_or_else(|| error(&place, "`upper` is no bound"))?;
+        if Bound::Finite(lower) > upper {
+            return Err(error(&place, "`lower` is greater than `upper`"));
+        }
+        let kind: ArcKind =
+            serde_json::from_value(value.get("kind").cloned().unwrap_or_else(|| "glue".into()))
+                .map_err(|problem| error(&place, &problem.to_string()))?;
+        let occurrence = match value.get("activity").and_then(Value::as_str) {
+            Some(name) => Some(
+                *self
+                    .by_name
+                    .get(name)
+                    .ok_or_else(|| error(&place, &format!("no event belongs to `{name}`")))?,
+            ),
+            None => None,
+        };
+        if let Some(occurrence) = occurrence
+            && kind != ArcKind::Path
+        {
+            self.occurrences[occurrence.index()].arc = Some(id);
+        }
+        let mut arc =
+            Arc { from, to, lower, upper, kind, labels: Vec::new(), occurrence, choice: None, span: None };
+        for label in value.get("labels").and_then(Value::as_array).into_iter().flatten() {
+            let label = self.read_label(label, id, occurrence, vocabulary, &place)?;
+            arc.labels.push(LabelId::from_index(self.labels.len()));
+            self.labels.push(label);
+        }
+        if value.get("decision").is_some() {
+            let decision = decision_id(value.get("decision"), &place)?;
+            let alternative = value.get("alternative").and_then(Value::as_u64);
+            let known = self.decision_at(decision, &place)?;
+            if alternative != Some(known.alternatives.len() as u64) {
+                return Err(error(&place, "alternatives are numbered from 0, in order"));
+            }
+            arc.choice = Some((decision, known.alternatives.len() as u32));
+            known.alternatives.push(id);
+        }
+        self.nodes[from.index()].out_arcs.push(id);
+        self.nodes[to.index()].in_arcs.push(id);
+        self.arcs.push(arc);
+        Ok(())
+    }
+
+    fn read_label(
+        &self,
+        value: &Value,
+        arc: ArcId,
+        arc_owner: Option<OccurrenceId>,
+        vocabulary: &mut Vocabulary,
+        place: &str,
+    ) -> Result<Label, NetworkError> {
+        let mode = match value.get("type").and_then(Value::as_str) {
+            Some("Ask") => LabelMode::Ask,
+            Some("Tell") => LabelMode::Tell,
+            _ => return Err(error(place, "a label's `type` is `Ask` or `Tell`")),
+        };
+        let text = text(value, "literal", place)?;
+        let literal = vocabulary
+            .literal(&text)
+            .ok_or_else(|| error(place, &format!("`{text}` is no literal of the declared variables")))?;
+        let owner = match value.get("owner").and_then(Value::as_str) {
+            Some(name) => self.by_name.get(name).copied(),
+            None => arc_owner,
+        };
+        Ok(Label { arc, mode, literal, text, owner, span: None })
+    }
+
+    /// The decision of that number; numbers beyond any sensible count are refused, gaps are found at the end.
+    fn decision_at(&mut self, decision: DecisionId, place: &str) -> Result<&mut Decision, NetworkError> {
+        if decision.index() >= self.nodes.len() {
+            return Err(error(place, "decisions are numbered from D1 without gaps"));
+        }
+        while self.decisions.len() <= decision.index() {
+            self.decisions.push(Decision {
+                node: NodeId(u32::MAX),
+                alternatives: Vec::new(),
+                alternative_spans: Vec::new(),
+                span: None,
+            });
+        }
+        Ok(&mut self.decisions[decision.index()])
+    }
+
+    fn check_decisions(&self) -> Result<(), NetworkError> {
+        for (index, decision) in self.decisions.iter().enumerate() {
+            let name = Network::decision_name(DecisionId::from_index(index));
+            let Some(node) = self.nodes.get(decision.node.index()) else {
+                return Err(error(&name, "has no node"));
+            };
+            if decision.alternatives.is_empty() || node.out_arcs != decision.alternatives {
+                return Err(error(&name, "its node has exactly its alternatives as out-arcs, at least one"));
+            }
+        }
+        Ok(())
+    }
+
+    fn node_id(&self, value: Option<&Value>, place: &str) -> Result<NodeId, NetworkError> {
+        let id = value.and_then(Value::as_u64).filter(|&id| id < self.nodes.len() as u64);
+        id.map(|id| NodeId(id as u32)).ok_or_else(|| error(place, "names a node that does not exist"))
+    }
+}
+
+/// Variables and values, complete or still collecting.
+pub(crate) struct Vocabulary {
+    /// Whether the document declares its variables, so that only their values count.
+    pub(crate) is_complete: bool,
+    /// The variables.
+    pub(crate) variables: Vec<Variable>,
+}
+
+impl Vocabulary {
+    /// The literal of a printed condition: `X`, `X=V`, `not(X)`, `not(X=V)`.
+    pub(crate) fn literal(&mut self, text: &str) -> Option<Literal> {
+        let (positive, is_negated) = match text.strip_prefix("not(").and_then(|inner| inner.strip_suffix(')'))
+        {
+            Some(inner) => (inner, true),
+            None => (text, false),
+        };
+        let (name, value) =
+            positive.split_once('=').map_or((positive, None), |(name, value)| (name, Some(value)));
+        if name.is_empty() || value.is_some_and(str::is_empty) {
+            return None;
+        }
+        let index = match self.variables.iter().position(|variable| variable.name == name) {
+            Some(index) => index,
+            None if self.is_complete => return None,
+            None => {
+                // Without declarations an atom is Boolean, and a compared variable is open.
+                let is_atom = value.is_none();
+                let values = if is_atom { vec!["true".into(), "false".into()] } else { Vec::new() };
+                self.variables.push(Variable { name: name.into(), values, closed: is_atom });
+                self.variables.len() - 1
+            }
+        };
+        let variable = &mut self.variables[index];
+        let value = value.unwrap_or("true");
+        let position = match variable.values.iter().position(|known| known == value) {
+            Some(position) => position,
+            None if self.is_complete || variable.closed => return None,
+            None => {
+                variable.values.push(value.into());
+                variable.values.len() - 1
+            }
+        };
+        let value = ValueId::from_index(position);
+        let values = match (is_negated, variable.closed) {
+            (false, _) => ValueSet::In(vec![value]),
+            (true, false) => ValueSet::NotIn(vec![value]),
+            (true, true) => {
+                let all = (0..variable.values.len()).map(ValueId::from_index);
+                ValueSet::In(all.filter(|&other| other != value).collect())
+            }
+        };
+        Some(Literal { variable: VariableId::from_index(index), values })
+    }
+}
+
+fn split_event(name: &str) -> Option<(&str, EventEnd)> {
+    if let Some(name) = name.strip_suffix(".start") {
+        return Some((name, EventEnd::Start));
+    }
+    if let Some(name) = name.strip_suffix(".end") {
+        return Some((name, EventEnd::End));
+    }
+    let (rest, vertex) = name.rsplit_once(".vertex")?;
+    let (name, leg) = rest.rsplit_once(".leg")?;
+    Some((name, EventEnd::PathVertex { leg: leg.parse().ok()?, vertex: vertex.parse().ok()? }))
+}
+
+fn kind_by_name(name: &str) -> OccurrenceKind {
+    if name.starts_with("delay#") {
+        OccurrenceKind::Delay
+    } else if name.starts_with("scenario#") {
+        OccurrenceKind::Scenario
+    } else if name.starts_with("Tell(") || name.starts_with("Ask(") {
+        OccurrenceKind::Assertion
+    } else {
+        OccurrenceKind::Primitive
+    }
+}
+
+fn mode_name(mode: LabelMode) -> &'static str {
+    match mode {
+        LabelMode::Ask => "Ask",
+        LabelMode::Tell => "Tell",
+    }
+}
+
+fn decision_id(value: Option<&Value>, place: &str) -> Result<DecisionId, NetworkError> {
+    let number = value.and_then(Value::as_str).and_then(|name| name.strip_prefix('D')?.parse::<u32>().ok());
+    let index = number.and_then(|number| number.checked_sub(1));
+    index.map(DecisionId).ok_or_else(|| error(place, "a decision is named D1, D2, …"))
+}
+
+fn list<'value>(document: &'value Value, member: &str) -> Result<&'value [Value], NetworkError> {
+    let list = document.get(member).and_then(Value::as_array);
+    list.map(Vec::as_slice).ok_or_else(|| error(member, "is not a list"))
+}
+
+fn text(value: &Value, member: &str, place: &str) -> Result<SmolStr, NetworkError> {
+    let text = value.get(member).and_then(Value::as_str);
+    text.map(SmolStr::new).ok_or_else(|| error(place, &format!("has no `{member}`")))
+}
+
+fn object(value: Value) -> Map<String, Value> {
+    match value {
+        Value::Object(members) => members,
+        _ => Map::new(),
+    }
+}
+
+fn error(place: &str, problem: &str) -> NetworkError {
+    NetworkError { place: place.to_owned(), problem: problem.to_owned() }
+}

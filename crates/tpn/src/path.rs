@@ -1,0 +1,180 @@
+//! Insertion of a traverse's path into the network (SPEC 7.3): its vertices become events, its segments arcs.
+//!
+//! Where the path comes from is no concern of this module: lengths and speeds are plain numbers.
+
+use rmpl::{Bound, Rational};
+
+use crate::network::{Arc, ArcId, ArcKind, EventEnd, EventRef, Network, Node, NodeId, OccurrenceId, Role};
+
+/// A path found for one traverse.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TraversePath {
+    /// The traverse.
+    pub occurrence: OccurrenceId,
+    /// Its legs between waypoints, in order.
+    pub legs: Vec<PathLeg>,
+    /// Least and greatest speed in metres per second; the greatest is positive.
+    pub speed_mps: (Rational, Rational),
+    /// Whether the rover may stop on the way, so that no segment has a greatest duration.
+    pub may_stop: bool,
+}
+
+/// The path between two waypoints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathLeg {
+    /// The length of each segment in metres, in order. The vertex that ends the last one is the waypoint.
+    pub segment_lengths_m: Vec<f64>,
+}
+
+/// Why a path cannot be inserted.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PathError {
+    /// There is no such traverse, or it has no arc.
+    #[error("the network has no traverse with that number")]
+    NoTraverse,
+    /// It has no segment at all.
+    #[error("a path has at least one segment")]
+    Empty,
+    /// A length is negative, infinite or not a number, or too long for exact time.
+    #[error("a segment's length of {0} metres has no exact duration")]
+    Length(String),
+    /// The greatest speed is not positive, or the least is negative or greater.
+    #[error("the speeds {0} to {1} metres per second are no range of speeds to drive at")]
+    Speed(String, String),
+}
+
+/// Inserts `paths` into a copy of `network`. `unit_seconds` is the length of the mission's time unit.
+///
+/// Every id of `network` stays valid: nodes and arcs are only appended. Each segment takes its length divided by the
+/// speed, rounded up to the millisecond, and has no greatest duration if the rover may stop or may drive at speed zero.
+/// The arc of the traverse keeps its bounds and labels and spans the path. The new events are named
+/// `X#1.leg1.vertex1`; the last vertex is the traverse's end. Time is linear in the result.
+pub fn insert_paths(
+    network: &Network,
+    paths: &[TraversePath],
+    unit_seconds: i64,
+) -> Result<Network, PathError> {
+    let mut extended = network.clone();
+    for path in paths {
+        insert_path(&mut extended, path, unit_seconds)?;
+    }
+    Ok(extended)
+}
+
+fn insert_path(network: &mut Network, path: &TraversePath, unit_seconds: i64) -> Result<(), PathError> {
+    let occurrence = network.occurrences.get(path.occurrence.index()).ok_or(PathError::NoTraverse)?;
+    let spanning = occurrence.arc.ok_or(PathError::NoTraverse)?;
+    let (start, end, span) = (occurrence.start, occurrence.end, network.arcs[spanning.index()].span);
+    let (least, greatest) = path.speed_mps;
+    if greatest <= Rational::from_integer(0) || least < Rational::from_integer(0) || least > greatest {
+        return Err(PathError::Speed(rmpl::rational::display(least), rmpl::rational::display(greatest)));
+    }
+    let has_slowest = !path.may_stop && least > Rational::from_integer(0);
+    let segments: Vec<(u32, u32, f64)> = (path.legs.iter().zip(1..))
+        .flat_map(|(leg, number)| {
+            leg.segment_lengths_m.iter().zip(1..).map(move |(&length, vertex)| (number, vertex, length))
+        })
+        .collect();
+    let count = segments.len();
+    if count == 0 {
+        return Err(PathError::Empty);
+    }
+    network.arcs[spanning.index()].kind = ArcKind::Span;
+    let mut from = start;
+    for (position, (leg, vertex, length_m)) in segments.into_iter().enumerate() {
+        let error = || PathError::Length(length_m.to_string());
+        let duration = |speed| duration(length_m, speed, unit_seconds).ok_or_else(error);
+        let lower = duration(greatest)?;
+        let upper = if has_slowest { Bound::Finite(duration(least)?) } else { Bound::Infinite };
+        let to = if position + 1 == count {
+            end
+        } else {
+            let event = EventRef { occurrence: path.occurrence, end: EventEnd::PathVertex { leg, vertex } };
+            network.nodes.push(Node { role: Role::Event, events: vec![event], ..Node::default() });
+            NodeId::from_index(network.nodes.len() - 1)
+        };
+        let id = ArcId::from_index(network.arcs.len());
+        network.arcs.push(Arc {
+            from,
+            to,
+            lower,
+            upper,
+            kind: ArcKind::Path,
+            labels: Vec::new(),
+            occurrence: Some(path.occurrence),
+            choice: None,
+            span,
+        });
+        network.nodes[from.index()].out_arcs.push(id);
+        network.nodes[to.index()].in_arcs.push(id);
+        from = to;
+    }
+    Ok(())
+}
+
+/// The time for `length_m` at `speed_mps` in units of `unit_seconds`, exact and then rounded up to the millisecond.
+/// `None` if the length is no finite non-negative number or the result does not fit.
+pub fn duration(length_m: f64, speed_mps: Rational, unit_seconds: i64) -> Option<Rational> {
+    if !length_m.is_finite() || length_m < 0.0 || unit_seconds <= 0 {
+        return None;
+    }
+    // A double is mantissa · 2^exponent; both are exact, so the division below is too.
+    let bits = length_m.to_bits();
+    let biased = (bits >> 52 & 0x7FF) as i32;
+    let fraction = (bits & ((1 << 52) - 1)) as i128;
+    let (mantissa, exponent) =
+        if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
+    let millis_times_speed = mantissa.checked_mul(1000)?.checked_mul(i128::from(*speed_mps.denom()))?;
+    let speed = i128::from(*speed_mps.numer());
+    let millis = if exponent >= 0 {
+        let factor = 1_i128.checked_shl(exponent.unsigned_abs()).filter(|&factor| factor > 0)?;
+        divide_up(millis_times_speed.checked_mul(factor)?, speed)?
+    } else {
+        // Lengths below 2^-60 m only matter by not being zero.
+        let shift = exponent.unsigned_abs();
+        if shift >= 112 {
+            i128::from(mantissa > 0)
+        } else {
+            match speed.checked_mul(1 << shift) {
+                Some(divisor) => divide_up(millis_times_speed, divisor)?,
+                None => i128::from(mantissa > 0),
+            }
+        }
+    };
+    Some(Rational::new(i64::try_from(millis).ok()?, unit_seconds.checked_mul(1000)?))
+}
+
+fn divide_up(dividend: i128, divisor: i128) -> Option<i128> {
+    if divisor <= 0 {
+        return None;
+    }
+    Some(dividend / divisor + i128::from(dividend % divisor != 0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn minutes(length_m: f64, speed: (i64, i64)) -> Option<Rational> {
+        duration(length_m, Rational::new(speed.0, speed.1), 60)
+    }
+
+    #[test]
+    fn a_segment_takes_its_length_over_speed_rounded_up_to_the_millisecond() {
+        assert_eq!(minutes(300.0, (5, 100)), Some(Rational::from_integer(100)));
+        // 500 m at 0.045 m/s are 11,111,111.1 ms.
+        assert_eq!(minutes(500.0, (45, 1000)), Some(Rational::new(11_111_112, 60_000)));
+        assert_eq!(minutes(415.0, (5, 100)), Some(Rational::new(8_300_000, 60_000)));
+        assert_eq!(minutes(0.0, (1, 1)), Some(Rational::from_integer(0)));
+        // One ten-thousandth of a millimetre still takes a millisecond.
+        assert_eq!(duration(1e-7, Rational::from_integer(1), 1), Some(Rational::new(1, 1000)));
+        assert_eq!(duration(1e-300, Rational::from_integer(1), 1), Some(Rational::new(1, 1000)));
+    }
+
+    #[test]
+    fn a_length_without_exact_duration_is_refused() {
+        for length in [-1.0, f64::NAN, f64::INFINITY, 1e300] {
+            assert_eq!(minutes(length, (1, 1)), None, "{length}");
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! Plans in the JSON of DESIGN 4.2, by the names of DESIGN 4.1: writing them, and reading them for a given network.
+
+use std::collections::BTreeMap;
+
+use rmpl::Rational;
+use serde_json::{Map, Value, json};
+
+use crate::network::{DecisionId, EventRef, LabelId, Network, NodeId, OccurrenceKind};
+use crate::number::{bound_from_json, bound_to_json, time_from_json, time_to_json};
+use crate::plan::{CausalLink, Choice, Ordering, Plan, Window};
+use crate::selection::closure;
+
+/// Why a JSON document is no plan of a network.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PlanError {
+    /// The document does not have the shape of DESIGN 4.2.
+    #[error("{0}")]
+    Shape(String),
+    /// It names something that the network does not have.
+    #[error("the network has no {kind} `{name}`")]
+    Unknown {
+        /// Event, interval, decision or alternative.
+        kind: &'static str,
+        /// The name.
+        name: String,
+    },
+}
+
+/// One plan of `network`. Windows of nodes without a name are left out; activities and conflicts are sorted by name.
+pub fn plan_to_json(network: &Network, plan: &Plan) -> Value {
+    let choices: Map<String, Value> = (plan.choices.iter())
+        .map(|choice| (Network::decision_name(choice.decision), Value::from(choice.alternative)))
+        .collect();
+    let links: Vec<Value> = (plan.causal_links.iter())
+        .map(|link| json!({"ask": network.label_name(link.ask), "tell": network.label_name(link.tell)}))
+        .collect();
+    let pair = |ordering: &Ordering| [network.label_name(ordering.first), network.label_name(ordering.then)];
+    let mut conflict_order: Vec<[String; 2]> = plan.conflict_order.iter().map(pair).collect();
+    conflict_order.sort();
+    let orderings: Vec<[String; 2]> = plan.orderings_added.iter().map(pair).collect();
+    let windows: Map<String, Value> = (network.nodes.iter().zip(&plan.windows))
+        .filter_map(|(node, window)| Some((node, (*window)?)))
+        .flat_map(|(node, window)| node.events.iter().map(move |&event| (event, window)))
+        .map(|(event, window)| {
+            (network.event_name(event), json!([time_to_json(window.earliest), bound_to_json(window.latest)]))
+        })
+        .collect();
+    json!({
+        "choices": choices,
+        "activities": selected_activities(network, plan),
+        "causal_links": links,
+        "conflict_order": conflict_order,
+        "orderings_added": orderings,
+        "windows": windows,
+    })
+}
+
+/// The names of the primitives that the plan selects, sorted.
+pub fn selected_activities(network: &Network, plan: &Plan) -> Vec<String> {
+    let is_selected = |arc: crate::ArcId| plan.selected_arcs.get(arc.index()) == Some(&true);
+    let primitives = network.occurrences.iter().filter(|occurrence| {
+        occurrence.kind == OccurrenceKind::Primitive && occurrence.arc.is_some_and(is_selected)
+    });
+    let mut names: Vec<String> = primitives.map(|occurrence| occurrence.name.to_string()).collect();
+    names.sort();
+    names
+}
+
+/// The plans of a document: `enroute-plan/1` with its `plans`, or a single plan.
+pub fn plans_from_json(network: &Network, document: &Value) -> Result<Vec<Plan>, PlanError> {
+    match document.get("plans") {
+        Some(Value::Array(plans)) => plans.iter().map(|plan| plan_from_json(network, plan)).collect(),
+        Some(_) => Err(shape("`plans` is not a list")),
+        None => Ok(vec![plan_from_json(network, document)?]),
+    }
+}
+
+/// Reads one plan. What it selects follows from its choices; its windows are taken as they are, and so are its
+/// `activities`, which [`stated_activities`] gives.
+pub fn plan_from_json(network: &Network, plan: &Value) -> Result<Plan, PlanError> {
+    if !plan.is_object() {
+        return Err(shape("a plan is an object with `choices` and `windows`"));
+    }
+    let names = Names::new(network);
+    let mut choices = Vec::new();
+    for (name, alternative) in members(plan, "choices")? {
+        choices.push(names.choice(network, name, alternative)?);
+    }
+    choices.sort_unstable();
+    let (selected_nodes, selected_arcs) = closure(network, &choices);
+    let mut causal_links = Vec::new();
+    for link in items(plan, "causal_links")? {
+        let label = |member: &str| {
+            let name = link.get(member).and_then(Value::as_str);
+            names.label(
+                name.ok_or_else(|| shape("a causal link is an object with the names `ask` and `tell`"))?,
+            )
+        };
+        causal_links.push(CausalLink { ask: label("ask")?, tell: label("tell")? });
+    }
+    causal_links.sort_unstable();
+    let orderings = |member: &str| -> Result<Vec<Ordering>, PlanError> {
+        let pair = |pair: &Value| match pair.as_array().map(Vec::as_slice) {
+            Some([Value::String(first), Value::String(then)]) => {
+                Ok(Ordering { first: names.label(first)?, then: names.label(then)? })
+            }
+            _ => Err(shape(&format!("`{member}` is a list of pairs of names"))),
+        };
+        items(plan, member)?.iter().map(pair).collect()
+    };
+    let mut windows: Vec<Option<Window>> = vec![None; network.nodes.len()];
+    for (event, window) in members(plan, "windows")? {
+        let node = names.event(event)?;
+        let read = read_window(window)
+            .ok_or_else(|| shape(&format!("the window of `{event}` is not a pair of exact times")))?;
+        if windows[node.index()].is_some_and(|known| known != read) {
+            return Err(shape(&format!(
+                "`{event}` is given two windows, under its names for the same event"
+            )));
+        }
+        windows[node.index()] = Some(read);
+    }
+    Ok(Plan {
+        choices,
+        selected_nodes,
+        selected_arcs,
+        causal_links,
+        conflict_order: orderings("conflict_order")?,
+        orderings_added: orderings("orderings_added")?,
+        windows,
+    })
+}
+
+/// The `activities` that a plan's JSON states, sorted, if it does.
+pub fn stated_activities(plan: &Value) -> Option<Vec<String>> {
+    let stated = plan.get("activities")?.as_array()?;
+    let mut names: Vec<String> = stated.iter().filter_map(|name| Some(name.as_str()?.to_owned())).collect();
+    names.sort();
+    Some(names)
+}
+
+/// Event times by name, as `enroute execute` and schedules give them, as times by node.
+pub fn times_from_json(network: &Network, times: &Value) -> Result<Vec<Option<Rational>>, PlanError> {
+    let names = Names::new(network);
+    let mut by_node = vec![None; network.nodes.len()];
+    let Value::Object(times) = times else { return Err(shape("times are an object from events to numbers")) };
+    for (event, time) in times {
+        let read =
+            time_from_json(time).ok_or_else(|| shape(&format!("the time of `{event}` is not exact")))?;
+        by_node[names.event(event)?.index()] = Some(read);
+    }
+    Ok(by_node)
+}
+
+/// Nodes and labels by their names.
+pub struct Names {
+    events: BTreeMap<String, NodeId>,
+    labels: BTreeMap<String, LabelId>,
+}
+
+impl Names {
+    /// Indexes a network.
+    pub fn new(network: &Network) -> Self {
+        let mut events = BTreeMap::new();
+        for (index, node) in network.nodes.iter().enumerate() {
+            for &event in &node.events {
+                events.insert(network.event_name(event), NodeId::from_index(index));
+            }
+        }
+        let labels = (0..network.labels.len()).map(LabelId::from_index);
+        Self { events, labels: labels.map(|label| (network.label_name(label), label)).collect() }
+    }
+
+    /// The node of an event.
+    pub fn event(&self, name: &str) -> Result<NodeId, PlanError> {
+        self.events.get(name).copied().ok_or_else(|| unknown("event", name))
+    }
+
+    /// A labelled interval.
+    pub fn label(&self, name: &str) -> Result<LabelId, PlanError> {
+        self.labels.get(name).copied().ok_or_else(|| unknown("labelled interval", name))
+    }
+
+    fn choice(&self, network: &Network, name: &str, alternative: &Value) -> Result<Choice, PlanError> {
+        let number = name.strip_prefix('D').and_then(|number| number.parse::<u32>().ok());
+        let index =
+            number.and_then(|number| number.checked_sub(1)).ok_or_else(|| unknown("decision", name))?;
+        let decision = network.decisions.get(index as usize).ok_or_else(|| unknown("decision", name))?;
+        let alternative =
+            alternative.as_u64().ok_or_else(|| shape("a choice is the number of an alternative"))?;
+        if alternative >= decision.alternatives.len() as u64 {
+            return Err(unknown("alternative", &format!("{name}: {alternative}")));
+        }
+        Ok(Choice { decision: DecisionId(index), alternative: alternative as u32 })
+    }
+}
+
+/// The name of a node: its first event's, or `node 7`.
+pub fn node_name(network: &Network, node: NodeId) -> String {
+    match network.nodes[node.index()].events.first() {
+        Some(&EventRef { occurrence, end }) => network.event_name(EventRef { occurrence, end }),
+        None => format!("node {}", node.0),
+    }
+}
+
+fn read_window(value: &Value) -> Option<Window> {
+    let [earliest, latest] = value.as_array()?.as_slice() else { return None };
+    Some(Window { earliest: time_from_json(earliest)?, latest: bound_from_json(latest)? })
+}
+
+fn members<'value>(
+    plan: &'value Value,
+    member: &str,
+) -> Result<Box<dyn Iterator<Item = (&'value String, &'value Value)> + 'value>, PlanError> {
+    match plan.get(member) {
+        Some(Value::Object(members)) => Ok(Box::new(members.iter())),
+        Some(_) => Err(shape(&format!("`{member}` is not an object"))),
+        None => Err(shape(&format!("the plan has no `{member}`"))),
+    }
+}
+
+fn items<'value>(plan: &'value Value, member: &str) -> Result<&'value [Value], PlanError> {
+    match plan.get(member) {
+        Some(Value::Array(items)) => Ok(items),
+        Some(_) => Err(shape(&format!("`{member}` is not a list"))),
+        None => Ok(&[]),
+    }
+}
+
+fn shape(message: &str) -> PlanError {
+    PlanError::Shape(message.to_owned())
+}
+
+fn unknown(kind: &'static str, name: &str) -> PlanError {
+    PlanError::Unknown { kind, name: name.to_owned() }
+}

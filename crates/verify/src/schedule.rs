@@ -1,0 +1,133 @@
+//! The check of a schedule (SPEC 5.5): one time for each selected event. It needs no links and no orderings.
+
+use rmpl::program::LabelMode;
+use rmpl::{Bound, Rational};
+use tpn::{LabelId, Network, NodeId, Plan};
+
+use num_traits::CheckedSub as _;
+
+use crate::labels::{self, Interval, interval};
+use crate::{Rule, Verdict, Violation, node_name, selection};
+
+/// The earliest time of every selected event of `plan`, from its windows: a schedule, if the plan is valid.
+pub fn earliest_schedule(plan: &Plan) -> Vec<Option<Rational>> {
+    plan.windows.iter().map(|window| window.map(|window| window.earliest)).collect()
+}
+
+/// Checks the times of `plan`'s selected nodes, indexed by node.
+///
+/// A `[0,0]` interval holds at one instant, which must lie outside conflicting intervals, their start included. With a
+/// threat gap of zero touching is no overlap for instants either, as in planning (SPEC 5.3).
+pub fn check_schedule(network: &Network, plan: &Plan, times: &[Option<Rational>]) -> Verdict {
+    if let Err(verdict) = selection::check_form(network, plan) {
+        return verdict;
+    }
+    let mut violations = Vec::new();
+    if times.len() != network.nodes.len() {
+        return Verdict::new(vec![Violation::new(
+            Rule::Form,
+            "the schedule is of a network with other nodes",
+        )]);
+    }
+    for (index, &selected) in plan.selected_nodes.iter().enumerate() {
+        if selected && times[index].is_none() {
+            let name = node_name(network, NodeId::from_index(index));
+            violations
+                .push(Violation::new(Rule::Form, format!("{name} has no time")).with_events(vec![name]));
+        }
+    }
+    if violations.is_empty() {
+        let schedule = Schedule { network, plan, times };
+        schedule.check_durations(&mut violations);
+        schedule.check_supports(&mut violations);
+        schedule.check_conflicts(&mut violations);
+    }
+    Verdict::new(violations)
+}
+
+struct Schedule<'schedule> {
+    network: &'schedule Network,
+    plan: &'schedule Plan,
+    times: &'schedule [Option<Rational>],
+}
+
+impl Schedule<'_> {
+    fn time(&self, node: NodeId) -> Rational {
+        self.times[node.index()].unwrap_or_default()
+    }
+
+    fn check_durations(&self, violations: &mut Vec<Violation>) {
+        for (index, arc) in self.network.arcs.iter().enumerate() {
+            if !self.plan.selected_arcs[index] {
+                continue;
+            }
+            let names = vec![node_name(self.network, arc.from), node_name(self.network, arc.to)];
+            let message = match self.time(arc.to).checked_sub(&self.time(arc.from)) {
+                None => format!("the time from {} to {} is too long to be exact", names[0], names[1]),
+                Some(duration) if duration < arc.lower || Bound::Finite(duration) > arc.upper => format!(
+                    "from {} to {} is {}, outside [{},{}]",
+                    names[0],
+                    names[1],
+                    Bound::Finite(duration),
+                    Bound::Finite(arc.lower),
+                    arc.upper
+                ),
+                Some(_) => continue,
+            };
+            violations.push(Violation::new(Rule::Duration, message).with_events(names));
+        }
+    }
+
+    fn check_supports(&self, violations: &mut Vec<Violation>) {
+        let selected = labels::selected(self.network, self.plan);
+        let (asks, tells): (Vec<LabelId>, Vec<LabelId>) =
+            selected.iter().partition(|label| self.network.labels[label.index()].mode == LabelMode::Ask);
+        for ask in asks {
+            let required = interval(self.network, ask);
+            let is_supported = tells.iter().any(|&tell| {
+                let asserted = interval(self.network, tell);
+                self.network.labels[tell.index()].literal.supports(&self.network.labels[ask.index()].literal)
+                    && self.time(asserted.start) <= self.time(required.start)
+                    && self.time(required.end) <= self.time(asserted.end)
+            });
+            if !is_supported {
+                let name = self.network.label_name(ask);
+                let message = format!("{name} is inside no assertion that makes it hold");
+                violations.push(Violation::new(Rule::Support, message).with_intervals(vec![name]));
+            }
+        }
+    }
+
+    fn check_conflicts(&self, violations: &mut Vec<Violation>) {
+        let selected = labels::selected(self.network, self.plan);
+        for (one, other) in labels::conflicting_pairs(self.network, &selected) {
+            if self.overlap(interval(self.network, one), interval(self.network, other)) {
+                let names = vec![self.network.label_name(one), self.network.label_name(other)];
+                let message = format!("{} and {} hold at the same time", names[0], names[1]);
+                violations.push(Violation::new(Rule::Conflict, message).with_intervals(names));
+            }
+        }
+    }
+
+    fn overlap(&self, one: Interval, other: Interval) -> bool {
+        if one.label != other.label
+            && self.network.labels[one.label.index()].arc == self.network.labels[other.label.index()].arc
+        {
+            return true;
+        }
+        let is_strict = self.network.threat_gap > Rational::from_integer(0);
+        let inside = |instant: Interval, around: Interval| {
+            let (at, from, to) = (self.time(instant.start), self.time(around.start), self.time(around.end));
+            at < to && (from < at || (is_strict && from == at))
+        };
+        match (one.is_instant, other.is_instant) {
+            (true, true) => is_strict && self.time(one.start) == self.time(other.start),
+            (true, false) => inside(one, other),
+            (false, true) => inside(other, one),
+            (false, false) => {
+                self.time(one.start).max(self.time(other.start))
+                    < self.time(one.end).min(self.time(other.end))
+            }
+        }
+    }
+}
