@@ -19,8 +19,8 @@ pub(crate) struct Checked {
     /// Relative diagnostics; of those about the same missing name, only the first of the file is shown.
     pub(crate) diagnostics: Vec<(Option<(Namespace, Symbol)>, Diagnostic)>,
     pub(crate) revision: u32,
-    /// Some diagnostic looks for similar names, so any new name may change it.
-    pub(crate) depends_on_names: bool,
+    /// The namespaces in which some diagnostic looks for similar names, so that any new name may change it.
+    pub(crate) depends_on_names: u8,
 }
 
 /// Checks the declaration `key`. `is_sound` says that it has no errors of its own: only then are its oddities reported.
@@ -105,8 +105,8 @@ impl<'a> Checker<'a> {
     }
 
     fn nearest(&mut self, written: Symbol, namespace: Namespace) -> Option<smol_str::SmolStr> {
-        self.checked.depends_on_names = true;
-        self.names.nearest(written, self.index.defined(self.names, namespace))
+        self.checked.depends_on_names |= namespace.bit();
+        self.names.nearest(written, self.index.defined(namespace).iter().copied())
     }
 
     fn definition(&mut self, key: DeclarationKey, definition: &Definition) {
@@ -266,9 +266,8 @@ impl<'a> Checker<'a> {
                 return;
             }
         }
-        if literal.value.is_none()
+        if literal.is_bare
             && let Some(nearest) = self.nearest(variable, Namespace::Callable)
-            && literal.is_bare
         {
             self.push(similar::callable(written, &nearest, literal.variable_span));
             return;

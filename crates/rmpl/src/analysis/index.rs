@@ -1,7 +1,5 @@
 //! What all declarations together declare and use, counted per name, so that one declaration can be exchanged.
 
-use crate::span::Span;
-
 use super::names::{Names, Symbol};
 use super::summary::{Definition, Literal, Summary, UseKind};
 use crate::program::LabelMode;
@@ -28,6 +26,15 @@ pub(crate) enum Namespace {
     Location,
     Obstacle,
     Vehicle,
+}
+
+impl Namespace {
+    pub(crate) const COUNT: usize = 8;
+
+    /// A set of namespaces with this one alone.
+    pub(crate) const fn bit(self) -> u8 {
+        1 << self as u8
+    }
 }
 
 /// A condition that something in the file asserts.
@@ -88,7 +95,9 @@ pub(crate) struct Index {
     /// Assertions whose variable is a parameter: they may be about anything.
     pub(crate) told_of_formals: u32,
     global_changed_at: u32,
-    names_changed_at: u32,
+    /// The names defined in each namespace, in no order.
+    defined: [Vec<Symbol>; Namespace::COUNT],
+    names_changed_at: [u32; Namespace::COUNT],
     last_change: u32,
     calls_changed: bool,
     free_keys: Vec<DeclarationKey>,
@@ -159,20 +168,19 @@ impl Index {
         found.map(|&(_, key)| key).min_by_key(|&key| self.position(key))
     }
 
-    /// All names defined in `namespace`, in the order in which they were first met.
-    pub(crate) fn defined<'a>(
-        &'a self,
-        names: &'a Names,
-        namespace: Namespace,
-    ) -> impl Iterator<Item = Symbol> + 'a {
-        names.all().filter(move |&symbol| self.facts(symbol).definition(namespace).is_some())
+    /// All names defined in `namespace`, in no order.
+    pub(crate) fn defined(&self, namespace: Namespace) -> &[Symbol] {
+        &self.defined[namespace as usize]
     }
 
     /// Whether something that the check depended on has changed since revision `at`.
-    pub(crate) fn is_stale(&self, summary: &Summary, at: u32, depends_on_names: bool) -> bool {
+    pub(crate) fn is_stale(&self, summary: &Summary, at: u32, depends_on_names: u8) -> bool {
         let newer = |symbol: Symbol| self.facts(symbol).changed_at > at;
+        let has_new_names = |(namespace, &changed_at): (usize, &u32)| {
+            depends_on_names & (1 << namespace) != 0 && changed_at > at
+        };
         self.global_changed_at > at
-            || (depends_on_names && self.names_changed_at > at)
+            || self.names_changed_at.iter().enumerate().any(has_new_names)
             || summary.symbols().any(newer)
     }
 
@@ -204,6 +212,14 @@ impl Index {
         }
         let before: Vec<Visible> = touched.iter().map(|&symbol| self.facts(symbol).visible()).collect();
         let global_before = (self.scenarios > 0, self.strict > 0, self.told_of_formals > 0);
+        let names_before = names_defined(old.clone());
+        let names_after = names_defined(new.clone());
+        for (namespace, changed_at) in self.names_changed_at.iter_mut().enumerate() {
+            if names_before[namespace] != names_after[namespace] {
+                *changed_at = self.revision;
+                self.last_change = self.revision;
+            }
+        }
         let calls_before = fingerprint_of_calls(old.clone());
         self.calls_changed |= is_first || calls_before != fingerprint_of_calls(new.clone());
         for (key, summary) in old {
@@ -215,7 +231,6 @@ impl Index {
         for (symbol, before) in touched.into_iter().zip(before) {
             let after = self.facts(symbol).visible();
             if before.0 != after.0 {
-                self.names_changed_at = self.revision;
                 self.calls_changed = true;
             }
             if before != after && let Some(facts) = self.facts.get_mut(symbol.index()) {
@@ -236,12 +251,21 @@ impl Index {
         };
         if let Some(definition) = &summary.definition {
             let facts = &mut self.facts[definition.name.index()];
+            let was_defined = facts.definition(definition.namespace).is_some();
             if is_added {
                 facts.definitions.push((definition.namespace, key));
                 facts.definition_fingerprint = facts.definition_fingerprint.wrapping_add(definition.fingerprint);
             } else {
                 facts.definitions.retain(|&(_, other)| other != key);
                 facts.definition_fingerprint = facts.definition_fingerprint.wrapping_sub(definition.fingerprint);
+            }
+            if was_defined != facts.definition(definition.namespace).is_some() {
+                let namespace = definition.namespace as usize;
+                if is_added {
+                    self.defined[namespace].push(definition.name);
+                } else if let Some(at) = self.defined[namespace].iter().position(|&name| name == definition.name) {
+                    self.defined[namespace].swap_remove(at);
+                }
             }
             if definition.namespace == Namespace::Scenario {
                 step(&mut self.scenarios);
@@ -302,12 +326,6 @@ impl Index {
             self.facts[variable.index()].tell(told, is_added);
         }
     }
-
-    /// Where the definition that counts stands, relative to its declaration.
-    pub(crate) fn definition_span(&self, namespace: Namespace, symbol: Symbol) -> Option<(DeclarationKey, Span)> {
-        let key = self.first_key(namespace, symbol)?;
-        Some((key, self.definitions.get(key.index())?.as_ref()?.span))
-    }
 }
 
 impl Facts {
@@ -340,4 +358,17 @@ fn fingerprint_of_calls<'a>(summaries: impl Iterator<Item = (DeclarationKey, &'a
     summaries.fold(0, |sum, (_, summary)| {
         sum.wrapping_add(summary.call_fingerprint.wrapping_mul(owner(summary).wrapping_mul(2) | 1))
     })
+}
+
+/// For each namespace, a sum that changes when the set of names that these declarations define does.
+fn names_defined<'a>(
+    summaries: impl Iterator<Item = (DeclarationKey, &'a Summary)>,
+) -> [u64; Namespace::COUNT] {
+    let mut sums = [0_u64; Namespace::COUNT];
+    for definition in summaries.filter_map(|(_, summary)| summary.definition.as_ref()) {
+        let hash = (definition.name.index() as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let sum = &mut sums[definition.namespace as usize];
+        *sum = sum.wrapping_add(hash ^ hash >> 29);
+    }
+    sums
 }

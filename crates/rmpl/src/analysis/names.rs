@@ -49,11 +49,6 @@ impl Names {
         self.texts.len()
     }
 
-    /// All of them, in the order in which they were first met.
-    pub(crate) fn all(&self) -> impl Iterator<Item = Symbol> + use<> {
-        (0..self.texts.len() as u32).map(Symbol)
-    }
-
     /// The candidate that `written` was probably meant to be: the nearest within a third of its length, the first
     /// such in the alphabet.
     pub(crate) fn nearest(
