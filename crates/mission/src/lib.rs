@@ -4,13 +4,21 @@
 //! No planning, motion or language rules are here: this crate connects the crates that have them, and keeps each
 //! stage's result so that an edit redoes only what it touched.
 
+mod core;
+pub mod driving;
+mod ground;
+pub mod planning;
 pub mod problem;
 pub mod request;
 pub mod snapshot;
+pub mod traverse;
 
+pub use self::core::{Core, Surroundings, compile};
+pub use ground::Grounds;
+pub use kirk::Search as SearchKind;
 pub use problem::{Problem, TextEdit, TextFix};
-pub use request::{Goal, Request, Response, SearchKind};
+pub use request::{Goal, Request, Response, Update};
 pub use snapshot::{
-    Encounter, Keyframe, Leg, MapKey, Planning, Snapshot, Stage, Timings, Traverse, Undrivable,
-    VehicleMotion,
+    Encounter, Keyframe, Leg, MapKey, Planning, Snapshot, Stage, Timings, Traverse, Undrivable, VehicleMotion,
 };
+pub use traverse::Paths;

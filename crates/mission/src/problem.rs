@@ -52,10 +52,7 @@ impl Problem {
             fixes: diagnostic
                 .fixes
                 .iter()
-                .map(|fix| TextFix {
-                    label: fix.label.clone(),
-                    edits: fix.edits.clone(),
-                })
+                .map(|fix| TextFix { label: fix.label.clone(), edits: fix.edits.clone() })
                 .collect(),
         }
     }
@@ -63,10 +60,8 @@ impl Problem {
     /// All of `diagnostics`, in textual order.
     pub fn all(diagnostics: &[Diagnostic], text: &str) -> Vec<Self> {
         let lines = LineIndex::new(text);
-        let mut problems: Vec<Self> = diagnostics
-            .iter()
-            .map(|found| Self::new(found, text, &lines))
-            .collect();
+        let mut problems: Vec<Self> =
+            diagnostics.iter().map(|found| Self::new(found, text, &lines)).collect();
         problems.sort_by_key(|problem| (problem.span, problem.severity));
         problems
     }

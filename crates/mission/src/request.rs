@@ -6,26 +6,13 @@ use rmpl::{Bound, Rational};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
-use crate::snapshot::Snapshot;
+use crate::snapshot::{MapKey, Snapshot};
 
 /// Asks for a mission to be worked out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Request {
-    /// Compile and plan this text; a later request supersedes an earlier one that is still under way.
-    Update {
-        /// Counts the edits of the text; every answer says which revision it belongs to.
-        revision: u64,
-        /// The whole text.
-        source: Arc<str>,
-        /// What to plan.
-        goal: Goal,
-        /// How to search.
-        search: SearchKind,
-        /// Seeds path planning.
-        seed: u64,
-        /// Whether to record the search for stepping through it.
-        trace: bool,
-    },
+    /// Compile and plan a text; a later one supersedes an earlier one that is still under way.
+    Update(Update),
     /// Makes a map file available to `terrain "name"` declarations.
     ImportMap {
         /// The name that the declaration uses.
@@ -35,12 +22,31 @@ pub enum Request {
     },
 }
 
+/// A text to compile and plan.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Update {
+    /// Counts the edits of the text; every answer says which revision it belongs to.
+    pub revision: u64,
+    /// The whole text.
+    pub source: Arc<str>,
+    /// What to plan.
+    pub goal: Goal,
+    /// How to search.
+    pub search: kirk::Search,
+    /// Seeds path planning.
+    pub seed: u64,
+    /// Whether to record the search for stepping through it.
+    pub trace: bool,
+}
+
 /// What is to be planned.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Goal {
     /// The first scenario of the file; without one, its last activity with bounds `[0,inf]`.
     #[default]
     Default,
+    /// The first scenario of the file.
+    FirstScenario,
     /// The scenario of this name.
     Scenario(SmolStr),
     /// An activity, with the bounds of its invocation.
@@ -54,21 +60,18 @@ pub enum Goal {
     },
 }
 
-/// Which search plans.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum SearchKind {
-    /// The paper's search; its first plan is the canonical one.
-    #[default]
-    Chronological,
-    /// Learns from conflicts and jumps back.
-    ConflictDirected,
-}
-
 /// An answer of the core.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Response {
     /// The state of a revision; a revision is answered more than once as its stages complete.
     Snapshot(Arc<Snapshot>),
+    /// The ground of the missions that name `key`; sent once, before the first snapshot that refers to it.
+    Map {
+        /// Which map.
+        key: MapKey,
+        /// Its heights.
+        map: Arc<terrain::Terrain>,
+    },
     /// A map file could not be read.
     MapRejected {
         /// The name it was to have.

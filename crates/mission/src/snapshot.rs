@@ -51,8 +51,10 @@ pub enum Stage {
 /// What planning found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Planning {
-    /// The plan, if there is one.
-    pub plan: Option<tpn::Plan>,
+    /// The planner's answer.
+    pub outcome: kirk::Outcome,
+    /// What the independent checker says of the first plan.
+    pub verdict: Option<verify::Verdict>,
     /// Traverses whose alternatives were given up because no path fits, with the reason.
     pub undrivable: Vec<Undrivable>,
 }
@@ -155,26 +157,26 @@ pub struct Timings {
     pub plan_millis: f64,
 }
 
+impl Snapshot {
+    /// The plan, if there is one.
+    pub fn plan(&self) -> Option<&tpn::Plan> {
+        self.planning.as_ref()?.outcome.plans.first()
+    }
+}
+
 impl VehicleMotion {
     /// Where the vehicle is at `time`, in mission units, and its heading in radians; `None` without keyframes.
     pub fn at(&self, time: f64) -> Option<([f64; 2], f64)> {
         let seconds = |frame: &Keyframe| *frame.time.numer() as f64 / *frame.time.denom() as f64;
-        let after = self
-            .keyframes
-            .partition_point(|frame| seconds(frame) <= time);
+        let after = self.keyframes.partition_point(|frame| seconds(frame) <= time);
         let before = self.keyframes.get(after.saturating_sub(1))?;
         let Some(next) = self.keyframes.get(after).filter(|_| after > 0) else {
             return Some((before.position_m, before.heading_rad));
         };
         let (from, to) = (seconds(before), seconds(next));
-        let part = if to > from {
-            (time - from) / (to - from)
-        } else {
-            0.0
-        };
-        let mix = |axis: usize| {
-            before.position_m[axis] + part * (next.position_m[axis] - before.position_m[axis])
-        };
+        let part = if to > from { (time - from) / (to - from) } else { 0.0 };
+        let mix =
+            |axis: usize| before.position_m[axis] + part * (next.position_m[axis] - before.position_m[axis]);
         Some(([mix(0), mix(1)], before.heading_rad))
     }
 }

@@ -1,0 +1,186 @@
+//! The chain from text to plan to paths, with each stage's last result kept.
+//!
+//! A request redoes only what its text changed: an edit that leaves the network as it was keeps the plan, and paths are
+//! kept by their inputs. The caller gives the clock, is asked whether to go on, and gets answers as stages complete.
+
+use std::sync::Arc;
+
+use kirk::Options;
+use rmpl::program::Program;
+use rmpl::{Diagnostic, Severity};
+use terrain::Terrain;
+use tpn::{Network, Top};
+
+use crate::ground::Grounds;
+use crate::planning::{self, Planned};
+use crate::problem::Problem;
+use crate::request::{Goal, Request, Response, Update};
+use crate::snapshot::{MapKey, Snapshot, Stage, Timings};
+use crate::traverse::Paths;
+
+/// What the core needs from where it runs.
+pub trait Surroundings {
+    /// Milliseconds since an arbitrary moment.
+    fn now_millis(&self) -> f64;
+
+    /// Whether the request under way should be given up, because a newer one has come.
+    fn is_superseded(&mut self) -> bool;
+
+    /// Takes an answer.
+    fn answer(&mut self, response: Response);
+}
+
+/// The planning core of one mission. Feed it requests in order.
+#[derive(Default)]
+pub struct Core {
+    grounds: Grounds,
+    paths: Paths,
+    sent: Option<MapKey>,
+    last: Option<Last>,
+}
+
+/// What the last planned request led to, and what it depended on.
+struct Last {
+    network: Arc<Network>,
+    program: Arc<Program>,
+    map: Option<MapKey>,
+    options: Options,
+    seed: u64,
+    planned: Planned,
+}
+
+/// Events of a search that are kept for stepping through it.
+const TRACE_EVENTS: usize = 200_000;
+
+impl Core {
+    /// Works a request out. Superseded requests end early and may have answered only in part.
+    pub fn handle(&mut self, request: Request, surroundings: &mut dyn Surroundings) {
+        match request {
+            Request::ImportMap { name, bytes } => {
+                if let Err(reason) = self.grounds.import(&name, &bytes) {
+                    surroundings.answer(Response::MapRejected { name, reason });
+                }
+            }
+            Request::Update(update) => self.update(&update, surroundings),
+        }
+    }
+
+    fn update(&mut self, update: &Update, surroundings: &mut dyn Surroundings) {
+        let begun = surroundings.now_millis();
+        let parse = rmpl::parse(&update.source);
+        let program = Arc::new(parse.program().clone());
+        let mut diagnostics = parse.diagnostics().clone();
+        let parsed = surroundings.now_millis();
+        let network = compile(&program, &update.goal, &mut diagnostics);
+        let (ground, found) = self.grounds.resolve(&program.world);
+        diagnostics.extend(found);
+        let compiled = surroundings.now_millis();
+        let mut snapshot = Snapshot {
+            revision: update.revision,
+            stage: Stage::Compiled,
+            source: Arc::clone(&update.source),
+            problems: Problem::all(&diagnostics, &update.source),
+            program,
+            network: network.map(Arc::new),
+            planning: None,
+            map: ground.as_ref().map(|(key, _)| key.clone()),
+            traverses: Vec::new(),
+            motions: Vec::new(),
+            encounters: Vec::new(),
+            timings: Timings {
+                parse_millis: parsed - begun,
+                compile_millis: compiled - parsed,
+                plan_millis: 0.0,
+            },
+        };
+        if let Some((key, map)) = &ground
+            && self.sent.as_ref() != Some(key)
+        {
+            surroundings.answer(Response::Map { key: key.clone(), map: Arc::clone(map) });
+            self.sent = Some(key.clone());
+        }
+        let Some(network) = snapshot.network.clone() else {
+            snapshot.stage = Stage::Complete;
+            surroundings.answer(Response::Snapshot(Arc::new(snapshot)));
+            return;
+        };
+        surroundings.answer(Response::Snapshot(Arc::new(snapshot.clone())));
+        let program = Arc::clone(&snapshot.program);
+        let Some(planned) = self.plan(update, &network, &program, ground.as_ref(), surroundings) else {
+            return;
+        };
+        snapshot.stage = Stage::Complete;
+        snapshot.network = Some(planned.network);
+        snapshot.planning = Some(planned.planning);
+        snapshot.traverses = planned.traverses;
+        snapshot.motions = planned.motions;
+        snapshot.encounters = planned.encounters;
+        snapshot.problems.extend(Problem::all(&planned.warnings, &update.source));
+        snapshot.problems.sort_by_key(|problem| (problem.span, problem.severity));
+        snapshot.timings.plan_millis = surroundings.now_millis() - compiled;
+        surroundings.answer(Response::Snapshot(Arc::new(snapshot)));
+    }
+
+    /// Plans, unless the plan of the last request still holds: same network, world and wishes.
+    fn plan(
+        &mut self,
+        update: &Update,
+        network: &Arc<Network>,
+        program: &Arc<Program>,
+        ground: Option<&(MapKey, Arc<Terrain>)>,
+        surroundings: &mut dyn Surroundings,
+    ) -> Option<Planned> {
+        let options = Options {
+            search: update.search,
+            trace_events: update.trace.then_some(TRACE_EVENTS),
+            ..Options::default()
+        };
+        let map = ground.map(|(key, _)| key.clone());
+        if let Some(last) = &self.last
+            && last.network == *network
+            && last.program == *program
+            && (last.options, last.seed, &last.map) == (options, update.seed, &map)
+        {
+            return Some(last.planned.clone());
+        }
+        let problem = planning::Problem {
+            network,
+            program,
+            ground: ground.map(|(key, map)| (key, map)),
+            options,
+            seed: update.seed,
+        };
+        let mut stop = || surroundings.is_superseded();
+        let planned = planning::plan(&problem, &mut self.grounds, &mut self.paths, &mut stop);
+        if surroundings.is_superseded() {
+            return None;
+        }
+        self.last = Some(Last {
+            network: Arc::clone(network),
+            program: Arc::clone(program),
+            map,
+            options,
+            seed: update.seed,
+            planned: planned.clone(),
+        });
+        Some(planned)
+    }
+}
+
+/// The network of what is to be planned, if no error prevents it; adds what compiling finds to `diagnostics`.
+pub fn compile(program: &Program, goal: &Goal, diagnostics: &mut Vec<Diagnostic>) -> Option<Network> {
+    let top = match goal {
+        Goal::Default => match (program.scenarios.first(), program.activities.last()) {
+            (None, Some(activity)) => Top::activity(activity.name.text.clone()),
+            _ => Top::Scenario(None),
+        },
+        Goal::FirstScenario => Top::Scenario(None),
+        Goal::Scenario(name) => Top::Scenario(Some(name.clone())),
+        Goal::Activity { name, lower, upper } => {
+            Top::Activity { name: name.clone(), lower: *lower, upper: *upper }
+        }
+    };
+    let (network, found) = tpn::compile(program, &top);
+    tpn::merge_diagnostics(diagnostics, found);
+    network.filter(|_| diagnostics.iter().all(|found| found.severity != Severity::Error))
+}

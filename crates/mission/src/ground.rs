@@ -1,0 +1,155 @@
+//! The ground of missions: named or imported maps, and the free space of each kind of vehicle on them.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use motion::VehicleModel;
+use rmpl::program::{ObstacleShape, TerrainDecl, World};
+use rmpl::{Code, Diagnostic};
+use smol_str::SmolStr;
+use terrain::{ConfigurationSpace, GridFrame, Obstacle, Occupancy, Terrain};
+
+use crate::snapshot::MapKey;
+
+/// How many free spaces are kept: one for each vehicle model of the present text and of the one before it.
+const MOST_SPACES: usize = 8;
+/// Cells along the side of the flat ground of a mission that names no terrain.
+const FLAT_CELLS: u32 = 256;
+
+/// The maps that missions may name, and what was computed from them.
+#[derive(Default)]
+pub struct Grounds {
+    imported: BTreeMap<SmolStr, Imported>,
+    maps: BTreeMap<MapKey, Arc<Terrain>>,
+    spaces: Vec<(SpaceKey, Arc<ConfigurationSpace>)>,
+}
+
+struct Imported {
+    version: u32,
+    map: Terrain,
+}
+
+#[derive(Clone, PartialEq)]
+struct SpaceKey {
+    map: MapKey,
+    model: SmolStr,
+    obstacles: Vec<ObstacleShape>,
+}
+
+impl Grounds {
+    /// Reads a map file so that `terrain "name"` finds it; says why when it can't be read.
+    pub fn import(&mut self, name: &str, bytes: &[u8]) -> Result<(), String> {
+        let map = read_map(name, bytes)?;
+        let version = self.imported.get(name).map_or(1, |before| before.version + 1);
+        self.maps.retain(|key, _| key.asset != name);
+        self.imported.insert(SmolStr::new(name), Imported { version, map });
+        Ok(())
+    }
+
+    /// The map of a mission: the one that it names, or flat ground around its places. `None`, with a diagnostic, when
+    /// the name is unknown, and without one when the mission has no world.
+    pub fn resolve(&mut self, world: &World) -> (Option<(MapKey, Arc<Terrain>)>, Vec<Diagnostic>) {
+        let Some(declared) = &world.terrain else {
+            return (self.flat(world), Vec::new());
+        };
+        let version = self.imported.get(&declared.asset).map_or(0, |imported| imported.version);
+        let millimetres = |metres: f64| (metres * 1000.0).round();
+        let key = MapKey {
+            asset: declared.asset.clone(),
+            cell_mm: millimetres(declared.cell_m) as u32,
+            origin_mm: declared.origin_m.map(|metres| millimetres(metres) as i64),
+            version,
+        };
+        if let Some(map) = self.maps.get(&key) {
+            return (Some((key, Arc::clone(map))), Vec::new());
+        }
+        let made = match self.imported.get(&declared.asset) {
+            Some(imported) => Some(imported.map.clone()),
+            None => terrain::asset(&declared.asset),
+        };
+        let Some(made) = made else {
+            return (None, vec![self.unknown_terrain(declared)]);
+        };
+        let map = Arc::new(made.placed(declared.cell_m, declared.origin_m));
+        self.maps.retain(|other, _| other.asset == key.asset);
+        self.maps.insert(key.clone(), Arc::clone(&map));
+        (Some((key, map)), Vec::new())
+    }
+
+    /// The free space of vehicles of `model` among the mission's obstacles.
+    pub fn space(
+        &mut self,
+        key: &MapKey,
+        map: &Terrain,
+        world: &World,
+        model: &VehicleModel,
+    ) -> Arc<ConfigurationSpace> {
+        let obstacles: Vec<ObstacleShape> = world.obstacles.iter().map(|it| it.shape.clone()).collect();
+        let wanted = SpaceKey { map: key.clone(), model: SmolStr::new(model.name), obstacles };
+        if let Some(at) = self.spaces.iter().position(|(known, _)| *known == wanted) {
+            let found = self.spaces.remove(at);
+            let space = Arc::clone(&found.1);
+            self.spaces.push(found);
+            return space;
+        }
+        let shapes: Vec<Obstacle> = wanted.obstacles.iter().map(obstacle).collect();
+        let occupancy = Occupancy::of_terrain(map, &shapes, &model.traversability(map));
+        let space = Arc::new(ConfigurationSpace::new(occupancy, model.radius_m()));
+        if self.spaces.len() >= MOST_SPACES {
+            self.spaces.remove(0);
+        }
+        self.spaces.push((wanted, Arc::clone(&space)));
+        space
+    }
+
+    fn flat(&mut self, world: &World) -> Option<(MapKey, Arc<Terrain>)> {
+        let (low, high) = extent(world)?;
+        let side_m = (high[0] - low[0]).max(high[1] - low[1]).max(20.0) * 1.2;
+        let cell_m = (side_m / f64::from(FLAT_CELLS)).max(0.1);
+        let origin_m = [0, 1].map(|axis| f64::midpoint(low[axis], high[axis]) - side_m / 2.0);
+        let key = MapKey {
+            asset: SmolStr::default(),
+            cell_mm: (cell_m * 1000.0).ceil() as u32,
+            origin_mm: origin_m.map(|metres| (metres * 1000.0).floor() as i64),
+            version: 0,
+        };
+        let frame = GridFrame {
+            width: FLAT_CELLS,
+            height: FLAT_CELLS,
+            cell_size_m: f64::from(key.cell_mm) / 1000.0,
+            origin_m: key.origin_mm.map(|millimetres| millimetres as f64 / 1000.0),
+        };
+        let map = self.maps.entry(key.clone()).or_insert_with(|| Arc::new(Terrain::flat(frame)));
+        Some((key, Arc::clone(map)))
+    }
+
+    fn unknown_terrain(&self, declared: &TerrainDecl) -> Diagnostic {
+        let imported = self.imported.keys().map(SmolStr::to_string);
+        let known: Vec<String> = terrain::asset_names().map(str::to_owned).chain(imported).collect();
+        let message = format!("there is no terrain called \"{}\"", declared.asset);
+        Diagnostic::error(Code("E-UNDEF"), declared.asset_span, message)
+            .with_hint(format!("import a map file of that name, or use one of: {}", known.join(", ")))
+    }
+}
+
+/// The least and greatest coordinates of the places of a world.
+fn extent(world: &World) -> Option<([f64; 2], [f64; 2])> {
+    let mut places = world.locations.iter().map(|location| location.position_m);
+    let first = places.next()?;
+    Some(places.fold((first, first), |(low, high), place| {
+        ([low[0].min(place[0]), low[1].min(place[1])], [high[0].max(place[0]), high[1].max(place[1])])
+    }))
+}
+
+fn obstacle(shape: &ObstacleShape) -> Obstacle {
+    match shape {
+        ObstacleShape::Circle { center_m, radius_m } => {
+            Obstacle::Circle { center_m: *center_m, radius_m: *radius_m }
+        }
+        ObstacleShape::Polygon { corners_m } => Obstacle::Polygon { corners_m: corners_m.clone() },
+    }
+}
+
+fn read_map(name: &str, bytes: &[u8]) -> Result<Terrain, String> {
+    Err(format!("{name} ({} bytes) has no format that is read yet", bytes.len()))
+}

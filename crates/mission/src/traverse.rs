@@ -1,0 +1,265 @@
+//! Which activities of a plan are traverses, from where to where they drive, and the paths that they take.
+
+use std::sync::Arc;
+
+use motion::{PlannerKind, Query, ShortcutSettings, VehicleModel};
+use rmpl::program::{Moves, Program, World};
+use rmpl::{Rational, Span};
+use smol_str::SmolStr;
+use terrain::{ConfigurationSpace, Terrain};
+use tpn::{Network, OccurrenceId, OccurrenceKind, Plan};
+
+use crate::snapshot::Leg;
+
+/// A traverse of a plan: who drives, and through which places.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Route {
+    /// The activity.
+    pub occurrence: OccurrenceId,
+    /// Indices of the vehicles into the program's world; the first leads.
+    pub vehicles: Vec<usize>,
+    /// The leader's model.
+    pub model: &'static VehicleModel,
+    /// Least and greatest speed in metres per second. At a least speed of 0 the vehicle may stop on its way.
+    pub speed_mps: (Rational, Rational),
+    /// The places, in order: where the leader is before, then those that the call names.
+    pub waypoints: Vec<Waypoint>,
+}
+
+/// A place that a route passes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Waypoint {
+    /// The location's name.
+    pub name: SmolStr,
+    /// In metres.
+    pub position_m: [f64; 2],
+}
+
+/// The routes of the traverses that `plan` selects, in order of their earliest departure. Each vehicle starts where its
+/// previous movement left it, or from its own start (SPEC 1.8).
+pub fn routes(network: &Network, program: &Program, plan: &Plan) -> Vec<Route> {
+    let world = &program.world;
+    let mut positions: Vec<Option<Waypoint>> =
+        world.vehicles.iter().map(|vehicle| waypoint(world, &vehicle.start.text)).collect();
+    let mut moving: Vec<(OccurrenceId, &Moves)> = network
+        .occurrences
+        .iter()
+        .enumerate()
+        .filter(|(_, it)| it.kind == OccurrenceKind::Primitive && plan.selected_nodes[it.start.index()])
+        .filter_map(|(index, it)| {
+            let moves = declared_moves(program, &it.activity)?;
+            Some((OccurrenceId::from_index(index), moves))
+        })
+        .collect();
+    moving.sort_by_key(|&(id, _)| {
+        let start = network.occurrences[id.index()].start;
+        (plan.windows[start.index()].map(|window| window.earliest), id)
+    });
+    let mut routes = Vec::new();
+    for (id, moves) in moving {
+        let Some(route) = route(network, world, id, moves, &positions) else { continue };
+        if let Some(last) = route.waypoints.last() {
+            for &vehicle in &route.vehicles {
+                positions[vehicle] = Some(last.clone());
+            }
+        }
+        routes.push(route);
+    }
+    routes
+}
+
+/// The `moves` clause of the primitive of this name.
+pub fn declared_moves<'program>(program: &'program Program, activity: &str) -> Option<&'program Moves> {
+    program.primitives.iter().find(|it| it.name.text == activity)?.moves.as_ref()
+}
+
+fn waypoint(world: &World, name: &str) -> Option<Waypoint> {
+    let location = world.locations.iter().find(|location| location.name.text == name)?;
+    Some(Waypoint { name: location.name.text.clone(), position_m: location.position_m })
+}
+
+fn route(
+    network: &Network,
+    world: &World,
+    id: OccurrenceId,
+    moves: &Moves,
+    positions: &[Option<Waypoint>],
+) -> Option<Route> {
+    let vehicles: Vec<usize> = moves
+        .vehicles
+        .iter()
+        .filter_map(|name| world.vehicles.iter().position(|vehicle| vehicle.name.text == name.text))
+        .collect();
+    let &leader = vehicles.first()?;
+    let model = motion::vehicle_model(&world.vehicles[leader].model.text)?;
+    let mut waypoints: Vec<Waypoint> = positions[leader].clone().into_iter().collect();
+    let arguments = &network.occurrences[id.index()].arguments;
+    let named: Vec<Waypoint> = arguments.iter().filter_map(|name| waypoint(world, name)).collect();
+    if named.is_empty() {
+        return None;
+    }
+    waypoints.extend(named);
+    waypoints.dedup_by(|next, before| next.position_m == before.position_m);
+    let own_speed_mps = Rational::new((model.speed_mps * 1000.0).round() as i64, 1000);
+    let speed_mps = moves.speed_mps.unwrap_or((Rational::default(), own_speed_mps));
+    Some(Route { occurrence: id, vehicles, model, speed_mps, waypoints })
+}
+
+/// What is wrong with the `moves` clauses and calls of a program: a traverse without places or vehicles is an ordinary
+/// activity, and its author should know.
+pub fn check(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
+    let world = &program.world;
+    let mut found: Vec<rmpl::Diagnostic> = Vec::new();
+    let mut warn = |span: Span, message: String| {
+        if !found.iter().any(|it| it.span == span) {
+            found.push(rmpl::Diagnostic::warning(rmpl::Code("W-TRAVERSE"), span, message));
+        }
+    };
+    for occurrence in &network.occurrences {
+        let Some(moves) = declared_moves(program, &occurrence.activity) else { continue };
+        let Some(span) = occurrence.span else { continue };
+        if !occurrence.arguments.iter().any(|name| waypoint(world, name).is_some()) {
+            let name = &occurrence.activity;
+            warn(span, format!("`{name}` moves vehicles, but no argument of this call is a location"));
+        }
+        for vehicle in &moves.vehicles {
+            if !world.vehicles.iter().any(|it| it.name.text == vehicle.text) {
+                warn(vehicle.span, format!("no vehicle is called `{}`", vehicle.text));
+            }
+        }
+    }
+    for vehicle in &world.vehicles {
+        if motion::vehicle_model(&vehicle.model.text).is_none() {
+            let known: Vec<&str> = motion::VEHICLE_MODELS.iter().map(|model| model.name).collect();
+            let message = format!("no vehicle model is called `{}`", vehicle.model.text);
+            let hint = format!("the models are {}", known.join(", "));
+            found.push(
+                rmpl::Diagnostic::warning(rmpl::Code("W-TRAVERSE"), vehicle.model.span, message)
+                    .with_hint(hint),
+            );
+        }
+        if waypoint(world, &vehicle.start.text).is_none() {
+            let message = format!("no location is called `{}`", vehicle.start.text);
+            found.push(rmpl::Diagnostic::error(rmpl::Code("E-UNDEF"), vehicle.start.span, message));
+        }
+    }
+    found
+}
+
+/// Paths that were found, or not, kept by everything they depend on.
+#[derive(Default)]
+pub struct Paths {
+    known: Vec<(LegKey, Result<Leg, String>)>,
+}
+
+/// A leg's inputs. The free space stands for map, obstacles and vehicle: it is shared while they stay the same.
+struct LegKey {
+    space: Arc<ConfigurationSpace>,
+    from_m: [f64; 2],
+    to_m: [f64; 2],
+    seed: u64,
+}
+
+/// Legs kept; a mission in work has far fewer, and each holds its search tree.
+const MOST_LEGS: usize = 128;
+
+impl Paths {
+    /// The legs of a route. A leg that can't be driven gives its number, from 1, and the reason.
+    pub fn legs(
+        &mut self,
+        route: &Route,
+        space: &Arc<ConfigurationSpace>,
+        seed: u64,
+    ) -> Result<Vec<Leg>, (u32, String)> {
+        let pairs = route.waypoints.windows(2);
+        pairs
+            .enumerate()
+            .map(|(index, pair)| {
+                self.leg(space, &pair[0], &pair[1], seed).map_err(|reason| (index as u32 + 1, reason))
+            })
+            .collect()
+    }
+
+    fn leg(
+        &mut self,
+        space: &Arc<ConfigurationSpace>,
+        from: &Waypoint,
+        to: &Waypoint,
+        seed: u64,
+    ) -> Result<Leg, String> {
+        let matches = |key: &LegKey| {
+            Arc::ptr_eq(&key.space, space)
+                && key.from_m == from.position_m
+                && key.to_m == to.position_m
+                && key.seed == seed
+        };
+        if let Some(at) = self.known.iter().position(|(key, _)| matches(key)) {
+            let kept = self.known.remove(at);
+            let leg = kept.1.clone();
+            self.known.push(kept);
+            return leg.map(|leg| Leg { to: to.name.clone(), ..leg });
+        }
+        let leg = find_leg(space, from, to, seed);
+        if self.known.len() >= MOST_LEGS {
+            drop(self.known.remove(0));
+        }
+        let key = LegKey { space: Arc::clone(space), from_m: from.position_m, to_m: to.position_m, seed };
+        self.known.push((key, leg.clone()));
+        leg
+    }
+}
+
+/// Searches for one leg; says why there is none, for the author.
+fn find_leg(space: &ConfigurationSpace, from: &Waypoint, to: &Waypoint, seed: u64) -> Result<Leg, String> {
+    let query = Query { start_m: from.position_m, goal_m: to.position_m };
+    let settings = motion::Settings { seed, ..motion::Settings::of(PlannerKind::RrtConnect) };
+    let shortcut = ShortcutSettings { seed, ..ShortcutSettings::default() };
+    let found = motion::find_path(space, query, &settings, Some(&shortcut), &mut |_| false);
+    let path = found.path.map_err(|failure| format!("from {} to {}: {}", from.name, to.name, failure))?;
+    let tree_m = found.trees.iter().flat_map(|tree| {
+        tree.vertices.iter().filter_map(|vertex| {
+            let parent = tree.vertices.get(vertex.parent? as usize)?;
+            Some([parent.point_m, vertex.point_m])
+        })
+    });
+    Ok(Leg {
+        to: to.name.clone(),
+        tree_m: Arc::new(tree_m.collect()),
+        points_m: path.points_m,
+        samples: found.statistics.samples,
+    })
+}
+
+/// The length of a path in metres.
+pub fn length_m(points_m: &[[f64; 2]]) -> f64 {
+    points_m.windows(2).map(|pair| segment_length_m(pair[0], pair[1])).sum()
+}
+
+/// The distance between two points in metres.
+pub fn segment_length_m(from_m: [f64; 2], to_m: [f64; 2]) -> f64 {
+    let (east, north) = (to_m[0] - from_m[0], to_m[1] - from_m[1]);
+    (east * east + north * north).sqrt()
+}
+
+/// The steepest slope along a path, in radians, looked at twice per cell.
+pub fn steepest_slope_rad(map: &Terrain, points_m: &[[f64; 2]]) -> f64 {
+    let step_m = map.frame().cell_size_m / 2.0;
+    let mut steepest = 0.0_f64;
+    for pair in points_m.windows(2) {
+        let pieces = (segment_length_m(pair[0], pair[1]) / step_m).ceil().max(1.0) as u32;
+        for piece in 0..=pieces {
+            let part = f64::from(piece) / f64::from(pieces);
+            let point = [0, 1].map(|axis| pair[0][axis] + part * (pair[1][axis] - pair[0][axis]));
+            steepest = steepest.max(map.slope_at(point).unwrap_or(0.0));
+        }
+    }
+    steepest
+}
+
+/// The least distance from the vehicle's rim to an obstacle along a path, in metres.
+pub fn clearance_m(space: &ConfigurationSpace, points_m: &[[f64; 2]]) -> f64 {
+    points_m
+        .windows(2)
+        .filter_map(|pair| space.segment_clearance_m(pair[0], pair[1]))
+        .fold(f64::INFINITY, f64::min)
+}
