@@ -8,6 +8,8 @@
 //! Coordinates are metres east and north. Row 0 of a grid is its southernmost row, and its origin is its south-west
 //! corner. Everything here is a pure function of its arguments and gives the same bits natively and in wasm.
 
+pub mod format;
+
 mod configuration;
 mod connectivity;
 mod crater;

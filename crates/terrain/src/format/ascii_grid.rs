@@ -1,0 +1,58 @@
+//! ESRI ASCII grids (`.asc`): a header of keywords, then rows of numbers from the north.
+
+use super::{FormatError, Meaning, Raster, checked_cell_count};
+
+const FORMAT: &str = "ESRI ASCII grid";
+
+pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
+    let text = std::str::from_utf8(bytes).map_err(|_| malformed("it is not text".into()))?;
+    let mut words = text.split_ascii_whitespace().peekable();
+    let (mut width, mut height, mut cell_size_m, mut no_data) = (None, None, None, None);
+    while let Some(keyword) =
+        words.next_if(|word| word.starts_with(|first: char| first.is_ascii_alphabetic()))
+    {
+        if keyword.eq_ignore_ascii_case("nan") {
+            return Err(malformed("the values begin with `nan` before the header is complete".into()));
+        }
+        let value = words.next().unwrap_or_default();
+        let number: f64 =
+            value.parse().map_err(|_| malformed(format!("`{keyword}` is `{value}`, which is no number")))?;
+        match keyword.to_ascii_lowercase().as_str() {
+            "ncols" => width = Some(number),
+            "nrows" => height = Some(number),
+            "cellsize" | "dx" => cell_size_m = Some(number),
+            "nodata_value" => no_data = Some(number),
+            // Where the map lies on its planet is up to the mission.
+            "xllcorner" | "yllcorner" | "xllcenter" | "yllcenter" | "dy" => {}
+            _ => return Err(malformed(format!("`{keyword}` is no keyword of the header"))),
+        }
+    }
+    let size = |number: Option<f64>, keyword: &str| match number {
+        Some(number) if number >= 0.0 && number.fract() == 0.0 && number < 1e15 => Ok(number as u64),
+        Some(number) => Err(malformed(format!("`{keyword}` is {number}"))),
+        None => Err(malformed(format!("`{keyword}` is missing"))),
+    };
+    let (width, height) = (size(width, "ncols")?, size(height, "nrows")?);
+    let count = checked_cell_count(width, height)?;
+    let (width, height) = (width as u32, height as u32);
+    if text.len() < 2 * count {
+        return Err(malformed(format!("it is too short for {width} × {height} values")));
+    }
+    let mut samples = Vec::with_capacity(count);
+    for word in words {
+        let value: f64 =
+            word.parse().map_err(|_| malformed(format!("value {} is `{word}`", samples.len() + 1)))?;
+        samples.push(if Some(value) == no_data { f32::NAN } else { value as f32 });
+        if samples.len() > count {
+            return Err(malformed(format!("it has more than {width} × {height} values")));
+        }
+    }
+    if samples.len() < count {
+        return Err(malformed(format!("it has {} values for {width} × {height} cells", samples.len())));
+    }
+    Ok(Raster { width, height, samples, cell_size_m, meaning: Meaning::Levels { greatest: None } })
+}
+
+fn malformed(problem: String) -> FormatError {
+    FormatError::Malformed { format: FORMAT, problem }
+}

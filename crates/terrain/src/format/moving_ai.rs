@@ -1,0 +1,51 @@
+//! `MovingAI` benchmark maps (Sturtevant 2012): a character for each cell, rows from the top.
+
+use super::{FormatError, Meaning, Raster, checked_cell_count};
+
+const FORMAT: &str = "MovingAI map";
+
+pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
+    let text = std::str::from_utf8(bytes).map_err(|_| malformed("it is not text".into()))?;
+    let mut lines = text.lines();
+    let (mut width, mut height) = (None, None);
+    for line in lines.by_ref() {
+        let mut words = line.split_ascii_whitespace();
+        match (words.next(), words.next()) {
+            (Some("type"), Some(_)) | (None, None) => {}
+            (Some("width"), Some(value)) => width = Some(size(value)?),
+            (Some("height"), Some(value)) => height = Some(size(value)?),
+            (Some("map"), None) => break,
+            _ => return Err(malformed(format!("`{line}` is no line of the header"))),
+        }
+    }
+    let (Some(width), Some(height)) = (width, height) else {
+        return Err(malformed("the header does not give `width` and `height`".into()));
+    };
+    let count = checked_cell_count(u64::from(width), u64::from(height))?;
+    if text.len() < count {
+        return Err(malformed(format!("it is too short for {width} × {height} cells")));
+    }
+    let mut samples = Vec::with_capacity(count);
+    for row in 0..height {
+        let line = lines.next().unwrap_or_default().trim_end_matches('\r');
+        if line.chars().count() != width as usize {
+            return Err(malformed(format!("row {} has not {width} cells: `{line}`", row + 1)));
+        }
+        for character in line.chars() {
+            samples.push(match character {
+                '.' | 'G' | 'S' => 0.0,
+                '@' | 'O' | 'T' | 'W' => 1.0,
+                _ => return Err(malformed(format!("row {} has a cell `{character}`", row + 1))),
+            });
+        }
+    }
+    Ok(Raster { width, height, samples, cell_size_m: None, meaning: Meaning::Obstacles })
+}
+
+fn size(word: &str) -> Result<u32, FormatError> {
+    word.parse().map_err(|_| malformed(format!("`{word}` is no size")))
+}
+
+fn malformed(problem: String) -> FormatError {
+    FormatError::Malformed { format: FORMAT, problem }
+}

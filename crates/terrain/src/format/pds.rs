@@ -1,0 +1,271 @@
+//! NASA PDS3 images: raw samples described by a label of `KEYWORD = VALUE` lines, which stands before them, in a file
+//! of its own, or got lost.
+
+use serde::{Deserialize, Serialize};
+
+use super::{FormatError, ImportOptions, Meaning, Raster, checked_cell_count};
+
+const FORMAT: &str = "PDS3 image";
+/// Mars' equatorial radius, for labels that give pixels per degree without their body's.
+const MARS_RADIUS_M: f64 = 3_396_190.0;
+
+/// How a sample is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum SampleType {
+    /// Unsigned byte.
+    U8,
+    /// Signed 16 bits, most significant byte first.
+    I16BigEndian,
+    /// Signed 16 bits, least significant byte first.
+    I16LittleEndian,
+    /// Unsigned 16 bits, most significant byte first.
+    U16BigEndian,
+    /// Unsigned 16 bits, least significant byte first.
+    U16LittleEndian,
+    /// Signed 32 bits, most significant byte first.
+    I32BigEndian,
+    /// Signed 32 bits, least significant byte first.
+    I32LittleEndian,
+    /// IEEE single precision, most significant byte first.
+    F32BigEndian,
+    /// IEEE single precision, least significant byte first.
+    F32LittleEndian,
+}
+
+impl SampleType {
+    /// Bytes of a sample.
+    pub const fn bytes(self) -> usize {
+        match self {
+            Self::U8 => 1,
+            Self::I16BigEndian | Self::I16LittleEndian | Self::U16BigEndian | Self::U16LittleEndian => 2,
+            Self::I32BigEndian | Self::I32LittleEndian | Self::F32BigEndian | Self::F32LittleEndian => 4,
+        }
+    }
+
+    fn value(self, sample: &[u8]) -> f64 {
+        match (self, sample) {
+            (Self::U8, &[byte]) => f64::from(byte),
+            (Self::I16BigEndian, &[a, b]) => f64::from(i16::from_be_bytes([a, b])),
+            (Self::I16LittleEndian, &[a, b]) => f64::from(i16::from_le_bytes([a, b])),
+            (Self::U16BigEndian, &[a, b]) => f64::from(u16::from_be_bytes([a, b])),
+            (Self::U16LittleEndian, &[a, b]) => f64::from(u16::from_le_bytes([a, b])),
+            (Self::I32BigEndian, &[a, b, c, d]) => f64::from(i32::from_be_bytes([a, b, c, d])),
+            (Self::I32LittleEndian, &[a, b, c, d]) => f64::from(i32::from_le_bytes([a, b, c, d])),
+            (Self::F32BigEndian, &[a, b, c, d]) => f64::from(f32::from_be_bytes([a, b, c, d])),
+            (Self::F32LittleEndian, &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
+            _ => f64::NAN,
+        }
+    }
+
+    fn of_label(name: &str, bits: u32) -> Option<Self> {
+        let name = name.trim_matches('"').to_ascii_uppercase();
+        let little = ["LSB_", "PC_", "VAX_"].iter().any(|prefix| name.starts_with(prefix));
+        let unsigned = name.contains("UNSIGNED");
+        Some(match (bits, name.contains("REAL"), unsigned, little) {
+            (8, false, true, _) => Self::U8,
+            (16, false, false, false) => Self::I16BigEndian,
+            (16, false, false, true) => Self::I16LittleEndian,
+            (16, false, true, false) => Self::U16BigEndian,
+            (16, false, true, true) => Self::U16LittleEndian,
+            (32, false, false, false) => Self::I32BigEndian,
+            (32, false, false, true) => Self::I32LittleEndian,
+            (32, true, false, false) => Self::F32BigEndian,
+            // VAX reals are not IEEE numbers.
+            (32, true, false, true) if name.starts_with("PC_") => Self::F32LittleEndian,
+            _ => return None,
+        })
+    }
+}
+
+/// Where the samples of a raw image are and what they mean.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RawLayout {
+    /// Samples of a row.
+    pub width: u32,
+    /// Rows, the first in the north.
+    pub height: u32,
+    /// How a sample is stored.
+    pub sample_type: SampleType,
+    /// Bytes before the first sample.
+    pub start_byte: u64,
+    /// Metres for each unit.
+    pub scaling_factor: f64,
+    /// Metres of value 0.
+    pub offset_m: f64,
+    /// The value that means "no data".
+    pub no_data: Option<f64>,
+    /// Metres per cell, if known.
+    pub cell_size_m: Option<f64>,
+}
+
+impl RawLayout {
+    /// Samples in metres from the first byte on.
+    pub const fn new(width: u32, height: u32, sample_type: SampleType) -> Self {
+        Self {
+            width,
+            height,
+            sample_type,
+            start_byte: 0,
+            scaling_factor: 1.0,
+            offset_m: 0.0,
+            no_data: None,
+            cell_size_m: None,
+        }
+    }
+}
+
+/// Reads an image by the caller's layout, the caller's label, or the label at its beginning.
+pub(super) fn read(bytes: &[u8], options: &ImportOptions) -> Result<Raster, FormatError> {
+    let layout = match (&options.raw, &options.label) {
+        (Some(layout), _) => *layout,
+        (None, Some(label)) => read_label(label, false)?,
+        (None, None) => read_label(bytes, true)?,
+    };
+    read_samples(bytes, &layout)
+}
+
+/// Reads an image without a label as what such files of elevations mostly are: a whole planet, twice as wide as high,
+/// in 16-bit big-endian metres, like the MOLA maps of Mars.
+pub(super) fn read_without_label(bytes: &[u8]) -> Result<Raster, FormatError> {
+    let height = ((bytes.len() / 4) as f64).sqrt() as u64;
+    let looks_global = height >= 90 && height.is_multiple_of(90) && 4 * height * height == bytes.len() as u64;
+    if !looks_global {
+        return Err(FormatError::Unknown);
+    }
+    checked_cell_count(2 * height, height)?;
+    let mut layout = RawLayout::new(2 * height as u32, height as u32, SampleType::I16BigEndian);
+    layout.cell_size_m = Some(std::f64::consts::PI * MARS_RADIUS_M / height as f64);
+    read_samples(bytes, &layout)
+}
+
+fn read_samples(bytes: &[u8], layout: &RawLayout) -> Result<Raster, FormatError> {
+    let count = checked_cell_count(u64::from(layout.width), u64::from(layout.height))?;
+    let size = layout.sample_type.bytes();
+    let data = usize::try_from(layout.start_byte).ok().and_then(|start| bytes.get(start..));
+    let Some(data) = data.and_then(|data| data.get(..count * size)) else {
+        return Err(malformed(format!(
+            "{} × {} samples of {size} bytes from byte {} on don't fit into {} bytes",
+            layout.width,
+            layout.height,
+            layout.start_byte,
+            bytes.len()
+        )));
+    };
+    let samples = data
+        .chunks_exact(size)
+        .map(|sample| {
+            let value = layout.sample_type.value(sample);
+            if Some(value) == layout.no_data {
+                f32::NAN
+            } else {
+                (value * layout.scaling_factor + layout.offset_m) as f32
+            }
+        })
+        .collect();
+    let (width, height, cell_size_m) = (layout.width, layout.height, layout.cell_size_m);
+    Ok(Raster { width, height, samples, cell_size_m, meaning: Meaning::Levels { greatest: None } })
+}
+
+/// Reads a label; `attached` says whether the samples are in the same file.
+fn read_label(bytes: &[u8], attached: bool) -> Result<RawLayout, FormatError> {
+    let label = Label::parse(bytes);
+    let number = |keyword: &str| label.number(keyword);
+    let size = |keyword: &str| match label.number(keyword) {
+        Some(number) if number >= 0.0 && number.fract() == 0.0 && number < 4e9 => Ok(number as u32),
+        _ => Err(malformed(format!("its label does not give {keyword}"))),
+    };
+    let (width, height) = (size("LINE_SAMPLES")?, size("LINES")?);
+    if number("BANDS").is_some_and(|bands| bands != 1.0)
+        || ["LINE_PREFIX_BYTES", "LINE_SUFFIX_BYTES"]
+            .iter()
+            .any(|&word| number(word).is_some_and(|n| n != 0.0))
+    {
+        let problem = "more than one band, or bytes between the lines".into();
+        return Err(FormatError::Unsupported { format: FORMAT, problem });
+    }
+    let name = label.value("SAMPLE_TYPE").unwrap_or_default();
+    let bits = size("SAMPLE_BITS")?;
+    let sample_type = SampleType::of_label(name, bits).ok_or_else(|| FormatError::Unsupported {
+        format: FORMAT,
+        problem: format!("samples of type {name} with {bits} bits"),
+    })?;
+    Ok(RawLayout {
+        width,
+        height,
+        sample_type,
+        start_byte: label.image_start(attached)?,
+        scaling_factor: number("SCALING_FACTOR").unwrap_or(1.0),
+        offset_m: number("OFFSET").unwrap_or(0.0),
+        no_data: number("MISSING_CONSTANT").or_else(|| number("CORE_NULL")),
+        cell_size_m: label.cell_size_m(),
+    })
+}
+
+fn malformed(problem: String) -> FormatError {
+    FormatError::Malformed { format: FORMAT, problem }
+}
+
+/// The keywords of a label and their values as written.
+struct Label {
+    entries: Vec<(String, String)>,
+}
+
+impl Label {
+    fn parse(bytes: &[u8]) -> Self {
+        const GREATEST_LABEL_BYTES: usize = 1 << 20;
+        let text = String::from_utf8_lossy(&bytes[..bytes.len().min(GREATEST_LABEL_BYTES)]);
+        let entries = text
+            .lines()
+            .map(str::trim)
+            .take_while(|line| *line != "END")
+            .filter_map(|line| line.split_once('='))
+            .map(|(keyword, value)| (keyword.trim().to_ascii_uppercase(), value.trim().to_owned()))
+            .collect();
+        Self { entries }
+    }
+
+    fn value(&self, keyword: &str) -> Option<&str> {
+        self.entries.iter().find(|(word, _)| word == keyword).map(|(_, value)| value.as_str())
+    }
+
+    /// The number at the beginning of a value; what follows is its unit.
+    fn number(&self, keyword: &str) -> Option<f64> {
+        self.value(keyword)?.trim_matches('"').split_ascii_whitespace().next()?.parse().ok()
+    }
+
+    /// The byte at which the samples begin: `^IMAGE` counts records, or bytes when it says so, from 1.
+    fn image_start(&self, attached: bool) -> Result<u64, FormatError> {
+        let Some(pointer) = self.value("^IMAGE") else {
+            if attached {
+                return Err(malformed("its label does not say where ^IMAGE is".into()));
+            }
+            return Ok(0);
+        };
+        // Of a file and a place in it, as in ("FILE.IMG", 3), the place counts.
+        let place = pointer.trim_matches(['(', ')']).split(',').next_back().unwrap_or_default().trim();
+        let in_bytes = place.contains("<BYTES>");
+        let digits: String = place.chars().take_while(char::is_ascii_digit).collect();
+        let Ok(place) = digits.parse::<u64>() else {
+            if attached {
+                return Err(malformed(format!("^IMAGE is {pointer}, in another file")));
+            }
+            return Ok(0);
+        };
+        let unit = if in_bytes { 1.0 } else { self.number("RECORD_BYTES").unwrap_or(1.0) };
+        Ok(place.saturating_sub(1).saturating_mul(unit as u64))
+    }
+
+    fn cell_size_m(&self) -> Option<f64> {
+        if let Some(scale) = self.number("MAP_SCALE") {
+            let unit = self.value("MAP_SCALE").unwrap_or_default().to_ascii_uppercase();
+            return Some(if unit.contains("KM") || unit.contains("KILOMETER") {
+                1000.0 * scale
+            } else {
+                scale
+            });
+        }
+        let pixels_per_degree = self.number("MAP_RESOLUTION")?;
+        let radius = self.number("A_AXIS_RADIUS").map_or(MARS_RADIUS_M, |kilometres| 1000.0 * kilometres);
+        Some(1.0_f64.to_radians() * radius / pixels_per_degree)
+    }
+}

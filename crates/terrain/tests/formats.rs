@@ -1,0 +1,299 @@
+//! Map files: small ones written by other programs (Pillow, tifffile), the real ones beside the repository, and broken
+//! ones.
+
+use std::path::Path;
+
+use terrain::Cell;
+use terrain::format::{
+    FileFormat, FormatError, GREATEST_CELL_COUNT, ImportOptions, Meaning, Raster, RawLayout, SampleType,
+    read_raster, read_terrain,
+};
+
+fn fixture(name: &str) -> Raster {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures").join(name);
+    let bytes = std::fs::read(path).expect("the fixture is in the repository");
+    read_raster(&bytes, &ImportOptions::default()).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// A file of the data that stands beside the repository, or `None` with a message.
+#[expect(clippy::print_stderr, reason = "a test that could not look at its data says so")]
+fn shared(name: &str) -> Option<Vec<u8>> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data").join(name);
+    let bytes = std::fs::read(&path).ok();
+    if bytes.is_none() {
+        eprintln!("NOT TESTED: there is no {}", path.display());
+    }
+    bytes
+}
+
+fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
+    read_raster(bytes, &ImportOptions::default())
+}
+
+const LEVELS: [f32; 20] = [
+    0.0, 100.0, 200.0, 300.0, 400.0, 1000.0, 1100.0, 1200.0, 1300.0, 1400.0, 60000.0, 60100.0, 60200.0,
+    60300.0, 60400.0, 5.0, 4.0, 3.0, 2.0, 1.0,
+];
+
+#[test]
+fn sixteen_bit_pictures_keep_their_levels() {
+    for name in ["pillow-gray16.png", "pillow-gray16.pgm"] {
+        let raster = fixture(name);
+        assert_eq!((raster.width, raster.height), (5, 4), "{name}");
+        assert_eq!(raster.samples, LEVELS, "{name}");
+    }
+    assert_eq!(fixture("pillow-gray16.png").meaning, Meaning::Levels { greatest: Some(65_535) });
+}
+
+#[test]
+fn eight_bit_pictures_keep_their_levels() {
+    let expected = LEVELS.map(|level| level % 251.0);
+    for name in ["pillow-gray8.pgm", "pillow-gray8-lzw.tiff"] {
+        let raster = fixture(name);
+        assert_eq!(raster.samples, expected, "{name}");
+        assert_eq!(raster.meaning, Meaning::Levels { greatest: Some(255) }, "{name}");
+    }
+}
+
+#[test]
+fn a_colour_counts_as_its_mean_and_a_transparent_pixel_has_no_data() {
+    let raster = fixture("pillow-rgba8.png");
+    assert_eq!(raster.samples[..5], [0.0, 60.0, 0.0, 0.0, 0.0]);
+    assert!(raster.samples[5].is_nan());
+}
+
+#[test]
+fn geotiff_tags_give_cell_size_and_holes() {
+    let raster = fixture("tifffile-float32-deflate-geo.tiff");
+    assert_eq!((raster.width, raster.height, raster.cell_size_m), (4, 3, Some(2.5)));
+    assert!(raster.samples[2].is_nan());
+    assert_eq!(raster.samples[..2], [1.5, -2.25]);
+    let terrain = raster.into_terrain();
+    // The first row of the file is the northernmost.
+    assert_eq!(terrain.height_of(Cell { column: 0, row: 2 }), Some(1.5));
+    assert_eq!(terrain.height_of(Cell { column: 3, row: 0 }), Some(-4.0));
+    assert_eq!(terrain.height_of(Cell { column: 2, row: 2 }), None);
+    assert_eq!(terrain.no_data_count(), 1);
+}
+
+#[test]
+fn geotiff_in_degrees_is_brought_to_metres_by_the_bodys_radius() {
+    let raster = fixture("tifffile-int32-tiled-degrees.tiff");
+    assert_eq!((raster.width, raster.height), (40, 37));
+    // Half a degree of a circle of 1000 m radius.
+    assert!((raster.cell_size_m.unwrap() - 8.726_646_259_971_648).abs() < 1e-9);
+    let expected: Vec<f32> = (0..40 * 37).map(|index| (index - 700) as f32).collect();
+    assert_eq!(raster.samples, expected);
+}
+
+#[test]
+fn tiff_samples_of_other_types_are_read() {
+    let signed = fixture("tifffile-int16-bigendian.tiff");
+    assert_eq!(signed.samples, [1.0, -2.0, -9999.0, 4.0, 5.0, 6.0, 7.0, 8.0, -1.0, -2.0, -3.0, -4.0]);
+    let double = fixture("tifffile-float64.tiff");
+    assert_eq!(double.samples[..4], [1.5, -2.25, -9999.0, 4.0]);
+    let wide = fixture("tifffile-uint32.tiff");
+    assert_eq!(wide.samples[1], 7_000_000.0);
+    assert_eq!(wide.samples[10], 60_000.0 * 70_000.0);
+}
+
+#[test]
+fn phobos_reads_as_tifffile_reads_it() {
+    let Some(bytes) = shared("terrain/Phobos_ME_HRSC_DEM_Global_2ppd.tiff") else { return };
+    let raster = read(&bytes).unwrap();
+    assert_eq!((raster.width, raster.height), (699, 349));
+    assert!((raster.cell_size_m.unwrap() - 100.0).abs() < 1e-4);
+    // Read with tifffile 2026.3.3.
+    assert_eq!(raster.samples[..2], [-1266.0, -1266.0]);
+    assert_eq!(raster.samples[100 * 699 + 200], -664.0);
+    assert_eq!(raster.samples[348 * 699 + 698], -2889.0);
+    let terrain = raster.into_terrain();
+    assert_eq!(terrain.height_range_m(), Some([-2940.0, 2917.0]));
+    assert_eq!(terrain.no_data_count(), 0);
+}
+
+#[test]
+fn mars_has_its_highest_and_lowest_places_where_they_are() {
+    let Some(bytes) = shared("terrain/megt90n000cb.img") else { return };
+    for options in [
+        ImportOptions::default(),
+        ImportOptions {
+            raw: Some(RawLayout::new(1440, 720, SampleType::I16BigEndian)),
+            ..ImportOptions::default()
+        },
+    ] {
+        let terrain = read_terrain(&bytes, &options).unwrap();
+        let frame = *terrain.frame();
+        assert_eq!((frame.width, frame.height), (1440, 720));
+        // Four cells a degree, row 0 at the south pole, longitude from 0° east.
+        let highest = (0..frame.cell_count())
+            .max_by(|&a, &b| terrain.heights_m()[a].total_cmp(&terrain.heights_m()[b]))
+            .unwrap();
+        let cell = frame.cell(highest);
+        let (longitude, latitude) =
+            ((f64::from(cell.column) + 0.5) / 4.0, (f64::from(cell.row) + 0.5) / 4.0 - 90.0);
+        // Olympus Mons: 18.65° N, 226.2° E, 21.2 km; its highest rim is on the south-east of its caldera.
+        assert!((latitude - 18.65).abs() < 1.5 && (longitude - 226.2).abs() < 1.5, "{latitude} {longitude}");
+        let [low, high] = terrain.height_range_m().unwrap();
+        assert!((20_500.0..21_500.0).contains(&high), "{high}");
+        // The floor of Hellas.
+        assert!((-8_300.0..-7_500.0).contains(&low), "{low}");
+    }
+    let cell = read(&bytes).unwrap().cell_size_m.unwrap();
+    // A quarter of a degree on Mars is 14.8 km.
+    assert!((cell - 14_818.7).abs() < 1.0, "{cell}");
+}
+
+#[test]
+fn obstacle_maps_are_a_fifth_obstacles_and_free_at_their_corners() {
+    for name in ["maps/map_1.pgm", "maps/map_2.pgm"] {
+        let Some(bytes) = shared(name) else { return };
+        let obstacles = read(&bytes).unwrap().obstacles();
+        let share = obstacles.iter().filter(|&&obstacle| obstacle).count() as f64 / obstacles.len() as f64;
+        assert!((share - 0.2).abs() < 0.02, "{name}: {share}");
+        assert!(!obstacles[8 * 512 + 8] && !obstacles[503 * 512 + 503]);
+    }
+}
+
+#[test]
+fn an_ascii_grid_is_read_with_its_cell_size_and_holes() {
+    let text = "ncols 3\nnrows 2\nxllcorner 100.0\nyllcorner 200.0\ncellsize 2.5\nNODATA_value -99\n1 2 -99\n4 5.5 -6e1\n";
+    let raster = read(text.as_bytes()).unwrap();
+    assert_eq!((raster.width, raster.height, raster.cell_size_m), (3, 2, Some(2.5)));
+    assert_eq!(raster.samples[..2], [1.0, 2.0]);
+    assert!(raster.samples[2].is_nan());
+    assert_eq!(raster.samples[3..], [4.0, 5.5, -60.0]);
+    assert_eq!(raster.into_terrain().height_at([1.0, 1.0]), Some(4.0));
+}
+
+#[test]
+fn a_text_grey_map_may_have_comments() {
+    let raster = read(b"P2 # made by hand\n# size\n2 2\n9\n0 9 # row\n4 5").unwrap();
+    assert_eq!(raster.samples, [0.0, 9.0, 4.0, 5.0]);
+    assert_eq!(raster.obstacles(), [true, false, true, false]);
+}
+
+#[test]
+fn a_moving_ai_map_gives_obstacles() {
+    let raster = read(b"type octile\nheight 3\nwidth 4\nmap\n.G@T\r\nS.OW\n....\n").unwrap();
+    assert_eq!((raster.width, raster.height, raster.meaning), (4, 3, Meaning::Obstacles));
+    let expected: Vec<bool> = "..@@..@@....".chars().map(|character| character == '@').collect();
+    assert_eq!(raster.obstacles(), expected);
+}
+
+fn pds_image() -> Vec<u8> {
+    let label = "PDS_VERSION_ID = PDS3\r\nRECORD_TYPE = FIXED_LENGTH\r\nRECORD_BYTES = 512\r\n^IMAGE = 2\r\n\
+        OBJECT = IMAGE\r\nLINES = 2\r\nLINE_SAMPLES = 3\r\nSAMPLE_TYPE = LSB_INTEGER\r\nSAMPLE_BITS = 16\r\n\
+        SCALING_FACTOR = 0.5\r\nOFFSET = 100.0\r\nMISSING_CONSTANT = -32768\r\nEND_OBJECT = IMAGE\r\n\
+        MAP_SCALE = 0.25 <KM/PIXEL>\r\nEND\r\n";
+    let mut bytes = label.as_bytes().to_vec();
+    bytes.resize(512, b' ');
+    for value in [0_i16, 2, -4, -32768, 10, 12] {
+        bytes.extend(value.to_le_bytes());
+    }
+    bytes
+}
+
+#[test]
+fn a_pds_label_says_where_the_samples_are_and_what_they_mean() {
+    let raster = read(&pds_image()).unwrap();
+    assert_eq!((raster.width, raster.height, raster.cell_size_m), (3, 2, Some(250.0)));
+    assert_eq!(raster.samples[..3], [100.0, 101.0, 98.0]);
+    assert!(raster.samples[3].is_nan());
+    // The same label in a file of its own points to another file.
+    let bytes = pds_image();
+    let label = String::from_utf8_lossy(&bytes[..512]).replace("^IMAGE = 2", "^IMAGE = \"DATA.IMG\"");
+    let options = ImportOptions { label: Some(label.into_bytes()), ..ImportOptions::default() };
+    let detached = read_raster(&bytes[512..], &options).unwrap();
+    assert_eq!(detached.samples[..3], raster.samples[..3]);
+}
+
+#[test]
+fn the_callers_scale_hole_and_cell_size_apply() {
+    let options = ImportOptions {
+        cell_size_m: Some(3.0),
+        vertical_scale: Some(0.5),
+        no_data: Some(9.0),
+        ..ImportOptions::default()
+    };
+    let terrain = read_terrain(b"P2 2 1 9 9 4", &options).unwrap();
+    assert_eq!(terrain.frame().cell_size_m, 3.0);
+    assert_eq!(terrain.height_of(Cell { column: 1, row: 0 }), Some(2.0));
+    assert_eq!(terrain.height_of(Cell { column: 0, row: 0 }), None);
+}
+
+#[test]
+fn an_enormous_map_is_refused_before_it_is_allocated() {
+    let ascii = "ncols 4000000000\nnrows 4000000000\ncellsize 1\n0";
+    let moving = "type octile\nheight 999999\nwidth 999999\nmap\n.";
+    let mut png =
+        std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/pillow-gray16.png"))
+            .unwrap();
+    // The width in the header, with the checksum that goes with it.
+    png[16..20].copy_from_slice(&0x7fff_ffff_u32.to_be_bytes());
+    let checksum = crc32(&png[12..29]);
+    png[29..33].copy_from_slice(&checksum.to_be_bytes());
+    for bytes in [b"P5 70000 70000 255 ".as_slice(), ascii.as_bytes(), moving.as_bytes(), &png] {
+        let error = read(bytes).unwrap_err();
+        assert!(matches!(error, FormatError::TooLarge { .. }), "{error}");
+        assert!(error.to_string().contains(&GREATEST_CELL_COUNT.to_string()));
+    }
+}
+
+fn crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |crc, &byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ (0xedb8_8320 & 0_u32.wrapping_sub(crc & 1)))
+    })
+}
+
+#[test]
+fn a_broken_file_is_an_error_that_says_what_is_wrong() {
+    let cases: [(&[u8], &str); 13] = [
+        (b"", "no map file"),
+        (b"hello, world", "no map file"),
+        (b"P5 3 3 255\n12345", "9 bytes, and 5 follow"),
+        (b"P5 3 x 255\n", "the height should be a number but is `x`"),
+        (b"P5 0 3 255\n", "no cells"),
+        (b"P2 3 3 70000\n", "70000"),
+        (b"P2 2 2 9\n1 2 3", "ends"),
+        (b"ncols 2\nnrows 2\ncellsize 1\n1 2 3", "3 values for 2 × 2"),
+        (b"ncols 2\ncellsize 1\n1 2 3", "`nrows` is missing"),
+        (b"ncols 2\nnrows 1\ncellsize 1\n1 b", "value 2 is `b`"),
+        (b"type octile\nheight 1\nwidth 3\nmap\n.?.\n", "a cell `?`"),
+        (b"type octile\nheight 2\nwidth 3\nmap\n...\n..\n", "row 2"),
+        (b"PDS_VERSION_ID = PDS3\nLINES = 3\nEND\n", "LINE_SAMPLES"),
+    ];
+    for (bytes, expected) in cases {
+        let message = read(bytes).unwrap_err().to_string();
+        assert!(message.contains(expected), "`{message}` should contain `{expected}`");
+    }
+}
+
+#[test]
+fn no_cut_or_flipped_byte_of_a_file_makes_reading_panic() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
+    let mut names: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    names.sort();
+    let mut files: Vec<Vec<u8>> = names.iter().map(|path| std::fs::read(path).unwrap()).collect();
+    files.push(pds_image());
+    for bytes in files {
+        assert!(read(&bytes).is_ok());
+        for end in 0..bytes.len().min(400) {
+            let _ = read(&bytes[..end]);
+        }
+        for index in 0..bytes.len().min(400) {
+            for change in [0xff, 0x01, 0x80] {
+                let mut broken = bytes.clone();
+                broken[index] ^= change;
+                let _ = read(&broken);
+            }
+        }
+    }
+}
+
+#[test]
+fn formats_are_recognised_by_their_first_bytes() {
+    assert_eq!(FileFormat::detect(b"MM\0*\0\0\0\x08"), Some(FileFormat::Tiff));
+    assert_eq!(FileFormat::detect(b"\nNCOLS 3"), Some(FileFormat::AsciiGrid));
+    assert_eq!(FileFormat::detect(b"nothing known"), None);
+}
