@@ -1,0 +1,255 @@
+//! `enroute path`: one path on a map file.
+//!
+//! Coordinates follow the rows of the file: x to the right and y down from the top left corner of the picture, in cells
+//! times `--cell`, so that cell (column, row) covers x from column to column + 1. An elevation map is read as its picture too:
+//! dark cells are obstacles.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use anyhow::Context as _;
+use clap::ValueEnum;
+use motion::{Failure, PlannerKind, Query, Search, Settings, ShortcutSettings, Statistics, shorten};
+use serde_json::{Value, json};
+use terrain::format::{FileFormat, ImportOptions, read_raster};
+use terrain::{ConfigurationSpace, GridFrame, Occupancy};
+
+use crate::input::read_bytes;
+use crate::output::{Format, LIMIT, NO, YES, document, exit, print_json, print_text};
+
+/// Finds a path on a map of obstacles.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The map: PGM, PNG, TIFF, ESRI ASCII grid or `MovingAI` `.map`; `-` is standard input. Dark is obstacle.
+    map: PathBuf,
+    /// Where it starts: x to the right and y down from the top left corner.
+    #[arg(long, value_name = "X,Y", value_parser = parse_point, allow_hyphen_values = true)]
+    from: [f64; 2],
+    /// Where it ends.
+    #[arg(long, value_name = "X,Y", value_parser = parse_point, allow_hyphen_values = true)]
+    to: [f64; 2],
+    /// Which planner.
+    #[arg(long, value_enum, default_value_t = Planner::RrtConnect)]
+    planner: Planner,
+    /// Radius of the vehicle, in the units of the coordinates.
+    #[arg(long, default_value_t = 0.0, value_parser = parse_length)]
+    radius: f64,
+    /// Side of a cell, in the units of the coordinates.
+    #[arg(long, default_value_t = 1.0, value_parser = parse_positive)]
+    cell: f64,
+    /// Longest edge of the tree; a twenty-fifth of the longer side of the map by default.
+    #[arg(long, value_parser = parse_positive)]
+    step: Option<f64>,
+    /// Where random choices come from.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Probability with which the goal is the sample.
+    #[arg(long, default_value_t = 0.05)]
+    goal_bias: f64,
+    /// Most samples.
+    #[arg(long, default_value_t = 200_000)]
+    samples: u32,
+    /// Give up, or with rrt-star stop improving, after this many milliseconds.
+    #[arg(long, value_name = "MS")]
+    time_limit: Option<u64>,
+    /// Search this many times, each with the next seed, and list all runs.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    repeat: u32,
+    /// Leave the path as the planner found it.
+    #[arg(long)]
+    raw: bool,
+    /// For whom the answer is.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// The planners by their names on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Planner {
+    /// One tree from the start.
+    Rrt,
+    /// A tree from each end.
+    RrtConnect,
+    /// Goes on to shorten its path.
+    RrtStar,
+    /// Within the speeds and accelerations of an ATRV.
+    Kinodynamic,
+}
+
+impl Planner {
+    const fn kind(self) -> PlannerKind {
+        match self {
+            Self::Rrt => PlannerKind::Rrt,
+            Self::RrtConnect => PlannerKind::RrtConnect,
+            Self::RrtStar => PlannerKind::RrtStar,
+            Self::Kinodynamic => PlannerKind::Kinodynamic,
+        }
+    }
+}
+
+/// What one search came to.
+struct Run {
+    seed: u64,
+    path: Result<motion::Path, Failure>,
+    /// Length before shortening.
+    raw_length: f64,
+    statistics: Statistics,
+    /// Until the first path, the whole search, and the search with shortening, in milliseconds.
+    millis: [f64; 3],
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let space = load(args)?;
+    let runs: Vec<Run> = (0..args.repeat).map(|run| search(args, &space, u64::from(run))).collect();
+    let first = runs.first().context("at least one run")?;
+    match args.format {
+        Format::Text => print_text(&describe(&runs))?,
+        Format::Json => print_json(&document("path", &[], to_json(&runs)))?,
+    }
+    Ok(exit(match first.path {
+        Ok(_) => YES,
+        Err(Failure::NotFound { .. } | Failure::Stopped { .. }) => LIMIT,
+        Err(_) => NO,
+    }))
+}
+
+fn load(args: &Args) -> anyhow::Result<ConfigurationSpace> {
+    const LARGEST_MAP_BYTES: u64 = 512 << 20;
+    let bytes = read_bytes(&args.map, LARGEST_MAP_BYTES)?;
+    let name = args.map.display();
+    anyhow::ensure!(
+        FileFormat::detect(&bytes).is_some(),
+        "{name} is no map: it begins like no PGM, PNG, TIFF, ESRI ASCII grid or MovingAI map"
+    );
+    let raster =
+        read_raster(&bytes, &ImportOptions::default()).with_context(|| format!("cannot read {name}"))?;
+    let frame = GridFrame::new(raster.width, raster.height, args.cell);
+    Ok(ConfigurationSpace::new(Occupancy::from_obstacles(frame, &raster.obstacles()), args.radius))
+}
+
+fn search(args: &Args, space: &ConfigurationSpace, run: u64) -> Run {
+    let seed = args.seed.wrapping_add(run);
+    let frame = space.frame();
+    let longer_side = f64::from(frame.width.max(frame.height)) * frame.cell_size_m;
+    let settings = Settings {
+        step_m: args.step.unwrap_or(longer_side / 25.0),
+        goal_bias: args.goal_bias.clamp(0.0, 1.0),
+        greatest_samples: args.samples,
+        seed,
+        ..Settings::of(args.planner.kind())
+    };
+    let query = Query { start_m: args.from, goal_m: args.to };
+    let started = Instant::now();
+    let limit = args.time_limit.map(Duration::from_millis);
+    let mut first_millis = None;
+    let mut stop = |statistics: &Statistics| {
+        if first_millis.is_none() && statistics.samples_to_first_path.is_some() {
+            first_millis = Some(millis_since(started));
+        }
+        // Reading the clock before every sample would cost more than the sample.
+        limit.is_some_and(|limit| statistics.samples.is_multiple_of(16) && started.elapsed() > limit)
+    };
+    let mut path = Err(Failure::NotFound { samples: 0 });
+    let mut statistics = Statistics::default();
+    let mut is_motion = false;
+    match Search::new(space, query, settings) {
+        Ok(search) => {
+            let result = search.run(space, &mut stop);
+            is_motion = result.trajectory.is_some();
+            (path, statistics) = (result.path, result.statistics);
+        }
+        Err(failure) => path = path.map_err(|_| failure),
+    }
+    let search_millis = millis_since(started);
+    let raw_length = path.as_ref().map_or(0.0, motion::Path::length_m);
+    // A straight shortcut would leave what a motion can do.
+    if !args.raw && !is_motion {
+        path =
+            path.map(|path| shorten(space, &path, &ShortcutSettings { seed, ..ShortcutSettings::default() }));
+    }
+    let millis = [first_millis.unwrap_or(search_millis), search_millis, millis_since(started)];
+    Run { seed, path, raw_length, statistics, millis }
+}
+
+fn millis_since(start: Instant) -> f64 {
+    1000.0 * start.elapsed().as_secs_f64()
+}
+
+fn to_json(runs: &[Run]) -> Value {
+    let mut body = runs.first().map_or(Value::Null, run_json);
+    if let (Value::Object(members), true) = (&mut body, runs.len() > 1) {
+        members.insert("runs".into(), runs.iter().map(run_json).collect());
+    }
+    body
+}
+
+fn run_json(run: &Run) -> Value {
+    let (points, length, failure) = match &run.path {
+        Ok(path) => (path.points_m.as_slice(), json!(path.length_m()), Value::Null),
+        Err(failure) => (&[][..], Value::Null, json!(failure.to_string())),
+    };
+    let [first, search, all] = run.millis;
+    json!({
+        "found": run.path.is_ok(),
+        "path": points,
+        "length": length,
+        "raw_length": run.path.is_ok().then_some(run.raw_length),
+        "samples": run.statistics.samples,
+        "vertices": run.statistics.vertices,
+        "millis": all,
+        "search_millis": search,
+        "first_path_millis": run.path.is_ok().then_some(first),
+        "seed": run.seed,
+        "failure": failure,
+        "proved": matches!(
+            run.path,
+            Err(Failure::GoalEnclosed | Failure::StartInCollision(_) | Failure::GoalInCollision(_))
+        ),
+    })
+}
+
+fn describe(runs: &[Run]) -> String {
+    let mut text = String::new();
+    for run in runs {
+        let prefix = if runs.len() > 1 { format!("seed {}: ", run.seed) } else { String::new() };
+        match &run.path {
+            Ok(path) => {
+                text += &format!(
+                    "{prefix}{:.3} long ({:.3} as found), {} points, {} samples, {:.3} ms\n",
+                    path.length_m(),
+                    run.raw_length,
+                    path.points_m.len(),
+                    run.statistics.samples,
+                    run.millis[2]
+                );
+                if runs.len() == 1 {
+                    text.extend(path.points_m.iter().map(|[x, y]| format!("{x} {y}\n")));
+                }
+            }
+            Err(failure) => text += &format!("{prefix}{failure} ({:.3} ms)\n", run.millis[2]),
+        }
+    }
+    text
+}
+
+fn parse_point(text: &str) -> Result<[f64; 2], String> {
+    let (x, y) = text.split_once(',').ok_or("two numbers with a comma between them are needed, as in 8,8")?;
+    Ok([parse_number(x)?, parse_number(y)?])
+}
+
+fn parse_number(text: &str) -> Result<f64, String> {
+    let number: f64 = text.trim().parse().map_err(|_| format!("`{text}` is no number"))?;
+    if number.is_finite() { Ok(number) } else { Err(format!("`{text}` is not finite")) }
+}
+
+fn parse_length(text: &str) -> Result<f64, String> {
+    let number = parse_number(text)?;
+    if number >= 0.0 { Ok(number) } else { Err(format!("{number} is negative")) }
+}
+
+fn parse_positive(text: &str) -> Result<f64, String> {
+    let number = parse_number(text)?;
+    if number > 0.0 { Ok(number) } else { Err(format!("{number} is not positive")) }
+}
