@@ -1,1 +1,25 @@
-//! Hierarchical constraint automata: compilation from control programs, stepping, trace.
+//! Hierarchical constraint automata: compilation from control programs, stepping, trace (SPEC 8).
+//!
+//! An [`Automaton`] is data that never changes; a [`Stepper`] holds a marking of it and takes steps from what is known
+//! of the plant. Where that knowledge comes from is not this crate's business.
+
+pub mod automaton;
+pub mod compile;
+pub mod condition;
+pub mod dot;
+pub mod knowledge;
+pub mod marking;
+pub mod step;
+pub mod trace;
+pub mod vocabulary;
+
+pub use automaton::{
+    Assertion, Automaton, Composite, CompositeId, CompositeKind, Element, Location, LocationId, LocationKind,
+    TestId, Transition, TransitionId,
+};
+pub use compile::{Compilation, compile, compile_text};
+pub use knowledge::Estimate;
+pub use marking::Marking;
+pub use step::{Quiet, StepObserver, Stepper};
+pub use trace::{Trace, TraceStep, trace};
+pub use vocabulary::{Variable, VariableId, Vocabulary};

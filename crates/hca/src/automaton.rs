@@ -1,0 +1,253 @@
+//! The automaton as flat data with typed indices (SPEC 8.1).
+
+use std::ops::Range;
+
+use rmpl::Span;
+use rmpl::control::Guard;
+use serde::{Deserialize, Serialize};
+use smol_str::SmolStr;
+
+use crate::condition::Condition;
+use crate::knowledge::Estimate;
+use crate::marking::Marking;
+use crate::vocabulary::{Variable, VariableId};
+
+/// Index of a primitive location.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct LocationId(pub u32);
+
+/// Index of a composite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct CompositeId(pub u32);
+
+/// Index of a transition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct TransitionId(pub u32);
+
+/// Index of a compiled condition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct TestId(pub u32);
+
+/// A location or a composite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Element {
+    /// A primitive location.
+    Location(LocationId),
+    /// A composite.
+    Composite(CompositeId),
+}
+
+/// What a primitive location waits for or does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LocationKind {
+    /// Asserts a constraint until it holds.
+    Assert,
+    /// Starts its body at every step.
+    Always,
+    /// Chooses once.
+    If,
+    /// Starts its body once unless something holds.
+    Unless,
+    /// Waits once.
+    When,
+    /// Waits again and again.
+    Whenever,
+}
+
+/// A condition compiled, with the text of its guard.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Test {
+    /// The guard as written.
+    pub guard: Guard,
+    pub(crate) condition: Condition,
+}
+
+/// What a location asserts.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Assertion {
+    /// The constraint, which is never a non-entailment.
+    pub test: TestId,
+    /// The goals that it states: one per equality of a conjunction, or the constraint as a whole.
+    pub goals: Vec<SmolStr>,
+    /// What it sets of the program's own variables, as variable and value number.
+    pub program_settings: Vec<(VariableId, u32)>,
+}
+
+/// A primitive location.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Location {
+    /// What it does.
+    pub kind: LocationKind,
+    /// How traces and drawings call it, such as `assert Camera=Off` or `when (…)`.
+    pub label: SmolStr,
+    /// What it asserts; `None` when it only waits.
+    pub assertion: Option<Assertion>,
+    /// Its transitions, as indices into [`Automaton::transitions`].
+    pub transitions: Range<u32>,
+    /// The composite that directly holds it.
+    pub parent: CompositeId,
+    /// Where its expression is written.
+    pub span: Span,
+}
+
+/// Which form a composite comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CompositeKind {
+    /// The whole program.
+    Program,
+    /// `PARALLEL`.
+    Parallel,
+    /// `SEQUENCE`: when a child ends, the next starts.
+    Sequence,
+    /// `DO-WATCHING`: has a maintenance condition.
+    DoWatching,
+    /// A location and the bodies that it starts: `ALWAYS`, `IF…`, `UNLESS…`, `WHEN…`, `WHENEVER…`.
+    Guarded,
+}
+
+/// A composite: an automaton inside the automaton.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Composite {
+    /// Which form it comes from.
+    pub kind: CompositeKind,
+    /// The composite that directly holds it; `None` for the whole program.
+    pub parent: Option<CompositeId>,
+    /// What it directly holds, in textual order.
+    pub children: Vec<Element>,
+    /// The locations that are marked when it starts (Θ).
+    pub start: Vec<LocationId>,
+    /// What must hold for it to stay active (M); for `(DO-WATCHING c e)` the non-entailment of `c`.
+    pub maintenance: Option<TestId>,
+    /// All locations below it; locations are numbered so that they form a range.
+    pub locations: Range<u32>,
+    /// Where its expression is written.
+    pub span: Span,
+}
+
+/// A transition.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Transition {
+    /// The location that it leaves.
+    pub source: LocationId,
+    /// What must hold; `None` for always.
+    pub guard: Option<TestId>,
+    /// What it starts.
+    pub target: Element,
+}
+
+/// A control program compiled.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Automaton {
+    /// Its variables.
+    pub variables: Vec<Variable>,
+    /// Its conditions.
+    pub tests: Vec<Test>,
+    /// Its primitive locations (Σp).
+    pub locations: Vec<Location>,
+    /// Its composites (Σc); the first is the whole program, parents come before children.
+    pub composites: Vec<Composite>,
+    /// Its transitions, grouped by source.
+    pub transitions: Vec<Transition>,
+    /// For each composite, the composites with maintenance that it is in, itself not included.
+    pub(crate) watched_by: Vec<Vec<CompositeId>>,
+}
+
+impl Automaton {
+    /// The program as a whole.
+    pub const ROOT: CompositeId = CompositeId(0);
+
+    /// A location.
+    pub fn location(&self, id: LocationId) -> Option<&Location> {
+        self.locations.get(id.0 as usize)
+    }
+
+    /// A composite.
+    pub fn composite(&self, id: CompositeId) -> Option<&Composite> {
+        self.composites.get(id.0 as usize)
+    }
+
+    /// A condition's guard as written.
+    pub fn guard(&self, id: TestId) -> Option<&Guard> {
+        self.tests.get(id.0 as usize).map(|test| &test.guard)
+    }
+
+    /// The locations that are marked when an element starts.
+    pub fn start_of<'data>(&'data self, element: &'data Element) -> &'data [LocationId] {
+        match element {
+            Element::Location(location) => std::slice::from_ref(location),
+            Element::Composite(composite) => {
+                self.composite(*composite).map_or(&[], |composite| composite.start.as_slice())
+            }
+        }
+    }
+
+    /// The marking in which the program starts: Θ of the whole.
+    pub fn start(&self) -> Marking {
+        let mut marking = Marking::empty(self.locations.len());
+        for &location in self.start_of(&Element::Composite(Self::ROOT)) {
+            marking.insert(location);
+        }
+        marking
+    }
+
+    /// Whether any location below a composite is marked.
+    pub fn is_active(&self, composite: CompositeId, marking: &Marking) -> bool {
+        self.composite(composite).is_some_and(|composite| marking.intersects(&composite.locations))
+    }
+
+    /// The number of the variable called `name`.
+    pub fn variable(&self, name: &str) -> Option<VariableId> {
+        self.variables.iter().position(|variable| variable.name == name).map(|at| VariableId(at as u32))
+    }
+
+    /// An estimate that knows the named values; variables that the program does not speak of are left out.
+    pub fn estimate<'name>(&self, known: impl IntoIterator<Item = (&'name str, &'name str)>) -> Estimate {
+        let mut estimate = Estimate::unknown(self.variables.len());
+        for (name, value) in known {
+            if let Some(id) = self.variable(name) {
+                estimate.set(
+                    id,
+                    self.variables.get(id.0 as usize).and_then(|variable| variable.value_number(value)),
+                );
+            }
+        }
+        estimate
+    }
+
+    /// The goals of a marking, each once, in alphabetical order.
+    pub fn goals(&self, marking: &Marking) -> Vec<SmolStr> {
+        let mut goals: Vec<SmolStr> = marking
+            .iter()
+            .filter_map(|location| self.location(location)?.assertion.as_ref())
+            .flat_map(|assertion| assertion.goals.iter().cloned())
+            .collect();
+        goals.sort();
+        goals.dedup();
+        goals
+    }
+
+    /// The labels of a marking's locations in alphabetical order.
+    pub fn labels(&self, marking: &Marking) -> Vec<SmolStr> {
+        let mut labels: Vec<SmolStr> =
+            marking.iter().filter_map(|location| Some(self.location(location)?.label.clone())).collect();
+        labels.sort();
+        labels
+    }
+
+    /// The name of a location in drawings and JSON: `a1`, `w2`, and so on by kind in textual order.
+    pub fn location_name(&self, id: LocationId) -> String {
+        let letter = |kind: LocationKind| match kind {
+            LocationKind::Assert => 'a',
+            LocationKind::Always => 'l',
+            LocationKind::If | LocationKind::Unless => 'i',
+            LocationKind::When | LocationKind::Whenever => 'w',
+        };
+        let Some(location) = self.location(id) else { return String::new() };
+        let mine = letter(location.kind);
+        let number =
+            self.locations.iter().take(id.0 as usize + 1).filter(|other| letter(other.kind) == mine).count();
+        format!("{mine}{number}")
+    }
+}

@@ -1,0 +1,400 @@
+//! From a control program to its automaton (SPEC 8.2). Linear in the size of the expanded program.
+
+use std::collections::BTreeMap;
+
+use rmpl::control::{
+    Constraint, ConstraintKind, ControlFile, Expression, ExpressionKind, Guard, Name, ParsedControl,
+    expand_main, nearest,
+};
+use rmpl::{Code, Diagnostic, Span};
+use smol_str::{SmolStr, format_smolstr};
+
+use crate::automaton::{
+    Assertion, Automaton, Composite, CompositeId, CompositeKind, Element, Location, LocationId, LocationKind,
+    Test, TestId, Transition,
+};
+use crate::condition::{Condition, Formula};
+use crate::vocabulary::{Variable, VariableId, Vocabulary};
+
+/// What compiling a text gives.
+#[derive(Clone, Debug)]
+pub struct Compilation {
+    /// The text read.
+    pub parsed: ParsedControl,
+    /// The automaton of its main definition; `None` when there are errors.
+    pub automaton: Option<Automaton>,
+    /// All that is wrong, in textual order.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Reads and compiles a text.
+pub fn compile_text(text: &str, vocabulary: &Vocabulary) -> Compilation {
+    let parsed = rmpl::control::parse(text);
+    let mut diagnostics = parsed.diagnostics.clone();
+    let mut automaton = None;
+    if !parsed.has_errors() {
+        let (compiled, found) = compile(&parsed.file, vocabulary);
+        automaton = compiled;
+        diagnostics.extend(found);
+        diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
+    }
+    Compilation { parsed, automaton, diagnostics }
+}
+
+/// Compiles the main definition of a file that parsed without errors.
+pub fn compile(file: &ControlFile, vocabulary: &Vocabulary) -> (Option<Automaton>, Vec<Diagnostic>) {
+    let (Some(program), diagnostics) = expand_main(file) else { return (None, expand_main(file).1) };
+    let mut compiler = Compiler::new(vocabulary, diagnostics);
+    compiler.collect(&program);
+    let root = compiler.open(CompositeKind::Program, None, None, program.span);
+    let element = compiler.expression(&program, root);
+    compiler.close(root, vec![element], vec![element]);
+    let Compiler { mut automaton, transitions, diagnostics, .. } = compiler;
+    for (at, transitions) in transitions.into_iter().enumerate() {
+        let start = automaton.transitions.len() as u32;
+        automaton.transitions.extend(transitions);
+        if let Some(location) = automaton.locations.get_mut(at) {
+            location.transitions = start..automaton.transitions.len() as u32;
+        }
+    }
+    automaton.watched_by = watched_by(&automaton.composites);
+    (diagnostics.is_empty().then_some(automaton), diagnostics)
+}
+
+fn watched_by(composites: &[Composite]) -> Vec<Vec<CompositeId>> {
+    let mut found: Vec<Vec<CompositeId>> = Vec::with_capacity(composites.len());
+    for composite in composites {
+        let mut outer = Vec::new();
+        if let Some(parent) = composite.parent {
+            outer.extend(found.get(parent.0 as usize).into_iter().flatten().copied());
+            if composites.get(parent.0 as usize).is_some_and(|parent| parent.maintenance.is_some()) {
+                outer.push(parent);
+            }
+        }
+        found.push(outer);
+    }
+    found
+}
+
+struct Compiler<'vocabulary> {
+    vocabulary: &'vocabulary Vocabulary,
+    automaton: Automaton,
+    /// Per location; flattened at the end.
+    transitions: Vec<Vec<Transition>>,
+    by_name: BTreeMap<SmolStr, u32>,
+    /// Tests already compiled, by the text of their guard.
+    by_guard: BTreeMap<String, TestId>,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl<'vocabulary> Compiler<'vocabulary> {
+    fn new(vocabulary: &'vocabulary Vocabulary, diagnostics: Vec<Diagnostic>) -> Self {
+        let automaton = Automaton {
+            variables: Vec::new(),
+            tests: Vec::new(),
+            locations: Vec::new(),
+            composites: Vec::new(),
+            transitions: Vec::new(),
+            watched_by: Vec::new(),
+        };
+        Self {
+            vocabulary,
+            automaton,
+            transitions: Vec::new(),
+            by_name: BTreeMap::new(),
+            by_guard: BTreeMap::new(),
+            diagnostics,
+        }
+    }
+
+    /// Finds all variables and values first, so that every value set is as wide as its domain.
+    fn collect(&mut self, expression: &Expression) {
+        let mut constraints: Vec<&Constraint> = Vec::new();
+        constraints_of(expression, &mut constraints);
+        for constraint in constraints {
+            self.collect_constraint(constraint);
+        }
+    }
+
+    fn collect_constraint(&mut self, constraint: &Constraint) {
+        match &constraint.kind {
+            ConstraintKind::Not(inner) => self.collect_constraint(inner),
+            ConstraintKind::And(parts) | ConstraintKind::Or(parts) => {
+                parts.iter().for_each(|part| self.collect_constraint(part));
+            }
+            ConstraintKind::Equals { variable, value } => self.collect_equality(variable, value),
+            _ => {}
+        }
+    }
+
+    fn collect_equality(&mut self, name: &Name, value: &Name) {
+        let at = *self.by_name.entry(name.text.clone()).or_insert_with(|| {
+            let domain = self.vocabulary.domains.get(&name.text);
+            self.automaton.variables.push(Variable {
+                name: name.text.clone(),
+                values: domain.cloned().unwrap_or_default(),
+                closed: domain.is_some(),
+                is_program_variable: self.vocabulary.program_variables.contains(&name.text),
+            });
+            self.automaton.variables.len() as u32 - 1
+        });
+        let Some(variable) = self.automaton.variables.get_mut(at as usize) else { return };
+        if variable.values.contains(&value.text) {
+            return;
+        }
+        if !variable.closed {
+            variable.values.push(value.text.clone());
+            return;
+        }
+        let message = format!("`{}` is never `{}`", name.text, value.text);
+        let hint = nearest(&value.text, variable.values.iter().map(SmolStr::as_str)).map_or_else(
+            || format!("its values are {}", variable.values.join(", ")),
+            |known| format!("did you mean `{known}`?"),
+        );
+        if !self.diagnostics.iter().any(|known| known.span == value.span) {
+            self.diagnostics.push(Diagnostic::error(Code("E-VALUE"), value.span, message).with_hint(hint));
+        }
+    }
+
+    fn formula(&self, constraint: &Constraint) -> Formula {
+        match &constraint.kind {
+            ConstraintKind::True => Formula::Constant(true),
+            ConstraintKind::Not(inner) => self.formula(inner).negated(),
+            ConstraintKind::And(parts) => Formula::And(parts.iter().map(|part| self.formula(part)).collect()),
+            ConstraintKind::Or(parts) => Formula::Or(parts.iter().map(|part| self.formula(part)).collect()),
+            ConstraintKind::Equals { variable, value } => {
+                let Some(&at) = self.by_name.get(&variable.text) else { return Formula::Constant(false) };
+                let Some(data) = self.automaton.variables.get(at as usize) else {
+                    return Formula::Constant(false);
+                };
+                let number = data.values.iter().position(|known| *known == value.text);
+                Formula::Member(at, (0..data.value_count() as usize).map(|at| Some(at) == number).collect())
+            }
+            ConstraintKind::False | ConstraintKind::Parameter(_) | ConstraintKind::Unreadable => {
+                Formula::Constant(false)
+            }
+        }
+    }
+
+    fn test(&mut self, guard: &Guard) -> TestId {
+        let key = guard.to_string();
+        if let Some(known) = self.by_guard.get(&key) {
+            return *known;
+        }
+        let condition = Condition::new(self.formula(&guard.constraint));
+        let id = TestId(self.automaton.tests.len() as u32);
+        self.automaton.tests.push(Test { guard: guard.clone(), condition });
+        self.by_guard.insert(key, id);
+        id
+    }
+
+    fn opposite(&mut self, guard: &Guard) -> TestId {
+        self.test(&Guard { non_entailed: !guard.non_entailed, ..guard.clone() })
+    }
+
+    fn open(
+        &mut self,
+        kind: CompositeKind,
+        parent: Option<CompositeId>,
+        maintenance: Option<TestId>,
+        span: Span,
+    ) -> CompositeId {
+        let id = CompositeId(self.automaton.composites.len() as u32);
+        let first = self.automaton.locations.len() as u32;
+        self.automaton.composites.push(Composite {
+            kind,
+            parent,
+            children: Vec::new(),
+            start: Vec::new(),
+            maintenance,
+            locations: first..first,
+            span,
+        });
+        id
+    }
+
+    fn close(&mut self, id: CompositeId, children: Vec<Element>, started: Vec<Element>) -> Element {
+        let start: Vec<LocationId> =
+            started.iter().flat_map(|element| self.automaton.start_of(element).to_vec()).collect();
+        let end = self.automaton.locations.len() as u32;
+        if let Some(composite) = self.automaton.composites.get_mut(id.0 as usize) {
+            composite.children = children;
+            composite.start = start;
+            composite.locations.end = end;
+        }
+        Element::Composite(id)
+    }
+
+    fn location(
+        &mut self,
+        kind: LocationKind,
+        label: SmolStr,
+        parent: CompositeId,
+        span: Span,
+    ) -> LocationId {
+        let id = LocationId(self.automaton.locations.len() as u32);
+        self.automaton.locations.push(Location {
+            kind,
+            label,
+            assertion: None,
+            transitions: 0..0,
+            parent,
+            span,
+        });
+        self.transitions.push(Vec::new());
+        id
+    }
+
+    fn transition(&mut self, source: LocationId, guard: Option<TestId>, target: Element) {
+        if let Some(transitions) = self.transitions.get_mut(source.0 as usize) {
+            transitions.push(Transition { source, guard, target });
+        }
+    }
+
+    fn expression(&mut self, expression: &Expression, parent: CompositeId) -> Element {
+        let span = expression.span;
+        match &expression.kind {
+            ExpressionKind::Assert(constraint) => self.assertion(constraint, parent, span),
+            ExpressionKind::Parallel(parts) => {
+                let id = self.open(CompositeKind::Parallel, Some(parent), None, span);
+                let children: Vec<Element> = parts.iter().map(|part| self.expression(part, id)).collect();
+                self.close(id, children.clone(), children)
+            }
+            ExpressionKind::Sequence(parts) => {
+                let id = self.open(CompositeKind::Sequence, Some(parent), None, span);
+                let children: Vec<Element> = parts.iter().map(|part| self.expression(part, id)).collect();
+                let first = children.iter().take(1).copied().collect();
+                self.close(id, children, first)
+            }
+            ExpressionKind::DoWatching { guard, body } => {
+                let maintenance = self.opposite(guard);
+                let id = self.open(CompositeKind::DoWatching, Some(parent), Some(maintenance), span);
+                let child = self.expression(body, id);
+                self.close(id, vec![child], vec![child])
+            }
+            ExpressionKind::Always(body) => {
+                let id = self.open(CompositeKind::Guarded, Some(parent), None, span);
+                let location = self.location(LocationKind::Always, SmolStr::new_static("always"), id, span);
+                let own = Element::Location(location);
+                let body = self.expression(body, id);
+                self.transition(location, None, own);
+                self.transition(location, None, body);
+                self.close(id, vec![own, body], vec![own, body])
+            }
+            ExpressionKind::IfThenNext { guard, then, otherwise } => {
+                self.guarded(LocationKind::If, guard, then, otherwise.as_deref(), parent, span)
+            }
+            ExpressionKind::UnlessThenNext { guard, body } => {
+                self.guarded(LocationKind::Unless, guard, body, None, parent, span)
+            }
+            ExpressionKind::WhenDoNext { guard, body } => {
+                self.guarded(LocationKind::When, guard, body, None, parent, span)
+            }
+            ExpressionKind::WheneverDoNext { guard, body } => {
+                self.guarded(LocationKind::Whenever, guard, body, None, parent, span)
+            }
+            // Neither is left in an expanded program without errors; doing nothing is the safe reading.
+            ExpressionKind::Call { .. } | ExpressionKind::Unreadable => {
+                let constraint = Constraint { kind: ConstraintKind::True, span };
+                self.assertion(&constraint, parent, span)
+            }
+        }
+    }
+
+    fn guarded(
+        &mut self,
+        kind: LocationKind,
+        guard: &Guard,
+        body: &Expression,
+        otherwise: Option<&Expression>,
+        parent: CompositeId,
+        span: Span,
+    ) -> Element {
+        let id = self.open(CompositeKind::Guarded, Some(parent), None, span);
+        let word = match kind {
+            LocationKind::If => "if",
+            LocationKind::Unless => "unless",
+            LocationKind::Whenever => "whenever",
+            _ => "when",
+        };
+        let location = self.location(kind, format_smolstr!("{word} {guard}"), id, span);
+        let own = Element::Location(location);
+        let mut children = vec![own];
+        let body = self.expression(body, id);
+        children.push(body);
+        let holds = self.test(guard);
+        let fails = self.opposite(guard);
+        match kind {
+            LocationKind::Unless => self.transition(location, Some(fails), body),
+            _ => self.transition(location, Some(holds), body),
+        }
+        match kind {
+            LocationKind::When => self.transition(location, Some(fails), own),
+            LocationKind::Whenever => self.transition(location, None, own),
+            _ => {}
+        }
+        if let Some(otherwise) = otherwise {
+            let otherwise = self.expression(otherwise, id);
+            children.push(otherwise);
+            self.transition(location, Some(fails), otherwise);
+        }
+        self.close(id, children, vec![own])
+    }
+
+    fn assertion(&mut self, constraint: &Constraint, parent: CompositeId, span: Span) -> Element {
+        let location =
+            self.location(LocationKind::Assert, format_smolstr!("assert {constraint}"), parent, span);
+        let test = self.test(&Guard { non_entailed: false, constraint: constraint.clone(), span });
+        let mut goals = Vec::new();
+        let mut settings = Vec::new();
+        self.goals(constraint, &mut goals, &mut settings);
+        if let Some(data) = self.automaton.locations.get_mut(location.0 as usize) {
+            data.assertion = Some(Assertion { test, goals, program_settings: settings });
+        }
+        Element::Location(location)
+    }
+
+    fn goals(
+        &self,
+        constraint: &Constraint,
+        goals: &mut Vec<SmolStr>,
+        settings: &mut Vec<(VariableId, u32)>,
+    ) {
+        match &constraint.kind {
+            ConstraintKind::True => {}
+            ConstraintKind::And(parts) => parts.iter().for_each(|part| self.goals(part, goals, settings)),
+            ConstraintKind::Equals { variable, value } => {
+                goals.push(format_smolstr!("{constraint}"));
+                let Some(&at) = self.by_name.get(&variable.text) else { return };
+                let data = self.automaton.variables.get(at as usize).filter(|data| data.is_program_variable);
+                if let Some(number) = data.and_then(|data| data.value_number(&value.text)) {
+                    settings.push((VariableId(at), number));
+                }
+            }
+            _ => goals.push(format_smolstr!("{constraint}")),
+        }
+    }
+}
+
+fn constraints_of<'tree>(expression: &'tree Expression, into: &mut Vec<&'tree Constraint>) {
+    match &expression.kind {
+        ExpressionKind::Assert(constraint) => into.push(constraint),
+        ExpressionKind::Parallel(parts) | ExpressionKind::Sequence(parts) => {
+            parts.iter().for_each(|part| constraints_of(part, into));
+        }
+        ExpressionKind::Always(body) => constraints_of(body, into),
+        ExpressionKind::IfThenNext { guard, then, otherwise } => {
+            into.push(&guard.constraint);
+            constraints_of(then, into);
+            otherwise.iter().for_each(|otherwise| constraints_of(otherwise, into));
+        }
+        ExpressionKind::UnlessThenNext { guard, body }
+        | ExpressionKind::WhenDoNext { guard, body }
+        | ExpressionKind::WheneverDoNext { guard, body }
+        | ExpressionKind::DoWatching { guard, body } => {
+            into.push(&guard.constraint);
+            constraints_of(body, into);
+        }
+        ExpressionKind::Call { .. } | ExpressionKind::Unreadable => {}
+    }
+}
