@@ -1,8 +1,73 @@
-import init, { start } from "../wasm/page.js";
+// Loads the front end, starts it on the canvas and puts `window.enroute` in place.
 
-const ready = (async () => {
-  await init();
-  await start(document.getElementById("canvas"));
-  document.getElementById("loading").hidden = true;
-})();
-window.enroute = { ready, state: () => ({ revision: 1 }) };
+import init, { start } from "../wasm/page.js";
+import { createApi } from "./api.js";
+import { startCore } from "./core.js";
+import { chooseFile, saveFile } from "./files.js";
+import { fetchWithProgress, hideLoading, showFailure, showStep } from "./loading.js";
+import { createMirror } from "./mirror.js";
+import { keepShortcutsFromBrowser } from "./shortcuts.js";
+
+const canvas = document.getElementById("canvas");
+
+async function load() {
+  showStep("Loading");
+  const module = await fetchWithProgress(new URL("../wasm/page_bg.wasm", import.meta.url));
+  showStep("Starting");
+  await init({ module_or_path: module });
+  const mirror = createMirror(document.getElementById("accessibility"), canvas);
+  const frontEnd = await start(canvas, {
+    startCore,
+    chooseFile,
+    saveFile,
+    // Called while a frame is being drawn. What it leads to must wait until the frame is done.
+    frameDrawn: () => queueMicrotask(settle),
+  });
+
+  function settle() {
+    const change = frontEnd.takeAccessibilityChange();
+    if (change) mirror.apply(change);
+    api.frameDrawn(frontEnd.stateVersion());
+  }
+
+  mirror.onAct((element, act) => frontEnd.act(element, JSON.stringify(act)));
+  api.connect(frontEnd, mirror);
+  keepShortcutsFromBrowser(window);
+  hideLoading();
+}
+
+// A panic of the front end surfaces here, from whichever event led to it.
+window.addEventListener("error", ({ error }) => {
+  if (error instanceof WebAssembly.RuntimeError) {
+    showFailure(
+      "Enroute has stopped",
+      "This is a fault in Enroute. What you typed was kept in this browser; loading the page again brings it back.",
+      error,
+    );
+  }
+});
+
+const loaded = load();
+const api = createApi(loaded);
+window.enroute = api.enroute;
+loaded.catch((error) => showFailure("Enroute cannot start", explain(error), error));
+
+// Published pages say their version and keep a copy of themselves; a page that is being developed does neither.
+if (document.documentElement.dataset.version) {
+  navigator.serviceWorker?.register("service-worker.js").catch((reason) => {
+    console.warn(`The page will not open offline: ${reason.message}`);
+  });
+}
+
+function explain(error) {
+  if (typeof WebAssembly !== "object") {
+    return "This browser cannot run WebAssembly. Any current version of Chrome, Edge, Firefox or Safari can.";
+  }
+  if (error?.code === "no-graphics") {
+    return (
+      "Enroute draws with WebGPU or WebGL2, and this browser offers neither. Turn on hardware acceleration in its " +
+      "settings, or try a current version of Chrome, Edge, Firefox or Safari."
+    );
+  }
+  return "A part of the page could not be loaded. Loading the page again may help.";
+}

@@ -1,8 +1,11 @@
 //! Builds, serves, tests, benchmarks and packs the page: `cargo xtask --help`.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a command line talks to its user")]
 
+mod bench;
+mod dist;
 mod serve;
 mod shot;
+mod test;
 
 use std::process::ExitCode;
 
@@ -20,6 +23,12 @@ struct Arguments {
 enum Task {
     /// Builds the page and serves it on a loopback address; rebuilds and reloads it when a source changes.
     Serve(serve::Options),
+    /// Checks everything: formatting, lints, tests, and the page in headless Chromium.
+    Test,
+    /// Writes the page to `dist/`, for any web server.
+    Dist,
+    /// Prints the benchmark tables.
+    Bench(bench::Options),
     /// Takes a picture of the built page in headless Chromium.
     Shot(shot::Options),
 }
@@ -27,6 +36,9 @@ enum Task {
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().task {
         Task::Serve(options) => serve::run(&options),
+        Task::Test => test::run_all(),
+        Task::Dist => dist::run(),
+        Task::Bench(options) => bench::run_all(&options),
         Task::Shot(options) => shot::run(&options),
     };
     match outcome {

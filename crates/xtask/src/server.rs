@@ -111,9 +111,9 @@ impl Site {
         let kind = header("Content-Type", media_type(&file));
         if self.reloading && file.extension().is_some_and(|extension| extension == "html") {
             let page = fs::read_to_string(&file)?.replace("</body>", RELOAD_SCRIPT);
-            return request.respond(Response::from_string(page).with_header(kind).with_header(not_cached()));
+            return request.respond(with_headers(Response::from_string(page), kind));
         }
-        request.respond(Response::from_file(File::open(&file)?).with_header(kind).with_header(not_cached()))
+        request.respond(with_headers(Response::from_file(File::open(&file)?), kind))
     }
 }
 
@@ -144,6 +144,16 @@ pub fn media_type(file: &Path) -> &'static str {
         "ts" | "txt" | "rmpl" => "text/plain; charset=utf-8",
         _ => "application/octet-stream",
     }
+}
+
+/// Adds what every file of the page is sent with. The two cross-origin headers isolate the page from others, which is
+/// what browsers want of a page that shares memory with its worker.
+fn with_headers<R: io::Read>(response: Response<R>, kind: Header) -> Response<R> {
+    response
+        .with_header(kind)
+        .with_header(not_cached())
+        .with_header(header("Cross-Origin-Opener-Policy", "same-origin"))
+        .with_header(header("Cross-Origin-Embedder-Policy", "require-corp"))
 }
 
 fn not_cached() -> Header {

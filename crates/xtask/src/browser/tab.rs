@@ -259,7 +259,7 @@ impl Tab {
     /// All widgets of a role whose label contains a text, in the order of the mirror.
     pub fn widgets(&self, role: &str, label: &str) -> Result<Vec<Widget>> {
         let found =
-            self.evaluate(&format!("window.enrouteAccessibility.find({}, {})", json!(role), json!(label)))?;
+            self.evaluate(&format!("window.enroute.widgets({}, {})", json!(role), json!(label)))?;
         Ok(found
             .as_array()
             .into_iter()
@@ -279,7 +279,7 @@ impl Tab {
     /// The widget of this role whose label is this text or else contains it; waits for it to appear.
     pub fn widget(&self, role: &str, label: &str) -> Result<Widget> {
         self.wait_until(&format!(
-            "window.enrouteAccessibility.find({}, {}).length > 0",
+            "window.enroute.widgets({}, {}).length > 0",
             json!(role),
             json!(label)
         ))?;

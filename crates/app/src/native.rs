@@ -1,0 +1,328 @@
+//! The app's surroundings in a native window: the planning core on a thread, files on the disk.
+//!
+//! The page has its own in the `page` crate.
+
+use std::{
+    fs, io,
+    panic::{AssertUnwindSafe, catch_unwind},
+    path::{Path, PathBuf},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc::{Receiver, Sender, channel},
+    },
+    thread,
+    time::Instant,
+};
+
+use egui::Context;
+use etcetera::BaseStrategy as _;
+use mission::{Core, Request, Response, Surroundings};
+
+use crate::core_queue::{CoreQueue, revision};
+use crate::host::{FileKind, Host, HostEvent, StorageError};
+
+/// A window's surroundings.
+pub struct NativeHost {
+    queue: CoreQueue,
+    to_core: Sender<Request>,
+    from_outside: Receiver<News>,
+    outside: Sender<News>,
+    superseded: Arc<AtomicBool>,
+    wake: Context,
+    folder: Option<PathBuf>,
+    begun: Instant,
+}
+
+/// What threads tell the window.
+enum News {
+    Answer(Response),
+    Finished,
+    Stopped(String),
+    Happened(HostEvent),
+}
+
+impl NativeHost {
+    /// Starts the core; `wake` is asked for a frame whenever there is news.
+    pub fn start(wake: Context) -> Self {
+        let folder = etcetera::choose_base_strategy().ok().map(|places| places.data_dir().join("enroute"));
+        Self::start_in(wake, folder)
+    }
+
+    fn start_in(wake: Context, folder: Option<PathBuf>) -> Self {
+        let (outside, from_outside) = channel();
+        let superseded = Arc::new(AtomicBool::new(false));
+        let to_core = start_core(outside.clone(), Arc::clone(&superseded), wake.clone());
+        Self {
+            queue: CoreQueue::default(),
+            to_core,
+            from_outside,
+            outside,
+            superseded,
+            wake,
+            folder,
+            begun: Instant::now(),
+        }
+    }
+
+    /// Sends what can be sent, and lets the core know whether it works in vain.
+    fn push_on(&mut self) {
+        if let Some(request) = self.queue.next() {
+            self.superseded.store(false, Ordering::Relaxed);
+            // The core's thread ends only when this sender is dropped.
+            let _ = self.to_core.send(request.clone());
+        } else if self.queue.is_superseded() {
+            self.superseded.store(true, Ordering::Relaxed);
+        }
+    }
+
+    fn file_of(&self, key: &str) -> Option<PathBuf> {
+        Some(self.folder.as_ref()?.join(file_name(key)))
+    }
+
+    /// Runs a file dialog on a thread of its own, because some systems' dialogs block.
+    fn in_background(&self, ask: impl FnOnce() -> Option<HostEvent> + Send + 'static) {
+        let (outside, wake) = (self.outside.clone(), self.wake.clone());
+        thread::spawn(move || {
+            if let Some(event) = ask() {
+                // Nobody listens any more when the window was closed meanwhile.
+                let _ = outside.send(News::Happened(event));
+                wake.request_repaint();
+            }
+        });
+    }
+}
+
+impl Host for NativeHost {
+    fn post(&mut self, request: Request) {
+        self.queue.post(request);
+        self.push_on();
+    }
+
+    fn poll(&mut self) -> Option<HostEvent> {
+        while let Ok(news) = self.from_outside.try_recv() {
+            match news {
+                News::Answer(response) => return Some(HostEvent::Answer(response)),
+                News::Happened(event) => return Some(event),
+                News::Finished => {
+                    self.queue.finished();
+                    self.push_on();
+                }
+                News::Stopped(message) => {
+                    let given_up = self.queue.restarted();
+                    self.push_on();
+                    return Some(HostEvent::CoreFailed {
+                        revision: given_up.as_ref().and_then(revision),
+                        message,
+                    });
+                }
+            }
+        }
+        None
+    }
+
+    fn monotonic_secs(&self) -> f64 {
+        self.begun.elapsed().as_secs_f64()
+    }
+
+    fn stored(&self, key: &str) -> Option<String> {
+        fs::read_to_string(self.file_of(key)?).ok()
+    }
+
+    fn store(&mut self, key: &str, value: &str) -> Result<(), StorageError> {
+        let file = self.file_of(key).ok_or_else(|| StorageError::Unavailable {
+            reason: "this system has no folder for a program's data".to_owned(),
+        })?;
+        write_whole(&file, value.as_bytes()).map_err(|reason| match reason.kind() {
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+                StorageError::Full { bytes: value.len() }
+            }
+            _ => StorageError::Unavailable { reason: reason.to_string() },
+        })
+    }
+
+    fn forget(&mut self, key: &str) {
+        if let Some(file) = self.file_of(key) {
+            // What is not there is forgotten already.
+            let _ = fs::remove_file(file);
+        }
+    }
+
+    fn open_file(&mut self, kind: FileKind) {
+        self.in_background(move || {
+            let path = rfd::FileDialog::new()
+                .add_filter(kind.title(), kind.extensions())
+                .add_filter("All files", &["*"])
+                .pick_file()?;
+            let name = name_of(&path);
+            Some(match fs::read(&path) {
+                Ok(bytes) => HostEvent::FileOpened { kind, name, bytes },
+                Err(reason) => HostEvent::FileFailed { name, reason: reason.to_string() },
+            })
+        });
+    }
+
+    fn save_file(&mut self, suggested_name: &str, bytes: Vec<u8>) {
+        let suggested_name = suggested_name.to_owned();
+        self.in_background(move || {
+            let path = rfd::FileDialog::new().set_file_name(suggested_name).save_file()?;
+            let reason = write_whole(&path, &bytes).err()?.to_string();
+            Some(HostEvent::FileFailed { name: name_of(&path), reason })
+        });
+    }
+
+    fn fragment(&self) -> String {
+        String::new()
+    }
+
+    fn set_fragment(&mut self, _fragment: &str) {}
+
+    fn link(&self, _fragment: &str) -> Option<String> {
+        None
+    }
+}
+
+/// Starts the thread that plans; it ends when the sender it returns is dropped.
+fn start_core(outside: Sender<News>, superseded: Arc<AtomicBool>, wake: Context) -> Sender<Request> {
+    let (to_core, requests) = channel::<Request>();
+    thread::spawn(move || {
+        let mut surroundings = Thread { outside, superseded, wake, begun: Instant::now() };
+        let mut core = Core::default();
+        for request in requests {
+            let outcome = catch_unwind(AssertUnwindSafe(|| core.handle(request, &mut surroundings)));
+            surroundings.tell(match outcome {
+                Ok(()) => News::Finished,
+                Err(cause) => {
+                    // What the panic left behind is not to be trusted.
+                    core = Core::default();
+                    News::Stopped(panic_message(cause.as_ref()))
+                }
+            });
+        }
+    });
+    to_core
+}
+
+struct Thread {
+    outside: Sender<News>,
+    superseded: Arc<AtomicBool>,
+    wake: Context,
+    begun: Instant,
+}
+
+impl Thread {
+    fn tell(&self, news: News) {
+        // Nobody listens any more when the window was closed meanwhile.
+        let _ = self.outside.send(news);
+        self.wake.request_repaint();
+    }
+}
+
+impl Surroundings for Thread {
+    fn now_millis(&self) -> f64 {
+        self.begun.elapsed().as_secs_f64() * 1e3
+    }
+
+    fn is_superseded(&mut self) -> bool {
+        self.superseded.load(Ordering::Relaxed)
+    }
+
+    fn answer(&mut self, response: Response) {
+        self.tell(News::Answer(response));
+    }
+}
+
+fn panic_message(cause: &(dyn std::any::Any + Send)) -> String {
+    cause
+        .downcast_ref::<&str>()
+        .map(|message| (*message).to_owned())
+        .or_else(|| cause.downcast_ref::<String>().cloned())
+        .unwrap_or_else(|| "the planning core stopped without saying why".to_owned())
+}
+
+/// Writes a file so that it is never seen half written.
+fn write_whole(file: &Path, bytes: &[u8]) -> io::Result<()> {
+    if let Some(folder) = file.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    let mut beside = file.as_os_str().to_owned();
+    beside.push(".part");
+    fs::write(&beside, bytes)?;
+    fs::rename(&beside, file)
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// A key as the name of a file on any system.
+fn file_name(key: &str) -> String {
+    key.bytes()
+        .map(|byte| match byte {
+            b'a'..=b'z' | b'0'..=b'9' | b'-' => char::from(byte).to_string(),
+            _ => format!("_{byte:02x}"),
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use mission::{Goal, SearchKind, Update};
+
+    use super::*;
+
+    /// Polls until an event is as wished; the other events are dropped.
+    fn wait_for(host: &mut NativeHost, wished: impl Fn(&HostEvent) -> bool) -> HostEvent {
+        loop {
+            match host.poll() {
+                Some(event) if wished(&event) => return event,
+                Some(_) => {}
+                None => thread::yield_now(),
+            }
+        }
+    }
+
+    #[test]
+    fn the_newest_text_is_answered_whatever_was_posted_before() {
+        let mut host = NativeHost::start_in(Context::default(), None);
+        for revision in 1..=20 {
+            host.post(Request::Update(Update {
+                revision,
+                source: "".into(),
+                goal: Goal::default(),
+                search: SearchKind::default(),
+                seed: 0,
+                trace: false,
+            }));
+        }
+        wait_for(
+            &mut host,
+            |event| matches!(event, HostEvent::Answer(Response::Snapshot(snapshot)) if snapshot.revision == 20),
+        );
+    }
+
+    #[test]
+    fn what_is_stored_is_found_again_until_it_is_forgotten() {
+        let folder = std::env::temp_dir().join(format!("enroute-native-{}", std::process::id()));
+        let mut host = NativeHost::start_in(Context::default(), Some(folder.clone()));
+        assert_eq!(host.stored("draft/A"), None);
+        host.store("draft/A", "text").expect("a writable folder");
+        let again = NativeHost::start_in(Context::default(), Some(folder.clone()));
+        assert_eq!(again.stored("draft/A").as_deref(), Some("text"));
+        host.forget("draft/A");
+        assert_eq!(host.stored("draft/A"), None);
+        fs::remove_dir_all(folder).expect("made above");
+    }
+
+    #[test]
+    fn without_a_folder_storing_says_so() {
+        let mut host = NativeHost::start_in(Context::default(), None);
+        assert!(matches!(host.store("a", "b"), Err(StorageError::Unavailable { .. })));
+    }
+
+    #[test]
+    fn keys_that_differ_lie_in_files_that_differ_on_any_system() {
+        let names = ["a/b", "a_b", "A", "a", ".."].map(file_name);
+        assert_eq!(names, ["a_2fb", "a_5fb", "_41", "a", "_2e_2e"]);
+    }
+}

@@ -1,0 +1,142 @@
+//! The running front end, as `web/start.js` and `web/api.js` use it.
+
+use app::{
+    Enroute,
+    accessibility::{AccessibilityMirror, Act},
+    host::Remote,
+};
+use eframe::WebRunner;
+use wasm_bindgen::prelude::*;
+use web_sys::HtmlCanvasElement;
+
+use crate::{
+    glue::Glue,
+    host::PageHost,
+    painter,
+    refusal::{from_remote, refusal, words},
+};
+
+/// Starts the front end on a canvas. Rejects with the code `no-graphics` when the browser cannot draw.
+#[wasm_bindgen]
+pub async fn start(canvas: HtmlCanvasElement, glue: Glue) -> Result<FrontEnd, JsValue> {
+    let runner = WebRunner::new();
+    let started = runner.start(
+        canvas,
+        painter::options(),
+        Box::new(move |creation| {
+            let egui = &creation.egui_ctx;
+            egui.add_plugin(AccessibilityMirror::default());
+            let renderer = painter::name(creation.wgpu_render_state.as_ref());
+            let host = PageHost::start(glue.clone(), egui.clone()).ok_or("this is no page")?;
+            Ok(Box::new(PageApp {
+                app: Enroute::new(egui, Box::new(host), renderer),
+                egui: egui.clone(),
+                glue,
+            }))
+        }),
+    );
+    started.await.map_err(|reason| refusal("no-graphics", &words(&reason)))?;
+    Ok(FrontEnd { runner })
+}
+
+/// The app, telling the page of every frame.
+struct PageApp {
+    app: Enroute,
+    egui: egui::Context,
+    glue: Glue,
+}
+
+impl eframe::App for PageApp {
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        self.app.ui(ui, frame);
+        self.glue.frame_drawn();
+    }
+
+    fn logic(&mut self, context: &egui::Context, frame: &mut eframe::Frame) {
+        self.app.logic(context, frame);
+    }
+
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        self.app.clear_color(visuals)
+    }
+
+    fn as_any_mut(&mut self) -> Option<&mut dyn std::any::Any> {
+        Some(self)
+    }
+}
+
+/// The running front end.
+#[wasm_bindgen]
+pub struct FrontEnd {
+    runner: WebRunner,
+}
+
+#[wasm_bindgen]
+impl FrontEnd {
+    /// Opens an example mission.
+    pub fn open(&self, name: &str) -> Result<(), JsValue> {
+        self.with(|page| page.app.open(name))?.map_err(from_remote)
+    }
+
+    /// Replaces the whole text.
+    #[wasm_bindgen(js_name = setSource)]
+    pub fn set_source(&self, text: &str) -> Result<(), JsValue> {
+        self.with(|page| page.app.set_source(text))
+    }
+
+    /// The text as it stands.
+    pub fn source(&self) -> Result<String, JsValue> {
+        self.with(|page| page.app.source())
+    }
+
+    /// Runs a command with arguments given as JSON.
+    pub fn dispatch(&self, command: &str, arguments: &str) -> Result<(), JsValue> {
+        let arguments = serde_json::from_str(arguments)
+            .map_err(|reason| refusal("bad-arguments", &reason.to_string()))?;
+        self.with(|page| page.app.dispatch(command, &arguments))?.map_err(from_remote)
+    }
+
+    /// The state as JSON.
+    pub fn state(&self) -> Result<String, JsValue> {
+        self.with(|page| page.app.state().to_string())
+    }
+
+    /// Grows whenever the state may have changed.
+    #[wasm_bindgen(js_name = stateVersion)]
+    pub fn state_version(&self) -> Result<f64, JsValue> {
+        self.with(|page| page.app.state_version() as f64)
+    }
+
+    /// What changed in the accessible document since the last call, as JSON, if anything did.
+    #[wasm_bindgen(js_name = takeAccessibilityChange)]
+    pub fn take_accessibility_change(&self) -> Result<Option<String>, JsValue> {
+        let change = self.with(|page| {
+            page.egui.plugin_opt::<AccessibilityMirror>()?.lock().take_change()
+        })?;
+        change
+            .map(|change| serde_json::to_string(&change))
+            .transpose()
+            .map_err(|reason| refusal("stopped", &reason.to_string()))
+    }
+
+    /// Does something to an element of the accessible document; `act` is JSON.
+    pub fn act(&self, element: &str, act: &str) -> Result<(), JsValue> {
+        let bad = |reason: String| refusal("bad-arguments", &reason);
+        let element: u64 = element.parse().map_err(|_| bad(format!("no element {element}")))?;
+        let act: Act = serde_json::from_str(act).map_err(|reason| bad(reason.to_string()))?;
+        self.with(|page| {
+            if let Some(mirror) = page.egui.plugin_opt::<AccessibilityMirror>() {
+                mirror.lock().act(element, act);
+                page.egui.request_repaint();
+            }
+        })
+    }
+
+    /// Uses the app between frames, and asks for a frame that shows what came of it.
+    fn with<T>(&self, act: impl FnOnce(&mut PageApp) -> T) -> Result<T, JsValue> {
+        let Some(mut page) = self.runner.app_mut::<PageApp>() else {
+            return Err(refusal("stopped", "Enroute has stopped, or is just drawing a frame"));
+        };
+        Ok(act(&mut page))
+    }
+}

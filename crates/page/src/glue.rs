@@ -1,0 +1,53 @@
+//! What the files of `web/` do for this module.
+
+use js_sys::{Promise, Uint8Array};
+use wasm_bindgen::prelude::*;
+
+#[wasm_bindgen]
+extern "C" {
+    /// The object that `web/start.js` gives to [`start`](crate::front_end::start).
+    #[derive(Clone)]
+    pub type Glue;
+
+    /// Starts a planning core; `tell(kind, payload)` hears from it. See `web/core.js`.
+    #[wasm_bindgen(method, js_name = startCore)]
+    pub(crate) fn start_core(this: &Glue, tell: &Closure<dyn FnMut(String, JsValue)>) -> CoreWorker;
+
+    /// Lets the user choose a file: a promise of a [`ChosenFile`] or null. See `web/files.js`.
+    #[wasm_bindgen(method, js_name = chooseFile)]
+    pub(crate) fn choose_file(this: &Glue, extensions: Vec<String>) -> Promise;
+
+    /// Lets the user save a file.
+    #[wasm_bindgen(method, js_name = saveFile)]
+    pub(crate) fn save_file(this: &Glue, name: &str, bytes: Uint8Array);
+
+    /// Says that a frame is being drawn.
+    #[wasm_bindgen(method, js_name = frameDrawn)]
+    pub(crate) fn frame_drawn(this: &Glue);
+
+    /// A planning core in a web worker.
+    pub(crate) type CoreWorker;
+
+    /// Hands a request over.
+    #[wasm_bindgen(method)]
+    pub(crate) fn send(this: &CoreWorker, request: Uint8Array);
+
+    /// Says that the request under way is not wanted any more.
+    #[wasm_bindgen(method)]
+    pub(crate) fn supersede(this: &CoreWorker);
+
+    /// Ends it at once.
+    #[wasm_bindgen(method)]
+    pub(crate) fn stop(this: &CoreWorker);
+
+    /// A file that the user chose.
+    pub(crate) type ChosenFile;
+
+    /// Its name.
+    #[wasm_bindgen(method, getter)]
+    pub(crate) fn name(this: &ChosenFile) -> String;
+
+    /// All of it.
+    #[wasm_bindgen(method, getter)]
+    pub(crate) fn bytes(this: &ChosenFile) -> Uint8Array;
+}

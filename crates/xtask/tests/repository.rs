@@ -1,0 +1,223 @@
+//! Rules of the repository, as tests: layering of the crates, licences, reasons for dependencies, file headers.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::{Path, PathBuf},
+};
+
+use serde_json::Value;
+use xtask::process::{cargo, root};
+
+/// What each crate may depend on in the workspace, directly: ARCHITECTURE.md's layers.
+const LAYERS: [(&str, &[&str]); 17] = [
+    ("rmpl", &[]),
+    ("stn", &[]),
+    ("terrain", &[]),
+    ("tpn", &["rmpl"]),
+    ("kirk", &["rmpl", "stn", "tpn"]),
+    ("verify", &["rmpl", "tpn"]),
+    ("motion", &["terrain"]),
+    ("hca", &["rmpl"]),
+    ("plant", &["rmpl"]),
+    ("executive", &["hca", "kirk", "motion", "plant", "rmpl", "stn", "terrain", "tpn"]),
+    (
+        "mission",
+        &[
+            "executive", "hca", "kirk", "motion", "plant", "rmpl", "stn", "terrain", "tpn", "verify",
+        ],
+    ),
+    ("layout", &["hca", "rmpl", "tpn"]),
+    (
+        "app",
+        &["hca", "kirk", "layout", "mission", "plant", "rmpl", "terrain", "tpn", "verify"],
+    ),
+    ("page", &["app", "mission"]),
+    ("worker", &["mission"]),
+    (
+        "cli",
+        &[
+            "executive", "hca", "kirk", "layout", "mission", "motion", "plant", "rmpl", "stn", "terrain", "tpn",
+            "verify",
+        ],
+    ),
+    ("xtask", &[]),
+];
+
+/// Crates that compute the same everywhere: no clocks, no threads, no files, nothing from the operating system.
+const PURE: [&str; 12] = [
+    "rmpl", "stn", "tpn", "kirk", "verify", "terrain", "motion", "hca", "plant", "executive", "mission", "layout",
+];
+
+/// What pure crates leave alone.
+const IMPURE: [&str; 7] =
+    ["std::fs", "std::net", "std::process", "std::thread", "std::time", "Instant::now", "SystemTime"];
+
+fn metadata() -> Value {
+    let answer = cargo()
+        .args(["metadata", "--format-version", "1", "--all-features"])
+        .output()
+        .expect("cargo runs, since it runs this test");
+    assert!(answer.status.success(), "{}", String::from_utf8_lossy(&answer.stderr));
+    serde_json::from_slice(&answer.stdout).expect("cargo metadata writes JSON")
+}
+
+fn packages(metadata: &Value) -> impl Iterator<Item = &Value> {
+    metadata["packages"].as_array().into_iter().flatten()
+}
+
+/// The manifests of the workspace, by the folder they lie in.
+fn manifests() -> Vec<PathBuf> {
+    let mut found = vec![root().join("tests/Cargo.toml")];
+    for folder in ["crates", "tests"] {
+        for entry in fs::read_dir(root().join(folder)).expect("a folder of packages").flatten() {
+            found.push(entry.path().join("Cargo.toml"));
+        }
+    }
+    found.retain(|path| path.is_file());
+    found.sort();
+    found
+}
+
+/// All Rust sources below a folder.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            found.extend(sources(&path));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+#[test]
+fn crates_depend_only_on_the_layers_below_them() {
+    let allowed: BTreeMap<&str, &[&str]> = LAYERS.into_iter().collect();
+    let metadata = metadata();
+    let ours: BTreeSet<&str> = packages(&metadata)
+        .filter(|package| package["source"].is_null())
+        .filter_map(|package| package["name"].as_str())
+        .collect();
+    for package in packages(&metadata).filter(|package| package["source"].is_null()) {
+        let name = package["name"].as_str().expect("packages have names");
+        // Packages that only test may use everything.
+        if package["manifest_path"].as_str().is_some_and(|path| path.contains("/tests/")) {
+            continue;
+        }
+        let below = allowed.get(name).unwrap_or_else(|| panic!("the layers do not say where {name} is"));
+        for dependency in package["dependencies"].as_array().into_iter().flatten() {
+            let on = dependency["name"].as_str().expect("dependencies have names");
+            // Tests may check one layer against another.
+            if dependency["kind"] == "dev" || !ours.contains(on) {
+                continue;
+            }
+            assert!(below.contains(&on), "{name} must not depend on {on}");
+        }
+    }
+}
+
+#[test]
+fn the_checker_shares_no_code_with_the_planner() {
+    let manifest = fs::read_to_string(root().join("crates/verify/Cargo.toml")).expect("the crate verify");
+    for planner in ["kirk", "stn"] {
+        assert!(!manifest.lines().any(|line| line.starts_with(planner)), "verify must not depend on {planner}");
+    }
+}
+
+#[test]
+fn every_dependency_has_an_allowed_licence() {
+    let deny = fs::read_to_string(root().join("deny.toml")).expect("deny.toml");
+    let list = deny.split("allow = [").nth(1).and_then(|rest| rest.split(']').next()).expect("an allow list");
+    let allowed: BTreeSet<&str> = list.split('"').skip(1).step_by(2).collect();
+    let metadata = metadata();
+    for package in packages(&metadata).filter(|package| !package["source"].is_null()) {
+        let name = &package["name"];
+        let licence = package["license"].as_str().unwrap_or_else(|| panic!("{name} names no licence"));
+        assert!(is_allowed(licence, &allowed), "{name} has the licence {licence}");
+    }
+}
+
+/// Whether an SPDX expression can be satisfied by allowed licences.
+fn is_allowed(expression: &str, allowed: &BTreeSet<&str>) -> bool {
+    let expression = expression.replace('/', " OR ");
+    let every_part = |part: &str| {
+        part.trim_matches(['(', ')', ' '])
+            .split(" OR ")
+            .any(|licence| allowed.contains(licence.trim_matches(['(', ')', ' '])))
+    };
+    // No dependency nests an AND within an OR.
+    expression.split(" AND ").all(every_part)
+}
+
+#[test]
+fn licence_expressions_are_read_as_spdx_says() {
+    let allowed = BTreeSet::from(["MIT", "Apache-2.0"]);
+    for (expression, expected) in [
+        ("MIT", true),
+        ("GPL-3.0", false),
+        ("MIT/Apache-2.0", true),
+        ("GPL-2.0 OR MIT", true),
+        ("MIT AND GPL-2.0", false),
+        ("(MIT OR GPL-2.0) AND Apache-2.0", true),
+    ] {
+        assert_eq!(is_allowed(expression, &allowed), expected, "{expression}");
+    }
+}
+
+#[test]
+fn every_outside_dependency_has_its_reason_beside_it() {
+    let ours: BTreeSet<&str> = LAYERS.iter().map(|(name, _)| *name).collect();
+    let mut missing = Vec::new();
+    for manifest in manifests() {
+        let text = fs::read_to_string(&manifest).expect("a manifest");
+        let mut in_dependencies = false;
+        let mut before = "";
+        for line in text.lines() {
+            if line.starts_with('[') {
+                in_dependencies = line.contains("dependencies");
+            } else if in_dependencies && line.starts_with(|first: char| first.is_ascii_lowercase()) {
+                let name = line.split(['.', ' ', '=']).next().unwrap_or_default();
+                let has_reason = before.starts_with('#') || line.contains('#');
+                if !ours.contains(name) && !has_reason {
+                    missing.push(format!("{}: {name}", manifest.display()));
+                }
+            }
+            before = line;
+        }
+    }
+    assert!(missing.is_empty(), "no reason given for:\n{}", missing.join("\n"));
+}
+
+#[test]
+fn every_source_says_what_it_is() {
+    let mut silent = Vec::new();
+    for source in sources(&root().join("crates")).into_iter().chain(sources(&root().join("tests"))) {
+        let text = fs::read_to_string(&source).expect("a source");
+        if !text.starts_with("//!") {
+            silent.push(source.display().to_string());
+        }
+    }
+    assert!(silent.is_empty(), "no `//!` at the top of:\n{}", silent.join("\n"));
+}
+
+#[test]
+fn pure_crates_leave_the_machine_alone() {
+    let mut found = Vec::new();
+    for name in PURE {
+        for source in sources(&root().join("crates").join(name).join("src")) {
+            let text = fs::read_to_string(&source).expect("a source");
+            let code: String =
+                text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
+            for impure in IMPURE {
+                if code.contains(impure) {
+                    found.push(format!("{}: {impure}", source.display()));
+                }
+            }
+        }
+    }
+    assert!(found.is_empty(), "pure crates use the machine:\n{}", found.join("\n"));
+}

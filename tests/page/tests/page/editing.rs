@@ -1,0 +1,68 @@
+//! Typing changes everything live.
+
+use anyhow::Result;
+use serde_json::json;
+use xtask::browser::{Key, Modifiers};
+
+use crate::opened::Opened;
+
+#[test]
+fn shortening_a_path_s_opening_takes_the_plan_away_and_restoring_it_brings_it_back() -> Result<()> {
+    let page = Opened::planned()?;
+    let planned = page.look()?;
+    let windows = page.state()?["plan"]["windows"].clone();
+
+    page.place_caret_after("PATH1=OK [450,450")?;
+    page.retype(3, "404")?;
+    page.wait_for("state.status === 'no-plan' || state.source")?;
+    page.place_caret_after("PATH1=OK [450")?;
+    page.retype(3, "404")?;
+    page.wait_for("state.status === 'no-plan'")?;
+    page.settle()?;
+    assert_eq!(page.state()?["plan"], json!(null));
+    assert!(page.look()?.difference(&planned) > 0.01, "the picture did not change");
+
+    page.tab.press(Key::Character('z'), Modifiers::CONTROL)?;
+    page.tab.evaluate("enroute.open('enroute')")?;
+    page.wait_for("state.status === 'plan'")?;
+    assert_eq!(page.state()?["plan"]["windows"], windows);
+    Ok(())
+}
+
+#[test]
+fn a_syntax_error_keeps_the_last_good_network_and_points_at_the_cause() -> Result<()> {
+    let page = Opened::planned()?;
+    let network = page.state()?["tpn"].clone();
+
+    page.place_caret_after("choose {")?;
+    page.tab.press(Key::Backspace, Modifiers::NONE)?;
+    page.wait_for("state.diagnostics.length > 0")?;
+    page.settle()?;
+    let state = page.state()?;
+    assert_eq!(state["status"], "broken");
+    assert_eq!(state["isStale"], true);
+    assert_eq!(state["tpn"], network);
+    assert!(state["diagnostics"][0]["span"]["line"].as_u64() > Some(1), "{}", state["diagnostics"]);
+
+    page.tab.type_text("{")?;
+    page.wait_for("state.status === 'plan' && !state.isStale")?;
+    assert_eq!(page.state()?["diagnostics"], json!([]));
+    Ok(())
+}
+
+#[test]
+fn every_key_press_is_a_revision_and_undo_takes_it_back() -> Result<()> {
+    let page = Opened::planned()?;
+    let before = page.tab.evaluate("enroute.source()")?;
+    let revision = page.state()?["revision"].clone();
+
+    page.place_caret_after("scenario Day1")?;
+    page.tab.type_text("x")?;
+    page.tab.wait_until("enroute.source().includes('scenario Day1x')")?;
+    assert!(page.state()?["revision"].as_u64() > revision.as_u64());
+
+    page.tab.press(Key::Character('z'), Modifiers::CONTROL)?;
+    page.wait_for("!state.isStale")?;
+    assert_eq!(page.tab.evaluate("enroute.source()")?, before);
+    Ok(())
+}

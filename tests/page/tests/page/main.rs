@@ -1,0 +1,11 @@
+//! The built page in headless Chromium: real keys, clicks and wheel, and a look at what is drawn.
+//!
+//! Every test starts a browser of its own, one after the other: software rendering leaves no processor for a second.
+//! Nothing waits for a time to pass; everything waits for the page to say that it is so.
+
+mod opened;
+
+mod api;
+mod drawing;
+mod editing;
+mod failure;

@@ -1,0 +1,106 @@
+//! The page, opened and ready.
+
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
+
+use anyhow::{Context as _, Result, ensure};
+use serde_json::Value;
+use xtask::{
+    browser::{Browser, Graphics, Key, Modifiers, Picture, Tab},
+    server::SiteServer,
+    site::{self, Flavour},
+};
+
+/// The site's folder; built once per run, which is quick when nothing has changed.
+static SITE: LazyLock<std::path::PathBuf> =
+    LazyLock::new(|| site::build(Flavour::Development).expect("the page can be built"));
+
+/// Lets one test at a time have the processor.
+static TURN: Mutex<()> = Mutex::new(());
+
+/// A browser with the page in it.
+pub(crate) struct Opened {
+    pub(crate) tab: Tab,
+    pub(crate) server: SiteServer,
+    _browser: Browser,
+    _turn: MutexGuard<'static, ()>,
+}
+
+impl Opened {
+    /// Opens the page with this text after `#`, drawn by WebGL2, and waits until it is ready.
+    pub(crate) fn with_fragment(fragment: &str) -> Result<Self> {
+        let opened = Self::without_waiting(Graphics::WebGl2, fragment)?;
+        opened.tab.wait_until("window.enroute && enroute.ready.then(() => true)")?;
+        Ok(opened)
+    }
+
+    /// Opens the page on the mission `enroute`, planned.
+    pub(crate) fn planned() -> Result<Self> {
+        let opened = Self::with_fragment("mission=enroute")?;
+        opened.settle()?;
+        let status = opened.state()?["status"].clone();
+        ensure!(status == "plan", "the mission enroute is {status}");
+        Ok(opened)
+    }
+
+    /// Goes to the page and leaves it at that.
+    pub(crate) fn without_waiting(graphics: Graphics, fragment: &str) -> Result<Self> {
+        // A test that failed in its turn has harmed nothing.
+        let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        let server = SiteServer::start(&SITE, 0, false)?;
+        let browser = Browser::start(graphics)?;
+        let tab = browser.open_tab(1280, 800)?;
+        tab.go_to(&format!("{}#{fragment}", server.url()))?;
+        Ok(Self { tab, server, _browser: browser, _turn: turn })
+    }
+
+    /// The state as JSON.
+    pub(crate) fn state(&self) -> Result<Value> {
+        self.tab.evaluate("enroute.state()")
+    }
+
+    /// Waits until a condition on the state, called `state`, is true.
+    pub(crate) fn wait_for(&self, condition: &str) -> Result<()> {
+        self.tab.wait_until(&format!("((state) => {condition})(enroute.state())"))?;
+        Ok(())
+    }
+
+    /// Waits until the core has answered the present text in full and the answer is drawn.
+    pub(crate) fn settle(&self) -> Result<()> {
+        self.wait_for("state.status !== 'working' && state.answeredRevision === state.revision")?;
+        self.tab.next_frame()
+    }
+
+    /// Puts the caret behind the first occurrence of a text in the editor, by the keyboard alone.
+    pub(crate) fn place_caret_after(&self, text: &str) -> Result<()> {
+        self.tab.evaluate("enroute.dispatch('view.editor')")?;
+        let source = self.tab.evaluate("enroute.source()")?;
+        let source = source.as_str().context("the source is a text")?;
+        let end = source.find(text).with_context(|| format!("there is no `{text}`"))? + text.len();
+        let before = &source[..end];
+        let column = before.rsplit('\n').next().unwrap_or_default().chars().count();
+        self.tab.click_widget("textbox", "Mission text")?;
+        self.tab.press(Key::Home, Modifiers::CONTROL)?;
+        for _ in before.matches('\n') {
+            self.tab.press(Key::ArrowDown, Modifiers::NONE)?;
+        }
+        self.tab.press(Key::Home, Modifiers::NONE)?;
+        for _ in 0..column {
+            self.tab.press(Key::ArrowRight, Modifiers::NONE)?;
+        }
+        self.wait_for(&format!("state.caret.head === {end}"))
+    }
+
+    /// Deletes this many characters before the caret and types a text.
+    pub(crate) fn retype(&self, deleted: usize, typed: &str) -> Result<()> {
+        for _ in 0..deleted {
+            self.tab.press(Key::Backspace, Modifiers::NONE)?;
+        }
+        self.tab.type_text(typed)
+    }
+
+    /// The page as pixels, once what was done is drawn.
+    pub(crate) fn look(&self) -> Result<Picture> {
+        self.tab.next_frame()?;
+        self.tab.screenshot()
+    }
+}

@@ -1,0 +1,31 @@
+// Files that the user chooses or saves.
+
+/** Lets the user choose a file with one of these extensions; answers null if they choose none. */
+export function chooseFile(extensions) {
+  const input = document.createElement("input");
+  input.type = "file";
+  input.accept = extensions.map((extension) => `.${extension}`).join(",");
+  return new Promise((resolve, reject) => {
+    input.addEventListener("cancel", () => resolve(null));
+    input.addEventListener("change", async () => {
+      const file = input.files[0];
+      if (!file) return resolve(null);
+      try {
+        resolve({ name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) });
+      } catch (error) {
+        reject(Object.assign(error, { fileName: file.name }));
+      }
+    });
+    input.click();
+  });
+}
+
+/** Lets the user save bytes under a name. */
+export function saveFile(name, bytes) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([bytes]));
+  link.download = name;
+  link.click();
+  // The download has begun by then and holds the bytes itself.
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}

@@ -1,0 +1,138 @@
+// The interface as a document: hidden elements with the role, name, value and place of every widget on the canvas.
+// The front end says what changed; see crates/app/src/accessibility/document.rs for the fields.
+
+/** Keeps the elements under `root` in step with the front end that draws on `canvas`. */
+export function createMirror(root, canvas) {
+  const shown = new Map();
+  let act = () => {};
+
+  for (const kind of ["click", "focus"]) {
+    root.addEventListener(
+      kind,
+      (event) => {
+        const element = event.target.closest("[data-id]");
+        // Focus that the mirror itself moved is no wish of the user.
+        if (element && event.isTrusted) act(element.dataset.id, kind);
+        if (kind === "focus") canvas.focus({ preventScroll: true });
+      },
+      true,
+    );
+  }
+
+  function setFocus(id) {
+    const holder = document.activeElement ?? canvas;
+    for (const element of [canvas, holder]) element.removeAttribute("aria-activedescendant");
+    const focused = id && shown.get(id);
+    if (!focused) return;
+    holder.setAttribute("aria-activedescendant", focused.id);
+    // Typing goes to a small input that the canvas keeps; it is named for the widget that it types into.
+    if (holder !== canvas && holder instanceof HTMLInputElement) {
+      holder.setAttribute("aria-label", focused.getAttribute("aria-label") ?? "");
+    }
+  }
+
+  return {
+    /** Applies a change, given as JSON. */
+    apply(json) {
+      const { removed, changed, top, focus } = JSON.parse(json);
+      for (const element of changed) {
+        if (!shown.has(element.id)) shown.set(element.id, create(element.id));
+      }
+      for (const element of changed) {
+        describe(shown.get(element.id), element);
+        arrange(shown.get(element.id), element.children, shown);
+      }
+      arrange(root, top, shown);
+      for (const id of removed) {
+        shown.get(id)?.remove();
+        shown.delete(id);
+      }
+      setFocus(focus);
+    },
+    /** Calls `callback(id, act)` when a user of the mirror acts on an element. */
+    onAct(callback) {
+      act = callback;
+    },
+    /** The elements of a role whose name or text contains `label`, with their places in CSS pixels. */
+    find(role, label) {
+      const found = [];
+      for (const element of root.querySelectorAll("[data-id]")) {
+        const name = element.getAttribute("aria-label") ?? "";
+        const value = element.dataset.value ?? null;
+        if ((element.getAttribute("role") ?? "text") !== role) continue;
+        if (!name.includes(label) && !value?.includes(label)) continue;
+        const { x, y, width, height } = element.getBoundingClientRect();
+        found.push({
+          id: element.dataset.id,
+          role,
+          label: name || (value ?? ""),
+          value,
+          x,
+          y,
+          width,
+          height,
+          enabled: element.getAttribute("aria-disabled") !== "true",
+          checked: element.getAttribute("aria-checked") ?? element.getAttribute("aria-pressed"),
+          selected: element.getAttribute("aria-selected"),
+          expanded: element.getAttribute("aria-expanded"),
+        });
+      }
+      return found;
+    },
+  };
+}
+
+function create(id) {
+  const element = document.createElement("div");
+  element.id = `widget-${id}`;
+  element.dataset.id = id;
+  // Holds the words, apart from the elements inside.
+  element.append(document.createElement("span"));
+  return element;
+}
+
+/** Writes what an element is; nothing is touched that stays as it was. */
+function describe(element, { role, label, value, description, bounds, enabled, clickable, toggled, selected, ...rest }) {
+  const { expanded, multiline, number, level } = rest;
+  const pressed = role === "button";
+  const attributes = {
+    role: role || null,
+    tabindex: clickable || role === "textbox" ? "-1" : null,
+    "aria-label": label || null,
+    "aria-description": description,
+    "aria-disabled": enabled ? null : "true",
+    "aria-checked": toggled && !pressed ? toggled : null,
+    "aria-pressed": toggled && pressed ? toggled : null,
+    "aria-selected": selected,
+    "aria-expanded": expanded,
+    "aria-multiline": multiline ? "true" : null,
+    "aria-level": level,
+    "aria-valuenow": number?.[0],
+    "aria-valuemin": number?.[1],
+    "aria-valuemax": number?.[2],
+    "aria-valuetext": number && value,
+    "data-value": value,
+  };
+  for (const [name, wanted] of Object.entries(attributes)) {
+    if (wanted === null || wanted === undefined) element.removeAttribute(name);
+    else if (element.getAttribute(name) !== String(wanted)) element.setAttribute(name, wanted);
+  }
+  const words = element.firstChild;
+  const text = value ?? (role === "" ? label : "");
+  if (words.textContent !== text) words.textContent = text;
+  const [left, top, width, height] = bounds;
+  element.style.left = `${left}px`;
+  element.style.top = `${top}px`;
+  element.style.width = `${width}px`;
+  element.style.height = `${height}px`;
+}
+
+/** Puts the elements of these ids inside `parent`, in order, after its words. */
+function arrange(parent, ids, shown) {
+  const wanted = ids.map((id) => shown.get(id));
+  const words = parent.dataset.id ? [parent.firstChild] : [];
+  const present = parent.childNodes;
+  const all = [...words, ...wanted];
+  const same = present.length === all.length && all.every((element, index) => present[index] === element);
+  if (!same) parent.replaceChildren(...all);
+}

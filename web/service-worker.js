@@ -1,0 +1,47 @@
+// Keeps a copy of the page, so that it opens without a network. `cargo xtask dist` fills in the two constants.
+
+const FILES = [];
+const VERSION = "development";
+
+const CACHE = `enroute-${VERSION}`;
+
+// A version is kept whole or not at all. It takes over when no tab shows an earlier one any more, so that the parts
+// of a running page always fit each other.
+self.addEventListener("install", (event) => {
+  event.waitUntil(
+    caches.open(CACHE).then((cache) => cache.addAll(FILES.map((file) => new Request(file, { cache: "reload" })))),
+  );
+});
+
+self.addEventListener("activate", (event) => {
+  event.waitUntil(
+    caches.keys().then(async (names) => {
+      const earlier = names.filter((name) => name.startsWith("enroute-") && name !== CACHE);
+      await Promise.all(earlier.map((name) => caches.delete(name)));
+      await self.clients.claim();
+    }),
+  );
+});
+
+self.addEventListener("fetch", (event) => {
+  const { request } = event;
+  if (request.method !== "GET" || new URL(request.url).origin !== self.location.origin) return;
+  event.respondWith(answer(request));
+});
+
+async function answer(request) {
+  const cache = await caches.open(CACHE);
+  const wanted = request.mode === "navigate" ? "index.html" : request;
+  const kept = await cache.match(wanted, { ignoreSearch: true });
+  return isolated(kept ?? (await fetch(request)));
+}
+
+// Shared memory, by which the page asks its worker to stop, is given only to pages that are isolated from others.
+function isolated(response) {
+  if (response.type === "opaque" || response.redirected) return response;
+  const headers = new Headers(response.headers);
+  headers.set("Cross-Origin-Opener-Policy", "same-origin");
+  headers.set("Cross-Origin-Embedder-Policy", "require-corp");
+  const { status, statusText, body } = response;
+  return new Response(body, { status, statusText, headers });
+}
