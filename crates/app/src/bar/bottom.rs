@@ -1,0 +1,84 @@
+//! The bar below: the selection, the caret, problems, timings, the renderer.
+
+use egui::{Align, Frame, Layout, Margin, Panel, RichText, Ui};
+use rmpl::Severity;
+
+use crate::command::{Command, CommandSender};
+use crate::panel::{Context, PanelKind};
+use crate::theme::space;
+
+/// Shows the bar.
+pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let tokens = context.tokens;
+    let frame = Frame::new().fill(tokens.background).inner_margin(Margin::symmetric(10, 0));
+    Panel::bottom("status-bar").exact_size(24.0).show_separator_line(false).frame(frame).show(ui, |ui| {
+        ui.style_mut().override_text_style = Some(egui::TextStyle::Small);
+        ui.horizontal_centered(|ui| {
+            problems(ui, context, commands);
+            caret(ui, context);
+            selection(ui, context);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| figures(ui, context));
+        });
+    });
+}
+
+fn problems(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let tokens = context.tokens;
+    let count = |severity: Severity| {
+        let problems = context.state.snapshots.latest().map(|latest| &latest.problems);
+        problems.map_or(0, |all| all.iter().filter(|it| it.severity == severity).count())
+    };
+    let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
+    let color = match (errors, warnings) {
+        (0, 0) => tokens.text_muted,
+        (0, _) => tokens.warning,
+        _ => tokens.error,
+    };
+    let text = RichText::new(format!("✖ {errors}  ⚠ {warnings}")).color(color);
+    let button = egui::Button::new(text).frame_when_inactive(false).small();
+    let name = format!("{errors} errors, {warnings} warnings");
+    if ui.add(button).accessible_name(name).clicked() {
+        commands.send(Command::ShowPanel(PanelKind::Problems));
+    }
+}
+
+fn caret(ui: &mut Ui, context: &Context<'_>) {
+    let document = &context.state.document;
+    let head = document.caret().head;
+    let place = format!("Ln {}, Col {}", document.line_at(head) + 1, document.column_at(head) + 1);
+    ui.label(RichText::new(place).color(context.tokens.text_muted));
+    let selected = document.selected_text().chars().count();
+    if selected > 0 {
+        ui.label(RichText::new(format!("({selected} selected)")).color(context.tokens.text_muted));
+    }
+}
+
+fn selection(ui: &mut Ui, context: &Context<'_>) {
+    let network = context.snapshot.and_then(|snapshot| snapshot.network.as_deref());
+    let name = context.state.selection.name(network);
+    if !name.is_empty() {
+        ui.add_space(space::S);
+        ui.label(RichText::new(name).color(context.tokens.accent));
+    }
+}
+
+fn figures(ui: &mut Ui, context: &Context<'_>) {
+    let tokens = context.tokens;
+    let faint = |text: String| RichText::new(text).color(tokens.text_faint);
+    let frame = &context.state.frame;
+    if !frame.renderer.is_empty() {
+        ui.label(faint(frame.renderer.clone()));
+    }
+    let Some(snapshot) = context.snapshot else { return };
+    let timings = snapshot.timings;
+    let text = format!(
+        "parse {:.1}  compile {:.1}  plan {:.1} ms",
+        timings.parse_millis, timings.compile_millis, timings.plan_millis
+    );
+    ui.label(faint(text));
+    if let Some(network) = &snapshot.network {
+        ui.label(faint(format!("{} events  {} constraints", network.nodes.len(), network.arcs.len())));
+    }
+    let revision = format!("revision {}", context.state.document.revision());
+    ui.label(faint(revision));
+}

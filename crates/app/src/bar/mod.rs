@@ -1,0 +1,26 @@
+//! The bars above and below the panels, and the titles of tabs.
+
+pub mod bottom;
+pub mod top;
+
+use egui::RichText;
+use rmpl::Severity;
+
+use crate::panel::{Context, PanelKind};
+
+/// The title of a panel's tab, with what the user should know while the panel is hidden.
+pub fn tab_title(context: &Context<'_>, panel: PanelKind) -> RichText {
+    let title = panel.title();
+    let text = match panel {
+        PanelKind::Problems => {
+            let latest = context.state.snapshots.latest();
+            let count = latest.map_or(0, |latest| {
+                latest.problems.iter().filter(|it| it.severity != Severity::Note).count()
+            });
+            if count == 0 { title.to_owned() } else { format!("{title} {count}") }
+        }
+        PanelKind::Editor if context.state.document.is_modified() => format!("{title} •"),
+        _ => title.to_owned(),
+    };
+    RichText::new(text)
+}

@@ -1,0 +1,192 @@
+//! Commands: everything that can be asked of the app, by menus, keys, the palette, panels or a host page.
+
+mod keys;
+mod registry;
+mod specs;
+
+use mission::{Goal, SearchKind};
+use rmpl::{Edit, Span};
+use smol_str::SmolStr;
+
+use crate::dialog::Dialog;
+use crate::host::FileKind;
+use crate::panel::PanelKind;
+use crate::state::editor::Find;
+use crate::state::{EditKind, Selection, TextCommand, ToastKind, Views};
+use crate::theme::ThemeChoice;
+use crate::workspace::Workspace;
+
+pub use keys::take_pressed;
+pub use registry::{Availability, Build, CommandSpec, Group, Scope, by_id, from_json, matching, score};
+pub use specs::COMMANDS;
+
+/// Something the app is asked to do.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// Opens the example mission of this name.
+    OpenExample(SmolStr),
+    /// Opens a mission text that is not an example.
+    OpenSource {
+        /// Its name, without extension.
+        name: SmolStr,
+        /// The text.
+        source: String,
+    },
+    /// Lets the user choose a file.
+    OpenFile(FileKind),
+    /// Lets the user save the mission text.
+    SaveMission,
+    /// Puts a link to the mission on the clipboard.
+    CopyLink,
+
+    /// Replaces the whole text, as one undoable edit.
+    SetSource(String),
+    /// An editing key.
+    Text(TextCommand),
+    /// Edits of the text made elsewhere: on the map, by a quick fix.
+    Edit {
+        /// Disjoint edits in textual order.
+        edits: Vec<Edit>,
+        /// How they join the history.
+        kind: EditKind,
+    },
+    /// Puts the caret at a place of the text and shows the editor there.
+    Reveal(Span),
+    /// Something that concerns only the editor.
+    Editor(EditorCommand),
+
+    /// Selects something in all panels.
+    Select(Selection),
+    /// Selects something in all panels and shows its text.
+    SelectAndReveal(Selection),
+    /// The pointer is over something.
+    Hover(Selection),
+
+    /// Goes to a time, in mission units from the start.
+    Seek(f64),
+    /// Starts or stops time.
+    TogglePlaying,
+    /// Goes to the next (`true`) or the previous (`false`) moment at which something happens.
+    StepTime(bool),
+    /// Sets how fast time runs; 1 is normal.
+    SetRate(f64),
+
+    /// What to plan.
+    SetGoal(Goal),
+    /// How to search.
+    SetSearch(SearchKind),
+    /// Seeds path planning.
+    SetSeed(u64),
+    /// Whether the search is recorded.
+    SetTrace(bool),
+
+    /// Shows a workspace.
+    ShowWorkspace(Workspace),
+    /// Puts the panels of the present workspace back where they were at first.
+    ResetWorkspace,
+    /// Brings a panel back or to the front.
+    ShowPanel(PanelKind),
+    /// Closes a panel.
+    ClosePanel(PanelKind),
+    /// The user turned to a panel.
+    Activate(PanelKind),
+    /// A view action for the panel used last.
+    View(ViewAction),
+    /// A view action for one panel.
+    ViewOf(PanelKind, ViewAction),
+    /// What panels show.
+    SetViews(Box<Views>),
+    /// Light or dark.
+    SetTheme(ThemeChoice),
+    /// How large text is; 1 is the designed size.
+    SetTextScale(f32),
+
+    /// Opens a dialog over everything.
+    ShowDialog(Dialog),
+    /// Closes it.
+    CloseDialog,
+    /// Leaves what is on top: a dialog, the find bar, the selection.
+    Escape,
+    /// Says something for a moment.
+    Notify(ToastKind, String),
+    /// Takes a message away.
+    DismissToast(usize),
+    /// Puts text on the clipboard.
+    Copy(String),
+}
+
+/// What only the editor does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EditorCommand {
+    /// Gives the editor the keyboard.
+    Focus,
+    /// Text that an input method is composing.
+    Compose(String),
+    /// Opens the find bar, with the replacement row or without.
+    Find {
+        /// Whether the replacement row is open.
+        replacing: bool,
+    },
+    /// Changes what is looked for.
+    SetFind(Find),
+    /// Closes the find bar.
+    CloseFind,
+    /// Selects the next match.
+    FindNext,
+    /// Selects the match before.
+    FindPrevious,
+    /// Replaces the selected match and selects the next.
+    ReplaceOne,
+    /// Replaces all matches.
+    ReplaceAll,
+    /// Goes to a line, from 1.
+    GoToLine(usize),
+    /// Goes to the next or the previous problem.
+    GoToProblem {
+        /// Whether to go forwards.
+        forwards: bool,
+    },
+    /// Cuts or copies the selection, or the line of the caret.
+    CopySelection {
+        /// Whether it is taken away.
+        cut: bool,
+    },
+}
+
+/// What can be done with a view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ViewAction {
+    /// Closer.
+    ZoomIn,
+    /// Further away.
+    ZoomOut,
+    /// Designed size.
+    ZoomReset,
+    /// Everything at once.
+    Fit,
+    /// What is selected.
+    FitSelection,
+}
+
+/// Collects commands while a frame is shown.
+#[derive(Debug, Default)]
+pub struct CommandSender {
+    commands: Vec<Command>,
+}
+
+impl CommandSender {
+    /// Asks for something; it is done before the next frame is shown.
+    pub fn send(&mut self, command: Command) {
+        self.commands.push(command);
+    }
+
+    /// What was asked for, in order.
+    pub fn take(&mut self) -> Vec<Command> {
+        std::mem::take(&mut self.commands)
+    }
+
+    /// Whether nothing was asked for.
+    pub fn is_empty(&self) -> bool {
+        self.commands.is_empty()
+    }
+}

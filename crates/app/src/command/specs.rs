@@ -1,0 +1,446 @@
+//! The registry: every command with its name, title, menu and keys (DESIGN 1).
+
+use egui::{Key, KeyboardShortcut, Modifiers};
+use serde_json::Value;
+
+use crate::command::registry::{Availability, Build, CommandSpec, Group, Scope};
+use crate::command::{Command, EditorCommand, ViewAction};
+use crate::dialog::Dialog;
+use crate::host::FileKind;
+use crate::mission_file;
+use crate::panel::PanelKind;
+use crate::state::{AppState, Selection, TextCommand};
+use crate::theme::ThemeChoice;
+use crate::workspace::Workspace;
+
+const fn keys(modifiers: Modifiers, key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(modifiers, key)
+}
+
+const PLAIN: Modifiers = Modifiers::NONE;
+const CTRL: Modifiers = Modifiers::COMMAND;
+const SHIFT: Modifiers = Modifiers::SHIFT;
+const ALT: Modifiers = Modifiers::ALT;
+const CTRL_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
+
+fn always(_: &AppState) -> Availability {
+    Ok(())
+}
+
+fn with_plan(state: &AppState) -> Availability {
+    let has_plan = state.shown().is_some_and(|shown| shown.plan().is_some());
+    if has_plan { Ok(()) } else { Err("there is no plan") }
+}
+
+fn with_selection(state: &AppState) -> Availability {
+    if state.selection.is_none() { Err("nothing is selected") } else { Ok(()) }
+}
+
+fn with_undo(state: &AppState) -> Availability {
+    if state.document.can_undo() { Ok(()) } else { Err("nothing has been edited") }
+}
+
+fn with_redo(state: &AppState) -> Availability {
+    if state.document.can_redo() { Ok(()) } else { Err("nothing has been undone") }
+}
+
+fn with_problems(state: &AppState) -> Availability {
+    let has_problems = state.snapshots.latest().is_some_and(|latest| !latest.problems.is_empty());
+    if has_problems { Ok(()) } else { Err("there are no problems") }
+}
+
+/// A command that stands in menus and in the palette.
+const fn plain(
+    id: &'static str,
+    title: &'static str,
+    group: Group,
+    shortcuts: &'static [KeyboardShortcut],
+    scope: Scope,
+    make: fn(&AppState) -> Command,
+) -> CommandSpec {
+    CommandSpec { id, title, group, keys: shortcuts, scope, available: always, build: Build::Plain(make) }
+}
+
+/// A command for host pages that needs arguments.
+const fn called(
+    id: &'static str,
+    title: &'static str,
+    group: Group,
+    make: fn(&AppState, &Value) -> Result<Command, String>,
+) -> CommandSpec {
+    CommandSpec {
+        id,
+        title,
+        group,
+        keys: &[],
+        scope: Scope::Everywhere,
+        available: always,
+        build: Build::FromJson(make),
+    }
+}
+
+const fn when(mut spec: CommandSpec, available: fn(&AppState) -> Availability) -> CommandSpec {
+    spec.available = available;
+    spec
+}
+
+/// Every command, in the order of the menus.
+pub static COMMANDS: &[CommandSpec] = &[
+    // Missions and files.
+    plain("file.open", "Open a mission…", Group::File, &[keys(CTRL, Key::O)], Scope::Everywhere, |_| {
+        Command::OpenFile(FileKind::Mission)
+    }),
+    plain("file.save", "Save the mission", Group::File, &[keys(CTRL, Key::S)], Scope::Everywhere, |_| {
+        Command::SaveMission
+    }),
+    plain("file.importMap", "Import a map…", Group::File, &[], Scope::Everywhere, |_| {
+        Command::OpenFile(FileKind::Map)
+    }),
+    plain("file.share", "Copy a link to this mission", Group::File, &[], Scope::Everywhere, |_| {
+        Command::CopyLink
+    }),
+    called("file.example", "Open an example", Group::File, |_, arguments| {
+        let name = text_argument(arguments, "name")?;
+        mission_file::example(name)
+            .map(|example| Command::OpenExample(example.name.into()))
+            .ok_or_else(|| format!("there is no example \"{name}\""))
+    }),
+    // The text.
+    when(
+        plain("edit.undo", "Undo", Group::Edit, &[keys(CTRL, Key::Z)], Scope::Editor, |_| {
+            Command::Text(TextCommand::Undo)
+        }),
+        with_undo,
+    ),
+    when(
+        plain(
+            "edit.redo",
+            "Redo",
+            Group::Edit,
+            &[keys(CTRL_SHIFT, Key::Z), keys(CTRL, Key::Y)],
+            Scope::Editor,
+            |_| Command::Text(TextCommand::Redo),
+        ),
+        with_redo,
+    ),
+    plain("edit.find", "Find…", Group::Edit, &[keys(CTRL, Key::F)], Scope::Everywhere, |_| {
+        Command::Editor(EditorCommand::Find { replacing: false })
+    }),
+    plain("edit.replace", "Replace…", Group::Edit, &[keys(CTRL, Key::H)], Scope::Everywhere, |_| {
+        Command::Editor(EditorCommand::Find { replacing: true })
+    }),
+    plain(
+        "edit.toggleComment",
+        "Toggle comment",
+        Group::Edit,
+        &[keys(CTRL, Key::Slash)],
+        Scope::Editor,
+        |_| Command::Text(TextCommand::ToggleComment),
+    ),
+    plain(
+        "edit.duplicate",
+        "Duplicate lines",
+        Group::Edit,
+        &[keys(CTRL_SHIFT, Key::D)],
+        Scope::Typing,
+        |_| Command::Text(TextCommand::DuplicateLines),
+    ),
+    plain(
+        "edit.deleteLines",
+        "Delete lines",
+        Group::Edit,
+        &[keys(CTRL_SHIFT, Key::K)],
+        Scope::Typing,
+        |_| Command::Text(TextCommand::DeleteLines),
+    ),
+    plain("edit.moveUp", "Move lines up", Group::Edit, &[keys(ALT, Key::ArrowUp)], Scope::Typing, |_| {
+        Command::Text(TextCommand::MoveLinesUp)
+    }),
+    plain(
+        "edit.moveDown",
+        "Move lines down",
+        Group::Edit,
+        &[keys(ALT, Key::ArrowDown)],
+        Scope::Typing,
+        |_| Command::Text(TextCommand::MoveLinesDown),
+    ),
+    called("edit.setSource", "Replace the text", Group::Edit, |_, arguments| {
+        text_argument(arguments, "text").map(|text| Command::SetSource(text.to_owned()))
+    }),
+    called("edit.insert", "Type text at the caret", Group::Edit, |_, arguments| {
+        let text = text_argument(arguments, "text")?;
+        Ok(Command::Text(TextCommand::Insert(text.to_owned())))
+    }),
+    called("edit.select", "Select text", Group::Edit, |state, arguments| {
+        let anchor = number_argument(arguments, "start")?;
+        let head = number_argument(arguments, "end").unwrap_or(anchor);
+        let offset = |value: f64| state.document.boundary_before(value.max(0.0) as usize);
+        Ok(Command::Text(TextCommand::Select { anchor: offset(anchor), head: offset(head) }))
+    }),
+    // Going to places.
+    plain(
+        "go.palette",
+        "Command palette",
+        Group::Go,
+        &[keys(CTRL_SHIFT, Key::P), keys(PLAIN, Key::F1)],
+        Scope::Everywhere,
+        |_| Command::ShowDialog(Dialog::palette()),
+    ),
+    plain("go.line", "Go to line…", Group::Go, &[keys(CTRL, Key::G)], Scope::Everywhere, |_| {
+        Command::ShowDialog(Dialog::go_to_line())
+    }),
+    when(
+        plain(
+            "go.nextProblem",
+            "Next problem",
+            Group::Go,
+            &[keys(PLAIN, Key::F8)],
+            Scope::Everywhere,
+            |_| Command::Editor(EditorCommand::GoToProblem { forwards: true }),
+        ),
+        with_problems,
+    ),
+    when(
+        plain(
+            "go.previousProblem",
+            "Previous problem",
+            Group::Go,
+            &[keys(SHIFT, Key::F8)],
+            Scope::Everywhere,
+            |_| Command::Editor(EditorCommand::GoToProblem { forwards: false }),
+        ),
+        with_problems,
+    ),
+    plain("go.findNext", "Next match", Group::Go, &[keys(PLAIN, Key::F3)], Scope::Everywhere, |_| {
+        Command::Editor(EditorCommand::FindNext)
+    }),
+    plain("go.findPrevious", "Previous match", Group::Go, &[keys(SHIFT, Key::F3)], Scope::Everywhere, |_| {
+        Command::Editor(EditorCommand::FindPrevious)
+    }),
+    when(
+        plain("go.selectionText", "Text of the selection", Group::Go, &[], Scope::Everywhere, |state| {
+            Command::SelectAndReveal(state.selection.clone())
+        }),
+        with_selection,
+    ),
+    plain("go.editor", "Mission text", Group::Go, &[keys(CTRL, Key::Num0)], Scope::Everywhere, |_| {
+        Command::Editor(EditorCommand::Focus)
+    }),
+    plain("go.leave", "Leave", Group::Go, &[keys(PLAIN, Key::Escape)], Scope::Everywhere, |_| {
+        Command::Escape
+    }),
+    called("go.select", "Select by name", Group::Go, |state, arguments| {
+        let name = text_argument(arguments, "name")?;
+        if name.is_empty() {
+            return Ok(Command::Select(Selection::None));
+        }
+        let snapshot = state.shown().ok_or("nothing has been worked out yet")?;
+        Selection::by_name(snapshot, name)
+            .map(Command::Select)
+            .ok_or_else(|| format!("the mission has nothing named \"{name}\""))
+    }),
+    // Panels, zoom, appearance.
+    plain(
+        "view.author",
+        "Author workspace",
+        Group::View,
+        &[keys(CTRL, Key::Num1)],
+        Scope::Everywhere,
+        |_| Command::ShowWorkspace(Workspace::Author),
+    ),
+    plain("view.teach", "Teach workspace", Group::View, &[keys(CTRL, Key::Num2)], Scope::Everywhere, |_| {
+        Command::ShowWorkspace(Workspace::Teach)
+    }),
+    plain(
+        "view.review",
+        "Review workspace",
+        Group::View,
+        &[keys(CTRL, Key::Num3)],
+        Scope::Everywhere,
+        |_| Command::ShowWorkspace(Workspace::Review),
+    ),
+    plain("view.resetWorkspace", "Reset the panels", Group::View, &[], Scope::Everywhere, |_| {
+        Command::ResetWorkspace
+    }),
+    plain(
+        "view.zoomIn",
+        "Zoom in",
+        Group::View,
+        &[keys(PLAIN, Key::Equals), keys(PLAIN, Key::Plus)],
+        Scope::NotTyping,
+        |_| Command::View(ViewAction::ZoomIn),
+    ),
+    plain("view.zoomOut", "Zoom out", Group::View, &[keys(PLAIN, Key::Minus)], Scope::NotTyping, |_| {
+        Command::View(ViewAction::ZoomOut)
+    }),
+    plain(
+        "view.zoomReset",
+        "Reset the zoom",
+        Group::View,
+        &[keys(PLAIN, Key::Num0)],
+        Scope::NotTyping,
+        |_| Command::View(ViewAction::ZoomReset),
+    ),
+    plain("view.fit", "Fit everything", Group::View, &[keys(PLAIN, Key::F)], Scope::NotTyping, |_| {
+        Command::View(ViewAction::Fit)
+    }),
+    when(
+        plain(
+            "view.fitSelection",
+            "Fit the selection",
+            Group::View,
+            &[keys(SHIFT, Key::F)],
+            Scope::NotTyping,
+            |_| Command::View(ViewAction::FitSelection),
+        ),
+        with_selection,
+    ),
+    plain("view.theme", "Light or dark", Group::View, &[], Scope::Everywhere, |state| {
+        Command::SetTheme(state.settings.theme.toggled())
+    }),
+    plain(
+        "view.textLarger",
+        "Larger text",
+        Group::View,
+        &[keys(CTRL, Key::Equals), keys(CTRL, Key::Plus)],
+        Scope::Everywhere,
+        |state| Command::SetTextScale(state.settings.text_scale + 0.1),
+    ),
+    plain(
+        "view.textSmaller",
+        "Smaller text",
+        Group::View,
+        &[keys(CTRL, Key::Minus)],
+        Scope::Everywhere,
+        |state| Command::SetTextScale(state.settings.text_scale - 0.1),
+    ),
+    plain("view.textReset", "Normal text size", Group::View, &[], Scope::Everywhere, |_| {
+        Command::SetTextScale(1.0)
+    }),
+    called("view.panel", "Show a panel", Group::View, |_, arguments| {
+        panel_argument(arguments).map(Command::ShowPanel)
+    }),
+    called("view.closePanel", "Close a panel", Group::View, |_, arguments| {
+        panel_argument(arguments).map(Command::ClosePanel)
+    }),
+    called("view.setTheme", "Choose the theme", Group::View, |_, arguments| {
+        match text_argument(arguments, "theme")? {
+            "dark" => Ok(Command::SetTheme(ThemeChoice::Dark)),
+            "light" => Ok(Command::SetTheme(ThemeChoice::Light)),
+            other => Err(format!("\"theme\" is \"dark\" or \"light\", not \"{other}\"")),
+        }
+    }),
+    called("view.workspace", "Show a workspace", Group::View, |_, arguments| {
+        let name = text_argument(arguments, "name")?;
+        Workspace::by_name(name)
+            .map(Command::ShowWorkspace)
+            .ok_or_else(|| format!("there is no workspace \"{name}\""))
+    }),
+    // Planning.
+    plain("plan.chronological", "Search chronologically", Group::Plan, &[], Scope::Everywhere, |_| {
+        Command::SetSearch(mission::SearchKind::Chronological)
+    }),
+    plain(
+        "plan.conflictDirected",
+        "Search directed by conflicts",
+        Group::Plan,
+        &[],
+        Scope::Everywhere,
+        |_| Command::SetSearch(mission::SearchKind::ConflictDirected),
+    ),
+    plain("plan.otherPaths", "Plan other paths", Group::Plan, &[], Scope::Everywhere, |state| {
+        Command::SetSeed(state.settings.plan.seed + 1)
+    }),
+    called("plan.seed", "Choose the seed of path planning", Group::Plan, |_, arguments| {
+        number_argument(arguments, "seed").map(|seed| Command::SetSeed(seed.max(0.0) as u64))
+    }),
+    called("plan.scenario", "Choose what to plan", Group::Plan, |_, arguments| {
+        let name = text_argument(arguments, "name")?;
+        Ok(Command::SetGoal(mission::Goal::Scenario(name.into())))
+    }),
+    // Time.
+    when(
+        plain(
+            "play.toggle",
+            "Play or pause",
+            Group::Play,
+            &[keys(PLAIN, Key::Space)],
+            Scope::NotTyping,
+            |_| Command::TogglePlaying,
+        ),
+        with_plan,
+    ),
+    when(
+        plain(
+            "play.forward",
+            "Next event",
+            Group::Play,
+            &[keys(PLAIN, Key::Period)],
+            Scope::NotTyping,
+            |_| Command::StepTime(true),
+        ),
+        with_plan,
+    ),
+    when(
+        plain(
+            "play.back",
+            "Previous event",
+            Group::Play,
+            &[keys(PLAIN, Key::Comma)],
+            Scope::NotTyping,
+            |_| Command::StepTime(false),
+        ),
+        with_plan,
+    ),
+    when(
+        plain("play.start", "To the start", Group::Play, &[keys(PLAIN, Key::Home)], Scope::NotTyping, |_| {
+            Command::Seek(0.0)
+        }),
+        with_plan,
+    ),
+    when(
+        plain("play.end", "To the end", Group::Play, &[keys(PLAIN, Key::End)], Scope::NotTyping, |state| {
+            Command::Seek(state.playback.end)
+        }),
+        with_plan,
+    ),
+    plain("play.faster", "Faster", Group::Play, &[], Scope::Everywhere, |state| {
+        Command::SetRate(state.playback.rate * 2.0)
+    }),
+    plain("play.slower", "Slower", Group::Play, &[], Scope::Everywhere, |state| {
+        Command::SetRate(state.playback.rate / 2.0)
+    }),
+    called("play.seek", "Go to a time", Group::Play, |_, arguments| {
+        number_argument(arguments, "time").map(Command::Seek)
+    }),
+    // Help.
+    plain(
+        "help.keys",
+        "Keyboard shortcuts",
+        Group::Help,
+        &[keys(PLAIN, Key::Questionmark)],
+        Scope::NotTyping,
+        |_| Command::ShowDialog(Dialog::Keys),
+    ),
+    plain("help.about", "About Enroute", Group::Help, &[], Scope::Everywhere, |_| {
+        Command::ShowDialog(Dialog::About)
+    }),
+];
+
+fn text_argument<'a>(arguments: &'a Value, name: &str) -> Result<&'a str, String> {
+    let value = arguments.get(name).unwrap_or(arguments);
+    value.as_str().ok_or_else(|| format!("it takes {{\"{name}\": text}}"))
+}
+
+fn number_argument(arguments: &Value, name: &str) -> Result<f64, String> {
+    let value = arguments.get(name).unwrap_or(arguments);
+    value.as_f64().ok_or_else(|| format!("it takes {{\"{name}\": number}}"))
+}
+
+fn panel_argument(arguments: &Value) -> Result<PanelKind, String> {
+    let name = text_argument(arguments, "name")?;
+    PanelKind::by_name(name).ok_or_else(|| {
+        let known: Vec<&str> = PanelKind::ALL.iter().map(|panel| panel.name()).collect();
+        format!("there is no panel \"{name}\"; there are {}", known.join(", "))
+    })
+}

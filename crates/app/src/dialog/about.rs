@@ -1,0 +1,30 @@
+//! What this program is.
+
+use egui::{RichText, Ui};
+
+use crate::command::{Command, CommandSender};
+use crate::panel::Context;
+use crate::theme::space;
+
+/// Shows name, version and purpose.
+pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    ui.set_width(380.0);
+    ui.heading(concat!("Enroute ", env!("CARGO_PKG_VERSION")));
+    ui.label(
+        "Mission plans for cooperative vehicles: written in RMPL, planned as temporal plan networks, checked \
+              by an independent verifier, and driven over terrain.",
+    );
+    ui.add_space(space::S);
+    ui.label(
+        RichText::new("Everything runs in this window; nothing is sent anywhere.")
+            .color(context.tokens.text_muted),
+    );
+    if !context.state.frame.renderer.is_empty() {
+        let drawn = format!("Drawn by {}.", context.state.frame.renderer);
+        ui.label(RichText::new(drawn).color(context.tokens.text_muted));
+    }
+    ui.add_space(space::M);
+    if ui.button("Close").clicked() {
+        commands.send(Command::CloseDialog);
+    }
+}

@@ -1,0 +1,33 @@
+//! Asks for a line of the text.
+
+use egui::{Key, RichText, TextEdit, Ui};
+
+use crate::command::{Command, CommandSender, EditorCommand};
+use crate::dialog::Dialog;
+use crate::panel::Context;
+
+/// Shows the question.
+pub(super) fn show(ui: &mut Ui, context: &Context<'_>, line: &str, commands: &mut CommandSender) {
+    ui.set_width(260.0);
+    let lines = context.state.document.line_count();
+    let mut text = line.to_owned();
+    let field =
+        TextEdit::singleline(&mut text).hint_text(format!("Line, 1 to {lines}")).desired_width(f32::INFINITY);
+    let field = ui.add(field).accessible_name("Line number");
+    let enter = ui.input(|input| input.key_pressed(Key::Enter));
+    if !enter {
+        field.request_focus();
+    }
+    let wanted = text.trim().parse::<usize>().ok().filter(|line| (1..=lines).contains(line));
+    if !text.is_empty() && wanted.is_none() {
+        let note = format!("Not a line from 1 to {lines}");
+        ui.label(RichText::new(note).color(context.tokens.error));
+    }
+    match wanted.filter(|_| enter) {
+        Some(line) => {
+            commands.send(Command::CloseDialog);
+            commands.send(Command::Editor(EditorCommand::GoToLine(line)));
+        }
+        None => commands.send(Command::ShowDialog(Dialog::GoToLine { line: text })),
+    }
+}

@@ -1,0 +1,67 @@
+//! The layouts of the workspaces while the app runs, and how they are remembered.
+
+use std::collections::BTreeMap;
+
+use egui_tiles::Tree;
+
+use crate::host::Host;
+use crate::panel::PanelKind;
+use crate::state::AppState;
+use crate::workspace::{self, Workspace};
+
+/// One layout per workspace.
+pub struct Layouts {
+    trees: BTreeMap<Workspace, Tree<PanelKind>>,
+    stored: BTreeMap<Workspace, String>,
+}
+
+fn key(workspace: Workspace) -> String {
+    format!("enroute/layout-1/{}", workspace.name())
+}
+
+impl Layouts {
+    /// The layouts that the host remembers; the default ones where it does not.
+    pub fn remembered(host: &dyn Host) -> Self {
+        let mut trees = BTreeMap::new();
+        let mut stored = BTreeMap::new();
+        for workspace in Workspace::ALL {
+            let text = host.stored(&key(workspace));
+            let tree = text.as_deref().and_then(workspace::from_text);
+            let tree = tree.unwrap_or_else(|| workspace.default_layout());
+            stored.insert(workspace, workspace::to_text(&tree).unwrap_or_default());
+            trees.insert(workspace, tree);
+        }
+        Self { trees, stored }
+    }
+
+    /// The layout of a workspace.
+    pub fn tree_mut(&mut self, workspace: Workspace) -> &mut Tree<PanelKind> {
+        self.trees.entry(workspace).or_insert_with(|| workspace.default_layout())
+    }
+
+    /// Does what the state wants done to the present layout.
+    pub fn follow(&mut self, state: &mut AppState) {
+        if std::mem::take(&mut state.wants_default_layout) {
+            self.trees.insert(state.workspace, state.workspace.default_layout());
+        }
+        let tree = self.tree_mut(state.workspace);
+        if let Some(panel) = state.unwanted_panel.take() {
+            workspace::close_panel(tree, panel);
+        }
+        if let Some(panel) = state.wanted_panel.take() {
+            workspace::show_panel(tree, panel);
+        }
+    }
+
+    /// Lets the host keep what has changed.
+    pub fn remember(&mut self, host: &mut dyn Host) {
+        for (&workspace, tree) in &self.trees {
+            let Some(text) = workspace::to_text(tree) else { continue };
+            if self.stored.get(&workspace) != Some(&text) {
+                // A full storage only means that the layout is not remembered.
+                let _ = host.store(&key(workspace), &text);
+                self.stored.insert(workspace, text);
+            }
+        }
+    }
+}

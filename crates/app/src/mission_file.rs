@@ -1,0 +1,51 @@
+//! The missions that come with the app, by name.
+
+/// A mission that comes with the app.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Example {
+    /// Its name in addresses and commands.
+    pub name: &'static str,
+    /// What the mission picker calls it.
+    pub title: &'static str,
+    /// Its text.
+    pub source: &'static str,
+}
+
+/// All of them; the app opens with the first.
+pub const EXAMPLES: &[Example] = &[
+    Example {
+        name: "enroute",
+        title: "Enroute",
+        source: include_str!("../../../assets/missions/enroute.rmpl"),
+    },
+    Example {
+        name: "both-paths",
+        title: "Both paths open",
+        source: include_str!("../../../assets/missions/both-paths.rmpl"),
+    },
+    Example {
+        name: "negative-cycle",
+        title: "A negative cycle",
+        source: include_str!("../../../assets/missions/negative-cycle.rmpl"),
+    },
+    Example {
+        name: "causal-links",
+        title: "Causal links",
+        source: include_str!("../../../assets/missions/causal-links.rmpl"),
+    },
+    Example {
+        name: "threats",
+        title: "Threats",
+        source: include_str!("../../../assets/missions/threats.rmpl"),
+    },
+    Example {
+        name: "backjump",
+        title: "Backjumping",
+        source: include_str!("../../../assets/missions/backjump.rmpl"),
+    },
+];
+
+/// The example of this name.
+pub fn example(name: &str) -> Option<&'static Example> {
+    EXAMPLES.iter().find(|example| example.name == name)
+}

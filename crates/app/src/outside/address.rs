@@ -1,0 +1,125 @@
+//! What stands after `#` in the page's address (DESIGN 4.3): `mission=`, `source=`, `workspace=`, `t=`.
+//!
+//! A shared text is compressed (deflate) and written in the alphabet of base64 for addresses.
+
+use crate::command::Command;
+use crate::mission_file;
+use crate::state::{AppState, ToastKind};
+use crate::workspace::Workspace;
+
+/// The fragment that brings back the open mission, the workspace and the time.
+pub fn fragment(state: &AppState) -> String {
+    let example = mission_file::example(&state.mission);
+    let is_example = example.is_some_and(|example| example.source == state.document.text());
+    let mission = if is_example {
+        format!("mission={}", state.mission)
+    } else {
+        format!("source={}", pack(state.document.text()))
+    };
+    let time = state.playback.time;
+    let time = if time > 0.0 { format!("&t={time}") } else { String::new() };
+    format!("{mission}&workspace={}{time}", state.workspace.name())
+}
+
+/// Opens what a fragment names; parts that it does not name stay as they are.
+pub fn open_fragment(state: &mut AppState, fragment: &str) {
+    for part in fragment.trim_start_matches('#').split('&') {
+        let Some((key, value)) = part.split_once('=') else { continue };
+        match key {
+            "mission" => match mission_file::example(value) {
+                Some(example) => state.apply(Command::OpenExample(example.name.into())),
+                None => state.toasts.add(ToastKind::Failed, format!("There is no mission \"{value}\"")),
+            },
+            "source" => match unpack(value) {
+                Some(source) => {
+                    state.apply(Command::OpenSource { name: "shared".into(), source });
+                }
+                None => state.toasts.add(ToastKind::Failed, "The mission in this link is damaged"),
+            },
+            "workspace" => {
+                if let Some(workspace) = Workspace::by_name(value) {
+                    state.apply(Command::ShowWorkspace(workspace));
+                }
+            }
+            "t" => {
+                if let Ok(time) = value.parse::<f64>() {
+                    state.playback.time = time.max(0.0);
+                    state.playback.end = state.playback.end.max(state.playback.time);
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+
+/// A larger text than this is not unpacked: no mission is that long, and a short link must not fill the memory.
+const LONGEST_TEXT_BYTES: usize = 8 << 20;
+
+fn pack(text: &str) -> String {
+    let bytes = miniz_oxide::deflate::compress_to_vec(text.as_bytes(), 9);
+    let mut packed = String::with_capacity(bytes.len() * 4 / 3 + 4);
+    for chunk in bytes.chunks(3) {
+        let group =
+            chunk.iter().fold(0_u32, |group, &byte| group << 8 | u32::from(byte)) << (8 * (3 - chunk.len()));
+        for at in 0..=chunk.len() {
+            let index = (group >> (18 - 6 * at)) & 63;
+            packed.push(char::from(ALPHABET[index as usize]));
+        }
+    }
+    packed
+}
+
+fn unpack(packed: &str) -> Option<String> {
+    let digits: Option<Vec<u32>> = packed
+        .bytes()
+        .map(|byte| ALPHABET.iter().position(|&letter| letter == byte).map(|at| at as u32))
+        .collect();
+    let mut bytes = Vec::new();
+    for chunk in digits?.chunks(4) {
+        let group = chunk.iter().fold(0_u32, |group, &digit| group << 6 | digit) << (6 * (4 - chunk.len()));
+        bytes.extend((0..chunk.len().saturating_sub(1)).map(|at| (group >> (16 - 8 * at)) as u8));
+    }
+    let text = miniz_oxide::inflate::decompress_to_vec_with_limit(&bytes, LONGEST_TEXT_BYTES).ok()?;
+    String::from_utf8(text).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_text_survives_the_way_through_an_address() {
+        for text in ["", "a", "ab", "abc", "delay[0,∞];\n", &"Group-Wait() ".repeat(500)] {
+            let packed = pack(text);
+            assert!(packed.bytes().all(|byte| ALPHABET.contains(&byte)));
+            assert_eq!(unpack(&packed).as_deref(), Some(text));
+        }
+    }
+
+    #[test]
+    fn a_damaged_text_is_refused_and_keeps_the_open_mission() {
+        let mut state = AppState::new();
+        let before = state.document.text().to_owned();
+        for damaged in ["source=%%%", "source=A", "source=zzzzzzzz", "mission=nowhere"] {
+            open_fragment(&mut state, damaged);
+        }
+        assert_eq!(state.document.text(), before);
+        assert!(!state.toasts.shown().is_empty());
+    }
+
+    #[test]
+    fn a_fragment_brings_back_the_text_the_workspace_and_the_time() {
+        let mut state = AppState::new();
+        state.apply(Command::SetSource("scenario S { }".to_owned()));
+        state.apply(Command::ShowWorkspace(Workspace::Review));
+        state.playback.end = 100.0;
+        state.apply(Command::Seek(12.5));
+        let mut again = AppState::new();
+        open_fragment(&mut again, &fragment(&state));
+        assert_eq!(again.document.text(), "scenario S { }");
+        assert_eq!(again.workspace, Workspace::Review);
+        assert_eq!(again.playback.time, 12.5);
+    }
+}

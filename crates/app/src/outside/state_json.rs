@@ -1,0 +1,147 @@
+//! The state as plain JSON, for host pages and tests (DESIGN 4.3).
+
+use mission::{Problem, Snapshot};
+use serde_json::{Value, json};
+use tpn::Network;
+use tpn::plan_json::plan_to_json;
+
+use crate::state::{AppState, Status};
+
+/// The state. `revision` is the text's; everything that was worked out is under the revision it belongs to, which is
+/// the same once `status` is not `working`.
+pub fn state_json(state: &AppState) -> Value {
+    let latest = state.snapshots.latest();
+    let shown = state.shown();
+    let network = shown.and_then(|shown| shown.network.as_deref());
+    let planning = shown.and_then(|shown| shown.planning.as_deref());
+    let plan = network.zip(shown.and_then(|shown| shown.plan()));
+    let failure = planning.and_then(|planning| planning.outcome.failure.as_ref());
+    let verdict = planning.and_then(|planning| planning.verdict.as_ref());
+    let steps = planning.and_then(|planning| planning.outcome.trace.as_ref()).map(|trace| trace.events.len());
+    let problems = latest.map(|latest| latest.problems.iter().map(problem_json).collect::<Vec<_>>());
+    let caret = state.document.caret();
+    json!({
+        "revision": state.document.revision(),
+        "answeredRevision": latest.map(|latest| latest.revision),
+        "shownRevision": shown.map(|shown| shown.revision),
+        "status": status_name(state.status()),
+        "isStale": state.snapshots.is_stale(state.document.revision()),
+        "mission": state.mission.as_str(),
+        "workspace": state.workspace.name(),
+        "theme": state.settings.theme,
+        "diagnostics": problems.unwrap_or_default(),
+        "tpn": network.map(|network| json!({
+            "nodes": network.nodes.len(),
+            "arcs": network.arcs.len(),
+            "decisions": network.decisions.len(),
+            "occurrences": network.occurrences.len(),
+        })),
+        "plan": plan.map(|(network, plan)| plan_to_json(network, plan)),
+        "verdict": verdict.map(verdict_json),
+        "failure": network.zip(failure).map(|(network, failure)| failure_json(network, failure)),
+        "search": { "step": 0, "steps": steps.unwrap_or_default() },
+        "vehicles": shown.map(|shown| vehicles_json(shown, state.playback.time)).unwrap_or_default(),
+        "time": state.playback.time,
+        "endTime": state.playback.end,
+        "isPlaying": state.playback.is_playing,
+        "selection": state.selection.to_json(network),
+        "caret": { "anchor": caret.anchor, "head": caret.head },
+        "canUndo": state.document.can_undo(),
+        "canRedo": state.document.can_redo(),
+        "dialog": state.dialog.as_ref().map(crate::dialog::Dialog::name),
+        "toasts": state.toasts.shown().iter().map(|toast| toast.text.as_str()).collect::<Vec<_>>(),
+        "renderer": state.frame.renderer,
+        "timings": timings_json(state),
+    })
+}
+
+/// Why there is no plan.
+fn failure_json(network: &Network, failure: &kirk::Failure) -> Value {
+    let reasons: Vec<Value> = failure
+        .reasons
+        .iter()
+        .map(|reason| {
+            let choices: serde_json::Map<String, Value> = reason
+                .choices
+                .iter()
+                .map(|choice| (Network::decision_name(choice.decision), json!(choice.alternative)))
+                .collect();
+            json!({ "choices": choices, "kind": reason.kind.name(), "message": reason.message })
+        })
+        .collect();
+    let labels = |label| network.label_name(label);
+    let conditions: Vec<String> = failure
+        .reasons
+        .iter()
+        .flat_map(|reason| &reason.conflict)
+        .filter_map(|member| match member {
+            kirk::Member::Condition(label) => Some(labels(*label)),
+            kirk::Member::Bound(_) => None,
+        })
+        .collect();
+    json!({
+        "reasons": reasons,
+        "conditions": conditions,
+        "relaxations": failure.relaxations.iter().map(|it| it.label.as_str()).collect::<Vec<_>>(),
+    })
+}
+
+fn verdict_json(verdict: &verify::Verdict) -> Value {
+    json!({
+        "valid": verdict.valid,
+        "violations": verdict.violations.iter().map(|it| it.message.as_str()).collect::<Vec<_>>(),
+    })
+}
+
+fn problem_json(problem: &Problem) -> Value {
+    json!({
+        "code": problem.code.as_str(),
+        "severity": problem.severity,
+        "message": problem.message,
+        "span": {
+            "start": problem.span.start,
+            "end": problem.span.end,
+            "line": problem.line,
+            "column": problem.column,
+        },
+        "hint": problem.hint,
+        "fixes": problem.fixes.iter().map(|fix| fix.label.as_str()).collect::<Vec<_>>(),
+    })
+}
+
+fn vehicles_json(snapshot: &Snapshot, time: f64) -> Vec<Value> {
+    let names = &snapshot.program.world.vehicles;
+    snapshot
+        .motions
+        .iter()
+        .filter_map(|motion| {
+            let ([x, y], heading) = motion.at(time)?;
+            let name = names.get(motion.vehicle as usize)?.name.text.as_str();
+            Some(json!({ "name": name, "x": x, "y": y, "z": Value::Null, "heading": heading, "time": time }))
+        })
+        .collect()
+}
+
+fn timings_json(state: &AppState) -> Value {
+    let timings = state.shown().map(|shown| shown.timings).unwrap_or_default();
+    let layout = state.frame.layout_millis;
+    let worked_out = timings.parse_millis + timings.compile_millis + timings.plan_millis;
+    json!({
+        "parse": timings.parse_millis,
+        "compile": timings.compile_millis,
+        "plan": timings.plan_millis,
+        "layout": layout,
+        "total": worked_out + layout,
+        "frame": state.frame.cpu_millis,
+    })
+}
+
+fn status_name(status: Status) -> &'static str {
+    match status {
+        Status::Working => "working",
+        Status::Broken => "broken",
+        Status::Empty => "empty",
+        Status::Plan => "plan",
+        Status::NoPlan => "no-plan",
+    }
+}

@@ -1,0 +1,173 @@
+//! The panels: each reads the state and emits commands, and changes nothing else.
+
+pub mod editor;
+pub mod outline;
+pub mod placeholder;
+pub mod problems;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use mission::Snapshot;
+use serde::{Deserialize, Serialize};
+
+use crate::command::{CommandSender, ViewAction};
+use crate::state::AppState;
+use crate::theme::Tokens;
+
+pub use editor::{editor_id, typed_text};
+pub use placeholder::show_empty;
+
+/// The kinds of panel. A layout holds at most one of each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PanelKind {
+    /// The text.
+    Editor,
+    /// What the text declares.
+    Outline,
+    /// What is wrong with it.
+    Problems,
+    /// The temporal plan network.
+    Network,
+    /// Choices, windows, links, orderings and the verdict, or why there is no plan.
+    Plan,
+    /// The activities over time.
+    Timeline,
+    /// The ground and the vehicles.
+    Terrain,
+}
+
+impl PanelKind {
+    /// All of them, as the menu lists them.
+    pub const ALL: [Self; 7] = [
+        Self::Editor,
+        Self::Outline,
+        Self::Problems,
+        Self::Network,
+        Self::Plan,
+        Self::Timeline,
+        Self::Terrain,
+    ];
+
+    /// Its name on screen.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Editor => "Mission text",
+            Self::Outline => "Outline",
+            Self::Problems => "Problems",
+            Self::Network => "Network",
+            Self::Plan => "Plan",
+            Self::Timeline => "Timeline",
+            Self::Terrain => "Terrain",
+        }
+    }
+
+    /// Its name in commands.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Editor => "editor",
+            Self::Outline => "outline",
+            Self::Problems => "problems",
+            Self::Network => "network",
+            Self::Plan => "plan",
+            Self::Timeline => "timeline",
+            Self::Terrain => "terrain",
+        }
+    }
+
+    /// The panel of this name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|panel| panel.name() == name)
+    }
+
+    /// Whether it has a view that can be zoomed and fitted.
+    pub const fn is_zoomable(self) -> bool {
+        matches!(self, Self::Network | Self::Timeline | Self::Terrain)
+    }
+}
+
+/// What a panel reads.
+#[derive(Clone, Copy)]
+pub struct Context<'a> {
+    /// The whole state of the app.
+    pub state: &'a AppState,
+    /// What is to be drawn: the latest snapshot with a network, which may belong to an older text.
+    pub snapshot: Option<&'a Arc<Snapshot>>,
+    /// Whether `snapshot` belongs to an older text than the editor's.
+    pub is_stale: bool,
+    /// The colours.
+    pub tokens: &'static Tokens,
+    /// For panels that draw with wgpu; `None` in tests without a graphics adapter.
+    pub render_state: Option<&'a eframe::egui_wgpu::RenderState>,
+    /// Seconds on the host's clock.
+    pub now_secs: f64,
+}
+
+impl Context<'_> {
+    /// The plan that is shown, if there is one, with its network.
+    pub fn plan(&self) -> Option<(&tpn::Network, &tpn::Plan)> {
+        let snapshot = self.snapshot?;
+        Some((snapshot.network.as_deref()?, snapshot.plan()?))
+    }
+
+    /// The view action for `panel` that has not been followed yet. `followed` is the panel's memory of the last one.
+    pub fn view_action(&self, panel: PanelKind, followed: &mut u64) -> Option<ViewAction> {
+        let request = self.state.view_request.filter(|request| request.panel == panel)?;
+        if request.sequence == *followed {
+            return None;
+        }
+        *followed = request.sequence;
+        Some(request.action)
+    }
+}
+
+/// A part of the window that shows one aspect of the state.
+///
+/// Its own fields hold only what concerns nobody else: scroll positions, caches, cameras. Everything it wants changed
+/// goes through `commands`, which are applied before the next frame.
+pub trait Panel {
+    /// Shows the panel, filling `ui`.
+    fn show(&mut self, ui: &mut egui::Ui, context: &Context<'_>, commands: &mut CommandSender);
+}
+
+/// One panel of each kind.
+pub struct Panels {
+    panels: BTreeMap<PanelKind, Box<dyn Panel>>,
+}
+
+impl Panels {
+    /// All panels, in their initial state.
+    pub fn new() -> Self {
+        let panels = PanelKind::ALL.into_iter().map(|kind| (kind, create(kind))).collect();
+        Self { panels }
+    }
+
+    /// Shows the panel of this kind.
+    pub fn show(
+        &mut self,
+        kind: PanelKind,
+        ui: &mut egui::Ui,
+        context: &Context<'_>,
+        commands: &mut CommandSender,
+    ) {
+        if let Some(panel) = self.panels.get_mut(&kind) {
+            panel.show(ui, context, commands);
+        }
+    }
+}
+
+impl Default for Panels {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// A panel in its initial state. A new panel is added here.
+fn create(kind: PanelKind) -> Box<dyn Panel> {
+    match kind {
+        PanelKind::Outline => Box::new(outline::OutlinePanel::default()),
+        PanelKind::Problems => Box::new(problems::ProblemsPanel::default()),
+        _ => Box::new(placeholder::PlaceholderPanel::new(kind)),
+    }
+}

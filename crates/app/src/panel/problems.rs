@@ -1,0 +1,101 @@
+//! What is wrong with the text: a list that leads to the places, offers fixes and explains.
+
+use egui::{RichText, Role, ScrollArea, Sense, Ui, WidgetInfo};
+use mission::Problem;
+use rmpl::Severity;
+
+use crate::command::{Command, CommandSender, EditorCommand};
+use crate::panel::{Context, Panel, show_empty};
+use crate::state::EditKind;
+use crate::theme::{Tokens, space};
+
+/// The list of problems.
+#[derive(Default)]
+pub struct ProblemsPanel {
+    /// The problem whose details are open, by its place in the list.
+    open: Option<usize>,
+}
+
+impl Panel for ProblemsPanel {
+    fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+        let latest = context.state.snapshots.latest();
+        let problems = latest.map(|latest| latest.problems.as_slice()).unwrap_or_default();
+        if problems.is_empty() {
+            let text = if latest.is_some() { "No problems." } else { "Reading the text…" };
+            show_empty(ui, context, text);
+            return;
+        }
+        // Answers belong to the text they were given for; fixes of an older one would land in the wrong place.
+        let is_current = latest.is_some_and(|it| it.revision == context.state.document.revision());
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.add_space(space::S);
+            for (index, problem) in problems.iter().enumerate() {
+                ui.push_id(index, |ui| {
+                    let row = show_row(ui, context, problem);
+                    if row.clicked() {
+                        commands.send(Command::Reveal(problem.span));
+                        commands.send(Command::Editor(EditorCommand::Focus));
+                        self.open = if self.open == Some(index) { None } else { Some(index) };
+                    }
+                    if self.open == Some(index) {
+                        show_details(ui, context, problem, is_current, commands);
+                    }
+                });
+            }
+        });
+    }
+}
+
+/// The sign and the colour of a severity; the sign alone tells them apart.
+pub fn severity_sign(tokens: &Tokens, severity: Severity) -> (&'static str, egui::Color32) {
+    match severity {
+        Severity::Error => ("✖", tokens.error),
+        Severity::Warning => ("⚠", tokens.warning),
+        Severity::Note => ("ℹ", tokens.info),
+    }
+}
+
+fn show_row(ui: &mut Ui, context: &Context<'_>, problem: &Problem) -> egui::Response {
+    let tokens = context.tokens;
+    let (sign, color) = severity_sign(tokens, problem.severity);
+    let body = egui::TextStyle::Body.resolve(ui.style());
+    let small = egui::TextStyle::Small.resolve(ui.style());
+    let width = ui.available_width();
+    let text_width = (width - 28.0 - 120.0).max(80.0);
+    let message = ui.painter().layout(problem.message.clone(), body.clone(), tokens.text, text_width);
+    let height = (message.size().y + 6.0).max(space::ROW);
+    let (rect, response) = ui.allocate_exact_size(egui::vec2(width, height), Sense::click());
+    let name = format!("Line {}: {} {}", problem.line, problem.code, problem.message);
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+    if response.hovered() || response.has_focus() {
+        ui.painter().rect_filled(rect, 0.0, tokens.hover);
+    }
+    let painter = ui.painter();
+    let top = rect.left_top() + egui::vec2(space::M, 3.0);
+    painter.text(top, egui::Align2::LEFT_TOP, sign, body, color);
+    painter.galley(top + egui::vec2(20.0, 0.0), message, tokens.text);
+    let place = format!("{}   {}:{}", problem.code, problem.line, problem.column);
+    let right = rect.right_top() + egui::vec2(-space::M, 5.0);
+    painter.text(right, egui::Align2::RIGHT_TOP, place, small, tokens.text_muted);
+    response
+}
+
+fn show_details(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    problem: &Problem,
+    is_current: bool,
+    commands: &mut CommandSender,
+) {
+    ui.indent("details", |ui| {
+        if let Some(hint) = &problem.hint {
+            ui.label(RichText::new(hint).color(context.tokens.text_muted));
+        }
+        for fix in &problem.fixes {
+            let button = ui.add_enabled(is_current, egui::Button::new(format!("💡 {}", fix.label)));
+            if button.accessible_name(format!("Fix: {}", fix.label)).clicked() {
+                commands.send(Command::Edit { edits: fix.edits.clone(), kind: EditKind::Single });
+            }
+        }
+    });
+}

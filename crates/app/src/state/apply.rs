@@ -1,0 +1,368 @@
+//! How commands change the state. What only the host can do is left as an [`Effect`].
+
+use std::sync::Arc;
+
+use mission::{Request, Response, Snapshot};
+use rmpl::Span;
+use smol_str::SmolStr;
+
+use crate::command::{Command, EditorCommand};
+use crate::host::{FileKind, HostEvent};
+use crate::mission_file;
+use crate::panel::PanelKind;
+use crate::state::document::Caret;
+use crate::state::editor::{Find, Reveal};
+use crate::state::{AppState, EditKind, Selection, TextCommand, ToastKind, ViewRequest, playback};
+
+/// Something that the host is to do.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Effect {
+    /// Put text on the clipboard.
+    Copy(String),
+    /// Let the user choose a file.
+    OpenFile(FileKind),
+    /// Let the user save a file.
+    SaveFile {
+        /// The name to suggest.
+        name: String,
+        /// The content.
+        bytes: Vec<u8>,
+    },
+    /// Put a link to the present view on the clipboard.
+    CopyLink,
+    /// Send something to the planning core.
+    Post(Request),
+    /// The appearance changed.
+    Restyle,
+}
+
+impl AppState {
+    /// Does what a command asks for.
+    pub fn apply(&mut self, command: Command) {
+        match command {
+            Command::OpenExample(name) => self.open_example(&name),
+            Command::OpenSource { name, source } => self.open(name, &source),
+            Command::OpenFile(kind) => self.effects.push(Effect::OpenFile(kind)),
+            Command::SaveMission => self.save(),
+            Command::CopyLink => self.effects.push(Effect::CopyLink),
+
+            Command::SetSource(text) => self.document.replace_all(&text),
+            Command::Text(command) => self.type_text(&command),
+            Command::Edit { edits, kind } => self.document.edit(&edits, kind, None),
+            Command::Reveal(span) => self.reveal(span),
+            Command::Editor(command) => self.apply_to_editor(command),
+
+            Command::Select(selection) => self.selection = selection,
+            Command::SelectAndReveal(selection) => {
+                let span = self.shown().and_then(|shown| selection.span(shown));
+                self.selection = selection;
+                if let Some(span) = span.filter(|_| !self.snapshots.is_stale(self.document.revision())) {
+                    self.reveal(span);
+                }
+            }
+            Command::Hover(selection) => self.hovered = selection,
+
+            Command::Seek(time) => self.playback.seek(time),
+            Command::TogglePlaying => self.playback.toggle(),
+            Command::StepTime(forwards) => self.step_time(forwards),
+            Command::SetRate(rate) => self.playback.rate = rate.clamp(0.125, 64.0),
+
+            Command::SetGoal(goal) => self.settings.plan.goal = goal,
+            Command::SetSearch(search) => self.settings.plan.search = search,
+            Command::SetSeed(seed) => self.settings.plan.seed = seed,
+            Command::SetTrace(trace) => self.settings.plan.trace = trace,
+
+            Command::ShowWorkspace(workspace) => self.workspace = workspace,
+            Command::ResetWorkspace => self.wants_default_layout = true,
+            Command::ShowPanel(panel) => {
+                self.wanted_panel = Some(panel);
+                self.active_panel = panel;
+            }
+            Command::ClosePanel(panel) => self.unwanted_panel = Some(panel),
+            Command::Activate(panel) => self.active_panel = panel,
+            Command::View(action) => {
+                let active = self.active_panel;
+                let panel = if active.is_zoomable() { active } else { PanelKind::Network };
+                self.request_view(panel, action);
+            }
+            Command::ViewOf(panel, action) => self.request_view(panel, action),
+            Command::SetViews(views) => self.settings.views = *views,
+            Command::SetTheme(theme) => {
+                self.settings.theme = theme;
+                self.effects.push(Effect::Restyle);
+            }
+            Command::SetTextScale(scale) => {
+                self.settings.text_scale = (scale * 10.0).round().clamp(6.0, 25.0) / 10.0;
+                self.effects.push(Effect::Restyle);
+            }
+
+            Command::ShowDialog(dialog) => self.dialog = Some(dialog),
+            Command::CloseDialog => self.dialog = None,
+            Command::Escape => self.escape(),
+            Command::Notify(kind, text) => self.toasts.add(kind, text),
+            Command::DismissToast(index) => self.toasts.dismiss(index),
+            Command::Copy(text) => self.effects.push(Effect::Copy(text)),
+        }
+    }
+
+    /// Takes in something that happened outside.
+    pub fn receive(&mut self, event: HostEvent) {
+        match event {
+            HostEvent::Answer(Response::Snapshot(snapshot)) => self.take_snapshot(snapshot),
+            HostEvent::Answer(Response::Map { key, map }) => {
+                self.maps.insert(key, map);
+            }
+            HostEvent::Answer(Response::MapRejected { name, reason }) => {
+                self.toasts.add(ToastKind::Failed, format!("The map {name} cannot be used: {reason}"));
+            }
+            HostEvent::CoreFailed { message, .. } => self.toasts.add(
+                ToastKind::Failed,
+                format!("Planning stopped and was started anew. Edit the text to plan again. ({message})"),
+            ),
+            HostEvent::FileOpened { kind, name, bytes } => self.open_file(kind, &name, bytes),
+            HostEvent::FileFailed { name, reason } => {
+                self.toasts.add(ToastKind::Failed, format!("{name}: {reason}"));
+            }
+            HostEvent::FragmentChanged(_) => {}
+        }
+    }
+
+    /// Takes a new snapshot and carries selection and time over to it.
+    fn take_snapshot(&mut self, snapshot: Arc<Snapshot>) {
+        let before = self.snapshots.shown().cloned();
+        self.snapshots.take(snapshot, self.frame.now_secs);
+        self.follow_shown(before.as_ref());
+    }
+
+    /// Adapts selection and time if another snapshot than `before` is shown now.
+    pub(crate) fn follow_shown(&mut self, before: Option<&Arc<Snapshot>>) {
+        let Some(after) = self.snapshots.shown().cloned() else { return };
+        if before.is_some_and(|before| Arc::ptr_eq(before, &after)) {
+            return;
+        }
+        if let Some(before) = before {
+            self.selection = self.selection.carried(before, &after);
+            self.hovered = Selection::None;
+        }
+        if let Some(plan) = after.plan() {
+            self.playback.fit(plan);
+        }
+    }
+
+    fn open_example(&mut self, name: &str) {
+        if let Some(example) = mission_file::example(name) {
+            self.open(example.name.into(), example.source);
+        }
+    }
+
+    fn open(&mut self, name: SmolStr, source: &str) {
+        self.document.open(source);
+        self.mission = name;
+        self.snapshots.clear();
+        self.selection = Selection::None;
+        self.hovered = Selection::None;
+        self.playback = playback::Playback { rate: self.playback.rate, ..Default::default() };
+        self.settings.plan.goal = mission::Goal::Default;
+        self.editor.reveal = Some(Reveal { span: Span::new(0, 0), center: false });
+        self.dialog = None;
+    }
+
+    fn open_file(&mut self, kind: FileKind, name: &str, bytes: Vec<u8>) {
+        match kind {
+            FileKind::Mission => match String::from_utf8(bytes) {
+                Ok(source) => {
+                    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+                    self.open(stem.into(), &source);
+                }
+                Err(_) => self.toasts.add(ToastKind::Failed, format!("{name} is not a text file")),
+            },
+            FileKind::Map => {
+                let name = SmolStr::new(name);
+                self.effects.push(Effect::Post(Request::ImportMap { name: name.clone(), bytes }));
+                self.toasts.add(
+                    ToastKind::Done,
+                    format!("Imported {name}. A mission uses it by: terrain \"{name}\";"),
+                );
+            }
+            FileKind::Json => {
+                self.toasts.add(ToastKind::Failed, format!("{name}: plans cannot be opened here yet"));
+            }
+        }
+    }
+
+    fn save(&mut self) {
+        self.effects.push(Effect::SaveFile {
+            name: format!("{}.rmpl", self.mission),
+            bytes: self.document.text().as_bytes().to_vec(),
+        });
+        self.document.mark_saved();
+    }
+
+    fn type_text(&mut self, command: &TextCommand) {
+        command.apply(&mut self.document);
+        self.editor.active_secs = self.frame.now_secs;
+        self.editor.composition.clear();
+        let head = self.document.caret().head as u32;
+        self.editor.reveal = Some(Reveal { span: Span::new(head, head), center: false });
+        if matches!(
+            command,
+            TextCommand::Move { .. } | TextCommand::Select { .. } | TextCommand::SelectWord(_)
+        ) {
+            self.select_at_caret();
+        }
+    }
+
+    /// Selects in all panels what stands at the caret, as long as the drawings belong to this text.
+    fn select_at_caret(&mut self) {
+        if self.snapshots.is_stale(self.document.revision()) {
+            return;
+        }
+        let Some(shown) = self.shown() else { return };
+        let found = Selection::at_offset(shown, self.document.caret().head as u32, &self.selection);
+        self.selection = found;
+    }
+
+    fn reveal(&mut self, span: Span) {
+        self.document.set_caret(Caret::selecting(span.start as usize, span.end as usize));
+        self.editor.reveal = Some(Reveal { span, center: true });
+        self.editor.active_secs = self.frame.now_secs;
+        self.wanted_panel = Some(PanelKind::Editor);
+    }
+
+    fn apply_to_editor(&mut self, command: EditorCommand) {
+        match command {
+            EditorCommand::Focus => {
+                self.wanted_panel = Some(PanelKind::Editor);
+                self.editor.wants_focus = true;
+            }
+            EditorCommand::Compose(text) => self.editor.composition = text,
+            EditorCommand::Find { replacing } => self.open_find(replacing),
+            EditorCommand::SetFind(find) => self.editor.find = Some(find),
+            EditorCommand::CloseFind => {
+                self.editor.find = None;
+                self.editor.wants_focus = true;
+            }
+            EditorCommand::FindNext => self.go_to_match(true),
+            EditorCommand::FindPrevious => self.go_to_match(false),
+            EditorCommand::ReplaceOne => self.replace_one(),
+            EditorCommand::ReplaceAll => self.replace_every_match(),
+            EditorCommand::GoToLine(line) => {
+                let range =
+                    self.document.line_range(line.saturating_sub(1).min(self.document.line_count() - 1));
+                self.reveal(Span::new(range.start as u32, range.start as u32));
+                self.editor.wants_focus = true;
+            }
+            EditorCommand::GoToProblem { forwards } => self.go_to_problem(forwards),
+            EditorCommand::CopySelection { cut } => self.copy_selection(cut),
+        }
+    }
+
+    fn open_find(&mut self, replacing: bool) {
+        let mut find = self.editor.find.take().unwrap_or_default();
+        let selected = self.document.selected_text();
+        if !selected.is_empty() && !selected.contains('\n') {
+            find = Find { query: selected.to_owned(), is_regex: false, ..find };
+        }
+        find.replacing |= replacing;
+        find.wants_focus = true;
+        self.editor.find = Some(find);
+        self.wanted_panel = Some(PanelKind::Editor);
+    }
+
+    fn go_to_match(&mut self, forwards: bool) {
+        let Some(find) = &self.editor.find else { return };
+        let Ok(pattern) = find.pattern() else { return };
+        let range = self.document.caret().range();
+        let text = self.document.text();
+        let found = if forwards {
+            pattern.find_after(text, range.end)
+        } else {
+            pattern.find_before(text, range.start)
+        };
+        if let Some(found) = found {
+            self.reveal(Span::new(found.start as u32, found.end as u32));
+        }
+    }
+
+    fn replace_one(&mut self) {
+        let Some(find) = self.editor.find.clone() else { return };
+        let Ok(pattern) = find.pattern() else { return };
+        let range = self.document.caret().range();
+        if let Some(text) = pattern.replacement(self.document.text(), range.clone(), &find.replacement) {
+            let span = Span::new(range.start as u32, range.end as u32);
+            self.document.replace(span, &text, EditKind::Single);
+        }
+        self.go_to_match(true);
+    }
+
+    fn replace_every_match(&mut self) {
+        let Some(find) = self.editor.find.clone() else { return };
+        let Ok(pattern) = find.pattern() else { return };
+        let edits = pattern.replacements(self.document.text(), &find.replacement);
+        let count = edits.len();
+        self.document.edit(&edits, EditKind::Single, None);
+        let matches = if count == 1 { "match" } else { "matches" };
+        self.toasts.add(ToastKind::Done, format!("Replaced {count} {matches}"));
+    }
+
+    fn go_to_problem(&mut self, forwards: bool) {
+        let Some(latest) = self.snapshots.latest().cloned() else { return };
+        let caret = self.document.caret().range();
+        let starts = || latest.problems.iter().map(|problem| problem.span);
+        let next = if forwards {
+            starts().find(|span| span.start as usize > caret.start).or_else(|| starts().next())
+        } else {
+            starts().filter(|span| (span.start as usize) < caret.start).last().or_else(|| starts().last())
+        };
+        if let Some(span) = next {
+            self.reveal(span);
+            self.editor.wants_focus = true;
+        }
+    }
+
+    fn copy_selection(&mut self, cut: bool) {
+        let caret = self.document.caret();
+        if caret.is_empty() {
+            // Without a selection, copy and cut mean the line, as in other editors.
+            TextCommand::SelectLine(caret.head).apply(&mut self.document);
+        }
+        self.effects.push(Effect::Copy(self.document.selected_text().to_owned()));
+        if cut {
+            let range = self.document.caret().range();
+            let span = Span::new(range.start as u32, range.end as u32);
+            self.document.replace(span, "", EditKind::Single);
+        } else {
+            self.document.set_caret(caret);
+        }
+    }
+
+    fn step_time(&mut self, forwards: bool) {
+        let Some(plan) = self.shown().and_then(|shown| shown.plan()) else { return };
+        let now = self.playback.time;
+        let times = plan.windows.iter().flatten().map(|window| playback::number(window.earliest));
+        let next = if forwards {
+            times.filter(|&time| time > now).reduce(f64::min)
+        } else {
+            times.filter(|&time| time < now).reduce(f64::max)
+        };
+        if let Some(time) = next {
+            self.playback.seek(time);
+        }
+    }
+
+    fn request_view(&mut self, panel: PanelKind, action: crate::command::ViewAction) {
+        let sequence = self.view_request.map_or(1, |request| request.sequence + 1);
+        self.view_request = Some(ViewRequest { sequence, panel, action });
+    }
+
+    fn escape(&mut self) {
+        if self.dialog.take().is_some() {
+            return;
+        }
+        if self.editor.find.take().is_some() {
+            self.editor.wants_focus = true;
+        } else {
+            self.selection = Selection::None;
+        }
+    }
+}

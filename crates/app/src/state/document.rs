@@ -1,0 +1,386 @@
+//! The mission text: what the author typed, where the caret is, and an exact history of edits.
+//!
+//! Offsets are bytes and always lie on character boundaries; lines count from 0 and end in `\n` only. What keys do to
+//! the text is in [`crate::state::typing`].
+
+use std::sync::Arc;
+
+use rmpl::{Edit, Span};
+
+/// Where text is selected: from `anchor`, where the selection began, to `head`, where the caret is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Caret {
+    /// Byte offset where the selection began; equal to `head` if nothing is selected.
+    pub anchor: usize,
+    /// Byte offset of the caret.
+    pub head: usize,
+    /// The column that moving up and down keeps, in characters from 0.
+    pub goal_column: Option<usize>,
+}
+
+impl Caret {
+    /// A caret without a selection.
+    pub const fn at(offset: usize) -> Self {
+        Self { anchor: offset, head: offset, goal_column: None }
+    }
+
+    /// A selection from `anchor` to `head`.
+    pub const fn selecting(anchor: usize, head: usize) -> Self {
+        Self { anchor, head, goal_column: None }
+    }
+
+    /// The selected bytes.
+    pub fn range(self) -> std::ops::Range<usize> {
+        self.anchor.min(self.head)..self.anchor.max(self.head)
+    }
+
+    /// Whether no text is selected.
+    pub const fn is_empty(self) -> bool {
+        self.anchor == self.head
+    }
+}
+
+/// How an edit joins the edits before it in the history.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EditKind {
+    /// Typed characters: a word and the blanks before it are undone as one.
+    Typing,
+    /// Deleted characters next to each other are undone as one.
+    Deleting,
+    /// A dragged number or place: the whole drag, known by this number, is undone as one.
+    Drag(u64),
+    /// Undone alone.
+    Single,
+}
+
+/// The text with its caret and its history.
+#[derive(Debug)]
+pub struct Document {
+    text: String,
+    shared: Option<Arc<str>>,
+    line_starts: Vec<usize>,
+    revision: u64,
+    saved_revision: u64,
+    caret: Caret,
+    undo: Vec<Step>,
+    redo: Vec<Step>,
+    may_join: bool,
+}
+
+/// Edits that are undone together, with the carets before and after.
+#[derive(Clone, Debug)]
+struct Step {
+    kind: EditKind,
+    changes: Vec<Change>,
+    before: Caret,
+    after: Caret,
+}
+
+/// One replacement, applied after the ones before it in its step.
+#[derive(Clone, Debug)]
+struct Change {
+    start: usize,
+    removed: String,
+    inserted: String,
+}
+
+impl Document {
+    /// A document at revision 1, with the caret at the start and no history.
+    pub fn new(text: &str) -> Self {
+        let text = normalized(text);
+        Self {
+            line_starts: line_starts(&text),
+            text,
+            shared: None,
+            revision: 1,
+            saved_revision: 1,
+            caret: Caret::default(),
+            undo: Vec::new(),
+            redo: Vec::new(),
+            may_join: false,
+        }
+    }
+
+    /// Replaces everything, history included: another mission was opened. The revision goes on counting.
+    pub fn open(&mut self, text: &str) {
+        let revision = self.revision + 1;
+        *self = Self::new(text);
+        self.revision = revision;
+        self.saved_revision = revision;
+    }
+
+    /// The text.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The text, shared; copied at most once per revision.
+    pub fn shared_text(&mut self) -> Arc<str> {
+        Arc::clone(self.shared.get_or_insert_with(|| Arc::from(self.text.as_str())))
+    }
+
+    /// Counts the changes of the text, undone and redone ones included.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Counts on without a change: something else that answers depend on has changed.
+    pub fn touch(&mut self) {
+        let is_saved = !self.is_modified();
+        self.revision += 1;
+        if is_saved {
+            self.saved_revision = self.revision;
+        }
+    }
+
+    /// Whether the text has changed since it was opened or saved.
+    pub fn is_modified(&self) -> bool {
+        self.revision != self.saved_revision
+    }
+
+    /// The present text has been saved.
+    pub fn mark_saved(&mut self) {
+        self.saved_revision = self.revision;
+    }
+
+    /// The caret and the selected text.
+    pub fn caret(&self) -> Caret {
+        self.caret
+    }
+
+    /// Moves the caret; out-of-range offsets go to the nearest character boundary before them. What is typed next
+    /// starts a new step of the history.
+    pub fn set_caret(&mut self, caret: Caret) {
+        let caret = Caret {
+            anchor: self.boundary_before(caret.anchor),
+            head: self.boundary_before(caret.head),
+            goal_column: caret.goal_column,
+        };
+        self.may_join &= caret.head == self.caret.head && caret.anchor == self.caret.anchor;
+        self.caret = caret;
+    }
+
+    /// The selected text.
+    pub fn selected_text(&self) -> &str {
+        self.text.get(self.caret.range()).unwrap_or_default()
+    }
+
+    /// How many lines there are; an empty text has one.
+    pub fn line_count(&self) -> usize {
+        self.line_starts.len()
+    }
+
+    /// The line that holds `offset`.
+    pub fn line_at(&self, offset: usize) -> usize {
+        self.line_starts.partition_point(|&start| start <= offset).saturating_sub(1)
+    }
+
+    /// The bytes of a line, without its line break; the end of the text for lines beyond it.
+    pub fn line_range(&self, line: usize) -> std::ops::Range<usize> {
+        let start = self.line_starts.get(line).copied().unwrap_or(self.text.len());
+        let end = self.line_starts.get(line + 1).map_or(self.text.len(), |&next| next - 1);
+        start..end.max(start)
+    }
+
+    /// The text of a line, without its line break.
+    pub fn line_text(&self, line: usize) -> &str {
+        self.text.get(self.line_range(line)).unwrap_or_default()
+    }
+
+    /// The column of `offset` in its line, in characters from 0.
+    pub fn column_at(&self, offset: usize) -> usize {
+        let start = self.line_range(self.line_at(offset)).start;
+        self.text.get(start..offset).map_or(0, |before| before.chars().count())
+    }
+
+    /// The offset of a column of a line; the end of the line if it is shorter.
+    pub fn offset_at(&self, line: usize, column: usize) -> usize {
+        let range = self.line_range(line.min(self.line_count() - 1));
+        let line = &self.text[range.clone()];
+        line.char_indices().nth(column).map_or(range.end, |(at, _)| range.start + at)
+    }
+
+    /// The nearest character boundary at or before `offset`.
+    pub fn boundary_before(&self, offset: usize) -> usize {
+        self.text.floor_char_boundary(offset)
+    }
+
+    /// Applies disjoint edits in textual order as one step, and puts the caret at `caret`, an offset in the new text;
+    /// without one it moves along with the text around it.
+    pub fn edit(&mut self, edits: &[Edit], kind: EditKind, caret: Option<Caret>) {
+        let mut changes = Vec::with_capacity(edits.len());
+        let mut shift = 0_isize;
+        let before = self.caret;
+        let (mut anchor, mut head) = (before.anchor, before.head);
+        for edit in edits {
+            let shifted = |offset: u32| self.boundary_before((offset as usize).saturating_add_signed(shift));
+            let start = shifted(edit.span.start);
+            let end = shifted(edit.span.end).max(start);
+            let inserted = normalized(&edit.text);
+            let Some(removed) = self.text.get(start..end).map(str::to_owned) else { continue };
+            if removed == inserted {
+                continue;
+            }
+            anchor = moved(anchor, start, removed.len(), inserted.len());
+            head = moved(head, start, removed.len(), inserted.len());
+            shift += inserted.len() as isize - removed.len() as isize;
+            changes.push(Change { start, removed, inserted });
+            if let Some(change) = changes.last() {
+                self.text.replace_range(change.start..change.start + change.removed.len(), &change.inserted);
+            }
+        }
+        if changes.is_empty() {
+            if let Some(caret) = caret {
+                self.set_caret(caret);
+            }
+            return;
+        }
+        self.text_changed();
+        let after = caret.unwrap_or(Caret::selecting(anchor, head));
+        self.caret = Caret {
+            anchor: self.boundary_before(after.anchor),
+            head: self.boundary_before(after.head),
+            goal_column: None,
+        };
+        self.record(Step { kind, changes, before, after: self.caret });
+    }
+
+    /// Replaces a span as one step and puts the caret behind the new text.
+    pub fn replace(&mut self, span: Span, text: &str, kind: EditKind) {
+        let end = self.boundary_before(span.start as usize) + normalized(text).len();
+        self.edit(&[Edit { span, text: text.to_owned() }], kind, Some(Caret::at(end)));
+    }
+
+    /// Replaces the whole text as one undoable step, changing only what differs.
+    pub fn replace_all(&mut self, text: &str) {
+        let text = normalized(text);
+        let edit = difference(&self.text, &text);
+        self.edit(&[edit], EditKind::Single, None);
+    }
+
+    /// Whether there is something to undo.
+    pub fn can_undo(&self) -> bool {
+        !self.undo.is_empty()
+    }
+
+    /// Whether there is something to redo.
+    pub fn can_redo(&self) -> bool {
+        !self.redo.is_empty()
+    }
+
+    /// Takes the last step back, caret included.
+    pub fn undo(&mut self) {
+        let Some(step) = self.undo.pop() else { return };
+        for change in step.changes.iter().rev() {
+            let range = change.start..change.start + change.inserted.len();
+            self.text.replace_range(range, &change.removed);
+        }
+        self.caret = step.before;
+        self.redo.push(step);
+        self.may_join = false;
+        self.text_changed();
+    }
+
+    /// Makes the last step that was taken back again.
+    pub fn redo(&mut self) {
+        let Some(step) = self.redo.pop() else { return };
+        for change in &step.changes {
+            let range = change.start..change.start + change.removed.len();
+            self.text.replace_range(range, &change.inserted);
+        }
+        self.caret = step.after;
+        self.undo.push(step);
+        self.may_join = false;
+        self.text_changed();
+    }
+
+    fn text_changed(&mut self) {
+        self.line_starts = line_starts(&self.text);
+        self.shared = None;
+        self.revision += 1;
+    }
+
+    fn record(&mut self, step: Step) {
+        self.redo.clear();
+        if self.may_join
+            && let Some(last) = self.undo.last_mut()
+            && joins(last, &step)
+        {
+            last.changes.extend(step.changes);
+            last.after = step.after;
+        } else {
+            self.undo.push(step);
+        }
+        self.may_join = true;
+    }
+}
+
+/// Whether `next` is undone together with `last`.
+fn joins(last: &Step, next: &Step) -> bool {
+    if last.kind != next.kind {
+        return false;
+    }
+    let (Some(before), [change]) = (last.changes.last(), next.changes.as_slice()) else {
+        return matches!(next.kind, EditKind::Drag(_));
+    };
+    match next.kind {
+        EditKind::Drag(_) => true,
+        EditKind::Single => false,
+        EditKind::Deleting => {
+            let backwards = change.start + change.removed.len() == before.start;
+            let forwards = change.start == before.start;
+            (backwards || forwards) && !change.removed.contains('\n')
+        }
+        EditKind::Typing => {
+            let adjacent = change.start == before.start + before.inserted.len();
+            let ends_blank = before.inserted.ends_with(char::is_whitespace);
+            let starts_word = change.inserted.starts_with(|c: char| !c.is_whitespace());
+            adjacent
+                && change.removed.is_empty()
+                && !change.inserted.contains('\n')
+                && !before.inserted.contains('\n')
+                && !(ends_blank && starts_word)
+        }
+    }
+}
+
+/// Where `offset` ends up when `removed` bytes at `start` become `inserted` bytes.
+fn moved(offset: usize, start: usize, removed: usize, inserted: usize) -> usize {
+    if offset < start {
+        offset
+    } else if offset >= start + removed {
+        offset - removed + inserted
+    } else {
+        start + (offset - start).min(inserted)
+    }
+}
+
+/// The smallest single replacement that turns `old` into `new`.
+fn difference(old: &str, new: &str) -> Edit {
+    let prefix: usize = old
+        .chars()
+        .zip(new.chars())
+        .take_while(|(left, right)| left == right)
+        .map(|(left, _)| left.len_utf8())
+        .sum();
+    let suffix: usize = old[prefix..]
+        .chars()
+        .rev()
+        .zip(new[prefix..].chars().rev())
+        .take_while(|(left, right)| left == right)
+        .map(|(left, _)| left.len_utf8())
+        .sum();
+    Edit {
+        span: Span::new(prefix as u32, (old.len() - suffix) as u32),
+        text: new[prefix..new.len() - suffix].to_owned(),
+    }
+}
+
+fn normalized(text: &str) -> String {
+    if text.contains('\r') { text.replace("\r\n", "\n").replace('\r', "\n") } else { text.to_owned() }
+}
+
+fn line_starts(text: &str) -> Vec<usize> {
+    let breaks = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n').map(|(at, _)| at + 1);
+    std::iter::once(0).chain(breaks).collect()
+}

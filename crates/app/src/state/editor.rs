@@ -1,0 +1,46 @@
+//! What the editor shows besides the text: the find bar, the completion list, text being composed.
+
+use rmpl::Span;
+
+/// The editor's own state.
+#[derive(Clone, Debug, Default)]
+pub struct EditorState {
+    /// The find bar, when it is open.
+    pub find: Option<Find>,
+    /// Text that an input method is composing at the caret; it is not part of the document yet.
+    pub composition: String,
+    /// A place that the editor is to scroll to, once.
+    pub reveal: Option<Reveal>,
+    /// Whether the editor is to take the keyboard focus.
+    pub wants_focus: bool,
+    /// When the caret last moved or the text last changed, in seconds on the host's clock: the caret blinks from then.
+    pub active_secs: f64,
+}
+
+/// A place to scroll to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reveal {
+    /// The place.
+    pub span: Span,
+    /// Whether it is moved to the middle even when it is visible at an edge.
+    pub center: bool,
+}
+
+/// The find bar.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Find {
+    /// What is looked for.
+    pub query: String,
+    /// What replaces it.
+    pub replacement: String,
+    /// Whether the replacement row is open.
+    pub replacing: bool,
+    /// Whether the query is a regular expression.
+    pub is_regex: bool,
+    /// Whether upper and lower case differ.
+    pub case_sensitive: bool,
+    /// Whether only whole words match.
+    pub whole_words: bool,
+    /// Whether the query field is to take the focus.
+    pub wants_focus: bool,
+}

@@ -1,0 +1,150 @@
+//! Everything the app knows: the one thing that commands change and panels read.
+
+mod apply;
+pub mod document;
+pub mod editor;
+pub mod playback;
+pub mod search_text;
+pub mod selection;
+pub mod settings;
+mod snapshots;
+pub mod toast;
+pub mod typing;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use mission::{MapKey, Snapshot};
+use smol_str::SmolStr;
+
+pub use apply::Effect;
+pub use document::{Caret, Document, EditKind};
+pub use editor::EditorState;
+pub use playback::Playback;
+pub use selection::Selection;
+pub use settings::{PlanSettings, Settings, Views};
+pub use snapshots::{Snapshots, Status};
+pub use toast::{Toast, ToastKind, Toasts};
+pub use typing::{Motion, TextCommand};
+
+use crate::command::ViewAction;
+use crate::dialog::Dialog;
+use crate::mission_file;
+use crate::panel::PanelKind;
+use crate::workspace::Workspace;
+
+/// The state of the app. Only commands change it ([`AppState::apply`]).
+#[derive(Debug)]
+pub struct AppState {
+    /// The text, its caret and its history.
+    pub document: Document,
+    /// The name of the open mission, without extension.
+    pub mission: SmolStr,
+    /// What the planning core answered.
+    pub snapshots: Snapshots,
+    /// The ground of the missions opened so far.
+    pub maps: BTreeMap<MapKey, Arc<terrain::Terrain>>,
+    /// What is selected, in all panels.
+    pub selection: Selection,
+    /// What the pointer is over in some panel, for the others to hint at.
+    pub hovered: Selection,
+    /// The time shown, and whether it runs.
+    pub playback: Playback,
+    /// Which workspace is shown.
+    pub workspace: Workspace,
+    /// What is remembered between runs.
+    pub settings: Settings,
+    /// What the editor shows besides the text.
+    pub editor: EditorState,
+    /// Short messages.
+    pub toasts: Toasts,
+    /// The dialog on top, if any.
+    pub dialog: Option<Dialog>,
+    /// The panel that was used last; view actions go to it.
+    pub active_panel: PanelKind,
+    /// The last view action, for its panel to follow once.
+    pub view_request: Option<ViewRequest>,
+    /// A panel that is to be brought back or to the front of its tabs.
+    pub wanted_panel: Option<PanelKind>,
+    /// A panel that is to be closed.
+    pub unwanted_panel: Option<PanelKind>,
+    /// Whether the layout of the present workspace is to go back to its default.
+    pub wants_default_layout: bool,
+    /// How the last frame went.
+    pub frame: FrameInfo,
+    /// What the host is to do.
+    pub(crate) effects: Vec<Effect>,
+}
+
+/// A view action for one panel. A panel follows a request once: when `sequence` differs from the last it followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewRequest {
+    /// Grows with every request.
+    pub sequence: u64,
+    /// Who is to follow it.
+    pub panel: PanelKind,
+    /// What to do.
+    pub action: ViewAction,
+}
+
+/// How the last frame went.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FrameInfo {
+    /// What draws: `webgpu`, `webgl2`, `vulkan`, …; empty if unknown.
+    pub renderer: String,
+    /// Milliseconds that the app took for its last frame, without the time to draw it.
+    pub cpu_millis: f64,
+    /// Milliseconds that laying out the drawings took, when it last had to be done.
+    pub layout_millis: f64,
+    /// Seconds on the host's clock at the start of this frame.
+    pub now_secs: f64,
+}
+
+impl AppState {
+    /// The state with which the app starts: the first example, before anything was answered.
+    pub fn new() -> Self {
+        let example = mission_file::EXAMPLES[0];
+        Self {
+            document: Document::new(example.source),
+            mission: example.name.into(),
+            snapshots: Snapshots::default(),
+            maps: BTreeMap::new(),
+            selection: Selection::None,
+            hovered: Selection::None,
+            playback: Playback::default(),
+            workspace: Workspace::default(),
+            settings: Settings::default(),
+            editor: EditorState::default(),
+            toasts: Toasts::default(),
+            dialog: None,
+            active_panel: PanelKind::Editor,
+            view_request: None,
+            wanted_panel: None,
+            unwanted_panel: None,
+            wants_default_layout: false,
+            frame: FrameInfo::default(),
+            effects: Vec::new(),
+        }
+    }
+
+    /// What the panels show: see [`Snapshots::shown`].
+    pub fn shown(&self) -> Option<&Arc<Snapshot>> {
+        self.snapshots.shown()
+    }
+
+    /// Where the plan stands, for the status display.
+    pub fn status(&self) -> Status {
+        self.snapshots.status(self.document.revision())
+    }
+
+    /// Takes what the host is to do.
+    pub(crate) fn take_effects(&mut self) -> Vec<Effect> {
+        std::mem::take(&mut self.effects)
+    }
+}
+
+impl Default for AppState {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,72 @@
+//! The time that timeline, map and network show, and how it runs.
+
+use rmpl::{Bound, Rational};
+use tpn::Plan;
+
+/// A moment of the plan, in mission time units from its start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Playback {
+    /// The time shown.
+    pub time: f64,
+    /// Whether time runs.
+    pub is_playing: bool,
+    /// How fast, relative to the normal speed that takes 30 seconds for a whole mission.
+    pub rate: f64,
+    /// Where it ends: the latest of the earliest times of its events.
+    pub end: f64,
+}
+
+/// Seconds that a whole mission takes at rate 1.
+const NORMAL_RUN_SECS: f64 = 30.0;
+
+impl Default for Playback {
+    fn default() -> Self {
+        Self { time: 0.0, is_playing: false, rate: 1.0, end: 0.0 }
+    }
+}
+
+impl Playback {
+    /// Lets `seconds` of the host's clock go by. Stops at the end.
+    pub fn advance(&mut self, seconds: f64) {
+        if !self.is_playing {
+            return;
+        }
+        self.time += seconds * self.rate * self.end / NORMAL_RUN_SECS;
+        if self.time >= self.end {
+            self.time = self.end;
+            self.is_playing = false;
+        }
+    }
+
+    /// Starts or stops; at the end it starts over.
+    pub fn toggle(&mut self) {
+        if !self.is_playing && self.time >= self.end {
+            self.time = 0.0;
+        }
+        self.is_playing = !self.is_playing && self.end > 0.0;
+    }
+
+    /// Goes to a time within the plan.
+    pub fn seek(&mut self, time: f64) {
+        if time.is_finite() {
+            self.time = time.clamp(0.0, self.end.max(0.0));
+        }
+    }
+
+    /// Adapts to a plan: it ends when the plan's last event can happen at the earliest.
+    pub fn fit(&mut self, plan: &Plan) {
+        let earliest = |window: &Option<tpn::Window>| window.map(|window| number(window.earliest));
+        self.end = plan.windows.iter().filter_map(earliest).fold(0.0, f64::max);
+        self.time = self.time.min(self.end);
+    }
+}
+
+/// A rational as a float, for drawing only.
+pub fn number(value: Rational) -> f64 {
+    *value.numer() as f64 / *value.denom() as f64
+}
+
+/// A bound as a float, for drawing only.
+pub fn bound(value: Bound) -> f64 {
+    value.finite().map_or(f64::INFINITY, number)
+}

@@ -1,0 +1,167 @@
+//! What is remembered between runs: appearance, how to plan, and what each panel shows.
+
+use mission::{Goal, SearchKind};
+use serde::{Deserialize, Serialize};
+
+use crate::theme::ThemeChoice;
+
+/// The user's settings.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// Light or dark.
+    pub theme: ThemeChoice,
+    /// How large text and everything with it is; 1 is the designed size.
+    pub text_scale: f32,
+    /// How to plan. What to plan belongs to the mission and is not remembered.
+    pub plan: PlanSettings,
+    /// What each panel shows.
+    pub views: Views,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            theme: ThemeChoice::default(),
+            text_scale: 1.0,
+            plan: PlanSettings::default(),
+            views: Views::default(),
+        }
+    }
+}
+
+/// What and how to plan.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct PlanSettings {
+    /// What to plan.
+    #[serde(skip)]
+    pub goal: Goal,
+    /// Which search plans.
+    pub search: SearchKind,
+    /// Seeds path planning.
+    pub seed: u64,
+    /// Whether the search is recorded for stepping through it.
+    pub trace: bool,
+}
+
+/// What each panel shows. A panel changes its part with [`crate::command::Command::SetViews`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Views {
+    /// The network.
+    pub network: NetworkView,
+    /// The timeline.
+    pub timeline: TimelineView,
+    /// The plan's tables.
+    pub plan: PlanView,
+    /// The terrain.
+    pub terrain: TerrainView,
+}
+
+/// What the network shows.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct NetworkView {
+    /// Bounds on the arcs.
+    pub bounds: bool,
+    /// Asked and told conditions on the arcs.
+    pub labels: bool,
+    /// The names of events and activities.
+    pub names: bool,
+    /// The windows of selected events.
+    pub windows: bool,
+    /// Causal links.
+    pub links: bool,
+    /// Orderings that resolve threats.
+    pub orderings: bool,
+    /// Whether what the plan does not select is drawn.
+    pub unselected: bool,
+    /// Boxes around activities and blocks.
+    pub structure: bool,
+    /// The small overview.
+    pub minimap: bool,
+}
+
+impl Default for NetworkView {
+    fn default() -> Self {
+        Self {
+            bounds: true,
+            labels: true,
+            names: true,
+            windows: false,
+            links: true,
+            orderings: true,
+            unselected: true,
+            structure: false,
+            minimap: true,
+        }
+    }
+}
+
+/// What the timeline shows.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct TimelineView {
+    /// Causal links and orderings between bars.
+    pub links: bool,
+    /// Conditions as bars of their own.
+    pub conditions: bool,
+    /// Delays as bars of their own.
+    pub delays: bool,
+}
+
+impl Default for TimelineView {
+    fn default() -> Self {
+        Self { links: true, conditions: true, delays: false }
+    }
+}
+
+/// What the plan panel shows.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct PlanView {
+    /// By what the windows are sorted.
+    pub sort: WindowSort,
+    /// Whether the order is reversed.
+    pub descending: bool,
+}
+
+/// The columns of the table of windows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WindowSort {
+    /// By earliest time, then latest, then name.
+    #[default]
+    Earliest,
+    /// By latest time.
+    Latest,
+    /// By slack.
+    Slack,
+    /// By name.
+    Event,
+}
+
+/// What the terrain shows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct TerrainView {
+    /// Names of places and vehicles.
+    pub names: bool,
+    /// Planned paths.
+    pub paths: bool,
+    /// The search trees that found them.
+    pub trees: bool,
+    /// Obstacles.
+    pub obstacles: bool,
+    /// Contour lines.
+    pub contours: bool,
+    /// How much heights are exaggerated; 1 is true to scale.
+    pub height_scale: f32,
+}
+
+impl Default for TerrainView {
+    fn default() -> Self {
+        Self { names: true, paths: true, trees: false, obstacles: true, contours: true, height_scale: 2.0 }
+    }
+}

@@ -1,0 +1,105 @@
+//! The answers of the planning core: the latest, and the one to draw.
+
+use std::sync::Arc;
+
+use mission::{Snapshot, Stage};
+use rmpl::Severity;
+
+/// Snapshots as they arrived.
+#[derive(Clone, Debug, Default)]
+pub struct Snapshots {
+    latest: Option<Arc<Snapshot>>,
+    shown: Option<Arc<Snapshot>>,
+    /// When `latest` arrived, in seconds on the host's clock.
+    latest_secs: f64,
+}
+
+/// Where the plan stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// The present text is being worked out.
+    Working,
+    /// The text has errors; what is drawn belongs to an older text.
+    Broken,
+    /// There is no network to plan, though nothing is wrong: an empty text, a control program.
+    Empty,
+    /// There is a plan.
+    Plan,
+    /// There is none.
+    NoPlan,
+}
+
+/// Planning that takes longer than this shows the network without a plan meanwhile.
+const PATIENCE_SECS: f64 = 0.25;
+
+impl Snapshots {
+    /// Takes an answer; older ones than the latest are dropped.
+    pub fn take(&mut self, snapshot: Arc<Snapshot>, now_secs: f64) {
+        let is_older = self
+            .latest
+            .as_ref()
+            .is_some_and(|latest| (snapshot.revision, snapshot.stage) < (latest.revision, latest.stage));
+        if is_older {
+            return;
+        }
+        let is_drawable = snapshot.network.is_some() && snapshot.stage == Stage::Complete;
+        let is_first = self.shown.is_none() && snapshot.network.is_some();
+        if is_drawable || is_first {
+            self.shown = Some(Arc::clone(&snapshot));
+        }
+        if self.latest.as_ref().is_none_or(|latest| latest.revision != snapshot.revision) {
+            self.latest_secs = now_secs;
+        }
+        self.latest = Some(snapshot);
+    }
+
+    /// Shows a compiled network whose plan takes long. Answers whether what is shown has changed.
+    pub fn lose_patience(&mut self, now_secs: f64) -> bool {
+        let Some(latest) = &self.latest else { return false };
+        let is_waiting = latest.stage == Stage::Compiled
+            && latest.network.is_some()
+            && self.shown.as_ref().is_some_and(|shown| shown.revision < latest.revision);
+        if is_waiting && now_secs - self.latest_secs > PATIENCE_SECS {
+            self.shown = Some(Arc::clone(latest));
+        }
+        is_waiting
+    }
+
+    /// Forgets everything: another mission was opened.
+    pub fn clear(&mut self) {
+        *self = Self::default();
+    }
+
+    /// The latest answer, for problems and the editor.
+    pub fn latest(&self) -> Option<&Arc<Snapshot>> {
+        self.latest.as_ref()
+    }
+
+    /// The answer that drawings show: the latest with a network and its plan. A text with errors keeps the last good
+    /// one on screen.
+    pub fn shown(&self) -> Option<&Arc<Snapshot>> {
+        self.shown.as_ref()
+    }
+
+    /// Whether what is shown belongs to an older text than `revision`.
+    pub fn is_stale(&self, revision: u64) -> bool {
+        self.shown.as_ref().is_some_and(|shown| shown.revision != revision)
+    }
+
+    /// Where the plan stands for the text of `revision`.
+    pub fn status(&self, revision: u64) -> Status {
+        let Some(latest) = &self.latest else { return Status::Working };
+        if latest.revision != revision {
+            return Status::Working;
+        }
+        let has_errors = latest.problems.iter().any(|problem| problem.severity == Severity::Error);
+        match (&latest.network, &latest.planning) {
+            (None, _) if has_errors => Status::Broken,
+            (None, _) if latest.stage == Stage::Compiled => Status::Working,
+            (None, _) => Status::Empty,
+            (Some(_), None) if latest.stage == Stage::Compiled => Status::Working,
+            (Some(_), Some(_)) if latest.plan().is_some() => Status::Plan,
+            (Some(_), _) => Status::NoPlan,
+        }
+    }
+}

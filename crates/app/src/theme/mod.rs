@@ -1,0 +1,70 @@
+//! How the app looks: colour tokens, spacing, type sizes, and their translation to egui's style.
+//!
+//! Panels name meanings ("a threat", "weak text"), never colours; `clippy.toml` refuses colour constructors elsewhere.
+
+mod style;
+mod tokens;
+
+use serde::{Deserialize, Serialize};
+
+pub use style::{apply, install_fonts};
+pub use tokens::{Syntax, Tokens};
+
+/// Which theme the user wants.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ThemeChoice {
+    /// Light on dark.
+    #[default]
+    Dark,
+    /// Dark on light.
+    Light,
+}
+
+impl ThemeChoice {
+    /// The other one.
+    pub const fn toggled(self) -> Self {
+        match self {
+            Self::Dark => Self::Light,
+            Self::Light => Self::Dark,
+        }
+    }
+
+    /// Its tokens.
+    pub const fn tokens(self) -> &'static Tokens {
+        match self {
+            Self::Dark => &tokens::DARK,
+            Self::Light => &tokens::LIGHT,
+        }
+    }
+}
+
+/// Distances in points, on a grid of 4.
+pub mod space {
+    /// Between parts of one thing.
+    pub const XS: f32 = 2.0;
+    /// Between neighbours.
+    pub const S: f32 = 4.0;
+    /// Between groups; a panel's margin.
+    pub const M: f32 = 8.0;
+    /// Between sections.
+    pub const L: f32 = 12.0;
+    /// Around dialogs.
+    pub const XL: f32 = 16.0;
+    /// The height of a row in lists and tables.
+    pub const ROW: f32 = 22.0;
+    /// The height of bars.
+    pub const BAR: f32 = 36.0;
+}
+
+/// Type sizes in points, before the user's text scaling.
+pub mod size {
+    /// Notes, axis labels, badges.
+    pub const SMALL: f32 = 11.0;
+    /// Everything else.
+    pub const BODY: f32 = 13.0;
+    /// Code.
+    pub const CODE: f32 = 13.0;
+    /// Titles of dialogs and sections.
+    pub const TITLE: f32 = 15.0;
+}

@@ -1,0 +1,41 @@
+//! Shows the short messages in the corner.
+
+use egui::{Align2, Area, Frame, Id, Order, RichText, Stroke};
+
+use crate::command::{Command, CommandSender};
+use crate::panel::Context;
+use crate::state::ToastKind;
+use crate::theme::space;
+
+/// Shows all messages, newest at the bottom.
+pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandSender) {
+    let toasts = context.state.toasts.shown();
+    if toasts.is_empty() {
+        return;
+    }
+    let tokens = context.tokens;
+    Area::new(Id::unique("toasts"))
+        .order(Order::Foreground)
+        .anchor(Align2::RIGHT_BOTTOM, [-space::L, -34.0])
+        .show(egui, |ui| {
+            for (index, toast) in toasts.iter().enumerate() {
+                let (sign, color) = match toast.kind {
+                    ToastKind::Done => ("✔", tokens.good),
+                    ToastKind::Info => ("ℹ", tokens.info),
+                    ToastKind::Failed => ("⚠", tokens.error),
+                };
+                Frame::popup(ui.style()).stroke(Stroke::new(1.0, color)).show(ui, |ui| {
+                    ui.set_max_width(360.0);
+                    ui.horizontal(|ui| {
+                        ui.label(RichText::new(sign).color(color));
+                        ui.add(egui::Label::new(&toast.text).wrap());
+                        let close = ui.small_button("✕").accessible_name("Dismiss message");
+                        if close.clicked() {
+                            commands.send(Command::DismissToast(index));
+                        }
+                    });
+                });
+                ui.add_space(space::S);
+            }
+        });
+}

@@ -1,0 +1,156 @@
+//! The three workspaces and where their panels stand.
+
+use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
+use serde::{Deserialize, Serialize};
+
+use crate::panel::PanelKind;
+
+/// What the user has come to do (DESIGN 1).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Workspace {
+    /// Write a mission.
+    #[default]
+    Author,
+    /// See how planning works.
+    Teach,
+    /// Judge a plan.
+    Review,
+}
+
+impl Workspace {
+    /// All of them, as the tabs stand.
+    pub const ALL: [Self; 3] = [Self::Author, Self::Teach, Self::Review];
+
+    /// Its name on screen.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Author => "Author",
+            Self::Teach => "Teach",
+            Self::Review => "Review",
+        }
+    }
+
+    /// Its name in addresses, commands and storage.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Author => "author",
+            Self::Teach => "teach",
+            Self::Review => "review",
+        }
+    }
+
+    /// The workspace of this name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|workspace| workspace.name() == name)
+    }
+
+    /// Where its panels stand before the user moves them.
+    pub fn default_layout(self) -> Tree<PanelKind> {
+        use PanelKind::{Editor, Network, Outline, Plan, Problems, Terrain, Timeline};
+        let mut tiles = Tiles::default();
+        let root = match self {
+            Self::Author => {
+                let text = tabs(&mut tiles, &[Editor, Outline]);
+                let problems = tabs(&mut tiles, &[Problems]);
+                let left = split(&mut tiles, LinearDir::Vertical, &[(text, 0.78), (problems, 0.22)]);
+                let network = tabs(&mut tiles, &[Network]);
+                let plan = tabs(&mut tiles, &[Plan]);
+                let terrain = tabs(&mut tiles, &[Terrain]);
+                let lower = split(&mut tiles, LinearDir::Horizontal, &[(plan, 0.5), (terrain, 0.5)]);
+                let timeline = tabs(&mut tiles, &[Timeline]);
+                let right = split(
+                    &mut tiles,
+                    LinearDir::Vertical,
+                    &[(network, 0.42), (lower, 0.34), (timeline, 0.24)],
+                );
+                split(&mut tiles, LinearDir::Horizontal, &[(left, 0.36), (right, 0.64)])
+            }
+            Self::Teach => {
+                let text = tabs(&mut tiles, &[Editor, Outline]);
+                let network = tabs(&mut tiles, &[Network, Terrain]);
+                let timeline = tabs(&mut tiles, &[Timeline]);
+                let middle = split(&mut tiles, LinearDir::Vertical, &[(network, 0.7), (timeline, 0.3)]);
+                let plan = tabs(&mut tiles, &[Plan, Problems]);
+                split(&mut tiles, LinearDir::Horizontal, &[(text, 0.26), (middle, 0.48), (plan, 0.26)])
+            }
+            Self::Review => {
+                let timeline = tabs(&mut tiles, &[Timeline]);
+                let network = tabs(&mut tiles, &[Network]);
+                let terrain = tabs(&mut tiles, &[Terrain]);
+                let lower = split(&mut tiles, LinearDir::Horizontal, &[(network, 0.55), (terrain, 0.45)]);
+                let left = split(&mut tiles, LinearDir::Vertical, &[(timeline, 0.55), (lower, 0.45)]);
+                let plan = tabs(&mut tiles, &[Plan]);
+                let text = tabs(&mut tiles, &[Editor, Problems, Outline]);
+                let right = split(&mut tiles, LinearDir::Vertical, &[(plan, 0.6), (text, 0.4)]);
+                split(&mut tiles, LinearDir::Horizontal, &[(left, 0.64), (right, 0.36)])
+            }
+        };
+        Tree::new(egui::Id::unique(("workspace", self.name())), root, tiles)
+    }
+}
+
+/// Brings a panel to the front, wherever it stands; a closed panel comes back beside the others.
+pub fn show_panel(tree: &mut Tree<PanelKind>, panel: PanelKind) {
+    if tree.tiles.find_pane(&panel).is_none() {
+        let pane = tree.tiles.insert_pane(panel);
+        let neighbours = largest_tabs(tree);
+        match (neighbours, tree.root()) {
+            (Some(container), _) => tree.move_tile_to_container(pane, container, usize::MAX, false),
+            (None, Some(root)) => {
+                let both = split(&mut tree.tiles, LinearDir::Horizontal, &[(root, 0.7), (pane, 0.3)]);
+                tree.root = Some(both);
+            }
+            (None, None) => tree.root = Some(tabs_of(&mut tree.tiles, vec![pane])),
+        }
+    }
+    tree.make_active(|_, tile| *tile == Tile::Pane(panel));
+}
+
+/// Closes a panel.
+pub fn close_panel(tree: &mut Tree<PanelKind>, panel: PanelKind) {
+    if let Some(tile) = tree.tiles.find_pane(&panel) {
+        tree.remove_recursively(tile);
+    }
+}
+
+/// The layout as text, to be remembered.
+pub fn to_text(tree: &Tree<PanelKind>) -> Option<String> {
+    serde_json::to_string(tree).ok()
+}
+
+/// A remembered layout; `None` if it cannot be used any more.
+pub fn from_text(text: &str) -> Option<Tree<PanelKind>> {
+    let tree: Tree<PanelKind> = serde_json::from_str(text).ok()?;
+    (!tree.is_empty()).then_some(tree)
+}
+
+/// The tab container on screen with the most room.
+fn largest_tabs(tree: &Tree<PanelKind>) -> Option<TileId> {
+    tree.tiles
+        .iter()
+        .filter(|(_, tile)| matches!(tile, Tile::Container(Container::Tabs(_))))
+        .max_by(|(left, _), (right, _)| {
+            let area = |id| tree.tiles.rect(id).map_or(0.0, |rect| rect.area());
+            area(**left).total_cmp(&area(**right)).then(right.0.cmp(&left.0))
+        })
+        .map(|(id, _)| *id)
+}
+
+fn tabs(tiles: &mut Tiles<PanelKind>, panels: &[PanelKind]) -> TileId {
+    let panes = panels.iter().map(|&panel| tiles.insert_pane(panel)).collect();
+    tabs_of(tiles, panes)
+}
+
+fn tabs_of(tiles: &mut Tiles<PanelKind>, panes: Vec<TileId>) -> TileId {
+    tiles.insert_tab_tile(panes)
+}
+
+/// A row or column of tiles with their shares of the room.
+fn split(tiles: &mut Tiles<PanelKind>, direction: LinearDir, parts: &[(TileId, f32)]) -> TileId {
+    let mut linear = Linear::new(direction, parts.iter().map(|&(tile, _)| tile).collect());
+    for &(tile, share) in parts {
+        linear.shares.set_share(tile, share);
+    }
+    tiles.insert_container(linear)
+}
