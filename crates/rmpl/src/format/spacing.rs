@@ -1,0 +1,43 @@
+//! Whether a blank stands between two tokens of a line.
+
+use crate::syntax::{SyntaxKind, SyntaxToken};
+
+/// What a token belongs to, as far as blanks depend on it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Place {
+    #[default]
+    Plain,
+    /// Inside `[ … ]`, which are written tightly.
+    Bounds,
+    /// The `[` of bounds that stand apart from what they bound: `PATH1=OK [450,450]`.
+    SpacedBounds,
+    Condition,
+    /// `(x, y)` of the world, which stands apart from the name before it.
+    Coordinates,
+    Domain,
+    Argument,
+}
+
+/// Whether a blank stands between `previous` and `token`, which is in `place`.
+pub(super) fn has_space_between(previous: SyntaxToken<'_>, token: SyntaxToken<'_>, place: Place) -> bool {
+    use SyntaxKind as Kind;
+    match (previous.kind, token.kind) {
+        (_, Kind::Comma | Kind::Semicolon | Kind::RightParen | Kind::RightBracket | Kind::Percent)
+        | (Kind::LeftParen | Kind::LeftBracket | Kind::Bang, _)
+        | (Kind::LeftBrace, Kind::RightBrace) => false,
+        (_, Kind::LeftBracket) => place == Place::SpacedBounds,
+        (Kind::NotKeyword, Kind::LeftParen) => false,
+        (_, Kind::LeftParen) => match place {
+            Place::Coordinates | Place::Condition => true,
+            Place::Bounds => false,
+            _ => previous.kind != Kind::Name,
+        },
+        (Kind::RightBracket, _) => true,
+        _ if place == Place::Bounds => false,
+        (Kind::LeftBrace, _) | (_, Kind::RightBrace) => place != Place::Domain,
+        (_, Kind::Equals | Kind::NotEquals) => place != Place::Condition,
+        (Kind::Equals | Kind::NotEquals, _) => place != Place::Condition,
+        (Kind::Minus, Kind::Number) => false,
+        _ => true,
+    }
+}
