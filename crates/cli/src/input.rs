@@ -37,5 +37,6 @@ pub fn read_bytes(path: &Path, most: u64) -> anyhow::Result<Vec<u8>> {
 /// A JSON document read from `path`.
 pub fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> anyhow::Result<T> {
     let text = read_text(path)?;
-    serde_json::from_str(&text).with_context(|| format!("{} is not the JSON that was expected", path.display()))
+    serde_json::from_str(&text)
+        .with_context(|| format!("{} is not the JSON that was expected", path.display()))
 }

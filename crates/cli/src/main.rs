@@ -2,11 +2,14 @@
 
 mod commands;
 mod input;
+mod load;
 mod output;
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+
+use commands::{check, explain, path, plan};
 
 /// Plans, checks and explains missions written in RMPL.
 #[derive(Parser)]
@@ -17,9 +20,22 @@ struct Cli {
 }
 
 #[derive(Subcommand)]
-enum Command {}
+enum Command {
+    Check(check::Args),
+    Explain(explain::Args),
+    Path(path::Args),
+    Plan(plan::Args),
+}
 
 fn main() -> ExitCode {
-    let result: anyhow::Result<ExitCode> = match Cli::parse().command {};
-    result
+    let result = match &Cli::parse().command {
+        Command::Check(args) => check::run(args),
+        Command::Explain(args) => explain::run(args),
+        Command::Path(args) => path::run(args),
+        Command::Plan(args) => plan::run(args),
+    };
+    result.unwrap_or_else(|error| {
+        eprintln!("error: {error:#}");
+        output::exit(output::WRONG)
+    })
 }

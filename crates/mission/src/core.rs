@@ -68,8 +68,8 @@ impl Core {
     fn update(&mut self, update: &Update, surroundings: &mut dyn Surroundings) {
         let begun = surroundings.now_millis();
         let parse = rmpl::parse(&update.source);
-        let program = Arc::new(parse.program().clone());
-        let mut diagnostics = parse.diagnostics().clone();
+        let program = Arc::new(parse.program());
+        let mut diagnostics = parse.diagnostics();
         let parsed = surroundings.now_millis();
         let network = compile(&program, &update.goal, &mut diagnostics);
         let (ground, found) = self.grounds.resolve(&program.world);

@@ -209,6 +209,9 @@ impl Paths {
     }
 }
 
+/// Metres that a path may be longer for each corner that it does without: corners become events of the plan.
+const CORNER_EXTRA_M: f64 = 0.3;
+
 /// Searches for one leg; says why there is none, for the author.
 fn find_leg(space: &ConfigurationSpace, from: &Waypoint, to: &Waypoint, seed: u64) -> Result<Leg, String> {
     let query = Query { start_m: from.position_m, goal_m: to.position_m };
@@ -225,7 +228,7 @@ fn find_leg(space: &ConfigurationSpace, from: &Waypoint, to: &Waypoint, seed: u6
     Ok(Leg {
         to: to.name.clone(),
         tree_m: Arc::new(tree_m.collect()),
-        points_m: path.points_m,
+        points_m: motion::thin(space, &path, CORNER_EXTRA_M).points_m,
         samples: found.statistics.samples,
     })
 }

@@ -21,6 +21,7 @@ mod rrt_connect;
 mod rrt_star;
 mod search;
 mod shortcut;
+mod thin;
 mod timing;
 mod trajectory;
 mod tree;
@@ -34,6 +35,7 @@ pub use search::{
     Event, Failure, Growth, PlannerKind, Query, Search, SearchResult, Settings, Statistics, find_path,
 };
 pub use shortcut::{ShortcutSettings, shorten};
+pub use thin::thin;
 pub use timing::{SegmentTiming, SpeedLimits, duration_millis, time_path};
 pub use trajectory::{DriveLimits, MotionState, TimedState, Trajectory, drive_path, heading_difference};
 pub use tree::{Root, Tree, Vertex};

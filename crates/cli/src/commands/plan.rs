@@ -1,0 +1,381 @@
+//! `enroute plan`: plans a mission or a network, and says why where there is no plan.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use anyhow::Context as _;
+use clap::ValueEnum;
+use kirk::{Failure, Options, Outcome, Search, Stats, Status};
+use mission::planning::{self, Planned};
+use mission::{Paths, Problem};
+use rmpl::program::Program;
+use rmpl::{Bound, LineIndex};
+use serde_json::{Value, json};
+use tpn::Network;
+
+use crate::load::{Loaded, Target, parse_time};
+use crate::output::{
+    Format, LIMIT, NO, WRONG, YES, any_error, document, exit, print_json, print_problems, print_text,
+};
+
+/// Plans a mission: which alternatives, which causal links, which orderings, and the window of every event.
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    target: Target,
+    /// How to search; both find the same first plan.
+    #[arg(long, value_enum, default_value_t)]
+    search: SearchName,
+    /// Lists every distinct plan.
+    #[arg(long)]
+    all: bool,
+    /// Stops after so many plans (with --all).
+    #[arg(long, value_name = "N")]
+    limit: Option<usize>,
+    /// Stops after so many seconds, with exit status 3.
+    #[arg(long, value_name = "SECONDS")]
+    time_limit: Option<f64>,
+    /// The least gap between ordered intervals; the file's own by default.
+    #[arg(long, value_name = "G")]
+    threat_gap: Option<String>,
+    /// Writes the search as JSON lines.
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
+    /// Seeds path planning.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Plans without looking for paths of traverses.
+    #[arg(long)]
+    no_paths: bool,
+    /// For whom the answer is.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// The searches by name.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+enum SearchName {
+    /// The paper's: on failure undo the last choice.
+    Chronological,
+    /// Learns from each failure and jumps back.
+    #[default]
+    ConflictDirected,
+}
+
+/// Events of a search that `--trace` writes at most.
+const TRACE_EVENTS: usize = 10_000_000;
+
+/// Runs the command.
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let begun = Instant::now();
+    let options = args.options()?;
+    let loaded = args.target.load()?;
+    let compile_millis = millis_since(begun);
+    let Some(network) = loaded.network.clone() else { return report_errors(args, &loaded) };
+    let begun = Instant::now();
+    let network = Arc::new(network);
+    let planned = match (&loaded.program, args.no_paths) {
+        (Some(program), false) => args.plan_with_paths(&network, program, options),
+        _ => args.plan_network(&network, options),
+    };
+    let plan_millis = millis_since(begun);
+    let outcome = &planned.planning.outcome;
+    match args.format {
+        Format::Json => {
+            let body = outcome_json(&planned, &loaded, [compile_millis, plan_millis]);
+            let mut problems = loaded.problems.clone();
+            problems.extend(Problem::all(&planned.warnings, &loaded.source));
+            print_json(&document("plan", &problems, body))?;
+        }
+        Format::Text => {
+            print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
+            print_text(&outcome_text(&planned, &loaded))?;
+        }
+    }
+    Ok(exit(match outcome.status {
+        Status::Plan => YES,
+        Status::NoPlan => NO,
+        Status::Limit => LIMIT,
+        Status::Error => WRONG,
+    }))
+}
+
+impl Args {
+    fn options(&self) -> anyhow::Result<Options> {
+        let threat_gap = match &self.threat_gap {
+            Some(text) => {
+                let gap =
+                    parse_time(text).with_context(|| format!("--threat-gap wants a time, not `{text}`"))?;
+                anyhow::ensure!(gap >= rmpl::Rational::default(), "--threat-gap must not be negative");
+                Some(gap)
+            }
+            None => None,
+        };
+        Ok(Options {
+            search: match self.search {
+                SearchName::Chronological => Search::Chronological,
+                SearchName::ConflictDirected => Search::ConflictDirected,
+            },
+            threat_gap,
+            all: self.all,
+            max_plans: self.limit.unwrap_or(Options::default().max_plans),
+            trace_events: self.trace.is_some().then_some(TRACE_EVENTS),
+            ..Options::default()
+        })
+    }
+
+    fn deadline(&self) -> Option<Instant> {
+        // A limit too long to add to the present moment is none.
+        let limit = Duration::try_from_secs_f64(self.time_limit?.max(0.0)).ok()?;
+        Instant::now().checked_add(limit)
+    }
+
+    fn plan_network(&self, network: &Arc<Network>, options: Options) -> Planned {
+        let deadline = self.deadline();
+        let mut stop = |_: &Stats| deadline.is_some_and(|deadline| Instant::now() >= deadline);
+        let outcome = kirk::plan(network, &options, &mut stop);
+        planning::without_paths(network, outcome)
+    }
+
+    fn plan_with_paths(&self, network: &Arc<Network>, program: &Program, options: Options) -> Planned {
+        let deadline = self.deadline();
+        let mut grounds = mission::Grounds::default();
+        let (ground, _) = grounds.resolve(&program.world);
+        let problem = planning::Problem {
+            network,
+            program,
+            ground: ground.as_ref().map(|(key, map)| (key, map)),
+            options,
+            seed: self.seed,
+        };
+        let mut stop = || deadline.is_some_and(|deadline| Instant::now() >= deadline);
+        planning::plan(&problem, &mut grounds, &mut Paths::default(), &mut stop)
+    }
+}
+
+fn report_errors(args: &Args, loaded: &Loaded) -> anyhow::Result<ExitCode> {
+    match args.format {
+        Format::Json => {
+            let body = json!({ "status": "error", "plans": [], "failure": null, "stats": {} });
+            print_json(&document("plan", &loaded.problems, body))?;
+        }
+        Format::Text => print_problems(&loaded.name, &loaded.source, &loaded.problems)?,
+    }
+    debug_assert!(any_error(&loaded.problems), "a file without a network has an error");
+    Ok(exit(WRONG))
+}
+
+fn millis_since(begun: Instant) -> f64 {
+    begun.elapsed().as_secs_f64() * 1000.0
+}
+
+fn status_name(status: Status) -> &'static str {
+    match status {
+        Status::Plan => "plan",
+        Status::NoPlan => "no-plan",
+        Status::Limit => "limit",
+        Status::Error => "error",
+    }
+}
+
+fn outcome_json(planned: &Planned, loaded: &Loaded, [compile_millis, plan_millis]: [f64; 2]) -> Value {
+    let outcome = &planned.planning.outcome;
+    let stats = &outcome.stats;
+    let plans: Vec<Value> =
+        outcome.plans.iter().map(|plan| tpn::plan_json::plan_to_json(&planned.network, plan)).collect();
+    json!({
+        "status": status_name(outcome.status),
+        "plans": plans,
+        "verdict": planned.planning.verdict,
+        "failure": outcome.failure.as_ref().map(|failure| failure_json(failure, loaded)),
+        "undrivable": planned.planning.undrivable.iter().map(|undrivable| json!({
+            "activity": planned.network.occurrences[undrivable.occurrence.index()].name,
+            "leg": undrivable.leg,
+            "reason": undrivable.reason,
+        })).collect::<Vec<_>>(),
+        "stats": {
+            "parse_millis": loaded.parse_millis,
+            "compile_millis": compile_millis - loaded.parse_millis,
+            "plan_millis": plan_millis,
+            "nodes": stats.nodes,
+            "arcs": stats.arcs,
+            "decisions": stats.decisions,
+            "expanded": stats.expanded,
+            "backtracks": stats.backtracks,
+            "conflicts": stats.conflicts,
+            "leaves": stats.leaves,
+            "nogoods": stats.nogoods,
+        },
+    })
+}
+
+fn failure_json(failure: &Failure, loaded: &Loaded) -> Value {
+    let lines = LineIndex::new(&loaded.source);
+    let span_json = |span: &rmpl::Span| {
+        let place = lines.line_column(&loaded.source, span.start);
+        json!({ "start": span.start, "end": span.end, "line": place.line, "column": place.column })
+    };
+    let kinds: Vec<&str> = failure.kinds().iter().map(|kind| kind.name()).collect();
+    let reasons: Vec<Value> = failure
+        .reasons
+        .iter()
+        .map(|reason| {
+            json!({
+                "choices": choices_json(&reason.choices),
+                "kind": reason.kind.name(),
+                "message": reason.message,
+                "spans": reason.spans.iter().map(span_json).collect::<Vec<_>>(),
+                "minimal": reason.is_minimal,
+            })
+        })
+        .collect();
+    let relaxations: Vec<Value> = failure
+        .relaxations
+        .iter()
+        .map(|relaxation| {
+            json!({
+                "label": relaxation.label,
+                "bounds": relaxation.bounds_text,
+                "span": relaxation.span.as_ref().map(span_json),
+            })
+        })
+        .collect();
+    json!({
+        "kinds": kinds,
+        "reasons": reasons,
+        "complete": failure.is_complete,
+        "relaxations": relaxations,
+    })
+}
+
+fn choices_json(choices: &[tpn::Choice]) -> Value {
+    choices
+        .iter()
+        .map(|choice| (Network::decision_name(choice.decision), json!(choice.alternative)))
+        .collect::<serde_json::Map<String, Value>>()
+        .into()
+}
+
+fn outcome_text(planned: &Planned, loaded: &Loaded) -> String {
+    let outcome = &planned.planning.outcome;
+    let mut text = match outcome.status {
+        Status::Plan => String::new(),
+        Status::NoPlan => "no plan\n".to_owned(),
+        Status::Limit => "no answer within the limit\n".to_owned(),
+        Status::Error => {
+            "a time does not fit into 64 bits after scaling by the common denominator\n".to_owned()
+        }
+    };
+    for (index, plan) in outcome.plans.iter().enumerate() {
+        if outcome.plans.len() > 1 {
+            text.push_str(&format!("plan {} of {}\n", index + 1, outcome.plans.len()));
+        }
+        text.push_str(&plan_text(&planned.network, plan));
+    }
+    if let Some(verdict) = &planned.planning.verdict {
+        if verdict.valid {
+            text.push_str("verified by the independent checker\n");
+        }
+        for violation in &verdict.violations {
+            text.push_str(&format!("NOT VALID: {}\n", violation.message));
+        }
+    }
+    if let Some(failure) = &outcome.failure {
+        text.push_str(&failure_text(failure, loaded));
+    }
+    for undrivable in &planned.planning.undrivable {
+        let name = &planned.network.occurrences[undrivable.occurrence.index()].name;
+        text.push_str(&format!("{name} can't be driven: {}\n", undrivable.reason));
+    }
+    text.push_str(&stats_text(outcome));
+    text
+}
+
+fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
+    let mut text = String::new();
+    if !plan.choices.is_empty() {
+        let choices: Vec<String> = plan
+            .choices
+            .iter()
+            .map(|choice| format!("{} = {}", Network::decision_name(choice.decision), choice.alternative))
+            .collect();
+        text.push_str(&format!("choices   {}\n", choices.join(", ")));
+    }
+    for link in &plan.causal_links {
+        text.push_str(&format!(
+            "link      {} carries {}\n",
+            network.label_name(link.tell),
+            network.label_name(link.ask)
+        ));
+    }
+    for order in &plan.conflict_order {
+        let added = if plan.orderings_added.contains(order) { " (added)" } else { "" };
+        let (first, then) = (network.label_name(order.first), network.label_name(order.then));
+        text.push_str(&format!("order     {first} before {then}{added}\n"));
+    }
+    let mut rows: Vec<(rmpl::Rational, rmpl::Bound, String)> = Vec::new();
+    for (node, window) in network.nodes.iter().zip(&plan.windows) {
+        let Some(window) = window else { continue };
+        for &event in &node.events {
+            rows.push((window.earliest, window.latest, network.event_name(event)));
+        }
+    }
+    rows.sort();
+    let widest = rows.iter().map(|(_, _, name)| name.chars().count()).max().unwrap_or(0);
+    for (earliest, latest, name) in rows {
+        text.push_str(&format!(
+            "  {name:<widest$}  [{}, {}]\n",
+            short(Bound::Finite(earliest)),
+            short(latest)
+        ));
+    }
+    text
+}
+
+/// A time for people: exact where that is short, otherwise to the thousandth and marked as such.
+fn short(time: Bound) -> String {
+    let exact = time.to_string();
+    match time {
+        Bound::Finite(time) if exact.contains('/') || exact.len() > 9 => {
+            format!("~{:.3}", *time.numer() as f64 / *time.denom() as f64)
+        }
+        _ => exact,
+    }
+}
+
+fn failure_text(failure: &Failure, loaded: &Loaded) -> String {
+    let lines = LineIndex::new(&loaded.source);
+    let mut text = String::new();
+    for reason in &failure.reasons {
+        let choices: Vec<String> = reason
+            .choices
+            .iter()
+            .map(|choice| format!("{} = {}", Network::decision_name(choice.decision), choice.alternative))
+            .collect();
+        let context =
+            if choices.is_empty() { String::new() } else { format!("with {}: ", choices.join(", ")) };
+        text.push_str(&format!("{context}{} ({})\n", reason.message, reason.kind.name()));
+        for span in &reason.spans {
+            let place = lines.line_column(&loaded.source, span.start);
+            let snippet = loaded.source.get(span.range()).unwrap_or("").lines().next().unwrap_or("");
+            text.push_str(&format!("  {}:{}:{}: {snippet}\n", loaded.name, place.line, place.column));
+        }
+    }
+    if !failure.is_complete {
+        text.push_str("there are more reasons than are listed\n");
+    }
+    for relaxation in &failure.relaxations {
+        text.push_str(&format!("it would have a plan: {}\n", relaxation.label));
+    }
+    text
+}
+
+fn stats_text(outcome: &Outcome) -> String {
+    let stats = &outcome.stats;
+    format!(
+        "{} nodes, {} arcs, {} decisions; {} expanded, {} backtracks, {} conflicts\n",
+        stats.nodes, stats.arcs, stats.decisions, stats.expanded, stats.backtracks, stats.conflicts
+    )
+}
