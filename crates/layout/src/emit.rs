@@ -1,0 +1,196 @@
+//! The shapes of a part that has been placed: curves, arches, boxes, outlines, and texts beside them.
+
+use tpn::{ArcId, NodeId, OccurrenceId};
+
+use crate::drawing::{ArcShape, BlockForm, BlockShape, Connector, Item, Route, TextShape};
+use crate::geometry::{Piece, Point, Rect, curve_bounds};
+use crate::metrics::{
+    ARCH_CORNER, ARCH_FOOT, ARROW_LENGTH, COLLAPSED_HEIGHT, OUTLINE_PAD, TEXT_LIFT, TEXT_PAD, TextRole,
+    WORD_GAP,
+};
+use crate::place::{Frame, Placer};
+use crate::size::{Arch, Clearance};
+use crate::text::{Run, line_size};
+use crate::tree::{PartId, PartKind};
+
+impl Placer<'_> {
+    pub(crate) fn outline(&mut self, id: PartId, frame: Frame, occurrence: OccurrenceId) {
+        let part = self.tree.part(id);
+        let size = self.sizes.of(id);
+        let (left, right) = (self.sizes.clearance(part.start).radius, self.sizes.clearance(part.end).radius);
+        let (x, y) = (frame.start.x, frame.start.y);
+        self.drawing.blocks.push(BlockShape {
+            block: part.block,
+            form: BlockForm::Activity,
+            rect: Rect::new(
+                x - left - OUTLINE_PAD,
+                y - size.above,
+                x + frame.width + right + OUTLINE_PAD,
+                y + size.below,
+            ),
+            depth: frame.depth,
+            occurrence: Some(occurrence),
+            title: self.network.occurrences[occurrence.index()].activity.clone(),
+        });
+    }
+
+    pub(crate) fn arch(&mut self, arch: &Arch, start: Point, end: Point, nodes: (NodeId, NodeId)) {
+        let radii = (self.clearance_at(nodes.0, start).radius, self.clearance_at(nodes.1, end).radius);
+        let top = start.y - arch.height;
+        let (left, right) = (start.x + arch.rise, end.x - arch.fall);
+        let foot = start.y - ARCH_FOOT;
+        let off_node = |node: Point, x: f64, radius: f64| {
+            let towards = node.direction_to(Point::new(x, node.y - ARCH_FOOT + ARCH_CORNER / 2.0));
+            node.shifted(towards.x * radius, towards.y * radius)
+        };
+        let (from, to) = (off_node(start, left, radii.0), off_node(end, right, radii.1));
+        let upright = |x: f64, point: Point| Point::new(x, f64::midpoint(foot, point.y));
+        let pieces = [
+            Piece::Cubic(from.lerp(upright(left, from), 0.5), upright(left, from), Point::new(left, foot)),
+            Piece::Line(Point::new(left, top + ARCH_CORNER)),
+            Piece::Cubic(
+                Point::new(left, top + ARCH_CORNER / 2.0),
+                Point::new(left + ARCH_CORNER / 2.0, top),
+                Point::new(left + ARCH_CORNER, top),
+            ),
+            Piece::Line(Point::new(right - ARCH_CORNER, top)),
+            Piece::Cubic(
+                Point::new(right - ARCH_CORNER / 2.0, top),
+                Point::new(right, top + ARCH_CORNER / 2.0),
+                Point::new(right, top + ARCH_CORNER),
+            ),
+            Piece::Line(Point::new(right, foot)),
+            Piece::Cubic(upright(right, to), to.lerp(upright(right, to), 0.5), to),
+        ];
+        self.curve(arch.arc, Route::Arch, from, &pieces);
+        let runs = self.sizes.runs(arch.arc);
+        let limits = (left + ARCH_CORNER, right - ARCH_CORNER - arch.text_width);
+        let text_left = (f64::midpoint(limits.0, limits.1)).floor();
+        let bottom = top - TEXT_LIFT;
+        let row = Rect::new(text_left, bottom - arch.text_height, text_left + arch.text_width, bottom);
+        self.write_row(runs.iter(), row, Some((limits.0, limits.1.max(limits.0))));
+    }
+
+    pub(crate) fn collapsed(&mut self, id: PartId, frame: Frame, caption: usize) {
+        let part = self.tree.part(id);
+        let Some(block) = part.block else { return };
+        let end = frame.start.shifted(frame.width, 0.0);
+        let gap = |clearance: Clearance, side: f64| side.max(clearance.beneath) + 2.0 * TEXT_PAD;
+        let (first, last) = (self.sizes.clearance(part.start), self.sizes.clearance(part.end));
+        let rect = Rect::new(
+            frame.start.x + gap(first, first.after),
+            frame.start.y - COLLAPSED_HEIGHT / 2.0,
+            end.x - gap(last, last.before),
+            frame.start.y + COLLAPSED_HEIGHT / 2.0,
+        );
+        self.connect(
+            part.start,
+            frame.start.shifted(first.radius, 0.0),
+            &[Piece::Line(Point::new(rect.min.x, frame.start.y))],
+        );
+        self.connect(part.end, Point::new(rect.max.x, end.y), &[Piece::Line(end.shifted(-last.radius, 0.0))]);
+        self.boxes[block.index()] = Some(rect.center());
+        self.collapsed_ends.insert((part.start, part.end));
+        let caption = self.sizes.captions[caption].clone();
+        let occurrence = match part.kind {
+            PartKind::Collapsed { occurrence, .. } => occurrence,
+            _ => None,
+        };
+        let lines = [
+            (caption.title.clone(), TextRole::Title, caption.title_width),
+            (caption.detail, TextRole::Bounds, caption.detail_width),
+        ];
+        let mut top =
+            rect.center().y - lines.iter().map(|(_, role, _)| role.line_height()).sum::<f64>() / 2.0;
+        for (text, role, width) in lines {
+            let left = (rect.center().x - width / 2.0).floor();
+            let line = Rect::new(left, top, left + width, top + role.line_height());
+            top = line.max.y;
+            self.drawing.texts.push(TextShape {
+                text,
+                role,
+                size: role.size(),
+                rect: line,
+                owner: Item::Block(block),
+                slide: None,
+            });
+        }
+        self.drawing.blocks.push(BlockShape {
+            block: Some(block),
+            form: BlockForm::Collapsed,
+            rect,
+            depth: frame.depth,
+            occurrence,
+            title: caption.title,
+        });
+    }
+
+    pub(crate) fn connect(&mut self, node: NodeId, start: Point, pieces: &[Piece]) {
+        let mut from = start;
+        for &piece in pieces {
+            if piece.end() != from {
+                self.drawing.connectors.push(Connector { node, start: from, piece });
+            }
+            from = piece.end();
+        }
+    }
+
+    /// A straight arc between two nodes on one line.
+    pub(crate) fn level_arc(&mut self, arc: ArcId, start: Point, end: Point, ends: (Clearance, Clearance)) {
+        let (from, to) = (start.shifted(ends.0.radius, 0.0), end.shifted(-ends.1.radius, 0.0));
+        self.curve(arc, Route::Along, from, &[Piece::Line(to)]);
+        self.texts_along(arc, start, end, ends);
+    }
+
+    pub(crate) fn curve(&mut self, id: ArcId, route: Route, start: Point, pieces: &[Piece]) {
+        let first_piece = self.drawing.pieces.len() as u32;
+        let mut from = start;
+        for &piece in pieces {
+            if piece.end() != from {
+                self.drawing.pieces.push(piece);
+            }
+            from = piece.end();
+        }
+        let kept = &self.drawing.pieces[first_piece as usize..];
+        let bounds = curve_bounds(start, kept);
+        let piece_count = kept.len() as u32;
+        let kind = self.network.arcs[id.index()].kind;
+        self.arcs[id.index()] = Some(ArcShape { id, kind, route, start, first_piece, piece_count, bounds });
+    }
+
+    /// Writes an arc's texts above and below the level run between two points.
+    pub(crate) fn texts_along(&mut self, arc: ArcId, start: Point, end: Point, ends: (Clearance, Clearance)) {
+        let runs = self.sizes.runs(arc);
+        let Some(last) = runs.last() else { return };
+        let above = (start.x + ends.0.after, end.x - ends.1.before - ARROW_LENGTH);
+        let below = (start.x + ends.0.beneath, end.x - ends.1.beneath);
+        let mut top = start.y + TEXT_LIFT;
+        for line in -1..=last.line {
+            let size = line_size(runs, line);
+            let span = if line < 0 { above } else { below };
+            let left = (f64::midpoint(span.0, span.1) - size.width / 2.0).floor();
+            let row_top = if line < 0 { start.y - TEXT_LIFT - size.height } else { top };
+            if line >= 0 {
+                top += size.height;
+            }
+            let row = Rect::new(left, row_top, left + size.width, row_top + size.height);
+            self.write_row(runs.iter().filter(|run| run.line == line), row, None);
+        }
+    }
+
+    fn write_row<'r>(&mut self, runs: impl Iterator<Item = &'r Run>, row: Rect, slide: Option<(f64, f64)>) {
+        let mut left = row.min.x;
+        for run in runs {
+            let from_row = left - row.min.x;
+            self.drawing.texts.push(TextShape {
+                text: run.text.clone(),
+                role: run.role,
+                size: run.role.size(),
+                rect: Rect::new(left, row.min.y, left + run.width, row.max.y),
+                owner: run.owner,
+                slide: slide.map(|(least, most)| (least + from_row, most + from_row)),
+            });
+            left += run.width + WORD_GAP;
+        }
+    }
+}

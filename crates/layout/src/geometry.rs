@@ -1,0 +1,235 @@
+//! Points, rectangles and curves of a drawing, in drawing units: x grows to the right with time, y grows downwards.
+//!
+//! Every length that the layout chooses is a multiple of a half, so sums are exact and equal parts of two drawings are
+//! equal to the bit, wherever they lie.
+
+use serde::{Deserialize, Serialize};
+
+/// A place on the drawing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Point {
+    /// To the right.
+    pub x: f64,
+    /// Downwards.
+    pub y: f64,
+}
+
+/// An upright rectangle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Rect {
+    /// The upper left corner.
+    pub min: Point,
+    /// The lower right corner.
+    pub max: Point,
+}
+
+/// One piece of a curve; it begins where the piece before it ends.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Piece {
+    /// A straight line to a point.
+    Line(Point),
+    /// A cubic Bézier curve: two control points and its end.
+    Cubic(Point, Point, Point),
+}
+
+/// How many straight lines stand for one Bézier piece in [`flatten`].
+const LINES_PER_CUBIC: u32 = 16;
+
+impl Point {
+    /// The point at (`x`, `y`).
+    pub const fn new(x: f64, y: f64) -> Self {
+        Self { x, y }
+    }
+
+    /// This point moved by (`dx`, `dy`).
+    pub fn shifted(self, dx: f64, dy: f64) -> Self {
+        Self::new(self.x + dx, self.y + dy)
+    }
+
+    /// The distance to `other`.
+    pub fn distance(self, other: Self) -> f64 {
+        let (dx, dy) = (self.x - other.x, self.y - other.y);
+        (dx * dx + dy * dy).sqrt()
+    }
+
+    /// The point `fraction` of the way to `other`.
+    pub fn lerp(self, other: Self, fraction: f64) -> Self {
+        Self::new(self.x + (other.x - self.x) * fraction, self.y + (other.y - self.y) * fraction)
+    }
+
+    /// The unit vector from here towards `other`; to the right where they coincide.
+    pub fn direction_to(self, other: Self) -> Self {
+        let length = self.distance(other);
+        if length == 0.0 {
+            return Self::new(1.0, 0.0);
+        }
+        Self::new((other.x - self.x) / length, (other.y - self.y) / length)
+    }
+}
+
+impl Rect {
+    /// The rectangle with these edges.
+    pub const fn new(left: f64, top: f64, right: f64, bottom: f64) -> Self {
+        Self { min: Point::new(left, top), max: Point::new(right, bottom) }
+    }
+
+    /// The square around `center` that reaches `radius` to each side.
+    pub fn around(center: Point, radius: f64) -> Self {
+        Self { min: center.shifted(-radius, -radius), max: center.shifted(radius, radius) }
+    }
+
+    /// Width.
+    pub fn width(self) -> f64 {
+        self.max.x - self.min.x
+    }
+
+    /// Height.
+    pub fn height(self) -> f64 {
+        self.max.y - self.min.y
+    }
+
+    /// The middle.
+    pub fn center(self) -> Point {
+        self.min.lerp(self.max, 0.5)
+    }
+
+    /// The smallest rectangle that holds both.
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            min: Point::new(self.min.x.min(other.min.x), self.min.y.min(other.min.y)),
+            max: Point::new(self.max.x.max(other.max.x), self.max.y.max(other.max.y)),
+        }
+    }
+
+    /// This rectangle with `margin` added on every side.
+    pub fn expanded(self, margin: f64) -> Self {
+        Self { min: self.min.shifted(-margin, -margin), max: self.max.shifted(margin, margin) }
+    }
+
+    /// Whether the two share a point.
+    pub fn touches(self, other: Self) -> bool {
+        self.min.x <= other.max.x
+            && other.min.x <= self.max.x
+            && self.min.y <= other.max.y
+            && other.min.y <= self.max.y
+    }
+
+    /// Whether the two share more than their edges.
+    pub fn overlaps(self, other: Self) -> bool {
+        self.min.x < other.max.x
+            && other.min.x < self.max.x
+            && self.min.y < other.max.y
+            && other.min.y < self.max.y
+    }
+
+    /// Whether `point` lies inside or on the edge.
+    pub fn contains(self, point: Point) -> bool {
+        self.min.x <= point.x && point.x <= self.max.x && self.min.y <= point.y && point.y <= self.max.y
+    }
+}
+
+impl Piece {
+    /// Where the piece ends.
+    pub fn end(self) -> Point {
+        match self {
+            Self::Line(end) | Self::Cubic(_, _, end) => end,
+        }
+    }
+
+    /// The point at `fraction` of the piece's parameter, when the piece begins at `start`.
+    pub fn at(self, start: Point, fraction: f64) -> Point {
+        match self {
+            Self::Line(end) => start.lerp(end, fraction),
+            Self::Cubic(first, second, end) => {
+                let (a, b, c) =
+                    (start.lerp(first, fraction), first.lerp(second, fraction), second.lerp(end, fraction));
+                a.lerp(b, fraction).lerp(b.lerp(c, fraction), fraction)
+            }
+        }
+    }
+
+    /// The point that the end of the piece is reached from; gives the direction of an arrow head.
+    pub fn before_end(self, start: Point) -> Point {
+        match self {
+            Self::Line(_) => start,
+            Self::Cubic(first, second, end) => {
+                if second != end {
+                    second
+                } else if first != end {
+                    first
+                } else {
+                    start
+                }
+            }
+        }
+    }
+}
+
+/// The curve as straight lines, its start included.
+pub fn flatten(start: Point, pieces: &[Piece]) -> Vec<Point> {
+    let mut points = vec![start];
+    let mut from = start;
+    for piece in pieces {
+        match *piece {
+            Piece::Line(end) => points.push(end),
+            Piece::Cubic(..) => {
+                let steps = 1..=LINES_PER_CUBIC;
+                points.extend(steps.map(|step| piece.at(from, f64::from(step) / f64::from(LINES_PER_CUBIC))));
+            }
+        }
+        from = piece.end();
+    }
+    points
+}
+
+/// A rectangle that holds the curve: that of its points and control points.
+pub fn curve_bounds(start: Point, pieces: &[Piece]) -> Rect {
+    let mut bounds = Rect { min: start, max: start };
+    let mut add = |point: Point| bounds = bounds.union(Rect { min: point, max: point });
+    for piece in pieces {
+        match *piece {
+            Piece::Line(end) => add(end),
+            Piece::Cubic(first, second, end) => [first, second, end].into_iter().for_each(&mut add),
+        }
+    }
+    bounds
+}
+
+/// The distance of `point` to the curve.
+pub fn distance_point_curve(point: Point, start: Point, pieces: &[Piece]) -> f64 {
+    let line = flatten(start, pieces);
+    let segments = line.windows(2).map(|ends| distance_point_segment(point, ends[0], ends[1]));
+    segments.fold(point.distance(start), f64::min)
+}
+
+/// The distance of `point` to the segment between `from` and `to`.
+pub fn distance_point_segment(point: Point, from: Point, to: Point) -> f64 {
+    let (dx, dy) = (to.x - from.x, to.y - from.y);
+    let squared = dx * dx + dy * dy;
+    if squared == 0.0 {
+        return point.distance(from);
+    }
+    let along = ((point.x - from.x) * dx + (point.y - from.y) * dy) / squared;
+    point.distance(from.lerp(to, along.clamp(0.0, 1.0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_distance_to_a_curve_is_that_to_its_nearest_piece() {
+        let pieces = [Piece::Line(Point::new(10.0, 0.0)), Piece::Line(Point::new(10.0, 10.0))];
+        assert_eq!(distance_point_curve(Point::new(13.0, 5.0), Point::default(), &pieces), 3.0);
+        assert_eq!(distance_point_curve(Point::new(-4.0, 3.0), Point::default(), &pieces), 5.0);
+    }
+
+    #[test]
+    fn a_flattened_curve_keeps_its_ends() {
+        let end = Point::new(40.0, 20.0);
+        let points =
+            flatten(Point::default(), &[Piece::Cubic(Point::new(20.0, 0.0), Point::new(20.0, 20.0), end)]);
+        assert_eq!(points.first(), Some(&Point::default()));
+        assert_eq!(points.last(), Some(&end));
+    }
+}

@@ -1,0 +1,141 @@
+//! The sizes that drawings are made of, in drawing units (at zoom 1, a unit is a point of the screen).
+//!
+//! Widths of text come from the caller's `measure`; everything else is here.
+
+use serde::{Deserialize, Serialize};
+use tpn::Role;
+
+/// Radius of the circle of an event.
+pub const EVENT_RADIUS: f64 = 11.0;
+/// Radius of the outer circle of a decision.
+pub const DECISION_RADIUS: f64 = 14.0;
+/// How far the inner circle of a decision lies inside the outer one.
+pub const DECISION_INSET: f64 = 3.0;
+/// Radius of the dot of a fork, join or merge.
+pub const STRUCTURAL_RADIUS: f64 = 4.0;
+/// Length of an arrow head.
+pub const ARROW_LENGTH: f64 = 7.0;
+/// Half the breadth of an arrow head.
+pub const ARROW_HALF_BREADTH: f64 = 3.5;
+/// The text size that `measure` answers for; other sizes are in proportion.
+pub const TEXT_SIZE: f64 = 13.0;
+
+/// Free space beside a text.
+pub(crate) const TEXT_PAD: f64 = 5.0;
+/// Between a line and the text that stands on it or hangs from it.
+pub(crate) const TEXT_LIFT: f64 = 3.0;
+/// Between two texts on one line.
+pub(crate) const WORD_GAP: f64 = 7.0;
+/// Shortest visible run of an arc.
+pub(crate) const SHORTEST_RUN: f64 = 22.0;
+/// Between the branches of a fork.
+pub(crate) const LANE_GAP: f64 = 14.0;
+/// Between an arch and what it spans.
+pub(crate) const ARCH_GAP: f64 = 6.0;
+/// How far from its node the first arch stands upright.
+pub(crate) const ARCH_FIRST: f64 = 6.0;
+/// How much further every next one.
+pub(crate) const ARCH_STEP: f64 = 8.0;
+/// How high above a node its arches have become upright.
+pub(crate) const ARCH_FOOT: f64 = 20.0;
+/// Radius of an arch's corners.
+pub(crate) const ARCH_CORNER: f64 = 10.0;
+/// Between the outline of an activity and what it holds.
+pub(crate) const OUTLINE_PAD: f64 = 5.0;
+/// Height of the box of a collapsed block.
+pub(crate) const COLLAPSED_HEIGHT: f64 = 40.0;
+/// Narrowest and widest space in which the arcs of a fork spread.
+pub(crate) const GUTTER: (f64, f64) = (22.0, 60.0);
+/// Around the whole drawing.
+pub(crate) const MARGIN: f64 = 16.0;
+
+/// What a text is for; decides its size, and its colour when painted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum TextRole {
+    /// The name of an activity.
+    Name,
+    /// A name of less weight: a delay.
+    Quiet,
+    /// Bounds of a duration.
+    Bounds,
+    /// Bounds that say nothing but "at once": `[0,0]`.
+    ZeroBounds,
+    /// A condition that an arc requires.
+    Ask,
+    /// A condition that an arc asserts.
+    Tell,
+    /// The number or name inside a node.
+    Node,
+    /// The heading of a collapsed block or a composite location.
+    Title,
+    /// The time window of an event.
+    Window,
+}
+
+impl TextRole {
+    /// The size of the text.
+    pub const fn size(self) -> f64 {
+        match self {
+            Self::Name | Self::Title => 13.0,
+            Self::Quiet => 12.0,
+            Self::Bounds | Self::Ask | Self::Tell => 11.5,
+            Self::Window => 10.5,
+            Self::Node | Self::ZeroBounds => 10.0,
+        }
+    }
+
+    /// The height of a line of it.
+    pub const fn line_height(self) -> f64 {
+        match self {
+            Self::Name | Self::Title => 17.0,
+            Self::Quiet => 16.0,
+            Self::Bounds | Self::Ask | Self::Tell => 15.0,
+            Self::Window => 14.0,
+            Self::Node | Self::ZeroBounds => 13.0,
+        }
+    }
+}
+
+/// The radius of a node of this role.
+pub const fn node_radius(role: Role) -> f64 {
+    match role {
+        Role::Event => EVENT_RADIUS,
+        Role::Structural => STRUCTURAL_RADIUS,
+        Role::Decision => DECISION_RADIUS,
+    }
+}
+
+/// Advance widths of the characters from space to tilde in thousandths of the text size, in the page's own face
+/// (Ubuntu Light).
+#[rustfmt::skip]
+const CHARACTER_WIDTHS: [u16; 95] = [
+    228, 274, 392, 653, 564, 831, 648, 240, 310, 310, 472, 564, 246, 282, 246, 359,
+    564, 564, 564, 564, 564, 564, 564, 564, 564, 564, 246, 246, 564, 564, 564, 380,
+    940, 641, 630, 609, 702, 555, 520, 658, 692, 248, 487, 599, 502, 865, 709, 774,
+    592, 774, 618, 517, 548, 680, 624, 921, 608, 569, 560, 310, 359, 310, 564, 490,
+    376, 509, 583, 460, 583, 548, 376, 573, 569, 237, 237, 495, 255, 863, 569, 582,
+    583, 583, 374, 428, 387, 569, 480, 775, 499, 474, 455, 319, 262, 319, 564,
+];
+
+/// The width of `text` at [`TEXT_SIZE`] in the page's face, with some room for faces that are a little wider.
+///
+/// It needs no fonts and is the same everywhere, so pictures are too.
+pub fn approximate_text_width(text: &str) -> f32 {
+    let thousandths: u32 = text.chars().map(|character| u32::from(character_width(character))).sum();
+    thousandths as f32 / 1000.0 * 1.04 * TEXT_SIZE as f32
+}
+
+fn character_width(character: char) -> u16 {
+    let ascii = (character as u32).checked_sub(u32::from(b' ')).map(|at| at as usize);
+    match ascii.and_then(|at| CHARACTER_WIDTHS.get(at)) {
+        Some(&width) => width,
+        None if character == '·' => 246,
+        None if matches!(character, '∞' | '¬' | '≥' | '≤') || character.is_alphabetic() => 600,
+        None => 1000,
+    }
+}
+
+/// `length` rounded up to a whole unit.
+pub(crate) fn whole(length: f64) -> f64 {
+    length.ceil()
+}

@@ -1,0 +1,202 @@
+//! What a plan, or its failure, adds to a drawing: curves between places on it, and texts under its nodes.
+
+use serde::{Deserialize, Serialize};
+use tpn::{LabelId, Network, NodeId, Plan, Role};
+
+use crate::drawing::{Item, NetworkDrawing, TextShape};
+use crate::geometry::{Piece, Point, Rect, curve_bounds};
+use crate::metrics::TextRole;
+use crate::text::{Measure, bounds_label, text_width};
+
+/// A curve over the drawing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OverlayCurve {
+    /// What it shows.
+    pub kind: OverlayKind,
+    /// Which one of its kind: the position in the plan's list, or the step of the cycle.
+    pub number: u32,
+    /// Where the curve begins.
+    pub start: Point,
+    /// The curve.
+    pub pieces: Vec<Piece>,
+    /// The curve lies inside.
+    pub bounds: Rect,
+}
+
+/// What an [`OverlayCurve`] shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum OverlayKind {
+    /// From the assertion that carries a requirement to that requirement.
+    CausalLink,
+    /// From the end of one interval to the start of the other that planning put after it.
+    Ordering,
+    /// A step of a negative cycle, from its event to the next.
+    NegativeCycle,
+}
+
+/// How far a curve between two places on one line hangs below it.
+const SAG: (f64, f64) = (34.0, 150.0);
+
+/// The causal links of a plan.
+pub fn causal_links(drawing: &NetworkDrawing, network: &Network, plan: &Plan) -> Vec<OverlayCurve> {
+    let places = label_places(drawing, network);
+    let curve = |(number, link): (usize, &tpn::CausalLink)| {
+        let (from, to) = (places.get(link.tell.index())?, places.get(link.ask.index())?);
+        Some(between_labels(number as u32, *from, *to))
+    };
+    plan.causal_links.iter().enumerate().filter_map(curve).collect()
+}
+
+/// The orderings that planning added: from the first interval's end to the other's start.
+pub fn orderings(drawing: &NetworkDrawing, network: &Network, plan: &Plan) -> Vec<OverlayCurve> {
+    let curve = |(number, ordering): (usize, &tpn::Ordering)| {
+        let first = network.labels.get(ordering.first.index())?;
+        let then = network.labels.get(ordering.then.index())?;
+        let (from, to) = (network.arcs[first.arc.index()].to, network.arcs[then.arc.index()].from);
+        Some(between_nodes(drawing, OverlayKind::Ordering, number as u32, from, to))
+    };
+    plan.orderings_added.iter().enumerate().filter_map(curve).collect()
+}
+
+/// A negative cycle, given as the events it passes; the last is followed by the first. A step along an arc, in either
+/// direction, follows the arc's own curve.
+pub fn negative_cycle(drawing: &NetworkDrawing, network: &Network, events: &[NodeId]) -> Vec<OverlayCurve> {
+    let next = events.iter().cycle().skip(1);
+    let steps = events.iter().zip(next).filter(|(from, to)| from != to);
+    steps
+        .enumerate()
+        .map(|(number, (&from, &to))| {
+            along_arc(drawing, network, number as u32, from, to).unwrap_or_else(|| {
+                between_nodes(drawing, OverlayKind::NegativeCycle, number as u32, from, to)
+            })
+        })
+        .collect()
+}
+
+/// The window of every visible event and decision, below it.
+pub fn windows(
+    drawing: &NetworkDrawing,
+    plan: &Plan,
+    window_width: f64,
+    measure: Measure<'_>,
+) -> Vec<TextShape> {
+    let role = TextRole::Window;
+    let text = |node: &crate::drawing::NodeShape| {
+        let window = plan.windows.get(node.id.index()).copied().flatten()?;
+        let text = bounds_label(window.earliest, window.latest);
+        let natural = text_width(&text, role, measure);
+        let width = if window_width > 0.0 { natural.min(window_width) } else { natural };
+        let top = node.center.y + node.radius + 2.0;
+        let left = node.center.x - width / 2.0;
+        Some(TextShape {
+            text,
+            role,
+            size: role.size() * width / natural,
+            rect: Rect::new(left, top, left + width, top + role.line_height()),
+            owner: Item::Node(node.id),
+            slide: None,
+        })
+    };
+    drawing.nodes.iter().filter(|node| node.role != Role::Structural).filter_map(text).collect()
+}
+
+/// A curve from node to node, whatever lies between.
+pub fn between_nodes(
+    drawing: &NetworkDrawing,
+    kind: OverlayKind,
+    number: u32,
+    from: NodeId,
+    to: NodeId,
+) -> OverlayCurve {
+    let radius = |node: NodeId| drawing.node(node).map_or(0.0, |shape| shape.radius);
+    let (start, piece) = free_curve(drawing.anchor(from), radius(from), drawing.anchor(to), radius(to));
+    curve(kind, number, start, vec![piece])
+}
+
+/// The start and the only piece of a curve between two circles. On one line it hangs below, where the arches are not.
+pub(crate) fn free_curve(from: Point, from_radius: f64, to: Point, to_radius: f64) -> (Point, Piece) {
+    let (dx, dy) = (to.x - from.x, to.y - from.y);
+    let (first, second) = if dy.abs() < SAG.0 {
+        let sag = (dx.abs() * 0.2).clamp(SAG.0, SAG.1);
+        let reach = (dx * 0.15).clamp(-SAG.1, SAG.1);
+        (from.shifted(reach, sag), to.shifted(-reach, sag))
+    } else {
+        let reach = (dx.abs() * 0.4).clamp(SAG.0, SAG.1);
+        (from.shifted(reach, dy * 0.3), to.shifted(-reach, -dy * 0.3))
+    };
+    let rim = |center: Point, towards: Point, radius: f64| {
+        let direction = center.direction_to(towards);
+        center.shifted(direction.x * radius, direction.y * radius)
+    };
+    (rim(from, first, from_radius), Piece::Cubic(first, second, rim(to, second, to_radius)))
+}
+
+/// Where each label is written, or the place that hides it.
+fn label_places(drawing: &NetworkDrawing, network: &Network) -> Vec<Rect> {
+    let hidden = |label: &tpn::Label| {
+        let anchor = drawing.anchor(network.arcs[label.arc.index()].from);
+        Rect { min: anchor, max: anchor }
+    };
+    let mut places: Vec<Rect> = network.labels.iter().map(hidden).collect();
+    for text in &drawing.texts {
+        if let Item::Label(LabelId(label)) = text.owner
+            && let Some(place) = places.get_mut(label as usize)
+        {
+            *place = text.rect;
+        }
+    }
+    places
+}
+
+fn between_labels(number: u32, from: Rect, to: Rect) -> OverlayCurve {
+    let (source, target) = (from.center(), to.center());
+    let half = f64::midpoint(from.height(), to.height()) / 2.0;
+    let dy = target.y - source.y;
+    let (start, end, first, second) = if dy.abs() < 2.0 * half + SAG.0 {
+        let (start, end) = (Point::new(source.x, from.max.y), Point::new(target.x, to.max.y));
+        let sag = ((target.x - source.x).abs() * 0.2).clamp(SAG.0, SAG.1);
+        (start, end, start.shifted(0.0, sag), end.shifted(0.0, sag))
+    } else {
+        let side = |rect: Rect, downwards: bool| if downwards { rect.max.y } else { rect.min.y };
+        let start = Point::new(source.x, side(from, dy > 0.0));
+        let end = Point::new(target.x, side(to, dy < 0.0));
+        let middle = (end.y - start.y) / 2.0;
+        (start, end, start.shifted(0.0, middle), end.shifted(0.0, -middle))
+    };
+    curve(OverlayKind::CausalLink, number, start, vec![Piece::Cubic(first, second, end)])
+}
+
+fn along_arc(
+    drawing: &NetworkDrawing,
+    network: &Network,
+    number: u32,
+    from: NodeId,
+    to: NodeId,
+) -> Option<OverlayCurve> {
+    let arc_between = |from: NodeId, to: NodeId| {
+        let outgoing = &network.nodes.get(from.index())?.out_arcs;
+        outgoing.iter().find(|arc| network.arcs[arc.index()].to == to).and_then(|&arc| drawing.arc(arc))
+    };
+    let kind = OverlayKind::NegativeCycle;
+    if let Some(arc) = arc_between(from, to) {
+        return Some(curve(kind, number, arc.start, drawing.pieces(arc).to_vec()));
+    }
+    let arc = arc_between(to, from)?;
+    let (start, pieces) = reversed(arc.start, drawing.pieces(arc));
+    Some(curve(kind, number, start, pieces))
+}
+
+/// The same curve the other way.
+fn reversed(start: Point, pieces: &[Piece]) -> (Point, Vec<Piece>) {
+    let mut ends: Vec<Point> = vec![start];
+    ends.extend(pieces.iter().map(|piece| piece.end()));
+    let back = pieces.iter().zip(&ends).rev().map(|(piece, &from)| match *piece {
+        Piece::Line(_) => Piece::Line(from),
+        Piece::Cubic(first, second, _) => Piece::Cubic(second, first, from),
+    });
+    (ends.last().copied().unwrap_or(start), back.collect())
+}
+
+fn curve(kind: OverlayKind, number: u32, start: Point, pieces: Vec<Piece>) -> OverlayCurve {
+    OverlayCurve { kind, number, start, bounds: curve_bounds(start, &pieces), pieces }
+}

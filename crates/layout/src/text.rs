@@ -1,0 +1,202 @@
+//! What is written at each arc, and how much room it takes.
+
+use rmpl::program::LabelMode;
+use rmpl::{Bound, Rational};
+use smol_str::{SmolStr, format_smolstr};
+use tpn::{Arc, ArcId, ArcKind, BlockKind, LabelId, Network, OccurrenceKind};
+
+use crate::drawing::Item;
+use crate::metrics::{TEXT_SIZE, TextRole, WORD_GAP, whole};
+use crate::options::Options;
+
+/// How wide a text is at [`TEXT_SIZE`].
+pub type Measure<'a> = &'a dyn Fn(&str) -> f32;
+
+/// Conditions go on the line of the bounds up to this width, or that of the name above if it is wider.
+const EASY_LINE_WIDTH: f64 = 130.0;
+
+/// A text with its width, and the line that it stands on: −1 is on the arc, 0 the first below it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Run {
+    pub(crate) text: SmolStr,
+    pub(crate) role: TextRole,
+    pub(crate) width: f64,
+    pub(crate) line: i32,
+    pub(crate) owner: Item,
+}
+
+/// The texts of all arcs of a network.
+pub(crate) struct ArcTexts {
+    runs: Vec<Run>,
+    starts: Vec<u32>,
+}
+
+/// Width and height of some lines of text.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct TextSize {
+    pub(crate) width: f64,
+    pub(crate) height: f64,
+}
+
+impl ArcTexts {
+    pub(crate) fn new(network: &Network, options: &Options, measure: Measure<'_>) -> Self {
+        let mut texts = Self { runs: Vec::new(), starts: Vec::with_capacity(network.arcs.len() + 1) };
+        for (at, arc) in network.arcs.iter().enumerate() {
+            texts.starts.push(texts.runs.len() as u32);
+            texts.add_arc(network, options, measure, ArcId::from_index(at), arc);
+        }
+        texts.starts.push(texts.runs.len() as u32);
+        texts
+    }
+
+    /// The texts of one arc, in the order of their lines.
+    pub(crate) fn of(&self, arc: ArcId) -> &[Run] {
+        &self.runs[self.starts[arc.index()] as usize..self.starts[arc.index() + 1] as usize]
+    }
+
+    fn add_arc(&mut self, network: &Network, options: &Options, measure: Measure<'_>, id: ArcId, arc: &Arc) {
+        let first = self.runs.len();
+        let push = |runs: &mut Vec<Run>, text: SmolStr, role: TextRole, line: i32, owner: Item| {
+            let width = text_width(&text, role, measure);
+            runs.push(Run { text, role, width, line, owner });
+        };
+        if let Some((text, role)) = arc_name(network, options, arc) {
+            let text = cut_to_width(&text, role, options.longest_name, measure);
+            push(&mut self.runs, text, role, -1, Item::Arc(id));
+        }
+        if self.runs.len() == first {
+            for &label in &arc.labels {
+                let (text, role) = label_text(network, label);
+                push(&mut self.runs, text, role, -1, Item::Label(label));
+            }
+        }
+        let named = self.runs.len() > first;
+        if let Some((text, role)) = bounds_text(arc, options) {
+            push(&mut self.runs, text, role, if named { 0 } else { -1 }, Item::Arc(id));
+        }
+        if self.runs.get(first).is_some_and(|run| run.owner == Item::Arc(id)) && named {
+            let easy = self.runs[first].width.max(EASY_LINE_WIDTH);
+            for &label in &arc.labels {
+                let (text, role) = label_text(network, label);
+                let last = self.runs.last().map_or(0, |run| run.line.max(0));
+                let used = line_size(&self.runs[first..], last).width;
+                let width = text_width(&text, role, measure);
+                let fits = used == 0.0 || used + WORD_GAP + width <= easy;
+                push(&mut self.runs, text, role, if fits { last } else { last + 1 }, Item::Label(label));
+            }
+        }
+    }
+}
+
+/// The room that line `line` of `runs` takes.
+pub(crate) fn line_size(runs: &[Run], line: i32) -> TextSize {
+    row_size(runs.iter().filter(|run| run.line == line))
+}
+
+/// The room of all lines above the arc, and of all below.
+pub(crate) fn sizes_above_and_below(runs: &[Run]) -> (TextSize, TextSize) {
+    let mut below = TextSize::default();
+    for line in 0..=runs.last().map_or(-1, |run| run.line) {
+        let size = line_size(runs, line);
+        below = TextSize { width: below.width.max(size.width), height: below.height + size.height };
+    }
+    (line_size(runs, -1), below)
+}
+
+/// The room of all texts in one row.
+pub(crate) fn one_row_size(runs: &[Run]) -> TextSize {
+    row_size(runs.iter())
+}
+
+fn row_size<'a>(runs: impl Iterator<Item = &'a Run>) -> TextSize {
+    let mut size = TextSize::default();
+    for run in runs {
+        size.width += run.width + if size.width > 0.0 { WORD_GAP } else { 0.0 };
+        size.height = size.height.max(run.role.line_height());
+    }
+    size
+}
+
+/// The width of `text` in its role.
+pub(crate) fn text_width(text: &str, role: TextRole, measure: Measure<'_>) -> f64 {
+    whole(f64::from(measure(text)) * role.size() / TEXT_SIZE) + 1.0
+}
+
+/// `text`, or as much of it as fits with an ellipsis.
+pub(crate) fn cut_to_width(text: &str, role: TextRole, longest: f64, measure: Measure<'_>) -> SmolStr {
+    let mut width = text_width(text, role, measure);
+    let mut kept = text.chars().count();
+    let mut cut = SmolStr::new(text);
+    while width > longest && kept > 1 {
+        kept = ((kept as f64 * longest / width) as usize).clamp(1, kept - 1);
+        cut = text.chars().take(kept).chain(['…']).collect();
+        width = text_width(&cut, role, measure);
+    }
+    cut
+}
+
+/// The bounds as the papers print them: `[405,486]`, `[0,∞]`.
+pub fn bounds_label(lower: Rational, upper: Bound) -> SmolStr {
+    match upper {
+        Bound::Finite(upper) => {
+            format_smolstr!("[{},{}]", rmpl::rational::display(lower), rmpl::rational::display(upper))
+        }
+        Bound::Infinite => format_smolstr!("[{},∞]", rmpl::rational::display(lower)),
+    }
+}
+
+/// A condition as the paper prints it on an arc: `Ask(PATH1=OK)`.
+pub fn label_text(network: &Network, label: LabelId) -> (SmolStr, TextRole) {
+    let label = &network.labels[label.index()];
+    match label.mode {
+        LabelMode::Ask => (format_smolstr!("Ask({})", label.text), TextRole::Ask),
+        LabelMode::Tell => (format_smolstr!("Tell({})", label.text), TextRole::Tell),
+    }
+}
+
+fn bounds_text(arc: &Arc, options: &Options) -> Option<(SmolStr, TextRole)> {
+    let text = bounds_label(arc.lower, arc.upper);
+    let at_once = arc.lower == Rational::default() && arc.upper == Bound::ZERO;
+    if at_once && arc.occurrence.is_none() {
+        return options.zero_bounds.then_some((text, TextRole::ZeroBounds));
+    }
+    Some((text, TextRole::Bounds))
+}
+
+/// The name written on an arc; assertions are named by their labels.
+fn arc_name(network: &Network, options: &Options, arc: &Arc) -> Option<(SmolStr, TextRole)> {
+    let occurrence = network.occurrences.get(arc.occurrence?.index())?;
+    let is_named = match arc.kind {
+        ArcKind::Activity | ArcKind::Composite | ArcKind::Delay => true,
+        ArcKind::Span => occurrence.kind == OccurrenceKind::Scenario,
+        _ => false,
+    };
+    if !is_named {
+        return None;
+    }
+    match occurrence.kind {
+        OccurrenceKind::Assertion | OccurrenceKind::Scope => None,
+        OccurrenceKind::Delay => Some((SmolStr::new_static("delay"), TextRole::Quiet)),
+        OccurrenceKind::Primitive | OccurrenceKind::Activity | OccurrenceKind::Scenario => {
+            let arguments = options.arguments && !occurrence.arguments.is_empty();
+            let text = if arguments {
+                format_smolstr!("{}({})", occurrence.activity, occurrence.arguments.join(", "))
+            } else {
+                occurrence.activity.clone()
+            };
+            Some((text, TextRole::Name))
+        }
+    }
+}
+
+/// What kind of structure a block is, in the words of the language.
+pub fn structure_name(kind: &BlockKind) -> SmolStr {
+    match kind {
+        BlockKind::Leaf { .. } => SmolStr::new_static("step"),
+        BlockKind::Sequence { .. } => SmolStr::new_static("sequence"),
+        BlockKind::Parallel { .. } => SmolStr::new_static("parallel"),
+        BlockKind::Choose { decision, .. } => format_smolstr!("choose {}", Network::decision_name(*decision)),
+        BlockKind::Scope { .. } => SmolStr::new_static("block"),
+        BlockKind::Guard { .. } => SmolStr::new_static("if"),
+    }
+}

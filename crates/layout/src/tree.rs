@@ -1,0 +1,381 @@
+//! The structure that a drawing follows: arcs in series, fans of branches, and arcs that span what is below them.
+//!
+//! It is made from the blocks of a program here, and from a bare graph in [`crate::recover`].
+
+use std::ops::Range;
+
+use tpn::{ArcId, ArcKind, BlockId, BlockKind, Network, NodeId, OccurrenceId};
+
+use crate::options::Options;
+
+/// A part of the tree, by its position in [`Tree::parts`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct PartId(pub(crate) u32);
+
+impl PartId {
+    pub(crate) const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Parts, children before parents.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Tree {
+    pub(crate) parts: Vec<Part>,
+    /// The children of series, each series a range.
+    pub(crate) children: Vec<PartId>,
+    /// The branches of fans, each fan a range.
+    pub(crate) branches: Vec<Branch>,
+    /// The arcs of spans, outermost first, each span a range.
+    pub(crate) spanning: Vec<ArcId>,
+    /// Irregular graphs between two nodes.
+    pub(crate) cores: Vec<Core>,
+    pub(crate) root: Option<PartId>,
+    /// Arcs that the structure does not have; they are drawn across it.
+    pub(crate) across: Vec<ArcId>,
+    /// The collapsed block that hides each node, if one does.
+    pub(crate) hidden_nodes: Vec<Option<BlockId>>,
+}
+
+/// A piece of the network between two nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Part {
+    pub(crate) kind: PartKind,
+    pub(crate) start: NodeId,
+    pub(crate) end: NodeId,
+    pub(crate) block: Option<BlockId>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum PartKind {
+    /// One arc.
+    Arc(ArcId),
+    /// A node by itself, or nothing between two nodes.
+    Nothing,
+    /// One after the other, neighbours sharing a node.
+    Series(Range<u32>),
+    /// Side by side.
+    Fan { branches: Range<u32>, is_choice: bool },
+    /// Arcs above a child that has the same ends.
+    Span { child: PartId, arcs: Range<u32>, occurrence: Option<OccurrenceId> },
+    /// A box that hides what is between the ends.
+    Collapsed { occurrence: Option<OccurrenceId>, arc: Option<ArcId> },
+    /// An irregular graph.
+    Core(u32),
+}
+
+/// One branch of a fan: `fork`, then `child`, then `join`. Without child and join, `fork` goes all the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Branch {
+    pub(crate) fork: Option<ArcId>,
+    pub(crate) child: Option<PartId>,
+    pub(crate) join: Option<ArcId>,
+    /// The block of the branch.
+    pub(crate) block: Option<BlockId>,
+}
+
+/// A graph between two nodes that is not made of series and fans.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Core {
+    /// Its nodes, in topological order; the first is the start, the last the end.
+    pub(crate) nodes: Vec<NodeId>,
+    /// Its edges: from and to as positions in `nodes`, and what is between.
+    pub(crate) edges: Vec<(u32, u32, PartId)>,
+}
+
+impl Tree {
+    pub(crate) fn push(
+        &mut self,
+        kind: PartKind,
+        start: NodeId,
+        end: NodeId,
+        block: Option<BlockId>,
+    ) -> PartId {
+        self.parts.push(Part { kind, start, end, block });
+        PartId(self.parts.len() as u32 - 1)
+    }
+
+    pub(crate) fn part(&self, id: PartId) -> &Part {
+        &self.parts[id.index()]
+    }
+
+    pub(crate) fn push_arc(&mut self, network: &Network, arc: ArcId) -> PartId {
+        let ends = &network.arcs[arc.index()];
+        self.push(PartKind::Arc(arc), ends.from, ends.to, None)
+    }
+
+    pub(crate) fn push_series(&mut self, children: &[PartId], block: Option<BlockId>) -> Option<PartId> {
+        let (&first, &last) = (children.first()?, children.last()?);
+        if children.len() == 1 {
+            let part = &mut self.parts[first.index()];
+            part.block = part.block.or(block);
+            return Some(first);
+        }
+        let begin = self.children.len() as u32;
+        self.children.extend_from_slice(children);
+        let kind = PartKind::Series(begin..self.children.len() as u32);
+        Some(self.push(kind, self.part(first).start, self.part(last).end, block))
+    }
+
+    pub(crate) fn children(&self, range: &Range<u32>) -> &[PartId] {
+        &self.children[range.start as usize..range.end as usize]
+    }
+
+    /// Whether a part begins with a gap, so that no line leads into it.
+    pub(crate) fn begins_with_nothing(&self, part: PartId) -> bool {
+        match &self.part(part).kind {
+            PartKind::Nothing => true,
+            PartKind::Series(range) => {
+                self.children(range).first().is_some_and(|&first| self.part(first).kind == PartKind::Nothing)
+            }
+            _ => false,
+        }
+    }
+
+    /// Whether a part ends with a gap, so that no line leads out of it.
+    pub(crate) fn ends_with_nothing(&self, part: PartId) -> bool {
+        match &self.part(part).kind {
+            PartKind::Nothing => true,
+            PartKind::Series(range) => {
+                self.children(range).last().is_some_and(|&last| self.part(last).kind == PartKind::Nothing)
+            }
+            _ => false,
+        }
+    }
+
+    pub(crate) fn branches(&self, range: &Range<u32>) -> &[Branch] {
+        &self.branches[range.start as usize..range.end as usize]
+    }
+}
+
+/// The tree of a network whose blocks are known; `None` if it has no usable root.
+pub(crate) fn tree_from_blocks(network: &Network, options: &Options) -> Option<Tree> {
+    let root = network.root.filter(|root| root.index() < network.blocks.len())?;
+    let mut builder = Builder {
+        network,
+        tree: Tree { hidden_nodes: vec![None; network.nodes.len()], ..Tree::default() },
+        part_of_block: vec![None; network.blocks.len()],
+        arc_to: vec![None; network.nodes.len()],
+        arc_from: vec![None; network.nodes.len()],
+    };
+    let visible = visible_blocks(network, options, root, &mut builder.tree.hidden_nodes);
+    for (at, is_visible) in visible.into_iter().enumerate() {
+        if is_visible {
+            let id = BlockId::from_index(at);
+            builder.part_of_block[at] = builder.part(id, options.collapsed.contains(&id));
+        }
+    }
+    builder.tree.root = builder.part_of_block[root.index()];
+    builder.tree.root.is_some().then_some(builder.tree)
+}
+
+/// Which blocks are drawn, and which collapsed block hides each node of the others.
+fn visible_blocks(
+    network: &Network,
+    options: &Options,
+    root: BlockId,
+    hidden_nodes: &mut [Option<BlockId>],
+) -> Vec<bool> {
+    let mut visible = vec![false; network.blocks.len()];
+    let mut hidden_in: Vec<Option<BlockId>> = vec![None; network.blocks.len()];
+    visible[root.index()] = true;
+    for at in (0..network.blocks.len()).rev() {
+        let id = BlockId::from_index(at);
+        let block = &network.blocks[at];
+        let hider = hidden_in[at].or_else(|| (visible[at] && options.collapsed.contains(&id)).then_some(id));
+        if hidden_in[at].is_some() {
+            hidden_nodes[block.start.index()] = hider;
+            hidden_nodes[block.end.index()] = hider;
+        }
+        if let (Some(_), BlockKind::Leaf { arc }) = (hider, &block.kind) {
+            for arc in path_chain(network, *arc) {
+                hidden_nodes[network.arcs[arc.index()].to.index()] = hider;
+            }
+        }
+        for child in block_children(&block.kind).iter().filter(|child| child.index() < at) {
+            visible[child.index()] = visible[at] && hider.is_none();
+            hidden_in[child.index()] = hider;
+        }
+    }
+    visible
+}
+
+/// The blocks directly inside a block, in textual order.
+pub fn block_children(kind: &BlockKind) -> &[BlockId] {
+    match kind {
+        BlockKind::Leaf { .. } => &[],
+        BlockKind::Sequence { children } => children,
+        BlockKind::Parallel { branches } => branches,
+        BlockKind::Choose { alternatives, .. } => alternatives,
+        BlockKind::Scope { child, .. } | BlockKind::Guard { child, .. } => std::slice::from_ref(child),
+    }
+}
+
+/// The pieces of the path of a traverse (SPEC 7.3), in order; empty if `arc` has no path beside it.
+fn path_chain(network: &Network, arc: ArcId) -> Vec<ArcId> {
+    let (mut at, end) = (network.arcs[arc.index()].from, network.arcs[arc.index()].to);
+    let mut chain = Vec::new();
+    while at != end && chain.len() < network.nodes.len() {
+        let outgoing = &network.nodes[at.index()].out_arcs;
+        let Some(&piece) = outgoing.iter().find(|piece| network.arcs[piece.index()].kind == ArcKind::Path)
+        else {
+            return Vec::new();
+        };
+        chain.push(piece);
+        at = network.arcs[piece.index()].to;
+    }
+    if at == end { chain } else { Vec::new() }
+}
+
+struct Builder<'a> {
+    network: &'a Network,
+    tree: Tree,
+    part_of_block: Vec<Option<PartId>>,
+    /// Scratch: of the node being looked at, the arc to each other node.
+    arc_to: Vec<Option<ArcId>>,
+    /// Scratch: of the node being looked at, the arc from each other node.
+    arc_from: Vec<Option<ArcId>>,
+}
+
+impl Builder<'_> {
+    fn part(&mut self, id: BlockId, is_collapsed: bool) -> Option<PartId> {
+        let network = self.network;
+        let block = &network.blocks[id.index()];
+        if is_collapsed && block.start != block.end {
+            let (occurrence, arc) = collapsed_name(network, &block.kind);
+            return Some(self.tree.push(
+                PartKind::Collapsed { occurrence, arc },
+                block.start,
+                block.end,
+                Some(id),
+            ));
+        }
+        match &block.kind {
+            BlockKind::Leaf { arc } => Some(self.leaf(id, *arc)),
+            BlockKind::Sequence { children } => self.sequence(id, children),
+            BlockKind::Parallel { branches } => Some(self.fan(id, branches, false)),
+            BlockKind::Choose { alternatives, .. } => Some(self.fan(id, alternatives, true)),
+            BlockKind::Scope { child, arcs, occurrence } => {
+                let child = self.between(block.start, *child, block.end)?;
+                Some(self.span(child, arcs, *occurrence, Some(id)))
+            }
+            BlockKind::Guard { arc, child } => {
+                let guard = self.tree.push_arc(network, *arc);
+                let child = self.child(*child)?;
+                let mut pieces = vec![guard, child];
+                let end = self.tree.part(child).end;
+                pieces.extend(self.glue(end, block.end));
+                self.tree.push_series(&pieces, Some(id))
+            }
+        }
+    }
+
+    fn child(&self, id: BlockId) -> Option<PartId> {
+        self.part_of_block.get(id.index()).copied().flatten()
+    }
+
+    fn leaf(&mut self, id: BlockId, arc: ArcId) -> PartId {
+        let chain: Vec<PartId> = path_chain(self.network, arc)
+            .into_iter()
+            .map(|piece| self.tree.push_arc(self.network, piece))
+            .collect();
+        if let Some(path) = self.tree.push_series(&chain, None) {
+            return self.span(path, &[arc], None, Some(id));
+        }
+        let part = self.tree.push_arc(self.network, arc);
+        self.tree.parts[part.index()].block = Some(id);
+        part
+    }
+
+    fn span(
+        &mut self,
+        child: PartId,
+        arcs: &[ArcId],
+        occurrence: Option<OccurrenceId>,
+        block: Option<BlockId>,
+    ) -> PartId {
+        let begin = self.tree.spanning.len() as u32;
+        self.tree.spanning.extend_from_slice(arcs);
+        let (start, end) = (self.tree.part(child).start, self.tree.part(child).end);
+        let arcs = begin..self.tree.spanning.len() as u32;
+        self.tree.push(PartKind::Span { child, arcs, occurrence }, start, end, block)
+    }
+
+    fn sequence(&mut self, id: BlockId, children: &[BlockId]) -> Option<PartId> {
+        let mut pieces: Vec<PartId> = Vec::with_capacity(children.len() * 2);
+        for &child in children {
+            let Some(child) = self.child(child) else { continue };
+            if let Some(&last) = pieces.last() {
+                let (from, to) = (self.tree.part(last).end, self.tree.part(child).start);
+                pieces.extend(self.glue(from, to));
+            }
+            pieces.push(child);
+        }
+        self.tree.push_series(&pieces, Some(id))
+    }
+
+    /// The arc from one node to the next, as a part, if they are different.
+    fn glue(&mut self, from: NodeId, to: NodeId) -> Option<PartId> {
+        if from == to {
+            return None;
+        }
+        let outgoing = &self.network.nodes[from.index()].out_arcs;
+        match outgoing.iter().find(|arc| self.network.arcs[arc.index()].to == to) {
+            Some(&arc) => Some(self.tree.push_arc(self.network, arc)),
+            None => Some(self.tree.push(PartKind::Nothing, from, to, None)),
+        }
+    }
+
+    /// The child with the arcs that tie it to `start` and `end`.
+    fn between(&mut self, start: NodeId, child: BlockId, end: NodeId) -> Option<PartId> {
+        let child = self.child(child)?;
+        let (child_start, child_end) = (self.tree.part(child).start, self.tree.part(child).end);
+        let mut pieces = Vec::with_capacity(3);
+        pieces.extend(self.glue(start, child_start));
+        pieces.push(child);
+        pieces.extend(self.glue(child_end, end));
+        self.tree.push_series(&pieces, None)
+    }
+
+    fn fan(&mut self, id: BlockId, blocks: &[BlockId], is_choice: bool) -> PartId {
+        let network = self.network;
+        let block = &network.blocks[id.index()];
+        // One look at each arc of the fork and of the join keeps wide fans linear.
+        for &arc in network.nodes[block.start.index()].out_arcs.iter().rev() {
+            self.arc_to[network.arcs[arc.index()].to.index()] = Some(arc);
+        }
+        for &arc in network.nodes[block.end.index()].in_arcs.iter().rev() {
+            self.arc_from[network.arcs[arc.index()].from.index()] = Some(arc);
+        }
+        let mut branches = Vec::with_capacity(blocks.len());
+        for &branch in blocks {
+            let Some(child) = self.child(branch) else { continue };
+            let part = self.tree.part(child);
+            let fork = if part.start == block.start { None } else { self.arc_to[part.start.index()] };
+            let join = if part.end == block.end { None } else { self.arc_from[part.end.index()] };
+            branches.push(Branch { fork, child: Some(child), join, block: Some(branch) });
+        }
+        for &arc in &network.nodes[block.start.index()].out_arcs {
+            self.arc_to[network.arcs[arc.index()].to.index()] = None;
+        }
+        for &arc in &network.nodes[block.end.index()].in_arcs {
+            self.arc_from[network.arcs[arc.index()].from.index()] = None;
+        }
+        if branches.is_empty() {
+            return self.tree.push(PartKind::Nothing, block.start, block.end, Some(id));
+        }
+        let begin = self.tree.branches.len() as u32;
+        self.tree.branches.extend(branches);
+        let branches = begin..self.tree.branches.len() as u32;
+        self.tree.push(PartKind::Fan { branches, is_choice }, block.start, block.end, Some(id))
+    }
+}
+
+/// The occurrence and the arc that name a collapsed block.
+fn collapsed_name(network: &Network, kind: &BlockKind) -> (Option<OccurrenceId>, Option<ArcId>) {
+    match kind {
+        BlockKind::Scope { arcs, occurrence, .. } => (*occurrence, arcs.first().copied()),
+        BlockKind::Leaf { arc } => (network.arcs[arc.index()].occurrence, Some(*arc)),
+        _ => (None, None),
+    }
+}

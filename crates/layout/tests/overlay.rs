@@ -1,0 +1,142 @@
+//! What a plan or its failure adds to a drawing, and what of it is exported.
+
+mod common;
+
+use common::{draw, enroute};
+use layout::overlay::{causal_links, negative_cycle, orderings, windows};
+use layout::{Item, Options, Palette, SvgOptions, approximate_text_width};
+use rmpl::{Bound, Rational};
+use tpn::{CausalLink, LabelId, Network, Ordering, Plan, Window};
+
+fn label(network: &Network, name: &str) -> LabelId {
+    let all = (0..network.labels.len()).map(LabelId::from_index);
+    let found = all.into_iter().find(|&label| network.label_name(label) == name);
+    found.unwrap_or_else(|| panic!("no label {name}"))
+}
+
+/// The plan of SPEC 3.6, as far as drawings read it; the same window everywhere.
+fn plan(network: &Network) -> Plan {
+    let second_alternative = network.decisions[0].alternatives[1];
+    let selected_arcs: Vec<bool> =
+        (0..network.arcs.len()).map(|at| at != second_alternative.index()).collect();
+    let skipped = network.arcs[second_alternative.index()].to;
+    Plan {
+        choices: Vec::new(),
+        selected_nodes: (0..network.nodes.len()).map(|at| at != skipped.index()).collect(),
+        selected_arcs,
+        causal_links: vec![CausalLink {
+            ask: label(network, "Ask(PATH1=OK)@Group-Traverse-Path#1"),
+            tell: label(network, "Tell(PATH1=OK)@Tell(PATH1=OK)#1"),
+        }],
+        conflict_order: Vec::new(),
+        orderings_added: vec![Ordering {
+            first: label(network, "Tell(not(PROCEED=OK))@Group-Wait#1"),
+            then: label(network, "Tell(PROCEED=OK)@Tell(PROCEED=OK)#1"),
+        }],
+        windows: vec![
+            Some(Window {
+                earliest: Rational::from_integer(460),
+                latest: Bound::Finite(Rational::from_integer(600)),
+            });
+            network.nodes.len()
+        ],
+    }
+}
+
+#[test]
+fn a_causal_link_runs_from_the_assertion_to_the_requirement() {
+    let network = enroute();
+    let drawing = draw(&network);
+    let plan = plan(&network);
+    let links = causal_links(&drawing, &network, &plan);
+    let [link] = links.as_slice() else { panic!("one link") };
+    let rect = |label: LabelId| {
+        drawing.texts.iter().find(|text| text.owner == Item::Label(label)).expect("it is written").rect
+    };
+    assert!(rect(plan.causal_links[0].tell).contains(link.start));
+    assert!(rect(plan.causal_links[0].ask).contains(link.pieces.last().expect("it goes somewhere").end()));
+}
+
+#[test]
+fn an_ordering_runs_from_the_first_end_to_the_second_start() {
+    let network = enroute();
+    let drawing = draw(&network);
+    let plan = plan(&network);
+    let curves = orderings(&drawing, &network, &plan);
+    let [curve] = curves.as_slice() else { panic!("one ordering") };
+    let arc = |label: LabelId| &network.arcs[network.labels[label.index()].arc.index()];
+    let from = drawing.node(arc(plan.orderings_added[0].first).to).expect("visible");
+    let to = drawing.node(arc(plan.orderings_added[0].then).from).expect("visible");
+    assert!((curve.start.distance(from.center) - from.radius).abs() < 1e-6);
+    let end = curve.pieces.last().expect("it goes somewhere").end();
+    assert!((end.distance(to.center) - to.radius).abs() < 1e-6);
+}
+
+#[test]
+fn a_negative_cycle_follows_arcs_where_there_are_any_and_closes() {
+    let network = enroute();
+    let drawing = draw(&network);
+    let traverse = &network.arcs[network.labels[0].arc.index()];
+    let events = [network.start, traverse.from, traverse.to, network.end];
+    let curves = negative_cycle(&drawing, &network, &events);
+    assert_eq!(curves.len(), events.len());
+    let arc = drawing.arc(network.labels[0].arc).expect("visible");
+    assert_eq!(curves[1].start, arc.start);
+    assert_eq!(curves[1].pieces, drawing.pieces(arc));
+    let span = network.nodes[network.start.index()].out_arcs.iter();
+    let span = span.copied().find(|id| network.arcs[id.index()].to == network.end).expect("the horizon");
+    let span = drawing.arc(span).expect("visible");
+    assert_eq!(
+        curves[3].pieces.last().expect("it goes back").end(),
+        span.start,
+        "the horizon is walked backwards"
+    );
+}
+
+#[test]
+fn windows_stand_below_their_events_and_over_nothing() {
+    let network = enroute();
+    let drawing = draw(&network);
+    let plan = plan(&network);
+    let notes = windows(&drawing, &plan, Options::default().window_width, &approximate_text_width);
+    assert!(notes.iter().all(|note| note.text == "[460,600]"));
+    assert!(notes.len() >= 15, "every event and decision has one");
+    for note in &notes {
+        let over = drawing.texts.iter().find(|text| text.rect.overlaps(note.rect));
+        assert!(over.is_none(), "{:?} lies over {over:?}", note.owner);
+    }
+}
+
+#[test]
+fn a_window_wider_than_its_room_is_written_smaller() {
+    let network = enroute();
+    let drawing = draw(&network);
+    let mut plan = plan(&network);
+    let earliest = Rational::new(123_456_789, 7);
+    plan.windows.fill(Some(Window { earliest, latest: Bound::Finite(earliest) }));
+    let width = Options::default().window_width;
+    let notes = windows(&drawing, &plan, width, &approximate_text_width);
+    assert!(notes.iter().all(|note| note.rect.width() <= width && note.size < 10.5));
+}
+
+#[test]
+fn the_exported_picture_shows_the_plan_and_the_theme() {
+    let network = enroute();
+    let drawing = draw(&network);
+    let plan = plan(&network);
+    let overlays = causal_links(&drawing, &network, &plan);
+    let export = |palette: &Palette, plan: Option<&Plan>| {
+        let options =
+            SvgOptions { palette, plan, overlays: &overlays, notes: &[], structure: false, title: "A < B" };
+        layout::svg(&drawing, &network, &options)
+    };
+    let light = export(&Palette::LIGHT, Some(&plan));
+    assert!(light.starts_with("<svg ") && light.ends_with("</svg>\n"));
+    assert!(light.contains("<title>A &lt; B</title>"));
+    assert_eq!(light.matches("<circle").count(), network.nodes.len() + network.decisions.len());
+    let grey = "stroke=\"#a3aeba\"";
+    assert!(light.contains(grey), "what is not selected is grey");
+    assert!(!export(&Palette::LIGHT, None).contains(grey));
+    assert!(export(&Palette::DARK, Some(&plan)).contains("fill=\"#13171d\""));
+    assert!(light.contains("stroke-dasharray"), "the causal link is dashed");
+}
