@@ -7,6 +7,7 @@ use motion::VehicleModel;
 use rmpl::program::{ObstacleShape, TerrainDecl, World};
 use rmpl::{Code, Diagnostic};
 use smol_str::SmolStr;
+use terrain::format::ImportOptions;
 use terrain::{ConfigurationSpace, GridFrame, Obstacle, Occupancy, Terrain};
 
 use crate::snapshot::MapKey;
@@ -39,7 +40,8 @@ struct SpaceKey {
 impl Grounds {
     /// Reads a map file so that `terrain "name"` finds it; says why when it can't be read.
     pub fn import(&mut self, name: &str, bytes: &[u8]) -> Result<(), String> {
-        let map = read_map(name, bytes)?;
+        let map = terrain::format::read_terrain(bytes, &ImportOptions::default())
+            .map_err(|error| error.to_string())?;
         let version = self.imported.get(name).map_or(1, |before| before.version + 1);
         self.maps.retain(|key, _| key.asset != name);
         self.imported.insert(SmolStr::new(name), Imported { version, map });
@@ -148,8 +150,4 @@ fn obstacle(shape: &ObstacleShape) -> Obstacle {
         }
         ObstacleShape::Polygon { corners_m } => Obstacle::Polygon { corners_m: corners_m.clone() },
     }
-}
-
-fn read_map(name: &str, bytes: &[u8]) -> Result<Terrain, String> {
-    Err(format!("{name} ({} bytes) has no format that is read yet", bytes.len()))
 }

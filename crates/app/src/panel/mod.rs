@@ -4,6 +4,7 @@ pub mod editor;
 pub mod outline;
 pub mod placeholder;
 pub mod problems;
+pub mod terrain;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -168,6 +169,7 @@ fn create(kind: PanelKind) -> Box<dyn Panel> {
     match kind {
         PanelKind::Outline => Box::new(outline::OutlinePanel::default()),
         PanelKind::Problems => Box::new(problems::ProblemsPanel::default()),
+        PanelKind::Terrain => Box::new(terrain::TerrainPanel::default()),
         _ => Box::new(placeholder::PlaceholderPanel::new(kind)),
     }
 }

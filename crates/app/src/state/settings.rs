@@ -156,12 +156,38 @@ pub struct TerrainView {
     pub obstacles: bool,
     /// Contour lines.
     pub contours: bool,
+    /// A grid in mission coordinates.
+    pub grid: bool,
+    /// What the colours of the ground mean.
+    pub coloring: Coloring,
     /// How much heights are exaggerated; 1 is true to scale.
     pub height_scale: f32,
 }
 
+/// What the colours of the ground mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Coloring {
+    /// As it would look.
+    #[default]
+    Natural,
+    /// Height.
+    Height,
+    /// Slope.
+    Slope,
+}
+
 impl Default for TerrainView {
     fn default() -> Self {
-        Self { names: true, paths: true, trees: false, obstacles: true, contours: true, height_scale: 2.0 }
+        Self {
+            names: true,
+            paths: true,
+            trees: false,
+            obstacles: true,
+            contours: true,
+            grid: false,
+            coloring: Coloring::Natural,
+            height_scale: 2.0,
+        }
     }
 }

@@ -122,6 +122,15 @@ impl Tokens {
         self.series[index % self.series.len()]
     }
 
+    /// The colour of `part`, from 0 to 1, on the ramp for heights and slopes: even to the eye, and apart for the
+    /// colour-blind. The terrain's shader uses the same one.
+    pub fn ramp(part: f32) -> Color32 {
+        const STOPS: [Color32; 4] = [rgb(0x21_30_6B), rgb(0x2B_75_8C), rgb(0x9E_B0_78), rgb(0xFC_E8_99)];
+        let scaled = part.clamp(0.0, 1.0) * 3.0;
+        let index = (scaled as usize).min(2);
+        STOPS[index].lerp_to_gamma(STOPS[index + 1], scaled - index as f32)
+    }
+
     /// `color` mixed into the surface: `part` 0 is the surface, 1 the colour.
     pub fn mixed(&self, color: Color32, part: f32) -> Color32 {
         self.surface.lerp_to_gamma(color, part)

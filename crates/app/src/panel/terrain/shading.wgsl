@@ -1,0 +1,155 @@
+// Draws the ground, flat-coloured shapes and lines of constant width into one image.
+// Colours are in the gamma space that the user interface composes in.
+
+struct View {
+    clip_from_world: mat4x4<f32>,
+    eye: vec4<f32>,
+    sun: vec4<f32>,          // xyz towards the sun, w ambient light
+    origin_cell: vec4<f32>,  // xy centre of cell 0, z metres per cell, w exaggeration of heights
+    range: vec4<f32>,        // least and greatest height, contour interval, grid spacing
+    image: vec4<f32>,        // width and height in pixels, colouring, overlay strength
+    horizon: vec4<f32>,      // colour of distance
+};
+
+@group(0) @binding(0) var<uniform> view: View;
+@group(1) @binding(0) var heights: texture_2d<f32>;
+@group(1) @binding(1) var normals: texture_2d<f32>;
+@group(1) @binding(2) var overlay: texture_2d<f32>;
+@group(1) @binding(3) var smooth_sampler: sampler;
+
+struct GroundVertex {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) world: vec3<f32>,
+    @location(1) uv: vec2<f32>,
+};
+
+// `grid` is a corner of a patch (x, y, skirt); `patch_at` the patch's first cell and its stride.
+@vertex
+fn ground_vertex(@location(0) grid: vec4<u32>, @location(1) patch_at: vec4<u32>) -> GroundVertex {
+    let size = vec2<i32>(textureDimensions(heights));
+    let cell = clamp(vec2<i32>(patch_at.xy + grid.xy * patch_at.z), vec2<i32>(0), size - 1);
+    let drop = f32(grid.z) * f32(patch_at.z) * view.origin_cell.z * 1.5;
+    let height = textureLoad(heights, cell, 0).r - drop;
+    let world = vec3<f32>(view.origin_cell.xy + vec2<f32>(cell) * view.origin_cell.z, height);
+    var out: GroundVertex;
+    out.clip = view.clip_from_world * vec4<f32>(world, 1.0);
+    out.world = world;
+    out.uv = (vec2<f32>(cell) + 0.5) / vec2<f32>(size);
+    return out;
+}
+
+fn mars(height: f32, slope: f32) -> vec3<f32> {
+    let low = vec3<f32>(0.47, 0.29, 0.20);
+    let middle = vec3<f32>(0.70, 0.45, 0.30);
+    let high = vec3<f32>(0.86, 0.66, 0.49);
+    let rock = vec3<f32>(0.38, 0.27, 0.22);
+    var color = mix(mix(low, middle, smoothstep(0.0, 0.5, height)), high, smoothstep(0.5, 1.0, height));
+    return mix(color, rock, smoothstep(0.25, 0.7, slope) * 0.8);
+}
+
+// A perceptually even ramp that survives colour blindness (dark blue, teal, sand, light yellow).
+fn ramp(value: f32) -> vec3<f32> {
+    let a = vec3<f32>(0.13, 0.19, 0.42);
+    let b = vec3<f32>(0.17, 0.46, 0.55);
+    let c = vec3<f32>(0.62, 0.69, 0.47);
+    let d = vec3<f32>(0.99, 0.91, 0.60);
+    let t = clamp(value, 0.0, 1.0) * 3.0;
+    return mix(mix(mix(a, b, clamp(t, 0.0, 1.0)), c, clamp(t - 1.0, 0.0, 1.0)), d, clamp(t - 2.0, 0.0, 1.0));
+}
+
+fn line_at(value: f32, spacing: f32) -> f32 {
+    let scaled = value / spacing;
+    let width = max(fwidth(scaled), 1e-5);
+    let nearest = abs(fract(scaled - 0.5) - 0.5);
+    // Lines closer together than a few pixels would be a grey veil: fade them.
+    return (1.0 - smoothstep(0.5, 1.5, nearest / width)) * (1.0 - smoothstep(0.15, 0.4, width));
+}
+
+@fragment
+fn ground_fragment(in: GroundVertex) -> @location(0) vec4<f32> {
+    let normal = normalize(textureSample(normals, smooth_sampler, in.uv).xyz * 2.0 - 1.0);
+    let span = max(view.range.y - view.range.x, 1e-3);
+    let height = (in.world.z - view.range.x) / span;
+    let slope = atan(length(normal.xy) / max(normal.z, 1e-3) / view.origin_cell.w);
+    let light = view.sun.w + (1.0 - view.sun.w) * max(dot(normal, view.sun.xyz), 0.0);
+    let mode = u32(view.image.z);
+    var color = mars(height, slope);
+    if (mode == 1u) { color = ramp(height); }
+    if (mode == 2u) { color = ramp(slope / 0.6); }
+    color = color * (0.25 + 0.95 * light);
+    let covered = textureSample(overlay, smooth_sampler, in.uv);
+    color = mix(color, covered.rgb, covered.a * view.image.w);
+    let contour = line_at(in.world.z / view.origin_cell.w, max(view.range.z, 1e-3));
+    if (view.range.z > 0.0) { color = mix(color, color * 0.45, contour * 0.55); }
+    let grid = max(line_at(in.world.x, max(view.range.w, 1e-3)), line_at(in.world.y, max(view.range.w, 1e-3)));
+    if (view.range.w > 0.0) { color = mix(color, vec3<f32>(1.0), grid * 0.28); }
+    let away = distance(in.world, view.eye.xyz);
+    let haze = smoothstep(0.35, 1.3, away / max(view.eye.w, 1.0)) * 0.35;
+    return vec4<f32>(mix(color, view.horizon.rgb, haze), 1.0);
+}
+
+struct ShapeVertex {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(1) color: vec4<f32>,
+};
+
+@vertex
+fn shape_vertex(
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) color: vec4<f32>,
+) -> ShapeVertex {
+    var out: ShapeVertex;
+    out.clip = view.clip_from_world * vec4<f32>(position, 1.0);
+    out.normal = normal;
+    out.color = color;
+    return out;
+}
+
+@fragment
+fn shape_fragment(in: ShapeVertex) -> @location(0) vec4<f32> {
+    let light = 0.45 + 0.55 * max(dot(normalize(in.normal), view.sun.xyz), 0.0);
+    return vec4<f32>(in.color.rgb * light * in.color.a, in.color.a);
+}
+
+struct LineVertex {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) color: vec4<f32>,
+};
+
+// One instance is a segment; its six vertices are the corners of a quad of constant width on the screen.
+@vertex
+fn line_vertex(
+    @builtin(vertex_index) corner: u32,
+    @location(0) from_width: vec4<f32>,
+    @location(1) to_: vec4<f32>,
+    @location(2) color: vec4<f32>,
+) -> LineVertex {
+    let a = view.clip_from_world * vec4<f32>(from_width.xyz, 1.0);
+    let b = view.clip_from_world * vec4<f32>(to_.xyz, 1.0);
+    var at_end = 0.0;
+    if (corner == 1u || corner == 3u || corner == 4u) { at_end = 1.0; }
+    var side = -1.0;
+    if (corner == 2u || corner == 4u || corner == 5u) { side = 1.0; }
+    var out: LineVertex;
+    out.color = vec4<f32>(color.rgb * color.a, color.a);
+    if (a.w <= 0.01 || b.w <= 0.01) {
+        out.clip = vec4<f32>(0.0, 0.0, 2.0, 1.0);
+        return out;
+    }
+    let pixels = view.image.xy * 0.5;
+    let direction = (b.xy / b.w - a.xy / a.w) * pixels;
+    let along = direction / max(length(direction), 1e-4);
+    let across = vec2<f32>(-along.y, along.x) * side * from_width.w * 0.5;
+    let cap = along * (at_end * 2.0 - 1.0) * from_width.w * 0.25;
+    let end = mix(a, b, at_end);
+    // Towards the eye by a hair, so that draped lines do not drown in the ground between two samples.
+    out.clip = vec4<f32>(end.xy + (across + cap) / pixels * end.w, end.z - to_.w * end.w, end.w);
+    return out;
+}
+
+@fragment
+fn line_fragment(in: LineVertex) -> @location(0) vec4<f32> {
+    return in.color;
+}
