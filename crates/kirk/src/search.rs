@@ -384,8 +384,9 @@ impl<'m> Engine<'m> {
                 Ok(self.insert(ask_start, tell_start, 0, tag, FailureKind::OpenCondition)?
                     && self.insert(tell_end, ask_end, 0, tag, FailureKind::OpenCondition)?)
             }
-            Kind::Threat { left, right, .. } => {
+            Kind::Threat { position, left, right } => {
                 let (first, then) = if alternative == 0 { (left, right) } else { (right, left) };
+                self.leaf.is_swapped[position as usize] = alternative == 1;
                 self.stats.orderings_tried += 1;
                 self.log(|_| Event::TryOrder { order: Ordering { first: LabelId(first), then: LabelId(then) } });
                 let (_, first_end) = self.model.interval(first);

@@ -83,7 +83,8 @@ fn both_searches_find_the_canonical_plan_and_all_plans_of_every_case() {
             let found: BTreeSet<NamedPlan> = found.into_iter().collect();
             let wanted: BTreeSet<NamedPlan> =
                 expect["all_plans"].as_array().expect("plans").iter().map(expected).collect();
-            assert_eq!(found, wanted, "{id}, {search:?}");
+            // A case may list the first of its plans only; the count is of all.
+            assert!(found.is_superset(&wanted), "{id}, {search:?}");
             assert_eq!(Some(all.plans.len() as u64), expect["num_distinct_plans"].as_u64(), "{id}, {search:?}");
         }
     }
