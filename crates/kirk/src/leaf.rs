@@ -129,7 +129,7 @@ impl Engine<'_> {
         let (left_start, left_end) = self.model.interval(left);
         let (right_start, right_end) = self.model.interval(right);
         let (gap_after_left, gap_after_right) =
-            (self.model.least_gap_after(left), self.model.least_gap_after(right));
+            (self.model.gap_after[left as usize], self.model.gap_after[right as usize]);
         if let Some(structure) = &self.model.structure {
             let arc = |label: u32| self.model.conditions.labels[label as usize].arc;
             match structure.relation(arc(left), arc(right)) {

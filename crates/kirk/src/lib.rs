@@ -5,23 +5,27 @@
 //! its own answers: that is `verify`'s work.
 
 mod conditions;
+mod explain;
 mod failure;
 mod leaf;
 mod levels;
 mod model;
 mod options;
 mod record;
+mod relax;
 mod search;
 mod selection;
 mod solution;
 mod structure;
 mod trace;
+mod wording;
 
 use std::collections::BTreeSet;
 
 use stn::Overflow;
 use tpn::{Network, Plan};
 
+pub use explain::is_conflict;
 pub use failure::{Failure, FailureKind, Member, Reason, Relaxation};
 pub use options::{ExpansionLimit, Options, Outcome, Search, Stats, Status, Termination, Unlimited};
 pub use trace::{Constraint, CycleMember, Entry, Event, Trace, TreeChoice, TreeNode, TreeNodeId, TreeStatus};
@@ -31,7 +35,7 @@ use search::{Engine, Halt, Setup};
 
 /// Plans `network`.
 pub fn plan(network: &Network, options: &Options, termination: &mut dyn Termination) -> Outcome {
-    match Model::new(network, options.threat_gap).and_then(|model| search(&model, options, termination)) {
+    match Model::new(network, options.threat_gap).and_then(|model| answer(network, &model, options, termination)) {
         Ok(outcome) => outcome,
         Err(Overflow) => Outcome {
             status: Status::Error,
@@ -41,6 +45,23 @@ pub fn plan(network: &Network, options: &Options, termination: &mut dyn Terminat
             trace: None,
         },
     }
+}
+
+fn answer(
+    network: &Network,
+    model: &Model,
+    options: &Options,
+    termination: &mut dyn Termination,
+) -> Result<Outcome, Overflow> {
+    let mut outcome = search(model, options, termination)?;
+    if outcome.status == Status::NoPlan && options.explain {
+        let mut failure = explain::explain(network, model)?;
+        if options.relax {
+            failure.relaxations = relax::relaxations(network, model, &failure)?;
+        }
+        outcome.failure = Some(failure);
+    }
+    Ok(outcome)
 }
 
 fn search(model: &Model, options: &Options, termination: &mut dyn Termination) -> Result<Outcome, Overflow> {

@@ -3,7 +3,7 @@
 use rmpl::program::LabelMode;
 use rmpl::{Bound, Rational};
 use stn::{Overflow, PointId};
-use tpn::{ArcId, BlockKind, Network};
+use tpn::{BlockKind, Network};
 
 use crate::conditions::Conditions;
 use crate::structure::Structure;
@@ -21,7 +21,6 @@ pub(crate) struct Model {
     pub(crate) scale: i64,
     pub(crate) gap: i64,
     pub(crate) start: u32,
-    pub(crate) end: u32,
     pub(crate) num_nodes: usize,
     pub(crate) arcs: Vec<ModelArc>,
     /// The out-arcs of node `n` are `out_arcs[out_start[n]..out_start[n + 1]]`.
@@ -33,6 +32,9 @@ pub(crate) struct Model {
     /// Nodes in nesting order: each before those that its arcs lead to.
     pub(crate) order: Vec<PointId>,
     pub(crate) conditions: Conditions,
+    /// How far the end of each labelled interval must be from the start of another to count as before it (SPEC 5.3):
+    /// the threat gap for instants, otherwise nothing.
+    pub(crate) gap_after: Vec<i64>,
     /// Whether the contexts of arcs and decisions are known; otherwise they depend on the order of the search.
     pub(crate) has_contexts: bool,
     /// Present if the network has a program's structure that fits its arcs.
@@ -101,7 +103,6 @@ impl Model {
             scale,
             gap: scaled(gap, scale)?,
             start: network.start.0,
-            end: network.end.0,
             num_nodes: network.nodes.len(),
             decisions: decisions.collect(),
             arcs,
@@ -110,10 +111,12 @@ impl Model {
             decision_of,
             order: Vec::new(),
             conditions: Conditions::new(network),
+            gap_after: Vec::new(),
             has_contexts: false,
             structure: None,
         };
         model.order = model.nesting_order();
+        model.gap_after = (0..network.labels.len()).map(|label| model.least_gap_after(label)).collect();
         model.has_contexts = model.find_contexts(network);
         if model.has_contexts {
             model.structure = Structure::new(network, &model)?;
@@ -121,13 +124,37 @@ impl Model {
         Ok(model)
     }
 
-    /// Changes the bounds of one arc; `Err` if the new times are no whole numbers of the model's unit or do not fit.
-    pub(crate) fn set_bounds(&mut self, arc: ArcId, lower: Rational, upper: Bound) -> Result<(), Overflow> {
-        let lower = scaled(lower, self.scale)?;
-        let upper = scaled_bound(upper, self.scale)?;
-        let arc = self.arcs.get_mut(arc.index()).ok_or(Overflow)?;
-        (arc.lower, arc.upper) = (lower, upper);
+    /// Changes the bounds of one arc, in the model's units. The structure must be refreshed afterwards.
+    pub(crate) fn set_bounds(&mut self, network: &Network, arc: u32, lower: i64, upper: i64) {
+        (self.arcs[arc as usize].lower, self.arcs[arc as usize].upper) = (lower, upper);
+        for label in &network.arcs[arc as usize].labels {
+            self.gap_after[label.index()] = self.least_gap_after(label.index());
+        }
+    }
+
+    /// Brings the structure up to date with all bounds.
+    pub(crate) fn refresh_structure(&mut self, network: &Network) -> Result<(), Overflow> {
+        if let Some(mut structure) = self.structure.take()
+            && structure.refresh(network, self)?
+        {
+            self.structure = Some(structure);
+        }
         Ok(())
+    }
+
+    /// A time in the model's units, if it is a whole number of them.
+    pub(crate) fn units(&self, time: Rational) -> Result<i64, Overflow> {
+        scaled(time, self.scale)
+    }
+
+    /// A bound in the model's units, if it is a whole number of them.
+    pub(crate) fn bound_units(&self, bound: Bound) -> Result<i64, Overflow> {
+        scaled_bound(bound, self.scale)
+    }
+
+    /// Exact time from integer units, with [`INFINITE`] for none.
+    pub(crate) fn bound(&self, units: i64) -> Bound {
+        if units == INFINITE { Bound::Infinite } else { Bound::Finite(self.time(units)) }
     }
 
     pub(crate) fn out_arcs(&self, node: u32) -> &[u32] {
@@ -146,9 +173,8 @@ impl Model {
         (PointId(arc.from), PointId(arc.to))
     }
 
-    /// How far apart the end of the first of two intervals must be from the start of the second to count as before.
-    pub(crate) fn least_gap_after(&self, label: u32) -> i64 {
-        let arc = &self.arcs[self.conditions.labels[label as usize].arc as usize];
+    fn least_gap_after(&self, label: usize) -> i64 {
+        let arc = &self.arcs[self.conditions.labels[label].arc as usize];
         if arc.lower == 0 && arc.upper == 0 { self.gap } else { 0 }
     }
 

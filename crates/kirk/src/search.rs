@@ -405,7 +405,7 @@ impl<'m> Engine<'m> {
     fn blame_touching(&mut self, depth: usize, first: u32) {
         let total: i128 = self.stn.cycle().iter().map(|edge| i128::from(edge.weight)).sum();
         let most = total + i128::from(self.model.gap);
-        if most >= i128::from(self.model.least_gap_after(first)) {
+        if most >= i128::from(self.model.gap_after[first as usize]) {
             self.conflict.insert_all_below(depth as u32);
         }
     }
@@ -500,12 +500,7 @@ impl<'m> Engine<'m> {
                 if self.structure.is_none() {
                     self.frontier.insert(decision);
                 }
-                let context = if self.model.has_contexts {
-                    self.model.decisions[decision as usize].context
-                } else {
-                    self.found_decision_contexts[decision as usize]
-                };
-                self.blame_context(context);
+                self.blame_context(self.decision_context(decision));
             }
             Kind::Link { ask, tells, .. } => {
                 self.log(|_| Event::Unclosable { ask: LabelId(ask) });
@@ -614,9 +609,27 @@ impl<'m> Engine<'m> {
     }
 
     fn flush_dead_end(&mut self) {
-        let choices = self.blamed_choices().collect();
+        let mut choices: Vec<(u32, u32)> = self.blamed_choices().collect();
+        let mut next = 0;
+        while let Some(&(decision, _)) = choices.get(next) {
+            let context = self.decision_context(decision);
+            if context.decision != NONE && !choices.contains(&(context.decision, context.alternative)) {
+                choices.push((context.decision, context.alternative));
+            }
+            next += 1;
+        }
+        choices.sort_unstable();
         if let Some(dead_end) = self.dead_ends.flush(choices) {
             self.dead_ends.found.push(dead_end);
+        }
+    }
+
+    /// The innermost choice that reaches a decision.
+    fn decision_context(&self, decision: u32) -> Context {
+        if self.model.has_contexts {
+            self.model.decisions[decision as usize].context
+        } else {
+            self.found_decision_contexts[decision as usize]
         }
     }
 

@@ -1,0 +1,195 @@
+//! Why there is no plan: one minimal conflict per group of choices (SPEC 5.4, 5.6).
+//!
+//! A search that records what each dead end rests on gives a sufficient set of bounds and conditions; leaving out one
+//! after the other while what remains is still contradictory makes it minimal.
+
+use rmpl::Span;
+use stn::Overflow;
+use tpn::{Choice, DecisionId, Network};
+
+use crate::failure::{Failure, Member, Reason};
+use crate::model::{INFINITE, Model, NONE};
+use crate::options::Stats;
+use crate::record::DeadEnd;
+use crate::search::{Engine, Halt, Setup, UNBOUNDED_BELOW};
+use crate::trace::{Constraint, CycleMember};
+use crate::wording;
+
+/// Explaining stops adding reasons after this many.
+const MAX_REASONS: u64 = 64;
+
+/// How much work explanations may be, in searches of a whole network of a certain size.
+pub(crate) struct Effort {
+    /// Searches left.
+    pub(crate) searches: usize,
+    /// Alternatives that one search may try.
+    pub(crate) expansions: u64,
+}
+
+impl Effort {
+    pub(crate) fn for_size(num_nodes: usize) -> Self {
+        let size = num_nodes.max(1);
+        Self { searches: (1_000_000 / size).clamp(60, 5_000), expansions: (2_000_000 / size as u64).clamp(200, 10_000) }
+    }
+
+    pub(crate) fn spend(&mut self) -> bool {
+        self.searches = self.searches.saturating_sub(1);
+        self.searches > 0
+    }
+}
+
+/// Whether `members` alone make every completion of `choices` fail: the definition of a conflict. Bounds that are not
+/// members do not count; conditions that are not members need no assertion and threaten nothing, but assertions still
+/// carry requirements. `None` if that takes too long to find out or times do not fit.
+pub fn is_conflict(network: &Network, choices: &[Choice], members: &[Member]) -> Option<bool> {
+    let model = Model::new(network, None).ok()?;
+    let mut effort = Effort::for_size(model.num_nodes);
+    let choices: Vec<(u32, u32)> = choices.iter().map(|choice| (choice.decision.0, choice.alternative)).collect();
+    let mut part = Part::new(&model, &choices);
+    for &member in members {
+        part.set(&model, member, true);
+    }
+    part.fails(&mut effort).ok()?
+}
+
+/// Explains why there is no plan.
+pub(crate) fn explain(network: &Network, model: &Model) -> Result<Failure, Overflow> {
+    let mut effort = Effort::for_size(model.num_nodes);
+    let setup = Setup { jumps: true, records_dead_ends: true, ..Setup::default() };
+    let mut engine = Engine::new(model, setup);
+    let limit = effort.expansions;
+    let mut enough = |stats: &Stats| stats.expanded >= limit || stats.backtracks > MAX_REASONS;
+    let is_complete = engine.run(&mut enough)? == Halt::Exhausted;
+    let mut dead_ends = engine.dead_ends.found;
+    dead_ends.sort_by(|left, right| left.choices.cmp(&right.choices));
+    let mut reasons: Vec<Reason> = Vec::new();
+    for dead_end in &dead_ends {
+        let reason = reason(network, model, dead_end, &mut effort)?;
+        if !reasons.iter().any(|known| known.choices == reason.choices && known.conflict == reason.conflict) {
+            reasons.push(reason);
+        }
+    }
+    Ok(Failure { reasons, is_complete, relaxations: Vec::new() })
+}
+
+fn reason(network: &Network, model: &Model, dead_end: &DeadEnd, effort: &mut Effort) -> Result<Reason, Overflow> {
+    let mut part = Part::new(model, &dead_end.choices);
+    let mut members = dead_end.members.clone();
+    for &member in &members {
+        part.set(model, member, true);
+    }
+    let mut is_minimal = part.fails(effort)? == Some(true);
+    if is_minimal {
+        // The last members first: what comes late in the text is told only if it matters.
+        for &member in dead_end.members.iter().rev() {
+            part.set(model, member, false);
+            match part.fails(effort)? {
+                Some(true) => members.retain(|&kept| kept != member),
+                Some(false) => part.set(model, member, true),
+                None => {
+                    part.set(model, member, true);
+                    is_minimal = false;
+                }
+            }
+        }
+    }
+    let cycle = if is_minimal { part.first_cycle(effort)? } else { dead_end.cycle.clone() };
+    let choices: Vec<Choice> = dead_end
+        .choices
+        .iter()
+        .map(|&(decision, alternative)| Choice { decision: DecisionId(decision), alternative })
+        .collect();
+    let told = wording::Told { network, kind: dead_end.kind, choices: &choices, conflict: &members, cycle: &cycle };
+    let message = told.message();
+    let spans = spans(network, &members, &cycle);
+    Ok(Reason { message, spans, choices, kind: dead_end.kind, conflict: members, cycle, is_minimal })
+}
+
+/// The places of a conflict: its conditions, then the bounds that take time.
+fn spans(network: &Network, members: &[Member], cycle: &[CycleMember]) -> Vec<Span> {
+    let conditions = members.iter().filter_map(|member| match member {
+        Member::Condition(label) => network.labels[label.index()].span,
+        Member::Bound(_) => None,
+    });
+    let bounds = cycle.iter().filter_map(|member| match member.constraint {
+        Constraint::Lower(arc) | Constraint::Upper(arc) if wording::is_telling(network, member) => {
+            network.arcs[arc.index()].span
+        }
+        _ => None,
+    });
+    let mut spans: Vec<Span> = Vec::new();
+    for span in conditions.chain(bounds) {
+        if !spans.contains(&span) {
+            spans.push(span);
+        }
+    }
+    spans
+}
+
+/// The planning problem that has only some of the bounds and conditions of another.
+struct Part {
+    model: Model,
+    active_labels: Vec<bool>,
+    assumed: Vec<u32>,
+}
+
+impl Part {
+    fn new(whole: &Model, choices: &[(u32, u32)]) -> Self {
+        let mut model = whole.clone();
+        model.structure = None;
+        for arc in &mut model.arcs {
+            (arc.lower, arc.upper) = (UNBOUNDED_BELOW, INFINITE);
+        }
+        let mut assumed = vec![NONE; model.decisions.len()];
+        for &(decision, alternative) in choices {
+            assumed[decision as usize] = alternative;
+        }
+        Self { active_labels: vec![false; model.conditions.labels.len()], model, assumed }
+    }
+
+    fn set(&mut self, whole: &Model, member: Member, is_in: bool) {
+        match member {
+            Member::Condition(label) => self.active_labels[label.index()] = is_in,
+            Member::Bound(Constraint::Lower(arc)) => {
+                self.model.arcs[arc.index()].lower =
+                    if is_in { whole.arcs[arc.index()].lower } else { UNBOUNDED_BELOW };
+            }
+            Member::Bound(Constraint::Upper(arc)) => {
+                self.model.arcs[arc.index()].upper = if is_in { whole.arcs[arc.index()].upper } else { INFINITE };
+            }
+            Member::Bound(Constraint::Link(_) | Constraint::Order(_)) => {}
+        }
+    }
+
+    /// Whether the part has no plan; `None` if that takes too long to find out.
+    fn fails(&self, effort: &mut Effort) -> Result<Option<bool>, Overflow> {
+        if !effort.spend() {
+            return Ok(None);
+        }
+        let mut engine = Engine::new(&self.model, self.setup(false));
+        let limit = effort.expansions;
+        Ok(match engine.run(&mut |stats: &Stats| stats.expanded >= limit)? {
+            Halt::Solution => Some(false),
+            Halt::Exhausted => Some(true),
+            Halt::Stopped => None,
+        })
+    }
+
+    /// A contradiction among the bounds of the part, if there is one to show.
+    fn first_cycle(&self, effort: &Effort) -> Result<Vec<CycleMember>, Overflow> {
+        let mut engine = Engine::new(&self.model, self.setup(true));
+        let limit = effort.expansions;
+        engine.run(&mut |stats: &Stats| stats.expanded >= limit)?;
+        Ok(engine.dead_ends.found.into_iter().map(|dead_end| dead_end.cycle).find(|cycle| !cycle.is_empty()).unwrap_or_default())
+    }
+
+    fn setup(&self, records_dead_ends: bool) -> Setup {
+        Setup {
+            jumps: true,
+            records_dead_ends,
+            active_labels: Some(self.active_labels.clone()),
+            assumed: Some(self.assumed.clone()),
+            ..Setup::default()
+        }
+    }
+}

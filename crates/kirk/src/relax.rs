@@ -1,0 +1,162 @@
+//! Changes of one bound that make a mission plannable, each found by planning.
+
+use std::collections::BTreeMap;
+
+use rmpl::{Bound, Rational, Span};
+use stn::Overflow;
+use tpn::{ArcId, Network};
+
+use crate::explain::Effort;
+use crate::failure::{Failure, Member, Relaxation};
+use crate::model::{INFINITE, Model};
+use crate::options::Stats;
+use crate::search::{Engine, Halt, Setup};
+use crate::trace::Constraint;
+use crate::wording;
+
+/// At most so many are offered.
+const MAX_RELAXATIONS: usize = 8;
+
+/// The smallest changes of single bounds, among those that `failure` rests on, that give `network` a plan.
+pub(crate) fn relaxations(network: &Network, model: &Model, failure: &Failure) -> Result<Vec<Relaxation>, Overflow> {
+    let mut trial = Trial { network, model: model.clone(), effort: Effort::for_size(model.num_nodes) };
+    let mut found: Vec<Relaxation> = Vec::new();
+    for (arcs, is_lower) in candidates(network, failure) {
+        if let Some(new) = trial.closest(&arcs, is_lower)? {
+            found.push(relaxation(network, model, &arcs, is_lower, new));
+        }
+    }
+    found.sort_by(|left, right| cost(left).cmp(&cost(right)).then(left.arc.cmp(&right.arc)));
+    found.truncate(MAX_RELAXATIONS);
+    Ok(found)
+}
+
+/// Bounds of the conflicts, those with the same text together.
+fn candidates(network: &Network, failure: &Failure) -> Vec<(Vec<ArcId>, bool)> {
+    let mut by_span: BTreeMap<(Option<Span>, bool, Option<ArcId>), Vec<ArcId>> = BTreeMap::new();
+    for reason in &failure.reasons {
+        for member in &reason.conflict {
+            let (arc, is_lower) = match member {
+                Member::Bound(Constraint::Lower(arc)) => (*arc, true),
+                Member::Bound(Constraint::Upper(arc)) => (*arc, false),
+                _ => continue,
+            };
+            let bounds = &network.arcs[arc.index()];
+            if wording::is_structural(bounds.kind) || (is_lower && bounds.lower == Rational::from_integer(0)) {
+                continue;
+            }
+            let alone = bounds.span.is_none().then_some(arc);
+            by_span.entry((bounds.span, is_lower, alone)).or_insert_with(|| vec![arc]);
+        }
+    }
+    // One text may make several arcs: they change together, if they are equal.
+    for ((span, _, _), arcs) in &mut by_span {
+        let Some(span) = span else { continue };
+        let first = arcs[0];
+        *arcs = (0..network.arcs.len()).map(ArcId::from_index).filter(|arc| {
+            let arc = &network.arcs[arc.index()];
+            arc.span == Some(*span) && !wording::is_structural(arc.kind)
+        }).collect();
+        let bounds = |arc: &ArcId| (network.arcs[arc.index()].lower, network.arcs[arc.index()].upper);
+        if arcs.iter().any(|arc| bounds(arc) != bounds(&first)) {
+            arcs.clear();
+        }
+    }
+    by_span.into_iter().map(|((_, is_lower, _), arcs)| (arcs, is_lower)).filter(|(arcs, _)| !arcs.is_empty()).collect()
+}
+
+struct Trial<'a> {
+    network: &'a Network,
+    model: Model,
+    effort: Effort,
+}
+
+impl Trial<'_> {
+    /// The value closest to the present one that gives a plan, if any does and it is found in time.
+    fn closest(&mut self, arcs: &[ArcId], is_lower: bool) -> Result<Option<i64>, Overflow> {
+        let first = &self.model.arcs[arcs[0].index()];
+        let (lower, upper) = (first.lower, first.upper);
+        let old = if is_lower { lower } else { upper };
+        let most = if is_lower { 0 } else { INFINITE };
+        if !self.plans_with(arcs, is_lower, most, (lower, upper))? {
+            return Ok(None);
+        }
+        // Step away from the old value ever faster until there is a plan, then halve the gap.
+        let (mut fails, mut step) = (old, 1_i64);
+        let mut plans = loop {
+            let next = if is_lower { Some(old.saturating_sub(step).max(0)) } else { old.checked_add(step) };
+            let Some(next) = next.filter(|&next| next < INFINITE / 4) else { return Ok(None) };
+            if self.plans_with(arcs, is_lower, next, (lower, upper))? {
+                break next;
+            }
+            if self.effort.searches == 0 || (is_lower && next == 0) {
+                return Ok(None);
+            }
+            (fails, step) = (next, step.saturating_mul(2));
+        };
+        while plans.abs_diff(fails) > 1 {
+            let middle = plans.midpoint(fails);
+            if self.plans_with(arcs, is_lower, middle, (lower, upper))? {
+                plans = middle;
+            } else {
+                fails = middle;
+            }
+        }
+        Ok(Some(plans))
+    }
+
+    fn plans_with(
+        &mut self,
+        arcs: &[ArcId],
+        is_lower: bool,
+        value: i64,
+        (lower, upper): (i64, i64),
+    ) -> Result<bool, Overflow> {
+        if !self.effort.spend() {
+            return Ok(false);
+        }
+        let (new_lower, new_upper) = if is_lower { (value, upper) } else { (lower, value) };
+        for arc in arcs {
+            self.model.set_bounds(self.network, arc.0, new_lower, new_upper);
+        }
+        self.model.refresh_structure(self.network)?;
+        let setup = Setup { jumps: true, by_structure: true, ..Setup::default() };
+        let limit = self.effort.expansions;
+        let halt = Engine::new(&self.model, setup).run(&mut |stats: &Stats| stats.expanded >= limit)?;
+        for arc in arcs {
+            self.model.set_bounds(self.network, arc.0, lower, upper);
+        }
+        self.model.refresh_structure(self.network)?;
+        Ok(halt == Halt::Solution)
+    }
+}
+
+fn relaxation(network: &Network, model: &Model, arcs: &[ArcId], is_lower: bool, new: i64) -> Relaxation {
+    let arc = &network.arcs[arcs[0].index()];
+    let new = model.time(new);
+    let name = wording::arc_name(network, arc);
+    let (old, new_lower, new_upper, label) = if is_lower {
+        let old = Bound::Finite(arc.lower);
+        let label = format!("let {name} take {} at least instead of {old}", Bound::Finite(new));
+        (old, Bound::Finite(new), arc.upper, label)
+    } else {
+        let label = format!("let {name} take up to {} instead of {}", Bound::Finite(new), arc.upper);
+        (arc.upper, Bound::Finite(arc.lower), Bound::Finite(new), label)
+    };
+    Relaxation {
+        arc: arcs[0],
+        is_lower,
+        old,
+        new,
+        span: arc.span,
+        bounds_text: format!("[{new_lower}, {new_upper}]"),
+        label,
+    }
+}
+
+/// The change relative to the bound.
+fn cost(relaxation: &Relaxation) -> Rational {
+    let old = relaxation.old.finite().unwrap_or_default();
+    let change = if relaxation.is_lower { old - relaxation.new } else { relaxation.new - old };
+    change / old.max(Rational::from_integer(1))
+}

@@ -1,0 +1,202 @@
+//! Reasons in the author's terms.
+
+use rmpl::Rational;
+use rmpl::program::LabelMode;
+use rmpl::rational::display;
+use tpn::{Arc, ArcKind, Choice, LabelId, Network, OccurrenceKind};
+
+use crate::failure::{FailureKind, Member};
+use crate::trace::{Constraint, CycleMember};
+
+/// A reason to be told.
+pub(crate) struct Told<'a> {
+    pub(crate) network: &'a Network,
+    pub(crate) kind: FailureKind,
+    pub(crate) choices: &'a [Choice],
+    pub(crate) conflict: &'a [Member],
+    pub(crate) cycle: &'a [CycleMember],
+}
+
+impl Told<'_> {
+    /// One sentence: what contradicts what, and after which choices.
+    pub(crate) fn message(&self) -> String {
+        let what = match self.kind {
+            FailureKind::Temporal => self.bounds().unwrap_or_else(|| "bounds contradict each other".to_owned()),
+            FailureKind::OpenCondition => self.open_condition(),
+            FailureKind::Threat => self.threat(),
+        };
+        let choices: Vec<String> = self
+            .choices
+            .iter()
+            .map(|choice| format!("{}={}", Network::decision_name(choice.decision), choice.alternative))
+            .collect();
+        if choices.is_empty() { what } else { format!("with {}: {what}", choices.join(", ")) }
+    }
+
+    fn conditions(&self) -> Vec<LabelId> {
+        let labels = self.conflict.iter().filter_map(|member| match member {
+            Member::Condition(label) => Some(*label),
+            Member::Bound(_) => None,
+        });
+        labels.collect()
+    }
+
+    fn open_condition(&self) -> String {
+        let asks: Vec<LabelId> = self.conditions();
+        let Some(&ask) = asks.first() else { return "a requirement cannot be carried".to_owned() };
+        let label = &self.network.labels[ask.index()];
+        let owner = interval_name(self.network, ask);
+        if let Some(bounds) = self.bounds() {
+            return format!("{owner} requires {}: {bounds}", label.text);
+        }
+        let is_asserted = self
+            .network
+            .labels
+            .iter()
+            .any(|other| other.mode == LabelMode::Tell && other.literal.supports(&label.literal));
+        let elsewhere = if is_asserted { " here" } else { "" };
+        format!("{owner} requires {}, but nothing asserts it{elsewhere}", label.text)
+    }
+
+    fn threat(&self) -> String {
+        let mut names: Vec<String> = Vec::new();
+        for label in self.conditions() {
+            let name = format!("{} of {}", self.network.labels[label.index()].text, interval_name(self.network, label));
+            let name = if interval_name(self.network, label) == self.network.labels[label.index()].text.as_str() {
+                self.network.labels[label.index()].text.to_string()
+            } else {
+                name
+            };
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        let kept_apart = format!("{} cannot be kept apart", joined(&names));
+        match self.bounds() {
+            Some(bounds) => format!("{kept_apart}: {bounds}"),
+            None => kept_apart,
+        }
+    }
+
+    /// What needs more time than something else leaves it.
+    fn bounds(&self) -> Option<String> {
+        // In textual order, whatever way round the cycle goes.
+        let mut needs: Vec<(u32, String)> = Vec::new();
+        let mut allows: Vec<(String, &'static str)> = Vec::new();
+        let (mut needed, mut allowed) = (Rational::from_integer(0), Rational::from_integer(0));
+        for member in self.cycle {
+            match member.constraint {
+                Constraint::Lower(arc) => {
+                    needed -= member.weight;
+                    if is_telling(self.network, member) {
+                        push_new(&mut needs, arc.0, arc_name(self.network, &self.network.arcs[arc.index()]));
+                    }
+                }
+                Constraint::Upper(arc) => {
+                    allowed += member.weight;
+                    let arc = &self.network.arcs[arc.index()];
+                    if is_telling(self.network, member) {
+                        let name = arc_name(self.network, arc);
+                        if !allows.iter().any(|(known, _)| *known == name) {
+                            allows.push((name, allowing_verb(self.network, arc)));
+                        }
+                    }
+                }
+                Constraint::Order(_) => {
+                    needed -= member.weight;
+                    if member.weight != Rational::from_integer(0) {
+                        push_new(&mut needs, u32::MAX, format!("a gap of {}", display(-member.weight)));
+                    }
+                }
+                Constraint::Link(_) => allowed += member.weight,
+            }
+        }
+        if self.cycle.is_empty() {
+            return None;
+        }
+        needs.sort();
+        let needs: Vec<String> = needs.into_iter().map(|(_, name)| name).collect();
+        let verb = if needs.len() == 1 { "needs" } else { "need" };
+        let needs = if needs.is_empty() { "keeping them apart".to_owned() } else { joined(&needs) };
+        let (needed, allowed) = (display(needed), display(allowed));
+        Some(match allows.as_slice() {
+            [] => format!("{needs} {verb} at least {needed}, but the program leaves no time for it"),
+            [(name, allows)] => format!("{needs} {verb} at least {needed}, but {name} {allows} {allowed}"),
+            _ => {
+                let names: Vec<String> = allows.into_iter().map(|(name, _)| name).collect();
+                format!("{needs} {verb} at least {needed}, but {} together allow only {allowed}", joined(&names))
+            }
+        })
+    }
+}
+
+/// Whether a bound says something to the author: glue does not.
+pub(crate) fn is_telling(network: &Network, member: &CycleMember) -> bool {
+    let arc = match member.constraint {
+        Constraint::Lower(arc) | Constraint::Upper(arc) => &network.arcs[arc.index()],
+        Constraint::Link(_) | Constraint::Order(_) => return false,
+    };
+    let is_structural = is_structural(arc.kind);
+    // A duration of zero at least says nothing; one of zero at most does, where it is written.
+    !is_structural && (matches!(member.constraint, Constraint::Upper(_)) || member.weight != Rational::from_integer(0))
+}
+
+/// Whether the bounds of an arc are rules of the language, which no author wrote.
+pub(crate) fn is_structural(kind: ArcKind) -> bool {
+    matches!(
+        kind,
+        ArcKind::Glue | ArcKind::Fork | ArcKind::Join | ArcKind::Choice | ArcKind::Merge | ArcKind::Point
+    )
+}
+
+/// What an author calls an arc.
+pub(crate) fn arc_name(network: &Network, arc: &Arc) -> String {
+    if let Some(occurrence) = arc.occurrence {
+        let occurrence = &network.occurrences[occurrence.index()];
+        match occurrence.kind {
+            OccurrenceKind::Assertion => {
+                if let Some(label) = arc.labels.first() {
+                    return network.labels[label.index()].text.to_string();
+                }
+            }
+            OccurrenceKind::Delay => return "the delay".to_owned(),
+            OccurrenceKind::Scenario => return "the scenario".to_owned(),
+            OccurrenceKind::Scope => return "the bounded block".to_owned(),
+            OccurrenceKind::Primitive | OccurrenceKind::Activity => {}
+        }
+        let same = network.occurrences.iter().filter(|other| other.activity == occurrence.activity).count();
+        return if same > 1 { occurrence.name.to_string() } else { occurrence.activity.to_string() };
+    }
+    match arc.labels.first() {
+        Some(label) => network.labels[label.index()].text.to_string(),
+        None => "the bounded block".to_owned(),
+    }
+}
+
+fn interval_name(network: &Network, label: LabelId) -> String {
+    arc_name(network, &network.arcs[network.labels[label.index()].arc.index()])
+}
+
+fn allowing_verb(network: &Network, arc: &Arc) -> &'static str {
+    match arc.occurrence.map(|occurrence| network.occurrences[occurrence.index()].kind) {
+        Some(OccurrenceKind::Assertion) => "holds for only",
+        Some(OccurrenceKind::Primitive | OccurrenceKind::Activity) => "takes at most",
+        Some(OccurrenceKind::Delay) => "lasts at most",
+        Some(OccurrenceKind::Scenario | OccurrenceKind::Scope) | None => "allows only",
+    }
+}
+
+fn push_new(names: &mut Vec<(u32, String)>, position: u32, name: String) {
+    if !names.iter().any(|(_, known)| *known == name) {
+        names.push((position, name));
+    }
+}
+
+fn joined(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        [only] => only.clone(),
+        [first @ .., last] if names.len() <= 4 => format!("{} and {last}", first.join(", ")),
+        [first, second, rest @ ..] => format!("{first}, {second} and {} others", rest.len()),
+    }
+}
