@@ -90,8 +90,30 @@ pub struct TextShape {
     pub rect: Rect,
     /// What it belongs to.
     pub owner: Item,
-    /// The text may be moved along the line within these limits of its left edge, to stay in view.
-    pub slide: Option<(f64, f64)>,
+    /// Present if the text may be moved along its line to stay in view.
+    pub slide: Option<Slide>,
+}
+
+/// How far a row of texts may be moved along a long arc.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Slide {
+    /// The arc.
+    pub arc: ArcId,
+    /// The left edge and the width of the row that the text is part of.
+    pub row: (f64, f64),
+    /// The least and greatest left edge that the row may have.
+    pub limits: (f64, f64),
+}
+
+impl TextShape {
+    /// Where the text is when its row is moved, as far as it may be, between `left` and `right`.
+    pub fn rect_in_view(&self, left: f64, right: f64) -> Rect {
+        let Some(slide) = self.slide else { return self.rect };
+        let (row, width) = slide.row;
+        let wanted = row.min(right - width).max(left).clamp(slide.limits.0, slide.limits.1);
+        let moved = wanted - row;
+        Rect { min: self.rect.min.shifted(moved, 0.0), max: self.rect.max.shifted(moved, 0.0) }
+    }
 }
 
 /// A piece of the program's structure as a rectangle.

@@ -2,7 +2,7 @@
 
 use tpn::{ArcId, NodeId, OccurrenceId};
 
-use crate::drawing::{ArcShape, BlockForm, BlockShape, Connector, Item, Route, TextShape};
+use crate::drawing::{ArcShape, BlockForm, BlockShape, Connector, Item, Route, Slide, TextShape};
 use crate::geometry::{Piece, Point, Rect, curve_bounds};
 use crate::metrics::{
     ARCH_CORNER, ARCH_FOOT, ARROW_LENGTH, COLLAPSED_HEIGHT, OUTLINE_PAD, TEXT_LIFT, TEXT_PAD, TextRole,
@@ -68,7 +68,12 @@ impl Placer<'_> {
         let text_left = (f64::midpoint(limits.0, limits.1)).floor();
         let bottom = top - TEXT_LIFT;
         let row = Rect::new(text_left, bottom - arch.text_height, text_left + arch.text_width, bottom);
-        self.write_row(runs.iter(), row, Some((limits.0, limits.1.max(limits.0))));
+        let slide = Slide {
+            arc: arch.arc,
+            row: (text_left, arch.text_width),
+            limits: (limits.0.min(text_left), limits.1.max(text_left)),
+        };
+        self.write_row(runs.iter(), row, Some(slide));
     }
 
     pub(crate) fn collapsed(&mut self, id: PartId, frame: Frame, caption: usize) {
@@ -178,17 +183,16 @@ impl Placer<'_> {
         }
     }
 
-    fn write_row<'r>(&mut self, runs: impl Iterator<Item = &'r Run>, row: Rect, slide: Option<(f64, f64)>) {
+    fn write_row<'r>(&mut self, runs: impl Iterator<Item = &'r Run>, row: Rect, slide: Option<Slide>) {
         let mut left = row.min.x;
         for run in runs {
-            let from_row = left - row.min.x;
             self.drawing.texts.push(TextShape {
                 text: run.text.clone(),
                 role: run.role,
                 size: run.role.size(),
                 rect: Rect::new(left, row.min.y, left + run.width, row.max.y),
                 owner: run.owner,
-                slide: slide.map(|(least, most)| (least + from_row, most + from_row)),
+                slide,
             });
             left += run.width + WORD_GAP;
         }

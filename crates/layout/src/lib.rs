@@ -23,7 +23,8 @@ mod size;
 mod tree;
 
 pub use drawing::{
-    ArcShape, BlockForm, BlockShape, Connector, Item, NetworkDrawing, NodeShape, Route, Shape, TextShape,
+    ArcShape, BlockForm, BlockShape, Connector, Item, NetworkDrawing, NodeShape, Route, Shape, Slide,
+    TextShape,
 };
 pub use geometry::{Piece, Point, Rect};
 pub use metrics::{TextRole, approximate_text_width};

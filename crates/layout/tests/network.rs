@@ -315,12 +315,20 @@ fn deep_nesting_and_wide_forks_are_drawn() {
 }
 
 #[test]
-fn the_text_of_an_arch_may_slide_along_it_and_no_further() {
+fn the_text_of_an_arch_slides_along_it_into_view_and_no_further() {
     let network = generated(200, 2);
     let drawing = draw(&network);
-    let sliding: Vec<_> = drawing.texts.iter().filter_map(|text| Some((text, text.slide?))).collect();
+    let sliding: Vec<_> = drawing.texts.iter().filter(|text| text.slide.is_some()).collect();
     assert!(!sliding.is_empty());
-    for (text, (least, most)) in sliding {
-        assert!(least <= text.rect.min.x && text.rect.min.x <= most, "{}", text.text);
+    for text in sliding {
+        let arch = drawing.arc(text.slide.expect("it slides").arc).expect("visible").bounds;
+        assert_eq!(text.rect_in_view(arch.min.x, arch.max.x), text.rect, "all of the arch is in view");
+        let all_in_view = text.rect_in_view(arch.center().x, arch.max.x);
+        assert!(all_in_view.min.x >= text.rect.min.x, "{}", text.text);
+        for far in
+            [text.rect_in_view(arch.max.x + 500.0, arch.max.x + 900.0), text.rect_in_view(-900.0, -500.0)]
+        {
+            assert!(arch.min.x <= far.min.x && far.max.x <= arch.max.x, "{} leaves its arch", text.text);
+        }
     }
 }
