@@ -1,1 +1,38 @@
-//! Component models, belief update and reactive planning.
+//! Component models, belief update and reactive planning (SPEC 2.2 and 9).
+//!
+//! A [`Model`] is data that never changes. What is believed of the plant, and what is commanded, is computed from it
+//! by functions; the loop that joins them with a control program is another crate's business.
+
+pub mod belief;
+pub mod best_first;
+pub mod compile;
+pub mod consistency;
+pub mod diagnosis;
+pub mod exact;
+pub mod formula;
+mod inherit;
+pub mod likelihood;
+pub mod model;
+pub mod observe;
+pub mod order;
+pub mod policy;
+pub mod probability;
+pub mod reconfigure;
+pub mod simulate;
+pub mod successor;
+
+pub use belief::{Belief, State};
+pub use best_first::{SearchStatistics, update_best};
+pub use compile::compile;
+pub use diagnosis::{Conflict, conflicts};
+pub use exact::update_exact;
+pub use model::{
+    CommandVariable, CommandVariableId, Commands, Component, ComponentId, Fault, Mode, Model, Observation,
+    PlantVariable, Transition, VariableId,
+};
+pub use order::CausalOrder;
+pub use policy::Planner;
+pub use probability::Probability;
+pub use reconfigure::{Command, Goal, NextCommands, Plan, Unreachable};
+pub use simulate::{Random, SimulatedPlant};
+pub use successor::{EstimateError, successor};

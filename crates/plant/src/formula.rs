@@ -1,0 +1,136 @@
+//! Constraints over modes, variables and commands, compiled to value sets in negation normal form.
+
+use serde::{Deserialize, Serialize};
+
+/// A constraint over symbols: the modes of components, then plant variables, then command variables.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Formula {
+    /// Always or never true.
+    Constant(bool),
+    /// The symbol's value is in the set.
+    Member {
+        /// Index of the symbol in the model.
+        symbol: u32,
+        /// The values, one bit each.
+        set: u64,
+    },
+    /// All hold.
+    All(Vec<Formula>),
+    /// At least one holds.
+    Any(Vec<Formula>),
+}
+
+/// Truth under sets of values that the symbols may still have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Truth {
+    True,
+    False,
+    Open,
+}
+
+impl Formula {
+    /// The opposite, where `full` gives all values of a symbol.
+    pub(crate) fn negated(self, full: &impl Fn(u32) -> u64) -> Self {
+        match self {
+            Self::Constant(value) => Self::Constant(!value),
+            Self::Member { symbol, set } => Self::Member { symbol, set: full(symbol) & !set },
+            Self::All(parts) => Self::Any(parts.into_iter().map(|part| part.negated(full)).collect()),
+            Self::Any(parts) => Self::All(parts.into_iter().map(|part| part.negated(full)).collect()),
+        }
+    }
+
+    /// Truth when each symbol may have the values in `domains`; open also where only search could tell.
+    pub(crate) fn truth(&self, domains: &[u64]) -> Truth {
+        let joined = |parts: &[Self], deciding: Truth, neutral: Truth| {
+            let mut result = neutral;
+            for part in parts {
+                let truth = part.truth(domains);
+                if truth == deciding {
+                    return deciding;
+                }
+                if truth == Truth::Open {
+                    result = Truth::Open;
+                }
+            }
+            result
+        };
+        match self {
+            Self::Constant(value) => {
+                if *value {
+                    Truth::True
+                } else {
+                    Truth::False
+                }
+            }
+            Self::Member { symbol, set } => {
+                let domain = domains.get(*symbol as usize).copied().unwrap_or(0);
+                if domain & set == 0 {
+                    Truth::False
+                } else if domain & !set == 0 {
+                    Truth::True
+                } else {
+                    Truth::Open
+                }
+            }
+            Self::All(parts) => joined(parts, Truth::False, Truth::True),
+            Self::Any(parts) => joined(parts, Truth::True, Truth::False),
+        }
+    }
+
+    /// Calls `visit` with every symbol, as often as it occurs.
+    pub(crate) fn symbols(&self, visit: &mut impl FnMut(u32)) {
+        match self {
+            Self::Constant(_) => {}
+            Self::Member { symbol, .. } => visit(*symbol),
+            Self::All(parts) | Self::Any(parts) => parts.iter().for_each(|part| part.symbols(visit)),
+        }
+    }
+
+    /// All ways to satisfy it as conjunctions of memberships; `None` when there are more than `most`.
+    pub(crate) fn alternatives(&self, most: usize) -> Option<Vec<Vec<(u32, u64)>>> {
+        match self {
+            Self::Constant(true) => Some(vec![Vec::new()]),
+            Self::Constant(false) => Some(Vec::new()),
+            Self::Member { symbol, set } => Some(vec![vec![(*symbol, *set)]]),
+            Self::Any(parts) => {
+                let mut all = Vec::new();
+                for part in parts {
+                    all.extend(part.alternatives(most)?);
+                }
+                (all.len() <= most).then_some(all)
+            }
+            Self::All(parts) => {
+                let mut all = vec![Vec::new()];
+                for part in parts {
+                    let inner = part.alternatives(most)?;
+                    all = all
+                        .iter()
+                        .flat_map(|left| inner.iter().filter_map(|right| conjunction(left, right)))
+                        .collect();
+                    if all.len() > most {
+                        return None;
+                    }
+                }
+                Some(all)
+            }
+        }
+    }
+}
+
+/// Both memberships at once; `None` when no value is left to a symbol.
+pub(crate) fn conjunction(left: &[(u32, u64)], right: &[(u32, u64)]) -> Option<Vec<(u32, u64)>> {
+    let mut both = left.to_vec();
+    for &(symbol, set) in right {
+        match both.iter_mut().find(|(known, _)| *known == symbol) {
+            Some((_, known)) => {
+                *known &= set;
+                if *known == 0 {
+                    return None;
+                }
+            }
+            None => both.push((symbol, set)),
+        }
+    }
+    both.sort_unstable();
+    Some(both)
+}

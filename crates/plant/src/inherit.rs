@@ -1,0 +1,256 @@
+//! Classes with what they inherit: C3 linearisation, then fields merged (SPEC 2.2).
+
+use std::collections::BTreeMap;
+
+use rmpl::control::{Class, Constraint, ControlFile, FieldKind, Name, nearest};
+use rmpl::{Code, Diagnostic, Span};
+use smol_str::SmolStr;
+
+/// A variable after inheritance.
+#[derive(Clone, Debug)]
+pub(crate) struct MergedVariable {
+    pub(crate) name: Name,
+    pub(crate) values: Vec<SmolStr>,
+    pub(crate) observable: bool,
+    pub(crate) shows: Option<Name>,
+}
+
+/// A class with all its fields.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MergedClass<'file> {
+    /// The names of the class and of all that it extends.
+    pub(crate) lineage: Vec<SmolStr>,
+    pub(crate) variables: Vec<MergedVariable>,
+    pub(crate) commands: Vec<MergedVariable>,
+    pub(crate) ports: Vec<(&'file Name, &'file Name)>,
+    /// Each mode with the constraints that all hold in it.
+    pub(crate) modes: Vec<(&'file Name, Vec<&'file Constraint>)>,
+    pub(crate) transitions: Vec<(&'file Name, &'file Name, &'file Constraint)>,
+    pub(crate) faults: Vec<(&'file Name, &'file Name, &'file Name)>,
+}
+
+impl MergedClass<'_> {
+    /// The place of a mode.
+    pub(crate) fn mode(&self, name: &str) -> Option<usize> {
+        self.modes.iter().position(|(mode, _)| mode.text == name)
+    }
+}
+
+/// All classes by name, and what is wrong with them.
+pub(crate) fn merge_all(file: &ControlFile) -> (BTreeMap<SmolStr, MergedClass<'_>>, Vec<Diagnostic>) {
+    let mut merger = Merger { classes: BTreeMap::new(), diagnostics: Vec::new() };
+    for class in &file.classes {
+        if merger.classes.insert(class.name.text.as_str(), class).is_some() {
+            merger.error(
+                "E-DUP",
+                class.name.span,
+                format!("the class `{}` is declared twice", class.name.text),
+            );
+        }
+    }
+    let mut merged = BTreeMap::new();
+    for class in &file.classes {
+        merger.supers_exist(class);
+        merger.duplicates(class);
+        if let Some(lineage) = merger.linearize(class) {
+            merged.insert(class.name.text.clone(), merger.merge(&lineage));
+        }
+    }
+    (merged, merger.diagnostics)
+}
+
+struct Merger<'file> {
+    classes: BTreeMap<&'file str, &'file Class>,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl<'file> Merger<'file> {
+    fn error(&mut self, code: &'static str, span: Span, message: String) -> &mut Diagnostic {
+        self.diagnostics.push(Diagnostic::error(Code(code), span, message));
+        let last = self.diagnostics.len() - 1;
+        &mut self.diagnostics[last]
+    }
+
+    fn supers_exist(&mut self, class: &'file Class) {
+        for parent in &class.supers {
+            if !self.classes.contains_key(parent.text.as_str()) {
+                let hint = nearest(&parent.text, self.classes.keys().copied())
+                    .map(|known| format!("did you mean `{known}`?"));
+                self.error("E-UNDEF", parent.span, format!("no class is called `{}`", parent.text)).hint =
+                    hint;
+            }
+        }
+    }
+
+    fn duplicates(&mut self, class: &'file Class) {
+        let mut names: Vec<(&str, &str)> = Vec::new();
+        for field in &class.fields {
+            let (kind, name) = match &field.kind {
+                FieldKind::Variable { name, .. }
+                | FieldKind::Command { name, .. }
+                | FieldKind::Port { name, .. } => ("name", name),
+                FieldKind::Mode { name, .. } => ("mode", name),
+                FieldKind::Transition { .. } | FieldKind::Fault { .. } => continue,
+            };
+            if names.contains(&(kind, name.text.as_str())) {
+                self.error(
+                    "E-DUP",
+                    name.span,
+                    format!("`{}` declares `{}` twice", class.name.text, name.text),
+                );
+            }
+            names.push((kind, name.text.as_str()));
+        }
+    }
+
+    /// The class and its ancestors, most specific first; `None` (with one diagnostic per culprit) if there is none.
+    fn linearize(&mut self, class: &'file Class) -> Option<Vec<&'file Class>> {
+        let mut path = Vec::new();
+        match self.c3(class, &mut path) {
+            Ok(lineage) => Some(lineage),
+            Err(culprit) => {
+                if culprit.name.text == class.name.text {
+                    let span = class.name.span;
+                    let (code, message) = if path.is_empty() {
+                        (
+                            "E-FORM",
+                            format!(
+                                "the classes that `{}` extends cannot be put in one order",
+                                class.name.text
+                            ),
+                        )
+                    } else {
+                        ("E-RECURSION", format!("`{}` extends itself", class.name.text))
+                    };
+                    self.error(code, span, message);
+                }
+                None
+            }
+        }
+    }
+
+    fn c3(&self, class: &'file Class, path: &mut Vec<&'file str>) -> Result<Vec<&'file Class>, &'file Class> {
+        if path.contains(&class.name.text.as_str()) {
+            return Err(class);
+        }
+        path.push(class.name.text.as_str());
+        let parents: Vec<&Class> = class
+            .supers
+            .iter()
+            .filter_map(|parent| self.classes.get(parent.text.as_str()).copied())
+            .collect();
+        let mut lists: Vec<Vec<&Class>> = Vec::new();
+        for parent in &parents {
+            lists.push(self.c3(parent, path)?);
+        }
+        path.pop();
+        lists.push(parents);
+        let mut lineage = vec![class];
+        loop {
+            lists.retain(|list| !list.is_empty());
+            if lists.is_empty() {
+                return Ok(lineage);
+            }
+            let later = |candidate: &Class| {
+                lists
+                    .iter()
+                    .any(|list| list.iter().skip(1).any(|other| other.name.text == candidate.name.text))
+            };
+            let Some(next) =
+                lists.iter().filter_map(|list| list.first().copied()).find(|first| !later(first))
+            else {
+                return Err(class);
+            };
+            lineage.push(next);
+            for list in &mut lists {
+                list.retain(|other| other.name.text != next.name.text);
+            }
+        }
+    }
+
+    /// Joins the fields, from the most general class to the most specific.
+    fn merge(&mut self, lineage: &[&'file Class]) -> MergedClass<'file> {
+        let mut merged = MergedClass {
+            lineage: lineage.iter().map(|class| class.name.text.clone()).collect(),
+            ..MergedClass::default()
+        };
+        for class in lineage.iter().rev() {
+            let mut overridden = false;
+            for field in &class.fields {
+                match &field.kind {
+                    FieldKind::Variable { name, values, observable, shows } => {
+                        let new = variable(name, values, *observable, shows.clone());
+                        self.join(&mut merged.variables, new);
+                    }
+                    FieldKind::Command { name, values } => {
+                        self.join(&mut merged.commands, variable(name, values, false, None))
+                    }
+                    FieldKind::Port { name, class } => {
+                        merged.ports.retain(|(known, _)| known.text != name.text);
+                        merged.ports.push((name, class));
+                    }
+                    FieldKind::Mode { name, constraint } => {
+                        match merged.modes.iter_mut().find(|(known, _)| known.text == name.text) {
+                            Some((_, constraints)) => constraints.push(constraint),
+                            None => merged.modes.push((name, vec![constraint])),
+                        }
+                    }
+                    FieldKind::Transition { .. } | FieldKind::Fault { .. } => overridden = true,
+                }
+            }
+            if overridden {
+                Self::arcs(class, &mut merged);
+            }
+        }
+        merged
+    }
+
+    /// A more specific class replaces all arcs between the same two modes.
+    fn arcs(class: &'file Class, merged: &mut MergedClass<'file>) {
+        let mut transitions = Vec::new();
+        let mut faults = Vec::new();
+        for field in &class.fields {
+            match &field.kind {
+                FieldKind::Transition { from, to, guard } => transitions.push((from, to, guard)),
+                FieldKind::Fault { from, to, probability } => faults.push((from, to, probability)),
+                _ => {}
+            }
+        }
+        let same = |left: (&Name, &Name), right: (&Name, &Name)| {
+            left.0.text == right.0.text && left.1.text == right.1.text
+        };
+        merged.transitions.retain(|old| !transitions.iter().any(|new| same((old.0, old.1), (new.0, new.1))));
+        merged.faults.retain(|old| !faults.iter().any(|new| same((old.0, old.1), (new.0, new.1))));
+        merged.transitions.extend(transitions);
+        merged.faults.extend(faults);
+    }
+
+    fn join(&mut self, known: &mut Vec<MergedVariable>, new: MergedVariable) {
+        let Some(old) = known.iter_mut().find(|old| old.name.text == new.name.text) else {
+            known.push(new);
+            return;
+        };
+        let values: Vec<SmolStr> =
+            new.values.iter().filter(|value| old.values.contains(value)).cloned().collect();
+        old.observable |= new.observable;
+        old.shows = new.shows.or(old.shows.take());
+        old.name = new.name;
+        if values.is_empty() {
+            let (span, name) = (old.name.span, old.name.text.clone());
+            if !self.diagnostics.iter().any(|known| known.span == span) {
+                self.error(
+                    "E-VALUE",
+                    span,
+                    format!("no value of `{name}` is left: the classes that declare it share none"),
+                );
+            }
+        } else {
+            old.values = values;
+        }
+    }
+}
+
+fn variable(name: &Name, values: &[Name], observable: bool, shows: Option<Name>) -> MergedVariable {
+    let values = values.iter().map(|value| value.text.clone()).collect();
+    MergedVariable { name: name.clone(), values, observable, shows }
+}

@@ -1,0 +1,268 @@
+//! Precompiled reactive policies: for every component and pair of modes, what to do first (SPEC 9.2).
+
+use crate::belief::State;
+use crate::consistency::{Assumed, Domains};
+use crate::model::{CommandVariableId, Commands, ComponentId, Model, Observation};
+use crate::observe::values;
+use crate::order::CausalOrder;
+use crate::successor::successor;
+
+/// A guard with more alternatives than this is not planned with.
+const MOST_ALTERNATIVES: usize = 256;
+
+/// One way to take a transition: the commands to give while the conditions hold.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlannedStep {
+    /// The mode entered.
+    pub to: u8,
+    /// Command variables and the values that will do.
+    pub commands: Vec<(CommandVariableId, u64)>,
+    /// Other components and the modes that will do.
+    pub conditions: Vec<(ComponentId, u64)>,
+}
+
+/// The policies of a model, and its causal order.
+#[derive(Clone, Debug)]
+pub struct Planner<'model> {
+    pub(crate) model: &'model Model,
+    pub(crate) order: CausalOrder,
+    /// Per component and mode, the ways to leave it.
+    pub(crate) steps: Vec<Vec<Vec<PlannedStep>>>,
+    /// Per component, mode and target mode, the first step of a shortest path, as an index into `steps`.
+    policy: Vec<Vec<Vec<Option<u32>>>>,
+    /// Whether `steps` holds every way there is; then what it cannot reach is unreachable.
+    pub(crate) is_complete: bool,
+}
+
+impl<'model> Planner<'model> {
+    /// Compiles the policies; takes time in proportion to components times squared modes.
+    pub fn new(model: &'model Model) -> Self {
+        let mut is_complete = true;
+        let steps: Vec<Vec<Vec<PlannedStep>>> =
+            model.component_ids().map(|component| steps_of(model, component, &mut is_complete)).collect();
+        let all = |_: &PlannedStep| true;
+        let policy = steps
+            .iter()
+            .map(|modes| {
+                let from_each = 0..modes.len() as u8;
+                from_each
+                    .map(|from| {
+                        (0..modes.len() as u8).map(|to| first_step(modes, from, 1 << to, &all)).collect()
+                    })
+                    .collect()
+            })
+            .collect();
+        Self { model, order: CausalOrder::new(model), steps, policy, is_complete }
+    }
+
+    /// The causal order that the policies follow.
+    pub const fn order(&self) -> &CausalOrder {
+        &self.order
+    }
+
+    /// The model.
+    pub const fn model(&self) -> &'model Model {
+        self.model
+    }
+
+    /// The first step of a shortest path of a component from one mode to another, were all conditions to hold.
+    pub fn policy(&self, component: ComponentId, from: u8, to: u8) -> Option<&PlannedStep> {
+        let at = component.0 as usize;
+        let step = (*self.policy.get(at)?.get(from as usize)?.get(to as usize)?)?;
+        self.steps.get(at)?.get(from as usize)?.get(step as usize)
+    }
+
+    /// For every component the modes it can get to if everything it depends on is as helpful as it can be.
+    pub(crate) fn reach(&self, state: &State) -> Vec<u64> {
+        let mut reach: Vec<u64> = self.model.component_ids().map(|id| 1 << state.mode(id)).collect();
+        let mut order: Vec<usize> = (0..reach.len()).collect();
+        // Causes first, so that one round is enough where there is no circle.
+        order.sort_by_key(|&at| std::cmp::Reverse(self.order.numbers[at]));
+        loop {
+            let before = reach.clone();
+            for &at in &order {
+                let mut grown = reach[at];
+                loop {
+                    let mut more = grown;
+                    for from in values(grown) {
+                        for step in self.steps[at].get(from as usize).into_iter().flatten() {
+                            if is_feasible(step, &reach) {
+                                more |= 1 << step.to;
+                            }
+                        }
+                    }
+                    if more == grown {
+                        break;
+                    }
+                    grown = more;
+                }
+                reach[at] = grown;
+            }
+            if !self.order.is_cyclic || reach == before {
+                return reach;
+            }
+        }
+    }
+
+    /// The first step of a component towards any of `goal`, over steps whose conditions can be brought about.
+    pub(crate) fn toward(
+        &self,
+        component: ComponentId,
+        from: u8,
+        goal: u64,
+        reach: &[u64],
+    ) -> Option<&PlannedStep> {
+        let modes = self.steps.get(component.0 as usize)?;
+        if let Some(only) = (goal.count_ones() == 1).then(|| goal.trailing_zeros() as u8)
+            && self.follows_policy(component, from, only, reach)
+        {
+            return self.policy(component, from, only);
+        }
+        let first = first_step(modes, from, goal, &|step| is_feasible(step, reach))?;
+        modes.get(from as usize)?.get(first as usize)
+    }
+
+    /// Whether the precompiled path can be taken as things are.
+    fn follows_policy(&self, component: ComponentId, mut from: u8, to: u8, reach: &[u64]) -> bool {
+        for _ in 0..64 {
+            if from == to {
+                return true;
+            }
+            match self.policy(component, from, to) {
+                Some(step) if is_feasible(step, reach) => from = step.to,
+                _ => return false,
+            }
+        }
+        false
+    }
+
+    /// Commands that make a component take a step now, all others idle; `None` if no values do.
+    pub(crate) fn commands_for(
+        &self,
+        component: ComponentId,
+        step: &PlannedStep,
+        state: &State,
+    ) -> Option<Commands> {
+        let mut commands = self.model.idle();
+        for (variable, set) in &step.commands {
+            *commands.0.get_mut(variable.0 as usize)? = values(*set).next()?;
+        }
+        let does = |commands: &Commands| successor(self.model, component, state, commands) == Ok(step.to);
+        if does(&commands) {
+            return Some(commands);
+        }
+        for (variable, set) in &step.commands {
+            for value in values(*set) {
+                let mut other = commands.clone();
+                *other.0.get_mut(variable.0 as usize)? = value;
+                if does(&other) {
+                    return Some(other);
+                }
+            }
+        }
+        None
+    }
+}
+
+fn is_feasible(step: &PlannedStep, reach: &[u64]) -> bool {
+    step.conditions
+        .iter()
+        .all(|(cause, modes)| reach.get(cause.0 as usize).is_some_and(|reach| reach & modes != 0))
+}
+
+/// Breadth first over a component's own modes; ties go to the transition declared first.
+fn first_step(
+    modes: &[Vec<PlannedStep>],
+    from: u8,
+    goal: u64,
+    usable: &dyn Fn(&PlannedStep) -> bool,
+) -> Option<u32> {
+    let mut seen = 1_u64 << from;
+    let mut waiting: Vec<(u8, Option<u32>)> = vec![(from, None)];
+    let mut at = 0;
+    while let Some(&(mode, first)) = waiting.get(at) {
+        at += 1;
+        if goal >> mode & 1 == 1 {
+            return first;
+        }
+        for (number, step) in modes.get(mode as usize).into_iter().flatten().enumerate() {
+            if seen >> step.to & 1 == 0 && usable(step) {
+                seen |= 1 << step.to;
+                waiting.push((step.to, first.or(Some(number as u32))));
+            }
+        }
+    }
+    None
+}
+
+fn steps_of(model: &Model, component: ComponentId, is_complete: &mut bool) -> Vec<Vec<PlannedStep>> {
+    let modes = model.component(component).map_or(&[][..], |data| data.modes.as_slice());
+    let leave = |(from, mode): (usize, &crate::Mode)| {
+        let mut steps = Vec::new();
+        for transition in mode.transitions.iter().filter(|transition| transition.to as usize != from) {
+            let Some(alternatives) = transition.guard.alternatives(MOST_ALTERNATIVES) else {
+                *is_complete = false;
+                continue;
+            };
+            for alternative in alternatives {
+                let step = planned(model, component, from as u8, transition.to, &alternative, is_complete);
+                steps.extend(step.filter(|step| !steps.contains(step)));
+            }
+        }
+        steps
+    };
+    modes.iter().enumerate().map(leave).collect()
+}
+
+fn planned(
+    model: &Model,
+    component: ComponentId,
+    from: u8,
+    to: u8,
+    alternative: &[(u32, u64)],
+    is_complete: &mut bool,
+) -> Option<PlannedStep> {
+    let mut step = PlannedStep { to, commands: Vec::new(), conditions: Vec::new() };
+    for &(symbol, set) in alternative {
+        let (owner, modes) = if let Some(command) = model.symbol_command(symbol) {
+            step.commands.push((command, set));
+            continue;
+        } else if let Some(variable) = model.symbol_variable(symbol) {
+            // Other components may force the variable too; only what its own one ensures is planned with.
+            *is_complete = false;
+            let owner = model.variables.get(variable.0 as usize)?.component;
+            (owner, ensuring(model, owner, symbol, set))
+        } else {
+            (ComponentId(symbol), set)
+        };
+        if owner == component {
+            if modes >> from & 1 == 0 {
+                return None;
+            }
+        } else {
+            match step.conditions.iter_mut().find(|(known, _)| *known == owner) {
+                Some((_, known)) => *known &= modes,
+                None => step.conditions.push((owner, modes)),
+            }
+        }
+    }
+    step.conditions.iter().all(|(_, modes)| *modes != 0).then_some(step)
+}
+
+/// The modes of a component that by themselves keep a symbol within a set.
+fn ensuring(model: &Model, component: ComponentId, symbol: u32, set: u64) -> u64 {
+    let Some(island) = model.islands.iter().find(|island| island.components.contains(&component)) else {
+        return 0;
+    };
+    let count = model.component(component).map_or(0, |data| data.modes.len() as u8);
+    (0..count)
+        .filter(|mode| {
+            let mut domains = Domains::observed(model, &Observation::default());
+            let Some(domain) = domains.sets.get_mut(symbol as usize) else { return false };
+            *domain &= !set;
+            let alone = |other: &ComponentId| (*other == component).then_some(*mode);
+            let assumed = Assumed { model, island, modes: island.components.iter().map(alone).collect() };
+            *domain == 0 || assumed.satisfy(&mut domains).is_err()
+        })
+        .fold(0, |modes, mode| modes | 1 << mode)
+}

@@ -1,0 +1,181 @@
+//! A plant that really has a state: it obeys commands, fails by chance or on demand, and shows observations.
+
+use std::collections::BTreeMap;
+
+use crate::belief::State;
+use crate::consistency::{Assumed, Domains};
+use crate::model::{Commands, ComponentId, Model, Observation, VariableId};
+use crate::observe::values;
+use crate::successor::{EstimateError, distribution, nominal};
+
+/// Random numbers from a seed, the same on every machine (SplitMix64, Steele, Lea and Flood 2014).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Random {
+    state: u64,
+}
+
+impl Random {
+    /// Starts from a seed.
+    pub const fn new(seed: u64) -> Self {
+        Self { state: seed }
+    }
+
+    /// The next 64 random bits.
+    pub const fn next_bits(&mut self) -> u64 {
+        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut bits = self.state;
+        bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        bits ^ (bits >> 31)
+    }
+
+    /// A number below `bound`, all equally likely; 0 if `bound` is 0.
+    pub const fn below(&mut self, bound: u64) -> u64 {
+        if bound == 0 {
+            return 0;
+        }
+        // Numbers from the incomplete last range of `bound` numbers are thrown away.
+        let last = u64::MAX - u64::MAX % bound;
+        loop {
+            let bits = self.next_bits();
+            if bits < last {
+                return bits % bound;
+            }
+        }
+    }
+}
+
+/// The simulated plant.
+#[derive(Clone, Debug)]
+pub struct SimulatedPlant<'model> {
+    model: &'model Model,
+    state: State,
+}
+
+impl<'model> SimulatedPlant<'model> {
+    /// Starts in a state, or in the model's initial one.
+    pub fn new(model: &'model Model, state: Option<State>) -> Self {
+        Self { model, state: state.unwrap_or_else(|| model.initial_state()) }
+    }
+
+    /// The true state.
+    pub const fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Takes a step without chance: components go to their nominal targets, those in `injected` to the given modes.
+    pub fn step(
+        &mut self,
+        commands: &Commands,
+        injected: &BTreeMap<ComponentId, u8>,
+    ) -> Result<(), EstimateError> {
+        let next = nominal(self.model, &self.state, commands)?;
+        self.enter(next, injected)
+    }
+
+    /// Takes a step in which every component may fail with its probability.
+    ///
+    /// States whose mode constraints contradict each other cannot occur; the draw is repeated until it gives another.
+    pub fn step_with_chance(
+        &mut self,
+        commands: &Commands,
+        injected: &BTreeMap<ComponentId, u8>,
+        random: &mut Random,
+    ) -> Result<(), EstimateError> {
+        let choices = self
+            .model
+            .component_ids()
+            .map(|component| distribution(self.model, component, &self.state, commands))
+            .collect::<Result<Vec<_>, _>>()?;
+        for _ in 0..100 {
+            let drawn =
+                choices.iter().map(|(weights, denominator)| draw(weights, *denominator, random)).collect();
+            if self.enter(State(drawn), injected).is_ok() {
+                return Ok(());
+            }
+        }
+        self.step(commands, injected)
+    }
+
+    fn enter(&mut self, mut next: State, injected: &BTreeMap<ComponentId, u8>) -> Result<(), EstimateError> {
+        for (&component, &mode) in injected {
+            next.set_mode(component, mode);
+        }
+        let free = Domains::observed(self.model, &Observation::default());
+        for island in &self.model.islands {
+            if let Err(places) = Assumed::all(self.model, island, &next.0).satisfy(&mut free.clone()) {
+                let blamed = island
+                    .components
+                    .iter()
+                    .enumerate()
+                    .filter(|(place, _)| places >> (place % 128) & 1 == 1);
+                let names: Vec<String> = blamed
+                    .filter_map(|(_, id)| {
+                        Some(format!(
+                            "{}={}",
+                            self.model.component(*id)?.name,
+                            self.model.mode_name(*id, next.mode(*id))
+                        ))
+                    })
+                    .collect();
+                return Err(EstimateError::Impossible(names.join(", ")));
+            }
+        }
+        self.state = next;
+        Ok(())
+    }
+
+    /// What the plant shows: where the modes leave a variable open, its `SHOWS` value if that is possible.
+    pub fn observation(&self) -> Observation {
+        observation_of(self.model, &self.state)
+    }
+}
+
+/// What a plant in `state` shows.
+pub fn observation_of(model: &Model, state: &State) -> Observation {
+    let mut domains = Domains::observed(model, &Observation::default());
+    let mut observation = Observation::default();
+    for island in &model.islands {
+        let assumed = Assumed::all(model, island, &state.0);
+        if assumed.propagate(&mut domains).is_err() {
+            continue;
+        }
+        for &variable in &island.variables {
+            let Some(data) = model.variables.get(variable.0 as usize).filter(|data| data.observable) else {
+                continue;
+            };
+            let symbol = model.variable_symbol(variable) as usize;
+            let set = domains.sets.get(symbol).copied().unwrap_or(0);
+            let preferred = 1_u64 << data.shows;
+            let order = values(set & preferred).chain(values(set & !preferred));
+            for value in order {
+                let mut trial = domains.clone();
+                trial.sets[symbol] = 1 << value;
+                let settled = assumed.settle_all(&mut trial);
+                if settled.is_ok() && assumed.satisfy(&mut trial.clone()).is_ok() {
+                    domains = trial;
+                    observation.0.insert(variable, value);
+                    break;
+                }
+            }
+        }
+    }
+    observation
+}
+
+/// Which variables are observed.
+pub fn observables(model: &Model) -> Vec<VariableId> {
+    let numbered = model.variables.iter().enumerate();
+    numbered.filter(|(_, variable)| variable.observable).map(|(at, _)| VariableId(at as u32)).collect()
+}
+
+fn draw(weights: &[(u8, u64)], denominator: u64, random: &mut Random) -> u8 {
+    let mut left = if weights.len() > 1 { random.below(denominator) } else { 0 };
+    for &(mode, weight) in weights {
+        if left < weight {
+            return mode;
+        }
+        left -= weight;
+    }
+    weights.first().map_or(0, |(mode, _)| *mode)
+}

@@ -1,0 +1,203 @@
+//! Where a component goes in one step: its nominal target, and its faults (SPEC 9.1).
+
+use num_integer::lcm;
+use thiserror::Error;
+
+use crate::belief::State;
+use crate::consistency::{Assumed, Domains};
+use crate::formula::{Formula, Truth};
+use crate::model::{CommandVariableId, Commands, ComponentId, Model, Observation};
+
+/// What can go wrong in a step of estimation or simulation.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum EstimateError {
+    /// The model is not deterministic there.
+    #[error("`{component}` in mode {from} has two enabled transitions, to {first} and to {second}")]
+    Ambiguous {
+        /// The component.
+        component: String,
+        /// Its mode.
+        from: String,
+        /// The target of the first enabled transition.
+        first: String,
+        /// The target of the second.
+        second: String,
+    },
+    /// No state of the belief can lead to the observation.
+    #[error("no state that is believed possible explains the observations")]
+    Unexplained,
+    /// The modes that were asked for contradict each other.
+    #[error("these modes cannot hold together: {0}")]
+    Impossible(String),
+}
+
+/// The mode that `component` nominally enters from `state` under `commands`.
+pub fn successor(
+    model: &Model,
+    component: ComponentId,
+    state: &State,
+    commands: &Commands,
+) -> Result<u8, EstimateError> {
+    let from = state.mode(component);
+    let Some(mode) = model.component(component).and_then(|data| data.modes.get(from as usize)) else {
+        return Ok(from);
+    };
+    let mut enabled = None;
+    for transition in &mode.transitions {
+        if !is_entailed(model, &transition.guard, state, commands) {
+            continue;
+        }
+        match enabled {
+            None => enabled = Some(transition.to),
+            Some(first) if first != transition.to => {
+                return Err(EstimateError::Ambiguous {
+                    component: model
+                        .component(component)
+                        .map(|data| data.name.to_string())
+                        .unwrap_or_default(),
+                    from: mode.name.to_string(),
+                    first: model.mode_name(component, first).to_owned(),
+                    second: model.mode_name(component, transition.to).to_owned(),
+                });
+            }
+            Some(_) => {}
+        }
+    }
+    Ok(enabled.unwrap_or(from))
+}
+
+/// All components' nominal targets.
+pub fn nominal(model: &Model, state: &State, commands: &Commands) -> Result<State, EstimateError> {
+    model
+        .component_ids()
+        .map(|component| successor(model, component, state, commands))
+        .collect::<Result<Vec<u8>, _>>()
+        .map(State)
+}
+
+/// The modes a component may enter, each with its numerator over the returned denominator; zero numerators left out.
+pub(crate) fn distribution(
+    model: &Model,
+    component: ComponentId,
+    state: &State,
+    commands: &Commands,
+) -> Result<(Vec<(u8, u64)>, u64), EstimateError> {
+    let target = successor(model, component, state, commands)?;
+    let mode = model.component(component).and_then(|data| data.modes.get(state.mode(component) as usize));
+    let Some(mode) = mode.filter(|mode| !mode.faults.is_empty()) else { return Ok((vec![(target, 1)], 1)) };
+    let faulty: u64 = mode.faults.iter().map(|fault| fault.numerator).sum();
+    let mut weights = vec![(target, mode.denominator - faulty)];
+    for fault in &mode.faults {
+        match weights.iter_mut().find(|(to, _)| *to == fault.to) {
+            Some((_, weight)) => *weight += fault.numerator,
+            None => weights.push((fault.to, fault.numerator)),
+        }
+    }
+    weights.retain(|(_, weight)| *weight > 0);
+    Ok((weights, mode.denominator))
+}
+
+/// The distributions of all components over denominators that are common to all `states` (by component).
+pub(crate) fn distributions(
+    model: &Model,
+    states: &[&State],
+    commands: &Commands,
+) -> Result<Vec<Vec<Vec<(u8, u64)>>>, EstimateError> {
+    let mut all: Vec<Vec<(Vec<(u8, u64)>, u64)>> = Vec::with_capacity(states.len());
+    for state in states {
+        let each = model.component_ids().map(|component| distribution(model, component, state, commands));
+        all.push(each.collect::<Result<_, _>>()?);
+    }
+    let common: Vec<u64> = (0..model.components.len())
+        .map(|at| {
+            all.iter()
+                .filter_map(|each| each.get(at))
+                .fold(1, |common, (_, denominator)| lcm(common, *denominator))
+        })
+        .collect();
+    let scaled = |(weights, denominator): (Vec<(u8, u64)>, u64), common: u64| -> Vec<(u8, u64)> {
+        weights.into_iter().map(|(mode, weight)| (mode, weight * (common / denominator))).collect()
+    };
+    Ok(all
+        .into_iter()
+        .map(|each| each.into_iter().zip(&common).map(|(one, common)| scaled(one, *common)).collect())
+        .collect())
+}
+
+/// Whether a guard is true whatever the state and the commands leave open.
+pub(crate) fn is_entailed(model: &Model, guard: &Formula, state: &State, commands: &Commands) -> bool {
+    match direct(model, guard, state, commands) {
+        Truth::True => true,
+        Truth::False => false,
+        Truth::Open => is_entailed_by_search(model, guard, state, commands),
+    }
+}
+
+fn direct(model: &Model, guard: &Formula, state: &State, commands: &Commands) -> Truth {
+    let joined = |parts: &[Formula], deciding: Truth, neutral: Truth| {
+        let mut result = neutral;
+        for part in parts {
+            match direct(model, part, state, commands) {
+                truth if truth == deciding => return deciding,
+                Truth::Open => result = Truth::Open,
+                _ => {}
+            }
+        }
+        result
+    };
+    match guard {
+        Formula::Constant(value) => {
+            if *value {
+                Truth::True
+            } else {
+                Truth::False
+            }
+        }
+        Formula::Member { symbol, set } => {
+            let at = *symbol as usize;
+            let value = match state.0.get(at) {
+                Some(mode) => Some(*mode),
+                None => model
+                    .symbol_command(*symbol)
+                    .map(|CommandVariableId(command)| commands.0.get(command as usize).copied().unwrap_or(0)),
+            };
+            match value {
+                Some(value) if set >> value & 1 == 1 => Truth::True,
+                Some(_) => Truth::False,
+                None => Truth::Open,
+            }
+        }
+        Formula::All(parts) => joined(parts, Truth::False, Truth::True),
+        Formula::Any(parts) => joined(parts, Truth::True, Truth::False),
+    }
+}
+
+/// For guards over plant variables: no way to hold the modes without the guard.
+fn is_entailed_by_search(model: &Model, guard: &Formula, state: &State, commands: &Commands) -> bool {
+    let full = |symbol: u32| model.full.get(symbol as usize).copied().unwrap_or(0);
+    let Some(alternatives) = guard.clone().negated(&full).alternatives(4096) else { return false };
+    let mut start = Domains::observed(model, &Observation::default());
+    for (at, &command) in commands.0.iter().enumerate() {
+        let symbol = model.command_symbol(CommandVariableId(at as u32)) as usize;
+        if let Some(set) = start.sets.get_mut(symbol) {
+            *set &= 1_u64.checked_shl(u32::from(command)).unwrap_or(0);
+        }
+    }
+    for component in model.component_ids() {
+        if let Some(set) = start.sets.get_mut(component.0 as usize) {
+            *set = 1_u64.checked_shl(u32::from(state.mode(component))).unwrap_or(0);
+        }
+    }
+    !alternatives.iter().any(|alternative| {
+        let mut domains = start.clone();
+        for (symbol, set) in alternative {
+            if let Some(domain) = domains.sets.get_mut(*symbol as usize) {
+                *domain &= set;
+                if *domain == 0 {
+                    return false;
+                }
+            }
+        }
+        model.islands.iter().all(|island| Assumed::all(model, island, &state.0).satisfy(&mut domains).is_ok())
+    })
+}
