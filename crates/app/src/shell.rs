@@ -143,13 +143,20 @@ impl Enroute {
         bar::top::show(ui, &context, commands);
         bar::bottom::show(ui, &context, commands);
         let tree = self.layouts.tree_mut(self.state.workspace);
+        let mut is_editor_shown = false;
         CentralPanel::default().frame(Frame::new().fill(context.tokens.background)).show(ui, |ui| {
             let mut tiles =
-                PanelTiles { panels: &mut self.panels, context: &context, commands, edited: false };
+                PanelTiles { panels: &mut self.panels, context: &context, commands, shown: Vec::new() };
             tree.ui(&mut tiles, ui);
+            is_editor_shown = tiles.shown.contains(&PanelKind::Editor);
         });
         dialog::show(ui.ctx(), &context, commands);
         toasts::show(ui.ctx(), &context, commands);
+        if is_editor_shown {
+            // The editor has scrolled and taken the focus as it was asked to.
+            self.state.editor.reveal = None;
+            self.state.editor.wants_focus &= self.state.dialog.is_some();
+        }
     }
 
     fn apply(&mut self, commands: Vec<Command>) {
@@ -280,11 +287,13 @@ struct PanelTiles<'a> {
     panels: &'a mut Panels,
     context: &'a Context<'a>,
     commands: &'a mut CommandSender,
-    edited: bool,
+    /// The panels that were shown in this frame.
+    shown: Vec<PanelKind>,
 }
 
 impl Behavior<PanelKind> for PanelTiles<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, kind: &mut PanelKind) -> UiResponse {
+        self.shown.push(*kind);
         let rect = ui.max_rect();
         ui.painter().rect_filled(rect, 0.0, self.context.tokens.surface);
         let pressed = ui.input(|input| {
@@ -303,10 +312,6 @@ impl Behavior<PanelKind> for PanelTiles<'_> {
 
     fn is_tab_closable(&self, _tiles: &Tiles<PanelKind>, _tile: TileId) -> bool {
         true
-    }
-
-    fn on_edit(&mut self, _action: egui_tiles::EditAction) {
-        self.edited = true;
     }
 
     fn tab_bar_height(&self, _style: &egui::Style) -> f32 {

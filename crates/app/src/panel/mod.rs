@@ -1,6 +1,7 @@
 //! The panels: each reads the state and emits commands, and changes nothing else.
 
 pub mod editor;
+pub mod network;
 pub mod outline;
 pub mod placeholder;
 pub mod problems;
@@ -169,7 +170,9 @@ fn create(kind: PanelKind) -> Box<dyn Panel> {
     match kind {
         PanelKind::Outline => Box::new(outline::OutlinePanel::default()),
         PanelKind::Problems => Box::new(problems::ProblemsPanel::default()),
+        PanelKind::Network => Box::new(network::NetworkPanel::default()),
         PanelKind::Terrain => Box::new(terrain::TerrainPanel::default()),
+        PanelKind::Editor => Box::new(editor::EditorPanel::default()),
         _ => Box::new(placeholder::PlaceholderPanel::new(kind)),
     }
 }

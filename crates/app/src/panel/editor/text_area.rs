@@ -1,0 +1,514 @@
+//! The lines on screen: laid out, painted, and followed by the pointer.
+
+use std::ops::Range;
+
+use egui::{Align2, CursorIcon, FontId, Pos2, Rect, Response, Role, ScrollArea, Sense, Stroke, TextStyle, Ui, WidgetInfo};
+use mission::Problem;
+use rmpl::{Severity, Span};
+
+use crate::command::{Command, CommandSender};
+use crate::panel::editor::line::LineLayout;
+use crate::panel::editor::marks::Shift;
+use crate::panel::editor::{brackets, editor_id, keyboard};
+use crate::panel::problems::severity_sign;
+use crate::panel::{Context, PanelKind};
+use crate::state::TextCommand;
+use crate::theme::space;
+
+/// The text with its gutter.
+#[derive(Default)]
+pub(crate) struct TextArea {
+    /// How many times the last press was repeated: 1 drags by character, 2 by word, 3 by line.
+    presses: u32,
+    /// Where a drag began.
+    drag_anchor: Range<usize>,
+    /// The width of the widest line, for the revision it was measured at.
+    widest: (u64, usize),
+    /// How far the view is scrolled.
+    offset: egui::Vec2,
+    /// How the text of the last answer became the present one.
+    shift: (u64, u64, Option<Shift>),
+}
+
+/// Sizes and places that hold for one frame.
+struct Geometry {
+    font: FontId,
+    row_height: f32,
+    character_width: f32,
+    gutter_width: f32,
+    /// The top left corner of the first line's text.
+    origin: Pos2,
+}
+
+impl Geometry {
+    fn top_of(&self, line: usize) -> f32 {
+        self.origin.y + line as f32 * self.row_height
+    }
+
+    fn row(&self, line: usize, x: Range<f32>) -> Rect {
+        let top = self.top_of(line);
+        Rect::from_min_max(Pos2::new(x.start, top), Pos2::new(x.end, top + self.row_height))
+    }
+}
+
+impl TextArea {
+    /// Shows the text in what is left of `ui`.
+    pub(crate) fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+        let document = &context.state.document;
+        let font = TextStyle::Monospace.resolve(ui.style());
+        let (text_height, character_width) =
+            ui.fonts_mut(|fonts| (fonts.row_height(&font), fonts.glyph_width(&font, '0')));
+        let row_height = (text_height * 1.35).round();
+        let digits = document.line_count().to_string().len().max(3);
+        let gutter_width = (digits as f32 + 3.0) * character_width;
+        let lines_height = document.line_count() as f32 * row_height;
+        let widest = self.widest_line(context) as f32 * character_width;
+        let available = ui.available_size();
+        let size = egui::vec2(
+            (gutter_width + widest + 60.0).max(available.x),
+            (lines_height + available.y * 0.5).max(available.y),
+        );
+
+        let mut area = ScrollArea::both().id_salt("mission text").auto_shrink(false);
+        let geometry_of = |origin: Pos2| Geometry {
+            font: font.clone(),
+            row_height,
+            character_width,
+            gutter_width,
+            origin: origin + egui::vec2(gutter_width, 0.0),
+        };
+        if let Some(reveal) = context.state.editor.reveal {
+            area = self.scroll_to(context, area, reveal, &geometry_of(Pos2::ZERO), available);
+        }
+        let shown = area.show_viewport(ui, |ui, viewport| {
+            let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+            let geometry = geometry_of(rect.min);
+            let first = (viewport.top() / row_height).floor().max(0.0) as usize;
+            let last = ((viewport.bottom() / row_height).ceil().max(0.0) as usize).min(document.line_count());
+            let lines = first.min(last)..last;
+            let response = ui.interact(ui.clip_rect().intersect(rect), editor_id(), Sense::click_and_drag());
+            self.follow_focus(ui, context, &response);
+            let layouts = lay_out(ui, context, &geometry, lines.clone());
+            self.follow_pointer(ui, context, &geometry, &response, &lines, &layouts, commands);
+            self.paint(ui, context, &geometry, &response, &lines, &layouts);
+            describe(ui, context, &response);
+            show_hover(context, &response, self.offset_under_pointer(context, &geometry, &response, &lines, &layouts));
+        });
+        self.offset = shown.state.clamped_offset();
+    }
+
+    /// Moves the view so that a place can be seen, once.
+    fn scroll_to(
+        &self,
+        context: &Context<'_>,
+        area: ScrollArea,
+        reveal: crate::state::editor::Reveal,
+        geometry: &Geometry,
+        available: egui::Vec2,
+    ) -> ScrollArea {
+        let document = &context.state.document;
+        let head = document.boundary_before(reveal.span.start as usize);
+        let top = document.line_at(head) as f32 * geometry.row_height;
+        let margin = geometry.row_height * 2.0;
+        let offset = self.offset;
+        let is_visible = top >= offset.y + margin.min(top) && top + geometry.row_height + margin <= offset.y + available.y;
+        let y = if is_visible {
+            offset.y
+        } else if reveal.center {
+            (top - available.y * 0.4).max(0.0)
+        } else if top < offset.y + margin {
+            (top - margin).max(0.0)
+        } else {
+            top + geometry.row_height + margin - available.y
+        };
+        let left = document.column_at(head) as f32 * geometry.character_width;
+        let room = available.x - geometry.gutter_width - 4.0 * geometry.character_width;
+        let x = if left < offset.x {
+            (left - 8.0 * geometry.character_width).max(0.0)
+        } else if left > offset.x + room {
+            left - room
+        } else {
+            offset.x
+        };
+        area.scroll_offset(egui::vec2(x, y))
+    }
+
+    /// The characters of the longest line.
+    fn widest_line(&mut self, context: &Context<'_>) -> usize {
+        let document = &context.state.document;
+        if self.widest.0 != document.revision() {
+            let widths = (0..document.line_count()).map(|line| document.line_range(line).len());
+            self.widest = (document.revision(), widths.max().unwrap_or_default());
+        }
+        self.widest.1
+    }
+
+    fn follow_focus(&self, ui: &Ui, context: &Context<'_>, response: &Response) {
+        let wants_focus = context.state.editor.wants_focus && context.state.dialog.is_none();
+        if wants_focus || response.is_pointer_button_down_on() {
+            response.request_focus();
+        }
+        if response.has_focus() {
+            ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, keyboard::EVENT_FILTER));
+        }
+        if response.hovered() {
+            ui.set_cursor_icon(CursorIcon::Text);
+        }
+    }
+
+    fn offset_under_pointer(
+        &self,
+        context: &Context<'_>,
+        geometry: &Geometry,
+        response: &Response,
+        lines: &Range<usize>,
+        layouts: &[LineLayout],
+    ) -> Option<usize> {
+        let pointer = response.hover_pos()?;
+        let line = ((pointer.y - geometry.origin.y) / geometry.row_height).floor();
+        let line = (line >= 0.0).then_some(line as usize)?;
+        let layout = layouts.get(line.checked_sub(lines.start)?)?;
+        let x = pointer.x - geometry.origin.x;
+        (x >= 0.0 && x <= layout.galley().size().x).then(|| layout.offset_at(context, x))
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "all of it describes one frame")]
+    fn follow_pointer(
+        &mut self,
+        ui: &Ui,
+        context: &Context<'_>,
+        geometry: &Geometry,
+        response: &Response,
+        lines: &Range<usize>,
+        layouts: &[LineLayout],
+        commands: &mut CommandSender,
+    ) {
+        let Some(pointer) = response.interact_pointer_pos() else { return };
+        let document = &context.state.document;
+        let line = ((pointer.y - geometry.origin.y) / geometry.row_height).floor().max(0.0) as usize;
+        let line = line.min(document.line_count() - 1);
+        let x = pointer.x - geometry.origin.x;
+        let offset = match line.checked_sub(lines.start).and_then(|index| layouts.get(index)) {
+            Some(layout) => layout.offset_at(context, x),
+            None => document.offset_at(line, (x / geometry.character_width).max(0.0) as usize),
+        };
+        let primary_pressed = ui.input(|input| input.pointer.primary_pressed()) && response.is_pointer_button_down_on();
+        if primary_pressed {
+            self.presses = ui.input(|input| {
+                if input.pointer.button_triple_clicked(egui::PointerButton::Primary) {
+                    3
+                } else if input.pointer.button_double_clicked(egui::PointerButton::Primary) {
+                    2
+                } else {
+                    1
+                }
+            });
+            let extends = ui.input(|input| input.modifiers.shift);
+            let anchor = if extends { document.caret().anchor } else { offset };
+            self.drag_anchor = anchor..anchor;
+            commands.send(Command::Text(TextCommand::Select { anchor, head: offset }));
+        } else if response.double_clicked() {
+            commands.send(Command::Text(TextCommand::SelectWord(offset)));
+        } else if response.triple_clicked() {
+            commands.send(Command::Text(TextCommand::SelectLine(offset)));
+        } else if response.dragged_by(egui::PointerButton::Primary) && offset != document.caret().head {
+            let anchor = self.drag_anchor.start;
+            commands.send(Command::Text(TextCommand::Select { anchor, head: offset }));
+        }
+        if response.is_pointer_button_down_on() {
+            commands.send(Command::Activate(PanelKind::Editor));
+        }
+    }
+
+    fn paint(
+        &mut self,
+        ui: &Ui,
+        context: &Context<'_>,
+        geometry: &Geometry,
+        response: &Response,
+        lines: &Range<usize>,
+        layouts: &[LineLayout],
+    ) {
+        let clip = ui.clip_rect();
+        let text_left = clip.left() + geometry.gutter_width;
+        let text_clip = Rect::from_min_max(Pos2::new(text_left - 1.0, clip.top()), clip.max);
+        let painter = ui.painter().with_clip_rect(text_clip);
+        let marks = Painting { context, geometry, lines, layouts, painter: &painter, right: clip.right() };
+        marks.current_line(clip.left());
+        marks.selected_thing(self.shift(context));
+        marks.matches_of_find();
+        marks.selected_text(response.has_focus());
+        marks.brackets();
+        for (line, layout) in lines.clone().zip(layouts) {
+            let text_top = geometry.top_of(line) + (geometry.row_height - layout.galley().size().y) / 2.0;
+            let at = Pos2::new(geometry.origin.x, text_top);
+            painter.galley(at, layout.galley().clone(), context.tokens.text);
+        }
+        marks.problems(self.shift(context));
+        marks.caret(ui, response);
+        paint_gutter(ui, context, geometry, lines, self.shift(context));
+    }
+
+    /// How the text of the last answer became the present one.
+    fn shift(&mut self, context: &Context<'_>) -> Shift {
+        let Some(latest) = context.state.snapshots.latest() else { return Shift::NONE };
+        let revisions = (latest.revision, context.state.document.revision());
+        if (self.shift.0, self.shift.1) != revisions || self.shift.2.is_none() {
+            let shift = if revisions.0 == revisions.1 {
+                Shift::NONE
+            } else {
+                Shift::between(&latest.source, context.state.document.text())
+            };
+            self.shift = (revisions.0, revisions.1, Some(shift));
+        }
+        self.shift.2.unwrap_or(Shift::NONE)
+    }
+}
+
+fn lay_out(ui: &Ui, context: &Context<'_>, geometry: &Geometry, lines: Range<usize>) -> Vec<LineLayout> {
+    let document = &context.state.document;
+    lines
+        .map(|line| LineLayout::new(ui, context, &geometry.font, document.line_range(line), &[]))
+        .collect()
+}
+
+/// What is painted onto the lines of one frame.
+struct Painting<'a> {
+    context: &'a Context<'a>,
+    geometry: &'a Geometry,
+    lines: &'a Range<usize>,
+    layouts: &'a [LineLayout],
+    painter: &'a egui::Painter,
+    right: f32,
+}
+
+impl Painting<'_> {
+    /// The rectangles that a span covers on screen, one per line; a line break counts as one character.
+    fn rects(&self, span: Range<usize>) -> Vec<Rect> {
+        let document = &self.context.state.document;
+        let mut rects = Vec::new();
+        for (line, layout) in self.lines.clone().zip(self.layouts) {
+            let bytes = document.line_range(line);
+            if span.end < bytes.start || span.start > bytes.end {
+                continue;
+            }
+            let left = layout.x_of(self.context, span.start.max(bytes.start));
+            let mut right = layout.x_of(self.context, span.end.min(bytes.end));
+            if span.end > bytes.end {
+                right += self.geometry.character_width;
+            }
+            if right > left {
+                let x = self.geometry.origin.x;
+                rects.push(self.geometry.row(line, x + left..x + right));
+            }
+        }
+        rects
+    }
+
+    fn current_line(&self, left: f32) {
+        let document = &self.context.state.document;
+        if document.caret().is_empty() {
+            let line = document.line_at(document.caret().head);
+            let row = self.geometry.row(line, left..self.right);
+            self.painter.rect_filled(row, 0.0, self.context.tokens.raised);
+        }
+    }
+
+    /// A quiet bar behind what is selected in the other panels.
+    fn selected_thing(&self, shift: Shift) {
+        let Some(snapshot) = self.context.snapshot.filter(|_| !self.context.is_stale) else { return };
+        let span = self.context.state.selection.span(snapshot).and_then(|span| shift.span(span));
+        for rect in span.map(|span| self.rects(span.range())).unwrap_or_default() {
+            self.painter.rect_filled(rect, 3.0, self.context.tokens.accent_soft);
+        }
+    }
+
+    fn matches_of_find(&self) {
+        let Some(find) = &self.context.state.editor.find else { return };
+        let Ok(pattern) = find.pattern() else { return };
+        let document = &self.context.state.document;
+        let start = document.line_range(self.lines.start).start;
+        let end = document.line_range(self.lines.end).start;
+        let visible = document.text().get(start..end).unwrap_or_default();
+        let stroke = Stroke::new(1.0, self.context.tokens.warning);
+        for found in pattern.matches(visible) {
+            for rect in self.rects(start + found.start..start + found.end) {
+                self.painter.rect_filled(rect, 2.0, self.context.tokens.soft[1]);
+                self.painter.rect_stroke(rect, 2.0, stroke, egui::StrokeKind::Inside);
+            }
+        }
+    }
+
+    fn selected_text(&self, has_focus: bool) {
+        let range = self.context.state.document.caret().range();
+        let tokens = self.context.tokens;
+        let color = if has_focus { tokens.selection } else { tokens.pressed };
+        if !range.is_empty() {
+            for rect in self.rects(range) {
+                self.painter.rect_filled(rect, 2.0, color);
+            }
+        }
+    }
+
+    fn brackets(&self) {
+        let document = &self.context.state.document;
+        let Some((one, other)) = brackets::matching(document.text(), document.caret().head) else { return };
+        let stroke = Stroke::new(1.0, self.context.tokens.line_strong);
+        for at in [one, other] {
+            for rect in self.rects(at..at + 1) {
+                self.painter.rect(rect, 2.0, self.context.tokens.pressed, stroke, egui::StrokeKind::Inside);
+            }
+        }
+    }
+
+    /// Wavy lines under what is wrong.
+    fn problems(&self, shift: Shift) {
+        for (problem, span) in shifted_problems(self.context, shift) {
+            let (_, color) = severity_sign(self.context.tokens, problem.severity);
+            let mut range = span.range();
+            // A problem at a single point still needs something to see.
+            range.end = range.end.max(range.start + 1);
+            let range = range.start..range.end.min(self.context.state.document.text().len().max(range.start));
+            let mut rects = self.rects(range);
+            if rects.is_empty() {
+                rects.extend(self.rects(span.range().start.saturating_sub(1)..span.range().start));
+            }
+            for rect in rects {
+                self.wave(rect, color);
+            }
+        }
+    }
+
+    fn wave(&self, rect: Rect, color: egui::Color32) {
+        let (step, height) = (2.5, 1.6);
+        let middle = rect.bottom() - 2.5;
+        let count = ((rect.width() / step).ceil() as usize).clamp(2, 400);
+        let points = (0..=count).map(|index| {
+            let up = if index % 2 == 0 { -height } else { height };
+            Pos2::new((rect.left() + index as f32 * step).min(rect.right()), middle + up / 2.0)
+        });
+        self.painter.line(points.collect(), Stroke::new(1.2, color));
+    }
+
+    fn caret(&self, ui: &Ui, response: &Response) {
+        let document = &self.context.state.document;
+        let head = document.caret().head;
+        let line = document.line_at(head);
+        let Some(layout) = line.checked_sub(self.lines.start).and_then(|index| self.layouts.get(index)) else {
+            return;
+        };
+        let x = self.geometry.origin.x + layout.x_of(self.context, head);
+        let row = self.geometry.row(line, x..x + 1.0).shrink2(egui::vec2(0.0, 1.5));
+        if !response.has_focus() {
+            return;
+        }
+        let since = self.context.now_secs - self.context.state.editor.active_secs;
+        let is_window_focused = ui.input(|input| input.focused);
+        let is_on = !is_window_focused || since.rem_euclid(1.1) < 0.65 || since > 30.0;
+        if is_on {
+            self.painter.vline(x, row.y_range(), Stroke::new(1.5, self.context.tokens.accent));
+        }
+        if is_window_focused && since <= 30.0 {
+            let phase = since.rem_euclid(1.1);
+            let next = if phase < 0.65 { 0.65 - phase } else { 1.1 - phase };
+            ui.ctx().request_repaint_after_secs(next as f32 + 0.01);
+        }
+        let to_global = ui.ctx().layer_transform_to_global(ui.layer_id()).unwrap_or_default();
+        ui.output_mut(|output| {
+            output.mutable_text_under_cursor |= response.hovered();
+            output.ime = Some(egui::output::IMEOutput {
+                purpose: egui::IMEPurpose::Normal,
+                rect: to_global * response.rect,
+                cursor_rect: to_global * row,
+                should_interrupt_composition: false,
+            });
+        });
+    }
+}
+
+/// The problems of the last answer, at their places in the present text.
+fn shifted_problems<'a>(context: &Context<'a>, shift: Shift) -> Vec<(&'a Problem, Span)> {
+    let latest = context.state.snapshots.latest();
+    let problems = latest.map(|latest| latest.problems.as_slice()).unwrap_or_default();
+    problems.iter().filter_map(|problem| Some((problem, shift.span(problem.span)?))).collect()
+}
+
+fn paint_gutter(ui: &Ui, context: &Context<'_>, geometry: &Geometry, lines: &Range<usize>, shift: Shift) {
+    let tokens = context.tokens;
+    let document = &context.state.document;
+    let clip = ui.clip_rect();
+    let left = clip.left();
+    let gutter = Rect::from_min_max(clip.min, Pos2::new(left + geometry.gutter_width - 1.0, clip.bottom()));
+    let painter = ui.painter().with_clip_rect(gutter);
+    painter.rect_filled(gutter, 0.0, tokens.surface);
+    let current = document.line_at(document.caret().head);
+    let mut worst = std::collections::BTreeMap::<usize, Severity>::new();
+    for (problem, span) in shifted_problems(context, shift) {
+        let line = document.line_at(span.start as usize);
+        let entry = worst.entry(line).or_insert(problem.severity);
+        *entry = (*entry).min(problem.severity);
+    }
+    for line in lines.clone() {
+        let row = geometry.row(line, left..left + geometry.gutter_width - 1.5 * geometry.character_width);
+        let color = if line == current { tokens.text } else { tokens.text_faint };
+        let number = (line + 1).to_string();
+        painter.text(row.right_center(), Align2::RIGHT_CENTER, number, geometry.font.clone(), color);
+        if let Some(&severity) = worst.get(&line) {
+            let (sign, color) = severity_sign(tokens, severity);
+            let at = Pos2::new(left + space::S, row.center().y);
+            painter.text(at, Align2::LEFT_CENTER, sign, geometry.font.clone(), color);
+        }
+    }
+}
+
+/// Tells assistive technologies what the widget is and what it holds.
+fn describe(ui: &Ui, context: &Context<'_>, response: &Response) {
+    let document = &context.state.document;
+    response.widget_info(|| {
+        let text = document.text();
+        let mut info = WidgetInfo::text_edit(ui.is_enabled(), text, text, "");
+        info.role = Role::MultilineTextInput;
+        info.label = Some("Mission text".to_owned());
+        info
+    });
+    ui.ctx().accesskit_node_builder(response.id, |builder| {
+        builder.set_role(egui::accesskit::Role::MultilineTextInput);
+        builder.set_label("Mission text");
+        builder.add_action(egui::accesskit::Action::SetValue);
+        builder.add_action(egui::accesskit::Action::ReplaceSelectedText);
+    });
+}
+
+/// What is wrong under the pointer.
+fn show_hover(context: &Context<'_>, response: &Response, offset: Option<usize>) {
+    let Some(offset) = offset else { return };
+    let latest = context.state.snapshots.latest();
+    let Some(latest) = latest.filter(|latest| latest.revision == context.state.document.revision()) else {
+        return;
+    };
+    let found: Vec<&Problem> = latest
+        .problems
+        .iter()
+        .filter(|problem| problem.span.touches(offset as u32))
+        .collect();
+    if found.is_empty() {
+        return;
+    }
+    response.clone().on_hover_ui_at_pointer(|ui| {
+        ui.set_max_width(420.0);
+        for problem in found {
+            let (sign, color) = severity_sign(context.tokens, problem.severity);
+            ui.horizontal_wrapped(|ui| {
+                ui.colored_label(color, sign);
+                ui.label(&problem.message);
+                ui.colored_label(context.tokens.text_muted, problem.code.as_str());
+            });
+            if let Some(hint) = &problem.hint {
+                ui.colored_label(context.tokens.text_muted, hint);
+            }
+            if !problem.fixes.is_empty() {
+                ui.colored_label(context.tokens.accent, "Ctrl+. to fix");
+            }
+        }
+    });
+}

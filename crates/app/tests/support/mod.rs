@@ -1,0 +1,145 @@
+//! The app without a window: a host that plans at once, in memory, with a clock that the test moves.
+#![allow(dead_code, reason = "every test file uses a part of it")]
+
+use std::cell::{Cell, RefCell};
+use std::collections::{BTreeMap, VecDeque};
+use std::rc::Rc;
+
+use app::Enroute;
+use app::host::{FileKind, Host, HostEvent, StorageError};
+use egui_kittest::{Harness, HarnessBuilder};
+use mission::{Core, Request, Response, Surroundings};
+
+/// What a test and its host share.
+#[derive(Default)]
+pub struct World {
+    /// Seconds on the host's clock.
+    pub now_secs: Cell<f64>,
+    /// What is kept between runs.
+    pub storage: RefCell<BTreeMap<String, String>>,
+    /// Files that were saved.
+    pub saved: RefCell<Vec<(String, Vec<u8>)>>,
+    /// What files the app asked for.
+    pub asked: RefCell<Vec<FileKind>>,
+    /// What stands after `#`.
+    pub fragment: RefCell<String>,
+    /// Whether requests are answered.
+    pub is_deaf: Cell<bool>,
+    /// Events that the host tells next.
+    pub news: RefCell<VecDeque<HostEvent>>,
+    /// How many requests were posted.
+    pub posted: Cell<usize>,
+}
+
+/// A host that plans on the spot.
+pub struct TestHost {
+    core: Core,
+    world: Rc<World>,
+}
+
+/// A harness around the app, and what it shares with its host.
+pub struct App {
+    /// The harness.
+    pub harness: Harness<'static, Enroute>,
+    /// The host's side.
+    pub world: Rc<World>,
+}
+
+/// Starts the app in a window of 1440 × 900.
+pub fn start() -> App {
+    start_in(Rc::default(), |builder| builder)
+}
+
+/// Starts the app in a given world, with a changed harness.
+pub fn start_in(world: Rc<World>, build: impl FnOnce(HarnessBuilder<Enroute>) -> HarnessBuilder<Enroute>) -> App {
+    let host = TestHost { core: Core::default(), world: Rc::clone(&world) };
+    let builder = build(Harness::builder().with_size([1440.0, 900.0]).with_max_steps(8).with_step_dt(1.0 / 60.0));
+    let harness = builder
+        .build_eframe(move |creation| Enroute::new(&creation.egui_ctx, Box::new(host), ""));
+    App { harness, world }
+}
+
+impl App {
+    /// Lets frames go by until nothing changes any more, at most a few.
+    pub fn settle(&mut self) {
+        for _ in 0..6 {
+            self.world.now_secs.set(self.world.now_secs.get() + 1.0 / 60.0);
+            self.harness.step();
+        }
+    }
+
+    /// The app's state as a host page sees it.
+    pub fn json(&self) -> serde_json::Value {
+        app::host::Remote::state(self.harness.state())
+    }
+}
+
+impl Host for TestHost {
+    fn post(&mut self, request: Request) {
+        self.world.posted.set(self.world.posted.get() + 1);
+        if self.world.is_deaf.get() {
+            return;
+        }
+        let world = Rc::clone(&self.world);
+        self.core.handle(request, &mut Answers { world });
+    }
+
+    fn poll(&mut self) -> Option<HostEvent> {
+        self.world.news.borrow_mut().pop_front()
+    }
+
+    fn monotonic_secs(&self) -> f64 {
+        self.world.now_secs.get()
+    }
+
+    fn stored(&self, key: &str) -> Option<String> {
+        self.world.storage.borrow().get(key).cloned()
+    }
+
+    fn store(&mut self, key: &str, value: &str) -> Result<(), StorageError> {
+        self.world.storage.borrow_mut().insert(key.to_owned(), value.to_owned());
+        Ok(())
+    }
+
+    fn forget(&mut self, key: &str) {
+        self.world.storage.borrow_mut().remove(key);
+    }
+
+    fn open_file(&mut self, kind: FileKind) {
+        self.world.asked.borrow_mut().push(kind);
+    }
+
+    fn save_file(&mut self, suggested_name: &str, bytes: Vec<u8>) {
+        self.world.saved.borrow_mut().push((suggested_name.to_owned(), bytes));
+    }
+
+    fn fragment(&self) -> String {
+        self.world.fragment.borrow().clone()
+    }
+
+    fn set_fragment(&mut self, fragment: &str) {
+        fragment.clone_into(&mut self.world.fragment.borrow_mut());
+    }
+
+    fn link(&self, fragment: &str) -> Option<String> {
+        Some(format!("https://enroute.example/#{fragment}"))
+    }
+}
+
+struct Answers {
+    world: Rc<World>,
+}
+
+impl Surroundings for Answers {
+    fn now_millis(&self) -> f64 {
+        0.0
+    }
+
+    fn is_superseded(&mut self) -> bool {
+        false
+    }
+
+    fn answer(&mut self, response: Response) {
+        self.world.news.borrow_mut().push_back(HostEvent::Answer(response));
+    }
+}
