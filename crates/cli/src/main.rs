@@ -9,7 +9,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use commands::{check, explain, path, plan};
+use commands::{check, explain, path, plan, stn};
 
 /// Plans, checks and explains missions written in RMPL.
 #[derive(Parser)]
@@ -25,6 +25,7 @@ enum Command {
     Explain(explain::Args),
     Path(path::Args),
     Plan(plan::Args),
+    Stn(stn::Args),
 }
 
 fn main() -> ExitCode {
@@ -33,6 +34,7 @@ fn main() -> ExitCode {
         Command::Explain(args) => explain::run(args),
         Command::Path(args) => path::run(args),
         Command::Plan(args) => plan::run(args),
+        Command::Stn(args) => stn::run(args),
     };
     result.unwrap_or_else(|error| {
         eprintln!("error: {error:#}");

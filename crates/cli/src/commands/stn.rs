@@ -1,0 +1,116 @@
+//! `enroute stn`: consistency and windows of a plain simple temporal network.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::anyhow;
+use mission::Problem;
+use rmpl::{Code, Diagnostic, Span};
+use serde_json::{Map, Value, json};
+use stn::{Document, Inconsistency, ParseError, PointId, Window};
+
+use crate::input::read_text;
+use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
+
+/// The file is not a network in the format.
+const E_STN: Code = Code("E-STN");
+
+/// Checks a plain STN file: windows relative to its first time point, or a negative cycle.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The file; `-` is standard input.
+    file: PathBuf,
+    /// For whom the answer is.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let source = read_text(&args.file)?;
+    let network = match stn::parse(&source) {
+        Ok(network) => network,
+        Err(error) => {
+            let problems = Problem::all(&[diagnostic(&source, &error)], &source);
+            match args.format {
+                Format::Text => print_problems(&args.file.display().to_string(), &source, &problems)?,
+                Format::Json => print_json(&document("stn", &problems, json!({})))?,
+            }
+            return Ok(exit(WRONG));
+        }
+    };
+    let (mut stn, consistent) = network.to_stn();
+    match consistent {
+        Ok(()) => {
+            let windows = if network.names.is_empty() { Vec::new() } else { stn.windows(PointId(0))? };
+            match args.format {
+                Format::Text => print_text(&windows_text(&network, &windows))?,
+                Format::Json => {
+                    let body = json!({ "consistent": true, "windows": windows_json(&network, &windows), "cycle": null });
+                    print_json(&document("stn", &[], body))?;
+                }
+            }
+            Ok(exit(YES))
+        }
+        Err(Inconsistency::NegativeCycle) => {
+            match args.format {
+                Format::Text => print_text(&cycle_text(&network, &stn))?,
+                Format::Json => {
+                    let cycle: Vec<Value> = stn.cycle().iter().map(|edge| edge_json(&network, edge)).collect();
+                    let body = json!({ "consistent": false, "windows": null, "cycle": cycle });
+                    print_json(&document("stn", &[], body))?;
+                }
+            }
+            Ok(exit(NO))
+        }
+        Err(Inconsistency::Overflow) => Err(anyhow!("a time does not fit into 64 bits")),
+    }
+}
+
+/// The parser's complaint, on the line it is about.
+fn diagnostic(source: &str, error: &ParseError) -> Diagnostic {
+    let mut start = 0;
+    for line in source.split_inclusive('\n').take(error.line.saturating_sub(1)) {
+        start += line.len();
+    }
+    let length = source.get(start..).and_then(|rest| rest.lines().next()).map_or(0, str::len);
+    Diagnostic::error(E_STN, Span::new(start as u32, (start + length) as u32), error.message.clone())
+}
+
+fn windows_text(network: &Document, windows: &[Window]) -> String {
+    let mut text = "consistent\n".to_owned();
+    let width = network.names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
+    for (name, window) in network.names.iter().zip(windows) {
+        let earliest = window.earliest.map_or("-inf".to_owned(), |time| time.to_string());
+        let latest = window.latest.map_or("inf".to_owned(), |time| time.to_string());
+        text.push_str(&format!("{name:<width$}  [{earliest}, {latest}]\n"));
+    }
+    text
+}
+
+fn cycle_text(network: &Document, stn: &stn::Stn) -> String {
+    let total: i128 = stn.cycle().iter().map(|edge| i128::from(edge.weight)).sum();
+    let mut text = format!("not consistent: a cycle of weight {total}\n");
+    for edge in stn.cycle() {
+        let (from, to) = (&network.names[edge.from.index()], &network.names[edge.to.index()]);
+        text.push_str(&format!("{from} {} {to}\n", edge.weight));
+    }
+    text
+}
+
+fn windows_json(network: &Document, windows: &[Window]) -> Value {
+    let windows = network.names.iter().zip(windows).map(|(name, window)| {
+        let earliest = window.earliest.map_or(json!("-inf"), |time| json!(time));
+        let latest = window.latest.map_or(json!("inf"), |time| json!(time));
+        (name.clone(), json!([earliest, latest]))
+    });
+    Value::Object(windows.collect::<Map<_, _>>())
+}
+
+fn edge_json(network: &Document, edge: &stn::CycleEdge) -> Value {
+    json!({
+        "from": network.names[edge.from.index()],
+        "weight": edge.weight,
+        "to": network.names[edge.to.index()],
+    })
+}
