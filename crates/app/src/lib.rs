@@ -10,6 +10,7 @@ pub mod command;
 pub mod core_queue;
 pub mod dialog;
 pub mod host;
+pub mod icon;
 pub mod layouts;
 pub mod mission_file;
 #[cfg(not(target_arch = "wasm32"))]

@@ -1,8 +1,9 @@
 //! Shows the short messages in the corner.
 
-use egui::{Align2, Area, Frame, Id, Order, RichText, Stroke};
+use egui::{Align2, Area, Frame, Id, Order, Stroke};
 
 use crate::command::{Command, CommandSender};
+use crate::icon::{self, Icon};
 use crate::panel::Context;
 use crate::state::ToastKind;
 use crate::theme::space;
@@ -20,17 +21,16 @@ pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandS
         .show(egui, |ui| {
             for (index, toast) in toasts.iter().enumerate() {
                 let (sign, color) = match toast.kind {
-                    ToastKind::Done => ("✔", tokens.good),
-                    ToastKind::Info => ("ℹ", tokens.info),
-                    ToastKind::Failed => ("⚠", tokens.error),
+                    ToastKind::Done => (Icon::Check, tokens.good),
+                    ToastKind::Info => (Icon::Info, tokens.info),
+                    ToastKind::Failed => (Icon::Warning, tokens.error),
                 };
                 Frame::popup(ui.style()).stroke(Stroke::new(1.0, color)).show(ui, |ui| {
                     ui.set_max_width(360.0);
                     ui.horizontal(|ui| {
-                        ui.label(RichText::new(sign).color(color));
+                        icon::label(ui, sign, color);
                         ui.add(egui::Label::new(&toast.text).wrap());
-                        let close = ui.small_button("✕").accessible_name("Dismiss message");
-                        if close.clicked() {
+                        if icon::button(ui, tokens, Icon::Close, "Dismiss message").clicked() {
                             commands.send(Command::DismissToast(index));
                         }
                     });

@@ -4,6 +4,7 @@ use egui::{Align, Frame, Layout, Margin, Panel, RichText, Ui};
 use rmpl::Severity;
 
 use crate::command::{Command, CommandSender};
+use crate::icon::{self, Icon};
 use crate::panel::{Context, PanelKind};
 use crate::theme::space;
 
@@ -34,10 +35,20 @@ fn problems(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         (0, _) => tokens.warning,
         _ => tokens.error,
     };
-    let text = RichText::new(format!("✖ {errors}  ⚠ {warnings}")).color(color);
-    let button = egui::Button::new(text).frame_when_inactive(false).small();
     let name = format!("{errors} errors, {warnings} warnings");
-    if ui.add(button).accessible_name(name).clicked() {
+    let (rect, response) = ui.allocate_exact_size(egui::vec2(64.0, 20.0), egui::Sense::click());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    if response.hovered() || response.has_focus() {
+        ui.painter().rect_filled(rect, 4.0, tokens.hover);
+    }
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    for (sign, count, x) in [(Icon::Error, errors, 10.0), (Icon::Warning, warnings, 40.0)] {
+        let at = egui::pos2(rect.left() + x, rect.center().y);
+        icon::paint(ui.painter(), sign, egui::Rect::from_center_size(at, egui::Vec2::ZERO), 11.0, color);
+        let at = at + egui::vec2(9.0, 0.0);
+        ui.painter().text(at, egui::Align2::LEFT_CENTER, count.to_string(), font.clone(), color);
+    }
+    if response.on_hover_text(name.clone()).clicked() {
         commands.send(Command::ShowPanel(PanelKind::Problems));
     }
 }

@@ -1,9 +1,12 @@
 //! The bar on top: menus, the mission, the workspaces, and where the plan stands.
 
-use egui::{Align, Button, ComboBox, Frame, Layout, Margin, Panel, RichText, Stroke, Ui};
+use egui::{
+    Align, Button, ComboBox, Frame, Layout, Margin, Panel, RichText, Role, Sense, Stroke, Ui, WidgetInfo,
+};
 
 use crate::command::{COMMANDS, Command, CommandSender, CommandSpec, Group};
 use crate::dialog::Dialog;
+use crate::icon::{self, Icon};
 use crate::mission_file::EXAMPLES;
 use crate::panel::{Context, PanelKind};
 use crate::state::Status;
@@ -110,19 +113,39 @@ fn workspaces(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) 
 fn status(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let tokens = context.tokens;
     let [good, warning, error, info] = tokens.soft;
+    let verdict = context.snapshot.and_then(|snapshot| snapshot.planning.as_ref()?.verdict.as_ref());
     let (sign, text, color, fill, panel) = match context.state.status() {
-        Status::Working => ("…", "Planning".to_owned(), tokens.info, info, PanelKind::Plan),
-        Status::Broken => {
-            let text = if context.is_stale { "Errors · showing the last good plan" } else { "Errors" };
-            ("⚠", text.to_owned(), tokens.error, error, PanelKind::Problems)
+        Status::Working => (Icon::Working, "Planning", tokens.info, info, PanelKind::Plan),
+        Status::Broken if context.is_stale => {
+            (Icon::Warning, "Errors · last good plan shown", tokens.error, error, PanelKind::Problems)
         }
-        Status::Empty => ("–", "Nothing to plan".to_owned(), tokens.warning, warning, PanelKind::Problems),
-        Status::Plan => ("✔", "Plan".to_owned(), tokens.good, good, PanelKind::Plan),
-        Status::NoPlan => ("✖", "No plan".to_owned(), tokens.error, error, PanelKind::Plan),
+        Status::Broken => (Icon::Warning, "Errors", tokens.error, error, PanelKind::Problems),
+        Status::Empty => (Icon::Nothing, "Nothing to plan", tokens.warning, warning, PanelKind::Problems),
+        Status::Plan if verdict.is_some_and(|verdict| verdict.valid) => {
+            (Icon::Check, "Plan · verified", tokens.good, good, PanelKind::Plan)
+        }
+        Status::Plan if verdict.is_some() => {
+            (Icon::Warning, "Plan · refused by the checker", tokens.error, error, PanelKind::Plan)
+        }
+        Status::Plan => (Icon::Check, "Plan", tokens.good, good, PanelKind::Plan),
+        Status::NoPlan => (Icon::Error, "No plan", tokens.error, error, PanelKind::Plan),
     };
-    let text = RichText::new(format!("{sign}  {text}")).color(color);
-    let button = Button::new(text).fill(fill).stroke(Stroke::NONE).corner_radius(10.0);
-    if ui.add(button).accessible_name(status_name(context)).clicked() {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, color);
+    let size = egui::vec2(galley.size().x + 40.0, space::ROW + 2.0);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let name = status_name(context);
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
+    ui.painter().rect_filled(rect, rect.height() / 2.0, fill);
+    if response.hovered() || response.has_focus() {
+        let stroke = Stroke::new(1.0, color);
+        ui.painter().rect_stroke(rect, rect.height() / 2.0, stroke, egui::StrokeKind::Inside);
+    }
+    let sign_rect = egui::Rect::from_min_size(rect.min + egui::vec2(8.0, 0.0), egui::vec2(16.0, rect.height()));
+    icon::paint(ui.painter(), sign, sign_rect, 13.0, color);
+    let at = egui::pos2(rect.left() + 28.0, rect.center().y - galley.size().y / 2.0);
+    ui.painter().galley(at, galley, color);
+    if response.on_hover_text("Show the details").clicked() {
         commands.send(Command::ShowPanel(panel));
     }
 }
@@ -138,20 +161,20 @@ fn status_name(context: &Context<'_>) -> &'static str {
 }
 
 fn tools(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
-    let quiet = |text: &'static str| Button::new(text).frame_when_inactive(false);
-    if ui.add(quiet("?")).on_hover_text("Keyboard shortcuts").accessible_name("Keyboard shortcuts").clicked()
-    {
+    let tokens = context.tokens;
+    ui.spacing_mut().item_spacing.x = space::XS;
+    if icon::button(ui, tokens, Icon::Help, "Keyboard shortcuts").clicked() {
         commands.send(Command::ShowDialog(Dialog::Keys));
     }
     let (sign, name) = match context.state.settings.theme {
-        ThemeChoice::Dark => ("☀", "Light theme"),
-        ThemeChoice::Light => ("🌙", "Dark theme"),
+        ThemeChoice::Dark => (Icon::Sun, "Light theme"),
+        ThemeChoice::Light => (Icon::Moon, "Dark theme"),
     };
-    if ui.add(quiet(sign)).on_hover_text(name).accessible_name(name).clicked() {
+    if icon::button(ui, tokens, sign, name).clicked() {
         commands.send(Command::SetTheme(context.state.settings.theme.toggled()));
     }
-    let palette = ui.add(quiet("⌘")).on_hover_text("Command palette (F1)");
-    if palette.accessible_name("Command palette").clicked() {
+    if icon::button(ui, tokens, Icon::Palette, "Command palette").clicked() {
         commands.send(Command::ShowDialog(Dialog::palette()));
     }
+    ui.spacing_mut().item_spacing.x = space::M;
 }

@@ -5,6 +5,7 @@ use mission::Problem;
 use rmpl::Severity;
 
 use crate::command::{Command, CommandSender, EditorCommand};
+use crate::icon::{self, Icon};
 use crate::panel::{Context, Panel, show_empty};
 use crate::state::EditKind;
 use crate::theme::{Tokens, space};
@@ -47,11 +48,11 @@ impl Panel for ProblemsPanel {
 }
 
 /// The sign and the colour of a severity; the sign alone tells them apart.
-pub fn severity_sign(tokens: &Tokens, severity: Severity) -> (&'static str, egui::Color32) {
+pub fn severity_sign(tokens: &Tokens, severity: Severity) -> (Icon, egui::Color32) {
     match severity {
-        Severity::Error => ("✖", tokens.error),
-        Severity::Warning => ("⚠", tokens.warning),
-        Severity::Note => ("ℹ", tokens.info),
+        Severity::Error => (Icon::Error, tokens.error),
+        Severity::Warning => (Icon::Warning, tokens.warning),
+        Severity::Note => (Icon::Info, tokens.info),
     }
 }
 
@@ -62,7 +63,7 @@ fn show_row(ui: &mut Ui, context: &Context<'_>, problem: &Problem) -> egui::Resp
     let small = egui::TextStyle::Small.resolve(ui.style());
     let width = ui.available_width();
     let text_width = (width - 28.0 - 120.0).max(80.0);
-    let message = ui.painter().layout(problem.message.clone(), body.clone(), tokens.text, text_width);
+    let message = ui.painter().layout(problem.message.clone(), body, tokens.text, text_width);
     let height = (message.size().y + 6.0).max(space::ROW);
     let (rect, response) = ui.allocate_exact_size(egui::vec2(width, height), Sense::click());
     let name = format!("Line {}: {} {}", problem.line, problem.code, problem.message);
@@ -72,7 +73,8 @@ fn show_row(ui: &mut Ui, context: &Context<'_>, problem: &Problem) -> egui::Resp
     }
     let painter = ui.painter();
     let top = rect.left_top() + egui::vec2(space::M, 3.0);
-    painter.text(top, egui::Align2::LEFT_TOP, sign, body, color);
+    let sign_rect = egui::Rect::from_min_size(top, egui::vec2(14.0, 16.0));
+    icon::paint(painter, sign, sign_rect, 13.0, color);
     painter.galley(top + egui::vec2(20.0, 0.0), message, tokens.text);
     let place = format!("{}   {}:{}", problem.code, problem.line, problem.column);
     let right = rect.right_top() + egui::vec2(-space::M, 5.0);
@@ -92,7 +94,7 @@ fn show_details(
             ui.label(RichText::new(hint).color(context.tokens.text_muted));
         }
         for fix in &problem.fixes {
-            let button = ui.add_enabled(is_current, egui::Button::new(format!("💡 {}", fix.label)));
+            let button = ui.add_enabled(is_current, egui::Button::new(&fix.label));
             if button.accessible_name(format!("Fix: {}", fix.label)).clicked() {
                 commands.send(Command::Edit { edits: fix.edits.clone(), kind: EditKind::Single });
             }

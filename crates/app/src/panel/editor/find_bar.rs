@@ -1,8 +1,9 @@
 //! The find bar above the text.
 
-use egui::{Button, Frame, Key, Margin, RichText, Stroke, TextEdit, Ui};
+use egui::{Button, Frame, Key, Margin, RichText, TextEdit, Ui};
 
 use crate::command::{Command, CommandSender, EditorCommand};
+use crate::icon::{self, Icon};
 use crate::panel::Context;
 use crate::state::editor::Find;
 use crate::theme::space;
@@ -14,8 +15,8 @@ pub(crate) fn show(ui: &mut Ui, context: &Context<'_>, find: &Find, commands: &m
     changed.wants_focus = false;
     Frame::new().fill(tokens.raised).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
         ui.horizontal(|ui| {
-            let sign = if find.replacing { "⏷" } else { "⏵" };
-            let toggle = ui.add(Button::new(sign).frame_when_inactive(false)).accessible_name("Replace row");
+            let sign = if find.replacing { Icon::ChevronDown } else { Icon::ChevronRight };
+            let toggle = icon::button(ui, tokens, sign, "Replace row");
             changed.replacing ^= toggle.clicked();
             query_field(ui, find, &mut changed, commands);
             toggle_button(ui, "Aa", "Match case", &mut changed.case_sensitive);
@@ -23,9 +24,9 @@ pub(crate) fn show(ui: &mut Ui, context: &Context<'_>, find: &Find, commands: &m
             toggle_button(ui, ".*", "Regular expression", &mut changed.is_regex);
             ui.label(RichText::new(outcome(context, find)).small().color(tokens.text_muted));
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                button(ui, "✕", "Close find bar", EditorCommand::CloseFind, commands);
-                button(ui, "↓", "Next match", EditorCommand::FindNext, commands);
-                button(ui, "↑", "Previous match", EditorCommand::FindPrevious, commands);
+                button(ui, context, Icon::Close, "Close find bar", EditorCommand::CloseFind, commands);
+                button(ui, context, Icon::Down, "Next match", EditorCommand::FindNext, commands);
+                button(ui, context, Icon::Up, "Previous match", EditorCommand::FindPrevious, commands);
             });
         });
         if find.replacing {
@@ -68,9 +69,15 @@ fn toggle_button(ui: &mut Ui, sign: &str, name: &str, value: &mut bool) {
     *value ^= button.clicked();
 }
 
-fn button(ui: &mut Ui, sign: &str, name: &str, command: EditorCommand, commands: &mut CommandSender) {
-    let button = Button::new(RichText::new(sign)).frame_when_inactive(false).stroke(Stroke::NONE);
-    if ui.add(button).on_hover_text(name).accessible_name(name).clicked() {
+fn button(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    sign: Icon,
+    name: &str,
+    command: EditorCommand,
+    commands: &mut CommandSender,
+) {
+    if icon::button(ui, context.tokens, sign, name).clicked() {
         commands.send(Command::Editor(command));
     }
 }

@@ -7,6 +7,7 @@ use mission::Problem;
 use rmpl::{Severity, Span};
 
 use crate::command::{Command, CommandSender};
+use crate::icon;
 use crate::panel::editor::line::LineLayout;
 use crate::panel::editor::marks::Shift;
 use crate::panel::editor::{brackets, editor_id, keyboard};
@@ -455,8 +456,8 @@ fn paint_gutter(ui: &Ui, context: &Context<'_>, geometry: &Geometry, lines: &Ran
         painter.text(row.right_center(), Align2::RIGHT_CENTER, number, geometry.font.clone(), color);
         if let Some(&severity) = worst.get(&line) {
             let (sign, color) = severity_sign(tokens, severity);
-            let at = Pos2::new(left + space::S, row.center().y);
-            painter.text(at, Align2::LEFT_CENTER, sign, geometry.font.clone(), color);
+            let at = Pos2::new(left + space::M + 2.0, row.center().y);
+            icon::paint(&painter, sign, Rect::from_center_size(at, egui::Vec2::ZERO), 12.0, color);
         }
     }
 }
@@ -499,7 +500,7 @@ fn show_hover(context: &Context<'_>, response: &Response, offset: Option<usize>)
         for problem in found {
             let (sign, color) = severity_sign(context.tokens, problem.severity);
             ui.horizontal_wrapped(|ui| {
-                ui.colored_label(color, sign);
+                icon::label(ui, sign, color);
                 ui.label(&problem.message);
                 ui.colored_label(context.tokens.text_muted, problem.code.as_str());
             });
