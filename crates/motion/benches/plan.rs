@@ -14,9 +14,9 @@ const RUNS: u64 = 200;
 
 fn main() {
     println!(
-        "| map | radius | planner | success | first path ms (median) | 90 % | length | smoothing ms | smoothed | of reference | worst |"
+        "| map | radius | planner | success | first path ms (median) | 90 % | length | smoothing ms | smoothed | of reference | worst | within 5 % |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
     for map in ["map_1", "map_2"] {
         for radius in [0.0, 1.5] {
             let Some(space) = load(map, radius) else {
@@ -62,8 +62,9 @@ fn report(
         smoothing.push(1000.0 * start.elapsed().as_secs_f64());
         smoothed.push(short.length_m());
     }
+    let near = smoothed.iter().filter(|&&length| length <= 1.05 * reference).count();
     println!(
-        "| {map} | {radius} | {planner:?} | {found}/{RUNS} | {:.3} | {:.3} | {:.0} | {:.3} | {:.1} | {:.4} | {:.4} |",
+        "| {map} | {radius} | {planner:?} | {found}/{RUNS} | {:.3} | {:.3} | {:.0} | {:.3} | {:.1} | {:.4} | {:.4} | {near}/{found} |",
         quantile(&mut first, 0.5),
         quantile(&mut first, 0.9),
         quantile(&mut lengths, 0.5),

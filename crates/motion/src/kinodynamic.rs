@@ -127,7 +127,7 @@ fn measure(state: MotionState, place_m: [f64; 2]) -> f64 {
 fn extend(start: MotionState, sample_m: [f64; 2], context: &Context) -> Option<Vec<MotionState>> {
     let limits = &context.settings.limits;
     let steps =
-        (context.settings.step_m / limits.speed_mps / Trajectory::STEP_S).ceil().clamp(4.0, 400.0) as usize;
+        (context.settings.step_m / limits.speed_mps / Trajectory::STEP_S).ceil().clamp(4.0, 120.0) as usize;
     let mut best: Option<(f64, Vec<MotionState>)> = None;
     let mut motion = Vec::with_capacity(steps);
     for speed in SPEEDS {

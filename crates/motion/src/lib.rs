@@ -11,11 +11,15 @@
 //! Nothing here reads a clock or draws unseeded numbers: the same call gives the same bits natively and in wasm.
 
 mod altitude;
+mod driver;
+mod formation;
 mod geometry;
 mod kinodynamic;
+mod laser;
 mod leg;
 mod nearest;
 mod path;
+mod proximity;
 mod rrt;
 mod rrt_connect;
 mod rrt_star;
@@ -28,9 +32,13 @@ mod tree;
 mod vehicle;
 
 pub use altitude::path_in_space;
+pub use driver::{DriveEvent, Driver, DriverSettings};
+pub use formation::Formation;
+pub use laser::{FineWorld, LaserModel, LaserScan};
 pub use leg::{Leg, LegFailure, plan_leg, plan_legs};
 pub use nearest::PointTree;
 pub use path::Path;
+pub use proximity::{Encounter, Proximity, TimedPoint, proximity};
 pub use search::{
     Event, Failure, Growth, PlannerKind, Query, Search, SearchResult, Settings, Statistics, find_path,
 };

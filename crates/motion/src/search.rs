@@ -10,7 +10,7 @@ use crate::rrt::Rrt;
 use crate::rrt_connect::RrtConnect;
 use crate::rrt_star::RrtStar;
 use crate::shortcut::{ShortcutSettings, shorten};
-use crate::trajectory::{DriveLimits, Trajectory};
+use crate::trajectory::{DriveLimits, Trajectory, drive_path};
 use crate::tree::Tree;
 use crate::vehicle::VEHICLE_MODELS;
 
@@ -352,8 +352,26 @@ impl Search {
     }
 }
 
-/// Finds a path and, if `shortcut` is given, shortens it. The path of a motion is left as it is: a straight shortcut
-/// would not be within the vehicle's limits.
+impl SearchResult {
+    /// Shortens the path, if there is one. A motion is replaced by driving its shortened path with a stop at each corner
+    /// where that is quicker.
+    pub fn shorten(&mut self, space: &ConfigurationSpace, settings: &Settings, shortcut: &ShortcutSettings) {
+        let Ok(path) = &mut self.path else { return };
+        let short = shorten(space, path, shortcut);
+        if let Some(found) = &mut self.trajectory {
+            let heading_rad = found.states.first().map_or(0.0, |first| first.state.heading_rad);
+            let driven = drive_path(&short, heading_rad, &settings.limits);
+            if driven.duration_s() < found.duration_s() {
+                *found = driven;
+            }
+            *path = found.path();
+        } else {
+            *path = short;
+        }
+    }
+}
+
+/// Finds a path and, if `shortcut` is given, shortens it ([`SearchResult::shorten`]).
 pub fn find_path(
     space: &ConfigurationSpace,
     query: Query,
@@ -372,8 +390,8 @@ pub fn find_path(
             };
         }
     };
-    if let (Ok(path), Some(shortcut), None) = (&mut result.path, shortcut, &result.trajectory) {
-        *path = shorten(space, path, shortcut);
+    if let Some(shortcut) = shortcut {
+        result.shorten(space, settings, shortcut);
     }
     result
 }

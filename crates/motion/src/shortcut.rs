@@ -23,7 +23,7 @@ pub struct ShortcutSettings {
 
 impl Default for ShortcutSettings {
     fn default() -> Self {
-        Self { attempts: 200, corner_rounds: 30, seed: 1 }
+        Self { attempts: 100, corner_rounds: 12, seed: 1 }
     }
 }
 

@@ -53,15 +53,12 @@ fn merge_turns(space: &ConfigurationSpace, points: &[[f64; 2]], extra_m: f64) ->
             }),
             _ => None,
         };
-        match merged {
-            Some(corner) => {
-                kept.push(corner);
-                index += 2;
-            }
-            None => {
-                kept.push(point);
-                index += 1;
-            }
+        if let Some(corner) = merged {
+            kept.push(corner);
+            index += 2;
+        } else {
+            kept.push(point);
+            index += 1;
         }
     }
     kept

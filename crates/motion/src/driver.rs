@@ -1,0 +1,381 @@
+//! A vehicle in simulation: it follows its path and avoids what it meets (SPEC 7.4).
+//!
+//! Every tenth of a second it sweeps its laser and aims at a point ahead on the path (pure pursuit, Coulter 1992), or, when
+//! something stands between, in the open direction nearest to it (vector field histogram, Borenstein and Koren 1991). It
+//! picks the speed and turning rate that serve this best among those it can reach and from which it can still stop in
+//! front of everything it has seen (dynamic window, Fox, Burgard and Thrun 1997).
+
+use serde::{Deserialize, Serialize};
+use terrain::{ConfigurationSpace, Random};
+
+use crate::geometry::{distance, squared_distance};
+use crate::laser::{FineWorld, LaserModel, LaserScan};
+use crate::path::Path;
+use crate::trajectory::{DriveLimits, MotionState, Trajectory, heading_difference};
+
+/// How a vehicle drives by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DriverSettings {
+    /// What the vehicle can do.
+    pub limits: DriveLimits,
+    /// The speed it aims at, in metres per second.
+    pub cruise_mps: f64,
+    /// The disc that must not touch anything, in metres: the circumradius.
+    pub radius_m: f64,
+    /// What it keeps free around that disc for errors of its laser, in metres.
+    pub margin_m: f64,
+    /// How far ahead on the path it aims, in metres.
+    pub lookahead_m: f64,
+    /// How far it may stray from the path before it reports, in metres.
+    pub corridor_m: f64,
+    /// How long it may make no way before it reports, in seconds.
+    pub blocked_timeout_s: f64,
+    /// Within this distance of the path's end it has arrived, in metres.
+    pub arrival_m: f64,
+    /// Its range finder.
+    pub laser: LaserModel,
+}
+
+impl DriverSettings {
+    /// For a vehicle with these limits and circumradius, at its greatest speed.
+    pub const fn new(limits: DriveLimits, radius_m: f64) -> Self {
+        Self {
+            limits,
+            cruise_mps: limits.speed_mps,
+            radius_m,
+            margin_m: 0.08,
+            lookahead_m: 1.6,
+            corridor_m: 5.0,
+            blocked_timeout_s: 15.0,
+            arrival_m: 0.2,
+            laser: LaserModel::SICK,
+        }
+    }
+}
+
+/// What a tenth of a second of driving came to.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum DriveEvent {
+    /// Under way.
+    Driving,
+    /// At the path's end.
+    Arrived,
+    /// It has made no way for the timeout: something blocks the path. Replan from here.
+    Blocked {
+        /// Seconds without way.
+        seconds: f64,
+    },
+    /// It had to go too far from its path. Replan from here.
+    OffCorridor {
+        /// Metres from the path.
+        deviation_m: f64,
+    },
+}
+
+/// A vehicle that drives along a path.
+#[derive(Clone, Debug)]
+pub struct Driver {
+    settings: DriverSettings,
+    path: Path,
+    length_m: f64,
+    state: MotionState,
+    time_s: f64,
+    /// How far along the path it is.
+    progress_m: f64,
+    /// When it last made way, and how far it was.
+    last_way: (f64, f64),
+    seen: Vec<[f64; 2]>,
+    /// On which side it last went around something: -1 right, 1 left, 0 neither.
+    side: f64,
+    random: Random,
+}
+
+/// Seen points farther away than this are forgotten, in metres.
+const MEMORY_RADIUS_M: f64 = 3.0;
+/// Seen points kept from earlier sweeps.
+const MEMORY_POINTS: usize = 400;
+const STEP_S: f64 = Trajectory::STEP_S;
+
+impl Driver {
+    /// A vehicle at rest at the start of a path.
+    pub fn new(path: Path, heading_rad: f64, settings: DriverSettings, seed: u64) -> Self {
+        let start = path.points_m.first().copied().unwrap_or_default();
+        Self {
+            settings,
+            length_m: path.length_m(),
+            path,
+            state: MotionState::at_rest(start, heading_rad),
+            time_s: 0.0,
+            progress_m: 0.0,
+            last_way: (0.0, 0.0),
+            seen: Vec::new(),
+            side: 0.0,
+            random: Random::from_seed(seed),
+        }
+    }
+
+    /// Where it is and how it moves.
+    pub const fn state(&self) -> MotionState {
+        self.state
+    }
+
+    /// Seconds driven.
+    pub const fn time_s(&self) -> f64 {
+        self.time_s
+    }
+
+    /// Metres along the path that it has come.
+    pub const fn progress_m(&self) -> f64 {
+        self.progress_m
+    }
+
+    /// Goes on along another path from where it is, at its speed: after a report.
+    pub fn follow(&mut self, path: Path) {
+        self.length_m = path.length_m();
+        self.path = path;
+        self.progress_m = 0.0;
+        self.last_way = (self.time_s, 0.0);
+    }
+
+    /// Drives for a tenth of a second, and returns what came of it with the sweep it was based on. Besides what the
+    /// laser sees, `map` keeps the vehicle off steep ground; its radius should be the circumradius.
+    pub fn step(&mut self, world: &FineWorld, map: Option<&ConfigurationSpace>) -> (DriveEvent, LaserScan) {
+        let scan =
+            world.scan(self.state.position_m, self.state.heading_rad, &self.settings.laser, &mut self.random);
+        self.remember(&scan);
+        let remaining = (self.length_m - self.progress_m).max(0.0);
+        let target = self
+            .path
+            .point_at(self.progress_m + self.settings.lookahead_m)
+            .map_or(self.state.position_m, |it| it.0);
+        let target = self.open_target(target, map);
+        let (speed, rate) = self.choose(target, remaining, map);
+        self.state = self.state.after(speed, rate, STEP_S, &self.settings.limits);
+        self.time_s += STEP_S;
+        (self.judge(), scan)
+    }
+
+    /// Adds a sweep to what was seen nearby before.
+    fn remember(&mut self, scan: &LaserScan) {
+        let here = self.state.position_m;
+        let near = MEMORY_RADIUS_M * MEMORY_RADIUS_M;
+        self.seen.retain(|&point| squared_distance(point, here) <= near);
+        let surplus = self.seen.len().saturating_sub(MEMORY_POINTS);
+        self.seen.drain(..surplus);
+        self.seen.extend(scan.points_m());
+    }
+
+    /// The target, or a place as far away in the open direction that is nearest to the target's. Changing sides counts
+    /// like half a radian, so that the vehicle doesn't dither in front of a rock.
+    fn open_target(&mut self, target: [f64; 2], map: Option<&ConfigurationSpace>) -> [f64; 2] {
+        const PIECE_RAD: f64 = 0.1;
+        const PIECES: u32 = 20;
+        const SIDE_COST_RAD: f64 = 0.5;
+        let here = self.state.position_m;
+        let (east, north) = (target[0] - here[0], target[1] - here[1]);
+        let length = (east * east + north * north).sqrt();
+        if length < 1e-6 {
+            return target;
+        }
+        let bearing = libm::atan2(north, east);
+        let mut best: Option<(f64, f64, [f64; 2])> = None;
+        for piece in 0..=PIECES {
+            for side in [1.0, -1.0] {
+                let turn = side * PIECE_RAD * f64::from(piece);
+                let direction = [libm::cos(bearing + turn), libm::sin(bearing + turn)];
+                let place = [here[0] + direction[0] * length, here[1] + direction[1] * length];
+                let cost = turn.abs() + if side * self.side < 0.0 { SIDE_COST_RAD } else { 0.0 };
+                let open = self.straight_way(direction) >= length
+                    && map.is_none_or(|map| !map.is_free(here) || map.is_segment_free(here, place));
+                if open && best.is_none_or(|(least, ..)| cost < least) {
+                    let side = if piece == 0 { 0.0 } else { side };
+                    best = Some((cost, side, place));
+                }
+            }
+        }
+        let Some((_, side, place)) = best else { return target };
+        self.side = side;
+        place
+    }
+
+    /// How far the vehicle could go straight in a direction before it would touch something seen, in metres.
+    fn straight_way(&self, direction: [f64; 2]) -> f64 {
+        // A little more than the margin, so that the way stays open while the vehicle swings into it.
+        let reach = self.settings.radius_m + 1.5 * self.settings.margin_m;
+        let here = self.state.position_m;
+        self.seen.iter().fold(f64::INFINITY, |least, point| {
+            let offset = [point[0] - here[0], point[1] - here[1]];
+            let along = offset[0] * direction[0] + offset[1] * direction[1];
+            let across = offset[0] * direction[1] - offset[1] * direction[0];
+            if along <= 0.0 || across.abs() >= reach {
+                return least;
+            }
+            least.min((along - (reach * reach - across * across).sqrt()).max(0.0))
+        })
+    }
+
+    /// The reachable speed and turning rate that bring it best toward the target and still let it stop.
+    fn choose(&self, target: [f64; 2], remaining_m: f64, map: Option<&ConfigurationSpace>) -> (f64, f64) {
+        const SPEEDS: u32 = 6;
+        const RATES: u32 = 14;
+        let limits = &self.settings.limits;
+        let (slowing, turning) = (limits.acceleration_mps2 * STEP_S, limits.turn_acceleration_rps2 * STEP_S);
+        let brake_for_end = (2.0 * limits.acceleration_mps2 * remaining_m).sqrt().max(0.05);
+        let slowest = (self.state.speed_mps - slowing).max(0.0);
+        let fastest = (self.state.speed_mps + slowing)
+            .min(self.settings.cruise_mps)
+            .min(brake_for_end)
+            .min(limits.speed_mps)
+            .max(slowest);
+        let (rightmost, leftmost) = (
+            (self.state.turn_rate_rps - turning).max(-limits.turn_rate_rps),
+            (self.state.turn_rate_rps + turning).min(limits.turn_rate_rps),
+        );
+        let needed_at = |speed: f64| speed * speed / (2.0 * limits.acceleration_mps2) + speed * STEP_S;
+        let horizon = needed_at(fastest) + 1.0 + self.settings.radius_m + self.settings.margin_m;
+        let here = self.state.position_m;
+        let near: Vec<[f64; 2]> = self
+            .seen
+            .iter()
+            .filter(|&&point| squared_distance(point, here) <= horizon * horizon)
+            .copied()
+            .collect();
+        let share = |low: f64, high: f64, index: u32, count: u32| {
+            low + (high - low) * f64::from(index) / f64::from(count)
+        };
+        // Standing and turning to the target is always possible: the vehicle is a disc.
+        let bearing = bearing_error(self.state, target);
+        let turn = (2.0 * bearing).clamp(rightmost, leftmost);
+        let mut best = (self.score(slowest, turn, target, 0.0), slowest, turn);
+        for speed_index in 0..=SPEEDS {
+            let speed = share(slowest, fastest, speed_index, SPEEDS);
+            for rate_index in 0..=RATES {
+                let rate = share(rightmost, leftmost, rate_index, RATES);
+                if speed + rate.abs() * limits.half_track_m > limits.speed_mps || speed < 1e-3 {
+                    continue;
+                }
+                let needed = needed_at(speed);
+                let free = self.free_way(speed, rate, needed + 1.0, &near, map);
+                if free <= needed {
+                    continue;
+                }
+                let score = self.score(speed, rate, target, free.min(1.0));
+                if score > best.0 {
+                    best = (score, speed, rate);
+                }
+            }
+        }
+        (best.1, best.2)
+    }
+
+    /// How well a speed and rate serve: facing the target soon, way made, room ahead.
+    fn score(&self, speed: f64, rate: f64, target: [f64; 2], room_m: f64) -> f64 {
+        const LOOK_S: f64 = 1.0;
+        let mut state = self.state;
+        state.speed_mps = speed;
+        state.turn_rate_rps = rate;
+        let steps = 5;
+        for _ in 0..steps {
+            state = coast(state, LOOK_S / f64::from(steps));
+        }
+        let error = bearing_error(state, target).abs() / std::f64::consts::PI;
+        let approach = (distance(self.state.position_m, target) - distance(state.position_m, target))
+            / (self.settings.limits.speed_mps * LOOK_S);
+        1.5 * (1.0 - error) + 1.2 * approach + 0.5 * room_m
+    }
+
+    /// The length of the way along an arc, in metres, before the vehicle would touch something, up to `most`.
+    fn free_way(
+        &self,
+        speed: f64,
+        rate: f64,
+        most: f64,
+        near: &[[f64; 2]],
+        map: Option<&ConfigurationSpace>,
+    ) -> f64 {
+        const PIECE_M: f64 = 0.06;
+        let reach = self.settings.radius_m + self.settings.margin_m;
+        let here = self.state.position_m;
+        let mut state = MotionState { speed_mps: speed, turn_rate_rps: rate, ..self.state };
+        let mut way = 0.0;
+        // A vehicle that is nearer to something than its margin may leave it.
+        let mut before: Vec<f64> = near.iter().map(|&point| squared_distance(point, here)).collect();
+        while way < most {
+            let next = coast(state, PIECE_M / speed);
+            let touches = near.iter().zip(&mut before).any(|(&point, before)| {
+                let squared = squared_distance(point, next.position_m);
+                let nearer = squared < *before;
+                *before = squared;
+                nearer && squared < reach * reach
+            });
+            let leaves_map = map.is_some_and(|map| {
+                map.is_free(state.position_m) && !map.is_segment_free(state.position_m, next.position_m)
+            });
+            if touches || leaves_map {
+                return way;
+            }
+            way += PIECE_M;
+            state = next;
+        }
+        most
+    }
+
+    /// Notes the way made, and says what there is to report.
+    fn judge(&mut self) -> DriveEvent {
+        let here = self.state.position_m;
+        let (progress, deviation_m) = self.locate(here);
+        self.progress_m = self.progress_m.max(progress);
+        let end = self.path.points_m.last().copied().unwrap_or(here);
+        let near_end = self.length_m - self.progress_m <= self.settings.lookahead_m;
+        if near_end && distance(here, end) <= self.settings.arrival_m {
+            return DriveEvent::Arrived;
+        }
+        if deviation_m > self.settings.corridor_m {
+            return DriveEvent::OffCorridor { deviation_m };
+        }
+        let (since, way) = self.last_way;
+        if self.progress_m > way + 0.25 {
+            self.last_way = (self.time_s, self.progress_m);
+        } else if self.time_s - since >= self.settings.blocked_timeout_s {
+            return DriveEvent::Blocked { seconds: self.time_s - since };
+        }
+        DriveEvent::Driving
+    }
+
+    /// The nearest place on the stretch of path ahead: how far along, and how far away.
+    fn locate(&self, here: [f64; 2]) -> (f64, f64) {
+        const STEP_M: f64 = 0.1;
+        let ahead = 2.0 * self.settings.corridor_m;
+        (0..=(ahead / STEP_M) as u32)
+            .filter_map(|step| {
+                let along = (self.progress_m + STEP_M * f64::from(step)).min(self.length_m);
+                self.path.point_at(along).map(|(point, _)| (along, distance(point, here)))
+            })
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .unwrap_or((self.progress_m, 0.0))
+    }
+}
+
+/// The state after some time at the same speed and turning rate.
+fn coast(state: MotionState, seconds: f64) -> MotionState {
+    let heading_rad = state.heading_rad + state.turn_rate_rps * seconds;
+    let middle = 0.5 * (state.heading_rad + heading_rad);
+    let ahead = state.speed_mps * seconds;
+    MotionState {
+        position_m: [
+            state.position_m[0] + ahead * libm::cos(middle),
+            state.position_m[1] + ahead * libm::sin(middle),
+        ],
+        heading_rad,
+        ..state
+    }
+}
+
+/// The turn that would make a state face a place, in radians.
+fn bearing_error(state: MotionState, target: [f64; 2]) -> f64 {
+    let (east, north) = (target[0] - state.position_m[0], target[1] - state.position_m[1]);
+    if east * east + north * north < 1e-6 {
+        return 0.0;
+    }
+    heading_difference(state.heading_rad, libm::atan2(north, east))
+}

@@ -1,0 +1,110 @@
+//! Vehicles that drive by themselves in a world finer than their map.
+
+use motion::{
+    DriveEvent, DriveLimits, Driver, DriverSettings, FineWorld, Path, Trajectory, VehicleModel, vehicle_model,
+};
+use terrain::{Obstacle, Random};
+
+fn rover() -> &'static VehicleModel {
+    vehicle_model("ATRV-Jr").unwrap()
+}
+
+fn settings() -> DriverSettings {
+    DriverSettings::new(DriveLimits::of(rover()), rover().circumradius_m)
+}
+
+/// Drives until something other than driving is reported; panics when the vehicle touches something, breaks its limits,
+/// or goes so fast that it could not stop in front of a thing ahead.
+fn drive(world: &FineWorld, path: Path, seed: u64) -> (DriveEvent, Driver) {
+    let mut driver = Driver::new(path, 0.0, settings(), seed);
+    let limits = settings().limits;
+    for _ in 0..6000 {
+        let before = driver.state();
+        let (event, _) = driver.step(world, None);
+        let after = driver.state();
+        let clearance = world.distance_m(after.position_m);
+        assert!(clearance >= settings().radius_m, "seed {seed}: {clearance} m at {:?}", after.position_m);
+        let change = (after.speed_mps - before.speed_mps).abs();
+        assert!(change <= limits.acceleration_mps2 * Trajectory::STEP_S + 1e-9);
+        assert!(after.speed_mps + after.turn_rate_rps.abs() * limits.half_track_m <= limits.speed_mps + 1e-9);
+        let stopping = after.speed_mps * after.speed_mps / (2.0 * limits.acceleration_mps2);
+        let ahead = [
+            after.position_m[0] + stopping * after.heading_rad.cos(),
+            after.position_m[1] + stopping * after.heading_rad.sin(),
+        ];
+        // Straight ahead is one of the ways to stop; it must be free unless a turn under way leads around.
+        assert!(
+            after.turn_rate_rps.abs() > 0.02 || world.distance_m(ahead) >= settings().radius_m - 0.02,
+            "seed {seed}: can't stop at {:?}",
+            after.position_m
+        );
+        if event != DriveEvent::Driving {
+            return (event, driver);
+        }
+    }
+    (DriveEvent::Driving, driver)
+}
+
+#[test]
+fn an_empty_world_is_driven_at_full_speed_to_the_end() {
+    let path = Path::new(vec![[0.0, 0.0], [30.0, 0.0], [30.0, 20.0]]);
+    let (event, driver) = drive(&FineWorld::default(), path, 1);
+    assert_eq!(event, DriveEvent::Arrived);
+    let end = driver.state().position_m;
+    assert!((end[0] - 30.0).hypot(end[1] - 20.0) <= 0.2);
+    // 50 m at 1 m/s, with ramps, the corner and a slow approach.
+    assert!((50.0..75.0).contains(&driver.time_s()), "{} s", driver.time_s());
+}
+
+#[test]
+fn rocks_that_the_map_does_not_show_are_passed_without_touching() {
+    let mut arrived = 0;
+    for seed in 0..8 {
+        let mut random = Random::from_seed(seed);
+        let mut world = FineWorld::default();
+        for _ in 0..14 {
+            let center_m = [random.range(5.0, 35.0), random.range(-4.0, 4.0)];
+            world.add(&Obstacle::Circle { center_m, radius_m: random.range(0.2, 0.45) });
+        }
+        let (event, driver) = drive(&world, Path::new(vec![[0.0, 0.0], [40.0, 0.0]]), seed);
+        match event {
+            DriveEvent::Arrived => arrived += 1,
+            DriveEvent::Blocked { .. } | DriveEvent::OffCorridor { .. } => {}
+            DriveEvent::Driving => panic!("seed {seed}: still driving at {:?}", driver.state()),
+        }
+    }
+    assert!(arrived >= 7, "{arrived} of 8 arrived");
+}
+
+#[test]
+fn a_wall_across_the_way_is_reported() {
+    let mut world = FineWorld::default();
+    world.add(&Obstacle::Polygon {
+        corners_m: vec![[15.0, -30.0], [16.0, -30.0], [16.0, 30.0], [15.0, 30.0]],
+    });
+    let (event, driver) = drive(&world, Path::new(vec![[0.0, 0.0], [40.0, 0.0]]), 3);
+    assert!(
+        matches!(event, DriveEvent::Blocked { .. } | DriveEvent::OffCorridor { .. }),
+        "{event:?} at {:?}",
+        driver.state()
+    );
+    let mut driver = driver;
+    let here = driver.state().position_m;
+    driver.follow(Path::new(vec![here, [0.0, here[1]]]));
+    for _ in 0..2000 {
+        if driver.step(&world, None).0 == DriveEvent::Arrived {
+            return;
+        }
+    }
+    panic!("did not come back: {:?}", driver.state());
+}
+
+#[test]
+fn the_same_seed_drives_the_same_way() {
+    let mut world = FineWorld::default();
+    world.add(&Obstacle::Circle { center_m: [10.0, 0.1], radius_m: 0.4 });
+    let run = |seed| drive(&world, Path::new(vec![[0.0, 0.0], [20.0, 0.0]]), seed).1;
+    let end = |driver: &Driver| (driver.state(), driver.time_s());
+    assert_eq!(end(&run(7)), end(&run(7)));
+    assert_ne!(end(&run(7)), end(&run(8)));
+}
