@@ -1,0 +1,152 @@
+//! What is drawn: the layout of the network and what the plan or its failure adds, kept until either changes.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use layout::overlay::{causal_links, negative_cycle, orderings, windows};
+use layout::{NetworkDrawing, Options, OverlayCurve, Piece, Point, TextShape, approximate_text_width};
+use mission::{Planning, Snapshot};
+use tpn::{BlockId, BlockKind, Network, NodeId, Plan};
+
+use crate::state::selection::node_name;
+
+/// A drawing with what lies over it.
+#[derive(Default)]
+pub(super) struct Drawn {
+    network: Option<Arc<Network>>,
+    planning: Option<Arc<Planning>>,
+    collapsed: BTreeSet<String>,
+    /// The shapes.
+    pub(super) drawing: NetworkDrawing,
+    /// Causal links of the plan.
+    pub(super) links: Vec<OverlayCurve>,
+    /// Orderings that the plan adds.
+    pub(super) orderings: Vec<OverlayCurve>,
+    /// A contradiction among the bounds, if there is no plan.
+    pub(super) cycle: Vec<OverlayCurve>,
+    /// The windows of the plan.
+    pub(super) windows: Vec<TextShape>,
+    /// The texts that slide along each arch, by the arch's place in the drawing.
+    pub(super) sliding: BTreeMap<u32, Vec<u32>>,
+    /// The lines of the overview.
+    pub(super) outline: Vec<(Point, Point)>,
+    /// Grows whenever the drawing changes.
+    pub(super) version: u64,
+}
+
+impl Drawn {
+    /// Draws what `snapshot` holds, as far as it has changed. Answers whether the drawing is new.
+    pub(super) fn follow(
+        &mut self,
+        snapshot: &Snapshot,
+        network: &Arc<Network>,
+        collapsed: &BTreeSet<String>,
+    ) -> bool {
+        let same = |one: &Option<Arc<Network>>| one.as_ref().is_some_and(|one| Arc::ptr_eq(one, network));
+        let is_new = !same(&self.network) || self.collapsed != *collapsed;
+        if is_new {
+            let options = Options { collapsed: collapsed_blocks(network, collapsed), ..Options::default() };
+            self.drawing = layout::network(network, &options, &approximate_text_width);
+            self.sliding = sliding_texts(&self.drawing);
+            self.outline = outline(&self.drawing, network);
+            self.network = Some(Arc::clone(network));
+            self.collapsed.clone_from(collapsed);
+            self.version += 1;
+        }
+        let same_planning = match (&self.planning, &snapshot.planning) {
+            (Some(one), Some(other)) => Arc::ptr_eq(one, other),
+            (None, None) => true,
+            _ => false,
+        };
+        if is_new || !same_planning {
+            self.planning.clone_from(&snapshot.planning);
+            self.lay_over(network, snapshot);
+        }
+        is_new
+    }
+
+    fn lay_over(&mut self, network: &Network, snapshot: &Snapshot) {
+        self.links.clear();
+        self.orderings.clear();
+        self.windows.clear();
+        self.cycle.clear();
+        if let Some(plan) = snapshot.plan().filter(|plan| fits(plan, network)) {
+            self.links = causal_links(&self.drawing, network, plan);
+            self.orderings = orderings(&self.drawing, network, plan);
+            let width = Options::default().window_width;
+            self.windows = windows(&self.drawing, plan, width, &approximate_text_width);
+        } else if let Some(events) = cycle_events(snapshot) {
+            self.cycle = negative_cycle(&self.drawing, network, &events);
+        }
+    }
+}
+
+/// Whether a plan speaks of this network: one snapshot's always does, but a drawing must not rely on it.
+pub(super) fn fits(plan: &Plan, network: &Network) -> bool {
+    plan.selected_nodes.len() == network.nodes.len() && plan.selected_arcs.len() == network.arcs.len()
+}
+
+/// The events of the first contradiction among the bounds that the planner reports.
+fn cycle_events(snapshot: &Snapshot) -> Option<Vec<NodeId>> {
+    let failure = snapshot.planning.as_ref()?.outcome.failure.as_ref()?;
+    let reason = failure.reasons.iter().find(|reason| !reason.cycle.is_empty())?;
+    Some(reason.cycle.iter().map(|member| member.from).collect())
+}
+
+/// Names a block so that it is found again after an edit.
+pub(super) fn block_key(network: &Network, block: BlockId) -> Option<String> {
+    let block = network.blocks.get(block.index())?;
+    if let BlockKind::Scope { occurrence: Some(occurrence), .. } = block.kind {
+        return Some(network.occurrences.get(occurrence.index())?.name.to_string());
+    }
+    Some(format!("{}@{}", layout::text::structure_name(&block.kind), node_name(network, block.start)))
+}
+
+/// Whether a block can be collapsed: single arcs cannot, nor can the whole mission.
+pub(super) fn is_collapsible(network: &Network, block: BlockId) -> bool {
+    let is_part = |kind: &BlockKind| !matches!(kind, BlockKind::Leaf { .. });
+    network.root != Some(block) && network.blocks.get(block.index()).is_some_and(|block| is_part(&block.kind))
+}
+
+fn collapsed_blocks(network: &Network, keys: &BTreeSet<String>) -> BTreeSet<BlockId> {
+    if keys.is_empty() {
+        return BTreeSet::new();
+    }
+    let blocks = (0..network.blocks.len()).map(BlockId::from_index);
+    blocks
+        .filter(|&block| is_collapsible(network, block))
+        .filter(|&block| block_key(network, block).is_some_and(|key| keys.contains(&key)))
+        .collect()
+}
+
+fn sliding_texts(drawing: &NetworkDrawing) -> BTreeMap<u32, Vec<u32>> {
+    let slots: BTreeMap<_, _> = drawing
+        .arcs
+        .iter()
+        .enumerate()
+        .filter(|(_, arc)| arc.route == layout::Route::Arch)
+        .collect::<Vec<_>>()
+        .into_iter()
+        .map(|(slot, arc)| (arc.id, slot as u32))
+        .collect();
+    let mut sliding: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for (at, text) in drawing.texts.iter().enumerate() {
+        if let Some(&slot) = text.slide.and_then(|slide| slots.get(&slide.arc)) {
+            sliding.entry(slot).or_default().push(at as u32);
+        }
+    }
+    sliding
+}
+
+/// The activities as level lines: enough to recognise a drawing by when it is very small.
+fn outline(drawing: &NetworkDrawing, network: &Network) -> Vec<(Point, Point)> {
+    let arcs = drawing
+        .arcs
+        .iter()
+        .filter(|arc| arc.route == layout::Route::Along && network.arcs[arc.id.index()].occurrence.is_some());
+    arcs.filter_map(|arc| match drawing.pieces(arc) {
+        [Piece::Line(end)] => Some((arc.start, *end)),
+        _ => None,
+    })
+    .collect()
+}

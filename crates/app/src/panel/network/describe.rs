@@ -1,0 +1,136 @@
+//! What the tooltip says of an item, and what a screen reader says of the whole.
+
+use layout::Item;
+use layout::text::bounds_label;
+use rmpl::{Bound, rational};
+use tpn::{ArcKind, Network, Plan, Role};
+
+use crate::state::selection::node_name;
+
+/// A heading and lines about an item of the drawing.
+pub(super) fn describe(item: Item, network: &Network, plan: Option<&Plan>) -> Option<(String, Vec<String>)> {
+    match item {
+        Item::Node(id) => describe_node(id, network, plan),
+        Item::Arc(id) => describe_arc(id, network, plan),
+        Item::Label(id) => {
+            let label = network.labels.get(id.index())?;
+            let mode = match label.mode {
+                rmpl::program::LabelMode::Ask => "requires",
+                rmpl::program::LabelMode::Tell => "asserts",
+            };
+            let (_, arc) = describe_arc(label.arc, network, plan)?;
+            let mut lines = vec![format!("{mode} {} throughout", label.text)];
+            lines.extend(arc);
+            Some((network.label_name(id), lines))
+        }
+        Item::Block(id) => {
+            let block = network.blocks.get(id.index())?;
+            let name = match &block.kind {
+                tpn::BlockKind::Scope { occurrence: Some(occurrence), .. } => {
+                    network.occurrences.get(occurrence.index())?.name.to_string()
+                }
+                kind => layout::text::structure_name(kind).to_string(),
+            };
+            let ends = format!("{} → {}", node_name(network, block.start), node_name(network, block.end));
+            Some((name, vec![ends, "double click to open or close".to_owned()]))
+        }
+    }
+}
+
+/// The drawing in a sentence.
+pub(super) fn summary(network: &Network, plan: Option<&Plan>) -> String {
+    let count = |number: usize, one: &str, many: &str| match number {
+        1 => format!("1 {one}"),
+        _ => format!("{number} {many}"),
+    };
+    let mut text = format!(
+        "{}, {}, {}.",
+        count(network.nodes.len(), "event", "events"),
+        count(network.arcs.len(), "constraint", "constraints"),
+        count(network.decisions.len(), "decision", "decisions")
+    );
+    if let Some(plan) = plan {
+        let choices: Vec<String> = plan
+            .choices
+            .iter()
+            .map(|choice| format!("{}={}", Network::decision_name(choice.decision), choice.alternative))
+            .collect();
+        text.push_str(&format!(
+            " Chosen: {}.",
+            if choices.is_empty() { "nothing".into() } else { choices.join(", ") }
+        ));
+    }
+    text
+}
+
+fn describe_node(id: tpn::NodeId, network: &Network, plan: Option<&Plan>) -> Option<(String, Vec<String>)> {
+    let node = network.nodes.get(id.index())?;
+    let mut lines: Vec<String> = Vec::new();
+    if let Some(decision) = node.decision {
+        let count = network.decisions.get(decision.index()).map_or(0, |it| it.alternatives.len());
+        let chosen = plan.and_then(|plan| plan.choices.iter().find(|choice| choice.decision == decision));
+        lines.push(match chosen {
+            Some(choice) => format!("{count} alternatives, {} chosen", choice.alternative),
+            None => format!("{count} alternatives"),
+        });
+    }
+    lines.extend(node.events.iter().skip(1).map(|&event| network.event_name(event)));
+    if node.role == Role::Structural && node.events.is_empty() {
+        lines.push("fork, join or merge".to_owned());
+    }
+    match plan.and_then(|plan| plan.windows.get(id.index())) {
+        Some(Some(window)) => {
+            lines.push(format!("window {}", bounds_label(window.earliest, window.latest)));
+            lines.push(match window.latest {
+                Bound::Finite(latest) => format!("slack {}", rational::display(latest - window.earliest)),
+                Bound::Infinite => "slack ∞".to_owned(),
+            });
+        }
+        Some(None) => lines.push("not selected by the plan".to_owned()),
+        None => {}
+    }
+    Some((format!("{} ({})", node_name(network, id), id.0), lines))
+}
+
+fn describe_arc(id: tpn::ArcId, network: &Network, plan: Option<&Plan>) -> Option<(String, Vec<String>)> {
+    let arc = network.arcs.get(id.index())?;
+    let occurrence = arc.occurrence.and_then(|id| network.occurrences.get(id.index()));
+    let mut lines = Vec::new();
+    if let Some(occurrence) = occurrence.filter(|it| !it.arguments.is_empty()) {
+        lines.push(format!("{}({})", occurrence.activity, occurrence.arguments.join(", ")));
+    }
+    lines.push(format!("{} {}", kind_name(arc.kind), bounds_label(arc.lower, arc.upper)));
+    lines.extend(arc.labels.iter().map(|&label| layout::text::label_text(network, label).0.to_string()));
+    if plan.is_some_and(|plan| plan.selected_arcs.get(id.index()) == Some(&false)) {
+        lines.push("not selected by the plan".to_owned());
+    }
+    let ends = format!("{} → {}", node_name(network, arc.from), node_name(network, arc.to));
+    let heading = match (occurrence, arc.choice) {
+        (Some(occurrence), _) => occurrence.name.to_string(),
+        (None, Some((decision, alternative))) => {
+            format!("{} = {alternative}", Network::decision_name(decision))
+        }
+        (None, None) => ends.clone(),
+    };
+    if heading != ends {
+        lines.push(ends);
+    }
+    Some((heading, lines))
+}
+
+const fn kind_name(kind: ArcKind) -> &'static str {
+    match kind {
+        ArcKind::Activity => "duration",
+        ArcKind::Assertion => "assertion",
+        ArcKind::Delay => "delay",
+        ArcKind::Composite => "activity",
+        ArcKind::Span => "bounds",
+        ArcKind::Point => "guard",
+        ArcKind::Glue => "then",
+        ArcKind::Fork => "fork",
+        ArcKind::Join => "join",
+        ArcKind::Choice => "choice",
+        ArcKind::Merge => "merge",
+        ArcKind::Path => "path",
+    }
+}

@@ -1,0 +1,409 @@
+//! Paints what is in view: only that, and only what is large enough to be seen.
+
+use egui::{Align2, Color32, CornerRadius, FontId, Rect, Shape, Stroke, StrokeKind, vec2};
+use layout::look::{self, Dash, Ink, Standing};
+use layout::metrics::{ARROW_LENGTH, DECISION_INSET};
+use layout::{BlockForm, Item, OverlayCurve, Piece, Point, Route, TextRole, TextShape};
+use tpn::{LabelId, Network, Plan, Role};
+
+use super::data::Drawn;
+use super::highlight::Highlight;
+use super::view::View;
+use crate::state::settings::NetworkView;
+use crate::theme::Tokens;
+
+/// Below this size in points a text is left out, and fades in from there.
+const LEAST_TEXT: f64 = 6.0;
+/// Shapes smaller than this on the screen are left out.
+const LEAST_SHAPE: f64 = 1.5;
+/// Below this zoom, activities are named by their outlines instead of their arcs.
+const FAR_ZOOM: f64 = 0.42;
+/// From the edge of the panel to a heading that was moved into view.
+const HEADING_INSET: f64 = 16.0;
+
+/// Everything that painting needs.
+pub(super) struct Scene<'a> {
+    /// Paints inside the panel only.
+    pub(super) painter: &'a egui::Painter,
+    /// The panel.
+    pub(super) panel: Rect,
+    /// The view.
+    pub(super) view: &'a View,
+    /// The drawing.
+    pub(super) drawn: &'a Drawn,
+    /// The network.
+    pub(super) network: &'a Network,
+    /// The plan, if there is one for this network.
+    pub(super) plan: Option<&'a Plan>,
+    /// What is shown.
+    pub(super) options: &'a NetworkView,
+    /// The colours.
+    pub(super) tokens: &'a Tokens,
+    /// What is selected.
+    pub(super) selected: &'a Highlight,
+    /// What the pointer is over, here or in another panel.
+    pub(super) hovered: &'a Highlight,
+}
+
+/// The shapes in view, by their places in the drawing.
+#[derive(Default)]
+struct InView {
+    blocks: Vec<u32>,
+    connectors: Vec<u32>,
+    arcs: Vec<u32>,
+    nodes: Vec<u32>,
+    texts: Vec<u32>,
+}
+
+impl Scene<'_> {
+    /// Paints everything.
+    pub(super) fn paint(&self) {
+        let shapes = self.in_view();
+        self.blocks(&shapes.blocks);
+        self.highlights();
+        self.arcs(&shapes);
+        self.overlays();
+        self.nodes(&shapes.nodes);
+        if self.is_far() {
+            self.block_titles(&shapes.blocks);
+        } else {
+            self.texts(&shapes);
+        }
+    }
+
+    /// Whether the view is so far out that only structure can be named.
+    fn is_far(&self) -> bool {
+        self.view.zoom() < FAR_ZOOM
+    }
+
+    fn in_view(&self) -> InView {
+        let mut shapes = InView::default();
+        let area = self.view.visible(self.panel);
+        self.drawn.drawing.visit(area, LEAST_SHAPE / self.view.zoom(), &mut |shape| match shape {
+            layout::Shape::Block(at) => shapes.blocks.push(at),
+            layout::Shape::Connector(at) => shapes.connectors.push(at),
+            layout::Shape::Arc(at) => shapes.arcs.push(at),
+            layout::Shape::Node(at) => shapes.nodes.push(at),
+            layout::Shape::Text(at) => shapes.texts.push(at),
+        });
+        // The list has parents first, and outer blocks must not cover inner ones.
+        shapes.blocks.sort_unstable();
+        shapes
+    }
+
+    fn color(&self, ink: Ink) -> Color32 {
+        ink_color(self.tokens, ink)
+    }
+
+    /// A line width in points for one in drawing units: never so thin that it vanishes.
+    fn width(&self, width: f64) -> f32 {
+        (width * self.view.zoom()).clamp(0.35 * width + 0.25, 2.0 * width) as f32
+    }
+
+    fn blocks(&self, blocks: &[u32]) {
+        for &at in blocks {
+            let block = &self.drawn.drawing.blocks[at as usize];
+            let is_outline = block.form == BlockForm::Activity && self.is_far();
+            if !(self.options.structure || is_outline || block.form == BlockForm::Collapsed) {
+                continue;
+            }
+            let rect = self.view.screen_rect(self.panel, block.rect);
+            let (fill, stroke) = look::block_look(block.form);
+            let corner = CornerRadius::same((6.0 * self.view.zoom()).clamp(1.0, 8.0) as u8);
+            let line = Stroke::new(self.width(stroke.width).min(1.0), self.color(stroke.ink));
+            // Nested fills of the surface would hide the lanes around them.
+            if fill == Ink::Surface {
+                self.painter.rect_stroke(rect, corner, line, StrokeKind::Middle);
+            } else {
+                self.painter.rect(rect, corner, self.color(fill), line, StrokeKind::Middle);
+            }
+        }
+    }
+
+    fn highlights(&self) {
+        let drawing = &self.drawn.drawing;
+        let marks = [(self.hovered, 0.22), (self.selected, 0.45)];
+        for (shapes, strength) in marks {
+            let color = self.tokens.accent.gamma_multiply(strength);
+            if let Some(occurrence) = shapes.occurrence {
+                let outlines = drawing.blocks.iter().filter(|block| block.occurrence == Some(occurrence));
+                for block in outlines {
+                    let rect = self.view.screen_rect(self.panel, block.rect);
+                    self.painter.rect_filled(rect, 6.0, self.tokens.accent.gamma_multiply(strength * 0.25));
+                    self.painter.rect_stroke(rect, 6.0, Stroke::new(1.5, color), StrokeKind::Middle);
+                }
+            }
+            for arc in shapes.arcs.iter().filter_map(|&arc| drawing.arc(arc)) {
+                let width = (9.0 * self.view.zoom()).clamp(4.0, 12.0) as f32;
+                self.curve(arc.start, drawing.pieces(arc), Stroke::new(width, color), Dash::Solid);
+            }
+            for node in shapes.nodes.iter().filter_map(|&node| drawing.node(node)) {
+                let radius = (node.radius + 4.0) * self.view.zoom();
+                self.painter.circle_filled(
+                    self.view.screen_point(self.panel, node.center),
+                    (radius as f32).max(4.0),
+                    color,
+                );
+            }
+        }
+    }
+
+    fn arcs(&self, shapes: &InView) {
+        let drawing = &self.drawn.drawing;
+        for &at in &shapes.connectors {
+            let connector = &drawing.connectors[at as usize];
+            let standing = look::node_standing(self.plan, connector.node);
+            if self.is_shown(standing) {
+                let ink = if standing == Standing::Unselected { Ink::PathUnselected } else { Ink::Path };
+                let stroke = Stroke::new(self.width(1.2), self.color(ink));
+                self.curve(connector.start, &[connector.piece], stroke, Dash::Solid);
+            }
+        }
+        // What the plan selects lies over what it does not.
+        for is_selected in [false, true] {
+            for &at in &shapes.arcs {
+                let arc = &drawing.arcs[at as usize];
+                let standing = look::arc_standing(self.plan, arc.id);
+                if (standing == Standing::Selected) != is_selected || !self.is_shown(standing) {
+                    continue;
+                }
+                let look = look::arc_stroke(arc.kind, arc.route, standing);
+                let color = self.color(look.ink);
+                self.curve(
+                    arc.start,
+                    drawing.pieces(arc),
+                    Stroke::new(self.width(look.width), color),
+                    look.dash,
+                );
+                if let Some((tip, before)) = drawing.arrow(arc) {
+                    self.arrow(tip, before, color);
+                }
+            }
+        }
+    }
+
+    fn is_shown(&self, standing: Standing) -> bool {
+        self.options.unselected || standing != Standing::Unselected
+    }
+
+    fn arrow(&self, tip: Point, before: Point, color: Color32) {
+        if ARROW_LENGTH * self.view.zoom() < 2.5 {
+            return;
+        }
+        let corners = look::arrow_head(tip, before).map(|corner| self.view.screen_point(self.panel, corner));
+        self.painter.add(Shape::convex_polygon(corners.to_vec(), color, Stroke::NONE));
+    }
+
+    fn overlays(&self) {
+        let links = self.options.links.then_some(&self.drawn.links);
+        let orderings = self.options.orderings.then_some(&self.drawn.orderings);
+        let curves = links.into_iter().chain(orderings).chain([&self.drawn.cycle]).flatten();
+        let area = self.view.visible(self.panel);
+        for curve in curves.filter(|curve| curve.bounds.touches(area)) {
+            let look = look::overlay_stroke(curve.kind);
+            let color = self.color(look.ink);
+            let stroke = Stroke::new(self.width(look.width).max(1.2), color);
+            self.curve(curve.start, &curve.pieces, stroke, look.dash);
+            if let Some((tip, before)) = end_of(curve) {
+                self.arrow(tip, before, color);
+            }
+        }
+    }
+
+    fn nodes(&self, nodes: &[u32]) {
+        for &at in nodes {
+            let node = &self.drawn.drawing.nodes[at as usize];
+            let standing = look::node_standing(self.plan, node.id);
+            if !self.is_shown(standing) {
+                continue;
+            }
+            let stroke = look::node_stroke(node.role, standing);
+            let center = self.view.screen_point(self.panel, node.center);
+            let radius = ((node.radius * self.view.zoom()) as f32).max(1.0);
+            let fill = self.color(look::node_fill(node.role, standing));
+            let line = Stroke::new(self.width(stroke.width), self.color(stroke.ink));
+            self.painter.circle(center, radius, fill, line);
+            let inset = (DECISION_INSET * self.view.zoom()) as f32;
+            if node.role == Role::Decision && inset >= 1.2 {
+                self.painter.circle_stroke(center, radius - inset, Stroke::new(self.width(1.0), line.color));
+            }
+        }
+    }
+
+    fn texts(&self, shapes: &InView) {
+        let drawing = &self.drawn.drawing;
+        for &at in &shapes.texts {
+            let text = &drawing.texts[at as usize];
+            if text.slide.is_none() {
+                self.text(text, text.rect);
+            }
+        }
+        let area = self.view.visible(self.panel);
+        let inset = HEADING_INSET / self.view.zoom();
+        for at in shapes.arcs.iter().filter(|&&at| drawing.arcs[at as usize].route == Route::Arch) {
+            for &at in self.drawn.sliding.get(at).into_iter().flatten() {
+                let text = &drawing.texts[at as usize];
+                let rect = text.rect_in_view(area.min.x + inset, area.max.x - inset);
+                if rect.touches(area) {
+                    self.text(text, rect);
+                }
+            }
+        }
+        if self.options.windows {
+            for text in self.drawn.windows.iter().filter(|text| text.rect.touches(area)) {
+                self.text(text, text.rect);
+            }
+        }
+    }
+
+    fn text(&self, text: &TextShape, rect: layout::Rect) {
+        let wanted = match text.role {
+            TextRole::Bounds | TextRole::ZeroBounds => self.options.bounds,
+            TextRole::Ask | TextRole::Tell => self.options.labels,
+            TextRole::Name | TextRole::Quiet => self.options.names,
+            TextRole::Node | TextRole::Title | TextRole::Window => true,
+        };
+        let arc_of_label = |label: LabelId| self.network.labels[label.index()].arc;
+        let standing = look::item_standing(self.plan, text.owner, arc_of_label);
+        let size = text.size * self.view.zoom();
+        let least = if text.role == TextRole::Node { LEAST_TEXT - 1.0 } else { LEAST_TEXT };
+        if !wanted || !self.is_shown(standing) || size < least {
+            return;
+        }
+        let strength = ((size - least) / 1.5).clamp(0.35, 1.0) as f32;
+        let color = self.color(look::text_ink(text.role, standing)).gamma_multiply(strength);
+        let place = self.view.screen_rect(self.panel, rect);
+        if let Item::Label(label) = text.owner {
+            self.mark_label(label, place);
+        }
+        // Whole and half sizes only, so that zooming does not fill the font atlas.
+        let font = |size: f64| FontId::proportional(((size * 2.0).floor() / 2.0) as f32);
+        let mut galley = self.painter.layout_no_wrap(text.text.to_string(), font(size), color);
+        if galley.size().x > place.width() + 1.0 {
+            let ratio = f64::from(place.width() / galley.size().x);
+            galley = self.painter.layout_no_wrap(text.text.to_string(), font(size * ratio), color);
+        }
+        self.painter.galley(place.center() - galley.size() / 2.0, galley, color);
+    }
+
+    fn mark_label(&self, label: LabelId, place: Rect) {
+        if self.selected.labels.contains(&label) {
+            self.painter.rect_filled(place.expand(2.0), 3.0, self.tokens.selection);
+        } else if self.hovered.labels.contains(&label) {
+            self.painter.rect_filled(place.expand(2.0), 3.0, self.tokens.hover);
+        }
+    }
+
+    /// Names of activities at a fixed size, where they have room, outer before inner.
+    fn block_titles(&self, blocks: &[u32]) {
+        let font = FontId::proportional(crate::theme::size::SMALL);
+        let mut taken: Vec<Rect> = Vec::new();
+        for &at in blocks {
+            let block = &self.drawn.drawing.blocks[at as usize];
+            let rect = self.view.screen_rect(self.panel, block.rect).intersect(self.panel);
+            if block.title.is_empty() || rect.width() < 40.0 || rect.height() < 16.0 {
+                continue;
+            }
+            let galley = self.painter.layout_no_wrap(
+                block.title.to_string(),
+                font.clone(),
+                self.color(Ink::TextMuted),
+            );
+            let place = Rect::from_min_size(rect.min + vec2(5.0, 2.0), galley.size());
+            let has_room = rect.contains_rect(place) && taken.iter().all(|other| !other.intersects(place));
+            if has_room {
+                self.painter.rect_filled(place.expand(1.0), 2.0, self.tokens.surface.gamma_multiply(0.8));
+                self.painter.galley(place.min, galley, self.color(Ink::TextMuted));
+                taken.push(place);
+            }
+        }
+    }
+
+    fn curve(&self, start: Point, pieces: &[Piece], stroke: Stroke, dash: Dash) {
+        if let ([Piece::Line(end)], Dash::Solid) = (pieces, dash) {
+            let ends = [self.view.screen_point(self.panel, start), self.view.screen_point(self.panel, *end)];
+            self.painter.line_segment(ends, stroke);
+            return;
+        }
+        let points = self.polyline(start, pieces);
+        match dash.lengths() {
+            None => {
+                self.painter.add(Shape::line(points, stroke));
+            }
+            Some((mark, gap)) => {
+                let scale = self.view.zoom().clamp(0.6, 1.5);
+                let (mark, gap) = ((mark * scale) as f32, (gap * scale) as f32);
+                self.painter.extend(Shape::dashed_line(&points, stroke, mark, gap));
+            }
+        }
+    }
+
+    /// The curve on the screen, with as many points as its size there needs.
+    fn polyline(&self, start: Point, pieces: &[Piece]) -> Vec<egui::Pos2> {
+        let mut points = vec![self.view.screen_point(self.panel, start)];
+        let mut from = start;
+        for &piece in pieces {
+            let steps = match piece {
+                Piece::Line(_) => 1,
+                Piece::Cubic(..) => {
+                    ((from.distance(piece.end()) * self.view.zoom() / 6.0) as u32).clamp(3, 24)
+                }
+            };
+            points.extend((1..=steps).map(|step| {
+                let at = piece.at(from, f64::from(step) / f64::from(steps));
+                self.view.screen_point(self.panel, at)
+            }));
+            from = piece.end();
+        }
+        points
+    }
+}
+
+/// The tip of a curve and the point it comes from.
+fn end_of(curve: &OverlayCurve) -> Option<(Point, Point)> {
+    let (last, before) = curve.pieces.split_last()?;
+    let start = before.last().map_or(curve.start, |piece| piece.end());
+    Some((last.end(), last.before_end(start)))
+}
+
+/// The colour of an ink in the app's theme.
+pub(super) fn ink_color(tokens: &Tokens, ink: Ink) -> Color32 {
+    match ink {
+        Ink::Surface => tokens.surface,
+        Ink::Sunken => tokens.sunken,
+        Ink::Raised => tokens.raised,
+        Ink::Line => tokens.line,
+        Ink::LineStrong => tokens.line_strong,
+        Ink::Text => tokens.text,
+        Ink::TextMuted => tokens.text_muted,
+        Ink::TextFaint => tokens.text_faint,
+        Ink::Path => tokens.path,
+        Ink::PathUnselected => tokens.path_unselected,
+        Ink::NodeFill => tokens.node_fill,
+        Ink::Decision => tokens.decision,
+        Ink::Tell => tokens.tell,
+        Ink::Ask => tokens.ask,
+        Ink::Link => tokens.link,
+        Ink::Ordering => tokens.ordering,
+        Ink::Threat => tokens.threat,
+        Ink::Slack => tokens.accent,
+    }
+}
+
+/// A short message in a corner of the panel, with a sign that does not depend on colour.
+pub(super) fn badge(
+    painter: &egui::Painter,
+    corner: egui::Pos2,
+    text: &str,
+    color: Color32,
+    tokens: &Tokens,
+    width: f32,
+) {
+    let font = FontId::proportional(crate::theme::size::SMALL);
+    let mut job = egui::text::LayoutJob::simple(text.to_owned(), font, color, width);
+    job.wrap.max_rows = 2;
+    let galley = painter.layout_job(job);
+    let rect = Align2::LEFT_TOP.anchor_size(corner, galley.size() + vec2(16.0, 8.0));
+    painter.rect(rect, 5.0, tokens.raised, Stroke::new(1.0, color.gamma_multiply(0.6)), StrokeKind::Inside);
+    painter.galley(rect.min + vec2(8.0, 4.0), galley, color);
+}
