@@ -36,31 +36,40 @@ pub fn warning_codes(text: &str) -> Vec<&'static str> {
 
 /// Every distinct plan, as `search` finds them; each is checked, and so is its earliest schedule.
 pub fn all_plans(network: &Network, search: Search) -> Outcome {
-    let options =
-        Options { search, all: true, max_plans: 100_000, explain: false, relax: false, ..Options::default() };
-    checked(network, &options)
+    try_plans(network, search, true).unwrap_or_else(|problem| panic!("{problem}"))
 }
 
 /// The first plan; checked, and so is its earliest schedule.
 pub fn first_plan(network: &Network, search: Search) -> Outcome {
-    checked(network, &Options { search, explain: false, relax: false, ..Options::default() })
+    try_plans(network, search, false).unwrap_or_else(|problem| panic!("{problem}"))
 }
 
-fn checked(network: &Network, options: &Options) -> Outcome {
-    let outcome = kirk::plan(network, options, &mut Unlimited);
-    assert!(matches!(outcome.status, Status::Plan | Status::NoPlan), "{:?}", outcome.status);
-    for plan in &outcome.plans {
-        assert_sound(network, plan);
+/// All plans or the first one, or what the checker has against them.
+pub fn try_plans(network: &Network, search: Search, all: bool) -> Result<Outcome, String> {
+    let options =
+        Options { search, all, max_plans: 100_000, explain: false, relax: false, ..Options::default() };
+    let outcome = kirk::plan(network, &options, &mut Unlimited);
+    if !matches!(outcome.status, Status::Plan | Status::NoPlan) {
+        return Err(format!("planning ends with {:?}", outcome.status));
     }
-    outcome
+    outcome.plans.iter().try_for_each(|plan| sound(network, plan))?;
+    Ok(outcome)
 }
 
-/// Fails unless the checker accepts `plan` and its earliest schedule.
-pub fn assert_sound(network: &Network, plan: &Plan) {
-    let verdict = verify::check_plan(network, plan);
-    assert!(verdict.valid, "the checker refuses a plan: {:#?}", verdict.violations);
-    let verdict = verify::check_schedule(network, plan, &verify::earliest_schedule(plan));
-    assert!(verdict.valid, "the checker refuses the earliest schedule: {:#?}", verdict.violations);
+/// Whether the checker accepts `plan` and its earliest schedule.
+pub fn sound(network: &Network, plan: &Plan) -> Result<(), String> {
+    let checks = [
+        ("plan", verify::check_plan(network, plan)),
+        ("earliest schedule", verify::check_schedule(network, plan, &verify::earliest_schedule(plan))),
+    ];
+    for (what, verdict) in checks {
+        if !verdict.valid {
+            let messages: Vec<String> =
+                verdict.violations.into_iter().map(|violation| violation.message).collect();
+            return Err(format!("the checker refuses the {what}: {}", messages.join("; ")));
+        }
+    }
+    Ok(())
 }
 
 /// What makes plans distinct, by name: choices, causal links, order of conflicts (README of the conformance cases).

@@ -10,6 +10,7 @@ pub mod number;
 pub mod path;
 pub mod plan;
 pub mod plan_json;
+pub mod plan_schema;
 pub mod selection;
 pub mod text;
 

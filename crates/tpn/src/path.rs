@@ -121,7 +121,7 @@ pub fn duration(length_m: f64, speed_mps: Rational, unit_seconds: i64) -> Option
     // A double is mantissa · 2^exponent; both are exact, so the division below is too.
     let bits = length_m.to_bits();
     let biased = (bits >> 52 & 0x7FF) as i32;
-    let fraction = (bits & ((1 << 52) - 1)) as i128;
+    let fraction = i128::from(bits & ((1 << 52) - 1));
     let (mantissa, exponent) =
         if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
     let millis_times_speed = mantissa.checked_mul(1000)?.checked_mul(i128::from(*speed_mps.denom()))?;

@@ -84,7 +84,7 @@ pub fn plan_from_json(network: &Network, plan: &Value) -> Result<Plan, PlanError
     let names = Names::new(network);
     let mut choices = Vec::new();
     for (name, alternative) in members(plan, "choices")? {
-        choices.push(names.choice(network, name, alternative)?);
+        choices.push(choice(network, name, alternative)?);
     }
     choices.sort_unstable();
     let (selected_nodes, selected_arcs) = closure(network, &choices);
@@ -180,19 +180,18 @@ impl Names {
     pub fn label(&self, name: &str) -> Result<LabelId, PlanError> {
         self.labels.get(name).copied().ok_or_else(|| unknown("labelled interval", name))
     }
+}
 
-    fn choice(&self, network: &Network, name: &str, alternative: &Value) -> Result<Choice, PlanError> {
-        let number = name.strip_prefix('D').and_then(|number| number.parse::<u32>().ok());
-        let index =
-            number.and_then(|number| number.checked_sub(1)).ok_or_else(|| unknown("decision", name))?;
-        let decision = network.decisions.get(index as usize).ok_or_else(|| unknown("decision", name))?;
-        let alternative =
-            alternative.as_u64().ok_or_else(|| shape("a choice is the number of an alternative"))?;
-        if alternative >= decision.alternatives.len() as u64 {
-            return Err(unknown("alternative", &format!("{name}: {alternative}")));
-        }
-        Ok(Choice { decision: DecisionId(index), alternative: alternative as u32 })
+fn choice(network: &Network, name: &str, alternative: &Value) -> Result<Choice, PlanError> {
+    let number = name.strip_prefix('D').and_then(|number| number.parse::<u32>().ok());
+    let index = number.and_then(|number| number.checked_sub(1)).ok_or_else(|| unknown("decision", name))?;
+    let decision = network.decisions.get(index as usize).ok_or_else(|| unknown("decision", name))?;
+    let alternative =
+        alternative.as_u64().ok_or_else(|| shape("a choice is the number of an alternative"))?;
+    if alternative >= decision.alternatives.len() as u64 {
+        return Err(unknown("alternative", &format!("{name}: {alternative}")));
     }
+    Ok(Choice { decision: DecisionId(index), alternative: alternative as u32 })
 }
 
 /// The name of a node: its first event's, or `node 7`.
