@@ -13,11 +13,13 @@ mod model;
 mod options;
 mod record;
 mod relax;
+mod replay;
 mod search;
 mod selection;
 mod solution;
 mod structure;
 mod trace;
+mod trace_lines;
 mod wording;
 
 use std::collections::BTreeSet;
@@ -28,7 +30,9 @@ use tpn::{Network, Plan};
 pub use explain::is_conflict;
 pub use failure::{Failure, FailureKind, Member, Reason, Relaxation};
 pub use options::{ExpansionLimit, Options, Outcome, Search, Stats, Status, Termination, Unlimited};
+pub use replay::{Replay, ReplayStep};
 pub use trace::{Constraint, CycleMember, Entry, Event, Trace, TreeChoice, TreeNode, TreeNodeId, TreeStatus};
+pub use trace_lines::trace_json_lines;
 
 use model::Model;
 use search::{Engine, Halt, Setup};
