@@ -6,6 +6,7 @@ mod analysis;
 pub mod control;
 pub mod diagnostic;
 pub mod diagnostics;
+pub mod editor;
 pub mod explanation;
 pub mod format;
 mod lower;

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use rustc_hash::FxHashSet;
 
 use crate::analysis::local::local_diagnostics;
-use crate::analysis::{Checked, DeclarationKey, Index, Names, Summary, check, recursion, summarize};
+use crate::analysis::{Checked, Meaning, DeclarationKey, Index, Names, Summary, check, recursion, summarize};
 use crate::diagnostic::{Diagnostic, Edit, Severity};
 use crate::lower::{Item, Lowering, OptionValue};
 use crate::parser::parse_declaration;
@@ -190,6 +190,13 @@ impl Parse {
         self.places.iter().map(|place| place.root(&self.text))
     }
 
+    /// The trees of the declarations that touch `range`.
+    pub fn declarations_in(&self, range: Span) -> impl Iterator<Item = SyntaxNode<'_>> {
+        let first = self.places.partition_point(|place| place.start + place.declaration.tree.len() < range.start);
+        let touching = self.places.iter().skip(first).take_while(move |place| place.start <= range.end);
+        touching.map(|place| place.root(&self.text))
+    }
+
     /// The tree of the declaration around `offset`.
     pub fn declaration_at(&self, offset: u32) -> Option<SyntaxNode<'_>> {
         let after = self.places.partition_point(|place| place.start <= offset);
@@ -214,6 +221,16 @@ impl Parse {
             }
         }
         all
+    }
+
+    /// What names mean in this file.
+    pub(crate) const fn meaning(&self) -> Meaning<'_> {
+        Meaning { names: &self.names, index: &self.index }
+    }
+
+    /// Each declaration's tree with what it declares and uses.
+    pub(crate) fn summaries(&self) -> impl Iterator<Item = (SyntaxNode<'_>, &Summary)> {
+        self.places.iter().map(|place| (place.root(&self.text), &place.declaration.summary))
     }
 
     /// What the text means, as far as it is well formed.

@@ -25,18 +25,25 @@ pub(crate) fn interval(bounds: &Bounds) -> Option<(Rational, Bound)> {
 
 /// The value of an expression without names.
 pub(crate) fn evaluate(expr: &Expr) -> Result<Bound, ConstantError> {
+    evaluate_with(expr, &|_| None)
+}
+
+/// The value of an expression where `lookup` gives the values of names.
+pub(crate) fn evaluate_with(expr: &Expr, lookup: &dyn Fn(&str) -> Option<Bound>) -> Result<Bound, ConstantError> {
     match &expr.kind {
         ExprKind::Number(number) => Ok(Bound::Finite(*number)),
         ExprKind::Infinity => Ok(Bound::Infinite),
-        ExprKind::Name(_) => Err(ConstantError::NotConstant),
-        ExprKind::Percent(inner) => match evaluate(inner)? {
+        ExprKind::Name(name) => lookup(name).ok_or(ConstantError::NotConstant),
+        ExprKind::Percent(inner) => match evaluate_with(inner, lookup)? {
             Bound::Infinite => Ok(Bound::Infinite),
             Bound::Finite(whole) => {
                 let hundredth = whole.checked_div(&Rational::from_integer(100));
                 hundredth.map(Bound::Finite).ok_or(ConstantError::TooLarge)
             }
         },
-        ExprKind::Binary(operator, left, right) => combine(*operator, evaluate(left)?, evaluate(right)?),
+        ExprKind::Binary(operator, left, right) => {
+            combine(*operator, evaluate_with(left, lookup)?, evaluate_with(right, lookup)?)
+        },
     }
 }
 

@@ -12,7 +12,7 @@ mod recursion;
 mod summary;
 mod structure;
 
-pub(crate) use check::{Checked, check};
+pub(crate) use check::{Checked, Meaning, check};
 pub(crate) use index::{DeclarationKey, Index, Namespace};
 pub(crate) use names::{Names, edit_distance_at_most};
 pub(crate) use recursion::recursion;

@@ -34,7 +34,8 @@ fn sides(bounds: SyntaxNode<'_>) -> Option<(Expr, Expr)> {
     Some((expression(lower)?, expression(upper)?))
 }
 
-fn expression(node: SyntaxNode<'_>) -> Option<Expr> {
+/// The expression of a node in a bound, if it is whole.
+pub(crate) fn expression(node: SyntaxNode<'_>) -> Option<Expr> {
     let span = node.span();
     let kind = match node.kind() {
         SyntaxKind::Operand => {

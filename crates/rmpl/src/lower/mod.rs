@@ -1,6 +1,6 @@
 //! From the syntax tree to meaning: the pieces of [`crate::program`], with what is broken left out.
 
-mod bounds;
+pub(crate) mod bounds;
 mod declaration;
 mod statement;
 

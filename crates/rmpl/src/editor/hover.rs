@@ -1,0 +1,244 @@
+//! What is known about the thing under the pointer.
+
+use smol_str::SmolStr;
+
+use crate::analysis::constant::evaluate_with;
+use crate::lower::bounds::expression;
+use crate::parse::Parse;
+use crate::rational::{Bound, Rational, display};
+use crate::span::Span;
+use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
+
+use super::definition::references_of;
+use super::name::{NameKind, NameUse, name_at};
+
+/// What compiling and planning found out about the text, as far as it is known. Without it, hovering shows what the
+/// text alone says.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Evaluation {
+    /// The calls of activities, expanded.
+    pub invocations: Vec<Invocation>,
+    /// The windows of the current plan.
+    pub windows: Vec<EventWindow>,
+}
+
+/// One call of an activity in the compiled mission, and the bounds that it has there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Invocation {
+    /// The activity that is called.
+    pub activity: SmolStr,
+    /// The occurrence, such as `Group-Enroute#1`.
+    pub occurrence: SmolStr,
+    /// The lower bound of the call: the value of the header's first name.
+    pub lower: Rational,
+    /// The upper bound of the call: the value of the header's second name.
+    pub upper: Bound,
+}
+
+/// When an event of the current plan can happen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EventWindow {
+    /// The statement whose event it is.
+    pub span: Span,
+    /// The event, such as `Group-Wait#1.start`.
+    pub event: SmolStr,
+    /// The earliest time.
+    pub earliest: Rational,
+    /// The latest time.
+    pub latest: Bound,
+}
+
+/// What to show.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Hover {
+    /// What it is about.
+    pub span: Span,
+    /// The text, in Markdown.
+    pub markdown: String,
+}
+
+/// What is known about the name, the bound or the word at `offset`.
+pub fn hover(parse: &Parse, offset: u32, evaluation: &Evaluation) -> Option<Hover> {
+    if let Some(found) = hover_bound(parse, offset, evaluation) {
+        return Some(found);
+    }
+    if let Some(name) = name_at(parse, offset) {
+        return Some(Hover { span: name.span, markdown: describe(parse, &name, evaluation) });
+    }
+    let root = parse.declaration_at(offset)?;
+    let token = root.tokens().find(|token| token.span.start <= offset && offset < token.span.end)?;
+    let markdown = word(token)?.to_owned();
+    Some(Hover { span: token.span, markdown })
+}
+
+/// The values of the smallest expression around `offset` in every invocation of its activity.
+fn hover_bound(parse: &Parse, offset: u32, evaluation: &Evaluation) -> Option<Hover> {
+    let root = parse.declaration_at(offset)?;
+    let path = root.path_to(offset);
+    path.iter().find(|node| node.kind() == SyntaxKind::Bounds)?;
+    let activity = path.iter().find(|node| node.kind() == SyntaxKind::ActivityDecl)?;
+    let node = path.iter().rev().find(|node| {
+        matches!(
+            node.kind(),
+            SyntaxKind::Sum | SyntaxKind::Product | SyntaxKind::PercentOf | SyntaxKind::Operand | SyntaxKind::Grouped
+        )
+    })?;
+    // The whole side says more than its parts, unless the pointer is on a name.
+    let is_name = node.kind() == SyntaxKind::Operand && node.token(SyntaxKind::Name).is_some();
+    let side = path.iter().skip_while(|node| node.kind() != SyntaxKind::Bounds).nth(1)?;
+    let shown = if is_name { node } else { side };
+    let own_name = activity.token(SyntaxKind::Name)?;
+    let header: Vec<Option<&str>> = activity
+        .child(SyntaxKind::Bounds)
+        .into_iter()
+        .flat_map(SyntaxNode::children)
+        .map(|side| side.token(SyntaxKind::Name).map(|name| name.text))
+        .collect();
+    let value = |node: &SyntaxNode<'_>, invocation: &Invocation| {
+        let lookup = |name: &str| match header.iter().position(|bound| *bound == Some(name))? {
+            0 => Some(Bound::Finite(invocation.lower)),
+            _ => Some(invocation.upper),
+        };
+        evaluate_with(&expression(*node)?, &lookup).ok()
+    };
+    let mut lines = vec![format!("`{}`", shown.text())];
+    let invocations = evaluation.invocations.iter().filter(|invocation| invocation.activity == own_name.text);
+    for invocation in invocations.take(MOST_LINES) {
+        if let Some(result) = value(shown, invocation) {
+            lines.push(format!("= **{result}** in {}", invocation.occurrence));
+        }
+        if is_name && shown.span() != side.span() && let Some(result) = value(side, invocation) {
+            lines.push(format!("`{}` = **{result}** in {}", side.text(), invocation.occurrence));
+        }
+    }
+    if lines.len() == 1 {
+        match value(shown, &Invocation { activity: SmolStr::default(), occurrence: SmolStr::default(), lower: Rational::ZERO, upper: Bound::Infinite }) {
+            Some(result) if !is_name && shown.kind() != SyntaxKind::Operand && !mentions_name(shown) => {
+                lines.push(format!("= **{result}**"));
+            }
+            _ if is_name => lines.push("a bound of the call".to_owned()),
+            _ => return None,
+        }
+    }
+    Some(Hover { span: shown.span(), markdown: lines.join("  \n") })
+}
+
+fn mentions_name(node: &SyntaxNode<'_>) -> bool {
+    node.tokens().any(|token| token.kind == SyntaxKind::Name)
+}
+
+/// How many occurrences a hover lists.
+const MOST_LINES: usize = 8;
+
+fn describe(parse: &Parse, name: &NameUse, evaluation: &Evaluation) -> String {
+    let places = references_of(parse, name);
+    let definition = places.iter().find(|place| place.is_definition).map(|place| place.span);
+    let mut parts = Vec::new();
+    match (definition, &name.kind) {
+        (Some(place), kind) if !kind.is_local() => {
+            if let Some((header, comments)) = parse.declaration_at(place.start).and_then(header) {
+                parts.push(format!("```rmpl\n{header}\n```"));
+                if !comments.is_empty() {
+                    parts.push(comments);
+                }
+            }
+        }
+        (_, NameKind::Parameter) => parts.push(format!("`{}`: a parameter", name.text)),
+        (_, NameKind::BoundName) => parts.push(format!("`{}`: a bound of the call", name.text)),
+        (_, NameKind::Activity) => {
+            parts.push(format!("`{}`: an undeclared primitive, which may last any time, [0,inf]", name.text));
+        }
+        (_, NameKind::Variable) => {
+            parts.push(format!("`{}`: an undeclared condition; any value is allowed", name.text));
+        }
+        (_, NameKind::Value(variable)) => parts.push(format!("`{}`: a value of `{variable}`", name.text)),
+        (_, NameKind::Model) => parts.push(format!("`{}`: a vehicle model", name.text)),
+        (_, NameKind::ControlProgram) => parts.push(format!("`{}`: a control program", name.text)),
+        _ => parts.push(format!("`{}`: a symbol", name.text)),
+    }
+    let calls = evaluation.invocations.iter().filter(|call| call.activity == name.text);
+    if name.kind == NameKind::Activity {
+        let lines: Vec<String> = calls
+            .take(MOST_LINES)
+            .map(|call| format!("- {}: [{},{}]", call.occurrence, display(call.lower), call.upper))
+            .collect();
+        if !lines.is_empty() {
+            parts.push(lines.join("\n"));
+        }
+    }
+    let windows = windows_at(evaluation, name.span);
+    if !windows.is_empty() {
+        parts.push(windows.join("\n"));
+    }
+    parts.join("\n\n")
+}
+
+/// The windows of the smallest statement around `span`.
+fn windows_at(evaluation: &Evaluation, span: Span) -> Vec<String> {
+    let contains = |window: &&EventWindow| window.span.start <= span.start && span.end <= window.span.end;
+    let around: Vec<&EventWindow> = evaluation.windows.iter().filter(contains).collect();
+    let smallest = around.iter().map(|window| window.span.end - window.span.start).min();
+    let own = around.into_iter().filter(|window| Some(window.span.end - window.span.start) == smallest);
+    own.take(MOST_LINES)
+        .map(|window| format!("- {} in [{},{}]", window.event, display(window.earliest), window.latest))
+        .collect()
+}
+
+/// A declaration without its body, on one line, and the comments before it.
+pub(super) fn header(root: SyntaxNode<'_>) -> Option<(String, String)> {
+    let declaration = root.children().next()?;
+    let end = declaration.child(SyntaxKind::Block).map_or(declaration.span().end, |body| body.span().start);
+    let length = (end - declaration.span().start) as usize;
+    let text = declaration.text().get(..length).unwrap_or("");
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let header = words.join(" ");
+    let header = header.trim_end_matches([';', '=', ' ']);
+    // Only the comment right above belongs to the declaration: an empty line sets others apart.
+    let mut comments: Vec<&str> = Vec::new();
+    for token in root.tokens().take_while(|token| token.span.start < declaration.span().start) {
+        if token.kind.is_comment() {
+            comments.push(token.text);
+        } else if token.text.matches('\n').count() > 1 {
+            comments.clear();
+        }
+    }
+    let plain = |comment: &&str| {
+        comment.trim_start_matches("//").trim_start_matches("/*").trim_end_matches("*/").trim().to_owned()
+    };
+    let comments: Vec<String> = comments.iter().map(plain).collect();
+    Some((header.to_owned(), comments.join("\n")))
+}
+
+/// What a word of the language means.
+fn word(token: SyntaxToken<'_>) -> Option<&'static str> {
+    Some(match token.kind {
+        SyntaxKind::ChooseKeyword => "`choose { A, B }`: planning selects exactly one of the alternatives.",
+        SyntaxKind::DoKeyword => {
+            "`do A maintaining c`: A runs while `c` is required to hold. `do A watching c`: A runs while `c` is asserted \
+             to be false, and ends when `c` comes."
+        }
+        SyntaxKind::MaintainingKeyword => "`do A maintaining c`: an assertion of `c` must contain A.",
+        SyntaxKind::WatchingKeyword => "`do A watching c`: the plan asserts that `c` is false during A.",
+        SyntaxKind::IfKeyword | SyntaxKind::ThennextKeyword => {
+            "`if c thennext A`: `c` is required at the instant when A starts. Bounds behind it belong to A."
+        }
+        SyntaxKind::DelayKeyword => "`delay[l,u]`: nothing happens for this long; [0,inf] if no bounds are written.",
+        SyntaxKind::NotKeyword | SyntaxKind::Bang => "`not c`, `!c`: the condition is false.",
+        SyntaxKind::TellKeyword => "`tell c[l,u]`: asserts `c` for this long; [0,0] if no bounds are written.",
+        SyntaxKind::AskKeyword => "`ask c[l,u]`: requires `c` for this long.",
+        SyntaxKind::VarKeyword => "`var X : {V1, V2};` declares a state variable and its values.",
+        SyntaxKind::PrimitiveKeyword => "`primitive A(p)[l,u];` declares an activity that is not taken apart.",
+        SyntaxKind::ScenarioKeyword => "`scenario S[l,u] = { … }`: what is planned, and its horizon.",
+        SyntaxKind::OptionKeyword => "`option name = value;` The options are `threat_gap`, `strict` and `time_unit`.",
+        SyntaxKind::Infinity => "`inf`: no upper bound.",
+        SyntaxKind::Name => match token.text {
+            "moves" => "`moves V1, V2`: the activity is a traverse; the first vehicle leads.",
+            "speed" => "`speed (least, greatest)` in metres per second.",
+            "runs" => "`runs P`: executing the activity runs the control program P.",
+            "cell" => "`cell 0.6`: metres per cell of the map.",
+            "origin" => "`origin (x, y)`: where the map's south-west corner is, in metres.",
+            _ => return None,
+        },
+        _ => return None,
+    })
+}

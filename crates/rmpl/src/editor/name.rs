@@ -1,0 +1,239 @@
+//! What the names in a text stand for: the base of highlighting, navigation and renaming.
+
+use smol_str::SmolStr;
+
+use crate::analysis::{Meaning, Namespace};
+use crate::parse::Parse;
+use crate::span::Span;
+use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
+
+/// What a name stands for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NameKind {
+    /// An activity or a primitive.
+    Activity,
+    /// A state variable or an atom, declared or not.
+    Variable,
+    /// A value of this variable.
+    Value(SmolStr),
+    /// A parameter of the declaration.
+    Parameter,
+    /// A name of the header's bounds.
+    BoundName,
+    /// A scenario.
+    Scenario,
+    /// A location.
+    Location,
+    /// An obstacle.
+    Obstacle,
+    /// A vehicle.
+    Vehicle,
+    /// A vehicle model.
+    Model,
+    /// An option.
+    Option,
+    /// The value of an option.
+    OptionValue,
+    /// A control program.
+    ControlProgram,
+    /// An argument that is nothing of the above: a symbol for the activity that it is handed to.
+    Symbol,
+}
+
+impl NameKind {
+    /// Whether the name means nothing outside its declaration.
+    pub const fn is_local(&self) -> bool {
+        matches!(self, Self::Parameter | Self::BoundName)
+    }
+}
+
+/// A name in the text. `X_V` that stands for `X=V` is two of them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NameUse {
+    /// Where it stands.
+    pub span: Span,
+    /// The name.
+    pub text: SmolStr,
+    /// What it stands for.
+    pub kind: NameKind,
+    /// Whether it is declared here.
+    pub is_definition: bool,
+    /// The declaration that it stands in.
+    pub declaration: Span,
+}
+
+/// The name at `offset`, or the one that ends there.
+pub fn name_at(parse: &Parse, offset: u32) -> Option<NameUse> {
+    let here = parse.declaration_at(offset).map(|root| names_in(parse, root)).unwrap_or_default();
+    let found = here.into_iter().rfind(|name| name.span.touches(offset));
+    // At the boundary of two declarations the name may end the earlier one.
+    found.or_else(|| {
+        let before = parse.declaration_at(offset.checked_sub(1)?)?;
+        names_in(parse, before).into_iter().rfind(|name| name.span.touches(offset))
+    })
+}
+
+/// All names of one declaration, in textual order.
+pub(super) fn names_in(parse: &Parse, root: SyntaxNode<'_>) -> Vec<NameUse> {
+    let mut collector = Collector {
+        meaning: parse.meaning(),
+        declaration: root.span(),
+        parameters: Vec::new(),
+        found: Vec::new(),
+    };
+    for node in root.descendants() {
+        collector.node(node);
+    }
+    collector.found.sort_by_key(|name| name.span);
+    collector.found
+}
+
+struct Collector<'a> {
+    meaning: Meaning<'a>,
+    declaration: Span,
+    parameters: Vec<&'a str>,
+    found: Vec<NameUse>,
+}
+
+impl<'a> Collector<'a> {
+    fn node(&mut self, node: SyntaxNode<'a>) {
+        let names = || node.own_tokens().filter(|token| token.kind == SyntaxKind::Name);
+        match node.kind() {
+            SyntaxKind::VariableDecl => {
+                self.define(names().next(), NameKind::Variable);
+                if let (Some(variable), Some(domain)) = (names().next(), node.child(SyntaxKind::Domain)) {
+                    for value in domain.own_tokens().filter(|token| token.kind == SyntaxKind::Name) {
+                        self.add(value.span, value.text, NameKind::Value(variable.text.into()), true);
+                    }
+                }
+            }
+            SyntaxKind::PrimitiveDecl => self.define(names().next(), NameKind::Activity),
+            SyntaxKind::ActivityDecl => {
+                self.define(names().next(), NameKind::Activity);
+                let bounds = node.child(SyntaxKind::Bounds).into_iter().flat_map(SyntaxNode::children);
+                for side in bounds.filter(|side| side.kind() == SyntaxKind::Operand) {
+                    self.define(side.token(SyntaxKind::Name), NameKind::BoundName);
+                }
+            }
+            SyntaxKind::ScenarioDecl => self.define(names().next(), NameKind::Scenario),
+            SyntaxKind::OptionDecl => {
+                let mut names = names();
+                self.define(names.next(), NameKind::Option);
+                self.refer(names.next(), NameKind::OptionValue);
+            }
+            SyntaxKind::LocationDecl => self.define(names().nth(1), NameKind::Location),
+            SyntaxKind::ObstacleDecl => self.define(names().nth(1), NameKind::Obstacle),
+            SyntaxKind::VehicleDecl => {
+                self.define(names().nth(1), NameKind::Vehicle);
+                self.refer(names().nth(2), NameKind::Model);
+            }
+            SyntaxKind::At => self.refer(names().nth(1), NameKind::Location),
+            SyntaxKind::Runs => self.refer(names().nth(1), NameKind::ControlProgram),
+            SyntaxKind::Moves => names().skip(1).for_each(|name| self.refer(Some(name), NameKind::Vehicle)),
+            SyntaxKind::Formals => {
+                for name in names() {
+                    self.parameters.push(name.text);
+                    self.define(Some(name), NameKind::Parameter);
+                }
+            }
+            SyntaxKind::Operand => {
+                let name = names().next();
+                if name.is_some_and(|name| self.found.iter().all(|found| found.span != name.span)) {
+                    self.refer(name, NameKind::BoundName);
+                }
+            }
+            SyntaxKind::Call => self.refer(names().next(), NameKind::Activity),
+            SyntaxKind::Argument => self.argument(names().next()),
+            SyntaxKind::BareName => self.bare(names().next()),
+            SyntaxKind::Condition => self.condition(node),
+            _ => {}
+        }
+    }
+
+    fn add(&mut self, span: Span, text: &str, kind: NameKind, is_definition: bool) {
+        let declaration = self.declaration;
+        self.found.push(NameUse { span, text: text.into(), kind, is_definition, declaration });
+    }
+
+    fn define(&mut self, name: Option<SyntaxToken<'_>>, kind: NameKind) {
+        if let Some(name) = name {
+            self.add(name.span, name.text, kind, true);
+        }
+    }
+
+    fn refer(&mut self, name: Option<SyntaxToken<'_>>, kind: NameKind) {
+        if let Some(name) = name {
+            self.add(name.span, name.text, kind, false);
+        }
+    }
+
+    fn is_declared(&self, namespace: Namespace, text: &str) -> bool {
+        let symbol = self.meaning.names.find(text);
+        symbol.is_some_and(|symbol| self.meaning.index.facts(symbol).definition(namespace).is_some())
+    }
+
+    fn argument(&mut self, name: Option<SyntaxToken<'_>>) {
+        let Some(name) = name else { return };
+        let kind = if self.parameters.contains(&name.text) {
+            NameKind::Parameter
+        } else if self.is_declared(Namespace::Location, name.text) {
+            NameKind::Location
+        } else if self.is_declared(Namespace::Variable, name.text) {
+            NameKind::Variable
+        } else {
+            NameKind::Symbol
+        };
+        self.refer(Some(name), kind);
+    }
+
+    fn bare(&mut self, name: Option<SyntaxToken<'a>>) {
+        let Some(name) = name else { return };
+        if !self.parameters.contains(&name.text) && self.is_declared(Namespace::Callable, name.text) {
+            self.refer(Some(name), NameKind::Activity);
+        } else {
+            self.literal(name, None);
+        }
+    }
+
+    fn condition(&mut self, node: SyntaxNode<'a>) {
+        let mut tokens = node.own_tokens().filter(|token| token.kind == SyntaxKind::Name);
+        if let Some(variable) = tokens.next() {
+            let is_variable = node.own_tokens().all(|token| {
+                !matches!(token.kind, SyntaxKind::Equals | SyntaxKind::NotEquals)
+                    || token.span.start >= variable.span.end
+            });
+            if is_variable {
+                self.literal(variable, tokens.next());
+            }
+        }
+    }
+
+    fn literal(&mut self, variable: SyntaxToken<'_>, value: Option<SyntaxToken<'_>>) {
+        if self.parameters.contains(&variable.text) {
+            self.refer(Some(variable), NameKind::Parameter);
+        } else if let Some(stem) = value.is_none().then(|| self.split(variable.text)).flatten() {
+            let middle = variable.span.start + stem.len() as u32;
+            self.add(Span::new(variable.span.start, middle), stem, NameKind::Variable, false);
+            let value = variable.text.get(stem.len() + 1..).unwrap_or("");
+            let span = Span::new(middle + 1, variable.span.end);
+            self.add(span, value, NameKind::Value(stem.into()), false);
+        } else {
+            self.refer(Some(variable), NameKind::Variable);
+        }
+        let Some(value) = value else { return };
+        let kind = if self.parameters.contains(&value.text) {
+            NameKind::Parameter
+        } else {
+            NameKind::Value(variable.text.into())
+        };
+        self.refer(Some(value), kind);
+    }
+
+    /// The variable of a condition written `X_V` (SPEC 1.3).
+    fn split<'t>(&self, text: &'t str) -> Option<&'t str> {
+        let names = self.meaning.names;
+        let (variable, value) = text.rsplit_once('_')?;
+        let whole = names.find(text)?;
+        self.meaning.splits(whole, (names.find(variable)?, names.find(value)?)).then_some(variable)
+    }
+}

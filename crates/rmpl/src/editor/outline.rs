@@ -1,0 +1,78 @@
+//! The outline of a mission text: its declarations.
+
+use crate::parse::Parse;
+use crate::span::Span;
+use crate::syntax::{SyntaxKind, SyntaxNode};
+
+/// What an entry of the outline is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum OutlineKind {
+    /// A state variable.
+    Variable,
+    /// A primitive.
+    Primitive,
+    /// An activity with a definition.
+    Activity,
+    /// A scenario.
+    Scenario,
+    /// An option.
+    Option,
+    /// The terrain.
+    Terrain,
+    /// A location.
+    Location,
+    /// An obstacle.
+    Obstacle,
+    /// A vehicle.
+    Vehicle,
+}
+
+/// A declaration.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OutlineItem {
+    /// What it declares.
+    pub kind: OutlineKind,
+    /// The name.
+    pub name: String,
+    /// What follows the name in the declaration, on one line: parameters, bounds, domain, coordinates.
+    pub detail: String,
+    /// Where the name stands.
+    pub name_span: Span,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// The declarations that have a name, in textual order.
+pub fn outline(parse: &Parse) -> Vec<OutlineItem> {
+    parse.declarations().filter_map(|root| root.children().find_map(item)).collect()
+}
+
+fn item(node: SyntaxNode<'_>) -> Option<OutlineItem> {
+    // World declarations begin with a name that serves as their keyword.
+    let (kind, nth) = match node.kind() {
+        SyntaxKind::VariableDecl => (OutlineKind::Variable, 0),
+        SyntaxKind::PrimitiveDecl => (OutlineKind::Primitive, 0),
+        SyntaxKind::ActivityDecl => (OutlineKind::Activity, 0),
+        SyntaxKind::ScenarioDecl => (OutlineKind::Scenario, 0),
+        SyntaxKind::OptionDecl => (OutlineKind::Option, 0),
+        SyntaxKind::TerrainDecl => (OutlineKind::Terrain, 0),
+        SyntaxKind::LocationDecl => (OutlineKind::Location, 1),
+        SyntaxKind::ObstacleDecl => (OutlineKind::Obstacle, 1),
+        SyntaxKind::VehicleDecl => (OutlineKind::Vehicle, 1),
+        _ => return None,
+    };
+    let wanted = if kind == OutlineKind::Terrain { SyntaxKind::String } else { SyntaxKind::Name };
+    let name = node.own_tokens().filter(|token| token.kind == wanted).nth(nth)?;
+    let body = node.child(SyntaxKind::Block).map(SyntaxNode::span);
+    let end = body.map_or(node.span().end, |body| body.start);
+    let start = node.span().start;
+    let rest = node.text().get((name.span.end - start) as usize..(end - start) as usize).unwrap_or("");
+    let detail: Vec<&str> = rest.trim_end_matches([';', '=', ' ', '\n']).split_whitespace().collect();
+    Some(OutlineItem {
+        kind,
+        name: name.text.trim_matches('"').to_owned(),
+        detail: detail.join(" "),
+        name_span: name.span,
+        span: node.span(),
+    })
+}

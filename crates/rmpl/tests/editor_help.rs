@@ -1,0 +1,158 @@
+//! Completion, hover and signature help.
+
+mod fixture;
+
+use fixture::fixture;
+use rmpl::editor::{self, Evaluation, EventWindow, Invocation};
+use rmpl::{Bound, Rational, parse};
+
+/// All of `wanted` are offered at the cursor, and none of `unwanted`.
+#[track_caller]
+fn check_completion(written: &str, wanted: &[&str], unwanted: &[&str]) {
+    let fixture = fixture(written);
+    let completion = editor::complete(&parse(&fixture.text), fixture.cursor);
+    let labels: Vec<&str> = completion.items.iter().map(|item| item.label.as_str()).collect();
+    for label in wanted {
+        assert!(labels.contains(label), "{label} is missing from {labels:?}");
+    }
+    for label in unwanted {
+        assert!(!labels.contains(label), "{label} is offered in {labels:?}");
+    }
+}
+
+const HEAD: &str = "\
+var P : {OK, BAD};
+location BASE (0, 0);
+vehicle R : ATRV at BASE;
+primitive Drive(to)[1,2] moves R;
+Survey(x)[low,high] = { Drive(BASE) }
+";
+
+#[track_caller]
+fn check_completion_in_mission(line: &str, wanted: &[&str], unwanted: &[&str]) {
+    check_completion(&format!("{HEAD}{line}\n"), wanted, unwanted);
+}
+
+#[test]
+fn a_statement_may_be_a_keyword_a_call_or_a_condition() {
+    let everything = ["choose", "delay", "Drive", "Survey", "P"];
+    check_completion_in_mission("scenario S = { $0 }", &everything, &["BASE", "low", "OK", "scenario"]);
+    check_completion_in_mission("scenario S = { A(); $0", &everything, &["BASE"]);
+    check_completion_in_mission("scenario S = { do $0 }", &everything, &["BASE"]);
+}
+
+#[test]
+fn what_is_typed_narrows_the_list() {
+    check_completion_in_mission("scenario S = { Dr$0 }", &["Drive"], &["Survey", "choose"]);
+    check_completion_in_mission("scenario S = { dr$0 }", &["Drive"], &["Survey"]);
+}
+
+#[test]
+fn a_value_is_one_of_the_variables_domain() {
+    check_completion_in_mission("scenario S = { P=$0 }", &["OK", "BAD"], &["Drive", "P", "choose"]);
+    check_completion_in_mission("scenario S = { if P!=B$0", &["BAD"], &["OK"]);
+}
+
+#[test]
+fn a_condition_offers_variables_and_no_activities() {
+    check_completion_in_mission("scenario S = { do { Drive(BASE) } maintaining $0 }", &["P", "not"], &["Drive", "BASE"]);
+    check_completion_in_mission("scenario S = { if $0", &["P"], &["Survey"]);
+}
+
+#[test]
+fn bounds_offer_the_names_of_their_own_header() {
+    check_completion_in_mission("M()[l,u] = { Drive(BASE)[$0] }", &["l", "u", "inf"], &["low", "Drive"]);
+    check_completion_in_mission("M()[l,u] = { Drive(BASE)[l,$0", &["u", "inf"], &["high"]);
+}
+
+#[test]
+fn arguments_are_locations_and_parameters() {
+    check_completion_in_mission("M(x)[l,u] = { Drive($0) }", &["BASE", "x"], &["Drive", "l", "choose"]);
+}
+
+#[test]
+fn words_go_on_where_the_grammar_does() {
+    check_completion_in_mission("scenario S = { do { Drive(BASE) } $0 }", &["maintaining", "watching"], &["Drive"]);
+    check_completion_in_mission("scenario S = { if P=OK $0 }", &["thennext"], &["P"]);
+    check_completion_in_mission("vehicle Q : $0", &["ATRV", "ATRV-Jr", "Blimp"], &["R"]);
+    check_completion_in_mission("vehicle Q : ATRV at $0", &["BASE"], &["ATRV"]);
+    check_completion_in_mission("primitive Go(a)[1,2] moves $0", &["R"], &["BASE"]);
+    check_completion_in_mission("option time_unit = $0", &["minute", "second"], &["P"]);
+}
+
+#[test]
+fn between_declarations_only_declarations_are_offered() {
+    check_completion_in_mission("$0", &["var", "primitive", "scenario"], &["Drive", "choose"]);
+}
+
+#[test]
+fn nothing_is_offered_in_comments_and_texts() {
+    check_completion("// Dr$0\nprimitive Drive()[1,2];", &[], &["Drive", "var"]);
+    check_completion("terrain \"ta$0\";", &[], &["var"]);
+}
+
+#[test]
+fn a_call_is_completed_with_the_cursor_between_its_parentheses() {
+    let fixture = fixture(&format!("{HEAD}scenario S = {{ Dr$0 }}\n"));
+    let completion = editor::complete(&parse(&fixture.text), fixture.cursor);
+    assert_eq!(completion.items[0].insert, "Drive($0)");
+    assert_eq!(&fixture.text[completion.replaces.range()], "Dr");
+}
+
+fn day() -> Evaluation {
+    Evaluation {
+        invocations: vec![Invocation {
+            activity: "Survey".into(),
+            occurrence: "Survey#1".into(),
+            lower: Rational::from_integer(450),
+            upper: Bound::Finite(Rational::from_integer(540)),
+        }],
+        windows: Vec::new(),
+    }
+}
+
+/// The hover at the cursor contains `wanted`.
+#[track_caller]
+fn check_hover(written: &str, evaluation: &Evaluation, wanted: &str) {
+    let fixture = fixture(written);
+    let hover = editor::hover(&parse(&fixture.text), fixture.cursor, evaluation).expect("a hover");
+    assert!(hover.markdown.contains(wanted), "{}", hover.markdown);
+}
+
+#[test]
+fn a_bound_shows_its_value_in_each_invocation() {
+    check_hover("Survey()[l,u] = { A()[l*9$00%,u] }", &day(), "`l*90%`  \n= **405** in Survey#1");
+    check_hover("Survey()[l,u] = { A()[l,$0u*10%] }", &day(), "`u`  \n= **540** in Survey#1  \n`u*10%` = **54** in Survey#1");
+    check_hover("Survey()[l,u] = { A()[1+$02*3,u] }", &Evaluation::default(), "= **7**");
+}
+
+#[test]
+fn a_name_shows_its_declaration_and_the_comment_above_it() {
+    let text = "// Not this.\n\n// Drives on.\nprimitive Drive(to)\n  [20,30];\nscenario S = { Dr$0ive(BASE) }";
+    check_hover(text, &Evaluation::default(), "```rmpl\nprimitive Drive(to) [20,30]\n```\n\nDrives on.");
+    check_hover("var P : {OK, BAD};\nscenario S = { $0P=OK }", &Evaluation::default(), "var P : {OK, BAD}");
+    check_hover("scenario S = { del$0ay }", &Evaluation::default(), "[0,inf]");
+}
+
+#[test]
+fn a_call_shows_the_windows_of_the_current_plan() {
+    let text = "primitive A()[1,2];\nscenario S = { A$0() }";
+    let at = text.find("A$0").unwrap() as u32;
+    let window = EventWindow {
+        span: rmpl::Span::new(at, at + 3),
+        event: "A#1.start".into(),
+        earliest: Rational::from_integer(10),
+        latest: Bound::Finite(Rational::from_integer(55)),
+    };
+    let evaluation = Evaluation { invocations: Vec::new(), windows: vec![window] };
+    check_hover(text, &evaluation, "A#1.start in [10,55]");
+}
+
+#[test]
+fn signature_help_names_the_parameter_being_written() {
+    let fixture = fixture("primitive Drive(from, to)[20,30];\nscenario S = { Drive(BASE, $0");
+    let signature = editor::signature_at(&parse(&fixture.text), fixture.cursor).expect("a signature");
+    assert_eq!(signature.label, "primitive Drive(from, to)[20,30]");
+    assert_eq!(signature.active, 1);
+    assert_eq!(&signature.label[signature.parameters[1].range()], "to");
+}
