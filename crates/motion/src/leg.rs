@@ -5,7 +5,7 @@ use terrain::ConfigurationSpace;
 
 use crate::geometry::distance;
 use crate::path::Path;
-use crate::search::{Failure, PlannerKind, Query, Settings, Statistics, find_path};
+use crate::search::{Failure, PlannerKind, Query, SearchResult, Settings, Statistics, find_path};
 use crate::shortcut::ShortcutSettings;
 
 /// A leg of a traverse.
@@ -27,7 +27,7 @@ pub struct LegFailure {
 }
 
 /// How often a leg is searched: obstacles leave several ways around, and one search takes any of them.
-const TRIES: u64 = 6;
+const TRIES: u32 = 6;
 
 /// A short path between two waypoints: the shortest of a few found by RRT-Connect and shortened. The result depends on
 /// nothing but the arguments, so a caller can keep it under them. Another seed may find a shorter path, or one where
@@ -38,28 +38,38 @@ pub fn plan_leg(
     seed: u64,
     stop: &mut dyn FnMut(&Statistics) -> bool,
 ) -> Result<Leg, Failure> {
-    let straight = distance(query.start_m, query.goal_m);
-    let mut best: Option<(f64, Leg)> = None;
-    for attempt in 0..TRIES {
-        let seed = seed.wrapping_mul(TRIES).wrapping_add(attempt);
-        let settings = Settings { seed, ..Settings::of(PlannerKind::RrtConnect) };
-        let shortcut = ShortcutSettings { seed, ..ShortcutSettings::default() };
-        let result = find_path(space, query, &settings, Some(&shortcut), stop);
-        let path = match (result.path, &best) {
-            (Ok(path), _) => path,
-            // What one search found is good although a further one did not finish.
-            (Err(_), Some(_)) => break,
-            (Err(failure), None) => return Err(failure),
-        };
-        let length = path.length_m();
-        if best.as_ref().is_none_or(|(least, _)| length < *least) {
-            best = Some((length, Leg { path, statistics: result.statistics }));
-        }
-        if length <= straight * (1.0 + 1e-9) {
+    let settings = Settings { seed, ..Settings::of(PlannerKind::RrtConnect) };
+    let shortcut = ShortcutSettings { seed, ..ShortcutSettings::default() };
+    let result = find_shortest_path(space, query, &settings, &shortcut, TRIES, stop);
+    Ok(Leg { path: result.path?, statistics: result.statistics })
+}
+
+/// The shortest of some paths found with different seeds, the first with those of the settings, each shortened. The
+/// trees and counts are those of the search that found it. Searching ends early when a path is straight, and with the
+/// first failure when nothing was found before.
+pub fn find_shortest_path(
+    space: &ConfigurationSpace,
+    query: Query,
+    settings: &Settings,
+    shortcut: &ShortcutSettings,
+    tries: u32,
+    stop: &mut dyn FnMut(&Statistics) -> bool,
+) -> SearchResult {
+    let length = |result: &SearchResult| result.path.as_ref().map_or(f64::INFINITY, Path::length_m);
+    let straight = distance(query.start_m, query.goal_m) * (1.0 + 1e-9);
+    let mut best = find_path(space, query, settings, Some(shortcut), stop);
+    for attempt in 1..u64::from(tries) {
+        if best.path.is_err() || length(&best) <= straight {
             break;
         }
+        // Far from the seeds that a caller counts through.
+        let seed = settings.seed ^ attempt.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let result = find_path(space, query, &Settings { seed, ..*settings }, Some(shortcut), stop);
+        if length(&result) < length(&best) {
+            best = result;
+        }
     }
-    best.map(|(_, leg)| leg).ok_or(Failure::NotFound { samples: 0 })
+    best
 }
 
 /// Paths from each waypoint to the next.

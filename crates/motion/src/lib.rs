@@ -35,7 +35,7 @@ pub use altitude::path_in_space;
 pub use driver::{DriveEvent, Driver, DriverSettings};
 pub use formation::Formation;
 pub use laser::{FineWorld, LaserModel, LaserScan};
-pub use leg::{Leg, LegFailure, plan_leg, plan_legs};
+pub use leg::{Leg, LegFailure, find_shortest_path, plan_leg, plan_legs};
 pub use nearest::PointTree;
 pub use path::Path;
 pub use proximity::{Encounter, Proximity, TimedPoint, proximity};

@@ -133,9 +133,23 @@ impl Trajectory {
         self.states.last().map_or(0.0, |last| last.time_s)
     }
 
-    /// The places passed.
+    /// The places passed, without those in the middle of a straight stretch.
     pub fn path(&self) -> Path {
-        let mut points_m: Vec<[f64; 2]> = self.states.iter().map(|timed| timed.state.position_m).collect();
+        let goes_straight = |index: usize| {
+            let around = index.checked_sub(1).and_then(|before| self.states.get(before..index + 2));
+            around.is_some_and(|around| {
+                around.iter().all(|timed| {
+                    timed.state.turn_rate_rps == 0.0 && timed.state.heading_rad == around[0].state.heading_rad
+                })
+            })
+        };
+        let mut points_m: Vec<[f64; 2]> = self
+            .states
+            .iter()
+            .enumerate()
+            .filter(|&(index, _)| !goes_straight(index))
+            .map(|(_, timed)| timed.state.position_m)
+            .collect();
         points_m.dedup();
         Path::new(points_m)
     }

@@ -3,7 +3,8 @@
 
 use motion::{
     DriveLimits, Failure, Growth, Path, PlannerKind, Query, Root, Search, Settings, ShortcutSettings,
-    Statistics, Trajectory, Tree, drive_path, find_path, plan_legs, shorten, vehicle_model,
+    Statistics, Trajectory, Tree, drive_path, find_path, find_shortest_path, plan_legs, shorten,
+    vehicle_model,
 };
 use terrain::{Cell, CellState, Collision, ConfigurationSpace, GridFrame, Obstacle, Occupancy, Random};
 
@@ -180,6 +181,62 @@ fn an_end_in_collision_is_said() {
             "{planner:?}"
         );
         assert!(fail([2.0, 2.0], [25.0, 28.7]).to_string().contains("too steep"));
+    }
+}
+
+/// A map of 512 × 512 cells beside the repository, as bytes of its pixels from the top, or `None` with a message.
+#[expect(clippy::print_stderr, reason = "a test that could not look at its data says so")]
+fn shared_map(name: &str) -> Option<Vec<u8>> {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/maps").join(name);
+    let bytes = std::fs::read(&path).ok();
+    if bytes.is_none() {
+        eprintln!("NOT TESTED: there is no {}", path.display());
+    }
+    bytes.map(|bytes| bytes[bytes.len() - 512 * 512..].to_vec())
+}
+
+#[test]
+fn no_sample_of_a_path_on_the_shared_maps_lies_in_an_obstacle_pixel() {
+    for name in ["map_1.pgm", "map_2.pgm"] {
+        let Some(pixels) = shared_map(name) else { return };
+        let occupied: Vec<bool> = pixels.iter().map(|&pixel| pixel == 0).collect();
+        let frame = GridFrame::new(512, 512, 1.0);
+        let space = ConfigurationSpace::new(Occupancy::from_obstacles(frame, &occupied), 0.0);
+        let query = Query { start_m: [8.0, 8.0], goal_m: [503.0, 503.0] };
+        for planner in [PlannerKind::Rrt, PlannerKind::RrtConnect, PlannerKind::RrtStar] {
+            for seed in 0..8 {
+                let settings = Settings { step_m: 20.0, ..settings(planner, seed) };
+                let raw = find_path(&space, query, &settings, None, &mut never).path.unwrap();
+                let short = shorten(&space, &raw, &ShortcutSettings::default());
+                assert!(short.length_m() < 0.95 * raw.length_m() || raw.length_m() < 760.0);
+                for (a, b) in raw.segments().chain(short.segments()) {
+                    let samples = (40.0 * (b[0] - a[0]).hypot(b[1] - a[1])).ceil();
+                    for sample in 0..=samples as u32 {
+                        let share = f64::from(sample) / samples;
+                        let (x, y) = (a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share);
+                        assert!(
+                            pixels[y as usize * 512 + x as usize] > 0,
+                            "{name} {planner:?} at ({x}, {y})"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn more_tries_never_give_a_longer_path() {
+    let space = random_space(4, 0.7);
+    let query = Query { start_m: [-18.0, 37.0], goal_m: [60.0, 98.0] };
+    let mut before = f64::INFINITY;
+    for tries in 1..6 {
+        let settings = settings(PlannerKind::Rrt, 2);
+        let result =
+            find_shortest_path(&space, query, &settings, &ShortcutSettings::default(), tries, &mut never);
+        let length = result.path.unwrap().length_m();
+        assert!(length <= before);
+        before = length;
     }
 }
 

@@ -269,6 +269,19 @@ mod tests {
     }
 
     #[test]
+    fn the_maps_that_missions_are_written_on_do_not_change() {
+        // Computed natively and in wasm32, with the same result. A change here moves what missions and reports show.
+        let expected = [
+            ("flat", 0xa967_7706_9d62_2325),
+            ("tai-plain", 0xeed1_5453_c1a5_2381),
+            ("gale-dunes", 0x81f0_f90f_f56d_f6cf),
+        ];
+        for (name, fingerprint_of_map) in expected {
+            assert_eq!(fingerprint(&asset(name).unwrap()), fingerprint_of_map, "{name}");
+        }
+    }
+
+    #[test]
     fn an_unknown_name_has_no_map() {
         assert_eq!(asset("atlantis"), None);
     }
