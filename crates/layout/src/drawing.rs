@@ -210,8 +210,11 @@ impl NetworkDrawing {
         self.pieces.get(first..first + arc.piece_count as usize).unwrap_or(&[])
     }
 
-    /// The tip of an arc's head and the point it comes from.
+    /// The tip of an arc's head and the point it comes from. Pieces of a path have none: they are too short.
     pub fn arrow(&self, arc: &ArcShape) -> Option<(Point, Point)> {
+        if arc.kind == ArcKind::Path {
+            return None;
+        }
         let pieces = self.pieces(arc);
         let (last, before) = pieces.split_last()?;
         let start = before.last().map_or(arc.start, |piece| piece.end());

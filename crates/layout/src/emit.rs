@@ -8,6 +8,7 @@ use crate::metrics::{
     ARCH_CORNER, ARCH_FOOT, ARROW_LENGTH, COLLAPSED_HEIGHT, OUTLINE_PAD, TEXT_LIFT, TEXT_PAD, TextRole,
     WORD_GAP,
 };
+use crate::overlay::reversed;
 use crate::place::{Frame, Placer};
 use crate::size::{Arch, Clearance};
 use crate::text::{Run, line_size};
@@ -38,30 +39,11 @@ impl Placer<'_> {
         let radii = (self.clearance_at(nodes.0, start).radius, self.clearance_at(nodes.1, end).radius);
         let top = start.y - arch.height;
         let (left, right) = (start.x + arch.rise, end.x - arch.fall);
-        let foot = start.y - ARCH_FOOT;
-        let off_node = |node: Point, x: f64, radius: f64| {
-            let towards = node.direction_to(Point::new(x, node.y - ARCH_FOOT + ARCH_CORNER / 2.0));
-            node.shifted(towards.x * radius, towards.y * radius)
-        };
-        let (from, to) = (off_node(start, left, radii.0), off_node(end, right, radii.1));
-        let upright = |x: f64, point: Point| Point::new(x, f64::midpoint(foot, point.y));
-        let pieces = [
-            Piece::Cubic(from.lerp(upright(left, from), 0.5), upright(left, from), Point::new(left, foot)),
-            Piece::Line(Point::new(left, top + ARCH_CORNER)),
-            Piece::Cubic(
-                Point::new(left, top + ARCH_CORNER / 2.0),
-                Point::new(left + ARCH_CORNER / 2.0, top),
-                Point::new(left + ARCH_CORNER, top),
-            ),
-            Piece::Line(Point::new(right - ARCH_CORNER, top)),
-            Piece::Cubic(
-                Point::new(right - ARCH_CORNER / 2.0, top),
-                Point::new(right, top + ARCH_CORNER / 2.0),
-                Point::new(right, top + ARCH_CORNER),
-            ),
-            Piece::Line(Point::new(right, foot)),
-            Piece::Cubic(upright(right, to), to.lerp(upright(right, to), 0.5), to),
-        ];
+        let (from, up) = rise_of_arch(start, left, top, radii.0, 1.0);
+        let (to, down) = rise_of_arch(end, right, top, radii.1, -1.0);
+        let mut pieces = up.to_vec();
+        pieces.push(Piece::Line(down[2].end()));
+        pieces.extend(reversed(to, &down).1);
         self.curve(arch.arc, Route::Arch, from, &pieces);
         let runs = self.sizes.runs(arch.arc);
         let limits = (left + ARCH_CORNER, right - ARCH_CORNER - arch.text_width);
@@ -74,6 +56,41 @@ impl Placer<'_> {
             limits: (limits.0.min(text_left), limits.1.max(text_left)),
         };
         self.write_row(runs.iter(), row, Some(slide));
+    }
+
+    /// The path of a traverse over its arc: an arch with the vertices strung along its level run.
+    pub(crate) fn beads(
+        &mut self,
+        arc: ArcId,
+        chain: &std::ops::Range<u32>,
+        ends: (Point, Point),
+        nodes: (NodeId, NodeId),
+    ) {
+        let arch = self.sizes.beads(arc, chain);
+        let chain = self.tree.spanning(chain);
+        let radii = (self.clearance_at(nodes.0, ends.0).radius, self.clearance_at(nodes.1, ends.1).radius);
+        let top = ends.0.y - arch.height;
+        let (from, up) = rise_of_arch(ends.0, ends.0.x + arch.rise, top, radii.0, 1.0);
+        let (to, down) = rise_of_arch(ends.1, ends.1.x - arch.fall, top, radii.1, -1.0);
+        let (left, right) = (up[2].end().x, down[2].end().x);
+        let count = chain.len();
+        let bead =
+            |number: usize| Point::new((left + (right - left) * number as f64 / count as f64).floor(), top);
+        for (at, &piece) in chain.iter().enumerate() {
+            let (is_first, is_last) = (at == 0, at + 1 == count);
+            let mut pieces = Vec::with_capacity(7);
+            if is_first {
+                pieces.extend(up);
+            }
+            if is_last {
+                pieces.push(Piece::Line(down[2].end()));
+                pieces.extend(reversed(to, &down).1);
+            } else {
+                pieces.push(Piece::Line(bead(at + 1)));
+                self.set_position(self.network.arcs[piece.index()].to, bead(at + 1));
+            }
+            self.curve(piece, Route::Along, if is_first { from } else { bead(at) }, &pieces);
+        }
     }
 
     pub(crate) fn collapsed(&mut self, id: PartId, frame: Frame, caption: usize) {
@@ -197,4 +214,24 @@ impl Placer<'_> {
             left += run.width + WORD_GAP;
         }
     }
+}
+
+/// The left leg of an arch, or with `side` −1 the right one: where it leaves its node, and three pieces that lead up
+/// and around the corner onto the level run.
+fn rise_of_arch(node: Point, x: f64, top: f64, radius: f64, side: f64) -> (Point, [Piece; 3]) {
+    let foot = node.y - ARCH_FOOT;
+    let towards = node.direction_to(Point::new(x, foot + ARCH_CORNER / 2.0));
+    let from = node.shifted(towards.x * radius, towards.y * radius);
+    let upright = Point::new(x, f64::midpoint(foot, from.y));
+    let corner = ARCH_CORNER * side;
+    let pieces = [
+        Piece::Cubic(from.lerp(upright, 0.5), upright, Point::new(x, foot)),
+        Piece::Line(Point::new(x, top + ARCH_CORNER)),
+        Piece::Cubic(
+            Point::new(x, top + ARCH_CORNER / 2.0),
+            Point::new(x + corner / 2.0, top),
+            Point::new(x + corner, top),
+        ),
+    ];
+    (from, pieces)
 }

@@ -80,7 +80,7 @@ fn write_node_names(network: &Network, measure: Measure<'_>, drawing: &mut Netwo
     let role = TextRole::Node;
     for node in &drawing.nodes {
         let text = node_name(network, node.id);
-        if text.is_empty() {
+        if text.is_empty() || node.radius <= metrics::VERTEX_RADIUS {
             continue;
         }
         let natural = text_width(&text, role, measure);

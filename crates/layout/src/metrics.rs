@@ -3,12 +3,14 @@
 //! Widths of text come from the caller's `measure`; everything else is here.
 
 use serde::{Deserialize, Serialize};
-use tpn::Role;
+use tpn::{ArcId, ArcKind, Network, Node, Role};
 
 /// Radius of the circle of an event.
 pub const EVENT_RADIUS: f64 = 11.0;
 /// Radius of the outer circle of a decision.
 pub const DECISION_RADIUS: f64 = 14.0;
+/// Radius of the dot of a vertex of a traverse's path.
+pub const VERTEX_RADIUS: f64 = 2.5;
 /// How far the inner circle of a decision lies inside the outer one.
 pub const DECISION_INSET: f64 = 3.0;
 /// Radius of the dot of a fork, join or merge.
@@ -46,6 +48,8 @@ pub(crate) const OUTLINE_PAD: f64 = 5.0;
 pub(crate) const COLLAPSED_HEIGHT: f64 = 40.0;
 /// Narrowest and widest space in which the arcs of a fork spread.
 pub(crate) const GUTTER: (f64, f64) = (22.0, 60.0);
+/// Between the vertices of a path.
+pub(crate) const BEAD_STEP: f64 = 12.0;
 /// Around the whole drawing.
 pub(crate) const MARGIN: f64 = 16.0;
 
@@ -96,9 +100,14 @@ impl TextRole {
     }
 }
 
-/// The radius of a node of this role.
-pub const fn node_radius(role: Role) -> f64 {
-    match role {
+/// The radius of a node. Vertices of a traverse's path (SPEC 7.3) are many and mean little by themselves: dots.
+pub fn node_radius(network: &Network, node: &Node) -> f64 {
+    let is_path = |arc: &ArcId| network.arcs[arc.index()].kind == ArcKind::Path;
+    let mut arcs = node.in_arcs.iter().chain(&node.out_arcs);
+    if !node.in_arcs.is_empty() && !node.out_arcs.is_empty() && arcs.all(is_path) {
+        return VERTEX_RADIUS;
+    }
+    match node.role {
         Role::Event => EVENT_RADIUS,
         Role::Structural => STRUCTURAL_RADIUS,
         Role::Decision => DECISION_RADIUS,

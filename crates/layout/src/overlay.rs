@@ -5,7 +5,7 @@ use tpn::{LabelId, Network, NodeId, Plan, Role};
 
 use crate::drawing::{Item, NetworkDrawing, TextShape};
 use crate::geometry::{Piece, Point, Rect, curve_bounds};
-use crate::metrics::TextRole;
+use crate::metrics::{TextRole, VERTEX_RADIUS};
 use crate::text::{Measure, bounds_label, text_width};
 
 /// A curve over the drawing.
@@ -97,7 +97,12 @@ pub fn windows(
             slide: None,
         })
     };
-    drawing.nodes.iter().filter(|node| node.role != Role::Structural).filter_map(text).collect()
+    drawing
+        .nodes
+        .iter()
+        .filter(|node| node.role != Role::Structural && node.radius > VERTEX_RADIUS)
+        .filter_map(text)
+        .collect()
 }
 
 /// A curve from node to node, whatever lies between.
@@ -187,7 +192,7 @@ fn along_arc(
 }
 
 /// The same curve the other way.
-fn reversed(start: Point, pieces: &[Piece]) -> (Point, Vec<Piece>) {
+pub(crate) fn reversed(start: Point, pieces: &[Piece]) -> (Point, Vec<Piece>) {
     let mut ends: Vec<Point> = vec![start];
     ends.extend(pieces.iter().map(|piece| piece.end()));
     let back = pieces.iter().zip(&ends).rev().map(|(piece, &from)| match *piece {

@@ -76,7 +76,7 @@ impl<'a> Placer<'a> {
             drawing.anchors.push(self.positions[at].or(hider).unwrap_or_default());
             if let Some(center) = self.positions[at] {
                 drawing.node_slots[at] = drawing.nodes.len() as u32;
-                let (id, radius) = (NodeId::from_index(at), node_radius(node.role));
+                let (id, radius) = (NodeId::from_index(at), node_radius(self.network, node));
                 drawing.nodes.push(NodeShape { id, center, radius, role: node.role });
             }
         }
@@ -134,12 +134,17 @@ impl<'a> Placer<'a> {
                 }
                 self.frames[child.index()] = Some(Frame { depth, ..frame });
             }
+            PartKind::Beads { arc, chain } => {
+                let ends = (self.clearance_at(part.start, start), self.clearance_at(part.end, end));
+                self.level_arc(*arc, start, end, ends);
+                self.beads(*arc, chain, (start, end), (part.start, part.end));
+            }
             PartKind::Collapsed { .. } => self.collapsed(id, frame, caption),
             PartKind::Core(core) => self.core(*core as usize, frame),
         }
     }
 
-    fn set_position(&mut self, node: NodeId, at: Point) {
+    pub(crate) fn set_position(&mut self, node: NodeId, at: Point) {
         self.positions[node.index()].get_or_insert(at);
     }
 

@@ -4,8 +4,8 @@ use tpn::{ArcId, Network, NodeId, Role};
 
 use crate::layered::{self, CoreLayout};
 use crate::metrics::{
-    ARCH_CORNER, ARCH_FIRST, ARCH_FOOT, ARCH_GAP, ARCH_STEP, ARROW_LENGTH, COLLAPSED_HEIGHT, GUTTER,
-    LANE_GAP, OUTLINE_PAD, SHORTEST_RUN, TEXT_LIFT, TEXT_PAD, TextRole, node_radius,
+    ARCH_CORNER, ARCH_FIRST, ARCH_FOOT, ARCH_GAP, ARCH_STEP, ARROW_LENGTH, BEAD_STEP, COLLAPSED_HEIGHT,
+    GUTTER, LANE_GAP, OUTLINE_PAD, SHORTEST_RUN, TEXT_LIFT, TEXT_PAD, TextRole, VERTEX_RADIUS, node_radius,
 };
 use crate::options::Options;
 use crate::text::{ArcTexts, Run, cut_to_width, one_row_size, sizes_above_and_below, text_width};
@@ -155,6 +155,13 @@ impl<'a> Sizes<'a> {
                 }
                 cover(ends, size)
             }
+            PartKind::Beads { arc, chain } => {
+                let mut size = self.straight(*arc, start, end);
+                let beads = self.beads(*arc, chain);
+                size.width = size.width.max(beads.least_width);
+                size.above = beads.height + VERTEX_RADIUS + TEXT_LIFT;
+                cover(ends, size)
+            }
             PartKind::Collapsed { .. } => {
                 let caption = &self.captions[*next_caption];
                 *next_caption += 1;
@@ -201,6 +208,17 @@ impl<'a> Sizes<'a> {
         }
         room.width += run_in + run_out;
         BranchSize { run_in, run_out, room }
+    }
+
+    /// The arch on which the vertices of a traverse's path are strung.
+    pub(crate) fn beads(&self, arc: ArcId, chain: &std::ops::Range<u32>) -> Arch {
+        let (above, _) = sizes_above_and_below(self.runs(arc));
+        let height = lifted(above.height).max(ARCH_FOOT + ARCH_CORNER - ARCH_GAP) + ARCH_GAP;
+        let (rank_out, rank_in) = self.arch_ranks[chain.start as usize];
+        let (rise, fall) = (arch_offset(rank_out), arch_offset(rank_in));
+        let beads = f64::from(chain.end - chain.start) - 1.0;
+        let least_width = rise + fall + 2.0 * ARCH_CORNER + (beads + 1.0) * BEAD_STEP;
+        Arch { arc, height, text_height: 0.0, text_width: 0.0, rise, fall, least_width }
     }
 
     /// The arches of a span, outermost first.
@@ -316,13 +334,17 @@ fn arch_ranks(network: &Network, tree: &Tree) -> ArchRanks {
     let mut counts = vec![(0, 0); network.nodes.len()];
     let mut ranks = vec![(0, 0); tree.spanning.len()];
     for part in tree.parts.iter().rev() {
-        if let PartKind::Span { arcs, .. } = &part.kind {
-            for at in arcs.clone() {
-                let (start, end) = (part.start.index(), part.end.index());
-                ranks[at as usize] = (counts[start].0, counts[end].1);
-                counts[start].0 += 1;
-                counts[end].1 += 1;
-            }
+        let arches = match &part.kind {
+            PartKind::Span { arcs, .. } => arcs.clone(),
+            // A path stands on its traverse as one arch.
+            PartKind::Beads { chain, .. } => chain.start..chain.start + 1,
+            _ => continue,
+        };
+        for at in arches {
+            let (start, end) = (part.start.index(), part.end.index());
+            ranks[at as usize] = (counts[start].0, counts[end].1);
+            counts[start].0 += 1;
+            counts[end].1 += 1;
         }
     }
     ArchRanks { ranks, counts }
@@ -334,8 +356,9 @@ fn clearances(network: &Network, options: &Options, tree: &Tree, arches: &[(u32,
         if count == 0 { radius } else { radius.max(arch_offset(count - 1) + TEXT_LIFT) }
     };
     let clearance = |(node, &(after, before)): (&tpn::Node, &(u32, u32))| {
-        let radius = node_radius(node.role);
-        let has_window = options.window_width > 0.0 && node.role != Role::Structural;
+        let radius = node_radius(network, node);
+        let has_window =
+            options.window_width > 0.0 && node.role != Role::Structural && radius > VERTEX_RADIUS;
         let (beneath, below) = if has_window {
             (radius.max(half_window), radius + 2.0 + TextRole::Window.line_height())
         } else {

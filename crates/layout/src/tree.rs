@@ -26,7 +26,7 @@ pub(crate) struct Tree {
     pub(crate) children: Vec<PartId>,
     /// The branches of fans, each fan a range.
     pub(crate) branches: Vec<Branch>,
-    /// The arcs of spans, outermost first, each span a range.
+    /// The arcs of spans, outermost first, and the pieces of paths, in order; each span and path a range.
     pub(crate) spanning: Vec<ArcId>,
     /// Irregular graphs between two nodes.
     pub(crate) cores: Vec<Core>,
@@ -58,6 +58,8 @@ pub(crate) enum PartKind {
     Fan { branches: Range<u32>, is_choice: bool },
     /// Arcs above a child that has the same ends.
     Span { child: PartId, arcs: Range<u32>, occurrence: Option<OccurrenceId> },
+    /// An arc with the pieces of its path above it, as a string of beads.
+    Beads { arc: ArcId, chain: Range<u32> },
     /// A box that hides what is between the ends.
     Collapsed { occurrence: Option<OccurrenceId>, arc: Option<ArcId> },
     /// An irregular graph.
@@ -119,6 +121,10 @@ impl Tree {
 
     pub(crate) fn children(&self, range: &Range<u32>) -> &[PartId] {
         &self.children[range.start as usize..range.end as usize]
+    }
+
+    pub(crate) fn spanning(&self, range: &Range<u32>) -> &[ArcId] {
+        &self.spanning[range.start as usize..range.end as usize]
     }
 
     /// Whether a part begins with a gap, so that no line leads into it.
@@ -275,12 +281,13 @@ impl Builder<'_> {
     }
 
     fn leaf(&mut self, id: BlockId, arc: ArcId) -> PartId {
-        let chain: Vec<PartId> = path_chain(self.network, arc)
-            .into_iter()
-            .map(|piece| self.tree.push_arc(self.network, piece))
-            .collect();
-        if let Some(path) = self.tree.push_series(&chain, None) {
-            return self.span(path, &[arc], None, Some(id));
+        let path = path_chain(self.network, arc);
+        if !path.is_empty() {
+            let begin = self.tree.spanning.len() as u32;
+            self.tree.spanning.extend(path);
+            let chain = begin..self.tree.spanning.len() as u32;
+            let ends = &self.network.arcs[arc.index()];
+            return self.tree.push(PartKind::Beads { arc, chain }, ends.from, ends.to, Some(id));
         }
         let part = self.tree.push_arc(self.network, arc);
         self.tree.parts[part.index()].block = Some(id);

@@ -7,8 +7,9 @@ use common::{
     segment_meets_rect, segments,
 };
 use layout::{BlockForm, Item, NetworkDrawing, Options, Point, Rect, Shape, TextRole};
+use rmpl::Rational;
 use tpn::generate::{Recipe, Tightness, mission};
-use tpn::{BlockId, BlockKind, EventEnd, Network, NodeId};
+use tpn::{BlockId, BlockKind, EventEnd, Network, NodeId, OccurrenceId};
 
 fn generated(nodes: usize, seed: u64) -> Network {
     network_of(&mission(Recipe { nodes, tightness: Tightness::Feasible, seed }))
@@ -331,4 +332,30 @@ fn the_text_of_an_arch_slides_along_it_into_view_and_no_further() {
             assert!(arch.min.x <= far.min.x && far.max.x <= arch.max.x, "{} leaves its arch", text.text);
         }
     }
+}
+
+#[test]
+fn the_path_of_a_traverse_is_strung_above_its_arc() {
+    use tpn::path::{PathLeg, TraversePath, insert_paths};
+    let network = enroute();
+    let traverse =
+        network.occurrences.iter().position(|it| it.name == "Group-Traverse-Path#1").expect("it is there");
+    let path = TraversePath {
+        occurrence: OccurrenceId::from_index(traverse),
+        legs: vec![PathLeg { segment_lengths_m: vec![10.0; 7] }, PathLeg { segment_lengths_m: vec![5.0; 4] }],
+        speed_mps: (Rational::new(1, 10), Rational::new(1, 2)),
+        may_stop: false,
+    };
+    let with_path = insert_paths(&network, &[path], 60).expect("the path is sound");
+    assert_eq!(with_path.nodes.len(), network.nodes.len() + 10);
+    let drawing = draw(&with_path);
+    assert_eq!((drawing.nodes.len(), drawing.arcs.len()), (with_path.nodes.len(), with_path.arcs.len()));
+    assert_nothing_overlaps(&drawing, "with a path");
+    assert_eq!(crossings(&drawing), 0);
+    let start = at(&with_path, &drawing, "Group-Traverse-Path#1.start");
+    let end = at(&with_path, &drawing, "Group-Traverse-Path#1.end");
+    let beads: Vec<Point> = drawing.nodes[network.nodes.len()..].iter().map(|node| node.center).collect();
+    assert!(beads.windows(2).all(|pair| pair[0].x < pair[1].x && pair[0].y == pair[1].y));
+    assert!(beads.iter().all(|bead| start.x < bead.x && bead.x < end.x && bead.y < start.y));
+    assert_eq!(drawing.bounds.width(), draw(&network).bounds.width(), "a short path needs no more room");
 }
