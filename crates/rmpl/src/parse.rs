@@ -175,7 +175,9 @@ impl Parse {
                 ));
             }
         }
-        if self.index.take_calls_changed() {
+        let changed_keys = self.places.get(changed.clone()).unwrap_or_default().iter().map(|place| place.key);
+        let moves_circle = changed_keys.into_iter().any(|key| self.circles.iter().any(|(other, _)| *other == key));
+        if self.index.take_calls_changed() || moves_circle {
             let summaries = self.places.iter().map(|place| (place.key, &place.declaration.summary));
             self.circles = recursion(&self.names, &self.index, summaries);
         }

@@ -55,6 +55,14 @@ proptest! {
     }
 }
 
+/// Who calls whom does not change here, but the place of the call does.
+#[test]
+fn a_circle_of_calls_moves_with_its_text() {
+    let mut edited = parse("A() = { LIGHT; B() }\nB() = { A() }\n");
+    edited.edit(&Edit { span: Span::new(8, 8), text: "DARK; ".to_owned() });
+    assert_same_as_fresh(&edited);
+}
+
 #[test]
 fn typing_a_mission_letter_by_letter_keeps_it_current() {
     let mut edited = parse("");

@@ -23,6 +23,7 @@ pub(crate) fn local_diagnostics(item: &Item, root: SyntaxNode<'_>) -> Vec<Diagno
     local.item(item);
     if matches!(item, Item::Activity(_) | Item::Scenario(_)) {
         local.separators(root);
+        local.choices(root);
     }
     local.found
 }
@@ -192,9 +193,6 @@ impl Local {
                 parts.iter().for_each(|part| self.statement(part));
             }
             StatementKind::Choose(alternatives) => {
-                if let [only] = alternatives.as_slice() {
-                    self.found.push(choice::one_alternative(statement.span, only.span));
-                }
                 alternatives.iter().for_each(|part| self.statement(part));
             }
             StatementKind::Maintaining(body, _)
@@ -204,7 +202,17 @@ impl Local {
         }
     }
 
-    // Separators.
+    // What only the tree shows.
+
+    /// Choices with one alternative.
+    fn choices(&mut self, root: SyntaxNode<'_>) {
+        for choose in root.descendants().filter(|node| node.kind() == SyntaxKind::Choose) {
+            let word = choose.token(SyntaxKind::ChooseKeyword);
+            if let (Some(word), 1) = (word, choose.children().count()) {
+                self.found.push(choice::one_alternative(word.span));
+            }
+        }
+    }
 
     /// Blocks in which `,` and `;` meet without braces between them.
     fn separators(&mut self, root: SyntaxNode<'_>) {

@@ -136,6 +136,6 @@ mod tests {
     #[test]
     fn names_that_differ_in_their_number_are_not_alike() {
         assert_eq!(edit_distance_at_most("PATH1", "PATH2", 2), None);
-        assert_eq!(edit_distance_at_most("PHAT1", "PATH1", 2), Some(1));
+        assert_eq!(edit_distance_at_most("PTAH1", "PATH1", 2), Some(1));
     }
 }

@@ -24,12 +24,9 @@ primitive Wait()[20,30];
 scenario Day[0,60] = { choose { Drive(), Wait() } }",
 };
 
-/// A `choose` at `choose` with the single alternative at `only`.
-pub(crate) fn one_alternative(choose: Span, only: Span) -> Diagnostic {
-    let word = Span::new(choose.start, choose.start + "choose".len() as u32);
-    let mut diagnostic = Diagnostic::warning(CODE, word, "there is only one alternative to choose");
-    if only.start > word.end {
-        diagnostic = diagnostic.with_fix(replacement("Remove `choose`", word, ""));
-    }
-    diagnostic.with_hint("alternatives are separated by `,`; `;` makes a sequence")
+/// A choice with a single alternative, at its `choose`.
+pub(crate) fn one_alternative(choose: Span) -> Diagnostic {
+    Diagnostic::warning(CODE, choose, "there is only one alternative to choose")
+        .with_hint("alternatives are separated by `,`; `;` makes a sequence")
+        .with_fix(replacement("Remove `choose`", choose, ""))
 }

@@ -115,3 +115,7 @@ pub(crate) fn negative_bound(span: Span) -> Diagnostic {
 pub(crate) fn double_equals(span: Span) -> Diagnostic {
     error(span, "a value is compared with a single `=`").with_fix(replacement("Remove `=`", span, ""))
 }
+
+pub(crate) fn wrong_count(wanted: &str, count: usize, span: Span) -> Diagnostic {
+    error(span, format!("expected {wanted}; here are {count}"))
+}

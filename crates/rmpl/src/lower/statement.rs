@@ -15,8 +15,7 @@ use super::{Lowering, name_of, rational};
 impl Lowering<'_> {
     /// A `{ … }`: the sequence or the parallel it contains.
     pub(super) fn block(&mut self, node: SyntaxNode<'_>) -> Statement {
-        let steps = self.steps(node);
-        Statement { bounds: None, ..collapse(steps, node.span()) }
+        collapse(self.steps(node), node.span())
     }
 
     fn steps(&mut self, node: SyntaxNode<'_>) -> Vec<Statement> {
@@ -47,7 +46,11 @@ impl Lowering<'_> {
         let bounds = bounds_in(node);
         let span = node.span();
         let kind = match core.kind() {
-            SyntaxKind::Block => return Some(Statement { bounds, span, ..self.block(core) }),
+            SyntaxKind::Block => {
+                let inner = self.block(core);
+                // Without bounds of its own, a block around one statement is that statement.
+                return Some(if bounds.is_some() { Statement { bounds, span, ..inner } } else { inner });
+            }
             SyntaxKind::Choose => self.choose(core)?,
             SyntaxKind::Do => self.do_statement(core)?,
             SyntaxKind::If => {
@@ -110,7 +113,7 @@ impl Lowering<'_> {
 /// One statement stands for itself unless it has bounds, which must not meet those of the block.
 fn collapse(steps: Vec<Statement>, span: Span) -> Statement {
     match <[Statement; 1]>::try_from(steps) {
-        Ok([only]) if only.bounds.is_none() => Statement { span, ..only },
+        Ok([only]) if only.bounds.is_none() => only,
         Ok(only) => Statement { kind: StatementKind::Sequence(only.into()), bounds: None, span },
         Err(steps) => Statement { kind: StatementKind::Sequence(steps), bounds: None, span },
     }

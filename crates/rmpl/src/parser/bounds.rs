@@ -105,7 +105,12 @@ impl Parser<'_> {
                 });
                 break;
             }
+            // An operator without operands is one mistake, however many follow it.
+            let is_reported = self.reported_at == Some(self.current);
             self.bump();
+            if is_reported {
+                self.hush();
+            }
             operand(self);
         }
         self.close(node, kind);

@@ -141,7 +141,7 @@ impl Parser<'_> {
             self.nested(Self::alternatives);
             self.close_brace(brace);
         } else {
-            self.report_missing("`{` behind `choose`", " {");
+            self.report_missing("`{`", " {");
         }
         self.close(node, SyntaxKind::Choose);
     }

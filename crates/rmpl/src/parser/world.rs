@@ -1,6 +1,8 @@
 //! The world of a mission: terrain, locations, obstacles, vehicles, traverses (SPEC 1.8).
 
 use super::Parser;
+use crate::diagnostics::syntax;
+use crate::span::Span;
 use crate::syntax::SyntaxKind;
 
 impl Parser<'_> {
@@ -29,7 +31,7 @@ impl Parser<'_> {
             if self.at_word("origin") {
                 let node = self.open();
                 self.bump();
-                self.coordinates();
+                self.coordinates("2 numbers: metres east and metres north", |count| count == 2);
                 self.close(node, SyntaxKind::Origin);
             }
         }
@@ -38,20 +40,25 @@ impl Parser<'_> {
 
     fn location(&mut self) -> SyntaxKind {
         self.declared_name("the name of the location");
-        self.coordinates();
+        self.coordinates("2 numbers: metres east and metres north", |count| count == 2);
         SyntaxKind::LocationDecl
     }
 
     fn obstacle(&mut self) -> SyntaxKind {
         self.declared_name("the name of the obstacle");
-        if !self.eat_word("circle") && !self.eat_word("polygon") {
+        if self.eat_word("circle") {
+            self.coordinates("3 numbers: metres east and north of the centre, and the radius", |count| count == 3);
+        } else if self.eat_word("polygon") {
+            let wanted = "an east and a north for each of at least three corners";
+            self.coordinates(wanted, |count| count >= 6 && count % 2 == 0);
+        } else {
             self.report_expected("`circle` or `polygon`");
             if self.at(SyntaxKind::Name) {
                 self.bump();
                 self.hush();
             }
+            self.coordinates("numbers", |_| true);
         }
-        self.coordinates();
         SyntaxKind::ObstacleDecl
     }
 
@@ -81,18 +88,22 @@ impl Parser<'_> {
         if self.at_word("speed") {
             let speed = self.open();
             self.bump();
-            self.coordinates();
+            self.coordinates("2 speeds: the least and the greatest, in metres per second", |count| count == 2);
             self.close(speed, SyntaxKind::Speed);
         }
         self.close(node, SyntaxKind::Moves);
     }
 
-    /// `(n, n, …)`
-    fn coordinates(&mut self) {
+    /// `(n, n, …)` with a number of numbers that `fits`; `wanted` says which.
+    fn coordinates(&mut self, wanted: &str, fits: impl Fn(usize) -> bool) {
         let node = self.open();
+        let start = self.start_of(self.current);
+        let reports = self.diagnostics.len();
+        let mut count = 0;
         if self.expect(SyntaxKind::LeftParen) {
             loop {
                 self.signed_number();
+                count += 1;
                 if self.eat(SyntaxKind::Comma) {
                     continue;
                 }
@@ -108,6 +119,10 @@ impl Parser<'_> {
                 self.skip_in_header(SyntaxKind::RightParen);
             }
             self.expect_behind(SyntaxKind::RightParen, ")");
+            if reports == self.diagnostics.len() && !fits(count) {
+                let span = Span::new(start, self.previous_end());
+                self.diagnostics.push(syntax::wrong_count(wanted, count, span));
+            }
         }
         self.close(node, SyntaxKind::Coordinates);
     }
