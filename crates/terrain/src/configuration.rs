@@ -181,7 +181,8 @@ impl ConfigurationSpace {
     }
 
     /// Like [`Self::are_separated`] with a sixteen times finer outer bound, which also sees gaps that are only a little
-    /// too narrow for the vehicle. Linear in the number of cells: for use when a search has failed.
+    /// too narrow for the vehicle. Linear in the number of cells: for use when a search has failed. A map of more than
+    /// four million cells is not looked at more finely.
     pub fn are_separated_finely(&self, a_m: [f64; 2], b_m: [f64; 2]) -> bool {
         self.are_separated(a_m, b_m) || connectivity::are_separated_finely(self, a_m, b_m)
     }

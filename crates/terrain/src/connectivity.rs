@@ -76,9 +76,16 @@ fn unite(parents: &mut [u32], a: u32, b: u32) -> u32 {
 /// Each cell is cut into this many pieces along each side.
 const PIECES: u32 = 4;
 
-/// Whether two points are in different pieces of an outer bound of the free places, made of cells cut in sixteen.
+/// Maps with more cells are not cut: it would take gigabytes.
+const MOST_CELLS_CUT: usize = 1 << 22;
+
+/// Whether two points are in different pieces of an outer bound of the free places, made of cells cut in sixteen. `false`
+/// on a map of more than four million cells.
 pub(crate) fn are_separated_finely(space: &ConfigurationSpace, a_m: [f64; 2], b_m: [f64; 2]) -> bool {
     let frame = *space.frame();
+    if frame.cell_count() > MOST_CELLS_CUT {
+        return false;
+    }
     let (width, height) = ((frame.width * PIECES) as usize, (frame.height * PIECES) as usize);
     let size = 1.0 / f64::from(PIECES);
     let regions = Regions::label(width, height, |index| {

@@ -1,6 +1,8 @@
 //! The configuration space against independent ways to compute the same: dense samples, brute force over all cells,
 //! and flood fill.
 
+use parry2d_f64::math::{Pose, Vector};
+use parry2d_f64::shape::{Cuboid, Segment};
 use terrain::{Cell, CellState, Collision, ConfigurationSpace, GridFrame, Obstacle, Occupancy, Random};
 
 fn random_grid(random: &mut Random, density: f64) -> (GridFrame, Vec<bool>) {
@@ -88,6 +90,52 @@ fn a_free_segment_is_free_at_every_dense_sample_and_a_blocked_one_comes_too_near
                     "seed {seed}: {a:?} to {b:?} stays {least} of {radius} away"
                 );
             }
+        }
+    }
+    assert!(free > 200 && blocked > 200, "{free} free, {blocked} blocked");
+}
+
+/// Metres between a segment and the nearest occupied square, by parry's convex distance.
+fn distance_by_parry(frame: &GridFrame, occupied: &[bool], a: [f64; 2], b: [f64; 2]) -> f64 {
+    let half = 0.5 * frame.cell_size_m;
+    let square = Cuboid::new(Vector::new(half, half));
+    let segment = Segment::new(Vector::new(a[0], a[1]), Vector::new(b[0], b[1]));
+    occupied
+        .iter()
+        .enumerate()
+        .filter(|(_, occupied)| **occupied)
+        .map(|(index, _)| {
+            let [x, y] = frame.center_m(frame.cell(index));
+            parry2d_f64::query::distance(&Pose::IDENTITY, &segment, &Pose::translation(x, y), &square)
+                .unwrap()
+                .distance
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn a_segment_is_free_exactly_when_parry_measures_at_least_the_radius() {
+    let (mut free, mut blocked) = (0, 0);
+    for seed in 0..60 {
+        let mut random = Random::from_seed(3000 + seed);
+        let density = 0.1 * random.unit() * random.unit();
+        let (frame, occupied) = random_grid(&mut random, density);
+        let radius = 0.1 + 2.0 * random.unit();
+        let space = ConfigurationSpace::new(Occupancy::from_obstacles(frame, &occupied), radius);
+        for _ in 0..30 {
+            let (a, b) = (random_point(&frame, &mut random), random_point(&frame, &mut random));
+            let distance = distance_by_parry(&frame, &occupied, a, b);
+            // parry iterates to a tolerance.
+            if (distance - radius).abs() < 1e-6 {
+                continue;
+            }
+            let found = space.is_segment_free(a, b);
+            assert_eq!(
+                found,
+                distance > radius,
+                "seed {seed}: {a:?} to {b:?}, {distance} m, radius {radius}"
+            );
+            if found { free += 1 } else { blocked += 1 }
         }
     }
     assert!(free > 200 && blocked > 200, "{free} free, {blocked} blocked");
