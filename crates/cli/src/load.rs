@@ -50,8 +50,9 @@ impl Target {
         let begun = Instant::now();
         let name = self.file.display().to_string();
         if is_network(&name, &source) {
-            let network = tpn::network_json::network_from_json(&serde_json::from_str(&source)?)
-                .with_context(|| format!("cannot read {name}"))?;
+            let network = tpn::interchange::Source::read(&source)
+                .with_context(|| format!("cannot read {name}"))?
+                .into_network();
             let parse_millis = begun.elapsed().as_secs_f64() * 1000.0;
             let problems = Vec::new();
             return Ok(Loaded {

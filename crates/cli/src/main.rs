@@ -9,7 +9,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use commands::{check, explain, path, plan, stn};
+use commands::{check, execute, explain, fmt, import, path, plan, simulate, stn, tpn, verify};
 
 /// Plans, checks and explains missions written in RMPL.
 #[derive(Parser)]
@@ -22,19 +22,31 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Check(check::Args),
+    Fmt(fmt::Args),
     Explain(explain::Args),
-    Path(path::Args),
+    Tpn(tpn::Args),
     Plan(plan::Args),
+    Verify(verify::Args),
+    Execute(execute::Args),
+    Simulate(simulate::Args),
+    Path(path::Args),
     Stn(stn::Args),
+    Import(import::Args),
 }
 
 fn main() -> ExitCode {
     let result = match &Cli::parse().command {
         Command::Check(args) => check::run(args),
+        Command::Fmt(args) => fmt::run(args),
         Command::Explain(args) => explain::run(args),
-        Command::Path(args) => path::run(args),
+        Command::Tpn(args) => tpn::run(args),
         Command::Plan(args) => plan::run(args),
+        Command::Verify(args) => verify::run(args),
+        Command::Execute(args) => execute::run(args),
+        Command::Simulate(args) => simulate::run(args),
+        Command::Path(args) => path::run(args),
         Command::Stn(args) => stn::run(args),
+        Command::Import(args) => import::run(args),
     };
     result.unwrap_or_else(|error| {
         eprintln!("error: {error:#}");

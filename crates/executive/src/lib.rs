@@ -1,1 +1,20 @@
 //! Plan dispatch, replanning, the model-based executive loop and the simulated world.
+//!
+//! Nothing here reads a clock: time is the mission's, exact, and moves from event to event.
+
+pub mod dispatch;
+pub mod exact;
+pub mod facts;
+pub mod log;
+pub mod plan_network;
+pub mod progress;
+pub mod run;
+pub mod world;
+
+pub use dispatch::Dispatcher;
+pub use facts::Facts;
+pub use log::{Ending, Entry, Happening};
+pub use plan_network::{PlanError, PlanNetwork};
+pub use progress::{Observations, Progress, progress};
+pub use run::{Replanner, RunOutcome, run};
+pub use world::{Disturbance, World};

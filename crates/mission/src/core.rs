@@ -149,6 +149,7 @@ impl Core {
             ground: ground.map(|(key, map)| (key, map)),
             options,
             seed: update.seed,
+            facts: None,
         };
         let mut stop = || surroundings.is_superseded();
         let planned = planning::plan(&problem, &mut self.grounds, &mut self.paths, &mut stop);

@@ -6,6 +6,7 @@
 
 mod core;
 pub mod driving;
+pub mod execution;
 mod ground;
 pub mod planning;
 pub mod problem;

@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use executive::Facts;
 use kirk::{Constraint, Options, Outcome, Stats, Status};
 use num_traits::ToPrimitive as _;
 use rmpl::program::Program;
@@ -20,6 +21,7 @@ use crate::snapshot::{Encounter, Leg, MapKey, Planning, Traverse, Undrivable, Ve
 use crate::traverse::{self, Paths, Route, Waypoint};
 
 /// What to plan and how.
+#[derive(Clone, Copy)]
 pub struct Problem<'input> {
     /// The network of the program, without paths.
     pub network: &'input Arc<Network>,
@@ -31,6 +33,8 @@ pub struct Problem<'input> {
     pub options: Options,
     /// Seeds path planning.
     pub seed: u64,
+    /// What has already happened, when planning again during execution.
+    pub facts: Option<&'input Facts>,
 }
 
 /// A mission, planned.
@@ -68,7 +72,10 @@ pub fn plan(
     stop: &mut dyn FnMut() -> bool,
 ) -> Planned {
     let mut inserted: BTreeMap<OccurrenceId, Inserted> = BTreeMap::new();
-    let mut network = Arc::clone(problem.network);
+    let mut network = match problem.facts {
+        Some(_) => Arc::new(with_paths(problem, &inserted)),
+        None => Arc::clone(problem.network),
+    };
     let mut outcome;
     let mut rounds = 0;
     loop {
@@ -143,7 +150,10 @@ fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId, Inserted>
             block(&mut network, occurrence);
         }
     }
-    network
+    match problem.facts {
+        Some(facts) => facts.apply(&network, problem.network.nodes.len()),
+        None => network,
+    }
 }
 
 fn traverse_path(route: &Route, legs: &[Leg], map: &Terrain) -> Option<TraversePath> {

@@ -24,7 +24,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut unformatted = false;
     for file in &args.files {
         let source = read_text(file)?;
-        let formatted = mission::format_source(&source);
+        let formatted = format(&source);
         if args.check {
             if formatted != source {
                 unformatted = true;
@@ -37,4 +37,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         }
     }
     Ok(exit(if unformatted { NO } else { YES }))
+}
+
+/// The text, formatted in its own notation.
+fn format(source: &str) -> String {
+    if rmpl::control::is_control_text(source) { rmpl::control::format(source) } else { rmpl::format(source) }
 }

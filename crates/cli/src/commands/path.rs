@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
 use clap::ValueEnum;
-use motion::{Failure, PlannerKind, Query, Search, Settings, ShortcutSettings, Statistics, shorten};
+use motion::{Failure, PlannerKind, Query, Search, Settings, ShortcutSettings, Statistics};
 use serde_json::{Value, json};
 use terrain::format::{FileFormat, ImportOptions, read_raster};
 use terrain::{ConfigurationSpace, GridFrame, Occupancy};
@@ -151,26 +151,29 @@ fn search(args: &Args, space: &ConfigurationSpace, run: u64) -> Run {
         // Reading the clock before every sample would cost more than the sample.
         limit.is_some_and(|limit| statistics.samples.is_multiple_of(16) && started.elapsed() > limit)
     };
-    let mut path = Err(Failure::NotFound { samples: 0 });
-    let mut statistics = Statistics::default();
-    let mut is_motion = false;
-    match Search::new(space, query, settings) {
+    let (mut result, search_millis) = match Search::new(space, query, settings) {
         Ok(search) => {
             let result = search.run(space, &mut stop);
-            is_motion = result.trajectory.is_some();
-            (path, statistics) = (result.path, result.statistics);
+            (result, millis_since(started))
         }
-        Err(failure) => path = path.map_err(|_| failure),
-    }
-    let search_millis = millis_since(started);
-    let raw_length = path.as_ref().map_or(0.0, motion::Path::length_m);
-    // A straight shortcut would leave what a motion can do.
-    if !args.raw && !is_motion {
-        path =
-            path.map(|path| shorten(space, &path, &ShortcutSettings { seed, ..ShortcutSettings::default() }));
+        Err(failure) => {
+            let millis = [millis_since(started); 3];
+            return Run {
+                seed,
+                path: Err(failure),
+                raw_length: 0.0,
+                statistics: Statistics::default(),
+                millis,
+            };
+        }
+    };
+    let raw_length = result.path.as_ref().map_or(0.0, motion::Path::length_m);
+    if !args.raw {
+        let shortcut = ShortcutSettings { seed, ..ShortcutSettings::default() };
+        result.shorten(space, &settings, &shortcut);
     }
     let millis = [first_millis.unwrap_or(search_millis), search_millis, millis_since(started)];
-    Run { seed, path, raw_length, statistics, millis }
+    Run { seed, path: result.path, raw_length, statistics: result.statistics, millis }
 }
 
 fn millis_since(start: Instant) -> f64 {

@@ -149,6 +149,7 @@ impl Args {
             ground: ground.as_ref().map(|(key, map)| (key, map)),
             options,
             seed: self.seed,
+            facts: None,
         };
         let mut stop = || deadline.is_some_and(|deadline| Instant::now() >= deadline);
         planning::plan(&problem, &mut grounds, &mut Paths::default(), &mut stop)

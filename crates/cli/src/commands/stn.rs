@@ -56,7 +56,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             match args.format {
                 Format::Text => print_text(&cycle_text(&network, &stn))?,
                 Format::Json => {
-                    let cycle: Vec<Value> = stn.cycle().iter().map(|edge| edge_json(&network, edge)).collect();
+                    let cycle: Vec<Value> =
+                        stn.cycle().iter().map(|edge| edge_json(&network, edge)).collect();
                     let body = json!({ "consistent": false, "windows": null, "cycle": cycle });
                     print_json(&document("stn", &[], body))?;
                 }

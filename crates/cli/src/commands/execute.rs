@@ -1,0 +1,138 @@
+//! `enroute execute`: the windows that remain of a plan after some of its events have happened.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Context as _;
+use executive::{Observations, Progress};
+use rmpl::Rational;
+use rmpl::rational::display;
+use serde_json::{Map, Value, json};
+use tpn::{Network, Plan, Window};
+
+use crate::input::read_json;
+use crate::load::{Loaded, Target};
+use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
+
+/// Says what remains possible of a plan once some of its events have happened.
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    target: Target,
+    /// A plan to execute instead of the mission's first one.
+    #[arg(long, value_name = "PLAN.json")]
+    plan: Option<PathBuf>,
+    /// What has happened: {"executed": {event: time…}, "now": t}.
+    #[arg(long, value_name = "OBS.json")]
+    observe: PathBuf,
+    /// For whom the answer is.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let loaded = args.target.load()?;
+    let Some(network) = &loaded.network else {
+        report_errors(args, &loaded)?;
+        return Ok(exit(WRONG));
+    };
+    let plan = match &args.plan {
+        Some(file) => {
+            let document: Value = read_json(file)?;
+            let plans = tpn::plan_json::plans_from_json(network, &document)?;
+            plans.into_iter().next().with_context(|| format!("{} holds no plan", file.display()))?
+        }
+        None => {
+            let outcome = kirk::plan(network, &kirk::Options::default(), &mut kirk::Unlimited);
+            outcome.plans.into_iter().next().context("the mission has no plan to execute")?
+        }
+    };
+    let observed = observations(network, &read_json(&args.observe)?)?;
+    let progress = executive::progress(network, &plan, &observed)?;
+    let is_consistent = matches!(progress, Progress::Consistent(_));
+    match args.format {
+        Format::Json => {
+            print_json(&document("execute", &loaded.problems, progress_json(network, &progress)))?
+        }
+        Format::Text => print_text(&progress_text(network, &plan, &progress))?,
+    }
+    Ok(exit(if is_consistent { YES } else { NO }))
+}
+
+fn report_errors(args: &Args, loaded: &Loaded) -> anyhow::Result<()> {
+    match args.format {
+        Format::Json => {
+            let body = json!({ "consistent": false, "windows": {}, "violations": [] });
+            print_json(&document("execute", &loaded.problems, body))
+        }
+        Format::Text => print_problems(&loaded.name, &loaded.source, &loaded.problems),
+    }
+}
+
+fn observations(network: &Network, document: &Value) -> anyhow::Result<Observations> {
+    let times = tpn::plan_json::times_from_json(network, document.get("executed").unwrap_or(&json!({})))?;
+    let executed: Vec<(tpn::NodeId, Rational)> = times
+        .iter()
+        .enumerate()
+        .filter_map(|(index, time)| Some((tpn::NodeId::from_index(index), (*time)?)))
+        .collect();
+    let latest = executed.iter().map(|&(_, time)| time).max().unwrap_or_default();
+    let now = match document.get("now") {
+        Some(now) => tpn::number::time_from_json(now).context("`now` is no time")?,
+        None => latest,
+    };
+    Ok(Observations { executed, now })
+}
+
+fn named_windows(network: &Network, windows: &[Option<Window>]) -> BTreeMap<String, Window> {
+    let mut named = BTreeMap::new();
+    for (node, window) in network.nodes.iter().zip(windows) {
+        let Some(window) = window else { continue };
+        for &event in &node.events {
+            named.insert(network.event_name(event), *window);
+        }
+    }
+    named
+}
+
+fn progress_json(network: &Network, progress: &Progress) -> Value {
+    match progress {
+        Progress::Consistent(windows) => {
+            let windows: Map<String, Value> = named_windows(network, windows)
+                .into_iter()
+                .map(|(name, window)| {
+                    let earliest = tpn::number::time_to_json(window.earliest);
+                    (name, json!([earliest, tpn::number::bound_to_json(window.latest)]))
+                })
+                .collect();
+            json!({ "consistent": true, "windows": windows, "violations": [] })
+        }
+        Progress::Violated(reasons) => json!({ "consistent": false, "windows": {}, "violations": reasons }),
+    }
+}
+
+fn progress_text(network: &Network, plan: &Plan, progress: &Progress) -> String {
+    match progress {
+        Progress::Consistent(windows) => {
+            let named = named_windows(network, windows);
+            let before = named_windows(network, &plan.windows);
+            let widest = named.keys().map(|name| name.chars().count()).max().unwrap_or(0);
+            named
+                .iter()
+                .map(|(name, window)| {
+                    let changed = if before.get(name) == Some(window) { "" } else { "  changed" };
+                    format!("{name:<widest$}  [{}, {}]{changed}\n", display(window.earliest), window.latest)
+                })
+                .collect()
+        }
+        Progress::Violated(reasons) => {
+            let mut text = "the plan can no longer be kept\n".to_owned();
+            for reason in reasons {
+                text.push_str(&format!("  {reason}\n"));
+            }
+            text
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! `enroute simulate`: executes a mission's plan in the simulated world and logs what happens.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use anyhow::Context as _;
+use executive::{Disturbance, Ending, Entry, Happening, World};
+use mission::planning::{self, Problem};
+use mission::{Paths, execution};
+use rmpl::rational::display;
+use serde::Deserialize;
+use serde_json::json;
+
+use crate::input::read_json;
+use crate::load::Target;
+use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
+
+/// Executes a mission's plan in the simulated world, planning again when the plan cannot be kept.
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    target: Target,
+    /// Seeds path planning.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// What goes otherwise than planned: {"disturbances": [{"kind": "duration" | "slow" | "withdrawn" | "late", …}…]}.
+    #[arg(long, value_name = "D.json")]
+    disturb: Option<PathBuf>,
+    /// For whom the answer is.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// The file of `--disturb`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Script {
+    disturbances: Vec<Disturbance>,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let loaded = args.target.load()?;
+    let disturbances = match &args.disturb {
+        Some(file) => read_json::<Script>(file)?.disturbances,
+        None => Vec::new(),
+    };
+    let program = loaded.program.as_ref().context("only a mission text can be simulated, not a network")?;
+    let Some(network) = loaded.network.clone().map(Arc::new) else {
+        print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
+        return Ok(exit(WRONG));
+    };
+    let unknown = World::unknown(&network, &disturbances);
+    anyhow::ensure!(unknown.is_empty(), "no activity or condition is called {}", unknown.join(", "));
+    let mut grounds = mission::Grounds::default();
+    let mut paths = Paths::default();
+    let (ground, _) = grounds.resolve(&program.world);
+    let problem = Problem {
+        network: &network,
+        program,
+        ground: ground.as_ref().map(|(key, map)| (key, map)),
+        options: kirk::Options::default(),
+        seed: args.seed,
+        facts: None,
+    };
+    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
+    let Some(outcome) = execution::execute(&problem, &planned, &disturbances, &mut grounds, &mut paths)
+    else {
+        match args.format {
+            Format::Text => print_text("the mission has no plan to execute; `enroute plan` says why\n")?,
+            Format::Json => {
+                let body = json!({ "status": "no-plan", "log": [] });
+                print_json(&document("simulate", &loaded.problems, body))?;
+            }
+        }
+        return Ok(exit(NO));
+    };
+    let outcome = outcome?;
+    match args.format {
+        Format::Text => print_text(&outcome.log.iter().map(line).collect::<String>())?,
+        Format::Json => {
+            let body = json!({ "status": outcome.ending, "log": outcome.log });
+            print_json(&document("simulate", &loaded.problems, body))?;
+        }
+    }
+    Ok(exit(if outcome.ending == Ending::Finished { YES } else { NO }))
+}
+
+fn line(entry: &Entry) -> String {
+    let time = display(entry.time);
+    let time = if time.contains('/') || time.len() > 8 {
+        format!("{:.3}", *entry.time.numer() as f64 / *entry.time.denom() as f64)
+    } else {
+        time
+    };
+    let text = match &entry.happening {
+        Happening::Executed { name } => name.to_string(),
+        Happening::Violation { reason } => format!("VIOLATION  {reason}"),
+        Happening::Replanned { changes } if changes.is_empty() => {
+            "planned again, with the same choices".to_owned()
+        }
+        Happening::Replanned { changes } => format!("planned again: {}", changes.join(", ")),
+        Happening::Stopped { reason } => format!("STOPPED  {reason}"),
+        Happening::Finished => "finished".to_owned(),
+    };
+    format!("{time:>9}  {text}\n")
+}

@@ -1,0 +1,96 @@
+//! `enroute tpn`: the temporal plan network of a mission, in one of several notations.
+
+use std::process::ExitCode;
+
+use anyhow::Context as _;
+use clap::ValueEnum;
+use serde_json::json;
+use tpn::Network;
+use tpn::interchange::Source;
+
+use crate::load::{Loaded, Target};
+use crate::output::{Format, WRONG, YES, document, exit, print_json, print_problems, print_text};
+
+/// Compiles a mission to its temporal plan network.
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    target: Target,
+    /// The notation; by default text for people and JSON for programs, as `--format` says.
+    #[arg(long = "as", value_enum, value_name = "NOTATION")]
+    notation: Option<Notation>,
+    /// For whom the answer is.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// What a network can be written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Notation {
+    /// An `enroute-tpn/1` document.
+    Json,
+    /// A listing for people.
+    Text,
+    /// A Graphviz drawing.
+    Dot,
+    /// The drawing of the page.
+    Svg,
+    /// The interchange format of other planners' tools.
+    PlanSchema,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let notation = args.notation.unwrap_or(match args.format {
+        Format::Text => Notation::Text,
+        Format::Json => Notation::Json,
+    });
+    let loaded = args.target.load()?;
+    let Some(network) = &loaded.network else { return report_errors(notation, args.format, &loaded) };
+    if notation != Notation::Json {
+        print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
+    }
+    match notation {
+        Notation::Json => {
+            print_json(&document("tpn", &loaded.problems, tpn::network_json::network_to_json(network)))?;
+        }
+        Notation::Text => print_text(&tpn::text::to_text(network))?,
+        Notation::Dot => print_text(&tpn::text::to_dot(network))?,
+        Notation::Svg => print_text(&drawing(network))?,
+        Notation::PlanSchema => print_json(&plan_schema(&loaded, network)?)?,
+    }
+    Ok(exit(YES))
+}
+
+fn report_errors(notation: Notation, format: Format, loaded: &Loaded) -> anyhow::Result<ExitCode> {
+    if notation == Notation::Json || format == Format::Json {
+        print_json(&document("tpn", &loaded.problems, json!({ "nodes": [], "arcs": [] })))?;
+    } else {
+        print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
+    }
+    Ok(exit(WRONG))
+}
+
+/// A file that was plan-schema is written as it was read, with what is not understood; anything else is translated.
+fn plan_schema(loaded: &Loaded, network: &Network) -> anyhow::Result<serde_json::Value> {
+    if loaded.program.is_none()
+        && let Source::PlanSchema(read) =
+            Source::read(&loaded.source).with_context(|| format!("cannot read {}", loaded.name))?
+    {
+        return Ok(read.to_json());
+    }
+    Ok(tpn::plan_schema::write(network))
+}
+
+fn drawing(network: &Network) -> String {
+    let drawing = layout::network(network, &layout::Options::default(), &layout::approximate_text_width);
+    let options = layout::SvgOptions {
+        palette: &layout::Palette::LIGHT,
+        plan: None,
+        overlays: &[],
+        notes: &[],
+        structure: true,
+        title: "Temporal plan network",
+    };
+    layout::svg(&drawing, network, &options)
+}

@@ -1,0 +1,139 @@
+//! `enroute verify`: the independent check of a plan that was written by `enroute plan`, or by anyone.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use mission::Paths;
+use mission::planning;
+use serde_json::{Value, json};
+use tpn::plan_json::{PlanError, plan_from_json, selected_activities, stated_activities};
+use tpn::{EventEnd, Network};
+
+use crate::input::read_json;
+use crate::load::{Loaded, Target};
+use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
+
+/// Checks a plan against a mission or a network, from the definitions.
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    target: Target,
+    /// The plan: an enroute-plan document, of which every plan is checked, or a single plan.
+    plan: PathBuf,
+    /// The seed that path planning had.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// For whom the answer is.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let loaded = args.target.load()?;
+    let stated: Value = read_json(&args.plan)?;
+    let Some(network) = &loaded.network else {
+        match args.format {
+            Format::Json => print_json(&document("verify", &loaded.problems, json!({ "valid": null })))?,
+            Format::Text => print_problems(&loaded.name, &loaded.source, &loaded.problems)?,
+        }
+        return Ok(exit(WRONG));
+    };
+    let plans: Vec<&Value> = match stated.get("plans").and_then(Value::as_array) {
+        Some(plans) => plans.iter().collect(),
+        None => vec![&stated],
+    };
+    anyhow::ensure!(!plans.is_empty(), "{} has no plan to check", args.plan.display());
+    let mut violations = Vec::new();
+    for (index, plan) in plans.iter().enumerate() {
+        for mut violation in check(args, &loaded, network, plan)? {
+            if plans.len() > 1 {
+                violation["plan"] = index.into();
+            }
+            violations.push(violation);
+        }
+    }
+    let is_valid = violations.is_empty();
+    match args.format {
+        Format::Json => {
+            let body = json!({ "valid": is_valid, "violations": violations });
+            print_json(&document("verify", &loaded.problems, body))?;
+        }
+        Format::Text => {
+            print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
+            let mut text = if is_valid { "valid\n".to_owned() } else { "not valid\n".to_owned() };
+            for violation in &violations {
+                text.push_str(&format!("  {}\n", violation["message"].as_str().unwrap_or("")));
+            }
+            print_text(&text)?;
+        }
+    }
+    Ok(exit(if is_valid { YES } else { NO }))
+}
+
+/// What is wrong with one plan. What it says of things that the network does not have is wrong with it; a document
+/// that is no plan at all is an error of the call.
+fn check(args: &Args, loaded: &Loaded, network: &Network, stated: &Value) -> anyhow::Result<Vec<Value>> {
+    let extended;
+    let network = if names_path_vertices(stated) {
+        extended = with_paths(args, loaded, network);
+        &*extended
+    } else {
+        network
+    };
+    let plan = match plan_from_json(network, stated) {
+        Ok(plan) => plan,
+        Err(error @ PlanError::Unknown { .. }) => {
+            return Ok(vec![
+                json!({ "rule": "form", "message": error.to_string(), "events": [], "intervals": [] }),
+            ]);
+        }
+        Err(error) => return Err(error.into()),
+    };
+    let verdict = verify::check_plan(network, &plan);
+    let mut violations: Vec<Value> = Vec::new();
+    for violation in &verdict.violations {
+        violations.push(serde_json::to_value(violation)?);
+    }
+    if let Some(activities) = stated_activities(stated) {
+        let selected = selected_activities(network, &plan);
+        if activities != selected {
+            let message =
+                format!("the plan lists the activities {activities:?}, but its choices select {selected:?}");
+            violations
+                .push(json!({ "rule": "selection", "message": message, "events": [], "intervals": [] }));
+        }
+    }
+    Ok(violations)
+}
+
+/// Whether the plan has windows of path vertices, which are not in the network of the text alone.
+fn names_path_vertices(stated: &Value) -> bool {
+    let windows = stated.get("windows").and_then(Value::as_object);
+    windows.is_some_and(|windows| windows.keys().any(|event| event.contains(".leg")))
+}
+
+/// The network with the paths that planning finds, which the seed determines.
+fn with_paths(args: &Args, loaded: &Loaded, network: &Network) -> Arc<Network> {
+    let network = Arc::new(network.clone());
+    let Some(program) = &loaded.program else { return network };
+    let has_paths = |network: &Network| {
+        let mut events = network.nodes.iter().flat_map(|node| &node.events);
+        events.any(|event| matches!(event.end, EventEnd::PathVertex { .. }))
+    };
+    if has_paths(&network) {
+        return network;
+    }
+    let mut grounds = mission::Grounds::default();
+    let (ground, _) = grounds.resolve(&program.world);
+    let problem = planning::Problem {
+        network: &network,
+        program,
+        ground: ground.as_ref().map(|(key, map)| (key, map)),
+        options: kirk::Options::default(),
+        seed: args.seed,
+        facts: None,
+    };
+    planning::plan(&problem, &mut grounds, &mut Paths::default(), &mut || false).network
+}

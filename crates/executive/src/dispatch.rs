@@ -1,0 +1,124 @@
+//! Dispatch of a plan through its dispatchable form (SPEC 6.1, 6.2): which events may happen now, and what an event
+//! that happened leaves possible.
+
+use stn::{Dispatchable, PointId};
+
+use crate::plan_network::{PlanError, PlanNetwork};
+
+/// The greatest number of events that is dispatched; the dispatchable form takes time cubic in it.
+pub const MOST_EVENTS: usize = 1500;
+
+/// The state of a dispatch. Components are the rigid components of the plan; an event is a point and its time follows
+/// its component's.
+#[derive(Clone, Debug)]
+pub struct Dispatcher {
+    form: Dispatchable,
+    /// The component of each point, and its time after the component's leader.
+    place: Vec<(usize, i64)>,
+    /// The component of each leader, by point; meaningless for other points.
+    component_of_leader: Vec<usize>,
+    windows: Vec<(i64, i64)>,
+    time: Vec<Option<i64>>,
+    /// Edges by their ends: positions in the form's list.
+    out: Vec<Vec<usize>>,
+    into: Vec<Vec<usize>>,
+}
+
+/// No upper bound.
+pub const NEVER: i64 = i64::MAX;
+
+/// An event came outside its window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OutOfWindow {
+    /// The window's beginning, in ticks.
+    pub earliest: i64,
+    /// Its end, or [`NEVER`].
+    pub latest: i64,
+}
+
+impl Dispatcher {
+    /// Prepares a plan for dispatch.
+    pub fn new(plan: &mut PlanNetwork) -> Result<Self, PlanError> {
+        let points: Vec<PointId> = plan.all_points().collect();
+        if points.len() > MOST_EVENTS {
+            return Err(PlanError::Overflow);
+        }
+        let distances = plan.stn.all_pairs()?;
+        let form = stn::dispatchable(&distances, &points);
+        let mut place = vec![(0, 0); points.len()];
+        let mut component_of_leader = vec![0; points.len()];
+        let mut windows = Vec::with_capacity(form.components.len());
+        for (index, component) in form.components.iter().enumerate() {
+            component_of_leader[component.leader.index()] = index;
+            for &(point, offset) in &component.members {
+                place[point.index()] = (index, offset);
+            }
+            let origin = plan.origin();
+            windows.push((-distances.get(component.leader, origin), distances.get(origin, component.leader)));
+        }
+        let mut out = vec![Vec::new(); form.components.len()];
+        let mut into = vec![Vec::new(); form.components.len()];
+        for (position, edge) in form.edges.iter().enumerate() {
+            out[component_of_leader[edge.from.index()]].push(position);
+            into[component_of_leader[edge.to.index()]].push(position);
+        }
+        let time = vec![None; form.components.len()];
+        Ok(Self { form, place, component_of_leader, windows, time, out, into })
+    }
+
+    /// The form that is dispatched.
+    pub const fn form(&self) -> &Dispatchable {
+        &self.form
+    }
+
+    /// When a point may still happen: its earliest and latest tick, [`NEVER`] if there is no latest.
+    pub fn window(&self, point: PointId) -> (i64, i64) {
+        let (component, offset) = self.place[point.index()];
+        match self.time[component] {
+            Some(time) => (time + offset, time + offset),
+            None => {
+                let (earliest, latest) = self.windows[component];
+                (earliest + offset, if latest == NEVER { NEVER } else { latest + offset })
+            }
+        }
+    }
+
+    /// Whether the time of a point is settled.
+    pub fn is_settled(&self, point: PointId) -> bool {
+        self.time[self.place[point.index()].0].is_some()
+    }
+
+    /// Whether everything that must come before a point has been settled: no negative edge leads from its component to
+    /// one that has not (SPEC 6.2).
+    pub fn is_enabled(&self, point: PointId) -> bool {
+        let component = self.place[point.index()].0;
+        self.out[component].iter().all(|&position| {
+            let edge = self.form.edges[position];
+            edge.weight >= 0 || self.time[self.component_of_leader[edge.to.index()]].is_some()
+        })
+    }
+
+    /// Settles the time of a point, and tells the neighbours.
+    pub fn settle(&mut self, point: PointId, ticks: i64) -> Result<(), OutOfWindow> {
+        let (earliest, latest) = self.window(point);
+        if ticks < earliest || ticks > latest {
+            return Err(OutOfWindow { earliest, latest });
+        }
+        let (component, offset) = self.place[point.index()];
+        let time = ticks - offset;
+        if self.time[component].replace(time).is_some() {
+            return Ok(());
+        }
+        for &position in &self.out[component] {
+            let edge = self.form.edges[position];
+            let window = &mut self.windows[self.component_of_leader[edge.to.index()]];
+            window.1 = window.1.min(time.saturating_add(edge.weight));
+        }
+        for &position in &self.into[component] {
+            let edge = self.form.edges[position];
+            let window = &mut self.windows[self.component_of_leader[edge.from.index()]];
+            window.0 = window.0.max(time.saturating_sub(edge.weight));
+        }
+        Ok(())
+    }
+}

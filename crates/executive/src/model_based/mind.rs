@@ -1,0 +1,119 @@
+//! What the executive thinks: belief updates and commands, remembered so that many runs share them.
+
+use std::collections::BTreeMap;
+
+use plant::{
+    Belief, Commands, Conflict, EstimateError, Goal, Model, NextCommands, Observation, Planner, State,
+    conflicts, update_best, update_exact,
+};
+
+/// How the belief is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Estimation {
+    /// All possible states.
+    Exact,
+    /// This many of the most likely states.
+    Best(usize),
+}
+
+impl Estimation {
+    /// Exact where there are few states, otherwise the 64 most likely.
+    pub fn for_model(model: &Model) -> Self {
+        let states = model.components.iter().try_fold(1_usize, |product, component| {
+            product.checked_mul(component.modes.len()).filter(|product| *product <= 4096)
+        });
+        if states.is_some() { Self::Exact } else { Self::Best(64) }
+    }
+}
+
+/// The search for likely states gives up after this many nodes.
+const MOST_NODES: u32 = 50_000;
+/// Remembered thoughts are thrown away when there are more than this many.
+const MOST_REMEMBERED: usize = 20_000;
+/// A diagnosis names at most this many conflicts.
+const MOST_CONFLICTS: usize = 8;
+
+/// A belief after a step, and what it took.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Thought {
+    pub(super) belief: Belief,
+    /// Whether nothing that was believed possible explains the observation, which was then left out of account.
+    pub(super) is_unexplained: bool,
+    pub(super) conflicts: Vec<Conflict>,
+}
+
+/// Estimates and plans for one model.
+#[derive(Clone, Debug)]
+pub struct Mind<'model> {
+    model: &'model Model,
+    planner: Planner<'model>,
+    estimation: Estimation,
+    thoughts: BTreeMap<(Belief, Commands, Observation), Thought>,
+    plans: BTreeMap<(State, Vec<Goal>), NextCommands>,
+}
+
+impl<'model> Mind<'model> {
+    /// Compiles the model's policies.
+    pub fn new(model: &'model Model, estimation: Estimation) -> Self {
+        let planner = Planner::new(model);
+        Self { model, planner, estimation, thoughts: BTreeMap::new(), plans: BTreeMap::new() }
+    }
+
+    /// The reactive planner.
+    pub const fn planner(&self) -> &Planner<'model> {
+        &self.planner
+    }
+
+    pub(super) fn think(
+        &mut self,
+        belief: &Belief,
+        commands: &Commands,
+        observation: &Observation,
+    ) -> Result<Thought, EstimateError> {
+        let key = (belief.clone(), commands.clone(), observation.clone());
+        if let Some(known) = self.thoughts.get(&key) {
+            return Ok(known.clone());
+        }
+        let (updated, is_unexplained) = match self.update(belief, commands, observation) {
+            Err(EstimateError::Unexplained) => {
+                (self.update(belief, commands, &Observation::default())?, true)
+            }
+            updated => (updated?, false),
+        };
+        let conflicts = conflicts(self.model, belief.most_likely(), commands, observation, MOST_CONFLICTS)?;
+        let thought = Thought { belief: updated, is_unexplained, conflicts };
+        if self.thoughts.len() >= MOST_REMEMBERED {
+            self.thoughts.clear();
+        }
+        self.thoughts.insert(key, thought.clone());
+        Ok(thought)
+    }
+
+    fn update(
+        &self,
+        belief: &Belief,
+        commands: &Commands,
+        observation: &Observation,
+    ) -> Result<Belief, EstimateError> {
+        match self.estimation {
+            Estimation::Exact => update_exact(self.model, belief, commands, observation),
+            Estimation::Best(most) => {
+                update_best(self.model, belief, commands, observation, most, MOST_NODES)
+                    .map(|(belief, _)| belief)
+            }
+        }
+    }
+
+    pub(super) fn plan(&mut self, state: &State, goals: &[Goal]) -> NextCommands {
+        let key = (state.clone(), goals.to_vec());
+        if let Some(known) = self.plans.get(&key) {
+            return known.clone();
+        }
+        let next = self.planner.next_commands(state, goals);
+        if self.plans.len() >= MOST_REMEMBERED {
+            self.plans.clear();
+        }
+        self.plans.insert(key, next.clone());
+        next
+    }
+}

@@ -1,0 +1,15 @@
+//! The model-based executive: a control program in a closed loop with a plant (SPEC 9.3).
+//!
+//! Each step asserts goals, commands the plant towards them, lets nature answer, observes, updates the belief, and
+//! moves the automaton by the most likely state.
+
+mod goal;
+mod mind;
+mod monte_carlo;
+mod run;
+mod system;
+
+pub use mind::{Estimation, Mind};
+pub use monte_carlo::{MonteCarlo, monte_carlo, wilson_interval};
+pub use run::{Knowledge, Options, Run, StepInput, StepRecord};
+pub use system::{System, SystemCompilation};

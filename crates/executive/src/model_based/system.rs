@@ -1,0 +1,239 @@
+//! A control program bound to the plant that it controls.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use hca::{Automaton, Estimate, VariableId as ProgramVariableId, Vocabulary};
+use plant::{ComponentId, Model, Observation, State, VariableId};
+use rmpl::control::{
+    Argument, Constraint, ConstraintKind, Expression, ExpressionKind, Name, expand_main, nearest,
+};
+use rmpl::{Code, Diagnostic, Severity};
+use smol_str::SmolStr;
+
+use super::goal::{Wish, wish};
+
+/// What a variable of the program stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Binding {
+    /// The mode of a component.
+    Mode(ComponentId),
+    /// A variable of the plant.
+    Plant(VariableId),
+    /// A variable that only the program sets.
+    Program,
+}
+
+/// A control program and its plant.
+#[derive(Clone, Debug)]
+pub struct System {
+    /// The program.
+    pub automaton: Automaton,
+    /// The plant.
+    pub model: Model,
+    bindings: Vec<Binding>,
+    /// Per location, what it wants of the plant.
+    wishes: Vec<Option<Wish>>,
+}
+
+/// What compiling a program and its plant gives.
+#[derive(Clone, Debug)]
+pub struct SystemCompilation {
+    /// Both, bound together; `None` when there are errors.
+    pub system: Option<System>,
+    /// What is wrong with the program's text.
+    pub program_diagnostics: Vec<Diagnostic>,
+    /// What is wrong with the model's text; empty when the model stands in the program's text.
+    pub model_diagnostics: Vec<Diagnostic>,
+}
+
+impl System {
+    /// Compiles a program and the model that it runs on; without a model text, the program's text must hold it.
+    pub fn compile(program: &str, model: Option<&str>) -> SystemCompilation {
+        let parsed = rmpl::control::parse(program);
+        let mut program_diagnostics = parsed.diagnostics.clone();
+        let mut model_diagnostics = Vec::new();
+        let plant = match model {
+            None => {
+                let (plant, found) =
+                    if parsed.has_errors() { (None, Vec::new()) } else { plant::compile(&parsed.file) };
+                program_diagnostics.extend(found);
+                plant
+            }
+            Some(text) => {
+                let parsed = rmpl::control::parse(text);
+                let has_errors = parsed.has_errors();
+                model_diagnostics.extend(parsed.diagnostics);
+                let (plant, found) =
+                    if has_errors { (None, Vec::new()) } else { plant::compile(&parsed.file) };
+                model_diagnostics.extend(found);
+                plant
+            }
+        };
+        let is_error = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Error;
+        let mut system = None;
+        if !program_diagnostics.iter().chain(&model_diagnostics).any(is_error) {
+            match plant {
+                None => {
+                    let place = model_diagnostics.is_empty() && model.is_some();
+                    let diagnostic = Diagnostic::error(
+                        Code("E-UNDEF"),
+                        rmpl::Span::default(),
+                        "there is no plant to control",
+                    )
+                    .with_hint(
+                        "declare components by DEFCLASS and DEFINSTANCE, here or in a model of their own",
+                    );
+                    if place {
+                        model_diagnostics.push(diagnostic)
+                    } else {
+                        program_diagnostics.push(diagnostic)
+                    }
+                }
+                Some(plant) => {
+                    let (bound, found) = bind(&parsed.file, plant);
+                    program_diagnostics.extend(found);
+                    system = bound;
+                }
+            }
+        }
+        program_diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
+        SystemCompilation { system, program_diagnostics, model_diagnostics }
+    }
+
+    /// What the program knows when the plant is in `state` and shows `observation`.
+    pub fn estimate(&self, state: &State, observation: &Observation) -> Estimate {
+        let mut estimate = Estimate::unknown(self.automaton.variables.len());
+        let entailed: BTreeMap<VariableId, u8> =
+            if self.bindings.iter().any(|binding| matches!(binding, Binding::Plant(_))) {
+                self.model.entailed_values(state, observation).into_iter().collect()
+            } else {
+                BTreeMap::new()
+            };
+        for (at, binding) in self.bindings.iter().enumerate() {
+            // Closed domains are numbered as in the model.
+            let value = match binding {
+                Binding::Mode(component) => Some(u32::from(state.mode(*component))),
+                Binding::Plant(variable) => entailed.get(variable).map(|value| u32::from(*value)),
+                Binding::Program => None,
+            };
+            estimate.set(ProgramVariableId(at as u32), value);
+        }
+        estimate
+    }
+
+    /// What a location wants of the plant, if anything.
+    pub(super) fn wish(&self, location: hca::LocationId) -> Option<&Wish> {
+        self.wishes.get(location.0 as usize)?.as_ref()
+    }
+}
+
+fn bind(file: &rmpl::control::ControlFile, model: Model) -> (Option<System>, Vec<Diagnostic>) {
+    let (expanded, diagnostics) = expand_main(file);
+    let Some(program) = expanded else { return (None, diagnostics) };
+    let mut uses = Uses::default();
+    uses.expression(&program);
+    let mut vocabulary = Vocabulary::default();
+    for component in &model.components {
+        let modes = component.modes.iter().map(|mode| mode.name.clone()).collect();
+        vocabulary.domains.insert(component.name.clone(), modes);
+    }
+    for variable in &model.variables {
+        vocabulary.domains.insert(variable.name.clone(), variable.values.clone());
+    }
+    let known: BTreeSet<SmolStr> = vocabulary.domains.keys().cloned().collect();
+    let asserted: BTreeSet<SmolStr> = uses.asserted.iter().map(|name| name.text.clone()).collect();
+    let tested: BTreeSet<SmolStr> = uses.tested.iter().map(|name| name.text.clone()).collect();
+    let mut diagnostics = Vec::new();
+    let mut reported = BTreeSet::new();
+    for name in uses.asserted.iter().chain(&uses.tested).filter(|name| !known.contains(&name.text)) {
+        let is_own = asserted.contains(&name.text) && tested.contains(&name.text);
+        if is_own {
+            vocabulary.program_variables.insert(name.text.clone());
+        } else if reported.insert(name.text.clone()) {
+            diagnostics.push(undefined(name, &known, asserted.contains(&name.text)));
+        }
+    }
+    let (automaton, found) = hca::compile(file, &vocabulary);
+    diagnostics.extend(found);
+    let Some(automaton) = automaton.filter(|_| diagnostics.is_empty()) else { return (None, diagnostics) };
+    let binding = |name: &str| {
+        let mode = model.component_named(name).map(Binding::Mode);
+        mode.or_else(|| model.variable_named(name).map(Binding::Plant)).unwrap_or(Binding::Program)
+    };
+    let bindings = automaton.variables.iter().map(|variable| binding(&variable.name)).collect();
+    let wishes = automaton
+        .locations
+        .iter()
+        .map(|location| {
+            let assertion = location.assertion.as_ref()?;
+            Some(wish(&model, &automaton.guard(assertion.test)?.constraint))
+        })
+        .collect();
+    (Some(System { automaton, model, bindings, wishes }), diagnostics)
+}
+
+fn undefined(name: &Name, known: &BTreeSet<SmolStr>, is_asserted: bool) -> Diagnostic {
+    let message = format!("the plant has no component or variable `{}`", name.text);
+    let hint = nearest(&name.text, known.iter().map(SmolStr::as_str)).map_or_else(
+        || {
+            let missing = if is_asserted {
+                "asserted, but nothing asks for it"
+            } else {
+                "asked for, but nothing asserts it"
+            };
+            format!("a variable of the program's own is both asserted and asked for; this one is {missing}")
+        },
+        |meant| format!("did you mean `{meant}`?"),
+    );
+    Diagnostic::error(Code("E-UNDEF"), name.span, message).with_hint(hint)
+}
+
+/// The variables that a program asserts, and those that it asks for.
+#[derive(Default)]
+struct Uses {
+    asserted: Vec<Name>,
+    tested: Vec<Name>,
+}
+
+impl Uses {
+    fn expression(&mut self, expression: &Expression) {
+        match &expression.kind {
+            ExpressionKind::Assert(constraint) => names(constraint, &mut self.asserted),
+            ExpressionKind::Parallel(parts) | ExpressionKind::Sequence(parts) => {
+                parts.iter().for_each(|part| self.expression(part));
+            }
+            ExpressionKind::Always(body) => self.expression(body),
+            ExpressionKind::IfThenNext { guard, then, otherwise } => {
+                names(&guard.constraint, &mut self.tested);
+                self.expression(then);
+                otherwise.iter().for_each(|otherwise| self.expression(otherwise));
+            }
+            ExpressionKind::UnlessThenNext { guard, body }
+            | ExpressionKind::WhenDoNext { guard, body }
+            | ExpressionKind::WheneverDoNext { guard, body }
+            | ExpressionKind::DoWatching { guard, body } => {
+                names(&guard.constraint, &mut self.tested);
+                self.expression(body);
+            }
+            ExpressionKind::Call { arguments, .. } => {
+                for argument in arguments {
+                    if let Argument::Expression(inner) = argument {
+                        self.expression(inner);
+                    }
+                }
+            }
+            ExpressionKind::Unreadable => {}
+        }
+    }
+}
+
+fn names(constraint: &Constraint, into: &mut Vec<Name>) {
+    match &constraint.kind {
+        ConstraintKind::Equals { variable, .. } => into.push(variable.clone()),
+        ConstraintKind::Not(inner) => names(inner, into),
+        ConstraintKind::And(parts) | ConstraintKind::Or(parts) => {
+            parts.iter().for_each(|part| names(part, into))
+        }
+        _ => {}
+    }
+}

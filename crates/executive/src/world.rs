@@ -1,0 +1,130 @@
+//! What the simulated world does that the plan does not decide: how long activities really take, and when conditions
+//! really begin and end.
+
+use std::collections::BTreeMap;
+
+use rmpl::Rational;
+use serde::{Deserialize, Serialize};
+use smol_str::SmolStr;
+use tpn::{Network, Occurrence, OccurrenceKind};
+
+/// Something that goes otherwise than planned. Times and durations are in mission units.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Disturbance {
+    /// An activity takes this long, whatever its bounds say.
+    Duration {
+        /// The occurrence, such as `Group-Transmit#1`.
+        activity: SmolStr,
+        /// Its duration.
+        #[serde(with = "crate::exact")]
+        duration: Rational,
+    },
+    /// A vehicle drives at a share of its greatest speed: its traverses take longer by that much.
+    Slow {
+        /// The traverse, such as `Group-Traverse-Path#1`.
+        activity: SmolStr,
+        /// The share, above 0 and at most 1.
+        #[serde(with = "crate::exact")]
+        factor: Rational,
+    },
+    /// A condition ends at this time, if it holds then; one that has not begun by then never does.
+    Withdrawn {
+        /// The assertion, such as `Tell(PATH1=OK)#1`.
+        condition: SmolStr,
+        /// When it ends.
+        #[serde(with = "crate::exact")]
+        at: Rational,
+    },
+    /// A condition begins no earlier than this.
+    Late {
+        /// The assertion.
+        condition: SmolStr,
+        /// When it begins.
+        #[serde(with = "crate::exact")]
+        at: Rational,
+    },
+}
+
+impl Disturbance {
+    /// The occurrence that it is about.
+    pub fn occurrence(&self) -> &SmolStr {
+        match self {
+            Self::Duration { activity, .. } | Self::Slow { activity, .. } => activity,
+            Self::Withdrawn { condition, .. } | Self::Late { condition, .. } => condition,
+        }
+    }
+}
+
+/// The world of one run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct World {
+    durations: BTreeMap<SmolStr, Rational>,
+    slow: BTreeMap<SmolStr, Rational>,
+    withdrawn: BTreeMap<SmolStr, Rational>,
+    late: BTreeMap<SmolStr, Rational>,
+}
+
+impl World {
+    /// A world in which everything else goes as planned. Of two disturbances of a kind of one occurrence the later
+    /// counts.
+    pub fn new(disturbances: &[Disturbance]) -> Self {
+        let mut world = Self::default();
+        for disturbance in disturbances {
+            match disturbance.clone() {
+                Disturbance::Duration { activity, duration } => world.durations.insert(activity, duration),
+                Disturbance::Slow { activity, factor } => world.slow.insert(activity, factor),
+                Disturbance::Withdrawn { condition, at } => world.withdrawn.insert(condition, at),
+                Disturbance::Late { condition, at } => world.late.insert(condition, at),
+            };
+        }
+        world
+    }
+
+    /// How long an occurrence really takes, where that is not for the executive to decide.
+    pub fn duration(&self, network: &Network, occurrence: &Occurrence) -> Option<Rational> {
+        if occurrence.kind != OccurrenceKind::Primitive {
+            return None;
+        }
+        if let Some(&duration) = self.durations.get(&occurrence.name) {
+            return Some(duration);
+        }
+        let factor = self.slow.get(&occurrence.name).filter(|&&factor| factor > Rational::default())?;
+        Some(least_drive(network, occurrence) / factor)
+    }
+
+    /// When a condition is withdrawn.
+    pub fn withdrawn_at(&self, occurrence: &Occurrence) -> Option<Rational> {
+        self.withdrawn.get(&occurrence.name).copied()
+    }
+
+    /// Before when a condition does not begin.
+    pub fn begins_at(&self, occurrence: &Occurrence) -> Option<Rational> {
+        self.late.get(&occurrence.name).copied()
+    }
+
+    /// The names of disturbances that are about nothing in `network`.
+    pub fn unknown(network: &Network, disturbances: &[Disturbance]) -> Vec<SmolStr> {
+        disturbances
+            .iter()
+            .map(Disturbance::occurrence)
+            .filter(|&name| !network.occurrences.iter().any(|occurrence| occurrence.name == *name))
+            .cloned()
+            .collect()
+    }
+}
+
+/// The least time for a traverse: its path at full speed, or its lower bound where it has none.
+fn least_drive(network: &Network, occurrence: &Occurrence) -> Rational {
+    let own = occurrence.arc.map_or_else(Rational::default, |arc| network.arcs[arc.index()].lower);
+    let pieces: Rational = network
+        .arcs
+        .iter()
+        .filter(|arc| arc.kind == tpn::ArcKind::Path)
+        .filter(|arc| {
+            arc.occurrence.is_some_and(|id| network.occurrences[id.index()].name == occurrence.name)
+        })
+        .map(|arc| arc.lower)
+        .sum();
+    if pieces > Rational::default() { pieces } else { own }
+}
