@@ -16,6 +16,7 @@ export function hideLoading() {
 
 /** Replaces everything by an explanation of a failure. */
 export function showFailure(title, explanation, error) {
+  console.error(error);
   const heading = document.createElement("h1");
   heading.textContent = title;
   const paragraph = document.createElement("p");

@@ -56,10 +56,7 @@ fn find_tables(crates: &Path) -> Result<Vec<Table>> {
         }
         for file in names_in(&benches)? {
             if let Some(name) = file.strip_suffix(".rs") {
-                tables.push(Table {
-                    package: package.clone(),
-                    name: name.to_owned(),
-                });
+                tables.push(Table { package: package.clone(), name: name.to_owned() });
             }
         }
     }

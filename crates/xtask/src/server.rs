@@ -1,27 +1,32 @@
 //! A file server on a loopback address, for the built page.
+//!
+//! It knows just enough of HTTP for a browser on the same machine: one request on each connection, GET and HEAD.
 
 use std::{
     fs::{self, File},
-    io,
-    net::{Ipv4Addr, SocketAddr},
+    io::{self, Read as _, Write as _},
+    net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream},
     path::{Component, Path, PathBuf},
     sync::{
         Arc,
-        atomic::{AtomicU64, Ordering},
+        atomic::{AtomicBool, AtomicU64, Ordering},
     },
     thread,
+    time::Duration,
 };
 
 use anyhow::{Result, anyhow};
-use tiny_http::{Header, Method, Request, Response, Server};
-
-/// How many requests are answered at once; browsers ask for six files of one host at a time.
-const ANSWERING_THREADS: usize = 6;
 
 /// How many ports above the wished one are tried.
 const PORTS_TRIED: u16 = 50;
 
-/// Asked by a page that wants to be loaded anew when it was rebuilt; answers with [`SiteServer::builds`].
+/// More than any browser sends as the head of a request.
+const LONGEST_HEAD: usize = 64 * 1024;
+
+/// How long a connection may say nothing; browsers open some in advance that they never use.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Asked by a page that wants to be loaded anew when it was rebuilt; answers how often that happened.
 const BUILDS_PATH: &str = "/dev/builds";
 
 /// What a page that is being developed carries to notice that it was rebuilt.
@@ -29,15 +34,24 @@ const RELOAD_SCRIPT: &str = include_str!("reload.html");
 
 /// Serves a folder until it is dropped.
 pub struct SiteServer {
-    server: Arc<Server>,
+    address: SocketAddr,
     url: String,
-    builds: Arc<AtomicU64>,
+    site: Arc<Site>,
 }
 
 struct Site {
     folder: PathBuf,
-    builds: Arc<AtomicU64>,
+    builds: AtomicU64,
     reloading: bool,
+    is_over: AtomicBool,
+}
+
+/// What is sent back.
+struct Answer {
+    status: &'static str,
+    media_type: &'static str,
+    length: u64,
+    body: Box<dyn io::Read>,
 }
 
 impl SiteServer {
@@ -45,20 +59,26 @@ impl SiteServer {
     ///
     /// With `reloading`, the page asks now and then whether it was rebuilt and loads itself anew.
     pub fn start(folder: &Path, port: u16, reloading: bool) -> Result<Self> {
-        let server = Arc::new(bind(port)?);
-        let address = server.server_addr().to_ip().ok_or_else(|| anyhow!("the server has no address"))?;
-        let builds = Arc::new(AtomicU64::new(1));
-        let site = Arc::new(Site { folder: folder.to_path_buf(), builds: Arc::clone(&builds), reloading });
-        for _ in 0..ANSWERING_THREADS {
-            let (server, site) = (Arc::clone(&server), Arc::clone(&site));
-            thread::spawn(move || {
-                while let Ok(request) = server.recv() {
-                    // A browser that went away while it was answered is no trouble of ours.
-                    let _ = site.answer(request);
+        let listener = bind(port)?;
+        let address = listener.local_addr()?;
+        let site = Arc::new(Site {
+            folder: folder.to_path_buf(),
+            builds: AtomicU64::new(1),
+            reloading,
+            is_over: AtomicBool::new(false),
+        });
+        let listening = Arc::clone(&site);
+        thread::spawn(move || {
+            for connection in listener.incoming().map_while(io::Result::ok) {
+                if listening.is_over.load(Ordering::Relaxed) {
+                    break;
                 }
-            });
-        }
-        Ok(Self { server, url: format!("http://{address}/"), builds })
+                let site = Arc::clone(&listening);
+                // A browser that goes away while it is answered is no trouble of ours.
+                thread::spawn(move || site.serve(connection).ok());
+            }
+        });
+        Ok(Self { address, url: format!("http://{address}/"), site })
     }
 
     /// The address of the page.
@@ -68,53 +88,107 @@ impl SiteServer {
 
     /// Tells open pages that there is a new build.
     pub fn announce_build(&self) {
-        self.builds.fetch_add(1, Ordering::Relaxed);
+        self.site.builds.fetch_add(1, Ordering::Relaxed);
     }
 }
 
 impl Drop for SiteServer {
     fn drop(&mut self) {
-        for _ in 0..ANSWERING_THREADS {
-            self.server.unblock();
-        }
+        self.site.is_over.store(true, Ordering::Relaxed);
+        // Wakes the listener, which then notices.
+        drop(TcpStream::connect(self.address));
     }
 }
 
-fn bind(port: u16) -> Result<Server> {
+fn bind(port: u16) -> Result<TcpListener> {
     let last = if port == 0 { 0 } else { port.saturating_add(PORTS_TRIED) };
     let mut refusal = anyhow!("no port was tried");
     for port in port..=last {
-        match Server::http(SocketAddr::from((Ipv4Addr::LOCALHOST, port))) {
-            Ok(server) => return Ok(server),
-            Err(reason) => {
-                refusal = anyhow!("no free port between {port} and {last}: {reason}");
-            }
+        match TcpListener::bind((Ipv4Addr::LOCALHOST, port)) {
+            Ok(listener) => return Ok(listener),
+            Err(reason) => refusal = anyhow!("no free port up to {last}: {reason}"),
         }
     }
     Err(refusal)
 }
 
 impl Site {
-    fn answer(&self, request: Request) -> io::Result<()> {
-        if !matches!(request.method(), Method::Get | Method::Head) {
-            return request.respond(Response::from_string("read only\n").with_status_code(405));
-        }
-        let path = request.url().split(['?', '#']).next().unwrap_or("/");
-        if path == BUILDS_PATH {
-            let builds = self.builds.load(Ordering::Relaxed).to_string();
-            return request.respond(Response::from_string(builds).with_header(not_cached()));
-        }
-        let Some(file) = file_of(&self.folder, path) else {
-            let missing = format!("there is no {path}\n");
-            return request.respond(Response::from_string(missing).with_status_code(404));
+    /// Reads one request and answers it.
+    fn serve(&self, mut connection: TcpStream) -> io::Result<()> {
+        connection.set_read_timeout(Some(PATIENCE))?;
+        let Some((method, path)) = read_request(&mut connection)? else {
+            return Ok(());
         };
-        let kind = header("Content-Type", media_type(&file));
-        if self.reloading && file.extension().is_some_and(|extension| extension == "html") {
-            let page = fs::read_to_string(&file)?.replace("</body>", RELOAD_SCRIPT);
-            return request.respond(with_headers(Response::from_string(page), kind));
+        let mut answer = match method.as_str() {
+            "GET" | "HEAD" => self.answer(&path)?,
+            _ => Answer::text("405 Method Not Allowed", "read only\n".to_owned()),
+        };
+        // The two cross-origin headers isolate the page from others, which is what browsers want of a page that
+        // shares memory with its worker.
+        write!(
+            connection,
+            "HTTP/1.1 {}\r\nContent-Type: {}\r\nContent-Length: {}\r\nCache-Control: no-store\r\n\
+             Cross-Origin-Opener-Policy: same-origin\r\nCross-Origin-Embedder-Policy: require-corp\r\n\
+             Connection: close\r\n\r\n",
+            answer.status, answer.media_type, answer.length
+        )?;
+        if method == "GET" {
+            io::copy(&mut answer.body, &mut connection)?;
         }
-        request.respond(with_headers(Response::from_file(File::open(&file)?), kind))
+        connection.flush()
     }
+
+    fn answer(&self, path: &str) -> io::Result<Answer> {
+        if path == BUILDS_PATH {
+            return Ok(Answer::text("200 OK", self.builds.load(Ordering::Relaxed).to_string()));
+        }
+        let Some(path) = file_of(&self.folder, path) else {
+            return Ok(Answer::text("404 Not Found", format!("there is no {path}\n")));
+        };
+        let media_type = media_type(&path);
+        if self.reloading && path.extension().is_some_and(|extension| extension == "html") {
+            let page = fs::read_to_string(&path)?.replace("</body>", RELOAD_SCRIPT);
+            return Ok(Answer { media_type, ..Answer::text("200 OK", page) });
+        }
+        let file = File::open(&path)?;
+        let length = file.metadata()?.len();
+        Ok(Answer { status: "200 OK", media_type, length, body: Box::new(file.take(length)) })
+    }
+}
+
+impl Answer {
+    fn text(status: &'static str, text: String) -> Self {
+        Self {
+            status,
+            media_type: "text/plain; charset=utf-8",
+            length: text.len() as u64,
+            body: Box::new(io::Cursor::new(text)),
+        }
+    }
+}
+
+/// Reads the head of a request: its method, and the path without what follows `?`. `None` if nothing was asked.
+fn read_request(connection: &mut TcpStream) -> io::Result<Option<(String, String)>> {
+    let mut head = Vec::new();
+    let mut piece = [0; 4096];
+    while head.len() < LONGEST_HEAD {
+        let length = connection.read(&mut piece)?;
+        if length == 0 {
+            return Ok(None);
+        }
+        head.extend_from_slice(&piece[..length]);
+        let mut headers = [httparse::EMPTY_HEADER; 128];
+        let mut request = httparse::Request::new(&mut headers);
+        match request.parse(&head) {
+            Ok(httparse::Status::Partial) => {}
+            Ok(httparse::Status::Complete(_)) => {
+                let path = request.path.unwrap_or("/").split(['?', '#']).next().unwrap_or("/");
+                return Ok(Some((request.method.unwrap_or_default().to_owned(), path.to_owned())));
+            }
+            Err(reason) => return Err(io::Error::other(reason)),
+        }
+    }
+    Err(io::Error::other("the head of the request is too long"))
 }
 
 /// The file that a path of an address names, if it lies within `folder`.
@@ -146,27 +220,37 @@ pub fn media_type(file: &Path) -> &'static str {
     }
 }
 
-/// Adds what every file of the page is sent with. The two cross-origin headers isolate the page from others, which is
-/// what browsers want of a page that shares memory with its worker.
-fn with_headers<R: io::Read>(response: Response<R>, kind: Header) -> Response<R> {
-    response
-        .with_header(kind)
-        .with_header(not_cached())
-        .with_header(header("Cross-Origin-Opener-Policy", "same-origin"))
-        .with_header(header("Cross-Origin-Embedder-Policy", "require-corp"))
-}
-
-fn not_cached() -> Header {
-    header("Cache-Control", "no-store")
-}
-
-fn header(name: &str, value: &str) -> Header {
-    Header::from_bytes(name, value).expect("names and values here are plain ASCII")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn ask(server: &SiteServer, request: &str) -> String {
+        let mut connection = TcpStream::connect(server.address).expect("a listening server");
+        write!(connection, "{request}\r\nHost: here\r\n\r\n").expect("an open connection");
+        let mut answer = String::new();
+        connection.read_to_string(&mut answer).expect("an answer");
+        answer
+    }
+
+    #[test]
+    fn files_are_sent_with_their_type_and_length_to_all_who_ask_at_once() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let server = SiteServer::start(&folder.join("../../web"), 0, false).expect("any port");
+        let file = fs::read_to_string(folder.join("../../web/start.js")).expect("a file of the page");
+        thread::scope(|scope| {
+            for _ in 0..40 {
+                scope.spawn(|| {
+                    let answer = ask(&server, "GET /start.js?x=1 HTTP/1.1");
+                    assert!(answer.starts_with("HTTP/1.1 200 OK\r\n"), "{answer}");
+                    assert!(answer.contains("Content-Type: text/javascript"), "{answer}");
+                    assert!(answer.ends_with(&file), "{answer}");
+                });
+            }
+        });
+        assert!(ask(&server, "GET /missing.js HTTP/1.1").starts_with("HTTP/1.1 404"));
+        assert!(ask(&server, "POST /start.js HTTP/1.1").starts_with("HTTP/1.1 405"));
+        assert!(ask(&server, "HEAD /start.js HTTP/1.1").ends_with("\r\n\r\n"));
+    }
 
     #[test]
     fn paths_outside_the_folder_name_no_file() {

@@ -50,7 +50,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let (width, height) = options.size;
     let tab = browser.open_tab(width, height)?;
     tab.go_to(&format!("{}#{}", server.url(), options.hash.trim_start_matches('#')))?;
-    tab.wait_until("window.enroute && enroute.ready.then(() => true)")?;
+    tab.wait_until_ready()?;
     for script in &options.eval {
         println!("{}", tab.evaluate(script)?);
     }

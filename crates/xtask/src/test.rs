@@ -31,9 +31,7 @@ pub(crate) fn run_all() -> Result<()> {
         ("formatting", &check_formatting),
         ("lints", &check_lints),
         ("lints of the page's modules", &check_wasm_lints),
-        ("the page's build", &|| {
-            site::build(Flavour::Development).map(drop)
-        }),
+        ("the page's build", &|| site::build(Flavour::Development).map(drop)),
     ];
     for (name, check) in checks {
         let begun = Instant::now();
@@ -99,10 +97,8 @@ fn run_tests() -> Result<Count> {
 /// Runs a command of cargo's test programs, showing what it says and adding up the results.
 fn run_counting(command: &mut Command) -> Result<(Count, bool)> {
     let shown = show(command);
-    let mut running = command
-        .stdout(Stdio::piped())
-        .spawn()
-        .with_context(|| format!("`{shown}` could not be started"))?;
+    let mut running =
+        command.stdout(Stdio::piped()).spawn().with_context(|| format!("`{shown}` could not be started"))?;
     let mut count = Count::default();
     if let Some(output) = running.stdout.take() {
         for line in BufReader::new(output).lines() {
@@ -121,14 +117,9 @@ fn run_counting(command: &mut Command) -> Result<(Count, bool)> {
 fn read_result(line: &str) -> Option<Count> {
     let counts = line.trim().strip_prefix("test result: ")?;
     let number_before = |word: &str| {
-        counts
-            .split(['.', ';'])
-            .find_map(|part| part.trim().strip_suffix(word)?.trim().parse().ok())
+        counts.split(['.', ';']).find_map(|part| part.trim().strip_suffix(word)?.trim().parse().ok())
     };
-    Some(Count {
-        passed: number_before("passed")?,
-        failed: number_before("failed")?,
-    })
+    Some(Count { passed: number_before("passed")?, failed: number_before("failed")? })
 }
 
 #[cfg(test)]
@@ -138,13 +129,7 @@ mod tests {
     #[test]
     fn results_of_test_programs_are_read() {
         let line = "test result: FAILED. 12 passed; 3 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.02s";
-        assert_eq!(
-            read_result(line),
-            Some(Count {
-                passed: 12,
-                failed: 3
-            })
-        );
+        assert_eq!(read_result(line), Some(Count { passed: 12, failed: 3 }));
         assert_eq!(read_result("test read_result ... ok"), None);
     }
 }

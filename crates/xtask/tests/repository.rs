@@ -21,23 +21,25 @@ const LAYERS: [(&str, &[&str]); 17] = [
     ("hca", &["rmpl"]),
     ("plant", &["rmpl"]),
     ("executive", &["hca", "kirk", "motion", "plant", "rmpl", "stn", "terrain", "tpn"]),
-    (
-        "mission",
-        &[
-            "executive", "hca", "kirk", "motion", "plant", "rmpl", "stn", "terrain", "tpn", "verify",
-        ],
-    ),
+    ("mission", &["executive", "hca", "kirk", "motion", "plant", "rmpl", "stn", "terrain", "tpn", "verify"]),
     ("layout", &["hca", "rmpl", "tpn"]),
-    (
-        "app",
-        &["hca", "kirk", "layout", "mission", "plant", "rmpl", "terrain", "tpn", "verify"],
-    ),
+    ("app", &["hca", "kirk", "layout", "mission", "plant", "rmpl", "terrain", "tpn", "verify"]),
     ("page", &["app", "mission"]),
     ("worker", &["mission"]),
     (
         "cli",
         &[
-            "executive", "hca", "kirk", "layout", "mission", "motion", "plant", "rmpl", "stn", "terrain", "tpn",
+            "executive",
+            "hca",
+            "kirk",
+            "layout",
+            "mission",
+            "motion",
+            "plant",
+            "rmpl",
+            "stn",
+            "terrain",
+            "tpn",
             "verify",
         ],
     ),
@@ -46,7 +48,18 @@ const LAYERS: [(&str, &[&str]); 17] = [
 
 /// Crates that compute the same everywhere: no clocks, no threads, no files, nothing from the operating system.
 const PURE: [&str; 12] = [
-    "rmpl", "stn", "tpn", "kirk", "verify", "terrain", "motion", "hca", "plant", "executive", "mission", "layout",
+    "rmpl",
+    "stn",
+    "tpn",
+    "kirk",
+    "verify",
+    "terrain",
+    "motion",
+    "hca",
+    "plant",
+    "executive",
+    "mission",
+    "layout",
 ];
 
 /// What pure crates leave alone.
@@ -124,7 +137,10 @@ fn crates_depend_only_on_the_layers_below_them() {
 fn the_checker_shares_no_code_with_the_planner() {
     let manifest = fs::read_to_string(root().join("crates/verify/Cargo.toml")).expect("the crate verify");
     for planner in ["kirk", "stn"] {
-        assert!(!manifest.lines().any(|line| line.starts_with(planner)), "verify must not depend on {planner}");
+        assert!(
+            !manifest.lines().any(|line| line.starts_with(planner)),
+            "verify must not depend on {planner}"
+        );
     }
 }
 
@@ -210,8 +226,11 @@ fn pure_crates_leave_the_machine_alone() {
     for name in PURE {
         for source in sources(&root().join("crates").join(name).join("src")) {
             let text = fs::read_to_string(&source).expect("a source");
-            let code: String =
-                text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
+            let code: String = text
+                .lines()
+                .filter(|line| !line.trim_start().starts_with("//"))
+                .collect::<Vec<_>>()
+                .join("\n");
             for impure in IMPURE {
                 if code.contains(impure) {
                     found.push(format!("{}: {impure}", source.display()));

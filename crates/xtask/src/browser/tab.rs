@@ -2,7 +2,7 @@
 
 use std::{cell::RefCell, rc::Rc};
 
-use anyhow::{Context as _, Result, anyhow, bail};
+use anyhow::{Context as _, Result, anyhow, bail, ensure};
 use data_encoding::BASE64;
 use serde_json::{Value, json};
 
@@ -121,6 +121,15 @@ impl Tab {
                 "waiting for `{expression}`: {reason}\nstate: {state}\nmessages:\n{}",
                 self.messages().join("\n")
             )
+        })
+    }
+
+    /// Waits until the page can be driven; fails with its reason when it says that it never will be.
+    pub fn wait_until_ready(&self) -> Result<()> {
+        self.wait_until("'enroute' in window")?;
+        self.wait_until("enroute.ready.then(() => 'ready', (reason) => String(reason))").and_then(|outcome| {
+            ensure!(outcome == "ready", "the page is not ready: {outcome}\n{}", self.messages().join("\n"));
+            Ok(())
         })
     }
 
@@ -258,8 +267,7 @@ impl Tab {
 
     /// All widgets of a role whose label contains a text, in the order of the mirror.
     pub fn widgets(&self, role: &str, label: &str) -> Result<Vec<Widget>> {
-        let found =
-            self.evaluate(&format!("window.enroute.widgets({}, {})", json!(role), json!(label)))?;
+        let found = self.evaluate(&format!("window.enroute.widgets({}, {})", json!(role), json!(label)))?;
         Ok(found
             .as_array()
             .into_iter()
@@ -278,11 +286,7 @@ impl Tab {
 
     /// The widget of this role whose label is this text or else contains it; waits for it to appear.
     pub fn widget(&self, role: &str, label: &str) -> Result<Widget> {
-        self.wait_until(&format!(
-            "window.enroute.widgets({}, {}).length > 0",
-            json!(role),
-            json!(label)
-        ))?;
+        self.wait_until(&format!("window.enroute.widgets({}, {}).length > 0", json!(role), json!(label)))?;
         let mut found = self.widgets(role, label)?;
         let exact = found.iter().position(|widget| widget.label == label);
         if found.is_empty() {

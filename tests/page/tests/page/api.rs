@@ -39,7 +39,8 @@ fn setting_the_source_is_one_undoable_edit_that_subscribers_hear_of() -> Result<
 fn refusals_are_errors_with_a_code() -> Result<()> {
     let page = Opened::planned()?;
     let code_of = |call: &str| {
-        page.tab.evaluate(&format!("(() => {{ try {{ {call}; }} catch (error) {{ return error.code; }} }})()"))
+        page.tab
+            .evaluate(&format!("(() => {{ try {{ {call}; }} catch (error) {{ return error.code; }} }})()"))
     };
     assert_eq!(code_of("enroute.open('no such mission')")?, "unknown-mission");
     assert_eq!(code_of("enroute.dispatch('no such command')")?, "unknown-command");

@@ -20,7 +20,7 @@ fn a_planning_core_that_cannot_be_loaded_leaves_the_editor_usable() -> Result<()
     page.tab.call("Network.enable", &serde_json::json!({}))?;
     page.tab.call("Network.setBlockedURLs", &serde_json::json!({ "urls": ["*worker_bg.wasm"] }))?;
     page.tab.go_to(&format!("{}?blocked#mission=enroute", page.server.url()))?;
-    page.tab.wait_until("window.enroute && enroute.ready.then(() => true)")?;
+    page.tab.wait_until_ready()?;
     page.wait_for("state.toasts.length > 0")?;
     page.tab.evaluate("enroute.setSource('A()[l,u] = { Work()[1,2] }')")?;
     assert_eq!(page.tab.evaluate("enroute.source()")?, "A()[l,u] = { Work()[1,2] }");

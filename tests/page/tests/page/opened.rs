@@ -29,7 +29,7 @@ impl Opened {
     /// Opens the page with this text after `#`, drawn by WebGL2, and waits until it is ready.
     pub(crate) fn with_fragment(fragment: &str) -> Result<Self> {
         let opened = Self::without_waiting(Graphics::WebGl2, fragment)?;
-        opened.tab.wait_until("window.enroute && enroute.ready.then(() => true)")?;
+        opened.tab.wait_until_ready()?;
         Ok(opened)
     }
 
