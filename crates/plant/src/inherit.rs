@@ -38,7 +38,7 @@ impl MergedClass<'_> {
 
 /// All classes by name, and what is wrong with them.
 pub(crate) fn merge_all(file: &ControlFile) -> (BTreeMap<SmolStr, MergedClass<'_>>, Vec<Diagnostic>) {
-    let mut merger = Merger { classes: BTreeMap::new(), diagnostics: Vec::new() };
+    let mut merger = Merger { classes: BTreeMap::new(), diagnostics: Vec::new(), on_circles: Vec::new() };
     for class in &file.classes {
         if merger.classes.insert(class.name.text.as_str(), class).is_some() {
             merger.error(
@@ -62,6 +62,8 @@ pub(crate) fn merge_all(file: &ControlFile) -> (BTreeMap<SmolStr, MergedClass<'_
 struct Merger<'file> {
     classes: BTreeMap<&'file str, &'file Class>,
     diagnostics: Vec<Diagnostic>,
+    /// Classes on a circle that has been reported.
+    on_circles: Vec<&'file str>,
 }
 
 impl<'file> Merger<'file> {
@@ -109,20 +111,16 @@ impl<'file> Merger<'file> {
         match self.c3(class, &mut path) {
             Ok(lineage) => Some(lineage),
             Err(culprit) => {
-                if culprit.name.text == class.name.text {
-                    let span = class.name.span;
+                let is_reported = path.iter().any(|name| self.on_circles.contains(name));
+                if culprit.name.text == class.name.text && !is_reported {
+                    let name = &class.name.text;
                     let (code, message) = if path.is_empty() {
-                        (
-                            "E-FORM",
-                            format!(
-                                "the classes that `{}` extends cannot be put in one order",
-                                class.name.text
-                            ),
-                        )
+                        ("E-FORM", format!("the classes that `{name}` extends cannot be put in one order"))
                     } else {
-                        ("E-RECURSION", format!("`{}` extends itself", class.name.text))
+                        ("E-RECURSION", format!("`{name}` extends itself"))
                     };
-                    self.error(code, span, message);
+                    self.on_circles.extend(path);
+                    self.error(code, class.name.span, message);
                 }
                 None
             }

@@ -72,6 +72,18 @@ impl<'model> Planner<'model> {
         self.steps.get(at)?.get(from as usize)?.get(step as usize)
     }
 
+    /// The modes of a variable's component that by themselves keep the variable within a set of values.
+    pub fn modes_ensuring(&self, variable: crate::VariableId, set: u64) -> (ComponentId, u64) {
+        let owner =
+            self.model.variables.get(variable.0 as usize).map_or(ComponentId(0), |data| data.component);
+        (owner, ensuring(self.model, owner, self.model.variable_symbol(variable), set))
+    }
+
+    /// Whether a goal is in reach as far as its component and what it depends on tell.
+    pub fn may_reach(&self, state: &State, goal: &crate::Goal) -> bool {
+        self.reach(state).get(goal.component.0 as usize).is_some_and(|reach| reach & goal.modes != 0)
+    }
+
     /// For every component the modes it can get to if everything it depends on is as helpful as it can be.
     pub(crate) fn reach(&self, state: &State) -> Vec<u64> {
         let mut reach: Vec<u64> = self.model.component_ids().map(|id| 1 << state.mode(id)).collect();
