@@ -4,6 +4,7 @@
 
 pub mod compile;
 pub mod generate;
+pub mod interchange;
 pub mod network;
 pub mod network_json;
 pub mod number;

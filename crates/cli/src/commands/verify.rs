@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 
+use anyhow::Context as _;
 use mission::Paths;
 use mission::planning;
 use serde_json::{Value, json};
@@ -11,7 +12,7 @@ use tpn::plan_json::{PlanError, plan_from_json, selected_activities, stated_acti
 use tpn::{EventEnd, Network};
 
 use crate::input::read_json;
-use crate::load::{Loaded, Target};
+use crate::load::{Loaded, Target, parse_time};
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
 
 /// Checks a plan against a mission or a network, from the definitions.
@@ -21,6 +22,9 @@ pub struct Args {
     target: Target,
     /// The plan: an enroute-plan document, of which every plan is checked, or a single plan.
     plan: PathBuf,
+    /// The least gap between ordered intervals that the plan was made with; the file's own by default.
+    #[arg(long, value_name = "G")]
+    threat_gap: Option<String>,
     /// The seed that path planning had.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -31,7 +35,11 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let loaded = args.target.load()?;
+    let mut loaded = args.target.load()?;
+    if let (Some(text), Some(network)) = (&args.threat_gap, &mut loaded.network) {
+        network.threat_gap =
+            parse_time(text).with_context(|| format!("--threat-gap wants a time, not `{text}`"))?;
+    }
     let stated: Value = read_json(&args.plan)?;
     let Some(network) = &loaded.network else {
         match args.format {

@@ -1,0 +1,48 @@
+//! Reading a network from a file, whichever of the known formats it is in.
+
+use serde_json::Value;
+
+use crate::network::Network;
+use crate::network_json::{NetworkError, network_from_json};
+use crate::plan_schema::{Document, PlanSchemaError};
+
+/// Why a file is no network.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ReadError {
+    /// It is an `enroute-tpn/1` document, but not a well-formed one.
+    #[error(transparent)]
+    Network(#[from] NetworkError),
+    /// It is no plan-schema file either.
+    #[error(transparent)]
+    PlanSchema(#[from] PlanSchemaError),
+}
+
+/// A network as it was written.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Source {
+    /// Our own JSON (DESIGN 4.2).
+    Enroute(Network),
+    /// Another tool's (DESIGN 4.4).
+    PlanSchema(Box<Document>),
+}
+
+impl Source {
+    /// Reads `text`: `enroute-tpn/1` JSON, or plan-schema in JSON or EDN.
+    pub fn read(text: &str) -> Result<Self, ReadError> {
+        if let Ok(value) = serde_json::from_str::<Value>(text)
+            && value.get("nodes").is_some()
+            && value.get("arcs").is_some()
+        {
+            return Ok(Self::Enroute(network_from_json(&value)?));
+        }
+        Ok(Self::PlanSchema(Box::new(Document::parse(text)?)))
+    }
+
+    /// The network.
+    pub fn into_network(self) -> Network {
+        match self {
+            Self::Enroute(network) => network,
+            Self::PlanSchema(document) => document.network,
+        }
+    }
+}
