@@ -13,6 +13,9 @@ pub(crate) struct Conditions {
     pub(crate) variables: Vec<VariableIndex>,
     /// Labels of arcs that carry a contradiction within themselves.
     pub(crate) self_conflicting: Vec<(u32, u32)>,
+    /// The labels of arc `a` are `arc_labels[arc_start[a]..arc_start[a + 1]]`.
+    arc_start: Vec<u32>,
+    arc_labels: Vec<u32>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -67,7 +70,14 @@ impl Conditions {
                 variable.supports.extend(literals.iter().map(|right| left.supports(right)));
             }
         }
-        let mut conditions = Self { labels, variables, self_conflicting: Vec::new() };
+        let mut arc_start = Vec::with_capacity(network.arcs.len() + 1);
+        let mut arc_labels = Vec::with_capacity(network.labels.len());
+        for arc in &network.arcs {
+            arc_start.push(arc_labels.len() as u32);
+            arc_labels.extend(arc.labels.iter().map(|label| label.0));
+        }
+        arc_start.push(arc_labels.len() as u32);
+        let mut conditions = Self { labels, variables, self_conflicting: Vec::new(), arc_start, arc_labels };
         for arc in network.arcs.iter().filter(|arc| arc.labels.len() > 1) {
             for (at, left) in arc.labels.iter().enumerate() {
                 let others = arc.labels[at + 1..].iter().filter(|right| conditions.conflict(left.0, right.0));
@@ -94,6 +104,21 @@ impl Conditions {
             let tell = &self.labels[tell as usize];
             !tell.is_ask && variable.supports[tell.literal as usize * variable.num_literals + required.literal as usize]
         })
+    }
+
+    /// The labels of an arc.
+    pub(crate) fn labels_of(&self, arc: u32) -> &[u32] {
+        let arc = arc as usize;
+        &self.arc_labels[self.arc_start[arc] as usize..self.arc_start[arc + 1] as usize]
+    }
+
+    /// The labels that conflict with `label`, selected or not.
+    pub(crate) fn conflicts(&self, label: u32) -> impl Iterator<Item = u32> + '_ {
+        let own = &self.labels[label as usize];
+        let variable = &self.variables[own.variable as usize];
+        let row = own.literal as usize * variable.num_literals;
+        let row = &variable.conflicts[row..row + variable.num_literals];
+        variable.labels.iter().copied().filter(move |&other| row[self.labels[other as usize].literal as usize])
     }
 
     /// The labels after `label`, in textual order, that conflict with it, selected or not.

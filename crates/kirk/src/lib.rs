@@ -9,6 +9,7 @@ mod explain;
 mod failure;
 mod leaf;
 mod levels;
+mod lookahead;
 mod model;
 mod options;
 mod record;

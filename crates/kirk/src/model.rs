@@ -7,6 +7,7 @@ use tpn::{BlockKind, Network};
 
 use crate::conditions::Conditions;
 use crate::structure::Structure;
+use crate::wording;
 
 /// No decision, arc or level.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -35,6 +36,8 @@ pub(crate) struct Model {
     /// How far the end of each labelled interval must be from the start of another to count as before it (SPEC 5.3):
     /// the threat gap for instants, otherwise nothing.
     pub(crate) gap_after: Vec<i64>,
+    /// For each node one that the rules of the language keep at the same time, in the same context.
+    pub(crate) twin: Vec<u32>,
     /// Whether the contexts of arcs and decisions are known; otherwise they depend on the order of the search.
     pub(crate) has_contexts: bool,
     /// Present if the network has a program's structure that fits its arcs.
@@ -68,6 +71,8 @@ impl Context {
 #[derive(Clone, Debug)]
 pub(crate) struct ModelDecision {
     pub(crate) alternatives: Vec<u32>,
+    /// Where its alternatives end, if contexts are known.
+    pub(crate) merge: u32,
     pub(crate) context: Context,
 }
 
@@ -97,6 +102,7 @@ impl Model {
         out_start.push(out_arcs.len() as u32);
         let decisions = network.decisions.iter().map(|decision| ModelDecision {
             alternatives: decision.alternatives.iter().map(|arc| arc.0).collect(),
+            merge: NONE,
             context: Context::ALWAYS,
         });
         let mut model = Self {
@@ -112,6 +118,7 @@ impl Model {
             order: Vec::new(),
             conditions: Conditions::new(network),
             gap_after: Vec::new(),
+            twin: (0..network.nodes.len() as u32).collect(),
             has_contexts: false,
             structure: None,
         };
@@ -219,6 +226,9 @@ impl Model {
         if merges.contains(&NONE) {
             return false;
         }
+        for (decision, &merge) in self.decisions.iter_mut().zip(&merges) {
+            decision.merge = merge;
+        }
         let mut contexts: Vec<Option<Context>> = vec![None; self.num_nodes];
         contexts[self.start as usize] = Some(Context::ALWAYS);
         let mut stack = vec![self.start];
@@ -235,12 +245,22 @@ impl Model {
             let decision = self.decision_of[node as usize];
             if decision == NONE {
                 for position in self.out_start[node as usize]..self.out_start[node as usize + 1] {
-                    let arc = &mut self.arcs[self.out_arcs[position as usize] as usize];
+                    let id = self.out_arcs[position as usize];
+                    let arc = &mut self.arcs[id as usize];
                     arc.context = context;
                     let leaves_alternative = context.decision != NONE
                         && arc.to == merges[context.decision as usize];
-                    if !leaves_alternative && !reach(arc.to, context, &mut stack) {
+                    if leaves_alternative {
+                        continue;
+                    }
+                    let is_rigid = wording::is_structural(network.arcs[id as usize].kind)
+                        && (arc.lower, arc.upper) == (0, 0);
+                    let to = arc.to;
+                    if !reach(to, context, &mut stack) {
                         return false;
+                    }
+                    if is_rigid {
+                        join(&mut self.twin, node, to);
                     }
                 }
             } else {
@@ -262,8 +282,27 @@ impl Model {
                 }
             }
         }
+        for node in 0..self.num_nodes as u32 {
+            self.twin[node as usize] = representative(&self.twin, node);
+        }
         true
     }
+}
+
+fn representative(twin: &[u32], node: u32) -> u32 {
+    let mut at = node;
+    while twin[at as usize] != at {
+        at = twin[at as usize];
+    }
+    at
+}
+
+/// Makes two nodes twins; the earlier one stands for both.
+fn join(twin: &mut [u32], earlier: u32, later: u32) {
+    let (earlier, later) = (representative(twin, earlier), representative(twin, later));
+    twin[later as usize] = earlier;
+    // Chains stay short.
+    twin[later as usize] = representative(twin, later);
 }
 
 fn common_denominator(network: &Network, gap: Rational) -> Result<i64, Overflow> {

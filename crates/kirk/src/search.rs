@@ -13,6 +13,7 @@ use tpn::{CausalLink, DecisionId, LabelId, Ordering};
 use crate::failure::FailureKind;
 use crate::leaf::Leaf;
 use crate::levels::{Kind, Level, LevelSet, Nogoods};
+use crate::lookahead::Lookahead;
 use crate::model::{Context, INFINITE, Model, ModelArc, NONE};
 use crate::options::{Stats, Termination};
 use crate::record::DeadEnds;
@@ -67,6 +68,7 @@ pub(crate) struct Engine<'m> {
     pub(crate) levels: Vec<Level>,
     structure: Option<&'m Structure>,
     tree: Option<TreeState>,
+    lookahead: Option<Lookahead>,
     pub(crate) is_selected_node: Vec<bool>,
     pub(crate) is_selected_arc: Vec<bool>,
     pub(crate) selected_nodes: Vec<u32>,
@@ -106,6 +108,7 @@ impl<'m> Engine<'m> {
             levels: Vec::new(),
             structure,
             tree: structure.map(Structure::start),
+            lookahead: structure.filter(|_| !model.conditions.labels.is_empty()).map(|_| Lookahead::new(model)),
             is_selected_node: vec![false; model.num_nodes],
             is_selected_arc: vec![false; model.arcs.len()],
             selected_nodes: Vec::with_capacity(model.num_nodes),
@@ -256,7 +259,13 @@ impl<'m> Engine<'m> {
     fn begin(&mut self) -> Result<bool, Overflow> {
         self.conflict.clear();
         if let Some(structure) = self.structure {
-            return Ok(!structure.is_empty());
+            if structure.is_empty() {
+                return Ok(false);
+            }
+            return match &mut self.lookahead {
+                Some(lookahead) => lookahead.begin(self.model, structure, &self.chosen),
+                None => Ok(true),
+            };
         }
         self.select_mandatory()
     }
@@ -426,7 +435,9 @@ impl<'m> Engine<'m> {
             return Ok(false);
         }
         if let (Some(structure), Some(tree)) = (self.structure, &mut self.tree) {
-            let Err(block) = structure.decide(tree, &self.chosen, decision, alternative)? else { return Ok(true) };
+            let Err(block) = structure.decide(tree, &self.chosen, decision, alternative)? else {
+                return self.look_ahead(depth, structure, decision, alternative);
+            };
             let Self { tree: Some(tree), chosen, level_of, conflict, .. } = self else { return Ok(false) };
             structure.explain(tree, chosen, block, &mut |blamed| {
                 let level = level_of[blamed as usize];
@@ -444,6 +455,27 @@ impl<'m> Engine<'m> {
             self.meet_dead_end(FailureKind::Temporal);
         }
         Ok(is_consistent)
+    }
+
+    /// Whether what an alternative brings leaves something for phase 2.
+    fn look_ahead(
+        &mut self,
+        depth: usize,
+        structure: &Structure,
+        decision: u32,
+        alternative: u32,
+    ) -> Result<bool, Overflow> {
+        let Some(lookahead) = &mut self.lookahead else { return Ok(true) };
+        if lookahead.decide(self.model, structure, &self.chosen, (decision, alternative), depth)? {
+            return Ok(true);
+        }
+        for position in 0..lookahead.blamed.len() {
+            let blamed = self.lookahead.as_ref().map_or(NONE, |lookahead| lookahead.blamed[position]);
+            self.blame_decision(blamed);
+        }
+        self.conflict.insert(depth as u32);
+        self.meet_dead_end(FailureKind::OpenCondition);
+        Ok(false)
     }
 
     /// Adds `to − from ≤ weight` for a link or an order.
@@ -480,6 +512,9 @@ impl<'m> Engine<'m> {
             self.chosen[decision as usize] = NONE;
             if let Some(tree) = &mut self.tree {
                 Structure::undo(tree, level.tree_mark);
+                if let Some(lookahead) = &mut self.lookahead {
+                    lookahead.undo(depth);
+                }
                 return;
             }
             let (nodes, arcs) = (level.num_selected_nodes, level.num_selected_arcs);

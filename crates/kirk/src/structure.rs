@@ -35,6 +35,8 @@ struct TreeBlock {
     around: (i64, i64),
     /// The bounds of its own arcs.
     own: (i64, i64),
+    /// Whether there is a choice in it.
+    has_choices: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -135,6 +137,8 @@ impl Structure {
                 structure.arc_blocks[arc as usize] = id;
             }
             let own = (0, INFINITE);
+            let has_choices = matches!(shape, Shape::Choice(_))
+                || children.iter().any(|&child| structure.blocks[child as usize].has_choices);
             structure.blocks.push(TreeBlock {
                 parent: NONE,
                 position: 0,
@@ -143,6 +147,7 @@ impl Structure {
                 children,
                 around: (0, 0),
                 own,
+                has_choices,
             });
         }
         for id in (0..structure.blocks.len()).rev() {
@@ -204,6 +209,20 @@ impl Structure {
         Ok(true)
     }
 
+    /// The least and greatest duration of a choice, whatever is chosen in it.
+    pub(crate) fn hull(&self, decision: u32) -> (i64, i64) {
+        let duration = self.initial[self.decision_blocks[decision as usize] as usize];
+        (duration.lower, duration.upper())
+    }
+
+    /// The duration of a choice if its first possible alternative is taken.
+    pub(crate) fn first_alternative(&self, decision: u32) -> Result<Option<(i64, i64)>, Overflow> {
+        let block = &self.blocks[self.decision_blocks[decision as usize] as usize];
+        let first = block.children.iter().find(|&&child| !self.initial[child as usize].is_empty());
+        let duration = first.map(|&child| add(self.initial[child as usize], self.blocks[child as usize].around));
+        Ok(duration.transpose()?.map(|duration| (duration.lower, duration.upper())))
+    }
+
     pub(crate) fn start(&self) -> TreeState {
         TreeState { durations: self.initial.clone(), trail: Vec::new() }
     }
@@ -211,11 +230,6 @@ impl Structure {
     /// Whether the mission has no consistent selection at all, whatever is chosen.
     pub(crate) fn is_empty(&self) -> bool {
         self.initial[self.root as usize].is_empty()
-    }
-
-    /// The block whose inside contradicts its bounds, if no choice can help: the root follows its first empty child.
-    pub(crate) fn root(&self) -> u32 {
-        self.root
     }
 
     /// What the nesting alone says about two arcs.
@@ -327,6 +341,9 @@ impl Structure {
         let mut stack = vec![(block, true), (block, false)];
         while let Some((id, is_lower)) = stack.pop() {
             let block = &self.blocks[id as usize];
+            if !block.has_choices {
+                continue;
+            }
             match block.shape {
                 Shape::Leaf => {}
                 Shape::Sequence | Shape::Guard => stack.extend(block.children.iter().map(|&child| (child, is_lower))),

@@ -20,9 +20,9 @@ impl Stn {
         let mut next_check = 3;
         loop {
             let moved = if sweeps.is_multiple_of(2) {
-                self.sweep(order.iter().rev())
-            } else {
                 self.sweep(order.iter())
+            } else {
+                self.sweep(order.iter().rev())
             };
             match moved {
                 Ok(true) => {}
@@ -61,18 +61,18 @@ impl Stn {
             }
             self.dirty[point] = false;
             let time = self.potential[point];
-            let mut next = self.first_out[point];
+            let mut next = self.first_in[point];
             while next != NONE {
                 let edge = self.edges[next as usize];
-                let target = edge.to as usize;
-                let reached = time.checked_add(edge.weight).ok_or(Inconsistency::Overflow)?;
-                if reached < self.potential[target] {
-                    self.potential[target] = reached;
-                    self.parent[target] = next;
-                    self.dirty[target] = true;
+                let source = edge.from as usize;
+                let reached = time.checked_sub(edge.weight).ok_or(Inconsistency::Overflow)?;
+                if reached > self.potential[source] {
+                    self.potential[source] = reached;
+                    self.parent[source] = next;
+                    self.dirty[source] = true;
                     moved = true;
                 }
-                next = edge.next_out;
+                next = edge.next_in;
             }
         }
         Ok(moved)
@@ -97,7 +97,7 @@ impl Stn {
                 if parent == NONE {
                     break;
                 }
-                point = self.edges[parent as usize].from as usize;
+                point = self.edges[parent as usize].to as usize;
             }
             if self.scratch[point] == walk && self.parent[point] != NONE && self.closes(point) {
                 self.collect_parent_cycle(point);
@@ -115,7 +115,7 @@ impl Stn {
             if parent == NONE {
                 return false;
             }
-            at = self.edges[parent as usize].from as usize;
+            at = self.edges[parent as usize].to as usize;
             if at == point {
                 return true;
             }
@@ -129,11 +129,10 @@ impl Stn {
         loop {
             let edge = self.edges[self.parent[at] as usize];
             self.cycle.push(edge.describe());
-            at = edge.from as usize;
+            at = edge.to as usize;
             if at == point {
                 break;
             }
         }
-        self.cycle.reverse();
     }
 }

@@ -1,7 +1,7 @@
 //! The network itself: flat storage, insertion with incremental consistency, undo, and negative cycles.
 //!
 //! The algorithm is Cotton and Maler's (Fast and flexible difference constraint propagation for DPLL(T), 2006): a
-//! feasible potential is repaired by a Dijkstra search that visits only the points whose potential must fall.
+//! feasible potential is repaired by a Dijkstra search that visits only the points whose potential must rise.
 //! Removing edges keeps a potential feasible, so undo only takes edges back: the edge list is the trail.
 
 use crate::heap::Heap;
@@ -89,8 +89,8 @@ pub struct Stn {
     pub(crate) potential: Vec<i64>,
     pub(crate) cycle: Vec<CycleEdge>,
     pub(crate) heap: Heap,
-    /// How far a point must fall, valid where `stamp` is the current one.
-    fall: Vec<i64>,
+    /// By how much a point must rise, negative, valid where `stamp` is the current one.
+    rise: Vec<i64>,
     pub(crate) parent: Vec<u32>,
     stamp: Vec<u32>,
     done: Vec<u32>,
@@ -113,7 +113,7 @@ impl Stn {
         self.first_out.resize(points, NONE);
         self.first_in.resize(points, NONE);
         self.potential.resize(points, 0);
-        self.fall.resize(points, 0);
+        self.rise.resize(points, 0);
         self.parent.resize(points, NONE);
         self.stamp.resize(points, 0);
         self.done.resize(points, 0);
@@ -138,6 +138,14 @@ impl Stn {
     /// A schedule that keeps every constraint: one consistent time per point, of no particular origin.
     pub fn schedule(&self) -> &[i64] {
         &self.potential
+    }
+
+    /// Gives a point without constraints a place in the schedule, so that inserting its constraints moves little.
+    /// Does nothing for a point that has constraints.
+    pub fn set_free_time(&mut self, point: PointId, time: i64) {
+        if self.first_out[point.index()] == NONE && self.first_in[point.index()] == NONE {
+            self.potential[point.index()] = time;
+        }
     }
 
     /// How many points moved in the last insertion.
@@ -217,12 +225,16 @@ impl Stn {
         *first_in = position;
     }
 
-    /// Lowers potentials until the edge that is about to be inserted holds, or finds the cycle it closes.
+    /// Raises points of the schedule until the edge that is about to be inserted holds, or finds the cycle it closes.
+    ///
+    /// Raising what comes later is cheap where lowering is not: a plan's start has constraints with everything, so
+    /// that lowering one thread of it drags along all others.
     fn repair(&mut self, from: u32, to: u32, weight: i64, tag: Tag) -> Result<(), Inconsistency> {
         self.changed.clear();
-        let reached = self.potential[from as usize].checked_add(weight).ok_or(Inconsistency::Overflow)?;
-        let fall = reached.checked_sub(self.potential[to as usize]).ok_or(Inconsistency::Overflow)?;
-        if fall >= 0 {
+        let reached = self.potential[to as usize].checked_sub(weight).ok_or(Inconsistency::Overflow)?;
+        // Kept negative, so that the heap has the point that must rise furthest first.
+        let rise = self.potential[from as usize].checked_sub(reached).ok_or(Inconsistency::Overflow)?;
+        if rise >= 0 {
             return Ok(());
         }
         let new_edge = CycleEdge { from: PointId(from), to: PointId(to), weight, tag };
@@ -233,43 +245,46 @@ impl Stn {
         }
         self.next_stamp();
         self.heap.clear();
-        self.fall[to as usize] = fall;
-        self.stamp[to as usize] = self.now;
-        self.parent[to as usize] = NONE;
-        self.heap.push(fall, to);
-        while let Some((fall, point)) = self.heap.pop() {
-            if self.done[point as usize] == self.now || self.fall[point as usize] != fall {
+        self.rise[from as usize] = rise;
+        self.stamp[from as usize] = self.now;
+        self.parent[from as usize] = NONE;
+        self.heap.push(rise, from);
+        while let Some((rise, point)) = self.heap.pop() {
+            if self.done[point as usize] == self.now || self.rise[point as usize] != rise {
                 continue;
             }
             self.done[point as usize] = self.now;
             let old = self.potential[point as usize];
-            let new = old + fall;
+            let Some(new) = old.checked_sub(rise) else {
+                self.restore();
+                return Err(Inconsistency::Overflow);
+            };
             self.changed.push((point, old));
             self.potential[point as usize] = new;
-            let mut next = self.first_out[point as usize];
+            let mut next = self.first_in[point as usize];
             while next != NONE {
                 let edge = self.edges[next as usize];
-                let target = edge.to as usize;
-                let fall = new.checked_add(edge.weight).and_then(|time| time.checked_sub(self.potential[target]));
-                let Some(fall) = fall else {
+                let source = edge.from as usize;
+                let rise = new.checked_sub(edge.weight).and_then(|time| self.potential[source].checked_sub(time));
+                let Some(rise) = rise else {
                     self.restore();
                     return Err(Inconsistency::Overflow);
                 };
-                let falls_further = fall < 0
-                    && self.done[target] != self.now
-                    && (self.stamp[target] != self.now || fall < self.fall[target]);
-                if falls_further {
-                    self.fall[target] = fall;
-                    self.stamp[target] = self.now;
-                    self.parent[target] = next;
-                    if edge.to == from {
+                let rises_further = rise < 0
+                    && self.done[source] != self.now
+                    && (self.stamp[source] != self.now || rise < self.rise[source]);
+                if rises_further {
+                    self.rise[source] = rise;
+                    self.stamp[source] = self.now;
+                    self.parent[source] = next;
+                    if edge.from == to {
                         self.collect_cycle(new_edge);
                         self.restore();
                         return Err(Inconsistency::NegativeCycle);
                     }
-                    self.heap.push(fall, edge.to);
+                    self.heap.push(rise, edge.from);
                 }
-                next = edge.next_out;
+                next = edge.next_in;
             }
         }
         Ok(())
@@ -277,14 +292,13 @@ impl Stn {
 
     fn collect_cycle(&mut self, new_edge: CycleEdge) {
         self.cycle.clear();
-        let mut point = new_edge.from.0;
-        while point != new_edge.to.0 {
+        self.cycle.push(new_edge);
+        let mut point = new_edge.to.0;
+        while point != new_edge.from.0 {
             let edge = self.edges[self.parent[point as usize] as usize];
             self.cycle.push(edge.describe());
-            point = edge.from;
+            point = edge.to;
         }
-        self.cycle.push(new_edge);
-        self.cycle.reverse();
     }
 
     fn restore(&mut self) {
