@@ -9,7 +9,7 @@ use std::sync::Arc;
 use rustc_hash::FxHashSet;
 
 use crate::analysis::local::local_diagnostics;
-use crate::analysis::{Checked, Meaning, DeclarationKey, Index, Names, Summary, check, recursion, summarize};
+use crate::analysis::{Checked, DeclarationKey, Index, Meaning, Names, Summary, check, recursion, summarize};
 use crate::diagnostic::{Diagnostic, Edit, Severity};
 use crate::lower::{Item, Lowering, OptionValue};
 use crate::parser::parse_declaration;
@@ -80,7 +80,8 @@ impl Parse {
         let end = floor_boundary(&self.text, edit.span.end);
         let start = floor_boundary(&self.text, edit.span.start).min(end);
         self.text.replace_range(start..end, &edit.text);
-        let first = self.places.iter().position(|place| place.start + place.declaration.reach >= start as u32);
+        let first =
+            self.places.iter().position(|place| place.start + place.declaration.reach >= start as u32);
         let first = first.unwrap_or(self.places.len());
         let from = self.places.get(first).map_or_else(|| self.end_of_places(), |place| place.start);
         let new_end = start + edit.text.len();
@@ -176,7 +177,8 @@ impl Parse {
             }
         }
         let changed_keys = self.places.get(changed.clone()).unwrap_or_default().iter().map(|place| place.key);
-        let moves_circle = changed_keys.into_iter().any(|key| self.circles.iter().any(|(other, _)| *other == key));
+        let moves_circle =
+            changed_keys.into_iter().any(|key| self.circles.iter().any(|(other, _)| *other == key));
         if self.index.take_calls_changed() || moves_circle {
             let summaries = self.places.iter().map(|place| (place.key, &place.declaration.summary));
             self.circles = recursion(&self.names, &self.index, summaries);
@@ -194,7 +196,8 @@ impl Parse {
 
     /// The trees of the declarations that touch `range`.
     pub fn declarations_in(&self, range: Span) -> impl Iterator<Item = SyntaxNode<'_>> {
-        let first = self.places.partition_point(|place| place.start + place.declaration.tree.len() < range.start);
+        let first =
+            self.places.partition_point(|place| place.start + place.declaration.tree.len() < range.start);
         let touching = self.places.iter().skip(first).take_while(move |place| place.start <= range.end);
         touching.map(|place| place.root(&self.text))
     }

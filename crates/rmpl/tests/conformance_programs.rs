@@ -53,7 +53,8 @@ fn a_wrong_program_has_exactly_the_error_of_its_case() {
 fn the_trees_of_every_program_hold_its_text() {
     for (name, text) in programs() {
         let parse = parse(&text);
-        let held: String = parse.declarations().flat_map(|tree| tree.tokens()).map(|token| token.text).collect();
+        let held: String =
+            parse.declarations().flat_map(|tree| tree.tokens()).map(|token| token.text).collect();
         assert_eq!(held, text, "{name}");
     }
 }

@@ -55,7 +55,11 @@ fn a_value_is_one_of_the_variables_domain() {
 
 #[test]
 fn a_condition_offers_variables_and_no_activities() {
-    check_completion_in_mission("scenario S = { do { Drive(BASE) } maintaining $0 }", &["P", "not"], &["Drive", "BASE"]);
+    check_completion_in_mission(
+        "scenario S = { do { Drive(BASE) } maintaining $0 }",
+        &["P", "not"],
+        &["Drive", "BASE"],
+    );
     check_completion_in_mission("scenario S = { if $0", &["P"], &["Survey"]);
 }
 
@@ -72,7 +76,11 @@ fn arguments_are_locations_and_parameters() {
 
 #[test]
 fn words_go_on_where_the_grammar_does() {
-    check_completion_in_mission("scenario S = { do { Drive(BASE) } $0 }", &["maintaining", "watching"], &["Drive"]);
+    check_completion_in_mission(
+        "scenario S = { do { Drive(BASE) } $0 }",
+        &["maintaining", "watching"],
+        &["Drive"],
+    );
     check_completion_in_mission("scenario S = { if P=OK $0 }", &["thennext"], &["P"]);
     check_completion_in_mission("vehicle Q : $0", &["ATRV", "ATRV-Jr", "Blimp"], &["R"]);
     check_completion_in_mission("vehicle Q : ATRV at $0", &["BASE"], &["ATRV"]);
@@ -122,13 +130,18 @@ fn check_hover(written: &str, evaluation: &Evaluation, wanted: &str) {
 #[test]
 fn a_bound_shows_its_value_in_each_invocation() {
     check_hover("Survey()[l,u] = { A()[l*9$00%,u] }", &day(), "`l*90%`  \n= **405** in Survey#1");
-    check_hover("Survey()[l,u] = { A()[l,$0u*10%] }", &day(), "`u`  \n= **540** in Survey#1  \n`u*10%` = **54** in Survey#1");
+    check_hover(
+        "Survey()[l,u] = { A()[l,$0u*10%] }",
+        &day(),
+        "`u`  \n= **540** in Survey#1  \n`u*10%` = **54** in Survey#1",
+    );
     check_hover("Survey()[l,u] = { A()[1+$02*3,u] }", &Evaluation::default(), "= **7**");
 }
 
 #[test]
 fn a_name_shows_its_declaration_and_the_comment_above_it() {
-    let text = "// Not this.\n\n// Drives on.\nprimitive Drive(to)\n  [20,30];\nscenario S = { Dr$0ive(BASE) }";
+    let text =
+        "// Not this.\n\n// Drives on.\nprimitive Drive(to)\n  [20,30];\nscenario S = { Dr$0ive(BASE) }";
     check_hover(text, &Evaluation::default(), "```rmpl\nprimitive Drive(to) [20,30]\n```\n\nDrives on.");
     check_hover("var P : {OK, BAD};\nscenario S = { $0P=OK }", &Evaluation::default(), "var P : {OK, BAD}");
     check_hover("scenario S = { del$0ay }", &Evaluation::default(), "[0,inf]");

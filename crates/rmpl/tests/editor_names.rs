@@ -13,7 +13,8 @@ fn check_references(written: &str) {
     let parse = parse(&fixture.text);
     let found = editor::references(&parse, fixture.cursor);
     let found: Vec<(Span, bool)> = found.iter().map(|place| (place.span, place.is_definition)).collect();
-    let wanted: Vec<(Span, bool)> = fixture.marks.iter().map(|(span, label)| (*span, label == "def")).collect();
+    let wanted: Vec<(Span, bool)> =
+        fixture.marks.iter().map(|(span, label)| (*span, label == "def")).collect();
     assert_eq!(found, wanted);
     let definition = wanted.iter().find(|(_, is_definition)| *is_definition).map(|(span, _)| *span);
     assert_eq!(editor::definition(&parse, fixture.cursor), definition);
@@ -160,7 +161,13 @@ M(x)[l,u] = { do { Drive(x)[l*90%,u] } maintaining P_OK } // done
     let all = editor::highlight(&parse, Span::new(0, fixture.text.len() as u32));
     let kind_at = |span: Span| all.iter().find(|found| found.span == span).map(|found| found.kind);
     let kinds = [
-        Kind::Variable, Kind::Value, Kind::Activity, Kind::Parameter, Kind::Keyword, Kind::Vehicle, Kind::BoundName,
+        Kind::Variable,
+        Kind::Value,
+        Kind::Activity,
+        Kind::Parameter,
+        Kind::Keyword,
+        Kind::Vehicle,
+        Kind::BoundName,
         Kind::Comment,
     ];
     for (span, label) in &fixture.marks {
@@ -179,7 +186,8 @@ fn highlighting_a_range_gives_what_the_whole_gives_there() {
     for start in (0..text.len() as u32 - 200).step_by(97) {
         let range = Span::new(start, start + 200);
         let part = editor::highlight(&parse, range);
-        let wanted = all.iter().filter(|found| found.span.start >= range.start && found.span.end <= range.end);
+        let wanted =
+            all.iter().filter(|found| found.span.start >= range.start && found.span.end <= range.end);
         assert!(wanted.clone().all(|found| part.contains(found)));
     }
 }

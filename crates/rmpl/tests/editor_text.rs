@@ -10,7 +10,8 @@ use rmpl::{Span, parse};
 fn the_outline_lists_what_is_declared_even_where_it_is_broken() {
     let text = "var P : {OK};\nM(x)[l,u] = { A( }\nlocation BASE (1, 2);\nscenario S[0,9] = { M(";
     let found = editor::outline(&parse(text));
-    let shown: Vec<_> = found.iter().map(|item| (item.kind, item.name.as_str(), item.detail.as_str())).collect();
+    let shown: Vec<_> =
+        found.iter().map(|item| (item.kind, item.name.as_str(), item.detail.as_str())).collect();
     assert_eq!(
         shown,
         [
@@ -109,6 +110,14 @@ fn a_selection_grows_by_the_structure() {
     }
     assert_eq!(
         seen,
-        ["x", "(x)", "A(x)", "{ A(x) }", "do { A(x) } maintaining c", "{ do { A(x) } maintaining c; B() }", text]
+        [
+            "x",
+            "(x)",
+            "A(x)",
+            "{ A(x) }",
+            "do { A(x) } maintaining c",
+            "{ do { A(x) } maintaining c; B() }",
+            text
+        ]
     );
 }

@@ -21,7 +21,10 @@ fn a_line_stays_a_line() {
 
 #[test]
 fn conditions_are_tight_and_their_bounds_stand_apart() {
-    check("scenario S={PATH1 = OK[450,450];! c;not( d )[5,7]}", "scenario S = { PATH1=OK [450,450]; !c; not(d) [5,7] }\n");
+    check(
+        "scenario S={PATH1 = OK[450,450];! c;not( d )[5,7]}",
+        "scenario S = { PATH1=OK [450,450]; !c; not(d) [5,7] }\n",
+    );
 }
 
 #[test]
@@ -60,7 +63,10 @@ fn the_world_is_laid_out_too() {
 
 #[test]
 fn a_long_line_is_broken_at_its_outermost_braces() {
-    let before = format!("scenario S = {{ {} }}", ["{ Activity-Number-One(SITE); Activity-Number-Two(SITE) }"; 2].join(", "));
+    let before = format!(
+        "scenario S = {{ {} }}",
+        ["{ Activity-Number-One(SITE); Activity-Number-Two(SITE) }"; 2].join(", ")
+    );
     check(
         &before,
         "scenario S = {\n  { Activity-Number-One(SITE); Activity-Number-Two(SITE) },\n  { Activity-Number-One(SITE); Activity-Number-Two(SITE) }\n}\n",
@@ -79,9 +85,40 @@ fn significant(text: &str) -> Vec<String> {
 }
 
 const PIECES: [&str; 34] = [
-    "A()", "B(x, y)", "C", "P=OK", "not(c)", "!d", "delay", "[0,5]", "[l*90%,u-l]", "{", "}", "{", "}", ";", ",", "choose {",
-    "do", "maintaining c", "watching d", "if e", "thennext", "\n", "\n\n", " ", "// note\n", "/* note */", "M()[l,u] = {",
-    "scenario S[0,9] = {", "primitive A()[1,2];", "var P : {OK, BAD};", "location X (1, -2);", "(", ")", "tell c",
+    "A()",
+    "B(x, y)",
+    "C",
+    "P=OK",
+    "not(c)",
+    "!d",
+    "delay",
+    "[0,5]",
+    "[l*90%,u-l]",
+    "{",
+    "}",
+    "{",
+    "}",
+    ";",
+    ",",
+    "choose {",
+    "do",
+    "maintaining c",
+    "watching d",
+    "if e",
+    "thennext",
+    "\n",
+    "\n\n",
+    " ",
+    "// note\n",
+    "/* note */",
+    "M()[l,u] = {",
+    "scenario S[0,9] = {",
+    "primitive A()[1,2];",
+    "var P : {OK, BAD};",
+    "location X (1, -2);",
+    "(",
+    ")",
+    "tell c",
 ];
 
 /// The meaning without its places.

@@ -12,8 +12,34 @@ const MISSIONS: [&str; 4] = [
 
 /// Pieces of text that turn up when people type, and others that should not matter.
 const PIECES: [&str; 28] = [
-    "", " ", "\n", ";", ",", "{", "}", "[", "]", "(", ")", "=", "%", "-", "x", "A()", "P=OK", "[0,5]", "//", "/*", "*/",
-    "choose {", "var Q : {A, B};", "scenario T = {", "thennext ", "\"", "∞", "é",
+    "",
+    " ",
+    "\n",
+    ";",
+    ",",
+    "{",
+    "}",
+    "[",
+    "]",
+    "(",
+    ")",
+    "=",
+    "%",
+    "-",
+    "x",
+    "A()",
+    "P=OK",
+    "[0,5]",
+    "//",
+    "/*",
+    "*/",
+    "choose {",
+    "var Q : {A, B};",
+    "scenario T = {",
+    "thennext ",
+    "\"",
+    "∞",
+    "é",
 ];
 
 fn held(parse: &Parse) -> String {
@@ -74,7 +100,9 @@ fn typing_a_mission_letter_by_letter_keeps_it_current() {
 
 #[test]
 fn deep_nesting_is_reported_and_not_followed() {
-    for (open, close) in [("{", "}"), ("(", ")"), ("do ", ""), ("if c thennext ", ""), ("not ", ""), ("choose {", "}")] {
+    for (open, close) in
+        [("{", "}"), ("(", ")"), ("do ", ""), ("if c thennext ", ""), ("not ", ""), ("choose {", "}")]
+    {
         let text = format!("scenario S = {{ {}c{} }}", open.repeat(5000), close.repeat(5000));
         let parse = parse(&text);
         assert_eq!(held(&parse), text);

@@ -19,7 +19,8 @@ struct Block {
 
 fn blocks() -> Vec<Block> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../tests/suite");
-    let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut files: Vec<PathBuf> =
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
     files.iter().flat_map(|file| blocks_of(file)).collect()
 }
@@ -55,7 +56,10 @@ fn marks(text: &str) -> Vec<(Span, String)> {
     for line in text.split_inclusive('\n') {
         let is_mark = line.strip_prefix("//").is_some_and(|rest| rest.trim_start().starts_with('^'));
         if is_mark {
-            let one = fixture::fixture(&format!("{}{line}", &text[previous..start].lines().next().map_or(String::new(), |it| format!("{it}\n"))));
+            let one = fixture::fixture(&format!(
+                "{}{line}",
+                &text[previous..start].lines().next().map_or(String::new(), |it| format!("{it}\n"))
+            ));
             found.extend(one.marks.into_iter().map(|(span, label)| {
                 (Span::new(span.start + previous as u32, span.end + previous as u32), label)
             }));
@@ -87,7 +91,11 @@ fn every_mission_of_the_manual_has_exactly_its_marked_diagnostics() {
             for it in found {
                 let at = lines.line_column(&block.text, it.span.start);
                 let width = it.span.end - it.span.start;
-                let _ = writeln!(failures, "  line {} column {} width {width} {}: {}", at.line, at.column, it.code, it.message);
+                let _ = writeln!(
+                    failures,
+                    "  line {} column {} width {width} {}: {}",
+                    at.line, at.column, it.code, it.message
+                );
             }
         }
     }
@@ -110,7 +118,36 @@ fn a_formatted_block_is_what_formatting_the_block_before_it_gives() {
 #[test]
 fn every_kind_of_diagnostic_occurs_in_the_manual() {
     let manual: String = blocks().into_iter().map(|block| block.text).collect();
+    // Reported by compilation, or about control programs.
+    let elsewhere = ["E-NOSCENARIO", "E-LIMIT", "E-FORM", "E-CONSTRAINT"];
     for page in rmpl::diagnostics::EXPLANATIONS {
-        assert!(page.code.0 == "E-NOSCENARIO" || manual.contains(page.code.0), "{} does not occur", page.code);
+        assert!(
+            elsewhere.contains(&page.code.0) || manual.contains(page.code.0),
+            "{} does not occur",
+            page.code
+        );
+    }
+}
+
+/// The missions in the reference are sound and laid out as the formatter does.
+#[test]
+fn the_missions_in_the_reference_have_no_errors() {
+    let reference = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../docs/language.md");
+    let blocks = blocks_of(&reference);
+    let missions: Vec<&Block> = blocks.iter().filter(|block| block.kind == "rmpl").collect();
+    assert!(!missions.is_empty());
+    for mission in missions {
+        assert_eq!(parse(&mission.text).diagnostics(), [], "{}", mission.place);
+        assert_eq!(format(&mission.text), mission.text, "{}", mission.place);
+    }
+}
+
+/// The reference's table of diagnostics and the manual pages agree.
+#[test]
+fn the_reference_lists_every_kind_of_diagnostic() {
+    let reference = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../docs/language.md");
+    let text = std::fs::read_to_string(reference).unwrap();
+    for page in rmpl::diagnostics::EXPLANATIONS {
+        assert!(text.contains(&format!("`{}`", page.code)), "{} is not in the reference", page.code);
     }
 }

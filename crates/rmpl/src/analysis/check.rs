@@ -1,9 +1,7 @@
 //! What one declaration says wrongly in view of the rest of the file.
 
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::diagnostics::{
-    arity, bounds, duplicate, similar, support, traverse, undefined, unused, value,
-};
+use crate::diagnostics::{arity, bounds, duplicate, similar, support, traverse, undefined, unused, value};
 use crate::lower::Item;
 use crate::program::LabelMode;
 use crate::rational::Bound;
@@ -164,8 +162,7 @@ impl<'a> Checker<'a> {
     fn traverse(&mut self, number: u32, call: &Call) {
         let arguments: Vec<Use> =
             self.summary.uses.iter().filter(|used| used.kind == UseKind::Argument(number)).copied().collect();
-        let is_location =
-            |used: &Use| self.index.facts(used.name).definition(Namespace::Location).is_some();
+        let is_location = |used: &Use| self.index.facts(used.name).definition(Namespace::Location).is_some();
         let known = arguments.iter().filter(|used| is_location(used)).count();
         for used in arguments.iter().filter(|used| !is_location(used)) {
             if let Some(nearest) = self.nearest(used.name, Namespace::Location) {
@@ -187,7 +184,8 @@ impl<'a> Checker<'a> {
         if self.index.facts(used.name).definition(namespace).is_none() {
             let nearest = self.nearest(used.name, namespace);
             let is_strict = self.index.is_strict();
-            let diagnostic = undefined::world(what, self.text(used.name), used.span, nearest.as_deref(), is_strict);
+            let diagnostic =
+                undefined::world(what, self.text(used.name), used.span, nearest.as_deref(), is_strict);
             self.push_once(namespace, used.name, diagnostic);
         }
     }

@@ -1,6 +1,8 @@
 //! Bounds that are constants, evaluated exactly (SPEC 1.5).
 
-use num_traits::{CheckedAdd as _, CheckedDiv as _, CheckedMul as _, CheckedSub as _, Signed as _, Zero as _};
+use num_traits::{
+    CheckedAdd as _, CheckedDiv as _, CheckedMul as _, CheckedSub as _, Signed as _, Zero as _,
+};
 
 use crate::program::{BinaryOp, Bounds, Expr, ExprKind};
 use crate::rational::{Bound, Rational};
@@ -29,7 +31,10 @@ pub(crate) fn evaluate(expr: &Expr) -> Result<Bound, ConstantError> {
 }
 
 /// The value of an expression where `lookup` gives the values of names.
-pub(crate) fn evaluate_with(expr: &Expr, lookup: &dyn Fn(&str) -> Option<Bound>) -> Result<Bound, ConstantError> {
+pub(crate) fn evaluate_with(
+    expr: &Expr,
+    lookup: &dyn Fn(&str) -> Option<Bound>,
+) -> Result<Bound, ConstantError> {
     match &expr.kind {
         ExprKind::Number(number) => Ok(Bound::Finite(*number)),
         ExprKind::Infinity => Ok(Bound::Infinite),
@@ -43,7 +48,7 @@ pub(crate) fn evaluate_with(expr: &Expr, lookup: &dyn Fn(&str) -> Option<Bound>)
         },
         ExprKind::Binary(operator, left, right) => {
             combine(*operator, evaluate_with(left, lookup)?, evaluate_with(right, lookup)?)
-        },
+        }
     }
 }
 

@@ -233,7 +233,9 @@ impl Index {
             if before.0 != after.0 {
                 self.calls_changed = true;
             }
-            if before != after && let Some(facts) = self.facts.get_mut(symbol.index()) {
+            if before != after
+                && let Some(facts) = self.facts.get_mut(symbol.index())
+            {
                 facts.changed_at = self.revision;
                 self.last_change = self.revision;
             }
@@ -254,16 +256,20 @@ impl Index {
             let was_defined = facts.definition(definition.namespace).is_some();
             if is_added {
                 facts.definitions.push((definition.namespace, key));
-                facts.definition_fingerprint = facts.definition_fingerprint.wrapping_add(definition.fingerprint);
+                facts.definition_fingerprint =
+                    facts.definition_fingerprint.wrapping_add(definition.fingerprint);
             } else {
                 facts.definitions.retain(|&(_, other)| other != key);
-                facts.definition_fingerprint = facts.definition_fingerprint.wrapping_sub(definition.fingerprint);
+                facts.definition_fingerprint =
+                    facts.definition_fingerprint.wrapping_sub(definition.fingerprint);
             }
             if was_defined != facts.definition(definition.namespace).is_some() {
                 let namespace = definition.namespace as usize;
                 if is_added {
                     self.defined[namespace].push(definition.name);
-                } else if let Some(at) = self.defined[namespace].iter().position(|&name| name == definition.name) {
+                } else if let Some(at) =
+                    self.defined[namespace].iter().position(|&name| name == definition.name)
+                {
                     self.defined[namespace].swap_remove(at);
                 }
             }

@@ -217,9 +217,8 @@ impl Local {
     /// Blocks in which `,` and `;` meet without braces between them.
     fn separators(&mut self, root: SyntaxNode<'_>) {
         for block in root.descendants().filter(|node| node.kind() == SyntaxKind::Block) {
-            let steps = |child: &SyntaxNode<'_>| {
-                matches!(child.kind(), SyntaxKind::Statement | SyntaxKind::Parallel)
-            };
+            let steps =
+                |child: &SyntaxNode<'_>| matches!(child.kind(), SyntaxKind::Statement | SyntaxKind::Parallel);
             if block.children().filter(steps).count() < 2 {
                 continue;
             }

@@ -9,11 +9,11 @@ mod index;
 pub(crate) mod local;
 mod names;
 mod recursion;
-mod summary;
 mod structure;
+mod summary;
 
 pub(crate) use check::{Checked, Meaning, check};
 pub(crate) use index::{DeclarationKey, Index, Namespace};
-pub(crate) use names::{Names, edit_distance_at_most};
+pub(crate) use names::{Names, Symbol, edit_distance_at_most};
 pub(crate) use recursion::recursion;
 pub(crate) use summary::{Call, Literal, Summary, summarize};

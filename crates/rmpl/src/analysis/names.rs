@@ -118,7 +118,8 @@ pub(crate) fn edit_distance_at_most(left: &str, right: &str, limit: usize) -> Op
 
 /// `PATH1` and `PATH2` are no misspellings of each other.
 fn differ_in_digits_only(left: &[u8], right: &[u8]) -> bool {
-    let letters = |name: &[u8]| -> Vec<u8> { name.iter().copied().filter(|byte| !byte.is_ascii_digit()).collect() };
+    let letters =
+        |name: &[u8]| -> Vec<u8> { name.iter().copied().filter(|byte| !byte.is_ascii_digit()).collect() };
     left != right && (left.iter().chain(right).any(u8::is_ascii_digit)) && letters(left) == letters(right)
 }
 

@@ -29,11 +29,8 @@ pub(crate) fn recursion<'a>(
         });
         targets.collect()
     });
-    let mut search = Search {
-        calls: calls.collect(),
-        state: vec![State::New; declarations.len()],
-        circles: Vec::new(),
-    };
+    let mut search =
+        Search { calls: calls.collect(), state: vec![State::New; declarations.len()], circles: Vec::new() };
     for start in 0..declarations.len() {
         search.visit(start);
     }

@@ -115,7 +115,14 @@ impl Structure<'_> {
     }
 
     /// Compares how long the parts of `statement` can take with the bounds around them.
-    fn compare(&mut self, statement: &Statement, own: Interval, written: Interval, span: Span, may_bind: bool) {
+    fn compare(
+        &mut self,
+        statement: &Statement,
+        own: Interval,
+        written: Interval,
+        span: Span,
+        may_bind: bool,
+    ) {
         if own.1 < Bound::Finite(written.0) {
             self.found.push(window::too_short(own.1, written.0, statement, span));
         } else if Bound::Finite(own.0) > written.1 {
@@ -172,9 +179,7 @@ impl Structure<'_> {
                 out.push((*mode, condition.clone()));
                 is_instant
             }
-            StatementKind::Sequence(parts) => {
-                parts.iter().all(|part| self.starting(part, out))
-            }
+            StatementKind::Sequence(parts) => parts.iter().all(|part| self.starting(part, out)),
             StatementKind::Parallel(branches) => {
                 for branch in branches {
                     self.starting(branch, out);

@@ -203,7 +203,9 @@ impl Collector<'_> {
 
     fn statement(&mut self, statement: &Statement) {
         match &statement.kind {
-            StatementKind::Sequence(parts) | StatementKind::Parallel(parts) | StatementKind::Choose(parts) => {
+            StatementKind::Sequence(parts)
+            | StatementKind::Parallel(parts)
+            | StatementKind::Choose(parts) => {
                 for part in parts {
                     self.statement(part);
                 }
@@ -230,9 +232,7 @@ impl Collector<'_> {
                         self.name_use(UseKind::Argument(call), text, argument.span);
                     }
                 }
-                let is_formal = |argument: &Argument| {
-                    matches!(&argument.value, ArgumentValue::Name(text) if self.formals.contains(text))
-                };
+                let is_formal = |argument: &Argument| matches!(&argument.value, ArgumentValue::Name(text) if self.formals.contains(text));
                 let has_formal_argument = arguments.iter().any(is_formal);
                 self.call(name, arguments.len(), statement, false);
                 if let Some(call) = self.summary.calls.last_mut() {

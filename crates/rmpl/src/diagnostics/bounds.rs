@@ -36,7 +36,8 @@ pub(crate) fn too_large(span: Span) -> Diagnostic {
 }
 
 pub(crate) fn endless(span: Span) -> Diagnostic {
-    Diagnostic::error(CODE, span, "a lower bound must be finite").with_hint("`inf` may only be an upper bound")
+    Diagnostic::error(CODE, span, "a lower bound must be finite")
+        .with_hint("`inf` may only be an upper bound")
 }
 
 pub(crate) fn reversed(lower: (Bound, Span), upper: (Bound, Span), span: Span) -> Diagnostic {
@@ -59,6 +60,7 @@ pub(crate) fn disjoint(
     span: Span,
 ) -> Diagnostic {
     let show = |(lower, upper): (Rational, Bound)| format!("[{},{upper}]", display(lower));
-    let message = format!("`{name}` is declared to last {}, which {} excludes", show(declared), show(written));
+    let message =
+        format!("`{name}` is declared to last {}, which {} excludes", show(declared), show(written));
     Diagnostic::error(CODE, span, message).with_hint("both hold for the call: make them overlap")
 }

@@ -37,7 +37,8 @@ pub(crate) fn declaration(namespace: Namespace, name: &str, span: Span) -> Diagn
         Namespace::Obstacle => format!("an obstacle `{name}` is declared before this one"),
         Namespace::Vehicle => format!("a vehicle `{name}` is declared before this one"),
     };
-    Diagnostic::error(CODE, span, message).with_hint("the first declaration counts; rename or remove this one")
+    Diagnostic::error(CODE, span, message)
+        .with_hint("the first declaration counts; rename or remove this one")
 }
 
 /// A name that stands twice in one list.

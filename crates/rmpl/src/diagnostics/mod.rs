@@ -3,8 +3,11 @@
 pub mod arity;
 pub mod bounds;
 pub mod choice;
+pub mod constraint;
 pub mod duplicate;
+pub mod form;
 pub mod lex;
+pub mod limit;
 pub mod mixed;
 pub mod no_scenario;
 pub mod option;
@@ -23,7 +26,7 @@ pub mod window;
 
 use crate::explanation::Explanation;
 
-/// Every kind of diagnostic that speaks of the infix notation, errors first.
+/// Every kind of diagnostic of both notations and of compilation, errors first.
 pub const EXPLANATIONS: &[&Explanation] = &[
     &lex::EXPLANATION,
     &syntax::EXPLANATION,
@@ -35,6 +38,9 @@ pub const EXPLANATIONS: &[&Explanation] = &[
     &value::EXPLANATION,
     &recursion::EXPLANATION,
     &no_scenario::EXPLANATION,
+    &limit::EXPLANATION,
+    &constraint::EXPLANATION,
+    &form::EXPLANATION,
     &undefined::WARNING_EXPLANATION,
     &similar::EXPLANATION,
     &mixed::EXPLANATION,

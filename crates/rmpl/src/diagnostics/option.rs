@@ -27,9 +27,12 @@ pub(crate) fn unknown(name: &Name) -> Diagnostic {
     let known = ["threat_gap", "strict", "time_unit"];
     let diagnostic = Diagnostic::warning(CODE, name.span, format!("there is no option `{}`", name.text))
         .with_hint(format!("the options are {}", known.join(", ")));
-    let nearest = known.iter().filter_map(|known| Some((edit_distance_at_most(&name.text, known, 3)?, known)));
+    let nearest =
+        known.iter().filter_map(|known| Some((edit_distance_at_most(&name.text, known, 3)?, known)));
     match nearest.min() {
-        Some((_, known)) => diagnostic.with_fix(replacement(format!("Change to `{known}`"), name.span, *known)),
+        Some((_, known)) => {
+            diagnostic.with_fix(replacement(format!("Change to `{known}`"), name.span, *known))
+        }
         None => diagnostic,
     }
 }

@@ -27,7 +27,8 @@ scenario Day[0,60] = { Patrol() }",
 pub(crate) fn circle(way: &[&str], call: Span) -> Diagnostic {
     let first = way.first().copied().unwrap_or_default();
     let steps: Vec<String> = way.iter().chain([&first]).map(|name| format!("`{name}`")).collect();
-    let message = format!("activities may not call themselves, and `{first}` does: {}", steps.join(" calls "));
+    let message =
+        format!("activities may not call themselves, and `{first}` does: {}", steps.join(" calls "));
     Diagnostic::error(CODE, call, message)
         .with_hint("a network is finite: write repetitions out, one after the other")
 }

@@ -27,7 +27,8 @@ pub(crate) fn variable(written: &str, nearest: &str, span: Span) -> Diagnostic {
 }
 
 pub(crate) fn callable(written: &str, nearest: &str, span: Span) -> Diagnostic {
-    let message = format!("this asserts the condition `{written}`, which looks like the activity `{nearest}`");
+    let message =
+        format!("this asserts the condition `{written}`, which looks like the activity `{nearest}`");
     alike(message, nearest, span)
 }
 

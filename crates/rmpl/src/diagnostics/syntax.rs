@@ -52,8 +52,11 @@ pub(crate) fn expected(wanted: &str, found: Found<'_>, span: Span) -> Diagnostic
 
 /// `wanted` is missing at `place`, which lies just behind `span`.
 pub(crate) fn missing(wanted: &str, found: Found<'_>, span: Span, place: u32, text: &str) -> Diagnostic {
-    error(span, format!("expected {wanted} behind this, {}", found.describe()))
-        .with_fix(insertion(format!("Insert `{}`", text.trim()), place, text))
+    error(span, format!("expected {wanted} behind this, {}", found.describe())).with_fix(insertion(
+        format!("Insert `{}`", text.trim()),
+        place,
+        text,
+    ))
 }
 
 pub(crate) fn too_deep(span: Span) -> Diagnostic {
@@ -86,8 +89,11 @@ pub(crate) fn primitive_with_body(span: Span) -> Diagnostic {
 }
 
 pub(crate) fn keyword_as_name(word: &str, span: Span) -> Diagnostic {
-    error(span, format!("`{word}` is a word of the language and cannot be a name"))
-        .with_fix(replacement(format!("Rename to `{word}_`"), span, format!("{word}_")))
+    error(span, format!("`{word}` is a word of the language and cannot be a name")).with_fix(replacement(
+        format!("Rename to `{word}_`"),
+        span,
+        format!("{word}_"),
+    ))
 }
 
 pub(crate) fn unclosed_brace(opened: Span, place: u32) -> Diagnostic {

@@ -23,7 +23,8 @@ can order them.",
 /// Two conditions that hold from the start of two branches; `later` is the second branch.
 pub(crate) fn conflict(pair: [(LabelMode, &Condition); 2], later: Span) -> Diagnostic {
     let [one, other] = pair.map(|(mode, condition)| describe(mode, condition));
-    let message = format!("{other} conflicts with {one}: both begin when the branches start, at the same instant");
+    let message =
+        format!("{other} conflicts with {one}: both begin when the branches start, at the same instant");
     let fix = Fix {
         label: "Start this branch with `delay[0,inf]`".to_owned(),
         edits: vec![

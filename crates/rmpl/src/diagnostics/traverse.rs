@@ -28,6 +28,10 @@ scenario Day[0,60] = { Drive(SITE) }",
 
 /// A call of a traverse without a location.
 pub(crate) fn no_location(name: &str, span: Span) -> Diagnostic {
-    Diagnostic::warning(CODE, span, format!("this traverse goes nowhere: no argument of `{name}` is a location"))
-        .with_hint("locations are declared with `location NAME (east, north);`")
+    Diagnostic::warning(
+        CODE,
+        span,
+        format!("this traverse goes nowhere: no argument of `{name}` is a location"),
+    )
+    .with_hint("locations are declared with `location NAME (east, north);`")
 }

@@ -45,9 +45,11 @@ pub(crate) fn call(name: &str, call: &Call, nearest: Option<&str>, is_strict: bo
     let message = format!("no activity or primitive `{name}` is declared");
     let mut diagnostic = severity(call.span, message, is_strict);
     if let Some(nearest) = nearest {
-        return diagnostic
-            .with_hint(format!("did you mean `{nearest}`?"))
-            .with_fix(replacement(format!("Change to `{nearest}`"), call.span, nearest));
+        return diagnostic.with_hint(format!("did you mean `{nearest}`?")).with_fix(replacement(
+            format!("Change to `{nearest}`"),
+            call.span,
+            nearest,
+        ));
     }
     if !is_strict {
         diagnostic = diagnostic.with_hint("it is taken for a primitive that may last any time, [0,inf]");
@@ -56,16 +58,28 @@ pub(crate) fn call(name: &str, call: &Call, nearest: Option<&str>, is_strict: bo
 }
 
 /// A vehicle or a location that the world mentions but does not declare.
-pub(crate) fn world(what: &str, name: &str, span: Span, nearest: Option<&str>, is_strict: bool) -> Diagnostic {
+pub(crate) fn world(
+    what: &str,
+    name: &str,
+    span: Span,
+    nearest: Option<&str>,
+    is_strict: bool,
+) -> Diagnostic {
     let diagnostic = severity(span, format!("no {what} `{name}` is declared"), is_strict);
     match nearest {
-        Some(nearest) => diagnostic
-            .with_hint(format!("did you mean `{nearest}`?"))
-            .with_fix(replacement(format!("Change to `{nearest}`"), span, nearest)),
+        Some(nearest) => diagnostic.with_hint(format!("did you mean `{nearest}`?")).with_fix(replacement(
+            format!("Change to `{nearest}`"),
+            span,
+            nearest,
+        )),
         None => diagnostic,
     }
 }
 
 fn severity(span: Span, message: String, is_strict: bool) -> Diagnostic {
-    if is_strict { Diagnostic::error(CODE, span, message) } else { Diagnostic::warning(WARNING, span, message) }
+    if is_strict {
+        Diagnostic::error(CODE, span, message)
+    } else {
+        Diagnostic::warning(WARNING, span, message)
+    }
 }

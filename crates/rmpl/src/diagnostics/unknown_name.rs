@@ -30,7 +30,8 @@ scenario Day[0,60] = { Survey()[20,30] }",
 pub(crate) fn unknown(name: &str, span: Span, known: &[Name]) -> Diagnostic {
     let diagnostic = Diagnostic::error(CODE, span, format!("no bound is called `{name}` here"));
     match known {
-        [] => diagnostic.with_hint("names in bounds come from the header of the activity: `Name()[l,u] = { … }`"),
+        [] => diagnostic
+            .with_hint("names in bounds come from the header of the activity: `Name()[l,u] = { … }`"),
         _ => {
             let names: Vec<String> = known.iter().map(|name| format!("`{}`", name.text)).collect();
             let diagnostic = diagnostic.with_hint(format!("the header binds {}", names.join(" and ")));

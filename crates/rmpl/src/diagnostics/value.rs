@@ -34,9 +34,7 @@ pub(crate) fn outside_domain(
     let diagnostic = Diagnostic::error(CODE, span, format!("`{value}` is not a value of `{variable}`"))
         .with_hint(format!("`{variable}` is one of {}", domain.join(", ")));
     match nearest {
-        Some(nearest) => {
-            diagnostic.with_fix(replacement(format!("Change to `{nearest}`"), span, nearest))
-        }
+        Some(nearest) => diagnostic.with_fix(replacement(format!("Change to `{nearest}`"), span, nearest)),
         None => diagnostic,
     }
 }
@@ -72,5 +70,9 @@ pub(crate) fn not_positive(what: &str, span: Span) -> Diagnostic {
 }
 
 pub(crate) fn speeds(span: Span) -> Diagnostic {
-    Diagnostic::error(CODE, span, "the speeds must be the least and the greatest, in this order, and not zero")
+    Diagnostic::error(
+        CODE,
+        span,
+        "the speeds must be the least and the greatest, in this order, and not zero",
+    )
 }

@@ -31,17 +31,20 @@ pub(crate) fn too_short(most: Bound, least: Rational, statement: &Statement, spa
     let least = display(least);
     let is_sequence = matches!(&statement.kind, StatementKind::Sequence(parts) if parts.len() > 1);
     let message = if is_sequence {
-        format!("this sequence is over after {most} at the latest, and is to last at least {least}: it never idles")
+        format!(
+            "this sequence is over after {most} at the latest, and is to last at least {least}: it never idles"
+        )
     } else {
         format!("this is over after {most} at the latest, and is to last at least {least}")
     };
-    let mut diagnostic =
-        Diagnostic::warning(CODE, span, message).with_hint("put a `delay` where it may wait, or correct the bounds");
+    let mut diagnostic = Diagnostic::warning(CODE, span, message)
+        .with_hint("put a `delay` where it may wait, or correct the bounds");
     if let StatementKind::Sequence(parts) = &statement.kind
         && let Some(last) = parts.last()
     {
         let place = last.span.end;
-        diagnostic = diagnostic.with_fix(insertion("Wait at the end with `delay[0,inf]`", place, "; delay[0,inf]"));
+        diagnostic =
+            diagnostic.with_fix(insertion("Wait at the end with `delay[0,inf]`", place, "; delay[0,inf]"));
     }
     diagnostic
 }

@@ -7,11 +7,14 @@ use crate::syntax::{SyntaxKind, SyntaxToken};
 /// The bracket at `offset` (behind the cursor first, then before it) and its partner. Works on broken programs: brackets
 /// are matched by kind within the declaration.
 pub fn matching_bracket(parse: &Parse, offset: u32) -> Option<(Span, Span)> {
-    let at = |start: u32| parse.declaration_at(start).and_then(|root| {
-        let tokens: Vec<SyntaxToken<'_>> = root.tokens().collect();
-        let index = tokens.iter().position(|token| token.span.start == start && role(token.kind).is_some())?;
-        partner(&tokens, index)
-    });
+    let at = |start: u32| {
+        parse.declaration_at(start).and_then(|root| {
+            let tokens: Vec<SyntaxToken<'_>> = root.tokens().collect();
+            let index =
+                tokens.iter().position(|token| token.span.start == start && role(token.kind).is_some())?;
+            partner(&tokens, index)
+        })
+    };
     at(offset).or_else(|| at(offset.checked_sub(1)?))
 }
 

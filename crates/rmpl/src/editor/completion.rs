@@ -1,5 +1,8 @@
 //! Completion that knows the place: what can stand at the cursor, and nothing else.
 
+use rustc_hash::FxHashSet;
+
+use crate::analysis::Symbol;
 use crate::analysis::local::VEHICLE_MODELS;
 use crate::parse::Parse;
 use crate::span::Span;
@@ -80,7 +83,8 @@ enum Place {
 /// What can be written at `offset`.
 pub fn complete(parse: &Parse, offset: u32) -> Completion {
     let around = parse.declaration_at(offset.saturating_sub(1));
-    let written = declaration_at_cursor(parse, offset).filter(|root| Some(root.span()) != around.map(|it| it.span()));
+    let written =
+        declaration_at_cursor(parse, offset).filter(|root| Some(root.span()) != around.map(|it| it.span()));
     let before: Vec<SyntaxToken<'_>> = written
         .into_iter()
         .chain(around)
@@ -92,9 +96,8 @@ pub fn complete(parse: &Parse, offset: u32) -> Completion {
     }
     let typed = before.last().filter(|token| token.span.end >= offset && is_word(token.kind));
     let replaces = typed.map_or(Span::new(offset, offset), |token| token.span);
-    let prefix = typed.map_or("", |token| {
-        token.text.get(..(offset - token.span.start) as usize).unwrap_or("")
-    });
+    let prefix =
+        typed.map_or("", |token| token.text.get(..(offset - token.span.start) as usize).unwrap_or(""));
     let context: Vec<SyntaxToken<'_>> = before
         .iter()
         .filter(|token| !token.kind.is_trivia() && token.span.start < replaces.start)
@@ -104,8 +107,11 @@ pub fn complete(parse: &Parse, offset: u32) -> Completion {
     let rank = |item: &CompletionItem| rank(&item.label, prefix);
     items.retain(|item| rank(item).is_some());
     items.sort_by(|one, other| {
-        (rank(one), one.kind as u8 == CompletionKind::Keyword as u8, &one.label)
-            .cmp(&(rank(other), other.kind as u8 == CompletionKind::Keyword as u8, &other.label))
+        (rank(one), one.kind as u8 == CompletionKind::Keyword as u8, &one.label).cmp(&(
+            rank(other),
+            other.kind as u8 == CompletionKind::Keyword as u8,
+            &other.label,
+        ))
     });
     items.dedup_by(|one, other| one.label == other.label);
     Completion { replaces, items }
@@ -158,12 +164,18 @@ fn place(context: &[SyntaxToken<'_>]) -> Place {
         _ => return Place::File,
     }
     match last.kind {
-        Kind::Equals | Kind::NotEquals => Place::Value(before(1).map_or(String::new(), |name| name.text.to_owned())),
-        Kind::MaintainingKeyword | Kind::WatchingKeyword | Kind::IfKeyword | Kind::TellKeyword | Kind::AskKeyword => {
-            Place::Condition
+        Kind::Equals | Kind::NotEquals => {
+            Place::Value(before(1).map_or(String::new(), |name| name.text.to_owned()))
         }
+        Kind::MaintainingKeyword
+        | Kind::WatchingKeyword
+        | Kind::IfKeyword
+        | Kind::TellKeyword
+        | Kind::AskKeyword => Place::Condition,
         Kind::NotKeyword | Kind::Bang | Kind::LeftParen => Place::Condition,
-        Kind::LeftBrace | Kind::Semicolon | Kind::Comma | Kind::DoKeyword | Kind::ThennextKeyword => Place::Statement,
+        Kind::LeftBrace | Kind::Semicolon | Kind::Comma | Kind::DoKeyword | Kind::ThennextKeyword => {
+            Place::Statement
+        }
         Kind::ChooseKeyword => Place::Nothing,
         _ => after_statement(context),
     }
@@ -207,7 +219,9 @@ fn innermost(context: &[SyntaxToken<'_>]) -> Option<(SyntaxKind, usize)> {
     let mut open: Vec<(SyntaxKind, usize)> = Vec::new();
     for (at, token) in context.iter().enumerate() {
         match token.kind {
-            SyntaxKind::LeftBrace | SyntaxKind::LeftBracket | SyntaxKind::LeftParen => open.push((token.kind, at)),
+            SyntaxKind::LeftBrace | SyntaxKind::LeftBracket | SyntaxKind::LeftParen => {
+                open.push((token.kind, at))
+            }
             SyntaxKind::RightBrace | SyntaxKind::RightBracket | SyntaxKind::RightParen => {
                 open.pop();
             }
@@ -230,7 +244,9 @@ fn in_declaration(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Option<
         (SyntaxKind::VarKeyword, _) => Place::Nothing,
         (SyntaxKind::OptionKeyword, _) => match last.kind {
             SyntaxKind::OptionKeyword => Place::Option,
-            SyntaxKind::Equals => Place::OptionValue(context.get(1).map_or(String::new(), |name| name.text.to_owned())),
+            SyntaxKind::Equals => {
+                Place::OptionValue(context.get(1).map_or(String::new(), |name| name.text.to_owned()))
+            }
             _ => Place::Nothing,
         },
         (SyntaxKind::PrimitiveKeyword, _) => in_primitive(context, last),
@@ -262,7 +278,11 @@ fn in_primitive(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
         (SyntaxKind::Name, "runs") => Place::Nothing,
         (SyntaxKind::Name, _) if moves => Place::Words(&["speed", "runs"]),
         (SyntaxKind::RightParen | SyntaxKind::RightBracket, _) => {
-            if moves { Place::Words(&["runs"]) } else { Place::Words(&["moves", "runs"]) }
+            if moves {
+                Place::Words(&["runs"])
+            } else {
+                Place::Words(&["moves", "runs"])
+            }
         }
         _ => Place::Nothing,
     }
@@ -293,9 +313,15 @@ fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<CompletionItem> {
         }
         Place::Vehicle => declared(parse, OutlineKind::Vehicle, CompletionKind::Vehicle, &mut items),
         Place::Location => declared(parse, OutlineKind::Location, CompletionKind::Location, &mut items),
-        Place::Model => items.extend(VEHICLE_MODELS.iter().map(|model| plain(model, CompletionKind::Vehicle))),
+        Place::Model => {
+            items.extend(VEHICLE_MODELS.iter().map(|model| plain(model, CompletionKind::Vehicle)))
+        }
         Place::Option => {
-            let options = [("threat_gap", "threat_gap = 1;"), ("strict", "strict = 1;"), ("time_unit", "time_unit = second;")];
+            let options = [
+                ("threat_gap", "threat_gap = 1;"),
+                ("strict", "strict = 1;"),
+                ("time_unit", "time_unit = second;"),
+            ];
             items.extend(options.map(|(label, insert)| CompletionItem {
                 kind: CompletionKind::Option,
                 ..keyword(label, insert)
@@ -381,12 +407,14 @@ fn conditions(parse: &Parse, offset: u32, items: &mut Vec<CompletionItem>) {
             items.push(CompletionItem { label: name, kind: CompletionKind::Variable, detail, insert });
         }
     }
+    let mut known: FxHashSet<String> = items.iter().map(|item| item.label.clone()).collect();
     for (_, summary) in parse.summaries() {
-        for literal in summary.literals.iter().filter(|literal| !literal.variable_is_formal) {
-            let is_typed_now = literal.is_bare;
+        // A name alone may be the very word that is being typed.
+        for literal in
+            summary.literals.iter().filter(|literal| !literal.variable_is_formal && !literal.is_bare)
+        {
             let name = parse.meaning().names.text(literal.variable);
-            let is_known = items.iter().any(|item| item.label == name.as_str());
-            if !is_typed_now && !is_known {
+            if known.insert(name.to_string()) {
                 let insert = if literal.value.is_some() { format!("{name}=") } else { name.to_string() };
                 items.push(CompletionItem {
                     label: name.to_string(),
@@ -407,11 +435,12 @@ fn values(parse: &Parse, variable: &str, items: &mut Vec<CompletionItem>) {
         items.extend(domain.iter().map(|value| plain(meaning.names.text(*value), CompletionKind::Value)));
         return;
     }
+    let mut known: FxHashSet<Symbol> = FxHashSet::default();
     for (_, summary) in parse.summaries() {
         let own = summary.literals.iter().filter(|literal| literal.variable == symbol);
         for (value, _) in own.filter_map(|literal| literal.value) {
             let text = meaning.names.text(value);
-            if items.iter().all(|item| item.label != text.as_str()) {
+            if known.insert(value) {
                 items.push(plain(text, CompletionKind::Value));
             }
         }

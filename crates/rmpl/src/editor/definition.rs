@@ -31,10 +31,12 @@ pub(super) fn references_of(parse: &Parse, name: &NameUse) -> Vec<Reference> {
     let mut found = Vec::new();
     for root in parse.declarations() {
         let span = root.span();
-        let is_concerned = if name.kind.is_local() { span == name.declaration } else { mentions(root.text(), &name.text) };
+        let is_concerned =
+            if name.kind.is_local() { span == name.declaration } else { mentions(root.text(), &name.text) };
         if is_concerned {
             let here = names_in(parse, root).into_iter().filter(|other| is_same(name, other));
-            found.extend(here.map(|other| Reference { span: other.span, is_definition: other.is_definition }));
+            found
+                .extend(here.map(|other| Reference { span: other.span, is_definition: other.is_definition }));
         }
     }
     found

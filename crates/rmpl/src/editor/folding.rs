@@ -73,7 +73,10 @@ fn runs_of_declarations(parse: &Parse) -> Vec<Fold> {
         let declaration = root.children().next().filter(|child| {
             matches!(
                 child.kind(),
-                SyntaxKind::LocationDecl | SyntaxKind::ObstacleDecl | SyntaxKind::VehicleDecl | SyntaxKind::PrimitiveDecl
+                SyntaxKind::LocationDecl
+                    | SyntaxKind::ObstacleDecl
+                    | SyntaxKind::VehicleDecl
+                    | SyntaxKind::PrimitiveDecl
             )
         });
         run = match (run, declaration) {

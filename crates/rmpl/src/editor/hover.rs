@@ -80,7 +80,11 @@ fn hover_bound(parse: &Parse, offset: u32, evaluation: &Evaluation) -> Option<Ho
     let node = path.iter().rev().find(|node| {
         matches!(
             node.kind(),
-            SyntaxKind::Sum | SyntaxKind::Product | SyntaxKind::PercentOf | SyntaxKind::Operand | SyntaxKind::Grouped
+            SyntaxKind::Sum
+                | SyntaxKind::Product
+                | SyntaxKind::PercentOf
+                | SyntaxKind::Operand
+                | SyntaxKind::Grouped
         )
     })?;
     // The whole side says more than its parts, unless the pointer is on a name.
@@ -107,12 +111,23 @@ fn hover_bound(parse: &Parse, offset: u32, evaluation: &Evaluation) -> Option<Ho
         if let Some(result) = value(shown, invocation) {
             lines.push(format!("= **{result}** in {}", invocation.occurrence));
         }
-        if is_name && shown.span() != side.span() && let Some(result) = value(side, invocation) {
+        if is_name
+            && shown.span() != side.span()
+            && let Some(result) = value(side, invocation)
+        {
             lines.push(format!("`{}` = **{result}** in {}", side.text(), invocation.occurrence));
         }
     }
     if lines.len() == 1 {
-        match value(shown, &Invocation { activity: SmolStr::default(), occurrence: SmolStr::default(), lower: Rational::ZERO, upper: Bound::Infinite }) {
+        match value(
+            shown,
+            &Invocation {
+                activity: SmolStr::default(),
+                occurrence: SmolStr::default(),
+                lower: Rational::ZERO,
+                upper: Bound::Infinite,
+            },
+        ) {
             Some(result) if !is_name && shown.kind() != SyntaxKind::Operand && !mentions_name(shown) => {
                 lines.push(format!("= **{result}**"));
             }
@@ -222,14 +237,22 @@ fn word(token: SyntaxToken<'_>) -> Option<&'static str> {
         SyntaxKind::IfKeyword | SyntaxKind::ThennextKeyword => {
             "`if c thennext A`: `c` is required at the instant when A starts. Bounds behind it belong to A."
         }
-        SyntaxKind::DelayKeyword => "`delay[l,u]`: nothing happens for this long; [0,inf] if no bounds are written.",
+        SyntaxKind::DelayKeyword => {
+            "`delay[l,u]`: nothing happens for this long; [0,inf] if no bounds are written."
+        }
         SyntaxKind::NotKeyword | SyntaxKind::Bang => "`not c`, `!c`: the condition is false.",
-        SyntaxKind::TellKeyword => "`tell c[l,u]`: asserts `c` for this long; [0,0] if no bounds are written.",
+        SyntaxKind::TellKeyword => {
+            "`tell c[l,u]`: asserts `c` for this long; [0,0] if no bounds are written."
+        }
         SyntaxKind::AskKeyword => "`ask c[l,u]`: requires `c` for this long.",
         SyntaxKind::VarKeyword => "`var X : {V1, V2};` declares a state variable and its values.",
-        SyntaxKind::PrimitiveKeyword => "`primitive A(p)[l,u];` declares an activity that is not taken apart.",
+        SyntaxKind::PrimitiveKeyword => {
+            "`primitive A(p)[l,u];` declares an activity that is not taken apart."
+        }
         SyntaxKind::ScenarioKeyword => "`scenario S[l,u] = { … }`: what is planned, and its horizon.",
-        SyntaxKind::OptionKeyword => "`option name = value;` The options are `threat_gap`, `strict` and `time_unit`.",
+        SyntaxKind::OptionKeyword => {
+            "`option name = value;` The options are `threat_gap`, `strict` and `time_unit`."
+        }
         SyntaxKind::Infinity => "`inf`: no upper bound.",
         SyntaxKind::Name => match token.text {
             "moves" => "`moves V1, V2`: the activity is a traverse; the first vehicle leads.",

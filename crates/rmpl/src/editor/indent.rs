@@ -54,9 +54,11 @@ fn open_braces(parse: &Parse, offset: u32) -> usize {
     // The end of a declaration may still be inside a brace that is not closed yet.
     let root = offset.checked_sub(1).and_then(|before| parse.declaration_at(before));
     let tokens = root.into_iter().flat_map(|root| root.tokens());
-    tokens.take_while(|token| token.span.end <= offset).fold(0_usize, |depth, token: SyntaxToken<'_>| match token.kind {
-        SyntaxKind::LeftBrace => depth + 1,
-        SyntaxKind::RightBrace => depth.saturating_sub(1),
-        _ => depth,
+    tokens.take_while(|token| token.span.end <= offset).fold(0_usize, |depth, token: SyntaxToken<'_>| {
+        match token.kind {
+            SyntaxKind::LeftBrace => depth + 1,
+            SyntaxKind::RightBrace => depth.saturating_sub(1),
+            _ => depth,
+        }
     })
 }

@@ -64,9 +64,9 @@ pub fn rename(parse: &Parse, offset: u32, new_name: &str) -> Result<Vec<Edit>, R
 }
 
 fn check(name: &NameUse, new_name: &str) -> Result<(), RenameProblem> {
-    let parts_are_words = new_name
-        .split('-')
-        .all(|part| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_'));
+    let parts_are_words = new_name.split('-').all(|part| {
+        !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
+    });
     if !parts_are_words || new_name.starts_with(|letter: char| letter.is_ascii_digit()) {
         return Err(RenameProblem::NoName);
     }

@@ -7,9 +7,11 @@ use crate::syntax::SyntaxKind;
 /// The smallest piece of structure that properly contains `selection`: a word, a condition, a statement, a block, a
 /// declaration, the file. `None` when everything is selected.
 pub fn wider_selection(parse: &Parse, selection: Span) -> Option<Span> {
-    let contains = |span: Span| span.start <= selection.start && selection.end <= span.end && span != selection;
+    let contains =
+        |span: Span| span.start <= selection.start && selection.end <= span.end && span != selection;
     let whole = Span::new(0, parse.text().len() as u32);
-    let inside = parse.declarations_in(selection).filter(|root| contains(root.span()) || root.span() == selection);
+    let inside =
+        parse.declarations_in(selection).filter(|root| contains(root.span()) || root.span() == selection);
     let mut candidates: Vec<(Span, bool)> = Vec::new();
     for root in inside {
         let words = root.tokens().filter(|token| token.kind != SyntaxKind::Whitespace);
@@ -23,5 +25,7 @@ pub fn wider_selection(parse: &Parse, selection: Span) -> Option<Span> {
 }
 
 fn is_word(kind: SyntaxKind) -> bool {
-    kind.is_keyword() || kind.is_comment() || matches!(kind, SyntaxKind::Name | SyntaxKind::Number | SyntaxKind::String)
+    kind.is_keyword()
+        || kind.is_comment()
+        || matches!(kind, SyntaxKind::Name | SyntaxKind::Number | SyntaxKind::String)
 }

@@ -30,7 +30,8 @@ impl Layout {
 /// Lays out a declaration without mistakes.
 pub(super) fn layout(root: SyntaxNode<'_>) -> Layout {
     let tokens: Vec<SyntaxToken<'_>> = root.tokens().collect();
-    let mut layout = Layout { breaks: BTreeMap::new(), places: vec![Place::Plain; tokens.len()], widths: Vec::new() };
+    let mut layout =
+        Layout { breaks: BTreeMap::new(), places: vec![Place::Plain; tokens.len()], widths: Vec::new() };
     for node in root.descendants() {
         layout.note_places(node);
     }
@@ -48,7 +49,9 @@ pub(super) fn layout(root: SyntaxNode<'_>) -> Layout {
 impl Layout {
     fn note_places(&mut self, node: SyntaxNode<'_>) {
         let place = match node.kind() {
-            SyntaxKind::Bounds | SyntaxKind::Sum | SyntaxKind::Product | SyntaxKind::PercentOf => Place::Bounds,
+            SyntaxKind::Bounds | SyntaxKind::Sum | SyntaxKind::Product | SyntaxKind::PercentOf => {
+                Place::Bounds
+            }
             SyntaxKind::Grouped | SyntaxKind::Operand => Place::Bounds,
             SyntaxKind::Condition => Place::Condition,
             SyntaxKind::Coordinates => Place::Coordinates,
@@ -56,8 +59,11 @@ impl Layout {
             SyntaxKind::Argument => Place::Argument,
             SyntaxKind::Statement => {
                 let core = node.children().next();
-                let is_tight = core.is_some_and(|core| matches!(core.kind(), SyntaxKind::Call | SyntaxKind::Delay));
-                if let Some(bracket) = node.child(SyntaxKind::Bounds).and_then(first_token).filter(|_| !is_tight) {
+                let is_tight =
+                    core.is_some_and(|core| matches!(core.kind(), SyntaxKind::Call | SyntaxKind::Delay));
+                if let Some(bracket) =
+                    node.child(SyntaxKind::Bounds).and_then(first_token).filter(|_| !is_tight)
+                {
                     self.set(bracket, Place::SpacedBounds);
                 }
                 return;

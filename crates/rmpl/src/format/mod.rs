@@ -75,7 +75,10 @@ fn print(parsed: &Parse) -> String {
 
 /// Whether both texts have the same tokens, comments and trees.
 fn is_same(one: &Parse, other: &Parse) -> bool {
-    one.declarations().map(shape).filter(is_something).eq(other.declarations().map(shape).filter(is_something))
+    one.declarations()
+        .map(shape)
+        .filter(is_something)
+        .eq(other.declarations().map(shape).filter(is_something))
 }
 
 type Shape<'a> = (Vec<(SyntaxKind, usize)>, Vec<(SyntaxKind, &'a str)>);
@@ -121,7 +124,13 @@ impl Printer {
             if token.kind.is_comment() {
                 self.comment(*token, lines_before, next_break(&layout, &tokens, at), previous.is_none());
             } else {
-                self.token(*token, at, previous.and_then(|at| tokens.get(at)).copied(), &layout, lines_before);
+                self.token(
+                    *token,
+                    at,
+                    previous.and_then(|at| tokens.get(at)).copied(),
+                    &layout,
+                    lines_before,
+                );
                 previous = Some(at);
             }
             lines_before = 0;
@@ -138,7 +147,8 @@ impl Printer {
         lines_before: usize,
     ) {
         if let Some(indent) = layout.break_before(at) {
-            let wants_blank = lines_before > 1 && token.kind != SyntaxKind::RightBrace && !self.after_opening();
+            let wants_blank =
+                lines_before > 1 && token.kind != SyntaxKind::RightBrace && !self.after_opening();
             self.new_line(indent, wants_blank);
         } else if self.must_end_line {
             let indent = self.indent + INDENT;
@@ -219,7 +229,8 @@ impl Printer {
 
 /// The indentation of the step or closing brace that follows the comment at `at`: comments stand at their step.
 fn next_break(layout: &Layout, tokens: &[SyntaxToken<'_>], at: usize) -> Option<usize> {
-    let next = (at..tokens.len()).find(|&index| tokens.get(index).is_some_and(|token| !token.kind.is_trivia()));
+    let next =
+        (at..tokens.len()).find(|&index| tokens.get(index).is_some_and(|token| !token.kind.is_trivia()));
     let Some(next) = next else { return Some(0) };
     let indent = layout.break_before(next)?;
     let closes = tokens.get(next).is_some_and(|token| token.kind == SyntaxKind::RightBrace);

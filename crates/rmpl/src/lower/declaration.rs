@@ -107,7 +107,8 @@ fn coordinates(node: SyntaxNode<'_>) -> Option<(Vec<f64>, Span)> {
     let node = node.child(SyntaxKind::Coordinates)?;
     let open = node.token(SyntaxKind::LeftParen)?;
     let end = node.token(SyntaxKind::RightParen).map_or(node.span().end, |close| close.span.start);
-    let metres = numbers(node).into_iter().map(|(negative, magnitude, _)| signed(negative, magnitude)).collect();
+    let metres =
+        numbers(node).into_iter().map(|(negative, magnitude, _)| signed(negative, magnitude)).collect();
     Some((metres, Span::new(open.span.end, end)))
 }
 
@@ -143,7 +144,10 @@ pub(super) fn obstacle(node: SyntaxNode<'_>) -> Option<ObstacleDecl> {
     let shape = match (shape.text.as_str(), metres.as_slice()) {
         ("circle", &[east, north, radius_m]) => ObstacleShape::Circle { center_m: [east, north], radius_m },
         ("polygon", corners) if corners.len() >= 6 && corners.len() % 2 == 0 => ObstacleShape::Polygon {
-            corners_m: corners.chunks_exact(2).filter_map(|corner| <[f64; 2]>::try_from(corner).ok()).collect(),
+            corners_m: corners
+                .chunks_exact(2)
+                .filter_map(|corner| <[f64; 2]>::try_from(corner).ok())
+                .collect(),
         },
         _ => return None,
     };

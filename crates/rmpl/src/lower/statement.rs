@@ -2,9 +2,7 @@
 
 use smol_str::SmolStr;
 
-use crate::program::{
-    Argument, ArgumentValue, Condition, LabelMode, Name, Statement, StatementKind,
-};
+use crate::program::{Argument, ArgumentValue, Condition, LabelMode, Name, Statement, StatementKind};
 use crate::rational::Rational;
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode};
@@ -61,11 +59,18 @@ impl Lowering<'_> {
             SyntaxKind::Call => {
                 let name = name_of(core.token(SyntaxKind::Name)?);
                 let arguments = core.child(SyntaxKind::Arguments);
-                StatementKind::Call(name, arguments.into_iter().flat_map(SyntaxNode::children).filter_map(argument).collect())
+                StatementKind::Call(
+                    name,
+                    arguments.into_iter().flat_map(SyntaxNode::children).filter_map(argument).collect(),
+                )
             }
             SyntaxKind::BareName => self.bare_name(name_of(core.token(SyntaxKind::Name)?)),
             SyntaxKind::Assertion => {
-                let mode = if core.token(SyntaxKind::AskKeyword).is_some() { LabelMode::Ask } else { LabelMode::Tell };
+                let mode = if core.token(SyntaxKind::AskKeyword).is_some() {
+                    LabelMode::Ask
+                } else {
+                    LabelMode::Tell
+                };
                 StatementKind::Condition(mode, condition(core.child(SyntaxKind::Condition)?)?)
             }
             SyntaxKind::Delay => StatementKind::Delay,
@@ -80,7 +85,10 @@ impl Lowering<'_> {
             return StatementKind::Call(name, Vec::new());
         }
         let span = name.span;
-        StatementKind::Condition(LabelMode::Tell, Condition { variable: name, value: None, negated: false, span })
+        StatementKind::Condition(
+            LabelMode::Tell,
+            Condition { variable: name, value: None, negated: false, span },
+        )
     }
 
     fn choose(&mut self, node: SyntaxNode<'_>) -> Option<StatementKind> {
@@ -150,7 +158,12 @@ fn condition(node: SyntaxNode<'_>) -> Option<Condition> {
             _ => {}
         }
     }
-    (compared == value.is_some()).then_some(Condition { variable: variable?, value, negated, span: node.span() })
+    (compared == value.is_some()).then_some(Condition {
+        variable: variable?,
+        value,
+        negated,
+        span: node.span(),
+    })
 }
 
 /// A number with its sign, in metres.

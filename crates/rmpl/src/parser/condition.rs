@@ -60,7 +60,8 @@ impl Parser<'_> {
         }
         if !self.eat(SyntaxKind::Name) && !self.eat(SyntaxKind::Number) {
             self.report_expected("a value");
-            if self.kind.is_keyword() && !self.at_statement_end() && self.kind != SyntaxKind::ThennextKeyword {
+            if self.kind.is_keyword() && !self.at_statement_end() && self.kind != SyntaxKind::ThennextKeyword
+            {
                 self.bump();
                 self.hush();
             }

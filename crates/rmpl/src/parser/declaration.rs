@@ -65,7 +65,8 @@ impl Parser<'_> {
         loop {
             if !self.eat(SyntaxKind::Name) {
                 self.report_expected(wanted);
-                if self.at(SyntaxKind::Number) || (self.kind.is_keyword() && !self.at_declaration_at_line_start())
+                if self.at(SyntaxKind::Number)
+                    || (self.kind.is_keyword() && !self.at_declaration_at_line_start())
                 {
                     self.bump();
                     self.hush();

@@ -59,8 +59,10 @@ impl Parser<'_> {
 
     /// Whether the current token ends a statement or a group of them.
     pub(super) fn at_statement_end(&mut self) -> bool {
-        matches!(self.kind, SyntaxKind::Semicolon | SyntaxKind::Comma | SyntaxKind::RightBrace | SyntaxKind::End)
-            || self.at_declaration_at_line_start()
+        matches!(
+            self.kind,
+            SyntaxKind::Semicolon | SyntaxKind::Comma | SyntaxKind::RightBrace | SyntaxKind::End
+        ) || self.at_declaration_at_line_start()
     }
 
     /// Whether a declaration certainly begins here: in a block, this means that a brace was left open.
@@ -70,7 +72,9 @@ impl Parser<'_> {
             | SyntaxKind::PrimitiveKeyword
             | SyntaxKind::ScenarioKeyword
             | SyntaxKind::OptionKeyword => true,
-            SyntaxKind::Name => self.begins_line() && (self.at_world_declaration() || self.at_definition(true)),
+            SyntaxKind::Name => {
+                self.begins_line() && (self.at_world_declaration() || self.at_definition(true))
+            }
             _ => false,
         }
     }
@@ -134,7 +138,9 @@ impl Parser<'_> {
         }
         match self.current_text() {
             "terrain" => self.peek() == SyntaxKind::String || self.at_definition_of_nothing(),
-            "location" | "obstacle" | "vehicle" => self.peek() == SyntaxKind::Name || self.at_definition_of_nothing(),
+            "location" | "obstacle" | "vehicle" => {
+                self.peek() == SyntaxKind::Name || self.at_definition_of_nothing()
+            }
             _ => false,
         }
     }

@@ -266,8 +266,10 @@ impl Parser<'_> {
         }
         if !self.at(SyntaxKind::RightParen) && self.reported_at == Some(self.current) {
             self.skip_until(|parser| {
-                matches!(parser.kind, SyntaxKind::RightParen | SyntaxKind::LeftBracket | SyntaxKind::LeftBrace)
-                    || (parser.at_statement_end() && !parser.at(SyntaxKind::Comma))
+                matches!(
+                    parser.kind,
+                    SyntaxKind::RightParen | SyntaxKind::LeftBracket | SyntaxKind::LeftBrace
+                ) || (parser.at_statement_end() && !parser.at(SyntaxKind::Comma))
             });
         }
         self.expect_behind(SyntaxKind::RightParen, ")");

@@ -47,7 +47,9 @@ impl Parser<'_> {
     fn obstacle(&mut self) -> SyntaxKind {
         self.declared_name("the name of the obstacle");
         if self.eat_word("circle") {
-            self.coordinates("3 numbers: metres east and north of the centre, and the radius", |count| count == 3);
+            self.coordinates("3 numbers: metres east and north of the centre, and the radius", |count| {
+                count == 3
+            });
         } else if self.eat_word("polygon") {
             let wanted = "an east and a north for each of at least three corners";
             self.coordinates(wanted, |count| count >= 6 && count % 2 == 0);
@@ -88,7 +90,9 @@ impl Parser<'_> {
         if self.at_word("speed") {
             let speed = self.open();
             self.bump();
-            self.coordinates("2 speeds: the least and the greatest, in metres per second", |count| count == 2);
+            self.coordinates("2 speeds: the least and the greatest, in metres per second", |count| {
+                count == 2
+            });
             self.close(speed, SyntaxKind::Speed);
         }
         self.close(node, SyntaxKind::Moves);

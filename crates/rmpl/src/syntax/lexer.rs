@@ -231,11 +231,14 @@ impl<'t> Lexer<'t> {
             self.position = start + '∞'.len_utf8();
             return SyntaxKind::Infinity;
         }
-        if let Some(blank) = rest.chars().next().filter(|&letter| letter == '\u{feff}' || letter.is_whitespace()) {
+        if let Some(blank) =
+            rest.chars().next().filter(|&letter| letter == '\u{feff}' || letter.is_whitespace())
+        {
             self.position = start + blank.len_utf8();
             return SyntaxKind::Whitespace;
         }
-        let length = rest.find(begins_token).unwrap_or(rest.len()).max(rest.chars().next().map_or(1, char::len_utf8));
+        let length =
+            rest.find(begins_token).unwrap_or(rest.len()).max(rest.chars().next().map_or(1, char::len_utf8));
         self.position = start + length;
         self.problem(LexProblemKind::Unknown, start);
         SyntaxKind::Unknown

@@ -191,6 +191,11 @@ impl<'a> SyntaxNode<'a> {
         let token = self.tree.tokens.get(index as usize).copied();
         let token = token.unwrap_or(Token { kind: SyntaxKind::End, end: start });
         let text = self.text.get(start as usize..token.end as usize).unwrap_or("");
-        SyntaxToken { kind: token.kind, text, span: Span::new(self.base + start, self.base + token.end), index }
+        SyntaxToken {
+            kind: token.kind,
+            text,
+            span: Span::new(self.base + start, self.base + token.end),
+            index,
+        }
     }
 }

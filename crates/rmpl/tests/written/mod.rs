@@ -14,7 +14,8 @@ struct Writer {
     out: String,
 }
 
-const BLANKS: [&str; 10] = [" ", " ", " ", " ", "  ", "\n", "\n\n\n", " /* note */ ", " // note\n", "\n  // own line\n"];
+const BLANKS: [&str; 10] =
+    [" ", " ", " ", " ", "  ", "\n", "\n\n\n", " /* note */ ", " // note\n", "\n  // own line\n"];
 const NAMES: [&str; 6] = ["A", "B1", "Drive-To", "P_OK", "Q", "x_1"];
 
 impl Writer {
