@@ -1,0 +1,152 @@
+//! Random missions with random disturbances: what was executed keeps to the rules, or the run says why it stopped.
+
+use std::sync::Arc;
+
+use executive::{Disturbance, Ending, Facts, Happening, Replanner, RunOutcome, World, run};
+use rmpl::Rational;
+use tpn::generate::{Recipe, Rng, Tightness};
+use tpn::{Network, OccurrenceKind, Plan, Top};
+
+/// Plans again without paths, and keeps the facts it was given.
+struct Kirk {
+    network: Arc<Network>,
+    facts: Vec<Facts>,
+}
+
+impl Replanner for Kirk {
+    fn replan(&mut self, facts: &Facts) -> Result<(Arc<Network>, Plan), String> {
+        self.facts.push(facts.clone());
+        let network = Arc::new(facts.apply(&self.network, self.network.nodes.len()));
+        let options = kirk::Options { relax: false, ..kirk::Options::default() };
+        let outcome = kirk::plan(&network, &options, &mut kirk::Unlimited);
+        match outcome.plans.into_iter().next() {
+            Some(plan) => Ok((network, plan)),
+            None => Err("no plan".to_owned()),
+        }
+    }
+}
+
+fn compiled(source: &str) -> Arc<Network> {
+    let program = rmpl::parse(source).program();
+    let (network, diagnostics) = tpn::compile(&program, &Top::Scenario(None));
+    Arc::new(network.unwrap_or_else(|| panic!("{diagnostics:?}")))
+}
+
+fn execute(network: &Arc<Network>, disturbances: &[Disturbance]) -> (RunOutcome, Vec<Facts>) {
+    let outcome = kirk::plan(network, &kirk::Options::default(), &mut kirk::Unlimited);
+    let plan = outcome.plans.into_iter().next().expect("the mission has a plan");
+    let mut kirk = Kirk { network: Arc::clone(network), facts: Vec::new() };
+    let world = World::new(disturbances);
+    let outcome = run(Arc::clone(network), plan, network.nodes.len(), &world, &mut kirk).expect("its times fit");
+    (outcome, kirk.facts)
+}
+
+fn random_disturbances(network: &Network, rng: &mut Rng) -> Vec<Disturbance> {
+    let mut disturbances = Vec::new();
+    for occurrence in &network.occurrences {
+        if !rng.chance(12) {
+            continue;
+        }
+        let name = occurrence.name.clone();
+        let time = Rational::from(rng.between(0, 60));
+        match occurrence.kind {
+            OccurrenceKind::Primitive => {
+                disturbances.push(Disturbance::Duration { activity: name, duration: time / 3 });
+            }
+            OccurrenceKind::Assertion if rng.chance(50) => {
+                disturbances.push(Disturbance::Withdrawn { condition: name, at: time });
+            }
+            OccurrenceKind::Assertion => disturbances.push(Disturbance::Late { condition: name, at: time }),
+            _ => {}
+        }
+    }
+    disturbances
+}
+
+#[test]
+fn undisturbed_runs_follow_the_earliest_schedule_and_pass_the_schedule_check() {
+    for seed in 0..40 {
+        let source = tpn::generate::mission(Recipe { nodes: 40, tightness: Tightness::Feasible, seed });
+        let network = compiled(&source);
+        let (outcome, facts) = execute(&network, &[]);
+        assert_eq!(outcome.ending, Ending::Finished, "seed {seed}: {:?}", outcome.log.last());
+        assert!(facts.is_empty(), "seed {seed} planned again");
+        assert_eq!(outcome.times, verify::earliest_schedule(&outcome.plan), "seed {seed}");
+        let verdict = verify::check_schedule(&network, &outcome.plan, &outcome.times);
+        assert!(verdict.valid, "seed {seed}: {:?}", verdict.violations);
+    }
+}
+
+#[test]
+fn disturbed_runs_keep_the_rules_or_report_a_violation_and_stop() {
+    let (mut finished, mut stopped, mut replanned) = (0, 0, 0);
+    for seed in 0..150 {
+        let source = tpn::generate::mission(Recipe { nodes: 40, tightness: Tightness::Feasible, seed });
+        let network = compiled(&source);
+        let mut rng = Rng::new(seed);
+        let disturbances = random_disturbances(&network, &mut rng);
+        let (outcome, facts) = execute(&network, &disturbances);
+        replanned += facts.len();
+        match outcome.ending {
+            Ending::Finished => {
+                finished += 1;
+                let verdict = verify::check_schedule(&outcome.network, &outcome.plan, &outcome.times);
+                assert!(verdict.valid, "seed {seed}: {:?}", verdict.violations);
+            }
+            Ending::Stopped => {
+                stopped += 1;
+                let has_violation =
+                    outcome.log.iter().any(|entry| matches!(entry.happening, Happening::Violation { .. }));
+                assert!(has_violation, "seed {seed}: {:?}", outcome.log.last());
+            }
+        }
+    }
+    assert!(finished > 20 && stopped > 5 && replanned > 20, "{finished} finished, {stopped} stopped, {replanned}");
+}
+
+#[test]
+fn planning_again_never_changes_the_past_and_time_never_goes_back() {
+    for seed in 0..150 {
+        let source = tpn::generate::mission(Recipe { nodes: 40, tightness: Tightness::Feasible, seed });
+        let network = compiled(&source);
+        let disturbances = random_disturbances(&network, &mut Rng::new(seed));
+        let (outcome, facts) = execute(&network, &disturbances);
+        assert!(outcome.log.is_sorted_by_key(|entry| entry.time), "seed {seed}");
+        for pair in facts.windows(2) {
+            for happened in &pair[0].happened {
+                assert!(pair[1].happened.contains(happened), "seed {seed}: {happened:?} changed");
+            }
+        }
+        if let (Some(last), Ending::Finished) = (facts.last(), outcome.ending) {
+            for &(node, time) in &last.happened {
+                assert_eq!(outcome.times[node.index()], Some(time), "seed {seed}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_same_disturbances_give_the_same_log() {
+    for seed in 0..40 {
+        let source = tpn::generate::mission(Recipe { nodes: 40, tightness: Tightness::Feasible, seed });
+        let network = compiled(&source);
+        let disturbances = random_disturbances(&network, &mut Rng::new(seed));
+        assert_eq!(execute(&network, &disturbances), execute(&network, &disturbances), "seed {seed}");
+    }
+}
+
+#[test]
+fn a_window_withdrawn_while_the_rovers_wait_sends_them_the_other_way() {
+    let source = include_str!("../../../tests/conformance/t03_enroute_both_paths.rmpl");
+    let network = compiled(&source.replace("delay[10,inf]", "delay[40,inf]"));
+    let withdrawn = Disturbance::Withdrawn { condition: "Tell(PATH1=OK)#1".into(), at: Rational::from(30) };
+    let (outcome, facts) = execute(&network, &[withdrawn]);
+    assert_eq!(outcome.ending, Ending::Finished);
+    assert_eq!(facts.len(), 1);
+    assert_eq!(outcome.plan.choices[0].alternative, 1);
+    let changes = outcome.log.iter().find_map(|entry| match &entry.happening {
+        Happening::Replanned { changes } => Some((entry.time, changes.clone())),
+        _ => None,
+    });
+    assert_eq!(changes, Some((Rational::from(30), vec!["D1: 0 → 1".to_owned()])));
+}
