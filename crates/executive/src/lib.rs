@@ -6,6 +6,7 @@ pub mod dispatch;
 pub mod exact;
 pub mod facts;
 pub mod log;
+pub mod model_based;
 pub mod plan_network;
 pub mod progress;
 pub mod run;

@@ -5,7 +5,8 @@
 /// Distance is the number of letters inserted, removed, replaced or swapped with a neighbour, where case counts half.
 pub fn nearest<'name>(word: &str, known: impl IntoIterator<Item = &'name str>) -> Option<&'name str> {
     let most = match word.chars().count() {
-        0..=2 => 1,
+        0..=1 => 1,
+        2 => 2,
         3..=5 => 3,
         _ => 5,
     };

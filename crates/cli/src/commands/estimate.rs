@@ -1,0 +1,160 @@
+//! `enroute estimate`: one belief update.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context as _, anyhow};
+use mission::Problem;
+use plant::{Belief, EstimateError, Model, State, conflicts, update_best, update_exact};
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use crate::input::{read_json, read_text};
+use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
+
+/// The search for likely states gives up after this many nodes.
+const MOST_NODES: u32 = 1_000_000;
+
+/// Updates a belief about a plant by commands and observations.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The plant's model; `-` is standard input.
+    model: PathBuf,
+    /// The belief before: `[{"state":{component:mode…},"probability":"p/q"}…]`.
+    #[arg(long, value_name = "P.json")]
+    prior: PathBuf,
+    /// The commands: `{component:command}`; a component left out gets its idle command.
+    #[arg(long, value_name = "C.json")]
+    commands: PathBuf,
+    /// The observations: `{"EngineA.thrust":"full"}`.
+    #[arg(long, value_name = "O.json")]
+    observations: PathBuf,
+    /// Finds only the K most likely states, best first; without it, all of them.
+    #[arg(long, value_name = "K")]
+    k: Option<usize>,
+    /// For whom the answer is.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+#[derive(Deserialize)]
+struct Believed {
+    state: BTreeMap<String, String>,
+    probability: Value,
+}
+
+/// The names of a JSON object of strings; `null` stands for nothing.
+fn names(given: &BTreeMap<String, Option<String>>) -> impl Iterator<Item = (&str, &str)> {
+    given.iter().filter_map(|(name, value)| Some((name.as_str(), value.as_deref()?)))
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let Some((model, problems)) = load_model(&args.model, args.format, "estimate")? else {
+        return Ok(exit(WRONG));
+    };
+    let prior = prior(&model, &read_json::<Vec<Believed>>(&args.prior)?)
+        .with_context(|| format!("{} is no belief about this plant", args.prior.display()))?;
+    let given: BTreeMap<String, Option<String>> = read_json(&args.commands)?;
+    let commands = model.commands_from_names(names(&given)).map_err(|error| anyhow!(error))?;
+    let given: BTreeMap<String, Option<String>> = read_json(&args.observations)?;
+    let observation = model.observation_from_names(names(&given)).map_err(|error| anyhow!(error))?;
+    let result = match args.k {
+        None => update_exact(&model, &prior, &commands, &observation).map(|belief| (belief, false)),
+        Some(most) => update_best(&model, &prior, &commands, &observation, most.max(1), MOST_NODES)
+            .map(|(belief, statistics)| (belief, statistics.limit_reached)),
+    };
+    let (posterior, limit_reached) = match result {
+        Ok((belief, limit_reached)) => (Some(belief), limit_reached),
+        Err(EstimateError::Unexplained) => (None, false),
+        Err(error) => return Err(error.into()),
+    };
+    let why = conflicts(&model, prior.most_likely(), &commands, &observation, 8)?;
+    let why: Vec<String> = why.iter().map(|conflict| conflict.describe(&model)).collect();
+    match args.format {
+        Format::Json => {
+            let body = json!({
+                "posterior": posterior.as_ref().map_or_else(|| json!([]), |belief| belief_json(&model, belief)),
+                "conflicts": why,
+            });
+            print_json(&document("estimate", &problems, body))?;
+        }
+        Format::Text => print_text(&belief_text(&model, posterior.as_ref(), &why))?,
+    }
+    Ok(exit(match posterior {
+        None => NO,
+        Some(_) if limit_reached => LIMIT,
+        Some(_) => YES,
+    }))
+}
+
+/// The model of a file; `None` after having reported what is wrong with it.
+pub fn load_model(
+    path: &std::path::Path,
+    format: Format,
+    kind: &str,
+) -> anyhow::Result<Option<(Model, Vec<Problem>)>> {
+    let source = read_text(path)?;
+    let parsed = rmpl::control::parse(&source);
+    let (model, found) = if parsed.has_errors() { (None, Vec::new()) } else { plant::compile(&parsed.file) };
+    let mut diagnostics = parsed.diagnostics;
+    diagnostics.extend(found);
+    if model.is_none() && diagnostics.is_empty() {
+        diagnostics.push(
+            rmpl::Diagnostic::error(
+                rmpl::Code("E-UNDEF"),
+                rmpl::Span::default(),
+                "the file declares no component",
+            )
+            .with_hint("declare components by DEFCLASS and DEFINSTANCE"),
+        );
+    }
+    let problems = Problem::all(&diagnostics, &source);
+    if format == Format::Text {
+        print_problems(&path.display().to_string(), &source, &problems)?;
+    } else if model.is_none() {
+        print_json(&document(kind, &problems, json!({})))?;
+    }
+    Ok(model.map(|model| (model, problems)))
+}
+
+fn prior(model: &Model, given: &[Believed]) -> anyhow::Result<Belief> {
+    let mut states: Vec<(State, plant::Probability)> = Vec::new();
+    for believed in given {
+        let modes = believed.state.iter().map(|(name, mode)| (name.as_str(), mode.as_str()));
+        let state = model.state_from_names(modes).map_err(|error| anyhow!(error))?;
+        let text = match &believed.probability {
+            Value::String(text) => text.clone(),
+            other => other.to_string(),
+        };
+        let probability = plant::probability::parse_exact(&text).ok_or_else(|| {
+            anyhow!("`{text}` is no probability: write a decimal or a fraction such as \"396/397\"")
+        })?;
+        states.push((state, probability));
+    }
+    Belief::from_probabilities(states).context("no state has a probability above zero")
+}
+
+fn belief_json(model: &Model, belief: &Belief) -> Value {
+    let states = belief.states();
+    states
+        .map(|(state, probability)| json!({ "state": model.state_names(state), "probability": probability.to_string() }))
+        .collect()
+}
+
+fn belief_text(model: &Model, belief: Option<&Belief>, why: &[String]) -> String {
+    let mut out = String::new();
+    match belief {
+        None => out.push_str("No state that was believed possible explains the observations.\n"),
+        Some(belief) => {
+            for (state, probability) in belief.states() {
+                out.push_str(&format!("{probability}  {}\n", model.describe(state)));
+            }
+        }
+    }
+    for conflict in why {
+        out.push_str(&format!("because {conflict}\n"));
+    }
+    out
+}

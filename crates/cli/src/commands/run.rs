@@ -1,0 +1,204 @@
+//! `enroute run`: a control program in a closed loop with a simulated plant.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{anyhow, bail};
+use executive::model_based::{Estimation, Options, Run, StepInput, StepRecord, System, monte_carlo};
+use mission::Problem;
+use serde_json::{Map, Value, json};
+
+use crate::input::read_text;
+use crate::output::{Format, LIMIT, WRONG, YES, document, exit, print_json, print_problems, print_text};
+
+/// Runs a control program against a plant model: commands, estimates and what happens.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The control program; `-` is standard input.
+    file: PathBuf,
+    /// The plant; without it, the program's own file must declare one.
+    #[arg(long, value_name = "M.rmpl")]
+    model: Option<PathBuf>,
+    /// Stops after so many steps, with exit status 3.
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    steps: u32,
+    /// Puts a component into a mode in a step, as in `3:EngineA=Failed`; may be given often.
+    #[arg(long, value_name = "STEP:COMPONENT=MODE")]
+    inject: Vec<String>,
+    /// Lets components fail by chance with their probabilities.
+    #[arg(long, value_name = "SEED")]
+    seed: Option<u64>,
+    /// Keeps only so many of the most likely states.
+    #[arg(long, value_name = "K")]
+    k: Option<usize>,
+    /// Runs so many times by chance instead, and says how often the program reaches its end.
+    #[arg(long, value_name = "RUNS")]
+    monte_carlo: Option<u32>,
+    /// For whom the answer is.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let source = read_text(&args.file)?;
+    let model = args.model.as_deref().map(read_text).transpose()?;
+    let compilation = System::compile(&source, model.as_deref());
+    let mut problems = Problem::all(&compilation.program_diagnostics, &source);
+    let model_problems = Problem::all(&compilation.model_diagnostics, model.as_deref().unwrap_or(""));
+    if args.format == Format::Text {
+        print_problems(&args.file.display().to_string(), &source, &problems)?;
+        if let (Some(path), Some(text)) = (&args.model, &model) {
+            print_problems(&path.display().to_string(), text, &model_problems)?;
+        }
+    }
+    problems.extend(model_problems);
+    let Some(system) = &compilation.system else {
+        if args.format == Format::Json {
+            print_json(&document("run", &problems, json!({})))?;
+        }
+        return Ok(exit(WRONG));
+    };
+    let options = Options { estimation: args.k.map(Estimation::Best), seed: args.seed, ..Options::default() };
+    if let Some(runs) = args.monte_carlo {
+        return chance(args, system, options, runs, &problems);
+    }
+    let inputs = injections(system, &args.inject)?;
+    let mut run = Run::new(system, options);
+    while !run.is_done() && run.records().len() < args.steps as usize {
+        let step = run.records().len() as u32 + 1;
+        run.step(inputs.get(&step).unwrap_or(&StepInput::default()))?;
+    }
+    match args.format {
+        Format::Json => print_json(&document("run", &problems, run_json(system, &run)))?,
+        Format::Text => print_text(&run_text(system, &run))?,
+    }
+    Ok(exit(if run.is_done() { YES } else { LIMIT }))
+}
+
+fn injections(system: &System, given: &[String]) -> anyhow::Result<BTreeMap<u32, StepInput>> {
+    let mut inputs: BTreeMap<u32, StepInput> = BTreeMap::new();
+    for text in given {
+        let parts = text
+            .split_once(':')
+            .and_then(|(step, rest)| Some((step.trim().parse().ok()?, rest.split_once('=')?)));
+        let Some((step, (component, mode))) = parts else {
+            bail!("`{text}` is not of the form STEP:COMPONENT=MODE, as in 3:EngineA=Failed");
+        };
+        if step == 0 {
+            bail!("steps are counted from 1");
+        }
+        let (component, mode) =
+            system.model.component_mode(component.trim(), mode.trim()).map_err(|error| anyhow!(error))?;
+        inputs.entry(step).or_default().injected.insert(component, mode);
+    }
+    Ok(inputs)
+}
+
+fn chance(
+    args: &Args,
+    system: &System,
+    options: Options,
+    runs: u32,
+    problems: &[Problem],
+) -> anyhow::Result<ExitCode> {
+    let result = monte_carlo(system, options, runs, args.steps, args.seed.unwrap_or(0))?;
+    let (low, high) = result.interval;
+    match args.format {
+        Format::Json => {
+            let body = json!({
+                "runs": result.runs,
+                "reached": result.reached,
+                "probability": result.probability,
+                "interval": [low, high],
+                "mean_steps": result.mean_steps,
+            });
+            print_json(&document("run", problems, body))?;
+        }
+        Format::Text => print_text(&format!(
+            "{} of {} runs reached the program's end: {:.4} (95 % between {low:.4} and {high:.4}), after {:.1} steps on average\n",
+            result.reached, result.runs, result.probability, result.mean_steps
+        ))?,
+    }
+    Ok(exit(YES))
+}
+
+fn goals_json(goals: &[smol_str::SmolStr]) -> Value {
+    let mut members = Map::new();
+    for goal in goals {
+        let is_equality = !goal.starts_with('(');
+        let (name, value) = goal.split_once('=').filter(|_| is_equality).unwrap_or((goal, "true"));
+        match members.get_mut(name) {
+            // Contradicting goals for one variable are both shown.
+            Some(Value::String(known)) => known.push_str(&format!(" and {value}")),
+            _ => {
+                members.insert(name.to_owned(), json!(value));
+            }
+        }
+    }
+    Value::Object(members)
+}
+
+fn step_json(system: &System, record: &StepRecord) -> Value {
+    let model = &system.model;
+    json!({
+        "step": record.trace.step,
+        "marked": record.trace.labels,
+        "goals": goals_json(&record.trace.goals),
+        "commands": model.command_names(&record.commands),
+        "unachievable": record.unachievable.iter().map(|(goal, _)| goal).collect::<Vec<_>>(),
+        "reasons": record.unachievable.iter().map(|(goal, reason)| json!({ "goal": goal, "reason": reason })).collect::<Vec<_>>(),
+        "observations": model.observation_names(&record.observation),
+        "estimate": model.state_names(record.belief.most_likely()),
+        "probability": record.belief.highest_probability().to_string(),
+        "true_state": model.state_names(&record.true_state),
+        "unexplained": record.is_unexplained,
+        "conflicts": record.conflicts.iter().map(|conflict| conflict.describe(model)).collect::<Vec<_>>(),
+    })
+}
+
+fn run_json(system: &System, run: &Run<'_>) -> Value {
+    let mut steps: Vec<Value> = run.records().iter().map(|record| step_json(system, record)).collect();
+    let last = run.upcoming();
+    steps.push(json!({ "step": last.step, "marked": last.labels }));
+    json!({ "steps": steps, "terminated": run.is_done() })
+}
+
+fn run_text(system: &System, run: &Run<'_>) -> String {
+    let model = &system.model;
+    let listed = |names: BTreeMap<String, String>, joint: &str| {
+        let names: Vec<String> =
+            names.into_iter().map(|(name, value)| format!("{name}{joint}{value}")).collect();
+        if names.is_empty() { "–".to_owned() } else { names.join(", ") }
+    };
+    let mut out = String::new();
+    for record in run.records() {
+        out.push_str(&format!("step {}\n", record.trace.step));
+        record.trace.labels.iter().for_each(|label| out.push_str(&format!("  marked    {label}\n")));
+        out.push_str(&format!("  commands  {}\n", listed(model.command_names(&record.commands), ".")));
+        for (goal, reason) in &record.unachievable {
+            out.push_str(&format!("  lost      {goal}: {reason}\n"));
+        }
+        out.push_str(&format!("  observed  {}\n", listed(model.observation_names(&record.observation), "=")));
+        out.push_str(&format!(
+            "  estimate  {} ({})\n",
+            listed(model.state_names(record.belief.most_likely()), "="),
+            record.belief.highest_probability()
+        ));
+        if record.is_unexplained {
+            out.push_str("  warning   nothing believed possible explains what is observed\n");
+        }
+        record
+            .conflicts
+            .iter()
+            .for_each(|conflict| out.push_str(&format!("  diagnosis {}\n", conflict.describe(model))));
+    }
+    if run.is_done() {
+        out.push_str(&format!("The program ended after {} steps.\n", run.records().len()));
+    } else {
+        out.push_str("The program goes on; still marked:\n");
+        run.upcoming().labels.iter().for_each(|label| out.push_str(&format!("  {label}\n")));
+    }
+    out
+}

@@ -1,0 +1,88 @@
+//! `enroute step`: runs an automaton on given estimates.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use hca::{Estimate, Trace, Vocabulary};
+use mission::Problem;
+use serde::Deserialize;
+use serde_json::{Value, json};
+use smol_str::SmolStr;
+
+use crate::input::{read_json, read_text};
+use crate::output::{Format, WRONG, YES, document, exit, print_json, print_problems, print_text};
+
+/// Runs a control program on given state estimates, step by step.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The control program; `-` is standard input.
+    file: PathBuf,
+    /// The estimates: `{"initial":{…},"domains":{…},"program_vars":[…],"estimates":[{var:value}…]}`.
+    #[arg(long, value_name = "E.json")]
+    estimates: PathBuf,
+    /// For whom the answer is.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// What the file of estimates holds. The initial estimate informs the reader; no step depends on it.
+#[derive(Deserialize)]
+struct Estimates {
+    #[serde(default)]
+    domains: BTreeMap<SmolStr, Vec<SmolStr>>,
+    #[serde(default)]
+    program_vars: BTreeSet<SmolStr>,
+    #[serde(default)]
+    estimates: Vec<BTreeMap<String, String>>,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let source = read_text(&args.file)?;
+    let given: Estimates = read_json(&args.estimates)?;
+    let vocabulary = Vocabulary { domains: given.domains, program_variables: given.program_vars };
+    let compilation = hca::compile_text(&source, &vocabulary);
+    let problems = Problem::all(&compilation.diagnostics, &source);
+    if args.format == Format::Text {
+        print_problems(&args.file.display().to_string(), &source, &problems)?;
+    }
+    let Some(automaton) = &compilation.automaton else {
+        if args.format == Format::Json {
+            print_json(&document("step", &problems, json!({})))?;
+        }
+        return Ok(exit(WRONG));
+    };
+    let estimates: Vec<Estimate> = given
+        .estimates
+        .iter()
+        .map(|known| automaton.estimate(known.iter().map(|(name, value)| (name.as_str(), value.as_str()))))
+        .collect();
+    let trace = hca::trace(automaton, &estimates);
+    match args.format {
+        Format::Json => print_json(&document("step", &problems, trace_json(&trace)))?,
+        Format::Text => print_text(&trace_text(&trace))?,
+    }
+    Ok(exit(YES))
+}
+
+fn trace_json(trace: &Trace) -> Value {
+    let steps: Vec<Value> = trace
+        .steps
+        .iter()
+        .map(|step| {
+            json!({ "step": step.step, "num_marked": step.marked.len(), "goals": step.goals, "labels": step.labels })
+        })
+        .collect();
+    json!({ "steps": steps, "terminated": trace.terminated })
+}
+
+fn trace_text(trace: &Trace) -> String {
+    let mut out = String::new();
+    for step in &trace.steps {
+        out.push_str(&format!("step {}: {} marked\n", step.step, step.marked.len()));
+        step.labels.iter().for_each(|label| out.push_str(&format!("  {label}\n")));
+    }
+    out.push_str(if trace.terminated { "The program has ended.\n" } else { "The program goes on.\n" });
+    out
+}
