@@ -30,8 +30,10 @@ fn both_searches_find_exactly_the_plans_that_exist() {
                 while compared.load(Ordering::Relaxed) < MISSIONS {
                     match compare(seed) {
                         Ok(Some(answer)) => {
-                            let has_conditions =
-                                answer.plans.iter().any(|plan| !plan.links.is_empty() || !plan.conflicts.is_empty());
+                            let has_conditions = answer
+                                .plans
+                                .iter()
+                                .any(|plan| !plan.links.is_empty() || !plan.conflicts.is_empty());
                             compared.fetch_add(1, Ordering::Relaxed);
                             feasible.fetch_add(u64::from(!answer.plans.is_empty()), Ordering::Relaxed);
                             with_conditions.fetch_add(u64::from(has_conditions), Ordering::Relaxed);
@@ -39,7 +41,10 @@ fn both_searches_find_exactly_the_plans_that_exist() {
                         Ok(None) => {}
                         Err(problem) => {
                             compared.fetch_add(1, Ordering::Relaxed);
-                            disagreements.lock().expect("no thread panics").push(format!("seed {seed}, {problem}"));
+                            disagreements
+                                .lock()
+                                .expect("no thread panics")
+                                .push(format!("seed {seed}, {problem}"));
                         }
                     }
                     seed += 2;
@@ -49,12 +54,24 @@ fn both_searches_find_exactly_the_plans_that_exist() {
     });
     let disagreements = disagreements.into_inner().expect("no thread panics");
     let shown = &disagreements[..disagreements.len().min(5)];
-    assert!(disagreements.is_empty(), "{} of {MISSIONS} missions differ, such as {shown:#?}", disagreements.len());
+    assert!(
+        disagreements.is_empty(),
+        "{} of {MISSIONS} missions differ, such as {shown:#?}",
+        disagreements.len()
+    );
     // The comparison says little unless the missions are mixed.
     let (feasible, with_conditions) = (feasible.into_inner(), with_conditions.into_inner());
-    println!("{MISSIONS} missions compared, {feasible} with plans, {with_conditions} with links or conflicts in them");
-    assert!(feasible > MISSIONS / 5 && feasible < MISSIONS * 4 / 5, "{feasible} missions of {MISSIONS} have a plan");
-    assert!(with_conditions > MISSIONS / 20, "{with_conditions} missions of {MISSIONS} have links or conflicts");
+    println!(
+        "{MISSIONS} missions compared, {feasible} with plans, {with_conditions} with links or conflicts in them"
+    );
+    assert!(
+        feasible > MISSIONS / 5 && feasible < MISSIONS * 4 / 5,
+        "{feasible} missions of {MISSIONS} have a plan"
+    );
+    assert!(
+        with_conditions > MISSIONS / 20,
+        "{with_conditions} missions of {MISSIONS} have links or conflicts"
+    );
 }
 
 /// The reference's answer, if it finishes and both searches agree with it.
@@ -65,7 +82,8 @@ fn compare(seed: u64) -> Result<Option<Answer>, String> {
     let Some(answer) = search(&network, MOST_STEPS) else { return Ok(None) };
     let expected: BTreeSet<Comparable> = answer.plans.iter().map(found_key).collect();
     for kind in [Search::Chronological, Search::ConflictDirected] {
-        let plans = |all| try_plans(&network, kind, all).map_err(|problem| format!("{kind:?}: {problem}\n{text}"));
+        let plans =
+            |all| try_plans(&network, kind, all).map_err(|problem| format!("{kind:?}: {problem}\n{text}"));
         let outcome = plans(true)?;
         let found: BTreeSet<Comparable> = outcome.plans.iter().map(|plan| plan_key(&network, plan)).collect();
         if found != expected {
