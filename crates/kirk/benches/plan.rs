@@ -13,7 +13,10 @@ use tpn::generate::{Recipe, Tightness, mission};
 const MISSIONS: u64 = 15;
 
 fn main() {
-    println!("{:<12} {:>7} {:>10} {:>10} {:>9} {:>8} {:>7}", "missions", "nodes", "median", "worst", "expanded", "leaves", "answers");
+    println!(
+        "{:<12} {:>7} {:>10} {:>10} {:>9} {:>8} {:>7}",
+        "missions", "nodes", "median", "worst", "expanded", "leaves", "answers"
+    );
     for tightness in [Tightness::Feasible, Tightness::Boundary, Tightness::Infeasible] {
         for nodes in [100, 1_000, 10_000] {
             row(tightness, nodes);
@@ -22,7 +25,8 @@ fn main() {
 }
 
 fn row(tightness: Tightness, nodes: usize) {
-    let options = Options { search: Search::ConflictDirected, explain: false, relax: false, ..Options::default() };
+    let options =
+        Options { search: Search::ConflictDirected, explain: false, relax: false, ..Options::default() };
     let mut times = Vec::new();
     let (mut expanded, mut leaves, mut answers) = (0, 0, [0, 0, 0]);
     for seed in 0..MISSIONS {

@@ -102,7 +102,9 @@ impl Conditions {
         let variable = &self.variables[required.variable as usize];
         variable.labels.iter().copied().filter(move |&tell| {
             let tell = &self.labels[tell as usize];
-            !tell.is_ask && variable.supports[tell.literal as usize * variable.num_literals + required.literal as usize]
+            !tell.is_ask
+                && variable.supports
+                    [tell.literal as usize * variable.num_literals + required.literal as usize]
         })
     }
 
@@ -118,7 +120,11 @@ impl Conditions {
         let variable = &self.variables[own.variable as usize];
         let row = own.literal as usize * variable.num_literals;
         let row = &variable.conflicts[row..row + variable.num_literals];
-        variable.labels.iter().copied().filter(move |&other| row[self.labels[other as usize].literal as usize])
+        variable
+            .labels
+            .iter()
+            .copied()
+            .filter(move |&other| row[self.labels[other as usize].literal as usize])
     }
 
     /// The labels after `label`, in textual order, that conflict with it, selected or not.

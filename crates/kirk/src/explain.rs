@@ -29,7 +29,10 @@ pub(crate) struct Effort {
 impl Effort {
     pub(crate) fn for_size(num_nodes: usize) -> Self {
         let size = num_nodes.max(1);
-        Self { searches: (1_000_000 / size).clamp(60, 5_000), expansions: (2_000_000 / size as u64).clamp(200, 10_000) }
+        Self {
+            searches: (1_000_000 / size).clamp(60, 5_000),
+            expansions: (2_000_000 / size as u64).clamp(200, 10_000),
+        }
     }
 
     pub(crate) fn spend(&mut self) -> bool {
@@ -44,7 +47,8 @@ impl Effort {
 pub fn is_conflict(network: &Network, choices: &[Choice], members: &[Member]) -> Option<bool> {
     let model = Model::new(network, None).ok()?;
     let mut effort = Effort::for_size(model.num_nodes);
-    let choices: Vec<(u32, u32)> = choices.iter().map(|choice| (choice.decision.0, choice.alternative)).collect();
+    let choices: Vec<(u32, u32)> =
+        choices.iter().map(|choice| (choice.decision.0, choice.alternative)).collect();
     let mut part = Part::new(&model, &choices);
     for &member in members {
         part.set(&model, member, true);
@@ -72,7 +76,12 @@ pub(crate) fn explain(network: &Network, model: &Model) -> Result<Failure, Overf
     Ok(Failure { reasons, is_complete, relaxations: Vec::new() })
 }
 
-fn reason(network: &Network, model: &Model, dead_end: &DeadEnd, effort: &mut Effort) -> Result<Reason, Overflow> {
+fn reason(
+    network: &Network,
+    model: &Model,
+    dead_end: &DeadEnd,
+    effort: &mut Effort,
+) -> Result<Reason, Overflow> {
     let mut part = Part::new(model, &dead_end.choices);
     let mut members = dead_end.members.clone();
     for &member in &members {
@@ -99,7 +108,8 @@ fn reason(network: &Network, model: &Model, dead_end: &DeadEnd, effort: &mut Eff
         .iter()
         .map(|&(decision, alternative)| Choice { decision: DecisionId(decision), alternative })
         .collect();
-    let told = wording::Told { network, kind: dead_end.kind, choices: &choices, conflict: &members, cycle: &cycle };
+    let told =
+        wording::Told { network, kind: dead_end.kind, choices: &choices, conflict: &members, cycle: &cycle };
     let message = told.message();
     let spans = spans(network, &members, &cycle);
     Ok(Reason { message, spans, choices, kind: dead_end.kind, conflict: members, cycle, is_minimal })
@@ -155,7 +165,8 @@ impl Part {
                     if is_in { whole.arcs[arc.index()].lower } else { UNBOUNDED_BELOW };
             }
             Member::Bound(Constraint::Upper(arc)) => {
-                self.model.arcs[arc.index()].upper = if is_in { whole.arcs[arc.index()].upper } else { INFINITE };
+                self.model.arcs[arc.index()].upper =
+                    if is_in { whole.arcs[arc.index()].upper } else { INFINITE };
             }
             Member::Bound(Constraint::Link(_) | Constraint::Order(_)) => {}
         }
@@ -180,7 +191,13 @@ impl Part {
         let mut engine = Engine::new(&self.model, self.setup(true));
         let limit = effort.expansions;
         engine.run(&mut |stats: &Stats| stats.expanded >= limit)?;
-        Ok(engine.dead_ends.found.into_iter().map(|dead_end| dead_end.cycle).find(|cycle| !cycle.is_empty()).unwrap_or_default())
+        Ok(engine
+            .dead_ends
+            .found
+            .into_iter()
+            .map(|dead_end| dead_end.cycle)
+            .find(|cycle| !cycle.is_empty())
+            .unwrap_or_default())
     }
 
     fn setup(&self, records_dead_ends: bool) -> Setup {

@@ -111,7 +111,10 @@ impl Relaxation {
         let (side, offset) = if self.is_lower { (lower, 0) } else { (upper, comma + 1) };
         let start = span.start as usize + 1 + offset + (side.len() - side.trim_start().len());
         let end = start + side.trim().len();
-        let edit = rmpl::Edit { span: Span::new(start as u32, end as u32), text: rmpl::rational::decimal(self.new)? };
+        let edit = rmpl::Edit {
+            span: Span::new(start as u32, end as u32),
+            text: rmpl::rational::decimal(self.new)?,
+        };
         Some(Fix { label: self.label.clone(), edits: vec![edit] })
     }
 }

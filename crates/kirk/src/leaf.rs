@@ -22,7 +22,7 @@ pub(crate) struct Leaf {
     /// Distances from and to the start before any link or order: still bounds with them.
     from_start: Vec<i64>,
     to_start: Vec<i64>,
-    has_windows: bool,
+    pub(crate) has_windows: bool,
 }
 
 impl Engine<'_> {

@@ -26,11 +26,21 @@ pub(crate) struct Level {
 /// What is chosen at a level.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    Decision { decision: u32 },
+    Decision {
+        decision: u32,
+    },
     /// `position` among the requirements of the leaf; `tells` are the candidates.
-    Link { position: u32, ask: u32, tells: Vec<u32> },
+    Link {
+        position: u32,
+        ask: u32,
+        tells: Vec<u32>,
+    },
     /// `position` among the conflicting pairs of the leaf.
-    Threat { position: u32, left: u32, right: u32 },
+    Threat {
+        position: u32,
+        left: u32,
+        right: u32,
+    },
 }
 
 /// A set of levels.
@@ -122,7 +132,10 @@ impl Nogoods {
     pub(crate) fn find(&self, chosen: &[u32], decision: u32, alternative: u32) -> Option<&[(u32, u32)]> {
         let completes = |nogood: &&Nogood| {
             nogood.alternative == alternative
-                && nogood.others.iter().all(|&(decision, alternative)| chosen[decision as usize] == alternative)
+                && nogood
+                    .others
+                    .iter()
+                    .all(|&(decision, alternative)| chosen[decision as usize] == alternative)
         };
         self.by_last[decision as usize].iter().find(completes).map(|nogood| nogood.others.as_slice())
     }

@@ -12,6 +12,8 @@ mod levels;
 mod lookahead;
 mod model;
 mod options;
+mod plan_network;
+mod planner;
 mod record;
 mod relax;
 mod replay;
@@ -31,6 +33,8 @@ use tpn::{Network, Plan};
 pub use explain::is_conflict;
 pub use failure::{Failure, FailureKind, Member, Reason, Relaxation};
 pub use options::{ExpansionLimit, Options, Outcome, Search, Stats, Status, Termination, Unlimited};
+pub use plan_network::{PlanNetwork, Remaining};
+pub use planner::Planner;
 pub use replay::{Replay, ReplayStep};
 pub use trace::{Constraint, CycleMember, Entry, Event, Trace, TreeChoice, TreeNode, TreeNodeId, TreeStatus};
 pub use trace_lines::trace_json_lines;
@@ -40,16 +44,9 @@ use search::{Engine, Halt, Setup};
 
 /// Plans `network`.
 pub fn plan(network: &Network, options: &Options, termination: &mut dyn Termination) -> Outcome {
-    match Model::new(network, options.threat_gap).and_then(|model| answer(network, &model, options, termination)) {
-        Ok(outcome) => outcome,
-        Err(Overflow) => Outcome {
-            status: Status::Error,
-            plans: Vec::new(),
-            failure: None,
-            stats: Stats::default(),
-            trace: None,
-        },
-    }
+    let model = Model::new(network, options.threat_gap);
+    let outcome = model.and_then(|model| answer(network, &model, options, termination));
+    outcome.unwrap_or_else(|Overflow| Outcome::overflow())
 }
 
 fn answer(

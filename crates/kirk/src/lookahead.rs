@@ -86,7 +86,12 @@ impl Lookahead {
     }
 
     /// Activates what every plan has. `false` if that has no plan.
-    pub(crate) fn begin(&mut self, model: &Model, structure: &Structure, chosen: &[u32]) -> Result<bool, Overflow> {
+    pub(crate) fn begin(
+        &mut self,
+        model: &Model,
+        structure: &Structure,
+        chosen: &[u32],
+    ) -> Result<bool, Overflow> {
         self.blamed.clear();
         self.collect(model, structure, model.start);
         let checkpoint = self.stn.checkpoint();
@@ -96,10 +101,9 @@ impl Lookahead {
             let mut arc = self.arriving[position];
             if arc.tag == HULL
                 && let Some(decision) = hulls.next()
+                && let Some((lower, upper)) = structure.first_alternative(decision)?
             {
-                if let Some((lower, upper)) = structure.first_alternative(decision)? {
-                    (arc.lower, arc.upper) = (lower, upper);
-                }
+                (arc.lower, arc.upper) = (lower, upper);
             }
             push(&mut self.stn, arc);
         }
@@ -232,7 +236,8 @@ impl Lookahead {
         }
         arriving.sort_by_key(|arc| rank[arc.from as usize]);
         for arc in arriving.iter() {
-            let time = stn.schedule()[arc.from as usize].checked_add(arc.lower).ok_or(Inconsistency::Overflow)?;
+            let time =
+                stn.schedule()[arc.from as usize].checked_add(arc.lower).ok_or(Inconsistency::Overflow)?;
             if time > stn.schedule()[arc.to as usize] {
                 stn.set_free_time(PointId(arc.to), time);
             }
@@ -309,7 +314,13 @@ impl Lookahead {
     }
 
     /// Whether two conflicting intervals fit in some order.
-    fn check_pair(&mut self, model: &Model, structure: &Structure, left: u32, right: u32) -> Result<bool, Overflow> {
+    fn check_pair(
+        &mut self,
+        model: &Model,
+        structure: &Structure,
+        left: u32,
+        right: u32,
+    ) -> Result<bool, Overflow> {
         let arc = |label: u32| model.conditions.labels[label as usize].arc;
         if arc(left) == arc(right) {
             self.blamed.clear();
@@ -361,7 +372,13 @@ impl Lookahead {
         self.conclude(model, &[ask, only], &edges)
     }
 
-    fn candidate(&mut self, model: &Model, chosen: &[u32], ask: u32, tell: u32) -> Result<Candidate, Overflow> {
+    fn candidate(
+        &mut self,
+        model: &Model,
+        chosen: &[u32],
+        ask: u32,
+        tell: u32,
+    ) -> Result<Candidate, Overflow> {
         if !self.is_active_label[tell as usize] {
             let mut context = context_of(model, tell);
             while context.decision != NONE {
@@ -393,7 +410,12 @@ impl Lookahead {
     }
 
     /// Adds what is left as a consequence of `blamed` and of the labels' choices. `false` if it does not fit either.
-    fn conclude(&mut self, model: &Model, labels: &[u32], edges: &[(PointId, PointId, i64)]) -> Result<bool, Overflow> {
+    fn conclude(
+        &mut self,
+        model: &Model,
+        labels: &[u32],
+        edges: &[(PointId, PointId, i64)],
+    ) -> Result<bool, Overflow> {
         for &label in labels {
             self.blame_label(model, label);
         }
@@ -416,7 +438,11 @@ impl Lookahead {
         schedule[to.index()].checked_sub(schedule[from.index()]).is_some_and(|distance| distance <= weight)
     }
 
-    fn admits(&mut self, model: &Model, (from, to, weight): (PointId, PointId, i64)) -> Result<bool, Overflow> {
+    fn admits(
+        &mut self,
+        model: &Model,
+        (from, to, weight): (PointId, PointId, i64),
+    ) -> Result<bool, Overflow> {
         let admitted = self.stn.admits(from, to, weight, HULL);
         self.is_ok(model, admitted)
     }

@@ -159,11 +159,6 @@ impl Model {
         scaled_bound(bound, self.scale)
     }
 
-    /// Exact time from integer units, with [`INFINITE`] for none.
-    pub(crate) fn bound(&self, units: i64) -> Bound {
-        if units == INFINITE { Bound::Infinite } else { Bound::Finite(self.time(units)) }
-    }
-
     pub(crate) fn out_arcs(&self, node: u32) -> &[u32] {
         let node = node as usize;
         &self.out_arcs[self.out_start[node] as usize..self.out_start[node + 1] as usize]
@@ -234,22 +229,23 @@ impl Model {
         let mut stack = vec![self.start];
         while let Some(node) = stack.pop() {
             let Some(context) = contexts[node as usize] else { return false };
-            let mut reach = |target: u32, context: Context, stack: &mut Vec<u32>| match contexts[target as usize] {
-                None => {
-                    contexts[target as usize] = Some(context);
-                    stack.push(target);
-                    true
-                }
-                Some(known) => known == context,
-            };
+            let mut reach =
+                |target: u32, context: Context, stack: &mut Vec<u32>| match contexts[target as usize] {
+                    None => {
+                        contexts[target as usize] = Some(context);
+                        stack.push(target);
+                        true
+                    }
+                    Some(known) => known == context,
+                };
             let decision = self.decision_of[node as usize];
             if decision == NONE {
                 for position in self.out_start[node as usize]..self.out_start[node as usize + 1] {
                     let id = self.out_arcs[position as usize];
                     let arc = &mut self.arcs[id as usize];
                     arc.context = context;
-                    let leaves_alternative = context.decision != NONE
-                        && arc.to == merges[context.decision as usize];
+                    let leaves_alternative =
+                        context.decision != NONE && arc.to == merges[context.decision as usize];
                     if leaves_alternative {
                         continue;
                     }
@@ -317,7 +313,7 @@ fn common_denominator(network: &Network, gap: Rational) -> Result<i64, Overflow>
     })
 }
 
-fn greatest_common_divisor(mut left: i64, mut right: i64) -> i64 {
+pub(crate) fn greatest_common_divisor(mut left: i64, mut right: i64) -> i64 {
     while right != 0 {
         (left, right) = (right, left % right);
     }
@@ -334,7 +330,9 @@ fn scaled(time: Rational, scale: i64) -> Result<i64, Overflow> {
 fn scaled_bound(bound: Bound, scale: i64) -> Result<i64, Overflow> {
     match bound {
         Bound::Infinite => Ok(INFINITE),
-        Bound::Finite(time) => scaled(time, scale).and_then(|units| if units == INFINITE { Err(Overflow) } else { Ok(units) }),
+        Bound::Finite(time) => {
+            scaled(time, scale).and_then(|units| if units == INFINITE { Err(Overflow) } else { Ok(units) })
+        }
     }
 }
 

@@ -140,3 +140,10 @@ pub struct Outcome {
     /// The search, if it was asked for.
     pub trace: Option<Trace>,
 }
+
+impl Outcome {
+    /// The answer where times do not fit.
+    pub(crate) fn overflow() -> Self {
+        Self { status: Status::Error, plans: Vec::new(), failure: None, stats: Stats::default(), trace: None }
+    }
+}

@@ -38,7 +38,8 @@ impl DeadEnds {
 
     pub(crate) fn add_cycle(&mut self, cycle: Vec<CycleMember>) {
         let bounds = cycle.iter().map(|member| member.constraint);
-        let is_bound = |constraint: &Constraint| matches!(constraint, Constraint::Lower(_) | Constraint::Upper(_));
+        let is_bound =
+            |constraint: &Constraint| matches!(constraint, Constraint::Lower(_) | Constraint::Upper(_));
         self.members.extend(bounds.filter(is_bound).map(Member::Bound));
         if self.cycle.is_empty() {
             self.cycle = cycle;

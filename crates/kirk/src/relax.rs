@@ -18,7 +18,11 @@ use crate::wording;
 const MAX_RELAXATIONS: usize = 8;
 
 /// The smallest changes of single bounds, among those that `failure` rests on, that give `network` a plan.
-pub(crate) fn relaxations(network: &Network, model: &Model, failure: &Failure) -> Result<Vec<Relaxation>, Overflow> {
+pub(crate) fn relaxations(
+    network: &Network,
+    model: &Model,
+    failure: &Failure,
+) -> Result<Vec<Relaxation>, Overflow> {
     let mut trial = Trial { network, model: model.clone(), effort: Effort::for_size(model.num_nodes) };
     let mut found: Vec<Relaxation> = Vec::new();
     for (arcs, is_lower) in candidates(network, failure) {
@@ -42,7 +46,8 @@ fn candidates(network: &Network, failure: &Failure) -> Vec<(Vec<ArcId>, bool)> {
                 _ => continue,
             };
             let bounds = &network.arcs[arc.index()];
-            if wording::is_structural(bounds.kind) || (is_lower && bounds.lower == Rational::from_integer(0)) {
+            if wording::is_structural(bounds.kind) || (is_lower && bounds.lower == Rational::from_integer(0))
+            {
                 continue;
             }
             let alone = bounds.span.is_none().then_some(arc);
@@ -53,16 +58,23 @@ fn candidates(network: &Network, failure: &Failure) -> Vec<(Vec<ArcId>, bool)> {
     for ((span, _, _), arcs) in &mut by_span {
         let Some(span) = span else { continue };
         let first = arcs[0];
-        *arcs = (0..network.arcs.len()).map(ArcId::from_index).filter(|arc| {
-            let arc = &network.arcs[arc.index()];
-            arc.span == Some(*span) && !wording::is_structural(arc.kind)
-        }).collect();
+        *arcs = (0..network.arcs.len())
+            .map(ArcId::from_index)
+            .filter(|arc| {
+                let arc = &network.arcs[arc.index()];
+                arc.span == Some(*span) && !wording::is_structural(arc.kind)
+            })
+            .collect();
         let bounds = |arc: &ArcId| (network.arcs[arc.index()].lower, network.arcs[arc.index()].upper);
         if arcs.iter().any(|arc| bounds(arc) != bounds(&first)) {
             arcs.clear();
         }
     }
-    by_span.into_iter().map(|((_, is_lower, _), arcs)| (arcs, is_lower)).filter(|(arcs, _)| !arcs.is_empty()).collect()
+    by_span
+        .into_iter()
+        .map(|((_, is_lower, _), arcs)| (arcs, is_lower))
+        .filter(|(arcs, _)| !arcs.is_empty())
+        .collect()
 }
 
 struct Trial<'a> {

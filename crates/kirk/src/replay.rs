@@ -72,7 +72,8 @@ impl<'a> Replay<'a> {
     /// The state after event `step`; of the last one if there are fewer.
     pub fn at(&self, step: usize) -> ReplayStep {
         let mut frames = vec![Frame::default()];
-        let mut result = ReplayStep { step: step.min(self.num_steps().saturating_sub(1)), ..ReplayStep::default() };
+        let mut result =
+            ReplayStep { step: step.min(self.num_steps().saturating_sub(1)), ..ReplayStep::default() };
         for entry in self.trace.events.iter().take(step.saturating_add(1)) {
             self.enter(&mut frames, entry.tree_node);
             let Some(frame) = frames.last_mut() else { break };
@@ -92,12 +93,18 @@ impl<'a> Replay<'a> {
                 }
                 Event::TryOrder { order } => {
                     frame.order = Some(*order);
-                    (result.decision, result.ask, result.threat) = (None, None, Some((order.first, order.then)));
+                    (result.decision, result.ask, result.threat) =
+                        (None, None, Some((order.first, order.then)));
                 }
                 Event::Inconsistent { cycle } => result.cycle.clone_from(cycle),
                 Event::Unclosable { ask } => (result.ask, result.threat) = (Some(*ask), None),
-                Event::Unresolvable { left, right } => (result.ask, result.threat) = (None, Some((*left, *right))),
-                Event::Backtrack { .. } | Event::Backjump { .. } | Event::Solution { .. } | Event::Exhausted => {
+                Event::Unresolvable { left, right } => {
+                    (result.ask, result.threat) = (None, Some((*left, *right)))
+                }
+                Event::Backtrack { .. }
+                | Event::Backjump { .. }
+                | Event::Solution { .. }
+                | Event::Exhausted => {
                     (result.decision, result.ask, result.threat) = (None, None, None);
                 }
                 Event::Expand { .. } | Event::Propagate { .. } | Event::Known => {}
@@ -119,7 +126,8 @@ impl<'a> Replay<'a> {
             at = self.trace.tree.get(node as usize).and_then(|node| node.parent);
         }
         path.reverse();
-        let common = path.iter().zip(frames.iter()).take_while(|(node, frame)| **node == frame.tree_node).count();
+        let common =
+            path.iter().zip(frames.iter()).take_while(|(node, frame)| **node == frame.tree_node).count();
         frames.truncate(common);
         frames.extend(path[common..].iter().map(|&tree_node| Frame { tree_node, ..Frame::default() }));
     }
@@ -174,7 +182,12 @@ impl<'a> Replay<'a> {
         }
         for order in &step.orders {
             if !failed.contains(&Constraint::Order(*order)) {
-                let _ = stn.insert(model.interval(order.then.0).0, model.interval(order.first.0).1, -model.gap, 0);
+                let _ = stn.insert(
+                    model.interval(order.then.0).0,
+                    model.interval(order.first.0).1,
+                    -model.gap,
+                    0,
+                );
             }
         }
         let all = stn.windows(PointId(model.start))?;

@@ -90,7 +90,8 @@ pub(crate) struct Engine<'m> {
 
 impl<'m> Engine<'m> {
     pub(crate) fn new(model: &'m Model, setup: Setup) -> Self {
-        let structure = model.structure.as_ref().filter(|_| setup.by_structure && setup.trace_events.is_none());
+        let structure =
+            model.structure.as_ref().filter(|_| setup.by_structure && setup.trace_events.is_none());
         let mut stn = Stn::new(model.num_nodes);
         stn.reserve(model.arcs.len() * 2 + 64);
         let stats = Stats {
@@ -99,7 +100,8 @@ impl<'m> Engine<'m> {
             decisions: model.decisions.len() as u64,
             ..Stats::default()
         };
-        let (num_arcs, num_decisions) = if model.has_contexts { (0, 0) } else { (model.arcs.len(), model.decisions.len()) };
+        let (num_arcs, num_decisions) =
+            if model.has_contexts { (0, 0) } else { (model.arcs.len(), model.decisions.len()) };
         Self {
             model,
             stn,
@@ -108,7 +110,9 @@ impl<'m> Engine<'m> {
             levels: Vec::new(),
             structure,
             tree: structure.map(Structure::start),
-            lookahead: structure.filter(|_| !model.conditions.labels.is_empty()).map(|_| Lookahead::new(model)),
+            lookahead: structure
+                .filter(|_| !model.conditions.labels.is_empty())
+                .map(|_| Lookahead::new(model)),
             is_selected_node: vec![false; model.num_nodes],
             is_selected_arc: vec![false; model.arcs.len()],
             selected_nodes: Vec::with_capacity(model.num_nodes),
@@ -187,7 +191,11 @@ impl<'m> Engine<'m> {
 
     /// The innermost choice that selects an arc.
     pub(crate) fn context(&self, arc: u32) -> Context {
-        if self.model.has_contexts { self.model.arcs[arc as usize].context } else { self.found_contexts[arc as usize] }
+        if self.model.has_contexts {
+            self.model.arcs[arc as usize].context
+        } else {
+            self.found_contexts[arc as usize]
+        }
     }
 
     pub(crate) fn is_active(&self, label: u32) -> bool {
@@ -387,6 +395,8 @@ impl<'m> Engine<'m> {
             Kind::Link { ask, ref tells, .. } => {
                 let tell = tells[alternative as usize];
                 self.stats.links_tried += 1;
+                // Windows that hold with one link do not hold with another.
+                self.leaf.has_windows = false;
                 self.log(|_| Event::TryLink { link: CausalLink { ask: LabelId(ask), tell: LabelId(tell) } });
                 let (ask_start, ask_end) = self.model.interval(ask);
                 let (tell_start, tell_end) = self.model.interval(tell);
@@ -397,7 +407,9 @@ impl<'m> Engine<'m> {
                 let (first, then) = if alternative == 0 { (left, right) } else { (right, left) };
                 self.leaf.is_swapped[position as usize] = alternative == 1;
                 self.stats.orderings_tried += 1;
-                self.log(|_| Event::TryOrder { order: Ordering { first: LabelId(first), then: LabelId(then) } });
+                self.log(|_| Event::TryOrder {
+                    order: Ordering { first: LabelId(first), then: LabelId(then) },
+                });
                 let (_, first_end) = self.model.interval(first);
                 let (then_start, _) = self.model.interval(then);
                 if self.insert(then_start, first_end, -self.model.gap, tag, FailureKind::Threat)? {

@@ -22,8 +22,9 @@ pub(crate) fn plan_at(engine: &mut Engine<'_>) -> Result<Plan, Overflow> {
     });
     let windows = windows.collect();
     let choices = (0..).zip(&engine.chosen).filter(|&(_, &alternative)| alternative != NONE);
-    let choices =
-        choices.map(|(decision, &alternative)| Choice { decision: DecisionId(decision), alternative }).collect();
+    let choices = choices
+        .map(|(decision, &alternative)| Choice { decision: DecisionId(decision), alternative })
+        .collect();
     let mut causal_links = Vec::new();
     let mut orderings_added = Vec::new();
     for level in &engine.levels {

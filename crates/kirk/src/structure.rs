@@ -219,7 +219,8 @@ impl Structure {
     pub(crate) fn first_alternative(&self, decision: u32) -> Result<Option<(i64, i64)>, Overflow> {
         let block = &self.blocks[self.decision_blocks[decision as usize] as usize];
         let first = block.children.iter().find(|&&child| !self.initial[child as usize].is_empty());
-        let duration = first.map(|&child| add(self.initial[child as usize], self.blocks[child as usize].around));
+        let duration =
+            first.map(|&child| add(self.initial[child as usize], self.blocks[child as usize].around));
         Ok(duration.transpose()?.map(|duration| (duration.lower, duration.upper())))
     }
 
@@ -251,7 +252,10 @@ impl Structure {
                 return Relation::Open;
             }
         }
-        if self.blocks[left as usize].shape != Shape::Sequence || left_position == NONE || right_position == NONE {
+        if self.blocks[left as usize].shape != Shape::Sequence
+            || left_position == NONE
+            || right_position == NONE
+        {
             Relation::Open
         } else if left_position < right_position {
             Relation::Before
@@ -298,12 +302,14 @@ impl Structure {
                     upper: held.upper.checked_add(after.upper).ok_or(Overflow)? - before.upper,
                     unbounded: held.unbounded + after.unbounded - before.unbounded,
                 },
-                Shape::Intersection => Duration::new(
-                    held.lower.max(after.lower),
-                    held.upper().min(after.upper()),
-                ),
+                Shape::Intersection => {
+                    Duration::new(held.lower.max(after.lower), held.upper().min(after.upper()))
+                }
                 Shape::Choice(outer) => {
-                    debug_assert_eq!(chosen[outer as usize], self.blocks[id as usize].position, "a chosen branch");
+                    debug_assert_eq!(
+                        chosen[outer as usize], self.blocks[id as usize].position,
+                        "a chosen branch"
+                    );
                     after
                 }
             };
@@ -346,7 +352,9 @@ impl Structure {
             }
             match block.shape {
                 Shape::Leaf => {}
-                Shape::Sequence | Shape::Guard => stack.extend(block.children.iter().map(|&child| (child, is_lower))),
+                Shape::Sequence | Shape::Guard => {
+                    stack.extend(block.children.iter().map(|&child| (child, is_lower)))
+                }
                 Shape::Choice(decision) => {
                     let alternative = chosen[decision as usize];
                     if alternative != NONE {
@@ -394,7 +402,11 @@ impl Structure {
         let block = &self.blocks[id];
         let parts = block.children.iter().map(|&child| {
             let inside = self.initial[child as usize];
-            if inside.is_empty() { Ok(None) } else { add(inside, self.blocks[child as usize].around).map(Some) }
+            if inside.is_empty() {
+                Ok(None)
+            } else {
+                add(inside, self.blocks[child as usize].around).map(Some)
+            }
         });
         Ok(match block.shape {
             Shape::Leaf => Duration::new(block.own.0, block.own.1),
@@ -448,8 +460,10 @@ impl Structure {
         let (enter, leave) = match self.blocks[id].shape {
             Shape::Leaf => return Ok(Some((0, 0))),
             Shape::Sequence => {
-                let next = children.get(position + 1).map_or(block.end, |&next| network.blocks[next as usize].start);
-                let enter = if position == 0 { between(model, block.start.0, child.start.0) } else { Some((0, 0)) };
+                let next =
+                    children.get(position + 1).map_or(block.end, |&next| network.blocks[next as usize].start);
+                let enter =
+                    if position == 0 { between(model, block.start.0, child.start.0) } else { Some((0, 0)) };
                 (enter, between(model, child.end.0, next.0))
             }
             Shape::Guard => {

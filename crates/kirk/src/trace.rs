@@ -241,7 +241,11 @@ impl Recorder {
     ) -> TreeNodeId {
         let first = self.trace.tree.len() as TreeNodeId;
         if self.trace.tree.len() < self.limit {
-            let node = |choice| TreeNode { parent: Some(parent), choice: Some(choice), status: TreeStatus::Unexplored };
+            let node = |choice| TreeNode {
+                parent: Some(parent),
+                choice: Some(choice),
+                status: TreeStatus::Unexplored,
+            };
             self.trace.tree.extend(choices.map(node));
         } else {
             self.trace.is_truncated = true;

@@ -66,8 +66,12 @@ fn event_json(network: &Network, event: &Event) -> Value {
             json!({ "event": "inconsistent", "cycle": cycle })
         }
         Event::Unclosable { ask } => json!({ "event": "unclosable", "ask": label(*ask) }),
-        Event::TryLink { link } => json!({ "event": "try-link", "ask": label(link.ask), "tell": label(link.tell) }),
-        Event::Threat { left, right } => json!({ "event": "threat", "left": label(*left), "right": label(*right) }),
+        Event::TryLink { link } => {
+            json!({ "event": "try-link", "ask": label(link.ask), "tell": label(link.tell) })
+        }
+        Event::Threat { left, right } => {
+            json!({ "event": "threat", "left": label(*left), "right": label(*right) })
+        }
         Event::TryOrder { order } => {
             json!({ "event": "try-order", "first": label(order.first), "then": label(order.then) })
         }

@@ -21,7 +21,9 @@ impl Told<'_> {
     /// One sentence: what contradicts what, and after which choices.
     pub(crate) fn message(&self) -> String {
         let what = match self.kind {
-            FailureKind::Temporal => self.bounds().unwrap_or_else(|| "bounds contradict each other".to_owned()),
+            FailureKind::Temporal => {
+                self.bounds().unwrap_or_else(|| "bounds contradict each other".to_owned())
+            }
             FailureKind::OpenCondition => self.open_condition(),
             FailureKind::Threat => self.threat(),
         };
@@ -61,12 +63,17 @@ impl Told<'_> {
     fn threat(&self) -> String {
         let mut names: Vec<String> = Vec::new();
         for label in self.conditions() {
-            let name = format!("{} of {}", self.network.labels[label.index()].text, interval_name(self.network, label));
-            let name = if interval_name(self.network, label) == self.network.labels[label.index()].text.as_str() {
-                self.network.labels[label.index()].text.to_string()
-            } else {
-                name
-            };
+            let name = format!(
+                "{} of {}",
+                self.network.labels[label.index()].text,
+                interval_name(self.network, label)
+            );
+            let name =
+                if interval_name(self.network, label) == self.network.labels[label.index()].text.as_str() {
+                    self.network.labels[label.index()].text.to_string()
+                } else {
+                    name
+                };
             if !names.contains(&name) {
                 names.push(name);
             }
@@ -124,7 +131,10 @@ impl Told<'_> {
             [(name, allows)] => format!("{needs} {verb} at least {needed}, but {name} {allows} {allowed}"),
             _ => {
                 let names: Vec<String> = allows.into_iter().map(|(name, _)| name).collect();
-                format!("{needs} {verb} at least {needed}, but {} together allow only {allowed}", joined(&names))
+                format!(
+                    "{needs} {verb} at least {needed}, but {} together allow only {allowed}",
+                    joined(&names)
+                )
             }
         })
     }
@@ -138,7 +148,8 @@ pub(crate) fn is_telling(network: &Network, member: &CycleMember) -> bool {
     };
     let is_structural = is_structural(arc.kind);
     // A duration of zero at least says nothing; one of zero at most does, where it is written.
-    !is_structural && (matches!(member.constraint, Constraint::Upper(_)) || member.weight != Rational::from_integer(0))
+    !is_structural
+        && (matches!(member.constraint, Constraint::Upper(_)) || member.weight != Rational::from_integer(0))
 }
 
 /// Whether the bounds of an arc are rules of the language, which no author wrote.

@@ -52,7 +52,10 @@ fn expected(plan: &Value) -> NamedPlan {
             .iter()
             .map(|link| (name(&link["ask"]), name(&link["tell"])))
             .collect(),
-        conflict_order: array(&plan["conflict_order"]).iter().map(|pair| (name(&pair[0]), name(&pair[1]))).collect(),
+        conflict_order: array(&plan["conflict_order"])
+            .iter()
+            .map(|pair| (name(&pair[0]), name(&pair[1])))
+            .collect(),
         windows: plan["windows"]
             .as_object()
             .expect("windows")
@@ -76,7 +79,11 @@ fn both_searches_find_the_canonical_plan_and_all_plans_of_every_case() {
                 continue;
             }
             assert_eq!(outcome.status, Status::Plan, "{id}, {search:?}");
-            assert_eq!(named(&network, &outcome.plans[0]), expected(&expect["canonical"]), "{id}, {search:?}");
+            assert_eq!(
+                named(&network, &outcome.plans[0]),
+                expected(&expect["canonical"]),
+                "{id}, {search:?}"
+            );
             let all = plan(&network, search, true);
             let found: Vec<NamedPlan> = all.plans.iter().map(|plan| named(&network, plan)).collect();
             assert_eq!(found.first(), Some(&expected(&expect["canonical"])), "{id}, {search:?}");
@@ -85,7 +92,11 @@ fn both_searches_find_the_canonical_plan_and_all_plans_of_every_case() {
                 expect["all_plans"].as_array().expect("plans").iter().map(expected).collect();
             // A case may list the first of its plans only; the count is of all.
             assert!(found.is_superset(&wanted), "{id}, {search:?}");
-            assert_eq!(Some(all.plans.len() as u64), expect["num_distinct_plans"].as_u64(), "{id}, {search:?}");
+            assert_eq!(
+                Some(all.plans.len() as u64),
+                expect["num_distinct_plans"].as_u64(),
+                "{id}, {search:?}"
+            );
         }
     }
 }

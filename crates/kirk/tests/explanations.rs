@@ -81,13 +81,15 @@ fn a_requirement_that_nothing_asserts_says_so() {
 
 #[test]
 fn conditions_that_cannot_be_kept_apart_are_both_named() {
-    let failure = check("scenario S[0,20] = { { delay[0,inf]; CAM=ON[12,12] }, { delay[0,inf]; CAM=OFF[10,10] } }");
+    let failure =
+        check("scenario S[0,20] = { { delay[0,inf]; CAM=ON[12,12] }, { delay[0,inf]; CAM=OFF[10,10] } }");
     assert_eq!(failure.kinds(), [FailureKind::Threat]);
     assert_eq!(
         failure.reasons[0].message,
         "CAM=ON and CAM=OFF cannot be kept apart: CAM=ON, CAM=OFF and a gap of 1 need at least 23, but the scenario allows only 20"
     );
-    let horizon = failure.relaxations.iter().find(|relaxation| relaxation.old == rmpl::Bound::Finite(20.into()));
+    let horizon =
+        failure.relaxations.iter().find(|relaxation| relaxation.old == rmpl::Bound::Finite(20.into()));
     assert_eq!(horizon.map(|relaxation| relaxation.new), Some(23.into()));
 }
 

@@ -29,7 +29,10 @@ fn the_last_step_has_the_plan_with_its_links_orders_and_windows() {
             assert_eq!(last.choices, plan.choices, "seed {seed}, {search:?}");
             assert_eq!(last.links, plan.causal_links, "seed {seed}, {search:?}");
             assert_eq!(last.orders, plan.orderings_added, "seed {seed}, {search:?}");
-            assert_eq!(last.arcs.len(), plan.selected_arcs.iter().filter(|&&is_selected| is_selected).count());
+            assert_eq!(
+                last.arcs.len(),
+                plan.selected_arcs.iter().filter(|&&is_selected| is_selected).count()
+            );
             let statuses = trace.tree.iter().filter(|node| node.status == TreeStatus::Solution).count();
             assert_eq!(statuses, 1, "seed {seed}, {search:?}");
         }
@@ -49,7 +52,8 @@ fn steps_can_be_visited_in_any_order() {
 
 #[test]
 fn a_failed_step_shows_its_contradiction_and_the_state_before_it() {
-    let text = "primitive Long()[30,40]; primitive Short()[5,10]; scenario S[0,20] = { choose { Long(), Short() } }";
+    let text =
+        "primitive Long()[30,40]; primitive Short()[5,10]; scenario S[0,20] = { choose { Long(), Short() } }";
     let network = network(text);
     let (_, trace) = traced(&network, Search::Chronological, 1_000);
     let failed = trace.events.iter().position(|entry| matches!(entry.event, Event::Inconsistent { .. }));

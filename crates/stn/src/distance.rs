@@ -134,7 +134,11 @@ impl Stn {
         }
     }
 
-    fn dijkstra<const FORWARDS: bool>(&mut self, origin: PointId, row: &mut Vec<i64>) -> Result<(), Overflow> {
+    fn dijkstra<const FORWARDS: bool>(
+        &mut self,
+        origin: PointId,
+        row: &mut Vec<i64>,
+    ) -> Result<(), Overflow> {
         row.clear();
         row.resize(self.num_points(), INFINITE);
         // Keys are reduced distances; `scratch` holds them, `row` the true ones.

@@ -27,11 +27,16 @@ pub enum ExecutionWindows {
 
 /// The windows of all points once `execution` has been observed; observations carry `tag`. The network is left as it
 /// was.
-pub fn execution_windows(stn: &mut Stn, execution: Execution<'_>, tag: Tag) -> Result<ExecutionWindows, Overflow> {
+pub fn execution_windows(
+    stn: &mut Stn,
+    execution: Execution<'_>,
+    tag: Tag,
+) -> Result<ExecutionWindows, Overflow> {
     let checkpoint = stn.checkpoint();
-    let observed = execution.executed.iter().try_for_each(|&(point, time)| {
-        stn.constrain(execution.origin, point, time, Some(time), tag)
-    });
+    let observed = execution
+        .executed
+        .iter()
+        .try_for_each(|&(point, time)| stn.constrain(execution.origin, point, time, Some(time), tag));
     let observed = observed.and_then(|()| {
         let mut pending = execution.pending.iter();
         pending.try_for_each(|&point| stn.constrain(execution.origin, point, execution.now, None, tag))

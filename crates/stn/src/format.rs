@@ -68,7 +68,10 @@ pub fn parse(text: &str) -> Result<Document, ParseError> {
             sections.push(Vec::new());
         } else if !content.is_empty() {
             let Some(section) = sections.last_mut() else {
-                return Err(ParseError { line, message: "expected a section, opened by a line with `#`".into() });
+                return Err(ParseError {
+                    line,
+                    message: "expected a section, opened by a line with `#`".into(),
+                });
             };
             section.push((line, content));
         }

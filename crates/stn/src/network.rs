@@ -220,7 +220,14 @@ impl Stn {
     pub fn push(&mut self, from: PointId, to: PointId, weight: i64, tag: Tag) {
         let position = self.edges.len() as u32;
         let (first_out, first_in) = (&mut self.first_out[from.index()], &mut self.first_in[to.index()]);
-        self.edges.push(Edge { weight, from: from.0, to: to.0, next_out: *first_out, next_in: *first_in, tag });
+        self.edges.push(Edge {
+            weight,
+            from: from.0,
+            to: to.0,
+            next_out: *first_out,
+            next_in: *first_in,
+            tag,
+        });
         *first_out = position;
         *first_in = position;
     }
@@ -265,7 +272,8 @@ impl Stn {
             while next != NONE {
                 let edge = self.edges[next as usize];
                 let source = edge.from as usize;
-                let rise = new.checked_sub(edge.weight).and_then(|time| self.potential[source].checked_sub(time));
+                let rise =
+                    new.checked_sub(edge.weight).and_then(|time| self.potential[source].checked_sub(time));
                 let Some(rise) = rise else {
                     self.restore();
                     return Err(Inconsistency::Overflow);

@@ -19,7 +19,8 @@ fn a_consistent_document_has_windows_relative_to_its_first_point() {
 
 #[test]
 fn an_inconsistent_document_names_its_edges() {
-    let document = parse(&CONSISTENT.replace("Z 12 A", "Z -4 A").replace("B 7 Z", "B -3 Z")).expect("well formed");
+    let document =
+        parse(&CONSISTENT.replace("Z 12 A", "Z -4 A").replace("B 7 Z", "B -3 Z")).expect("well formed");
     let (stn, consistent) = document.to_stn();
     assert_eq!(consistent, Err(Inconsistency::NegativeCycle));
     let mut tags: Vec<u32> = stn.cycle().iter().map(|edge| edge.tag).collect();
@@ -36,7 +37,10 @@ fn what_is_wrong_with_a_document_is_told_with_its_line() {
     assert_eq!(refused(&CONSISTENT.replace("\n5\n", "\n6\n")).line, 8);
     assert_eq!(refused(&CONSISTENT.replace("A 5 B", "A 5 Q")).message, "Q is not a time point");
     assert_eq!(refused(&CONSISTENT.replace("A 5 B", "A 5.5 B")).line, 11);
-    assert_eq!(refused(&CONSISTENT.replace("A 4 C\n", "")).message, "8 edges are announced, but 7 are listed");
+    assert_eq!(
+        refused(&CONSISTENT.replace("A 4 C\n", "")).message,
+        "8 edges are announced, but 7 are listed"
+    );
     assert_eq!(refused(&CONSISTENT.replace("Z A B", "Z A A")).message, "A is named twice");
     assert!(refused("# only\n").message.contains("empty"));
 }

@@ -79,12 +79,20 @@ fn assert_cycle(stn: &Stn, edges: &EdgeList, new_edge: (usize, usize, i64), seed
     for (position, edge) in cycle.iter().enumerate() {
         assert_eq!(edge.to, cycle[(position + 1) % cycle.len()].from, "seed {seed}: not a cycle");
         let known = edges.get(edge.tag as usize).copied().unwrap_or(new_edge);
-        assert_eq!((edge.from, edge.to, edge.weight), (point(known.0), point(known.1), known.2), "seed {seed}");
+        assert_eq!(
+            (edge.from, edge.to, edge.weight),
+            (point(known.0), point(known.1), known.2),
+            "seed {seed}"
+        );
     }
     let mut starts: Vec<PointId> = cycle.iter().map(|edge| edge.from).collect();
     starts.sort_unstable();
     starts.dedup();
-    assert_eq!(starts.len(), cycle.len(), "seed {seed}: a cycle visits each point once, so that it is minimal");
+    assert_eq!(
+        starts.len(),
+        cycle.len(),
+        "seed {seed}: a cycle visits each point once, so that it is minimal"
+    );
 }
 
 #[test]
@@ -125,7 +133,8 @@ fn insertions_and_undos_agree_with_floyd_warshall() {
                         Err(Inconsistency::Overflow) => panic!("seed {seed}: overflow of small numbers"),
                     }
                     let schedule = stn.schedule();
-                    let holds = edges.iter().all(|&(from, to, weight)| schedule[to] - schedule[from] <= weight);
+                    let holds =
+                        edges.iter().all(|&(from, to, weight)| schedule[to] - schedule[from] <= weight);
                     assert!(holds, "seed {seed}: the schedule breaks an edge");
                 }
             }
@@ -142,7 +151,7 @@ fn settling_many_edges_at_once_agrees_with_floyd_warshall() {
         let points = 2 + random.below(12);
         let mut stn = Stn::new(points);
         let mut edges: EdgeList = Vec::new();
-        for tag in 0..random.below(3 * points) + 1 {
+        for tag in 0..=random.below(3 * points) {
             let edge = (random.below(points), random.below(points), random.between(-4, 16));
             stn.push(point(edge.0), point(edge.1), edge.2, tag as u32);
             edges.push(edge);

@@ -54,7 +54,11 @@ pub(crate) fn named(network: &Network, plan: &Plan) -> NamedPlan {
             .map(|choice| (Network::decision_name(choice.decision), u64::from(choice.alternative)))
             .collect(),
         causal_links: plan.causal_links.iter().map(|link| (name(link.ask), name(link.tell))).collect(),
-        conflict_order: plan.conflict_order.iter().map(|order| (name(order.first), name(order.then))).collect(),
+        conflict_order: plan
+            .conflict_order
+            .iter()
+            .map(|order| (name(order.first), name(order.then)))
+            .collect(),
         windows,
     }
 }
