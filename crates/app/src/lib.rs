@@ -20,6 +20,7 @@ pub mod panel;
 mod shell;
 pub mod state;
 pub mod theme;
+pub mod time_text;
 pub mod toasts;
 pub mod workspace;
 

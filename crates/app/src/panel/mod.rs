@@ -3,9 +3,11 @@
 pub mod editor;
 pub mod network;
 pub mod outline;
-pub mod placeholder;
+pub mod empty;
+pub mod plan;
 pub mod problems;
 pub mod terrain;
+pub mod timeline;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -18,7 +20,7 @@ use crate::state::AppState;
 use crate::theme::Tokens;
 
 pub use editor::{editor_id, typed_text};
-pub use placeholder::show_empty;
+pub use empty::show_empty;
 
 /// The kinds of panel. A layout holds at most one of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -173,6 +175,7 @@ fn create(kind: PanelKind) -> Box<dyn Panel> {
         PanelKind::Network => Box::new(network::NetworkPanel::default()),
         PanelKind::Terrain => Box::new(terrain::TerrainPanel::default()),
         PanelKind::Editor => Box::new(editor::EditorPanel::default()),
-        _ => Box::new(placeholder::PlaceholderPanel::new(kind)),
+        PanelKind::Plan => Box::new(plan::PlanPanel::default()),
+        PanelKind::Timeline => Box::new(timeline::TimelinePanel::default()),
     }
 }

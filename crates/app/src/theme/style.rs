@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use egui::{
-    Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Shadow, Stroke, Style,
+    Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Shadow, Stroke, Style,
     TextStyle, Theme, Vec2, Visuals, style::ScrollStyle,
 };
 
@@ -28,22 +28,38 @@ pub fn apply(context: &Context, theme: ThemeChoice, text_scale: f32) {
 /// Gives `context` the app's fonts.
 pub fn install_fonts(context: &Context) {
     let mut fonts = FontDefinitions::default();
-    for (name, bytes, family) in FONTS {
-        fonts.font_data.insert((*name).to_owned(), Arc::new(FontData::from_static(bytes)));
-        fonts.families.entry(family.clone()).or_default().insert(0, (*name).to_owned());
+    for (name, bytes) in [("Inter", INTER), ("Inter SemiBold", INTER_STRONG), ("JetBrains Mono", JETBRAINS_MONO)] {
+        fonts.font_data.insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
     }
+    // egui's own fonts fill in for missing characters.
+    let fallback = fonts.families.get(&FontFamily::Proportional).cloned().unwrap_or_default();
+    let family = |first: [&str; 2]| -> Vec<String> {
+        first.into_iter().map(str::to_owned).chain(fallback.iter().cloned()).collect()
+    };
+    fonts.families.insert(FontFamily::Proportional, family(["Inter", "JetBrains Mono"]));
+    fonts.families.insert(FontFamily::Monospace, family(["JetBrains Mono", "Inter"]));
+    fonts.families.insert(FontFamily::Name(STRONG.into()), family(["Inter SemiBold", "JetBrains Mono"]));
     context.set_fonts(fonts);
 }
 
-/// The fonts of the app before egui's own, which fill in for missing characters.
-const FONTS: &[(&str, &[u8], FontFamily)] = &[];
+/// Text that carries weight: titles and verdicts.
+pub fn strong(text: impl Into<String>) -> RichText {
+    RichText::new(text).family(FontFamily::Name(STRONG.into()))
+}
+
+/// The family of titles.
+const STRONG: &str = "strong";
+
+const INTER: &[u8] = include_bytes!("../../fonts/Inter-Regular.otf");
+const INTER_STRONG: &[u8] = include_bytes!("../../fonts/Inter-SemiBold.otf");
+const JETBRAINS_MONO: &[u8] = include_bytes!("../../fonts/JetBrainsMono-Regular.ttf");
 
 fn set_type(style: &mut Style) {
     style.text_styles = [
         (TextStyle::Small, FontId::new(size::SMALL, FontFamily::Proportional)),
         (TextStyle::Body, FontId::new(size::BODY, FontFamily::Proportional)),
         (TextStyle::Button, FontId::new(size::BODY, FontFamily::Proportional)),
-        (TextStyle::Heading, FontId::new(size::TITLE, FontFamily::Proportional)),
+        (TextStyle::Heading, FontId::new(size::TITLE, FontFamily::Name(STRONG.into()))),
         (TextStyle::Monospace, FontId::new(size::CODE, FontFamily::Monospace)),
     ]
     .into();

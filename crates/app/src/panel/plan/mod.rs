@@ -1,0 +1,214 @@
+//! The plan: the checker's verdict, choices, links, orderings and windows; or why there is none.
+
+mod failure;
+mod windows;
+
+use egui::{RichText, ScrollArea, Ui};
+use tpn::{DecisionId, Network, OccurrenceKind, Plan};
+
+use crate::command::{Command, CommandSender};
+use crate::icon::{self, Icon};
+use crate::panel::{Context, Panel, show_empty};
+use crate::state::{Selection, Status};
+use crate::theme::space;
+
+/// The plan.
+#[derive(Default)]
+pub struct PlanPanel {
+    windows: windows::WindowTable,
+}
+
+impl Panel for PlanPanel {
+    fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+        let planning = context.snapshot.and_then(|snapshot| snapshot.planning.as_ref());
+        let Some((snapshot, planning)) = context.snapshot.zip(planning) else {
+            let text = match context.state.status() {
+                Status::Broken => "The text has errors. See the problems.",
+                Status::Empty => "There is nothing to plan in this text.",
+                _ => "Planning…",
+            };
+            show_empty(ui, context, text);
+            return;
+        };
+        let Some(network) = snapshot.network.as_deref() else { return };
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            egui::Frame::new().inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+                if context.is_stale {
+                    let note = "This belongs to an older text.";
+                    ui.label(RichText::new(note).color(context.tokens.warning));
+                }
+                match context.plan() {
+                    Some((network, plan)) => {
+                        show_verdict(ui, context, planning);
+                        show_choices(ui, context, network, plan, commands);
+                        show_links(ui, context, network, plan, commands);
+                        show_orderings(ui, context, network, plan, commands);
+                        self.windows.show(ui, context, network, plan, commands);
+                    }
+                    None => failure::show(ui, context, network, planning, commands),
+                }
+            });
+        });
+    }
+}
+
+/// The title of a section.
+pub(crate) fn section(ui: &mut Ui, context: &Context<'_>, title: &str, note: &str) {
+    ui.add_space(space::M);
+    ui.horizontal(|ui| {
+        ui.label(crate::theme::strong(title).color(context.tokens.text));
+        if !note.is_empty() {
+            ui.label(RichText::new(note).small().color(context.tokens.text_muted));
+        }
+    });
+}
+
+/// A row that selects something, with its text cut where the panel ends.
+pub(crate) fn selectable_row(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    selection: &Selection,
+    text: RichText,
+    commands: &mut CommandSender,
+) {
+    let is_selected = context.state.selection == *selection;
+    let button = egui::Button::selectable(is_selected, text).truncate();
+    let response = ui.add(button);
+    if response.hovered() && context.state.hovered != *selection {
+        commands.send(Command::Hover(selection.clone()));
+    }
+    if response.clicked() {
+        commands.send(Command::Select(selection.clone()));
+    }
+    if response.double_clicked() {
+        commands.send(Command::SelectAndReveal(selection.clone()));
+    }
+}
+
+fn show_verdict(ui: &mut Ui, context: &Context<'_>, planning: &mission::Planning) {
+    let tokens = context.tokens;
+    let stats = planning.outcome.stats;
+    ui.horizontal_wrapped(|ui| {
+        match &planning.verdict {
+            Some(verdict) if verdict.valid => {
+                icon::label(ui, Icon::Check, tokens.good);
+                ui.label(RichText::new("The independent checker accepts this plan.").color(tokens.good));
+            }
+            Some(verdict) => {
+                icon::label(ui, Icon::Error, tokens.error);
+                let count = verdict.violations.len();
+                let text = format!("The independent checker refuses this plan: {count} violations.");
+                ui.label(RichText::new(text).color(tokens.error));
+            }
+            None => {
+                icon::label(ui, Icon::Working, tokens.text_muted);
+                ui.label(RichText::new("Not checked yet.").color(tokens.text_muted));
+            }
+        }
+        let effort = format!("{} alternatives tried, {} dead ends", stats.expanded, stats.conflicts);
+        ui.label(RichText::new(effort).small().color(tokens.text_muted));
+    });
+    for violation in planning.verdict.iter().flat_map(|verdict| &verdict.violations) {
+        ui.label(RichText::new(&violation.message).color(tokens.error));
+    }
+    for undrivable in &planning.undrivable {
+        ui.label(RichText::new(&undrivable.reason).color(tokens.warning));
+    }
+}
+
+fn show_choices(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    network: &Network,
+    plan: &Plan,
+    commands: &mut CommandSender,
+) {
+    let reached = plan.choices.len();
+    if network.decisions.is_empty() {
+        return;
+    }
+    section(ui, context, "Choices", &format!("{reached} of {} decisions reached", network.decisions.len()));
+    for choice in &plan.choices {
+        let Some(decision) = network.decisions.get(choice.decision.index()) else { continue };
+        ui.horizontal(|ui| {
+            let name = Network::decision_name(choice.decision);
+            let text = RichText::new(&name).color(context.tokens.decision);
+            selectable_row(ui, context, &Selection::Decision(choice.decision), text, commands);
+            for alternative in 0..decision.alternatives.len() as u32 {
+                let is_taken = alternative == choice.alternative;
+                let text = alternative_text(network, choice.decision, alternative);
+                let color = if is_taken { context.tokens.text } else { context.tokens.text_faint };
+                let text = RichText::new(text).color(color);
+                let text = if is_taken { text } else { text.strikethrough() };
+                let selection = Selection::Alternative(choice.decision, alternative);
+                if is_taken {
+                    icon::label(ui, Icon::Check, context.tokens.good);
+                }
+                selectable_row(ui, context, &selection, text, commands);
+            }
+        });
+    }
+}
+
+/// What an alternative is about: the first activity in it.
+pub(crate) fn alternative_text(network: &Network, decision: DecisionId, alternative: u32) -> String {
+    let span = network
+        .decisions
+        .get(decision.index())
+        .and_then(|decision| decision.alternative_spans.get(alternative as usize));
+    let first = span.and_then(|span| {
+        network.occurrences.iter().find(|occurrence| {
+            let is_activity = matches!(occurrence.kind, OccurrenceKind::Primitive | OccurrenceKind::Activity);
+            let is_inside = occurrence.span.is_some_and(|at| span.start <= at.start && at.end <= span.end);
+            is_activity && is_inside
+        })
+    });
+    match first {
+        Some(occurrence) => format!("{alternative}: {}", occurrence.name),
+        None => format!("{alternative}"),
+    }
+}
+
+fn show_links(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    network: &Network,
+    plan: &Plan,
+    commands: &mut CommandSender,
+) {
+    if plan.causal_links.is_empty() {
+        return;
+    }
+    section(ui, context, "Causal links", "a requirement inside the assertion that carries it");
+    for &link in &plan.causal_links {
+        let text = format!("{} ← {}", network.label_name(link.ask), network.label_name(link.tell));
+        let text = RichText::new(text).color(context.tokens.link);
+        selectable_row(ui, context, &Selection::Link(link), text, commands);
+    }
+}
+
+fn show_orderings(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    network: &Network,
+    plan: &Plan,
+    commands: &mut CommandSender,
+) {
+    if plan.conflict_order.is_empty() {
+        return;
+    }
+    let added = plan.orderings_added.len();
+    let note = format!("{} conflicting pairs, {added} ordered by planning", plan.conflict_order.len());
+    section(ui, context, "Threats and orderings", &note);
+    for &ordering in &plan.conflict_order {
+        let text = format!("{} before {}", network.label_name(ordering.first), network.label_name(ordering.then));
+        let is_added = plan.orderings_added.contains(&ordering);
+        let (note, color) = if is_added {
+            ("   added", context.tokens.ordering)
+        } else {
+            ("   holds anyway", context.tokens.text_muted)
+        };
+        let text = RichText::new(format!("{text}{note}")).color(color);
+        selectable_row(ui, context, &Selection::Ordering(ordering), text, commands);
+    }
+}

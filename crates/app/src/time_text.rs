@@ -1,0 +1,63 @@
+//! Times as people read them.
+
+use rmpl::program::TimeUnit;
+use rmpl::{Bound, Rational};
+
+/// A time in mission units, exact: a decimal where there is one, otherwise a fraction.
+pub fn time(value: Rational) -> String {
+    rmpl::rational::decimal(value).unwrap_or_else(|| format!("{}/{}", value.numer(), value.denom()))
+}
+
+/// A bound; infinity is `∞`.
+pub fn bound(value: Bound) -> String {
+    value.finite().map_or_else(|| "∞".to_owned(), time)
+}
+
+/// `earliest` to `latest`, as intervals are written.
+pub fn interval(earliest: Rational, latest: Bound) -> String {
+    format!("[{}, {}]", time(earliest), bound(latest))
+}
+
+/// What is between the two, `∞` if the latest is.
+pub fn slack(earliest: Rational, latest: Bound) -> String {
+    latest.finite().map_or_else(|| "∞".to_owned(), |latest| time(latest - earliest))
+}
+
+/// The short name of a unit.
+pub fn unit(unit: TimeUnit) -> &'static str {
+    match unit {
+        TimeUnit::Minute => "min",
+        TimeUnit::Second => "s",
+    }
+}
+
+/// A moment while time plays, as `d:hh:mm:ss` without the parts that are zero at the front.
+pub fn clock(value: f64, unit: TimeUnit) -> String {
+    let total = (value * unit.seconds() as f64).round().max(0.0) as u64;
+    let (days, hours, minutes, seconds) = (total / 86_400, total / 3600 % 24, total / 60 % 60, total % 60);
+    if days > 0 {
+        format!("{days}d {hours:02}:{minutes:02}:{seconds:02}")
+    } else {
+        format!("{hours:02}:{minutes:02}:{seconds:02}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_times_are_decimals_where_possible_and_fractions_otherwise() {
+        assert_eq!(time(Rational::new(819, 2)), "409.5");
+        assert_eq!(time(Rational::new(1, 3)), "1/3");
+        assert_eq!(bound(Bound::Infinite), "∞");
+        assert_eq!(slack(Rational::from(10), Bound::Finite(Rational::from(55))), "45");
+    }
+
+    #[test]
+    fn the_clock_counts_days_only_when_there_are_any() {
+        assert_eq!(clock(65.5, TimeUnit::Minute), "01:05:30");
+        assert_eq!(clock(1500.0, TimeUnit::Minute), "1d 01:00:00");
+        assert_eq!(clock(59.4, TimeUnit::Second), "00:00:59");
+    }
+}
