@@ -297,6 +297,16 @@ impl Lookahead {
         chosen: &[u32],
         first: usize,
     ) -> Result<bool, Overflow> {
+        for position in 0..first {
+            // The schedule shows that most of the earlier requirements can still be carried.
+            let label = self.labels[position];
+            if model.conditions.labels[label as usize].is_ask
+                && !self.is_carried(model, label)
+                && !self.check_ask(model, chosen, label)?
+            {
+                return Ok(false);
+            }
+        }
         for position in first..self.labels.len() {
             let label = self.labels[position];
             if model.conditions.labels[label as usize].is_ask && !self.check_ask(model, chosen, label)? {
@@ -370,6 +380,14 @@ impl Lookahead {
         }
         let edges = link_edges(model, ask, only);
         self.conclude(model, &[ask, only], &edges)
+    }
+
+    /// Whether some selected assertion carries a requirement in the present schedule.
+    fn is_carried(&self, model: &Model, ask: u32) -> bool {
+        let mut carriers = model.conditions.supporters(ask);
+        carriers.any(|tell| {
+            self.is_active_label[tell as usize] && link_edges(model, ask, tell).iter().all(|&edge| self.holds(edge))
+        })
     }
 
     fn candidate(
