@@ -20,7 +20,8 @@ fn main() {
             black_box(current.program());
         });
         let middle = text.len() / 2;
-        let find = |pattern: &str, after: usize| text[middle..].find(pattern).map_or(0, |at| middle + at + after);
+        let find =
+            |pattern: &str, after: usize| text[middle..].find(pattern).map_or(0, |at| middle + at + after);
         let body = keystrokes(&mut current, find("delay[", 6));
         let name = keystrokes(&mut current, find("primitive ", 12));
         let diagnostics = median(15, || {

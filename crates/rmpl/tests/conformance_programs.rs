@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use rmpl::syntax::SyntaxNode;
 use rmpl::{Severity, parse};
 
 fn programs() -> Vec<(String, String)> {
@@ -54,7 +55,7 @@ fn the_trees_of_every_program_hold_its_text() {
     for (name, text) in programs() {
         let parse = parse(&text);
         let held: String =
-            parse.declarations().flat_map(|tree| tree.tokens()).map(|token| token.text).collect();
+            parse.declarations().flat_map(SyntaxNode::tokens).map(|token| token.text).collect();
         assert_eq!(held, text, "{name}");
     }
 }

@@ -3,6 +3,7 @@
 mod written;
 
 use proptest::prelude::*;
+use rmpl::syntax::SyntaxNode;
 use rmpl::{format, parse};
 
 #[track_caller]
@@ -80,7 +81,7 @@ fn a_declaration_with_a_mistake_is_left_alone() {
 
 fn significant(text: &str) -> Vec<String> {
     let parse = parse(text);
-    let tokens = parse.declarations().flat_map(|tree| tree.tokens());
+    let tokens = parse.declarations().flat_map(SyntaxNode::tokens);
     tokens.map(|token| token.text.trim().to_owned()).filter(|text| !text.is_empty()).collect()
 }
 
@@ -148,7 +149,7 @@ proptest! {
         pieces in proptest::collection::vec((0..PIECES.len(), any::<bool>()), 0..40),
     ) {
         let text: String =
-            pieces.iter().map(|&(piece, space)| format!("{}{}", PIECES[piece], if space { " " } else { "" })).collect();
+            pieces.iter().flat_map(|&(piece, space)| [PIECES[piece], if space { " " } else { "" }]).collect();
         let formatted = format(&text);
         prop_assert_eq!(significant(&formatted), significant(&text));
         let codes = |text: &str| parse(text).diagnostics().iter().map(|it| it.code.0).collect::<Vec<_>>();

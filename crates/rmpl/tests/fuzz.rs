@@ -2,6 +2,7 @@
 //! text or change meaning. The seed of a failure is printed with it.
 
 use rmpl::editor::{self, Evaluation};
+use rmpl::syntax::SyntaxNode;
 use rmpl::{Edit, Span, format, parse};
 
 const ROUNDS: u64 = 2500;
@@ -95,7 +96,7 @@ fn no_mutation_of_a_program_panics_loses_text_or_changes_meaning() {
     for seed in 1..=ROUNDS {
         let mut source = Source(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
         let mut text = PROGRAMS[source.below(PROGRAMS.len())].to_owned();
-        for _ in 0..1 + source.below(6) {
+        for _ in 0..=source.below(6) {
             source.mutate(&mut text);
         }
         let outcome = std::panic::catch_unwind(|| exercise(&text, seed));
@@ -106,7 +107,7 @@ fn no_mutation_of_a_program_panics_loses_text_or_changes_meaning() {
 fn exercise(text: &str, seed: u64) {
     let mut source = Source(seed | 1);
     let mut parsed = parse(text);
-    let held: String = parsed.declarations().flat_map(|tree| tree.tokens()).map(|token| token.text).collect();
+    let held: String = parsed.declarations().flat_map(SyntaxNode::tokens).map(|token| token.text).collect();
     assert_eq!(held, text, "the tree holds the text");
     for found in parsed.diagnostics() {
         let spans = found.fixes.iter().flat_map(|fix| &fix.edits).map(|edit| edit.span).chain([found.span]);

@@ -1,6 +1,7 @@
 //! After any edits a text is as current as if it had been read afresh, and any text is read without loss.
 
 use proptest::prelude::*;
+use rmpl::syntax::SyntaxNode;
 use rmpl::{Edit, Parse, Span, parse};
 
 const MISSIONS: [&str; 4] = [
@@ -43,7 +44,7 @@ const PIECES: [&str; 28] = [
 ];
 
 fn held(parse: &Parse) -> String {
-    parse.declarations().flat_map(|tree| tree.tokens()).map(|token| token.text).collect()
+    parse.declarations().flat_map(SyntaxNode::tokens).map(|token| token.text).collect()
 }
 
 fn assert_same_as_fresh(edited: &Parse) {

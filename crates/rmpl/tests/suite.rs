@@ -22,7 +22,7 @@ fn blocks() -> Vec<Block> {
     let mut files: Vec<PathBuf> =
         std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
-    files.iter().flat_map(|file| blocks_of(file)).collect()
+    files.iter().flat_map(blocks_of).collect()
 }
 
 fn blocks_of(file: &PathBuf) -> Vec<Block> {

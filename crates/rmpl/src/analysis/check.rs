@@ -171,7 +171,7 @@ impl<'a> Checker<'a> {
             }
         }
         if known == 0 && !call.has_formal_argument {
-            self.push(traverse::no_location(self.text(call.name), call.call_span));
+            self.push(traverse::no_location(self.text(call.name), call.with_arguments));
         }
     }
 

@@ -57,7 +57,9 @@ fn combine(operator: BinaryOp, left: Bound, right: Bound) -> Result<Bound, Const
     let exact = |value: Option<Rational>| value.map(Finite).ok_or(ConstantError::TooLarge);
     match (operator, left, right) {
         (BinaryOp::Add, Finite(left), Finite(right)) => exact(left.checked_add(&right)),
-        (BinaryOp::Add, ..) | (BinaryOp::Subtract, Infinite, Finite(_)) => Ok(Infinite),
+        (BinaryOp::Add, ..)
+        | (BinaryOp::Subtract, Infinite, Finite(_))
+        | (BinaryOp::Multiply, Infinite, Infinite) => Ok(Infinite),
         (BinaryOp::Subtract, Finite(left), Finite(right)) => exact(left.checked_sub(&right)),
         (BinaryOp::Multiply, Finite(left), Finite(right)) => exact(left.checked_mul(&right)),
         (BinaryOp::Multiply, Infinite, Finite(factor)) | (BinaryOp::Multiply, Finite(factor), Infinite) => {
@@ -69,7 +71,6 @@ fn combine(operator: BinaryOp, left: Bound, right: Bound) -> Result<Bound, Const
                 Ok(Infinite)
             }
         }
-        (BinaryOp::Multiply, Infinite, Infinite) => Ok(Infinite),
         (BinaryOp::Divide, _, Finite(divisor)) if divisor.is_zero() => Err(ConstantError::Undefined),
         (BinaryOp::Divide, Finite(left), Finite(right)) => exact(left.checked_div(&right)),
         (BinaryOp::Divide, Infinite, Finite(divisor)) if !divisor.is_negative() => Ok(Infinite),

@@ -189,11 +189,12 @@ impl Local {
     fn statement(&mut self, statement: &Statement) {
         self.bounds(statement.bounds.as_ref());
         match &statement.kind {
-            StatementKind::Sequence(parts) | StatementKind::Parallel(parts) => {
-                parts.iter().for_each(|part| self.statement(part));
-            }
-            StatementKind::Choose(alternatives) => {
-                alternatives.iter().for_each(|part| self.statement(part));
+            StatementKind::Sequence(parts)
+            | StatementKind::Parallel(parts)
+            | StatementKind::Choose(parts) => {
+                for part in parts {
+                    self.statement(part);
+                }
             }
             StatementKind::Maintaining(body, _)
             | StatementKind::Watching(body, _)
@@ -228,8 +229,9 @@ impl Local {
                     Element::Token(token) if token.kind == SyntaxKind::Comma => Some(token.span),
                     _ => None,
                 });
-                let spans = std::iter::once(parallel.span()).chain(parallels.map(SyntaxNode::span)).collect();
-                self.found.push(mixed::mixed(comma.unwrap_or_else(|| parallel.span()), spans));
+                let spans: Vec<Span> =
+                    std::iter::once(parallel.span()).chain(parallels.map(SyntaxNode::span)).collect();
+                self.found.push(mixed::mixed(comma.unwrap_or_else(|| parallel.span()), &spans));
             }
         }
     }

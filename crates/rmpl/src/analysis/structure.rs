@@ -186,7 +186,7 @@ impl Structure<'_> {
                 }
                 false
             }
-            StatementKind::Maintaining(body, condition) => {
+            StatementKind::Maintaining(body, condition) | StatementKind::IfThennext(condition, body) => {
                 out.push((LabelMode::Ask, condition.clone()));
                 self.starting(body, out);
                 false
@@ -194,11 +194,6 @@ impl Structure<'_> {
             StatementKind::Watching(body, condition) => {
                 let denied = Condition { negated: !condition.negated, ..condition.clone() };
                 out.push((LabelMode::Tell, denied));
-                self.starting(body, out);
-                false
-            }
-            StatementKind::IfThennext(condition, body) => {
-                out.push((LabelMode::Ask, condition.clone()));
                 self.starting(body, out);
                 false
             }

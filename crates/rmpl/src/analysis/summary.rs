@@ -52,7 +52,7 @@ pub(crate) struct Call {
     pub(crate) name: Symbol,
     pub(crate) span: Span,
     /// The name with its arguments.
-    pub(crate) call_span: Span,
+    pub(crate) with_arguments: Span,
     pub(crate) arguments: u32,
     /// A parameter of the surrounding activity is handed on.
     pub(crate) has_formal_argument: bool,
@@ -259,7 +259,7 @@ impl Collector<'_> {
         let call = Call {
             name: self.names.intern(&name.text),
             span: name.span,
-            call_span: Span::new(name.span.start, end.max(name.span.end)),
+            with_arguments: Span::new(name.span.start, end.max(name.span.end)),
             arguments: arguments as u32,
             has_formal_argument: false,
             bounds: bounds.and_then(|bounds| Some((constant::interval(bounds)?, bounds.span))),

@@ -28,5 +28,5 @@ pub(crate) fn mismatch(name: &str, wanted: u32, call: &Call) -> Diagnostic {
         _ => format!("{number} arguments"),
     };
     let message = format!("`{name}` takes {}, and this call has {}", count(wanted), count(call.arguments));
-    Diagnostic::error(CODE, call.call_span, message)
+    Diagnostic::error(CODE, call.with_arguments, message)
 }

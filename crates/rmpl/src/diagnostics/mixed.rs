@@ -26,7 +26,7 @@ scenario Day[0,9] = { { A(), B() }; C() }",
 };
 
 /// `comma` is the first `,` of a block that also has `;`; `parallels` are the parts that `,` makes.
-pub(crate) fn mixed(comma: Span, parallels: Vec<Span>) -> Diagnostic {
+pub(crate) fn mixed(comma: Span, parallels: &[Span]) -> Diagnostic {
     let edits = parallels.iter().flat_map(|span| {
         [
             Edit { span: Span::new(span.start, span.start), text: "{ ".to_owned() },

@@ -29,16 +29,14 @@ scenario Day[0,60] = { Survey()[20,30] }",
 /// A name in a bound that the header does not bind.
 pub(crate) fn unknown(name: &str, span: Span, known: &[Name]) -> Diagnostic {
     let diagnostic = Diagnostic::error(CODE, span, format!("no bound is called `{name}` here"));
-    match known {
-        [] => diagnostic
-            .with_hint("names in bounds come from the header of the activity: `Name()[l,u] = { … }`"),
-        _ => {
-            let names: Vec<String> = known.iter().map(|name| format!("`{}`", name.text)).collect();
-            let diagnostic = diagnostic.with_hint(format!("the header binds {}", names.join(" and ")));
-            known.iter().fold(diagnostic, |diagnostic, name| {
-                let label = format!("Change to `{}`", name.text);
-                diagnostic.with_fix(replacement(label, span, name.text.as_str()))
-            })
-        }
+    if known.is_empty() {
+        return diagnostic
+            .with_hint("names in bounds come from the header of the activity: `Name()[l,u] = { … }`");
     }
+    let names: Vec<String> = known.iter().map(|name| format!("`{}`", name.text)).collect();
+    let diagnostic = diagnostic.with_hint(format!("the header binds {}", names.join(" and ")));
+    known.iter().fold(diagnostic, |diagnostic, name| {
+        let label = format!("Change to `{}`", name.text);
+        diagnostic.with_fix(replacement(label, span, name.text.as_str()))
+    })
 }

@@ -6,7 +6,7 @@ use crate::analysis::Symbol;
 use crate::analysis::local::VEHICLE_MODELS;
 use crate::parse::Parse;
 use crate::span::Span;
-use crate::syntax::{SyntaxKind, SyntaxToken};
+use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
 
 use super::cursor::declaration_at_cursor;
 use super::name::{NameKind, names_in};
@@ -84,11 +84,11 @@ enum Place {
 pub fn complete(parse: &Parse, offset: u32) -> Completion {
     let around = parse.declaration_at(offset.saturating_sub(1));
     let written =
-        declaration_at_cursor(parse, offset).filter(|root| Some(root.span()) != around.map(|it| it.span()));
+        declaration_at_cursor(parse, offset).filter(|root| Some(root.span()) != around.map(SyntaxNode::span));
     let before: Vec<SyntaxToken<'_>> = written
         .into_iter()
         .chain(around)
-        .flat_map(|root| root.tokens())
+        .flat_map(SyntaxNode::tokens)
         .filter(|token| token.span.start < offset)
         .collect();
     if before.last().is_some_and(|token| is_opaque(*token, offset)) {
@@ -120,9 +120,8 @@ pub fn complete(parse: &Parse, offset: u32) -> Completion {
 /// Whether the cursor is in a comment, a text in quotes or a number, where nothing is completed.
 fn is_opaque(token: SyntaxToken<'_>, offset: u32) -> bool {
     match token.kind {
-        SyntaxKind::LineComment | SyntaxKind::String => token.span.end >= offset,
+        SyntaxKind::LineComment | SyntaxKind::String | SyntaxKind::Number => token.span.end >= offset,
         SyntaxKind::BlockComment => token.span.end > offset || !token.text.ends_with("*/"),
-        SyntaxKind::Number => token.span.end >= offset,
         _ => false,
     }
 }
@@ -171,8 +170,10 @@ fn place(context: &[SyntaxToken<'_>]) -> Place {
         | Kind::WatchingKeyword
         | Kind::IfKeyword
         | Kind::TellKeyword
-        | Kind::AskKeyword => Place::Condition,
-        Kind::NotKeyword | Kind::Bang | Kind::LeftParen => Place::Condition,
+        | Kind::AskKeyword
+        | Kind::NotKeyword
+        | Kind::Bang
+        | Kind::LeftParen => Place::Condition,
         Kind::LeftBrace | Kind::Semicolon | Kind::Comma | Kind::DoKeyword | Kind::ThennextKeyword => {
             Place::Statement
         }
@@ -220,7 +221,7 @@ fn innermost(context: &[SyntaxToken<'_>]) -> Option<(SyntaxKind, usize)> {
     for (at, token) in context.iter().enumerate() {
         match token.kind {
             SyntaxKind::LeftBrace | SyntaxKind::LeftBracket | SyntaxKind::LeftParen => {
-                open.push((token.kind, at))
+                open.push((token.kind, at));
             }
             SyntaxKind::RightBrace | SyntaxKind::RightBracket | SyntaxKind::RightParen => {
                 open.pop();
@@ -241,7 +242,6 @@ fn in_declaration(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Option<
     }
     let names = context.iter().filter(|token| token.kind == SyntaxKind::Name).count();
     Some(match (first.kind, first.text) {
-        (SyntaxKind::VarKeyword, _) => Place::Nothing,
         (SyntaxKind::OptionKeyword, _) => match last.kind {
             SyntaxKind::OptionKeyword => Place::Option,
             SyntaxKind::Equals => {
@@ -262,7 +262,7 @@ fn in_declaration(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Option<
             SyntaxKind::Number => Place::Words(&["origin"]),
             _ => Place::Nothing,
         },
-        (SyntaxKind::Name, "obstacle" | "location") => Place::Nothing,
+        (SyntaxKind::Name, "obstacle" | "location") | (SyntaxKind::VarKeyword, _) => Place::Nothing,
         _ => return None,
     })
 }
@@ -314,7 +314,7 @@ fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<CompletionItem> {
         Place::Vehicle => declared(parse, OutlineKind::Vehicle, CompletionKind::Vehicle, &mut items),
         Place::Location => declared(parse, OutlineKind::Location, CompletionKind::Location, &mut items),
         Place::Model => {
-            items.extend(VEHICLE_MODELS.iter().map(|model| plain(model, CompletionKind::Vehicle)))
+            items.extend(VEHICLE_MODELS.iter().map(|model| plain(model, CompletionKind::Vehicle)));
         }
         Place::Option => {
             let options = [

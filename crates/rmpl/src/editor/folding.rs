@@ -55,10 +55,11 @@ fn comments(parse: &Parse, tokens: &[SyntaxToken<'_>], found: &mut Vec<Fold>) {
     for token in tokens {
         if token.kind.is_comment() {
             group = Some(group.map_or(token.span, |group| group.cover(token.span)));
-        } else if token.kind != SyntaxKind::Whitespace || token.text.matches('\n').count() > 1 {
-            if let Some(group) = group.take() {
-                push(parse, found, group, FoldKind::Comment);
-            }
+            continue;
+        }
+        let separates = token.kind != SyntaxKind::Whitespace || token.text.matches('\n').count() > 1;
+        if let Some(group) = group.take_if(|_| separates) {
+            push(parse, found, group, FoldKind::Comment);
         }
     }
     if let Some(group) = group {

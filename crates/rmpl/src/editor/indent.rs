@@ -4,7 +4,7 @@ use crate::diagnostic::Edit;
 use crate::format::INDENT;
 use crate::parse::Parse;
 use crate::span::Span;
-use crate::syntax::{SyntaxKind, SyntaxToken};
+use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
 
 /// The edit of pressing Enter with `selection` selected, and where the cursor stands afterwards.
 ///
@@ -53,7 +53,7 @@ pub fn new_line(parse: &Parse, selection: Span) -> (Edit, u32) {
 fn open_braces(parse: &Parse, offset: u32) -> usize {
     // The end of a declaration may still be inside a brace that is not closed yet.
     let root = offset.checked_sub(1).and_then(|before| parse.declaration_at(before));
-    let tokens = root.into_iter().flat_map(|root| root.tokens());
+    let tokens = root.into_iter().flat_map(SyntaxNode::tokens);
     tokens.take_while(|token| token.span.end <= offset).fold(0_usize, |depth, token: SyntaxToken<'_>| {
         match token.kind {
             SyntaxKind::LeftBrace => depth + 1,

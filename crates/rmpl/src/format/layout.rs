@@ -131,7 +131,7 @@ impl Layout {
             }
             _ => steps.iter().for_each(|step| self.line(*step, inner)),
         }
-        if let Some(close) = block.tokens().filter(|token| token.kind == SyntaxKind::RightBrace).last() {
+        if let Some(close) = block.tokens().rfind(|token| token.kind == SyntaxKind::RightBrace) {
             self.breaks.insert(close.index as usize, indent);
         }
     }

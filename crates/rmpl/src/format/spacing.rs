@@ -24,9 +24,9 @@ pub(super) fn has_space_between(previous: SyntaxToken<'_>, token: SyntaxToken<'_
     match (previous.kind, token.kind) {
         (_, Kind::Comma | Kind::Semicolon | Kind::RightParen | Kind::RightBracket | Kind::Percent)
         | (Kind::LeftParen | Kind::LeftBracket | Kind::Bang, _)
-        | (Kind::LeftBrace, Kind::RightBrace) => false,
+        | (Kind::LeftBrace, Kind::RightBrace)
+        | (Kind::NotKeyword, Kind::LeftParen) => false,
         (_, Kind::LeftBracket) => place == Place::SpacedBounds,
-        (Kind::NotKeyword, Kind::LeftParen) => false,
         (_, Kind::LeftParen) => match place {
             Place::Coordinates | Place::Condition => true,
             Place::Bounds => false,
@@ -35,8 +35,9 @@ pub(super) fn has_space_between(previous: SyntaxToken<'_>, token: SyntaxToken<'_
         (Kind::RightBracket, _) => true,
         _ if place == Place::Bounds => false,
         (Kind::LeftBrace, _) | (_, Kind::RightBrace) => place != Place::Domain,
-        (_, Kind::Equals | Kind::NotEquals) => place != Place::Condition,
-        (Kind::Equals | Kind::NotEquals, _) => place != Place::Condition,
+        (_, Kind::Equals | Kind::NotEquals) | (Kind::Equals | Kind::NotEquals, _) => {
+            place != Place::Condition
+        }
         (Kind::Minus, Kind::Number) => false,
         _ => true,
     }

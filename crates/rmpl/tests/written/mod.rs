@@ -3,7 +3,7 @@
 /// A mission without syntax errors; the same for the same seed.
 pub(crate) fn mission(seed: u64) -> String {
     let mut writer = Writer { state: seed | 1, out: String::new() };
-    for _ in 0..1 + writer.below(4) {
+    for _ in 0..=writer.below(4) {
         writer.declaration();
     }
     writer.out
@@ -33,7 +33,9 @@ impl Writer {
     }
 
     fn all(&mut self, tokens: &[&str]) {
-        tokens.iter().for_each(|token| self.put(token));
+        for token in tokens {
+            self.put(token);
+        }
     }
 
     fn name(&mut self) {
