@@ -1,13 +1,14 @@
 //! A vehicle in simulation: it follows its path and avoids what it meets (SPEC 7.4).
 //!
 //! Every tenth of a second it sweeps its laser and aims at a point ahead on the path (pure pursuit, Coulter 1992), or, when
-//! something stands between, in the open direction nearest to it (vector field histogram, Borenstein and Koren 1991). It
-//! picks the speed and turning rate that serve this best among those it can reach and from which it can still stop in
-//! front of everything it has seen (dynamic window, Fox, Burgard and Thrun 1997).
+//! something stands between, along a detour around what it has seen (`detour`). It picks the speed and turning rate that
+//! serve this best among those it can reach and from which it can still stop in front of everything it has seen (dynamic
+//! window, Fox, Burgard and Thrun 1997).
 
 use serde::{Deserialize, Serialize};
 use terrain::{ConfigurationSpace, Random};
 
+use crate::detour::{SeenPoints, find_detour, nearest_along};
 use crate::geometry::{distance, squared_distance};
 use crate::laser::{FineWorld, LaserModel, LaserScan};
 use crate::path::Path;
@@ -84,16 +85,12 @@ pub struct Driver {
     progress_m: f64,
     /// When it last made way, and how far it was.
     last_way: (f64, f64),
-    seen: Vec<[f64; 2]>,
-    /// On which side it last went around something: -1 right, 1 left, 0 neither.
-    side: f64,
+    seen: SeenPoints,
+    /// The way around what stands in front, while something does.
+    detour: Option<Path>,
     random: Random,
 }
 
-/// Seen points farther away than this are forgotten, in metres.
-const MEMORY_RADIUS_M: f64 = 3.0;
-/// Seen points kept from earlier sweeps.
-const MEMORY_POINTS: usize = 400;
 const STEP_S: f64 = Trajectory::STEP_S;
 
 impl Driver {
@@ -108,8 +105,8 @@ impl Driver {
             time_s: 0.0,
             progress_m: 0.0,
             last_way: (0.0, 0.0),
-            seen: Vec::new(),
-            side: 0.0,
+            seen: SeenPoints::default(),
+            detour: None,
             random: Random::from_seed(seed),
         }
     }
@@ -135,6 +132,7 @@ impl Driver {
         self.path = path;
         self.progress_m = 0.0;
         self.last_way = (self.time_s, 0.0);
+        self.detour = None;
     }
 
     /// Drives for a tenth of a second, and returns what came of it with the sweep it was based on. Besides what the
@@ -142,76 +140,43 @@ impl Driver {
     pub fn step(&mut self, world: &FineWorld, map: Option<&ConfigurationSpace>) -> (DriveEvent, LaserScan) {
         let scan =
             world.scan(self.state.position_m, self.state.heading_rad, &self.settings.laser, &mut self.random);
-        self.remember(&scan);
+        self.seen.add(&scan);
         let remaining = (self.length_m - self.progress_m).max(0.0);
-        let target = self
-            .path
-            .point_at(self.progress_m + self.settings.lookahead_m)
-            .map_or(self.state.position_m, |it| it.0);
-        let target = self.open_target(target, map);
+        let target = self.aim(map);
         let (speed, rate) = self.choose(target, remaining, map);
         self.state = self.state.after(speed, rate, STEP_S, &self.settings.limits);
         self.time_s += STEP_S;
         (self.judge(), scan)
     }
 
-    /// Adds a sweep to what was seen nearby before.
-    fn remember(&mut self, scan: &LaserScan) {
+    /// Where to drive to: a lookahead ahead on the path, or on the detour when something stands in the way there.
+    fn aim(&mut self, map: Option<&ConfigurationSpace>) -> [f64; 2] {
         let here = self.state.position_m;
-        let near = MEMORY_RADIUS_M * MEMORY_RADIUS_M;
-        self.seen.retain(|&point| squared_distance(point, here) <= near);
-        let surplus = self.seen.len().saturating_sub(MEMORY_POINTS);
-        self.seen.drain(..surplus);
-        self.seen.extend(scan.points_m());
-    }
-
-    /// The target, or a place as far away in the open direction that is nearest to the target's. Changing sides counts
-    /// like half a radian, so that the vehicle doesn't dither in front of a rock.
-    fn open_target(&mut self, target: [f64; 2], map: Option<&ConfigurationSpace>) -> [f64; 2] {
-        const PIECE_RAD: f64 = 0.1;
-        const PIECES: u32 = 20;
-        const SIDE_COST_RAD: f64 = 0.5;
-        let here = self.state.position_m;
-        let (east, north) = (target[0] - here[0], target[1] - here[1]);
-        let length = (east * east + north * north).sqrt();
-        if length < 1e-6 {
+        let settings = &self.settings;
+        let ahead = |path: &Path, along_m: f64| path.point_at(along_m + settings.lookahead_m).map(|it| it.0);
+        let target = ahead(&self.path, self.progress_m).unwrap_or(here);
+        let reach = settings.radius_m + settings.margin_m;
+        if self.seen.is_open(here, target, reach + 0.5 * settings.margin_m)
+            && map.is_none_or(|map| !map.is_free(here) || map.is_segment_free(here, target))
+        {
+            self.detour = None;
             return target;
         }
-        let bearing = libm::atan2(north, east);
-        let mut best: Option<(f64, f64, [f64; 2])> = None;
-        for piece in 0..=PIECES {
-            for side in [1.0, -1.0] {
-                let turn = side * PIECE_RAD * f64::from(piece);
-                let direction = [libm::cos(bearing + turn), libm::sin(bearing + turn)];
-                let place = [here[0] + direction[0] * length, here[1] + direction[1] * length];
-                let cost = turn.abs() + if side * self.side < 0.0 { SIDE_COST_RAD } else { 0.0 };
-                let open = self.straight_way(direction) >= length
-                    && map.is_none_or(|map| !map.is_free(here) || map.is_segment_free(here, place));
-                if open && best.is_none_or(|(least, ..)| cost < least) {
-                    let side = if piece == 0 { 0.0 } else { side };
-                    best = Some((cost, side, place));
-                }
-            }
-        }
-        let Some((_, side, place)) = best else { return target };
-        self.side = side;
-        place
-    }
-
-    /// How far the vehicle could go straight in a direction before it would touch something seen, in metres.
-    fn straight_way(&self, direction: [f64; 2]) -> f64 {
-        // A little more than the margin, so that the way stays open while the vehicle swings into it.
-        let reach = self.settings.radius_m + 1.5 * self.settings.margin_m;
-        let here = self.state.position_m;
-        self.seen.iter().fold(f64::INFINITY, |least, point| {
-            let offset = [point[0] - here[0], point[1] - here[1]];
-            let along = offset[0] * direction[0] + offset[1] * direction[1];
-            let across = offset[0] * direction[1] - offset[1] * direction[0];
-            if along <= 0.0 || across.abs() >= reach {
-                return least;
-            }
-            least.min((along - (reach * reach - across * across).sqrt()).max(0.0))
-        })
+        // A little room for following the detour inexactly.
+        let surroundings = self.seen.surroundings(here, reach + 0.5 * settings.margin_m, map);
+        let kept = self.detour.take().filter(|detour| {
+            let (along, away) = nearest_along(detour, here, 0.0, detour.length_m());
+            let segment = detour.point_at(along).map_or(0, |(_, segment)| segment);
+            let rest = detour.points_m.get(segment + 1..).unwrap_or_default();
+            let start = Some(here).filter(|&here| surroundings.is_free(here));
+            let ahead: Vec<[f64; 2]> = start.into_iter().chain(rest.iter().copied()).collect();
+            away < 0.5 && detour.length_m() - along > 0.3 && Path::new(ahead).is_free(&surroundings)
+        });
+        self.detour = kept.or_else(|| find_detour(&surroundings, here, &self.path, self.progress_m));
+        self.detour
+            .as_ref()
+            .and_then(|detour| ahead(detour, nearest_along(detour, here, 0.0, detour.length_m()).0 - 0.5))
+            .unwrap_or(target)
     }
 
     /// The reachable speed and turning rate that bring it best toward the target and still let it stop.
@@ -236,9 +201,8 @@ impl Driver {
         let here = self.state.position_m;
         let near: Vec<[f64; 2]> = self
             .seen
-            .iter()
-            .filter(|&&point| squared_distance(point, here) <= horizon * horizon)
-            .copied()
+            .points_m()
+            .filter(|&point| squared_distance(point, here) <= horizon * horizon)
             .collect();
         let share = |low: f64, high: f64, index: u32, count: u32| {
             low + (high - low) * f64::from(index) / f64::from(count)
@@ -246,7 +210,7 @@ impl Driver {
         // Standing and turning to the target is always possible: the vehicle is a disc.
         let bearing = bearing_error(self.state, target);
         let turn = (2.0 * bearing).clamp(rightmost, leftmost);
-        let mut best = (self.score(slowest, turn, target, 0.0), slowest, turn);
+        let mut best = (self.score(slowest, turn, target, fastest, 0.0), slowest, turn);
         for speed_index in 0..=SPEEDS {
             let speed = share(slowest, fastest, speed_index, SPEEDS);
             for rate_index in 0..=RATES {
@@ -259,7 +223,7 @@ impl Driver {
                 if free <= needed {
                     continue;
                 }
-                let score = self.score(speed, rate, target, free.min(1.0));
+                let score = self.score(speed, rate, target, fastest, free.min(1.0));
                 if score > best.0 {
                     best = (score, speed, rate);
                 }
@@ -268,8 +232,9 @@ impl Driver {
         (best.1, best.2)
     }
 
-    /// How well a speed and rate serve: facing the target soon, way made, room ahead.
-    fn score(&self, speed: f64, rate: f64, target: [f64; 2], room_m: f64) -> f64 {
+    /// How well a speed and rate serve: facing the target soon, the share of the way that the fastest speed within reach
+    /// would make toward it, and a little for room ahead.
+    fn score(&self, speed: f64, rate: f64, target: [f64; 2], fastest: f64, room_m: f64) -> f64 {
         const LOOK_S: f64 = 1.0;
         let mut state = self.state;
         state.speed_mps = speed;
@@ -280,8 +245,8 @@ impl Driver {
         }
         let error = bearing_error(state, target).abs() / std::f64::consts::PI;
         let approach = (distance(self.state.position_m, target) - distance(state.position_m, target))
-            / (self.settings.limits.speed_mps * LOOK_S);
-        1.5 * (1.0 - error) + 1.2 * approach + 0.5 * room_m
+            / (fastest.max(1e-3) * LOOK_S);
+        1.5 * (1.0 - error) + approach + 0.1 * room_m
     }
 
     /// The length of the way along an arc, in metres, before the vehicle would touch something, up to `most`.
@@ -323,7 +288,8 @@ impl Driver {
     /// Notes the way made, and says what there is to report.
     fn judge(&mut self) -> DriveEvent {
         let here = self.state.position_m;
-        let (progress, deviation_m) = self.locate(here);
+        let (progress, deviation_m) =
+            nearest_along(&self.path, here, self.progress_m, 2.0 * self.settings.corridor_m);
         self.progress_m = self.progress_m.max(progress);
         let end = self.path.points_m.last().copied().unwrap_or(here);
         let near_end = self.length_m - self.progress_m <= self.settings.lookahead_m;
@@ -340,19 +306,6 @@ impl Driver {
             return DriveEvent::Blocked { seconds: self.time_s - since };
         }
         DriveEvent::Driving
-    }
-
-    /// The nearest place on the stretch of path ahead: how far along, and how far away.
-    fn locate(&self, here: [f64; 2]) -> (f64, f64) {
-        const STEP_M: f64 = 0.1;
-        let ahead = 2.0 * self.settings.corridor_m;
-        (0..=(ahead / STEP_M) as u32)
-            .filter_map(|step| {
-                let along = (self.progress_m + STEP_M * f64::from(step)).min(self.length_m);
-                self.path.point_at(along).map(|(point, _)| (along, distance(point, here)))
-            })
-            .min_by(|a, b| a.1.total_cmp(&b.1))
-            .unwrap_or((self.progress_m, 0.0))
     }
 }
 

@@ -11,6 +11,7 @@
 //! Nothing here reads a clock or draws unseeded numbers: the same call gives the same bits natively and in wasm.
 
 mod altitude;
+mod detour;
 mod driver;
 mod formation;
 mod geometry;
