@@ -8,7 +8,7 @@
 use stn::{Checkpoint, Inconsistency, Overflow, PointId, Stn, Tag};
 
 use crate::model::{Context, INFINITE, Model, NONE};
-use crate::structure::{Relation, Structure};
+use crate::structure::{Hull, Relation, Structure, TreeState};
 
 /// The hull of an open choice holds whatever is chosen.
 const HULL: Tag = 1 << 31;
@@ -29,7 +29,10 @@ pub(crate) struct Lookahead {
     marks: Vec<Mark>,
     /// The decisions that the failure at hand rests on.
     pub(crate) blamed: Vec<u32>,
-    /// The decisions whose hulls are among the arriving arcs, in order.
+    /// Room for what arrives.
+    new_arcs: Vec<u32>,
+    new_hulls: Vec<Hull>,
+    /// The decisions whose hulls are among the arriving arcs, in order; [`NONE`] for parts without labels.
     hulls: Vec<u32>,
     /// Arcs being activated.
     arriving: Vec<Arriving>,
@@ -79,6 +82,8 @@ impl Lookahead {
             reasons: Vec::new(),
             marks: Vec::new(),
             blamed: Vec::new(),
+            new_arcs: Vec::new(),
+            new_hulls: Vec::new(),
             hulls: Vec::new(),
             arriving: Vec::new(),
             rank,
@@ -93,7 +98,8 @@ impl Lookahead {
         chosen: &[u32],
     ) -> Result<bool, Overflow> {
         self.blamed.clear();
-        self.collect(model, structure, model.start);
+        self.activate_node(model.twin[model.start as usize]);
+        self.collect(model, structure, None);
         let checkpoint = self.stn.checkpoint();
         // A schedule in which the first alternatives fit needs little repair when they are taken.
         let mut hulls = self.hulls.iter().copied();
@@ -101,6 +107,7 @@ impl Lookahead {
             let mut arc = self.arriving[position];
             if arc.tag == HULL
                 && let Some(decision) = hulls.next()
+                && decision != NONE
                 && let Some((lower, upper)) = structure.first_alternative(decision)?
             {
                 (arc.lower, arc.upper) = (lower, upper);
@@ -132,6 +139,7 @@ impl Lookahead {
         &mut self,
         model: &Model,
         structure: &Structure,
+        tree: &TreeState,
         chosen: &[u32],
         (decision, alternative): (u32, u32),
         depth: usize,
@@ -146,10 +154,12 @@ impl Lookahead {
         });
         let first_label = self.labels.len();
         let first_node = self.nodes.len();
-        let arc = model.decisions[decision as usize].alternatives[alternative as usize];
-        self.arrive(model, arc);
-        self.collect(model, structure, model.arcs[arc as usize].to);
-        let inserted = self.insert_arriving(first_node, model.twin[model.arcs[arc as usize].from as usize]);
+        if let Some((part, hull)) = structure.label_free_part(tree, decision) {
+            return self.tighten(model, structure, tree, chosen, part, hull);
+        }
+        self.collect(model, structure, Some((decision, alternative)));
+        let decision_node = structure.decision_node(decision);
+        let inserted = self.insert_arriving(first_node, model.twin[decision_node as usize]);
         self.arriving.clear();
         self.hulls.clear();
         if !self.is_ok(model, inserted)? {
@@ -171,43 +181,60 @@ impl Lookahead {
         self.reasons.truncate(mark.reasons as usize);
     }
 
-    /// Puts the arcs from `node` on into `arriving`, up to what is active already.
-    fn collect(&mut self, model: &Model, structure: &Structure, node: u32) {
-        if !self.activate_node(node) {
-            return;
+    /// Takes into account what a decision does to the duration of a part without labels.
+    fn tighten(
+        &mut self,
+        model: &Model,
+        structure: &Structure,
+        tree: &TreeState,
+        chosen: &[u32],
+        part: u32,
+        hull: Hull,
+    ) -> Result<bool, Overflow> {
+        let (from, to) = (PointId(model.twin[hull.from as usize]), PointId(model.twin[hull.to as usize]));
+        let mut reason = Vec::new();
+        structure.explain(tree, chosen, part, &mut |decision| reason.push(decision));
+        reason.sort_unstable();
+        reason.dedup();
+        let tag = CONSEQUENCE + self.reasons.len() as Tag;
+        self.reasons.push(reason);
+        let upper = (hull.upper != INFINITE).then_some(hull.upper);
+        let inserted = self.stn.constrain(from, to, hull.lower, upper, tag);
+        if !self.is_ok(model, inserted)? {
+            return Ok(false);
         }
-        let mut stack = vec![node];
-        while let Some(node) = stack.pop() {
-            let decision = model.decision_of[node as usize];
-            if decision == NONE {
-                for &arc in model.out_arcs(node) {
-                    self.arrive(model, arc);
-                    let to = model.arcs[arc as usize].to;
-                    if self.activate_node(to) {
-                        stack.push(to);
-                    }
-                }
-            } else {
-                let to = model.decisions[decision as usize].merge;
-                let (lower, upper) = structure.hull(decision);
-                self.arriving.push(Arriving {
-                    from: model.twin[node as usize],
-                    to: model.twin[to as usize],
-                    lower,
-                    upper,
-                    tag: HULL,
-                });
-                self.hulls.push(decision);
-                if self.activate_node(to) {
-                    stack.push(to);
-                }
-            }
+        self.check_labels(model, structure, chosen, self.labels.len())
+    }
+
+    /// Puts the arcs that an alternative, or the root, brings into `arriving`.
+    fn collect(&mut self, model: &Model, structure: &Structure, alternative: Option<(u32, u32)>) {
+        let mut arcs = std::mem::take(&mut self.new_arcs);
+        let mut hulls = std::mem::take(&mut self.new_hulls);
+        let (mut arrive, mut hull) = (|arc| arcs.push(arc), |hull| hulls.push(hull));
+        match alternative {
+            Some(alternative) => structure.emit_alternative(alternative, &mut arrive, &mut hull),
+            None => structure.emit_root(&mut arrive, &mut hull),
         }
+        for &arc in &arcs {
+            self.arrive(model, arc);
+        }
+        for hull in &hulls {
+            let (from, to) = (model.twin[hull.from as usize], model.twin[hull.to as usize]);
+            self.activate_node(from);
+            self.activate_node(to);
+            self.hulls.push(hull.decision);
+            self.arriving.push(Arriving { from, to, lower: hull.lower, upper: hull.upper, tag: HULL });
+        }
+        arcs.clear();
+        hulls.clear();
+        (self.new_arcs, self.new_hulls) = (arcs, hulls);
     }
 
     fn arrive(&mut self, model: &Model, arc: u32) {
         let bounds = &model.arcs[arc as usize];
         let (from, to) = (model.twin[bounds.from as usize], model.twin[bounds.to as usize]);
+        self.activate_node(from);
+        self.activate_node(to);
         if from != to || bounds.lower > 0 || bounds.upper < 0 {
             self.arriving.push(Arriving { from, to, lower: bounds.lower, upper: bounds.upper, tag: arc });
         }
@@ -386,7 +413,8 @@ impl Lookahead {
     fn is_carried(&self, model: &Model, ask: u32) -> bool {
         let mut carriers = model.conditions.supporters(ask);
         carriers.any(|tell| {
-            self.is_active_label[tell as usize] && link_edges(model, ask, tell).iter().all(|&edge| self.holds(edge))
+            self.is_active_label[tell as usize]
+                && link_edges(model, ask, tell).iter().all(|&edge| self.holds(edge))
         })
     }
 

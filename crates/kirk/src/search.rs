@@ -477,8 +477,8 @@ impl<'m> Engine<'m> {
         decision: u32,
         alternative: u32,
     ) -> Result<bool, Overflow> {
-        let Some(lookahead) = &mut self.lookahead else { return Ok(true) };
-        if lookahead.decide(self.model, structure, &self.chosen, (decision, alternative), depth)? {
+        let (Some(lookahead), Some(tree)) = (&mut self.lookahead, &self.tree) else { return Ok(true) };
+        if lookahead.decide(self.model, structure, tree, &self.chosen, (decision, alternative), depth)? {
             return Ok(true);
         }
         for position in 0..lookahead.blamed.len() {

@@ -37,6 +37,15 @@ struct TreeBlock {
     own: (i64, i64),
     /// Whether there is a choice in it.
     has_choices: bool,
+    /// Whether a label is in it.
+    has_labels: bool,
+    /// Its first and last event.
+    ends: (u32, u32),
+    /// Its own arcs.
+    own_arcs: Vec<u32>,
+    /// The arcs from the parent's first event and to its last or the next sibling's first, [`NONE`] where these are
+    /// the block's own.
+    around_arcs: (u32, u32),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,6 +87,17 @@ impl Duration {
             Self { lower, upper, unbounded: 0 }
         }
     }
+}
+
+/// A part of the network of which only the duration counts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hull {
+    pub(crate) from: u32,
+    pub(crate) to: u32,
+    pub(crate) lower: i64,
+    pub(crate) upper: i64,
+    /// The choice that it is, or [`NONE`].
+    pub(crate) decision: u32,
 }
 
 /// The tree during a search.
@@ -139,6 +159,8 @@ impl Structure {
             let own = (0, INFINITE);
             let has_choices = matches!(shape, Shape::Choice(_))
                 || children.iter().any(|&child| structure.blocks[child as usize].has_choices);
+            let has_labels = arcs.iter().any(|&arc| !model.conditions.labels_of(arc).is_empty())
+                || children.iter().any(|&child| structure.blocks[child as usize].has_labels);
             structure.blocks.push(TreeBlock {
                 parent: NONE,
                 position: 0,
@@ -148,6 +170,10 @@ impl Structure {
                 around: (0, 0),
                 own,
                 has_choices,
+                has_labels,
+                ends: (block.start.0, block.end.0),
+                own_arcs: arcs,
+                around_arcs: (NONE, NONE),
             });
         }
         for id in (0..structure.blocks.len()).rev() {
@@ -157,6 +183,9 @@ impl Structure {
                 let child = &mut structure.blocks[child];
                 (child.parent, child.position, child.depth) = (id as u32, position as u32, depth);
             }
+        }
+        for id in 0..structure.blocks.len() {
+            structure.find_around_arcs(model, id);
         }
         if structure.refresh(network, model)? { Ok(Some(structure)) } else { Ok(None) }
     }
@@ -209,10 +238,9 @@ impl Structure {
         Ok(true)
     }
 
-    /// The least and greatest duration of a choice, whatever is chosen in it.
-    pub(crate) fn hull(&self, decision: u32) -> (i64, i64) {
-        let duration = self.initial[self.decision_blocks[decision as usize] as usize];
-        (duration.lower, duration.upper())
+    /// The node where a decision is made.
+    pub(crate) fn decision_node(&self, decision: u32) -> u32 {
+        self.blocks[self.decision_blocks[decision as usize] as usize].ends.0
     }
 
     /// The duration of a choice if its first possible alternative is taken.
@@ -231,6 +259,95 @@ impl Structure {
     /// Whether the mission has no consistent selection at all, whatever is chosen.
     pub(crate) fn is_empty(&self) -> bool {
         self.initial[self.root as usize].is_empty()
+    }
+
+    /// Calls `arrive` with the arcs, and `hull` with the label-free parts and open choices, that an alternative brings.
+    pub(crate) fn emit_alternative(
+        &self,
+        (decision, alternative): (u32, u32),
+        arrive: &mut impl FnMut(u32),
+        hull: &mut impl FnMut(Hull),
+    ) {
+        let block = &self.blocks[self.decision_blocks[decision as usize] as usize];
+        let child = block.children[alternative as usize];
+        self.emit_around(child, arrive);
+        self.emit(child, arrive, hull);
+    }
+
+    /// The same for what every plan has.
+    pub(crate) fn emit_root(&self, arrive: &mut impl FnMut(u32), hull: &mut impl FnMut(Hull)) {
+        self.emit(self.root, arrive, hull);
+    }
+
+    /// The part without labels that a decision belongs to, as large as possible, with its present duration; `None` if
+    /// the decision has labels in its alternatives.
+    pub(crate) fn label_free_part(&self, state: &TreeState, decision: u32) -> Option<(u32, Hull)> {
+        let mut id = self.decision_blocks[decision as usize];
+        if self.blocks[id as usize].has_labels {
+            return None;
+        }
+        loop {
+            let parent = self.blocks[id as usize].parent;
+            if parent == NONE || self.blocks[parent as usize].has_labels {
+                break;
+            }
+            id = parent;
+        }
+        let (from, to) = self.blocks[id as usize].ends;
+        let duration = state.durations[id as usize];
+        Some((id, Hull { from, to, lower: duration.lower, upper: duration.upper(), decision: NONE }))
+    }
+
+    fn emit(&self, id: u32, arrive: &mut impl FnMut(u32), hull: &mut impl FnMut(Hull)) {
+        let block = &self.blocks[id as usize];
+        let choice = if let Shape::Choice(decision) = block.shape { decision } else { NONE };
+        if !block.has_labels || choice != NONE {
+            let duration = self.initial[id as usize];
+            let (from, to) = block.ends;
+            hull(Hull { from, to, lower: duration.lower, upper: duration.upper(), decision: choice });
+            return;
+        }
+        for &arc in &block.own_arcs {
+            arrive(arc);
+        }
+        for &child in &block.children {
+            self.emit_around(child, arrive);
+            self.emit(child, arrive, hull);
+        }
+    }
+
+    fn emit_around(&self, id: u32, arrive: &mut impl FnMut(u32)) {
+        let (enter, leave) = self.blocks[id as usize].around_arcs;
+        for arc in [enter, leave] {
+            if arc != NONE {
+                arrive(arc);
+            }
+        }
+    }
+
+    fn find_around_arcs(&mut self, model: &Model, id: usize) {
+        let block = &self.blocks[id];
+        let (start, end) = block.ends;
+        let children = block.children.clone();
+        for (position, &child) in children.iter().enumerate() {
+            let (child_start, child_end) = self.blocks[child as usize].ends;
+            let from = match self.blocks[id].shape {
+                Shape::Guard => {
+                    self.blocks[id].own_arcs.first().map_or(start, |&arc| model.arcs[arc as usize].to)
+                }
+                Shape::Sequence if position > 0 => child_start,
+                _ => start,
+            };
+            let to = match self.blocks[id].shape {
+                Shape::Sequence => {
+                    children.get(position + 1).map_or(end, |&next| self.blocks[next as usize].ends.0)
+                }
+                _ => end,
+            };
+            let enter = arc_between(model, from, child_start).unwrap_or(NONE);
+            let leave = arc_between(model, child_end, to).unwrap_or(NONE);
+            self.blocks[child as usize].around_arcs = (enter, leave);
+        }
     }
 
     /// What the nesting alone says about two arcs.
@@ -520,6 +637,13 @@ fn between(model: &Model, from: u32, to: u32) -> Option<(i64, i64)> {
     }
     let arc = model.out_arcs(from).iter().find(|&&arc| model.arcs[arc as usize].to == to)?;
     Some(bounds(model, *arc))
+}
+
+fn arc_between(model: &Model, from: u32, to: u32) -> Option<u32> {
+    if from == to {
+        return None;
+    }
+    model.out_arcs(from).iter().copied().find(|&arc| model.arcs[arc as usize].to == to)
 }
 
 fn add(inside: Duration, around: (i64, i64)) -> Result<Duration, Overflow> {
