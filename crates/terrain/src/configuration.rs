@@ -10,6 +10,7 @@ use crate::connectivity::{self, Regions};
 use crate::distance::{HALF_DIAGONAL, distance_to_occupied};
 use crate::frame::{Cell, GridFrame};
 use crate::occupancy::{CellState, Occupancy};
+use crate::walk::{Cursor, Walk, point_to_cell, segment_to_cell};
 
 /// Why a vehicle can't be at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -359,104 +360,4 @@ fn border_flags(width: usize, height: usize, occupied: &[bool]) -> Vec<u8> {
         }
     }
     flags
-}
-
-/// A segment in units of cells.
-struct Walk {
-    from: [f64; 2],
-    direction: [f64; 2],
-    length: f64,
-}
-
-/// A cell on a walk, and where the walk leaves it.
-#[derive(Clone, Copy)]
-struct Cursor {
-    cell: [i64; 2],
-    /// How far along the segment.
-    at: f64,
-    /// How far along the segment it crosses the next border to the side, and the next one up or down.
-    crossings: [f64; 2],
-}
-
-impl Cursor {
-    /// How far along the segment it leaves this cell.
-    fn crossing(&self) -> f64 {
-        self.crossings[0].min(self.crossings[1]).max(self.at)
-    }
-
-    const fn cell(&self) -> Cell {
-        Cell { column: self.cell[0] as u32, row: self.cell[1] as u32 }
-    }
-
-    fn in_frame(&self, frame: &GridFrame) -> bool {
-        let inside = |value: i64, size: u32| value >= 0 && value < i64::from(size);
-        inside(self.cell[0], frame.width) && inside(self.cell[1], frame.height)
-    }
-}
-
-impl Walk {
-    fn point(&self, at: f64) -> [f64; 2] {
-        [self.from[0] + self.direction[0] * at, self.from[1] + self.direction[1] * at]
-    }
-
-    fn cursor(&self, at: f64, frame: &GridFrame) -> Cursor {
-        let point = self.point(at);
-        let clamp = |value: f64, size: u32| (value.floor() as i64).clamp(0, i64::from(size) - 1);
-        let cell = [clamp(point[0], frame.width), clamp(point[1], frame.height)];
-        let mut cursor = Cursor { cell, at, crossings: [0.0; 2] };
-        cursor.crossings = [self.crossing_of(0, cell[0]), self.crossing_of(1, cell[1])];
-        cursor
-    }
-
-    /// How far along the segment it leaves a column (axis 0) or row (axis 1).
-    fn crossing_of(&self, axis: usize, cell: i64) -> f64 {
-        let direction = self.direction[axis];
-        if direction > 0.0 {
-            ((cell + 1) as f64 - self.from[axis]) / direction
-        } else if direction < 0.0 {
-            (cell as f64 - self.from[axis]) / direction
-        } else {
-            f64::INFINITY
-        }
-    }
-
-    fn advance(&self, cursor: &mut Cursor, axis: usize, at: f64) {
-        cursor.cell[axis] += if self.direction[axis] > 0.0 { 1 } else { -1 };
-        cursor.crossings[axis] = self.crossing_of(axis, cursor.cell[axis]);
-        cursor.at = at;
-    }
-}
-
-/// The squared distance from a point to the unit square with this south-west corner.
-fn point_to_cell(point: [f64; 2], low: [f64; 2]) -> f64 {
-    let outside = |value: f64, low: f64| (low - value).max(value - low - 1.0).max(0.0);
-    let (across, along) = (outside(point[0], low[0]), outside(point[1], low[1]));
-    across * across + along * along
-}
-
-/// The squared distance between a segment and the unit square with this south-west corner. When they don't meet, the
-/// least distance is at an end of the segment or at a corner of the square.
-fn segment_to_cell(a: [f64; 2], b: [f64; 2], low: [f64; 2]) -> f64 {
-    let high = [low[0] + 1.0, low[1] + 1.0];
-    if crate::obstacle::segment_meets_box(a, b, low, high) {
-        return 0.0;
-    }
-    let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
-    corners
-        .iter()
-        .map(|&corner| point_to_segment(corner, a, b))
-        .fold(point_to_cell(a, low).min(point_to_cell(b, low)), f64::min)
-}
-
-fn point_to_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
-    let side = [b[0] - a[0], b[1] - a[1]];
-    let offset = [point[0] - a[0], point[1] - a[1]];
-    let squared = side[0] * side[0] + side[1] * side[1];
-    let share = if squared > 0.0 {
-        ((offset[0] * side[0] + offset[1] * side[1]) / squared).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    let rest = [offset[0] - side[0] * share, offset[1] - side[1] * share];
-    rest[0] * rest[0] + rest[1] * rest[1]
 }

@@ -23,6 +23,7 @@ mod occupancy;
 mod random;
 mod recipe;
 mod rock;
+mod walk;
 
 pub use configuration::{Collision, ConfigurationSpace};
 pub use distance::distance_to_occupied;

@@ -256,3 +256,24 @@ fn parse_positive(text: &str) -> Result<f64, String> {
     let number = parse_number(text)?;
     if number > 0.0 { Ok(number) } else { Err(format!("{number} is not positive")) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_are_two_finite_numbers() {
+        assert_eq!(parse_point("8,-503.5"), Ok([8.0, -503.5]));
+        assert_eq!(parse_point(" 1 , 2 "), Ok([1.0, 2.0]));
+        assert!(parse_point("8").unwrap_err().contains("comma"));
+        assert!(parse_point("8,x").unwrap_err().contains("`x`"));
+        assert!(parse_point("8,inf").unwrap_err().contains("finite"));
+    }
+
+    #[test]
+    fn lengths_are_not_negative_and_cells_have_a_side() {
+        assert_eq!(parse_length("0"), Ok(0.0));
+        assert!(parse_length("-1").is_err());
+        assert!(parse_positive("0").is_err());
+    }
+}

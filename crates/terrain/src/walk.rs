@@ -1,0 +1,105 @@
+//! A segment walked from cell to cell of a grid, and its distance to cells, all in units of cells.
+
+use crate::frame::{Cell, GridFrame};
+use crate::obstacle::segment_meets_box;
+
+/// A segment in units of cells.
+pub(crate) struct Walk {
+    pub(crate) from: [f64; 2],
+    pub(crate) direction: [f64; 2],
+    pub(crate) length: f64,
+}
+
+/// A cell on a walk, and where the walk leaves it.
+#[derive(Clone, Copy)]
+pub(crate) struct Cursor {
+    pub(crate) cell: [i64; 2],
+    /// How far along the segment.
+    pub(crate) at: f64,
+    /// How far along the segment it crosses the next border to the side, and the next one up or down.
+    pub(crate) crossings: [f64; 2],
+}
+
+impl Cursor {
+    /// How far along the segment it leaves this cell.
+    pub(crate) fn crossing(&self) -> f64 {
+        self.crossings[0].min(self.crossings[1]).max(self.at)
+    }
+
+    pub(crate) const fn cell(&self) -> Cell {
+        Cell { column: self.cell[0] as u32, row: self.cell[1] as u32 }
+    }
+
+    pub(crate) fn in_frame(&self, frame: &GridFrame) -> bool {
+        let inside = |value: i64, size: u32| value >= 0 && value < i64::from(size);
+        inside(self.cell[0], frame.width) && inside(self.cell[1], frame.height)
+    }
+}
+
+impl Walk {
+    /// The point so far along the segment.
+    pub(crate) fn point(&self, at: f64) -> [f64; 2] {
+        [self.from[0] + self.direction[0] * at, self.from[1] + self.direction[1] * at]
+    }
+
+    /// The cell of the grid so far along the segment.
+    pub(crate) fn cursor(&self, at: f64, frame: &GridFrame) -> Cursor {
+        let point = self.point(at);
+        let clamp = |value: f64, size: u32| (value.floor() as i64).clamp(0, i64::from(size) - 1);
+        let cell = [clamp(point[0], frame.width), clamp(point[1], frame.height)];
+        Cursor { cell, at, crossings: [self.crossing_of(0, cell[0]), self.crossing_of(1, cell[1])] }
+    }
+
+    /// How far along the segment it leaves a column (axis 0) or row (axis 1).
+    pub(crate) fn crossing_of(&self, axis: usize, cell: i64) -> f64 {
+        let direction = self.direction[axis];
+        if direction > 0.0 {
+            ((cell + 1) as f64 - self.from[axis]) / direction
+        } else if direction < 0.0 {
+            (cell as f64 - self.from[axis]) / direction
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// Moves the cursor to the next column (axis 0) or row (axis 1), which it enters so far along the segment.
+    pub(crate) fn advance(&self, cursor: &mut Cursor, axis: usize, at: f64) {
+        cursor.cell[axis] += if self.direction[axis] > 0.0 { 1 } else { -1 };
+        cursor.crossings[axis] = self.crossing_of(axis, cursor.cell[axis]);
+        cursor.at = at;
+    }
+}
+
+/// The squared distance from a point to the unit square with this south-west corner.
+pub(crate) fn point_to_cell(point: [f64; 2], low: [f64; 2]) -> f64 {
+    let outside = |value: f64, low: f64| (low - value).max(value - low - 1.0).max(0.0);
+    let (across, along) = (outside(point[0], low[0]), outside(point[1], low[1]));
+    across * across + along * along
+}
+
+/// The squared distance between a segment and the unit square with this south-west corner. When they don't meet, the
+/// least distance is at an end of the segment or at a corner of the square.
+pub(crate) fn segment_to_cell(a: [f64; 2], b: [f64; 2], low: [f64; 2]) -> f64 {
+    let high = [low[0] + 1.0, low[1] + 1.0];
+    if segment_meets_box(a, b, low, high) {
+        return 0.0;
+    }
+    let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
+    corners
+        .iter()
+        .map(|&corner| point_to_segment(corner, a, b))
+        .fold(point_to_cell(a, low).min(point_to_cell(b, low)), f64::min)
+}
+
+fn point_to_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
+    let side = [b[0] - a[0], b[1] - a[1]];
+    let offset = [point[0] - a[0], point[1] - a[1]];
+    let squared = side[0] * side[0] + side[1] * side[1];
+    let share = if squared > 0.0 {
+        ((offset[0] * side[0] + offset[1] * side[1]) / squared).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    let rest = [offset[0] - side[0] * share, offset[1] - side[1] * share];
+    rest[0] * rest[0] + rest[1] * rest[1]
+}
