@@ -3,6 +3,7 @@
 //! Drawings are computed, never stored: the same network gives the same drawing everywhere, in time linear in its
 //! size. They are display lists without colours; the page paints them and [`svg`] exports them.
 
+pub mod automaton;
 pub mod drawing;
 pub mod geometry;
 pub mod look;
@@ -22,6 +23,7 @@ mod recover;
 mod size;
 mod tree;
 
+pub use automaton::{AutomatonDrawing, AutomatonItem, automaton, automaton_svg};
 pub use drawing::{
     ArcShape, BlockForm, BlockShape, Connector, Item, NetworkDrawing, NodeShape, Route, Shape, Slide,
     TextShape,

@@ -88,7 +88,7 @@ pub fn svg(drawing: &NetworkDrawing, network: &Network, options: &SvgOptions<'_>
     let arc_of_label = |label: LabelId| network.labels[label.index()].arc;
     for text in drawing.texts.iter().chain(options.notes) {
         let standing = look::item_standing(options.plan, text.owner, arc_of_label);
-        canvas.text(text, look::text_ink(text.role, standing));
+        canvas.text(&text.text, text.size, text.rect, look::text_ink(text.role, standing));
     }
     canvas.finish()
 }
@@ -169,16 +169,16 @@ impl<'a> Canvas<'a> {
     }
 
     /// Writes a text, stretched to its rectangle whatever the reader's fonts are.
-    pub(crate) fn text(&mut self, text: &TextShape, ink: Ink) {
-        let (x, width) = (number(text.rect.min.x + 0.5), number((text.rect.width() - 1.0).max(1.0)));
+    pub(crate) fn text(&mut self, text: &str, size: f64, rect: Rect, ink: Ink) {
+        let (x, width) = (number(rect.min.x + 0.5), number((rect.width() - 1.0).max(1.0)));
         // The middle of lower-case letters and digits lies about a third of the size above the baseline.
-        let baseline = number(text.rect.center().y + text.size * 0.35);
-        let (size, fill) = (number(text.size), self.color(ink));
+        let baseline = number(rect.center().y + size * 0.35);
+        let (size, fill) = (number(size), self.color(ink));
         let _ = writeln!(
             self.out,
             "<text x=\"{x}\" y=\"{baseline}\" font-size=\"{size}\" fill=\"{fill}\" \
              textLength=\"{width}\" lengthAdjust=\"spacingAndGlyphs\">{}</text>",
-            escaped(&text.text)
+            escaped(text)
         );
     }
 

@@ -1,0 +1,345 @@
+//! Sizes from the inside out, then places from the outside in; composites are numbered parents first, so both are one
+//! loop.
+
+use hca::{
+    Automaton, Composite, CompositeId, CompositeKind, Element, LocationId, LocationKind, TransitionId,
+};
+use smol_str::{SmolStr, format_smolstr};
+
+use super::{AutomatonDrawing, AutomatonItem, AutomatonText, CompositeShape, LocationShape, TransitionShape};
+use crate::geometry::{Piece, Point, Rect};
+use crate::layered::level_curve;
+use crate::metrics::{ARROW_LENGTH, GUTTER, MARGIN, TEXT_LIFT, TEXT_PAD, TextRole};
+use crate::text::{Measure, cut_to_width, text_width};
+
+/// Inside the box of a composite.
+const PADDING: f64 = 12.0;
+/// Between children.
+const GAP: f64 = 14.0;
+/// Between the children of a sequence, where an arrow goes.
+const STEP: f64 = 36.0;
+const LOCATION_HEIGHT: f64 = 34.0;
+/// How high a transition from a location to itself rises.
+const LOOP_HEIGHT: f64 = 18.0;
+const LONGEST_TEXT: f64 = 300.0;
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Size {
+    width: f64,
+    height: f64,
+    /// How far below its top an element is entered and left.
+    axis: f64,
+}
+
+struct Text {
+    text: SmolStr,
+    width: f64,
+}
+
+struct Arranger<'a> {
+    automaton: &'a Automaton,
+    /// What each location says, and each transition, and each composite.
+    location_texts: Vec<Text>,
+    transition_texts: Vec<Text>,
+    titles: Vec<Option<Text>>,
+    sizes: Vec<Size>,
+    composite_rects: Vec<Rect>,
+    location_rects: Vec<Rect>,
+    drawing: AutomatonDrawing,
+}
+
+pub(super) fn arrange(automaton: &Automaton, measure: Measure<'_>) -> AutomatonDrawing {
+    let cut = |text: &str, role: TextRole| {
+        let text = cut_to_width(text, role, LONGEST_TEXT, measure);
+        Text { width: text_width(&text, role, measure), text }
+    };
+    let guard_text = |test: hca::TestId| automaton.guard(test).map(|guard| format_smolstr!("{guard}"));
+    let title = |composite: &Composite| {
+        let text = match (composite.maintenance.and_then(guard_text), composite.kind) {
+            (Some(guard), _) => format_smolstr!("maintain {guard}"),
+            (None, CompositeKind::Sequence) => SmolStr::new_static("sequence"),
+            (None, CompositeKind::Parallel) => SmolStr::new_static("parallel"),
+            (None, _) => return None,
+        };
+        Some(cut(&text, TextRole::Quiet))
+    };
+    let locations = automaton.locations.iter().map(|location| cut(&location.label, TextRole::Name));
+    let transitions = automaton.transitions.iter().map(|transition| {
+        let text = transition.guard.and_then(guard_text).unwrap_or_else(|| SmolStr::new_static("always"));
+        cut(&text, TextRole::Bounds)
+    });
+    let mut arranger = Arranger {
+        automaton,
+        location_texts: locations.collect(),
+        transition_texts: transitions.collect(),
+        titles: automaton.composites.iter().map(title).collect(),
+        sizes: vec![Size::default(); automaton.composites.len()],
+        composite_rects: vec![Rect::default(); automaton.composites.len()],
+        location_rects: vec![Rect::default(); automaton.locations.len()],
+        drawing: AutomatonDrawing::default(),
+    };
+    for at in (0..automaton.composites.len()).rev() {
+        arranger.sizes[at] = arranger.size(CompositeId(at as u32));
+    }
+    arranger.place_all();
+    arranger.finish()
+}
+
+/// How a composite's children are put beside each other.
+enum Shape<'a> {
+    Row(&'a [Element]),
+    Stack(&'a [Element]),
+    /// A location and what it starts.
+    Fork(LocationId, &'a [Element]),
+}
+
+impl<'a> Arranger<'a> {
+    fn composite(&self, id: CompositeId) -> &'a Composite {
+        &self.automaton.composites[id.0 as usize]
+    }
+
+    fn shape(&self, id: CompositeId) -> Shape<'a> {
+        let composite = self.composite(id);
+        match (composite.kind, composite.children.as_slice()) {
+            (CompositeKind::Guarded, [Element::Location(first), rest @ ..]) => Shape::Fork(*first, rest),
+            (CompositeKind::Sequence, children) => Shape::Row(children),
+            (_, children) => Shape::Stack(children),
+        }
+    }
+
+    /// What surrounds a composite's children: left and right, above, below.
+    fn frame(&self, id: CompositeId) -> (f64, f64, f64) {
+        let composite = self.composite(id);
+        let is_box = self.titles[id.0 as usize].is_some() || composite.kind == CompositeKind::Program;
+        let title = if self.titles[id.0 as usize].is_some() { TextRole::Quiet.line_height() } else { 0.0 };
+        if is_box { (PADDING, PADDING + title, PADDING) } else { (0.0, 0.0, 0.0) }
+    }
+
+    fn element_size(&self, element: Element) -> Size {
+        match element {
+            Element::Composite(id) => self.sizes[id.0 as usize],
+            Element::Location(id) => {
+                let width = self.location_texts[id.0 as usize].width + 4.0 * TEXT_PAD;
+                Size { width, height: LOCATION_HEIGHT, axis: LOCATION_HEIGHT / 2.0 }
+            }
+        }
+    }
+
+    fn size(&self, id: CompositeId) -> Size {
+        let inner = match self.shape(id) {
+            Shape::Row(children) => row(children.iter().map(|&child| self.element_size(child))),
+            Shape::Stack(children) => stack(children.iter().map(|&child| self.element_size(child))),
+            Shape::Fork(location, children) => {
+                let source = self.element_size(Element::Location(location));
+                let bodies = stack(children.iter().map(|&child| self.element_size(child)));
+                let loop_height = self.loop_height(location);
+                let room = if children.is_empty() { 0.0 } else { self.guard_room(location) };
+                let axis = (source.axis + loop_height).max(bodies.axis);
+                let height = axis + source.axis.max(bodies.height - bodies.axis);
+                Size {
+                    width: source.width.max(self.loop_width(location)) + room + bodies.width,
+                    height,
+                    axis,
+                }
+            }
+        };
+        let (side, above, below) = self.frame(id);
+        let title = self.titles[id.0 as usize].as_ref().map_or(0.0, |title| title.width);
+        Size {
+            width: (inner.width.max(title) + 2.0 * side).ceil(),
+            height: (inner.height + above + below).ceil(),
+            axis: (inner.axis + above).floor(),
+        }
+    }
+
+    fn transitions_of(&self, location: LocationId) -> impl Iterator<Item = (TransitionId, Element)> + 'a {
+        let range = self.automaton.locations[location.0 as usize].transitions.clone();
+        let automaton = self.automaton;
+        range.filter_map(move |at| {
+            automaton.transitions.get(at as usize).map(|transition| (TransitionId(at), transition.target))
+        })
+    }
+
+    /// The transition from a location to itself.
+    fn own_loop(&self, location: LocationId) -> Option<TransitionId> {
+        let mut all = self.transitions_of(location);
+        all.find(|(_, target)| *target == Element::Location(location)).map(|(id, _)| id)
+    }
+
+    fn loop_height(&self, location: LocationId) -> f64 {
+        if self.own_loop(location).is_none() {
+            return 0.0;
+        }
+        LOOP_HEIGHT + TEXT_LIFT + TextRole::Bounds.line_height()
+    }
+
+    fn loop_width(&self, location: LocationId) -> f64 {
+        self.own_loop(location).map_or(0.0, |id| self.transition_texts[id.0 as usize].width)
+    }
+
+    /// The space between a location and what it starts: to spread, and for the longest guard.
+    fn guard_room(&self, location: LocationId) -> f64 {
+        let others =
+            self.transitions_of(location).filter(|(_, target)| *target != Element::Location(location));
+        let widths = others.map(|(id, _)| self.transition_texts[id.0 as usize].width);
+        GUTTER.0 + widths.fold(0.0, f64::max) + 2.0 * TEXT_PAD + ARROW_LENGTH
+    }
+
+    fn place_all(&mut self) {
+        let whole = self.sizes.first().copied().unwrap_or_default();
+        if let Some(rect) = self.composite_rects.first_mut() {
+            *rect = Rect::new(0.0, 0.0, whole.width, whole.height);
+        }
+        for at in 0..self.automaton.composites.len() {
+            let id = CompositeId(at as u32);
+            let rect = self.composite_rects[at];
+            let (side, above, below) = self.frame(id);
+            let inner =
+                Rect::new(rect.min.x + side, rect.min.y + above, rect.max.x - side, rect.max.y - below);
+            self.outline(id, rect, side);
+            match self.shape(id) {
+                Shape::Row(children) => self.place_row(children, inner, rect.min.y + self.sizes[at].axis),
+                Shape::Stack(children) => self.place_stack(children, inner.min),
+                Shape::Fork(location, children) => {
+                    let size = self.element_size(Element::Location(location));
+                    let wide = size.width.max(self.loop_width(location));
+                    let left = inner.min.x + ((wide - size.width) / 2.0).floor();
+                    let line = rect.min.y + self.sizes[at].axis;
+                    self.put(Element::Location(location), Point::new(left, line - size.axis));
+                    let room = if children.is_empty() { 0.0 } else { self.guard_room(location) };
+                    let bodies = stack(children.iter().map(|&child| self.element_size(child)));
+                    self.place_stack(children, Point::new(inner.min.x + wide + room, line - bodies.axis));
+                }
+            }
+        }
+    }
+
+    fn outline(&mut self, id: CompositeId, rect: Rect, side: f64) {
+        let composite = self.composite(id);
+        if side == 0.0 {
+            return;
+        }
+        let is_watching = composite.maintenance.is_some();
+        self.drawing.composites.push(CompositeShape { id, rect, kind: composite.kind, is_watching });
+        if let Some(title) = &self.titles[id.0 as usize] {
+            let (left, top) = (rect.min.x + PADDING, rect.min.y + TEXT_PAD);
+            let rect = Rect::new(left, top, left + title.width, top + TextRole::Quiet.line_height());
+            let (text, owner) = (title.text.clone(), AutomatonItem::Composite(id));
+            self.drawing.texts.push(AutomatonText { text, role: TextRole::Quiet, rect, owner });
+        }
+    }
+
+    fn put(&mut self, element: Element, corner: Point) {
+        let size = self.element_size(element);
+        let rect = Rect { min: corner, max: corner.shifted(size.width, size.height) };
+        match element {
+            Element::Composite(id) => self.composite_rects[id.0 as usize] = rect,
+            Element::Location(id) => self.location_rects[id.0 as usize] = rect,
+        }
+    }
+
+    fn place_row(&mut self, children: &[Element], inner: Rect, line: f64) {
+        let mut left = inner.min.x;
+        for (at, &child) in children.iter().enumerate() {
+            let size = self.element_size(child);
+            if at > 0 {
+                self.drawing
+                    .successions
+                    .push((Point::new(left + 2.0, line), Point::new(left + STEP - 2.0, line)));
+                left += STEP;
+            }
+            self.put(child, Point::new(left, line - size.axis));
+            left += size.width;
+        }
+    }
+
+    fn place_stack(&mut self, children: &[Element], corner: Point) {
+        let mut top = corner.y;
+        for &child in children {
+            self.put(child, Point::new(corner.x, top));
+            top += self.element_size(child).height + GAP;
+        }
+    }
+
+    /// Where an element is entered from the left.
+    fn entry(&self, element: Element) -> Point {
+        let corner = match element {
+            Element::Composite(id) => self.composite_rects[id.0 as usize].min,
+            Element::Location(id) => self.location_rects[id.0 as usize].min,
+        };
+        corner.shifted(0.0, self.element_size(element).axis)
+    }
+
+    fn finish(mut self) -> AutomatonDrawing {
+        let starts = self.automaton.start();
+        for at in 0..self.automaton.locations.len() {
+            let id = LocationId(at as u32);
+            let (rect, kind) = (self.location_rects[at], self.automaton.locations[at].kind);
+            let is_start = starts.contains(id);
+            self.drawing.locations.push(LocationShape { id, rect, kind, is_start });
+            let text = &self.location_texts[at];
+            let left = (rect.center().x - text.width / 2.0).floor();
+            let half = TextRole::Name.line_height() / 2.0;
+            let line = Rect::new(left, rect.center().y - half, left + text.width, rect.center().y + half);
+            let (text, owner) = (text.text.clone(), AutomatonItem::Location(id));
+            self.drawing.texts.push(AutomatonText { text, role: TextRole::Name, rect: line, owner });
+            for (transition, target) in self.transitions_of(id) {
+                self.transition(transition, id, target);
+            }
+        }
+        self.drawing.transitions.sort_by_key(|transition| transition.id);
+        self.drawing.bounds = self.composite_rects.first().copied().unwrap_or_default().expanded(MARGIN);
+        self.drawing
+    }
+
+    fn transition(&mut self, id: TransitionId, source: LocationId, target: Element) {
+        let from = self.location_rects[source.0 as usize];
+        let text = &self.transition_texts[id.0 as usize];
+        let (start, pieces, text_at) = if target == Element::Location(source) {
+            let (left, right) = (Point::new(from.center().x - 14.0, from.min.y), from.center().x + 14.0);
+            let start = Point::new(right, from.min.y);
+            let top = from.min.y - LOOP_HEIGHT * 4.0 / 3.0;
+            let piece = Piece::Cubic(Point::new(right + 10.0, top), Point::new(left.x - 10.0, top), left);
+            (start, vec![piece], Point::new(from.center().x, from.min.y - LOOP_HEIGHT - TEXT_LIFT))
+        } else {
+            let start = Point::new(from.max.x, from.center().y);
+            let end = self.entry(target);
+            let run = self.guard_room(source) - GUTTER.0;
+            let level = Point::new(end.x - run, end.y);
+            let middle = f64::midpoint(level.x, end.x - ARROW_LENGTH);
+            let text_at = Point::new(middle, end.y - TEXT_LIFT);
+            (start, vec![level_curve(start, level), Piece::Line(end)], text_at)
+        };
+        self.drawing.transitions.push(TransitionShape { id, start, pieces });
+        let left = (text_at.x - text.width / 2.0).floor();
+        let rect = Rect::new(left, text_at.y - TextRole::Bounds.line_height(), left + text.width, text_at.y);
+        let (text, owner) = (text.text.clone(), AutomatonItem::Transition(id));
+        self.drawing.texts.push(AutomatonText { text, role: TextRole::Bounds, rect, owner });
+    }
+}
+
+/// Whether a location only waits for its guards.
+pub(super) fn is_waiting(kind: LocationKind) -> bool {
+    !matches!(kind, LocationKind::Assert)
+}
+
+fn row(sizes: impl Iterator<Item = Size>) -> Size {
+    let (mut width, mut above, mut below) = (0.0, 0.0_f64, 0.0_f64);
+    for (at, size) in sizes.enumerate() {
+        width += size.width + if at > 0 { STEP } else { 0.0 };
+        above = above.max(size.axis);
+        below = below.max(size.height - size.axis);
+    }
+    Size { width, height: above + below, axis: above }
+}
+
+/// Below each other; entered in the middle, or as its only member is.
+fn stack(sizes: impl Iterator<Item = Size>) -> Size {
+    let mut whole = Size::default();
+    for (at, size) in sizes.enumerate() {
+        whole.height += size.height + if at > 0 { GAP } else { 0.0 };
+        whole.width = whole.width.max(size.width);
+        whole.axis = if at == 0 { size.axis } else { (whole.height / 2.0).floor() };
+    }
+    whole
+}

@@ -1,0 +1,122 @@
+//! The drawing of an automaton: composites as nested boxes, locations as rounded boxes, transitions with their guards.
+//!
+//! Parallel children stand below each other, a sequence runs from left to right, and what a location starts stands to
+//! its right. Linear in the automaton, but for cutting long texts.
+
+mod arrange;
+mod picture;
+
+use hca::{Automaton, CompositeId, CompositeKind, LocationId, LocationKind, TransitionId};
+use serde::{Deserialize, Serialize};
+use smol_str::SmolStr;
+
+use crate::geometry::{Piece, Point, Rect, distance_point_curve};
+use crate::metrics::TextRole;
+use crate::text::Measure;
+
+pub use picture::automaton_svg;
+
+/// An automaton as shapes. Composites are in the order of their ids: outer ones first.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct AutomatonDrawing {
+    /// Everything lies inside.
+    pub bounds: Rect,
+    /// The boxes of composites.
+    pub composites: Vec<CompositeShape>,
+    /// The boxes of primitive locations, in the order of their ids.
+    pub locations: Vec<LocationShape>,
+    /// The transitions, in the order of their ids.
+    pub transitions: Vec<TransitionShape>,
+    /// From each child of a sequence to the next.
+    pub successions: Vec<(Point, Point)>,
+    /// All texts.
+    pub texts: Vec<AutomatonText>,
+}
+
+/// A composite.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CompositeShape {
+    /// Which one.
+    pub id: CompositeId,
+    /// Its box.
+    pub rect: Rect,
+    /// Which form it comes from.
+    pub kind: CompositeKind,
+    /// Whether it has a maintenance condition, and so can be preempted.
+    pub is_watching: bool,
+}
+
+/// A primitive location.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LocationShape {
+    /// Which one.
+    pub id: LocationId,
+    /// Its box.
+    pub rect: Rect,
+    /// What it does.
+    pub kind: LocationKind,
+    /// Whether it is marked when the whole program starts.
+    pub is_start: bool,
+}
+
+/// A transition.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TransitionShape {
+    /// Which one.
+    pub id: TransitionId,
+    /// Where the curve begins.
+    pub start: Point,
+    /// The curve.
+    pub pieces: Vec<Piece>,
+}
+
+/// A text in the rectangle that is reserved for it alone.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AutomatonText {
+    /// What it says.
+    pub text: SmolStr,
+    /// What it is for: titles of composites, names of locations, guards as bounds.
+    pub role: TextRole,
+    /// Where it stands.
+    pub rect: Rect,
+    /// What it belongs to.
+    pub owner: AutomatonItem,
+}
+
+/// Something on the drawing that can be pointed at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum AutomatonItem {
+    /// A primitive location.
+    Location(LocationId),
+    /// A transition.
+    Transition(TransitionId),
+    /// A composite.
+    Composite(CompositeId),
+}
+
+/// Draws an automaton; `measure` as for [`crate::network`].
+pub fn automaton(automaton: &Automaton, measure: Measure<'_>) -> AutomatonDrawing {
+    arrange::arrange(automaton, measure)
+}
+
+impl AutomatonDrawing {
+    /// What lies at `point`, or at most `tolerance` beside it: a location before a transition before the innermost
+    /// composite.
+    pub fn pick(&self, point: Point, tolerance: f64) -> Option<AutomatonItem> {
+        let location = self.locations.iter().find(|location| location.rect.contains(point));
+        if let Some(location) = location {
+            return Some(AutomatonItem::Location(location.id));
+        }
+        let text = self.texts.iter().find(|text| text.rect.contains(point));
+        if let Some(text) = text {
+            return Some(text.owner);
+        }
+        let near =
+            |shape: &&TransitionShape| distance_point_curve(point, shape.start, &shape.pieces) <= tolerance;
+        if let Some(transition) = self.transitions.iter().find(near) {
+            return Some(AutomatonItem::Transition(transition.id));
+        }
+        let around = self.composites.iter().rev().find(|composite| composite.rect.contains(point));
+        around.map(|composite| AutomatonItem::Composite(composite.id))
+    }
+}
