@@ -72,6 +72,7 @@ impl Lookahead {
         }
         let mut stn = Stn::new(model.num_nodes);
         stn.reserve(model.arcs.len() * 2 + 64);
+        stn.set_origin(PointId(model.twin[model.start as usize]));
         Self {
             stn,
             is_active_node: vec![false; model.num_nodes],

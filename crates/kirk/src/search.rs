@@ -94,6 +94,7 @@ impl<'m> Engine<'m> {
             model.structure.as_ref().filter(|_| setup.by_structure && setup.trace_events.is_none());
         let mut stn = Stn::new(model.num_nodes);
         stn.reserve(model.arcs.len() * 2 + 64);
+        stn.set_origin(PointId(model.start));
         let stats = Stats {
             nodes: model.num_nodes as u64,
             arcs: model.arcs.len() as u64,

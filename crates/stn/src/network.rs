@@ -96,6 +96,10 @@ pub struct Stn {
     done: Vec<u32>,
     now: u32,
     changed: Vec<(u32, i64)>,
+    origin: Option<u32>,
+    walk: Vec<u32>,
+    visit: Vec<u32>,
+    visits: u32,
     pub(crate) scratch: Vec<i64>,
     pub(crate) dirty: Vec<bool>,
 }
@@ -118,6 +122,7 @@ impl Stn {
         self.stamp.resize(points, 0);
         self.done.resize(points, 0);
         self.dirty.resize(points, false);
+        self.visit.resize(points, 0);
     }
 
     /// Makes room for `edges` more edges, so that inserting them does not allocate.
@@ -138,6 +143,12 @@ impl Stn {
     /// A schedule that keeps every constraint: one consistent time per point, of no particular origin.
     pub fn schedule(&self) -> &[i64] {
         &self.potential
+    }
+
+    /// Names the point that everything else hangs on, so that contradictions that drag it along are recognized at once
+    /// where the other side is bound to it. Answers do not depend on it.
+    pub fn set_origin(&mut self, origin: PointId) {
+        self.origin = Some(origin.0);
     }
 
     /// Gives a point without constraints a place in the schedule, so that inserting its constraints moves little.
@@ -290,6 +301,11 @@ impl Stn {
                         self.restore();
                         return Err(Inconsistency::NegativeCycle);
                     }
+                    if self.origin == Some(edge.from) && self.hangs_on(to, edge.from) {
+                        self.collect_cycle_through(edge.from, new_edge);
+                        self.restore();
+                        return Err(Inconsistency::NegativeCycle);
+                    }
                     self.heap.push(rise, edge.from);
                 }
                 next = edge.next_in;
@@ -307,6 +323,67 @@ impl Stn {
             self.cycle.push(edge.describe());
             point = edge.to;
         }
+    }
+
+    /// Whether constraints without slack keep `point` from being earlier unless `origin` is. Then `walk` has them, the
+    /// one at the origin last, and `point` cannot stay where it is if the origin rises.
+    fn hangs_on(&mut self, point: u32, origin: u32) -> bool {
+        // Points that have risen already have left their constraints behind.
+        if self.done[point as usize] == self.now {
+            return false;
+        }
+        self.walk.clear();
+        self.scratch.clear();
+        self.scratch.push(i64::from(self.first_out[point as usize]));
+        let mark = self.next_visit();
+        self.visit[point as usize] = mark;
+        while let Some(next) = self.scratch.last_mut() {
+            let position = *next as u32;
+            if position == NONE {
+                self.scratch.pop();
+                self.walk.pop();
+                continue;
+            }
+            let edge = self.edges[position as usize];
+            *next = i64::from(edge.next_out);
+            let target = edge.to as usize;
+            let is_tight =
+                self.potential[edge.from as usize].checked_add(edge.weight) == Some(self.potential[target]);
+            if !is_tight || self.visit[target] == mark || self.done[target] == self.now {
+                continue;
+            }
+            self.walk.push(position);
+            if edge.to == origin {
+                return true;
+            }
+            self.visit[target] = mark;
+            self.scratch.push(i64::from(self.first_out[target]));
+        }
+        false
+    }
+
+    /// The new edge, the walk from its end to the origin, and the parents from there to its start.
+    fn collect_cycle_through(&mut self, origin: u32, new_edge: CycleEdge) {
+        self.cycle.clear();
+        self.cycle.push(new_edge);
+        for &position in &self.walk {
+            self.cycle.push(self.edges[position as usize].describe());
+        }
+        let mut point = origin;
+        while point != new_edge.from.0 {
+            let edge = self.edges[self.parent[point as usize] as usize];
+            self.cycle.push(edge.describe());
+            point = edge.to;
+        }
+    }
+
+    fn next_visit(&mut self) -> u32 {
+        if self.visits == u32::MAX {
+            self.visit.fill(0);
+            self.visits = 0;
+        }
+        self.visits += 1;
+        self.visits
     }
 
     fn restore(&mut self) {
