@@ -12,7 +12,7 @@ use crate::analysis::local::local_diagnostics;
 use crate::analysis::{Checked, DeclarationKey, Index, Meaning, Names, Summary, check, recursion, summarize};
 use crate::diagnostic::{Diagnostic, Edit, Severity};
 use crate::lower::{Item, Lowering, OptionValue};
-use crate::parser::parse_declaration;
+use crate::parser::{Scratch, parse_declaration};
 use crate::program::{Program, TimeUnit};
 use crate::rational::Rational;
 use crate::span::Span;
@@ -116,9 +116,11 @@ impl Parse {
         mut meets: impl FnMut(&[Place], u32) -> bool,
     ) -> Vec<(u32, Declaration)> {
         let mut found = Vec::new();
+        let mut scratch = Scratch::default();
         let mut at = start;
         while (at as usize) < self.text.len() && !meets(&self.places, at) {
-            let declaration = Declaration::read(self.text.get(at as usize..).unwrap_or(""), &mut self.names);
+            let rest = self.text.get(at as usize..).unwrap_or("");
+            let declaration = Declaration::read(rest, &mut scratch, &mut self.names);
             let length = declaration.tree.len().max(1);
             found.push((at, declaration));
             at += length;
@@ -286,8 +288,8 @@ fn add(program: &mut Program, item: Item) {
 
 impl Declaration {
     /// Reads the declaration at the start of `text`.
-    fn read(text: &str, names: &mut Names) -> Self {
-        let parsed = parse_declaration(text);
+    fn read(text: &str, scratch: &mut Scratch, names: &mut Names) -> Self {
+        let parsed = parse_declaration(text, scratch);
         let root = parsed.tree.root(text.get(..parsed.tree.len() as usize).unwrap_or(""), 0);
         let mut lowering = Lowering { is_callable: &|_| false, bare_names: Vec::new() };
         let item = lowering.item(root);

@@ -31,11 +31,20 @@ pub(crate) struct ParsedDeclaration {
     pub(crate) reach: u32,
 }
 
+/// Memory that parsing one declaration after the other uses again.
+#[derive(Default)]
+pub(crate) struct Scratch {
+    tokens: Vec<Token>,
+    nodes: Vec<RawNode>,
+}
+
 /// Parses the declaration at the start of `text`, which is not empty.
-pub(crate) fn parse_declaration(text: &str) -> ParsedDeclaration {
-    let mut parser = Parser::new(text);
+pub(crate) fn parse_declaration(text: &str, scratch: &mut Scratch) -> ParsedDeclaration {
+    scratch.tokens.clear();
+    scratch.nodes.clear();
+    let mut parser = Parser::new(text, std::mem::take(scratch));
     parser.file_item();
-    parser.finish()
+    parser.finish(scratch)
 }
 
 /// A node that is open: its tokens and children are still to come.
@@ -59,15 +68,15 @@ struct Parser<'t> {
 }
 
 impl<'t> Parser<'t> {
-    fn new(text: &'t str) -> Self {
+    fn new(text: &'t str, scratch: Scratch) -> Self {
         let mut parser = Self {
             text,
             lexer: Lexer::new(text),
-            tokens: Vec::with_capacity(64),
+            tokens: scratch.tokens,
             current: 0,
             kind: SyntaxKind::End,
             after_previous: 0,
-            nodes: Vec::with_capacity(24),
+            nodes: scratch.nodes,
             diagnostics: Vec::new(),
             reported_at: None,
             depth: 0,
@@ -281,7 +290,7 @@ impl<'t> Parser<'t> {
         found
     }
 
-    fn finish(mut self) -> ParsedDeclaration {
+    fn finish(mut self, scratch: &mut Scratch) -> ParsedDeclaration {
         let reach = self.tokens.last().map_or(0, |token| token.end) + 2;
         let end = self.end_of_declaration();
         self.tokens.truncate(end as usize);
@@ -296,11 +305,10 @@ impl<'t> Parser<'t> {
             root.first_token = 0;
         }
         self.diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);
-        ParsedDeclaration {
-            tree: DeclarationTree { tokens: self.tokens, nodes: self.nodes },
-            diagnostics: self.diagnostics,
-            reach,
-        }
+        // Copies have exactly the size that they need.
+        let tree = DeclarationTree { tokens: self.tokens.clone(), nodes: self.nodes.clone() };
+        *scratch = Scratch { tokens: self.tokens, nodes: self.nodes };
+        ParsedDeclaration { tree, diagnostics: self.diagnostics, reach }
     }
 
     /// The index just past the last token: comments behind a declaration on its line belong to it, and at the end of
