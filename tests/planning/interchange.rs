@@ -11,6 +11,7 @@ use tpn::plan_schema::{self, Document, PlanSchemaError};
 use tpn::{ArcKind, network_json};
 
 /// The files that other tools wrote; `None`, said aloud, where this machine does not have them.
+#[expect(clippy::print_stdout, reason = "a test that does not run says so")]
 fn shared(name: &str) -> Option<String> {
     let path: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/tpn").join(name);
     let text = std::fs::read_to_string(&path).ok();

@@ -8,14 +8,16 @@ use acceptance::mission::{compile, try_plans};
 use acceptance::random::small_mission;
 use acceptance::reference::{Answer, Found, search};
 use kirk::Search;
+use rmpl::Rational;
 use tpn::{Network, Plan, Top};
 
-/// Missions that the reference finishes; the issue asks for at least this many.
-const MISSIONS: u64 = 20_000;
+/// Missions that the reference finishes; the issue asks for a third of them.
+const MISSIONS: u64 = 60_000;
 /// The reference gives up on missions with more steps than this, and another one takes their place.
 const MOST_STEPS: u64 = 1_500;
 
 #[test]
+#[expect(clippy::print_stdout, reason = "the count is part of the evidence")]
 fn both_searches_find_exactly_the_plans_that_exist() {
     let compared = AtomicU64::new(0);
     let feasible = AtomicU64::new(0);
@@ -78,20 +80,36 @@ fn both_searches_find_exactly_the_plans_that_exist() {
 fn compare(seed: u64) -> Result<Option<Answer>, String> {
     let text = small_mission(seed);
     let (network, diagnostics) = compile(&text, &Top::Scenario(None));
-    let network = network.ok_or_else(|| format!("does not compile: {diagnostics:?}\n{text}"))?;
+    let mut network = network.ok_or_else(|| format!("does not compile: {diagnostics:?}\n{text}"))?;
+    // The gap decides what touching means (SPEC 5.3), so every fourth mission has another one.
+    network.threat_gap = match seed % 8 {
+        0 => Rational::from_integer(0),
+        4 => Rational::new(1, 2),
+        _ => Rational::from_integer(1),
+    };
     let Some(answer) = search(&network, MOST_STEPS) else { return Ok(None) };
+    // Without a gap, two intervals of no length at one instant are each before the other: the order means nothing.
+    let has_order = seed % 8 != 0;
+    let comparable = |mut key: Comparable| {
+        if !has_order {
+            key.2.clear();
+        }
+        key
+    };
+    let found_key = |found: &Found| comparable(found_key(found));
+    let plan_key = |plan: &Plan| comparable(plan_key(&network, plan));
     let expected: BTreeSet<Comparable> = answer.plans.iter().map(found_key).collect();
     for kind in [Search::Chronological, Search::ConflictDirected] {
         let plans =
             |all| try_plans(&network, kind, all).map_err(|problem| format!("{kind:?}: {problem}\n{text}"));
         let outcome = plans(true)?;
-        let found: BTreeSet<Comparable> = outcome.plans.iter().map(|plan| plan_key(&network, plan)).collect();
+        let found: BTreeSet<Comparable> = outcome.plans.iter().map(plan_key).collect();
         if found != expected {
             let (missing, wrong) = (expected.difference(&found).count(), found.difference(&expected).count());
             return Err(format!("{kind:?}: {missing} plans are missing, {wrong} are wrong\n{text}"));
         }
         let first = plans(false)?;
-        if first.plans.first().map(|plan| plan_key(&network, plan)) != answer.plans.first().map(found_key) {
+        if first.plans.first().map(plan_key) != answer.plans.first().map(found_key) {
             return Err(format!("{kind:?}: the first plan is not the canonical one\n{text}"));
         }
     }

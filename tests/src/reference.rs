@@ -105,15 +105,15 @@ impl Exhaustive<'_> {
             let node = &self.network.nodes[node.index()];
             let out: Vec<ArcId> = match node.decision {
                 None => node.out_arcs.clone(),
-                Some(decision) => match taken[decision.index()] {
-                    Some(alternative) => {
-                        vec![self.network.decisions[decision.index()].alternatives[alternative as usize]]
-                    }
-                    None => {
+                Some(decision) => {
+                    let alternatives = &self.network.decisions[decision.index()].alternatives;
+                    let alternative =
+                        taken[decision.index()].map(|alternative| alternatives[alternative as usize]);
+                    if alternative.is_none() {
                         undecided.push(decision.index());
-                        Vec::new()
                     }
-                },
+                    alternative.into_iter().collect()
+                }
             };
             for arc in out {
                 arcs[arc.index()] = true;

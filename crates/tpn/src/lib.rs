@@ -14,6 +14,7 @@ pub mod plan_json;
 pub mod plan_schema;
 pub mod selection;
 pub mod text;
+mod vocabulary;
 
 pub use compile::{Top, compile, merge_diagnostics};
 pub use network::{

@@ -8,11 +8,12 @@ use serde_json::{Map, Value, json};
 use smol_str::SmolStr;
 
 use crate::network::{
-    Arc, ArcId, ArcKind, Decision, DecisionId, EventEnd, EventRef, Label, LabelId, Literal, Network, Node,
-    NodeId, Occurrence, OccurrenceId, OccurrenceKind, Role, ValueId, ValueSet, Variable, VariableId,
+    Arc, ArcId, ArcKind, Decision, DecisionId, EventEnd, EventRef, Label, LabelId, Network, Node, NodeId,
+    Occurrence, OccurrenceId, OccurrenceKind, Role, Variable,
 };
 use crate::number::{bound_from_json, bound_to_json, time_from_json, time_to_json};
 use crate::text::kind_name;
+use crate::vocabulary::Vocabulary;
 
 /// Why a JSON document is no network.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -350,61 +351,6 @@ impl Reader {
     fn node_id(&self, value: Option<&Value>, place: &str) -> Result<NodeId, NetworkError> {
         let id = value.and_then(Value::as_u64).filter(|&id| id < self.nodes.len() as u64);
         id.map(|id| NodeId(id as u32)).ok_or_else(|| error(place, "names a node that does not exist"))
-    }
-}
-
-/// Variables and values, complete or still collecting.
-pub(crate) struct Vocabulary {
-    /// Whether the document declares its variables, so that only their values count.
-    pub(crate) is_complete: bool,
-    /// The variables.
-    pub(crate) variables: Vec<Variable>,
-}
-
-impl Vocabulary {
-    /// The literal of a printed condition: `X`, `X=V`, `not(X)`, `not(X=V)`.
-    pub(crate) fn literal(&mut self, text: &str) -> Option<Literal> {
-        let (positive, is_negated) = match text.strip_prefix("not(").and_then(|inner| inner.strip_suffix(')'))
-        {
-            Some(inner) => (inner, true),
-            None => (text, false),
-        };
-        let (name, value) =
-            positive.split_once('=').map_or((positive, None), |(name, value)| (name, Some(value)));
-        if name.is_empty() || value.is_some_and(str::is_empty) {
-            return None;
-        }
-        let index = match self.variables.iter().position(|variable| variable.name == name) {
-            Some(index) => index,
-            None if self.is_complete => return None,
-            None => {
-                // Without declarations an atom is Boolean, and a compared variable is open.
-                let is_atom = value.is_none();
-                let values = if is_atom { vec!["true".into(), "false".into()] } else { Vec::new() };
-                self.variables.push(Variable { name: name.into(), values, closed: is_atom });
-                self.variables.len() - 1
-            }
-        };
-        let variable = &mut self.variables[index];
-        let value = value.unwrap_or("true");
-        let position = match variable.values.iter().position(|known| known == value) {
-            Some(position) => position,
-            None if self.is_complete || variable.closed => return None,
-            None => {
-                variable.values.push(value.into());
-                variable.values.len() - 1
-            }
-        };
-        let value = ValueId::from_index(position);
-        let values = match (is_negated, variable.closed) {
-            (false, _) => ValueSet::In(vec![value]),
-            (true, false) => ValueSet::NotIn(vec![value]),
-            (true, true) => {
-                let all = (0..variable.values.len()).map(ValueId::from_index);
-                ValueSet::In(all.filter(|&other| other != value).collect())
-            }
-        };
-        Some(Literal { variable: VariableId::from_index(index), values })
     }
 }
 

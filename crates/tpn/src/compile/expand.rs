@@ -3,17 +3,18 @@
 use std::collections::BTreeMap;
 
 use rmpl::program::{
-    ActivityDecl, ArgumentValue, Bounds, Condition, HeaderBound, HeaderBounds, LabelMode, Name,
-    PrimitiveDecl, Program, ScenarioDecl, Statement, StatementKind,
+    ActivityDecl, Bounds, LabelMode, PrimitiveDecl, Program, ScenarioDecl, Statement, StatementKind,
 };
 use rmpl::{Bound, Diagnostic, Rational, Span};
 use smol_str::SmolStr;
 
 use super::bounds::{self, Interval};
 use super::build::Builder;
-use super::names::{Fact, Vocabulary};
-use super::scope::{Scope, argument_text};
-use super::{E_LIMIT, E_UNDEF, statics};
+use super::call::{Invocation, themselves};
+use super::names::Vocabulary;
+use super::scope::Scope;
+use super::shape::starts_with_decision;
+use super::{E_LIMIT, E_UNDEF};
 use crate::network::{ArcId, ArcKind, BlockId, BlockKind, Network, NodeId, OccurrenceId, OccurrenceKind};
 
 /// Networks grow no larger than this many nodes, so that a few lines of doubling calls cannot exhaust the memory.
@@ -23,7 +24,7 @@ const DEEPEST: usize = 200;
 
 /// What kind of node stands at an end of a piece, which decides what may share the node (rule M).
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum End {
+pub(super) enum End {
     /// The start or end of an activity or assertion: shares its node only with a delay.
     Event,
     /// A fork, join, merge, decision or wrapper: shares its node with other structure.
@@ -34,7 +35,7 @@ enum End {
 
 /// Where a piece begins.
 #[derive(Clone, Copy)]
-enum Entry {
+pub(super) enum Entry {
     /// At a new node.
     Free,
     /// At `node` if the two may share it, otherwise at a new node behind an arc `[0,0]` of kind `link`.
@@ -42,29 +43,29 @@ enum Entry {
 }
 
 /// A compiled piece of the program.
-struct Piece {
-    start: NodeId,
-    end: NodeId,
-    end_kind: End,
-    block: BlockId,
+pub(super) struct Piece {
+    pub(super) start: NodeId,
+    pub(super) end: NodeId,
+    pub(super) end_kind: End,
+    pub(super) block: BlockId,
     /// The arc, if the piece is a single one.
-    arc: Option<ArcId>,
+    pub(super) arc: Option<ArcId>,
     /// The activity or assertion that the piece is, if it is one.
-    occurrence: Option<OccurrenceId>,
+    pub(super) occurrence: Option<OccurrenceId>,
 }
 
 /// Expands a program into a network.
 pub(super) struct Expander<'program> {
-    program: &'program Program,
-    vocabulary: Vocabulary<'program>,
-    activities: BTreeMap<&'program str, &'program ActivityDecl>,
-    primitives: BTreeMap<&'program str, &'program PrimitiveDecl>,
-    builder: Builder,
-    diagnostics: Vec<Diagnostic>,
+    pub(super) program: &'program Program,
+    pub(super) vocabulary: Vocabulary<'program>,
+    pub(super) activities: BTreeMap<&'program str, &'program ActivityDecl>,
+    pub(super) primitives: BTreeMap<&'program str, &'program PrimitiveDecl>,
+    pub(super) builder: Builder,
+    pub(super) diagnostics: Vec<Diagnostic>,
     /// The activities being expanded, outermost first.
-    active: Vec<&'program str>,
-    depth: usize,
-    is_cut_off: bool,
+    pub(super) active: Vec<&'program str>,
+    pub(super) depth: usize,
+    pub(super) is_cut_off: bool,
 }
 
 /// The outermost piece.
@@ -168,7 +169,7 @@ impl<'program> Expander<'program> {
         (network, self.diagnostics)
     }
 
-    fn statement(&mut self, statement: &'program Statement, entry: Entry, scope: &Scope) -> Piece {
+    pub(super) fn statement(&mut self, statement: &'program Statement, entry: Entry, scope: &Scope) -> Piece {
         if self.is_too_large(statement.span) {
             return self.nothing(statement.span, entry);
         }
@@ -303,244 +304,8 @@ impl<'program> Expander<'program> {
         Piece { start: node, end: merge, end_kind: End::Structural, block, arc: None, occurrence: None }
     }
 
-    /// `do body maintaining c` requires `c`, `do body watching c` asserts its negation (SPEC 3.7).
-    fn conditional(
-        &mut self,
-        body: &'program Statement,
-        condition: &'program Condition,
-        mode: LabelMode,
-        span: Span,
-        entry: Entry,
-        scope: &Scope,
-    ) -> Piece {
-        let fact = self.fact(condition, scope).map(|fact| match mode {
-            LabelMode::Ask => fact,
-            LabelMode::Tell => fact.negation(),
-        });
-        if self.is_single_arc(body, scope) {
-            let piece = self.statement(body, entry, scope);
-            if let (Some(arc), Some(fact)) = (piece.arc, fact) {
-                self.builder.label(arc, mode, fact, piece.occurrence, condition.span);
-            }
-            return piece;
-        }
-        let owner = (!self.is_instance(body, scope)).then(|| {
-            self.builder.occurrence("do".into(), OccurrenceKind::Scope, Vec::new(), scope.occurrence, span)
-        });
-        let arc = self.builder.reserve(ArcKind::Span, Interval::ANY, span);
-        let piece = self.spanned(body, false, entry, scope, Some(arc));
-        if let Some(owner) = owner {
-            self.builder.place(owner, piece.start, piece.end);
-            self.builder.own(owner, arc);
-        }
-        if let Some(fact) = fact {
-            self.builder.label(arc, mode, fact, owner.or(piece.occurrence), condition.span);
-        }
-        self.scope_block(&piece, arc, span)
-    }
-
-    fn guard(
-        &mut self,
-        condition: &'program Condition,
-        body: &'program Statement,
-        span: Span,
-        entry: Entry,
-        scope: &Scope,
-    ) -> Piece {
-        let start = self.enter(entry, End::Structural, span);
-        let arc = self.builder.reserve(ArcKind::Point, Interval::ZERO, condition.span);
-        let owner =
-            self.builder.occurrence("if".into(), OccurrenceKind::Scope, Vec::new(), scope.occurrence, span);
-        self.builder.own(owner, arc);
-        if let Some(fact) = self.fact(condition, scope) {
-            self.builder.label(arc, LabelMode::Ask, fact, Some(owner), condition.span);
-        }
-        let piece = self.statement(body, Entry::Free, scope);
-        self.builder.connect(arc, start, piece.start);
-        self.builder.place(owner, start, piece.start);
-        let kind = BlockKind::Guard { arc, child: piece.block };
-        let block = self.builder.block(kind, start, piece.end, Some(span));
-        Piece { start, end: piece.end, end_kind: piece.end_kind, block, arc: None, occurrence: None }
-    }
-
-    fn call(
-        &mut self,
-        name: &Name,
-        arguments: &[ArgumentValue],
-        written: Option<&'program Bounds>,
-        span: Span,
-        entry: Entry,
-        scope: &Scope,
-    ) -> Piece {
-        let interval = written.map_or(Interval::ANY, |written| self.interval(written, scope));
-        let callee = scope.name(&name.text);
-        let call = Invocation { name, interval, bounds_span: written.map(|written| written.span), span };
-        let Some(&activity) = self.activities.get(callee.as_str()) else {
-            return self.primitive(&callee, arguments, &call, entry, scope);
-        };
-        // Static recursion was refused before; names that are passed as arguments can still close a circle.
-        if self.active.contains(&activity.name.text.as_str()) {
-            let message =
-                format!("activities may not call themselves, and `{callee}` does through its arguments");
-            self.diagnostics.push(Diagnostic::error(statics::E_RECURSION, name.span, message));
-            return self.nothing(span, entry);
-        }
-        self.instance(activity, arguments, &call, entry, scope, OccurrenceKind::Activity)
-    }
-
-    fn instance(
-        &mut self,
-        activity: &'program ActivityDecl,
-        arguments: &[ArgumentValue],
-        call: &Invocation<'_>,
-        entry: Entry,
-        around: &Scope,
-        kind: OccurrenceKind,
-    ) -> Piece {
-        let texts = arguments.iter().map(argument_text).collect();
-        let occurrence =
-            self.builder.occurrence(activity.name.text.clone(), kind, texts, around.occurrence, call.span);
-        let mut scope = Scope::new(Some(occurrence), &activity.formals, arguments);
-        let (interval, span) = self.header(activity, call, &mut scope);
-        let start = self.enter(entry, End::Event, call.span);
-        let arc = self.builder.reserve(ArcKind::Composite, interval, span);
-        self.builder.own(occurrence, arc);
-        self.active.push(activity.name.text.as_str());
-        let entry = Entry::After { node: start, end: End::Event, link: ArcKind::Glue };
-        let body = self.statement(&activity.body, entry, &scope);
-        self.active.pop();
-        let end = self.builder.node();
-        self.builder.arc(body.end, end, ArcKind::Glue, Interval::ZERO, activity.body.span);
-        self.builder.connect(arc, start, end);
-        self.builder.place(occurrence, start, end);
-        let kind = BlockKind::Scope { child: body.block, arcs: vec![arc], occurrence: Some(occurrence) };
-        let block = self.builder.block(kind, start, end, Some(call.span));
-        Piece { start, end, end_kind: End::Event, block, arc: None, occurrence: Some(occurrence) }
-    }
-
-    /// The bounds of an instance (SPEC 1.4), and where they are written; binds the header's bound parameters.
-    fn header(
-        &mut self,
-        activity: &'program ActivityDecl,
-        call: &Invocation<'_>,
-        scope: &mut Scope,
-    ) -> (Interval, Span) {
-        let call_span = call.bounds_span.unwrap_or(call.span);
-        let HeaderBounds::Sides { lower, upper, span } = &activity.bounds else {
-            return (call.interval, call_span);
-        };
-        if let HeaderBound::Parameter(name) = lower {
-            scope.bind(&name.text, Bound::Finite(call.interval.lower));
-        }
-        if let HeaderBound::Parameter(name) = upper {
-            scope.bind(&name.text, call.interval.upper);
-        }
-        let value = |side: &HeaderBound, default: Bound| match side {
-            HeaderBound::Parameter(_) => Ok((default, false)),
-            HeaderBound::Limit(expr) => {
-                bounds::value(expr, &|name| scope.bound(name)).map(|value| (value, true))
-            }
-        };
-        let sides = value(lower, Bound::ZERO).and_then(|least| Ok((least, value(upper, Bound::Infinite)?)));
-        let ((least, limits_lower), (greatest, limits_upper)) = match sides {
-            Ok(sides) => sides,
-            Err(error) => {
-                self.diagnostics.push(error);
-                return (call.interval, call_span);
-            }
-        };
-        let limit = match bounds::checked_interval(least, greatest, *span) {
-            Ok(limit) => limit,
-            Err(error) => {
-                self.diagnostics.push(error);
-                return (call.interval, call_span);
-            }
-        };
-        let limits = limits_lower || limits_upper;
-        let arc_span = if limits { call.bounds_span.unwrap_or(*span) } else { call_span };
-        (self.intersect(call, limit, *span), arc_span)
-    }
-
-    /// A primitive, declared or not: its declared bounds intersected with those of the call.
-    fn primitive(
-        &mut self,
-        callee: &SmolStr,
-        arguments: &[ArgumentValue],
-        call: &Invocation<'_>,
-        entry: Entry,
-        around: &Scope,
-    ) -> Piece {
-        let declared = self.primitives.get(callee.as_str()).copied();
-        let declared_bounds =
-            declared.and_then(|declared| declared.bounds.as_ref().map(|written| (declared, written)));
-        let mut interval = call.interval;
-        let mut arc_span = call.bounds_span.unwrap_or(call.span);
-        if let Some((declared, written)) = declared_bounds {
-            let scope = Scope::new(None, &declared.formals, arguments);
-            let limit = self.interval(written, &scope);
-            interval = self.intersect(call, limit, written.span);
-            arc_span = call.bounds_span.unwrap_or(written.span);
-        }
-        let texts = arguments.iter().map(argument_text).collect();
-        let occurrence = self.builder.occurrence(
-            callee.clone(),
-            OccurrenceKind::Primitive,
-            texts,
-            around.occurrence,
-            call.span,
-        );
-        self.leaf(occurrence, ArcKind::Activity, interval, arc_span, call.span, entry)
-    }
-
-    fn intersect(&mut self, call: &Invocation<'_>, limit: Interval, declared_span: Span) -> Interval {
-        call.interval.intersect(limit).unwrap_or_else(|| {
-            let message = format!(
-                "`{}` takes {limit}, and is called with {}: no duration is in both",
-                call.name.text, call.interval
-            );
-            let span = call.bounds_span.unwrap_or(if call.span == Span::default() {
-                declared_span
-            } else {
-                call.span
-            });
-            self.diagnostics.push(Diagnostic::error(bounds::E_BOUNDS, span, message));
-            limit
-        })
-    }
-
-    fn assertion(
-        &mut self,
-        mode: LabelMode,
-        condition: &'program Condition,
-        written: Option<&'program Bounds>,
-        span: Span,
-        entry: Entry,
-        scope: &Scope,
-    ) -> Piece {
-        let interval = written.map_or(Interval::ZERO, |written| self.interval(written, scope));
-        let arc_span = written.map_or(span, |written| written.span);
-        let fact = self.fact(condition, scope);
-        let text = fact.as_ref().map_or_else(|| condition.variable.text.clone(), Fact::text);
-        let activity = match mode {
-            LabelMode::Ask => format!("Ask({text})"),
-            LabelMode::Tell => format!("Tell({text})"),
-        };
-        let occurrence = self.builder.occurrence(
-            activity.into(),
-            OccurrenceKind::Assertion,
-            Vec::new(),
-            scope.occurrence,
-            span,
-        );
-        let piece = self.leaf(occurrence, ArcKind::Assertion, interval, arc_span, span, entry);
-        if let (Some(arc), Some(fact)) = (piece.arc, fact) {
-            self.builder.label(arc, mode, fact, Some(occurrence), condition.span);
-        }
-        piece
-    }
-
     /// One arc between two events.
-    fn leaf(
+    pub(super) fn leaf(
         &mut self,
         occurrence: OccurrenceId,
         kind: ArcKind,
@@ -560,7 +325,7 @@ impl<'program> Expander<'program> {
     }
 
     /// An empty block.
-    fn nothing(&mut self, span: Span, entry: Entry) -> Piece {
+    pub(super) fn nothing(&mut self, span: Span, entry: Entry) -> Piece {
         let start = self.enter(entry, End::Structural, span);
         let end = self.builder.node();
         let arc = self.builder.arc(start, end, ArcKind::Glue, Interval::ZERO, span);
@@ -570,7 +335,7 @@ impl<'program> Expander<'program> {
 
     /// `statement` with `arc` from its start to its end; without its own bounds if `arc` is what stands for them. If it
     /// starts with a decision it gets a node around each end, because only alternatives may leave a decision (SPEC 3.1).
-    fn spanned(
+    pub(super) fn spanned(
         &mut self,
         statement: &'program Statement,
         is_own_bounds: bool,
@@ -602,7 +367,7 @@ impl<'program> Expander<'program> {
         piece
     }
 
-    fn scope_block(&mut self, piece: &Piece, arc: ArcId, span: Span) -> Piece {
+    pub(super) fn scope_block(&mut self, piece: &Piece, arc: ArcId, span: Span) -> Piece {
         let kind = BlockKind::Scope { child: piece.block, arcs: vec![arc], occurrence: None };
         let block = self.builder.block(kind, piece.start, piece.end, Some(span));
         Piece {
@@ -616,7 +381,7 @@ impl<'program> Expander<'program> {
     }
 
     /// The first node of a piece.
-    fn enter(&mut self, entry: Entry, wants: End, span: Span) -> NodeId {
+    pub(super) fn enter(&mut self, entry: Entry, wants: End, span: Span) -> NodeId {
         let Entry::After { node, end, link } = entry else { return self.builder.node() };
         let may_share =
             end == End::Delay || wants == End::Delay || (end, wants) == (End::Structural, End::Structural);
@@ -628,66 +393,8 @@ impl<'program> Expander<'program> {
         start
     }
 
-    /// Whether the piece will be a single arc that can carry a label itself.
-    fn is_single_arc(&self, statement: &Statement, scope: &Scope) -> bool {
-        match &statement.kind {
-            StatementKind::Delay => true,
-            StatementKind::Condition(mode, condition) => self
-                .called_formal(*mode, condition, scope)
-                .is_none_or(|name| !self.activities.contains_key(scope.name(&name.text).as_str())),
-            StatementKind::Call(name, _) => !self.activities.contains_key(scope.name(&name.text).as_str()),
-            StatementKind::Sequence(items) => match items.as_slice() {
-                [only] => statement.bounds.is_none() && self.is_single_arc(only, scope),
-                _ => false,
-            },
-            StatementKind::Maintaining(body, _) | StatementKind::Watching(body, _) => {
-                statement.bounds.is_none() && self.is_single_arc(body, scope)
-            }
-            StatementKind::Parallel(_) | StatementKind::Choose(_) | StatementKind::IfThennext(..) => false,
-        }
-    }
-
-    /// Whether the piece will be one instance of a defined activity, whose name the interval can carry.
-    fn is_instance(&self, statement: &Statement, scope: &Scope) -> bool {
-        match &statement.kind {
-            StatementKind::Call(name, _) => self.activities.contains_key(scope.name(&name.text).as_str()),
-            StatementKind::Condition(mode, condition) => self
-                .called_formal(*mode, condition, scope)
-                .is_some_and(|name| self.activities.contains_key(scope.name(&name.text).as_str())),
-            StatementKind::Sequence(items) => match items.as_slice() {
-                [only] => statement.bounds.is_none() && self.is_instance(only, scope),
-                _ => false,
-            },
-            _ => false,
-        }
-    }
-
-    /// A bare name that is a formal and stands for an activity is a call of it (SPEC 1.3, 1.4).
-    fn called_formal(&self, mode: LabelMode, condition: &Condition, scope: &Scope) -> Option<Name> {
-        if mode != LabelMode::Tell || condition.negated || condition.value.is_some() {
-            return None;
-        }
-        let Some(ArgumentValue::Name(callee)) = scope.argument(&condition.variable.text) else { return None };
-        let takes_none = match (self.activities.get(callee.as_str()), self.primitives.get(callee.as_str())) {
-            (Some(activity), _) => activity.formals.is_empty(),
-            (None, Some(primitive)) => primitive.formals.is_empty(),
-            (None, None) => false,
-        };
-        takes_none.then(|| condition.variable.clone())
-    }
-
-    fn fact(&mut self, condition: &Condition, scope: &Scope) -> Option<Fact> {
-        match self.vocabulary.fact(condition, &|name| scope.argument(name)) {
-            Ok(fact) => Some(fact),
-            Err(error) => {
-                self.diagnostics.push(error);
-                None
-            }
-        }
-    }
-
     /// The value of written bounds; anything, with a diagnostic, if they have none.
-    fn interval(&mut self, written: &Bounds, scope: &Scope) -> Interval {
+    pub(super) fn interval(&mut self, written: &Bounds, scope: &Scope) -> Interval {
         bounds::interval(written, &|name| scope.bound(name)).unwrap_or_else(|error| {
             self.diagnostics.push(error);
             Interval::ANY
@@ -706,32 +413,5 @@ impl<'program> Expander<'program> {
             self.diagnostics.push(Diagnostic::error(E_LIMIT, span, message));
         }
         self.is_cut_off
-    }
-}
-
-/// A call with its bounds evaluated.
-struct Invocation<'call> {
-    name: &'call Name,
-    interval: Interval,
-    bounds_span: Option<Span>,
-    span: Span,
-}
-
-/// Formals of a top activity stand for themselves.
-fn themselves(formals: &[Name]) -> Vec<ArgumentValue> {
-    formals.iter().map(|formal| ArgumentValue::Name(formal.text.clone())).collect()
-}
-
-/// Whether the first node of the piece will be a decision; `is_bounded_outside` when its bounds are already dealt with.
-fn starts_with_decision(statement: &Statement, is_bounded_outside: bool) -> bool {
-    if statement.bounds.is_some() && !is_bounded_outside {
-        return false;
-    }
-    match &statement.kind {
-        StatementKind::Choose(alternatives) => !alternatives.is_empty(),
-        StatementKind::Sequence(items) => {
-            items.first().is_some_and(|first| starts_with_decision(first, false))
-        }
-        _ => false,
     }
 }

@@ -5,9 +5,12 @@
 
 mod bounds;
 mod build;
+mod call;
+mod condition;
 mod expand;
 mod names;
 mod scope;
+mod shape;
 mod statics;
 
 use std::collections::BTreeSet;

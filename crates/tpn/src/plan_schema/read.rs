@@ -12,8 +12,8 @@ use crate::network::{
     Arc, ArcId, ArcKind, Decision, DecisionId, EventEnd, EventRef, Label, LabelId, Network, Node, NodeId,
     Occurrence, OccurrenceId, OccurrenceKind, Role,
 };
-use crate::network_json::Vocabulary;
 use crate::number::{bound_from_json, time_from_json};
+use crate::vocabulary::Vocabulary;
 
 /// Reads the network that `network-id` names.
 pub(super) fn read(objects: Map<String, Value>) -> Result<Document, PlanSchemaError> {

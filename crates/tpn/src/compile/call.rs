@@ -1,0 +1,171 @@
+//! Calls: instances of defined activities with their header bounds (SPEC 1.4), and primitives.
+
+use rmpl::program::{ActivityDecl, ArgumentValue, Bounds, HeaderBound, HeaderBounds, Name};
+use rmpl::{Bound, Diagnostic, Span};
+use smol_str::SmolStr;
+
+use super::bounds::{self, Interval};
+use super::expand::{End, Entry, Expander, Piece};
+use super::scope::{Scope, argument_text};
+use super::statics;
+use crate::network::{ArcKind, BlockKind, OccurrenceKind};
+
+/// A call with its bounds evaluated.
+pub(super) struct Invocation<'call> {
+    pub(super) name: &'call Name,
+    pub(super) interval: Interval,
+    pub(super) bounds_span: Option<Span>,
+    pub(super) span: Span,
+}
+
+/// Formals of a top activity stand for themselves.
+pub(super) fn themselves(formals: &[Name]) -> Vec<ArgumentValue> {
+    formals.iter().map(|formal| ArgumentValue::Name(formal.text.clone())).collect()
+}
+
+impl<'program> Expander<'program> {
+    pub(super) fn call(
+        &mut self,
+        name: &Name,
+        arguments: &[ArgumentValue],
+        written: Option<&'program Bounds>,
+        span: Span,
+        entry: Entry,
+        scope: &Scope,
+    ) -> Piece {
+        let interval = written.map_or(Interval::ANY, |written| self.interval(written, scope));
+        let callee = scope.name(&name.text);
+        let call = Invocation { name, interval, bounds_span: written.map(|written| written.span), span };
+        let Some(&activity) = self.activities.get(callee.as_str()) else {
+            return self.primitive(&callee, arguments, &call, entry, scope);
+        };
+        // Static recursion was refused before; names that are passed as arguments can still close a circle.
+        if self.active.contains(&activity.name.text.as_str()) {
+            let message =
+                format!("activities may not call themselves, and `{callee}` does through its arguments");
+            self.diagnostics.push(Diagnostic::error(statics::E_RECURSION, name.span, message));
+            return self.nothing(span, entry);
+        }
+        self.instance(activity, arguments, &call, entry, scope, OccurrenceKind::Activity)
+    }
+
+    pub(super) fn instance(
+        &mut self,
+        activity: &'program ActivityDecl,
+        arguments: &[ArgumentValue],
+        call: &Invocation<'_>,
+        entry: Entry,
+        around: &Scope,
+        kind: OccurrenceKind,
+    ) -> Piece {
+        let texts = arguments.iter().map(argument_text).collect();
+        let occurrence =
+            self.builder.occurrence(activity.name.text.clone(), kind, texts, around.occurrence, call.span);
+        let mut scope = Scope::new(Some(occurrence), &activity.formals, arguments);
+        let (interval, span) = self.header(activity, call, &mut scope);
+        let start = self.enter(entry, End::Event, call.span);
+        let arc = self.builder.reserve(ArcKind::Composite, interval, span);
+        self.builder.own(occurrence, arc);
+        self.active.push(activity.name.text.as_str());
+        let entry = Entry::After { node: start, end: End::Event, link: ArcKind::Glue };
+        let body = self.statement(&activity.body, entry, &scope);
+        self.active.pop();
+        let end = self.builder.node();
+        self.builder.arc(body.end, end, ArcKind::Glue, Interval::ZERO, activity.body.span);
+        self.builder.connect(arc, start, end);
+        self.builder.place(occurrence, start, end);
+        let kind = BlockKind::Scope { child: body.block, arcs: vec![arc], occurrence: Some(occurrence) };
+        let block = self.builder.block(kind, start, end, Some(call.span));
+        Piece { start, end, end_kind: End::Event, block, arc: None, occurrence: Some(occurrence) }
+    }
+
+    /// The bounds of an instance (SPEC 1.4), and where they are written; binds the header's bound parameters.
+    fn header(
+        &mut self,
+        activity: &'program ActivityDecl,
+        call: &Invocation<'_>,
+        scope: &mut Scope,
+    ) -> (Interval, Span) {
+        let call_span = call.bounds_span.unwrap_or(call.span);
+        let HeaderBounds::Sides { lower, upper, span } = &activity.bounds else {
+            return (call.interval, call_span);
+        };
+        if let HeaderBound::Parameter(name) = lower {
+            scope.bind(&name.text, Bound::Finite(call.interval.lower));
+        }
+        if let HeaderBound::Parameter(name) = upper {
+            scope.bind(&name.text, call.interval.upper);
+        }
+        let value = |side: &HeaderBound, default: Bound| match side {
+            HeaderBound::Parameter(_) => Ok((default, false)),
+            HeaderBound::Limit(expr) => {
+                bounds::value(expr, &|name| scope.bound(name)).map(|value| (value, true))
+            }
+        };
+        let sides = value(lower, Bound::ZERO).and_then(|least| Ok((least, value(upper, Bound::Infinite)?)));
+        let ((least, limits_lower), (greatest, limits_upper)) = match sides {
+            Ok(sides) => sides,
+            Err(error) => {
+                self.diagnostics.push(error);
+                return (call.interval, call_span);
+            }
+        };
+        let limit = match bounds::checked_interval(least, greatest, *span) {
+            Ok(limit) => limit,
+            Err(error) => {
+                self.diagnostics.push(error);
+                return (call.interval, call_span);
+            }
+        };
+        let limits = limits_lower || limits_upper;
+        let arc_span = if limits { call.bounds_span.unwrap_or(*span) } else { call_span };
+        (self.intersect(call, limit, *span), arc_span)
+    }
+
+    /// A primitive, declared or not: its declared bounds intersected with those of the call.
+    pub(super) fn primitive(
+        &mut self,
+        callee: &SmolStr,
+        arguments: &[ArgumentValue],
+        call: &Invocation<'_>,
+        entry: Entry,
+        around: &Scope,
+    ) -> Piece {
+        let declared = self.primitives.get(callee.as_str()).copied();
+        let declared_bounds =
+            declared.and_then(|declared| declared.bounds.as_ref().map(|written| (declared, written)));
+        let mut interval = call.interval;
+        let mut arc_span = call.bounds_span.unwrap_or(call.span);
+        if let Some((declared, written)) = declared_bounds {
+            let scope = Scope::new(None, &declared.formals, arguments);
+            let limit = self.interval(written, &scope);
+            interval = self.intersect(call, limit, written.span);
+            arc_span = call.bounds_span.unwrap_or(written.span);
+        }
+        let texts = arguments.iter().map(argument_text).collect();
+        let occurrence = self.builder.occurrence(
+            callee.clone(),
+            OccurrenceKind::Primitive,
+            texts,
+            around.occurrence,
+            call.span,
+        );
+        self.leaf(occurrence, ArcKind::Activity, interval, arc_span, call.span, entry)
+    }
+
+    fn intersect(&mut self, call: &Invocation<'_>, limit: Interval, declared_span: Span) -> Interval {
+        call.interval.intersect(limit).unwrap_or_else(|| {
+            let message = format!(
+                "`{}` takes {limit}, and is called with {}: no duration is in both",
+                call.name.text, call.interval
+            );
+            let span = call.bounds_span.unwrap_or(if call.span == Span::default() {
+                declared_span
+            } else {
+                call.span
+            });
+            self.diagnostics.push(Diagnostic::error(bounds::E_BOUNDS, span, message));
+            limit
+        })
+    }
+}

@@ -1,0 +1,115 @@
+//! Conditions: `maintaining` and `watching`, the guard of an `if`, assertions and explicit requirements.
+
+use rmpl::Span;
+use rmpl::program::{Bounds, Condition, LabelMode, Statement};
+
+use super::bounds::Interval;
+use super::expand::{End, Entry, Expander, Piece};
+use super::names::Fact;
+use super::scope::Scope;
+use crate::network::{ArcKind, BlockKind, OccurrenceKind};
+
+impl<'program> Expander<'program> {
+    /// `do body maintaining c` requires `c`, `do body watching c` asserts its negation (SPEC 3.7).
+    pub(super) fn conditional(
+        &mut self,
+        body: &'program Statement,
+        condition: &'program Condition,
+        mode: LabelMode,
+        span: Span,
+        entry: Entry,
+        scope: &Scope,
+    ) -> Piece {
+        let fact = self.fact(condition, scope).map(|fact| match mode {
+            LabelMode::Ask => fact,
+            LabelMode::Tell => fact.negation(),
+        });
+        if self.is_single_arc(body, scope) {
+            let piece = self.statement(body, entry, scope);
+            if let (Some(arc), Some(fact)) = (piece.arc, fact) {
+                self.builder.label(arc, mode, fact, piece.occurrence, condition.span);
+            }
+            return piece;
+        }
+        let owner = (!self.is_instance(body, scope)).then(|| {
+            self.builder.occurrence("do".into(), OccurrenceKind::Scope, Vec::new(), scope.occurrence, span)
+        });
+        let arc = self.builder.reserve(ArcKind::Span, Interval::ANY, span);
+        let piece = self.spanned(body, false, entry, scope, Some(arc));
+        if let Some(owner) = owner {
+            self.builder.place(owner, piece.start, piece.end);
+            self.builder.own(owner, arc);
+        }
+        if let Some(fact) = fact {
+            self.builder.label(arc, mode, fact, owner.or(piece.occurrence), condition.span);
+        }
+        self.scope_block(&piece, arc, span)
+    }
+
+    /// `if c thennext body`: an instantaneous requirement before the body.
+    pub(super) fn guard(
+        &mut self,
+        condition: &'program Condition,
+        body: &'program Statement,
+        span: Span,
+        entry: Entry,
+        scope: &Scope,
+    ) -> Piece {
+        let start = self.enter(entry, End::Structural, span);
+        let arc = self.builder.reserve(ArcKind::Point, Interval::ZERO, condition.span);
+        let owner =
+            self.builder.occurrence("if".into(), OccurrenceKind::Scope, Vec::new(), scope.occurrence, span);
+        self.builder.own(owner, arc);
+        if let Some(fact) = self.fact(condition, scope) {
+            self.builder.label(arc, LabelMode::Ask, fact, Some(owner), condition.span);
+        }
+        let piece = self.statement(body, Entry::Free, scope);
+        self.builder.connect(arc, start, piece.start);
+        self.builder.place(owner, start, piece.start);
+        let kind = BlockKind::Guard { arc, child: piece.block };
+        let block = self.builder.block(kind, start, piece.end, Some(span));
+        Piece { start, end: piece.end, end_kind: piece.end_kind, block, arc: None, occurrence: None }
+    }
+
+    /// `c`, `tell c` or `ask c`.
+    pub(super) fn assertion(
+        &mut self,
+        mode: LabelMode,
+        condition: &'program Condition,
+        written: Option<&'program Bounds>,
+        span: Span,
+        entry: Entry,
+        scope: &Scope,
+    ) -> Piece {
+        let interval = written.map_or(Interval::ZERO, |written| self.interval(written, scope));
+        let arc_span = written.map_or(span, |written| written.span);
+        let fact = self.fact(condition, scope);
+        let text = fact.as_ref().map_or_else(|| condition.variable.text.clone(), Fact::text);
+        let activity = match mode {
+            LabelMode::Ask => format!("Ask({text})"),
+            LabelMode::Tell => format!("Tell({text})"),
+        };
+        let occurrence = self.builder.occurrence(
+            activity.into(),
+            OccurrenceKind::Assertion,
+            Vec::new(),
+            scope.occurrence,
+            span,
+        );
+        let piece = self.leaf(occurrence, ArcKind::Assertion, interval, arc_span, span, entry);
+        if let (Some(arc), Some(fact)) = (piece.arc, fact) {
+            self.builder.label(arc, mode, fact, Some(occurrence), condition.span);
+        }
+        piece
+    }
+
+    fn fact(&mut self, condition: &Condition, scope: &Scope) -> Option<Fact> {
+        match self.vocabulary.fact(condition, &|name| scope.argument(name)) {
+            Ok(fact) => Some(fact),
+            Err(error) => {
+                self.diagnostics.push(error);
+                None
+            }
+        }
+    }
+}
