@@ -12,6 +12,7 @@ use crate::dialog::Dialog;
 use crate::host::FileKind;
 use crate::panel::PanelKind;
 use crate::state::editor::Find;
+use crate::state::search::SearchCommand;
 use crate::state::{EditKind, Selection, TextCommand, ToastKind, Views};
 use crate::theme::ThemeChoice;
 use crate::workspace::Workspace;
@@ -70,6 +71,9 @@ pub enum Command {
     StepTime(bool),
     /// Sets how fast time runs; 1 is normal.
     SetRate(f64),
+
+    /// Something that concerns the step of the search that is looked at.
+    Search(SearchCommand),
 
     /// What to plan.
     SetGoal(Goal),
@@ -146,6 +150,28 @@ pub enum EditorCommand {
         /// Whether to go forwards.
         forwards: bool,
     },
+    /// Lists what can be written at the caret.
+    Complete,
+    /// Lists what mends the problem at the caret.
+    QuickFix,
+    /// Lists where the name at the caret stands.
+    FindReferences,
+    /// Goes to where the name at the caret is declared.
+    GoToDefinition,
+    /// Moves in the list at the caret.
+    MoveInPopup(isize),
+    /// Takes an entry of the list at the caret, the chosen one if none is given.
+    TakeFromPopup(Option<usize>),
+    /// Closes the list at the caret.
+    ClosePopup,
+    /// Asks for a new name of the name at the caret.
+    Rename,
+    /// Gives the name at the caret a new name.
+    RenameTo(String),
+    /// Gives the text its canonical layout.
+    Format,
+    /// Selects the next larger piece of structure.
+    ExpandSelection,
     /// Cuts or copies the selection, or the line of the caret.
     CopySelection {
         /// Whether it is taken away.

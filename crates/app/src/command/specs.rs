@@ -21,6 +21,7 @@ const PLAIN: Modifiers = Modifiers::NONE;
 const CTRL: Modifiers = Modifiers::COMMAND;
 const SHIFT: Modifiers = Modifiers::SHIFT;
 const ALT: Modifiers = Modifiers::ALT;
+const ALT_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::ALT };
 const CTRL_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
 
 fn always(_: &AppState) -> Availability {
@@ -164,6 +165,21 @@ pub static COMMANDS: &[CommandSpec] = &[
         Scope::Typing,
         |_| Command::Text(TextCommand::MoveLinesDown),
     ),
+    plain("edit.complete", "Complete", Group::Edit, &[keys(CTRL, Key::Space)], Scope::Typing, |_| {
+        Command::Editor(EditorCommand::Complete)
+    }),
+    plain("edit.quickFix", "Quick fix…", Group::Edit, &[keys(CTRL, Key::Period)], Scope::Everywhere, |_| {
+        Command::Editor(EditorCommand::QuickFix)
+    }),
+    plain("edit.rename", "Rename…", Group::Edit, &[keys(PLAIN, Key::F2)], Scope::Editor, |_| {
+        Command::Editor(EditorCommand::Rename)
+    }),
+    plain("edit.format", "Format the text", Group::Edit, &[keys(ALT_SHIFT, Key::F)], Scope::Everywhere, |_| {
+        Command::Editor(EditorCommand::Format)
+    }),
+    plain("edit.expandSelection", "Select more", Group::Edit, &[keys(ALT_SHIFT, Key::ArrowRight)], Scope::Typing, |_| {
+        Command::Editor(EditorCommand::ExpandSelection)
+    }),
     called("edit.setSource", "Replace the text", Group::Edit, |_, arguments| {
         text_argument(arguments, "text").map(|text| Command::SetSource(text.to_owned()))
     }),
@@ -188,6 +204,12 @@ pub static COMMANDS: &[CommandSpec] = &[
     ),
     plain("go.line", "Go to line…", Group::Go, &[keys(CTRL, Key::G)], Scope::Everywhere, |_| {
         Command::ShowDialog(Dialog::go_to_line())
+    }),
+    plain("go.definition", "Definition", Group::Go, &[keys(PLAIN, Key::F12)], Scope::Everywhere, |_| {
+        Command::Editor(EditorCommand::GoToDefinition)
+    }),
+    plain("go.references", "References", Group::Go, &[keys(SHIFT, Key::F12)], Scope::Everywhere, |_| {
+        Command::Editor(EditorCommand::FindReferences)
     }),
     when(
         plain(
@@ -228,6 +250,10 @@ pub static COMMANDS: &[CommandSpec] = &[
     }),
     plain("go.leave", "Leave", Group::Go, &[keys(PLAIN, Key::Escape)], Scope::Everywhere, |_| {
         Command::Escape
+    }),
+    called("edit.renameTo", "Rename the name at the caret", Group::Edit, |_, arguments| {
+        let name = text_argument(arguments, "name")?;
+        Ok(Command::Editor(EditorCommand::RenameTo(name.to_owned())))
     }),
     called("go.select", "Select by name", Group::Go, |state, arguments| {
         let name = text_argument(arguments, "name")?;

@@ -1,11 +1,14 @@
 //! Dialogs over the panels: the command palette, the key list, going to a line, explanations.
 
 mod about;
+mod explain;
 mod go_to_line;
 mod keys;
 mod palette;
+mod rename;
 
 use egui::{Align2, Area, Frame, Id, Order};
+use smol_str::SmolStr;
 
 use crate::command::{Command, CommandSender};
 use crate::panel::Context;
@@ -26,6 +29,15 @@ pub enum Dialog {
         /// What was typed.
         line: String,
     },
+    /// Asks for a new name.
+    Rename {
+        /// The name as it is.
+        old: String,
+        /// What was typed.
+        name: String,
+    },
+    /// Explains a kind of problem.
+    Explain(SmolStr),
     /// Lists all keys.
     Keys,
     /// What this program is.
@@ -38,6 +50,8 @@ impl Dialog {
         match self {
             Self::Palette { .. } => "palette",
             Self::GoToLine { .. } => "go-to-line",
+            Self::Rename { .. } => "rename",
+            Self::Explain(_) => "explain",
             Self::Keys => "keys",
             Self::About => "about",
         }
@@ -57,7 +71,7 @@ impl Dialog {
 /// Shows the open dialog, if there is one.
 pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandSender) {
     let Some(dialog) = &context.state.dialog else { return };
-    let is_list = matches!(dialog, Dialog::Palette { .. } | Dialog::GoToLine { .. });
+    let is_list = matches!(dialog, Dialog::Palette { .. } | Dialog::GoToLine { .. } | Dialog::Rename { .. });
     let anchor = if is_list { Align2::CENTER_TOP } else { Align2::CENTER_CENTER };
     let offset = if is_list { egui::vec2(0.0, 72.0) } else { egui::Vec2::ZERO };
     let id = Id::unique("dialog");
@@ -69,6 +83,8 @@ pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandS
     let answer = modal.show(egui, |ui| match dialog {
         Dialog::Palette { query, chosen } => palette::show(ui, context, query, *chosen, commands),
         Dialog::GoToLine { line } => go_to_line::show(ui, context, line, commands),
+        Dialog::Rename { old, name } => rename::show(ui, context, old, name, commands),
+        Dialog::Explain(code) => explain::show(ui, context, code, commands),
         Dialog::Keys => keys::show(ui, context, commands),
         Dialog::About => about::show(ui, context, commands),
     });

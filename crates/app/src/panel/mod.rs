@@ -19,6 +19,7 @@ use crate::command::{CommandSender, ViewAction};
 use crate::state::AppState;
 use crate::theme::Tokens;
 
+pub(crate) use editor::show_markdown;
 pub use editor::{editor_id, typed_text};
 pub use empty::show_empty;
 

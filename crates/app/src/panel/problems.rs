@@ -5,6 +5,7 @@ use mission::Problem;
 use rmpl::Severity;
 
 use crate::command::{Command, CommandSender, EditorCommand};
+use crate::dialog::Dialog;
 use crate::icon::{self, Icon};
 use crate::panel::{Context, Panel, show_empty};
 use crate::state::EditKind;
@@ -92,6 +93,9 @@ fn show_details(
     ui.indent("details", |ui| {
         if let Some(hint) = &problem.hint {
             ui.label(RichText::new(hint).color(context.tokens.text_muted));
+        }
+        if ui.add(egui::Button::new("Explain").frame_when_inactive(false)).clicked() {
+            commands.send(Command::ShowDialog(Dialog::Explain(problem.code.clone())));
         }
         for fix in &problem.fixes {
             let button = ui.add_enabled(is_current, egui::Button::new(&fix.label));

@@ -6,13 +6,12 @@ use mission::{Request, Response, Snapshot};
 use rmpl::Span;
 use smol_str::SmolStr;
 
-use crate::command::{Command, EditorCommand};
+use crate::command::Command;
 use crate::host::{FileKind, HostEvent};
 use crate::mission_file;
 use crate::panel::PanelKind;
-use crate::state::document::Caret;
-use crate::state::editor::{Find, Reveal};
-use crate::state::{AppState, EditKind, Selection, TextCommand, ToastKind, ViewRequest, playback};
+use crate::state::editor::Reveal;
+use crate::state::{AppState, Selection, ToastKind, ViewRequest, playback};
 
 /// Something that the host is to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +38,11 @@ pub enum Effect {
 impl AppState {
     /// Does what a command asks for.
     pub fn apply(&mut self, command: Command) {
+        self.do_command(command);
+        self.language.follow(&self.document);
+    }
+
+    fn do_command(&mut self, command: Command) {
         match command {
             Command::OpenExample(name) => self.open_example(&name),
             Command::OpenSource { name, source } => self.open(name, &source),
@@ -66,6 +70,11 @@ impl AppState {
             Command::TogglePlaying => self.playback.toggle(),
             Command::StepTime(forwards) => self.step_time(forwards),
             Command::SetRate(rate) => self.playback.rate = rate.clamp(0.125, 64.0),
+
+            Command::Search(command) => {
+                let shown = self.snapshots.shown().cloned();
+                self.search.apply(command, shown.as_ref());
+            }
 
             Command::SetGoal(goal) => self.settings.plan.goal = goal,
             Command::SetSearch(search) => self.settings.plan.search = search,
@@ -157,6 +166,7 @@ impl AppState {
 
     fn open(&mut self, name: SmolStr, source: &str) {
         self.document.open(source);
+        self.editor.popup = None;
         self.mission = name;
         self.snapshots.clear();
         self.selection = Selection::None;
@@ -198,144 +208,6 @@ impl AppState {
         self.document.mark_saved();
     }
 
-    fn type_text(&mut self, command: &TextCommand) {
-        command.apply(&mut self.document);
-        self.editor.active_secs = self.frame.now_secs;
-        self.editor.composition.clear();
-        let head = self.document.caret().head as u32;
-        self.editor.reveal = Some(Reveal { span: Span::new(head, head), center: false });
-        if matches!(
-            command,
-            TextCommand::Move { .. } | TextCommand::Select { .. } | TextCommand::SelectWord(_)
-        ) {
-            self.select_at_caret();
-        }
-    }
-
-    /// Selects in all panels what stands at the caret, as long as the drawings belong to this text.
-    fn select_at_caret(&mut self) {
-        if self.snapshots.is_stale(self.document.revision()) {
-            return;
-        }
-        let Some(shown) = self.shown() else { return };
-        let found = Selection::at_offset(shown, self.document.caret().head as u32, &self.selection);
-        self.selection = found;
-    }
-
-    fn reveal(&mut self, span: Span) {
-        self.document.set_caret(Caret::selecting(span.start as usize, span.end as usize));
-        self.editor.reveal = Some(Reveal { span, center: true });
-        self.editor.active_secs = self.frame.now_secs;
-        self.wanted_panel = Some(PanelKind::Editor);
-    }
-
-    fn apply_to_editor(&mut self, command: EditorCommand) {
-        match command {
-            EditorCommand::Focus => {
-                self.wanted_panel = Some(PanelKind::Editor);
-                self.editor.wants_focus = true;
-            }
-            EditorCommand::Compose(text) => self.editor.composition = text,
-            EditorCommand::Find { replacing } => self.open_find(replacing),
-            EditorCommand::SetFind(find) => self.editor.find = Some(find),
-            EditorCommand::CloseFind => {
-                self.editor.find = None;
-                self.editor.wants_focus = true;
-            }
-            EditorCommand::FindNext => self.go_to_match(true),
-            EditorCommand::FindPrevious => self.go_to_match(false),
-            EditorCommand::ReplaceOne => self.replace_one(),
-            EditorCommand::ReplaceAll => self.replace_every_match(),
-            EditorCommand::GoToLine(line) => {
-                let range =
-                    self.document.line_range(line.saturating_sub(1).min(self.document.line_count() - 1));
-                self.reveal(Span::new(range.start as u32, range.start as u32));
-                self.editor.wants_focus = true;
-            }
-            EditorCommand::GoToProblem { forwards } => self.go_to_problem(forwards),
-            EditorCommand::CopySelection { cut } => self.copy_selection(cut),
-        }
-    }
-
-    fn open_find(&mut self, replacing: bool) {
-        let mut find = self.editor.find.take().unwrap_or_default();
-        let selected = self.document.selected_text();
-        if !selected.is_empty() && !selected.contains('\n') {
-            find = Find { query: selected.to_owned(), is_regex: false, ..find };
-        }
-        find.replacing |= replacing;
-        find.wants_focus = true;
-        self.editor.find = Some(find);
-        self.wanted_panel = Some(PanelKind::Editor);
-    }
-
-    fn go_to_match(&mut self, forwards: bool) {
-        let Some(find) = &self.editor.find else { return };
-        let Ok(pattern) = find.pattern() else { return };
-        let range = self.document.caret().range();
-        let text = self.document.text();
-        let found = if forwards {
-            pattern.find_after(text, range.end)
-        } else {
-            pattern.find_before(text, range.start)
-        };
-        if let Some(found) = found {
-            self.reveal(Span::new(found.start as u32, found.end as u32));
-        }
-    }
-
-    fn replace_one(&mut self) {
-        let Some(find) = self.editor.find.clone() else { return };
-        let Ok(pattern) = find.pattern() else { return };
-        let range = self.document.caret().range();
-        if let Some(text) = pattern.replacement(self.document.text(), range.clone(), &find.replacement) {
-            let span = Span::new(range.start as u32, range.end as u32);
-            self.document.replace(span, &text, EditKind::Single);
-        }
-        self.go_to_match(true);
-    }
-
-    fn replace_every_match(&mut self) {
-        let Some(find) = self.editor.find.clone() else { return };
-        let Ok(pattern) = find.pattern() else { return };
-        let edits = pattern.replacements(self.document.text(), &find.replacement);
-        let count = edits.len();
-        self.document.edit(&edits, EditKind::Single, None);
-        let matches = if count == 1 { "match" } else { "matches" };
-        self.toasts.add(ToastKind::Done, format!("Replaced {count} {matches}"));
-    }
-
-    fn go_to_problem(&mut self, forwards: bool) {
-        let Some(latest) = self.snapshots.latest().cloned() else { return };
-        let caret = self.document.caret().range();
-        let starts = || latest.problems.iter().map(|problem| problem.span);
-        let next = if forwards {
-            starts().find(|span| span.start as usize > caret.start).or_else(|| starts().next())
-        } else {
-            starts().filter(|span| (span.start as usize) < caret.start).last().or_else(|| starts().last())
-        };
-        if let Some(span) = next {
-            self.reveal(span);
-            self.editor.wants_focus = true;
-        }
-    }
-
-    fn copy_selection(&mut self, cut: bool) {
-        let caret = self.document.caret();
-        if caret.is_empty() {
-            // Without a selection, copy and cut mean the line, as in other editors.
-            TextCommand::SelectLine(caret.head).apply(&mut self.document);
-        }
-        self.effects.push(Effect::Copy(self.document.selected_text().to_owned()));
-        if cut {
-            let range = self.document.caret().range();
-            let span = Span::new(range.start as u32, range.end as u32);
-            self.document.replace(span, "", EditKind::Single);
-        } else {
-            self.document.set_caret(caret);
-        }
-    }
-
     fn step_time(&mut self, forwards: bool) {
         let Some(plan) = self.shown().and_then(|shown| shown.plan()) else { return };
         let now = self.playback.time;
@@ -357,6 +229,9 @@ impl AppState {
 
     fn escape(&mut self) {
         if self.dialog.take().is_some() {
+            return;
+        }
+        if self.editor.popup.take().is_some() {
             return;
         }
         if self.editor.find.take().is_some() {

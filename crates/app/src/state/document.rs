@@ -356,20 +356,16 @@ fn moved(offset: usize, start: usize, removed: usize, inserted: usize) -> usize 
 }
 
 /// The smallest single replacement that turns `old` into `new`.
-fn difference(old: &str, new: &str) -> Edit {
-    let prefix: usize = old
-        .chars()
-        .zip(new.chars())
-        .take_while(|(left, right)| left == right)
-        .map(|(left, _)| left.len_utf8())
-        .sum();
-    let suffix: usize = old[prefix..]
-        .chars()
-        .rev()
-        .zip(new[prefix..].chars().rev())
-        .take_while(|(left, right)| left == right)
-        .map(|(left, _)| left.len_utf8())
-        .sum();
+pub(crate) fn difference(old: &str, new: &str) -> Edit {
+    // Bytes first, because they are quick to compare; then back to character boundaries.
+    let same = |(left, right): &(u8, u8)| left == right;
+    let common = old.bytes().zip(new.bytes()).take_while(same).count();
+    let prefix = old.floor_char_boundary(common).min(new.floor_char_boundary(common));
+    let rest = old[prefix..].bytes().rev().zip(new[prefix..].bytes().rev());
+    let mut suffix = rest.take_while(same).count();
+    while !(old.is_char_boundary(old.len() - suffix) && new.is_char_boundary(new.len() - suffix)) {
+        suffix -= 1;
+    }
     Edit {
         span: Span::new(prefix as u32, (old.len() - suffix) as u32),
         text: new[prefix..new.len() - suffix].to_owned(),

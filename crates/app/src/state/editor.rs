@@ -1,12 +1,15 @@
 //! What the editor shows besides the text: the find bar, the completion list, text being composed.
 
-use rmpl::Span;
+use rmpl::editor::CompletionKind;
+use rmpl::{Edit, Span};
 
 /// The editor's own state.
 #[derive(Clone, Debug, Default)]
 pub struct EditorState {
     /// The find bar, when it is open.
     pub find: Option<Find>,
+    /// The list at the caret: completions, fixes, references.
+    pub popup: Option<Popup>,
     /// Text that an input method is composing at the caret; it is not part of the document yet.
     pub composition: String,
     /// A place that the editor is to scroll to, once.
@@ -43,4 +46,52 @@ pub struct Find {
     pub whole_words: bool,
     /// Whether the query field is to take the focus.
     pub wants_focus: bool,
+}
+
+/// A list at the caret.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Popup {
+    /// What it lists.
+    pub kind: PopupKind,
+    /// Its entries, best first.
+    pub items: Vec<PopupItem>,
+    /// Which entry Enter and Tab take.
+    pub chosen: usize,
+    /// Where it belongs: the word being completed, or the place of the fixes.
+    pub span: Span,
+}
+
+/// What a list at the caret is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PopupKind {
+    /// What can be written here.
+    Completion,
+    /// What mends the problem here.
+    Fixes,
+    /// Where the name here stands.
+    References,
+}
+
+/// An entry of a list at the caret.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PopupItem {
+    /// Its text.
+    pub label: String,
+    /// More about it.
+    pub detail: String,
+    /// What kind of completion it is.
+    pub kind: Option<CompletionKind>,
+    /// What taking it does.
+    pub action: PopupAction,
+}
+
+/// What taking an entry does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PopupAction {
+    /// Writes this instead of the popup's span; `$0` is where the caret goes.
+    Insert(String),
+    /// Edits the text.
+    Edit(Vec<Edit>),
+    /// Goes to a place.
+    Reveal(Span),
 }

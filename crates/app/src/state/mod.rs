@@ -1,12 +1,16 @@
 //! Everything the app knows: the one thing that commands change and panels read.
 
 mod apply;
+mod editing;
 pub mod document;
 pub mod editor;
+pub mod language;
 pub mod playback;
 pub mod search_text;
 pub mod selection;
+mod services;
 pub mod settings;
+pub mod search;
 mod snapshots;
 pub mod toast;
 pub mod typing;
@@ -20,6 +24,7 @@ use smol_str::SmolStr;
 pub use apply::Effect;
 pub use document::{Caret, Document, EditKind};
 pub use editor::EditorState;
+pub use language::Language;
 pub use playback::Playback;
 pub use selection::Selection;
 pub use settings::{PlanSettings, Settings, Views};
@@ -38,6 +43,8 @@ use crate::workspace::Workspace;
 pub struct AppState {
     /// The text, its caret and its history.
     pub document: Document,
+    /// What the language knows about the text.
+    pub language: Language,
     /// The name of the open mission, without extension.
     pub mission: SmolStr,
     /// What the planning core answered.
@@ -48,6 +55,8 @@ pub struct AppState {
     pub selection: Selection,
     /// What the pointer is over in some panel, for the others to hint at.
     pub hovered: Selection,
+    /// The step of the search that is looked at.
+    pub search: search::SearchState,
     /// The time shown, and whether it runs.
     pub playback: Playback,
     /// Which workspace is shown.
@@ -104,13 +113,16 @@ impl AppState {
     /// The state with which the app starts: the first example, before anything was answered.
     pub fn new() -> Self {
         let example = mission_file::EXAMPLES[0];
+        let document = Document::new(example.source);
         Self {
-            document: Document::new(example.source),
+            language: Language::new(&document),
+            document,
             mission: example.name.into(),
             snapshots: Snapshots::default(),
             maps: BTreeMap::new(),
             selection: Selection::None,
             hovered: Selection::None,
+            search: search::SearchState::default(),
             playback: Playback::default(),
             workspace: Workspace::default(),
             settings: Settings::default(),

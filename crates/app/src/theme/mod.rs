@@ -7,7 +7,7 @@ mod tokens;
 
 use serde::{Deserialize, Serialize};
 
-pub use style::{apply, install_fonts, strong};
+pub use style::{apply, install_fonts, strong, strong_family};
 pub use tokens::{Syntax, Tokens};
 
 /// Which theme the user wants.

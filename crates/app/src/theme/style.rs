@@ -44,7 +44,12 @@ pub fn install_fonts(context: &Context) {
 
 /// Text that carries weight: titles and verdicts.
 pub fn strong(text: impl Into<String>) -> RichText {
-    RichText::new(text).family(FontFamily::Name(STRONG.into()))
+    RichText::new(text).family(strong_family())
+}
+
+/// The font family of titles and verdicts.
+pub fn strong_family() -> FontFamily {
+    FontFamily::Name(STRONG.into())
 }
 
 /// The family of titles.

@@ -34,7 +34,13 @@ pub fn typed_text(context: &Context, state: &AppState) -> Vec<Command> {
     }
     let events = context.input(|input| input.filtered_events(&EVENT_FILTER));
     let is_composing = !state.editor.composition.is_empty();
-    commands.extend(events.iter().filter_map(|event| command_of(event, is_composing)));
+    let mut has_popup = state.editor.popup.is_some();
+    for event in &events {
+        let in_popup = popup_command(event).filter(|_| has_popup);
+        // Only the first key of a frame can mean the list: whatever it does, the list may be gone then.
+        has_popup &= in_popup.as_ref().is_some_and(|it| matches!(it, EditorCommand::MoveInPopup(_)));
+        commands.extend(in_popup.map(Command::Editor).or_else(|| command_of(event, is_composing)));
+    }
     commands
 }
 
@@ -46,6 +52,22 @@ fn assistive(request: &egui::accesskit::ActionRequest, state: &AppState) -> Opti
             Some(Command::Text(TextCommand::Paste(text.to_string())))
         }
         (Action::Focus, _) if state.dialog.is_none() => Some(Command::Editor(EditorCommand::Focus)),
+        _ => None,
+    }
+}
+
+/// What a key does to the list at the caret.
+fn popup_command(event: &Event) -> Option<EditorCommand> {
+    let Event::Key { key, pressed: true, modifiers, .. } = event else { return None };
+    if !modifiers.is_none() {
+        return None;
+    }
+    match key {
+        Key::ArrowDown => Some(EditorCommand::MoveInPopup(1)),
+        Key::ArrowUp => Some(EditorCommand::MoveInPopup(-1)),
+        Key::PageDown => Some(EditorCommand::MoveInPopup(8)),
+        Key::PageUp => Some(EditorCommand::MoveInPopup(-8)),
+        Key::Enter | Key::Tab => Some(EditorCommand::TakeFromPopup(None)),
         _ => None,
     }
 }

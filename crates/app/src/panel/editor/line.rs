@@ -4,7 +4,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use egui::text::{CCursor, LayoutJob, TextFormat};
-use egui::{FontId, Galley, Stroke, Ui};
+use egui::{Color32, FontId, Galley, Stroke, Ui};
+use rmpl::Span;
 
 use crate::panel::Context;
 
@@ -17,19 +18,9 @@ pub(crate) struct LineLayout {
     composed: Option<(usize, usize)>,
 }
 
-/// A coloured part of the document.
-pub(crate) struct Span {
-    /// Its bytes.
-    pub(crate) bytes: Range<usize>,
-    /// Its colour.
-    pub(crate) color: egui::Color32,
-    /// Whether it is slanted.
-    pub(crate) italics: bool,
-}
-
 impl LineLayout {
-    /// Lays out the line that covers `bytes`. `spans` are coloured parts in textual order.
-    pub(crate) fn new(ui: &Ui, context: &Context<'_>, font: &FontId, bytes: Range<usize>, spans: &[Span]) -> Self {
+    /// Lays out the line that covers `bytes`. `colors` are coloured parts of the text in textual order.
+    pub(crate) fn new(ui: &Ui, context: &Context<'_>, font: &FontId, bytes: Range<usize>, colors: &[(Span, Color32)]) -> Self {
         let document = &context.state.document;
         let text = document.text().get(bytes.clone()).unwrap_or_default();
         let plain = |color| TextFormat::simple(font.clone(), color);
@@ -40,13 +31,13 @@ impl LineLayout {
                 job.append(part, 0.0, format);
             }
         };
-        let first = spans.partition_point(|span| span.bytes.end <= bytes.start);
-        for span in spans[first..].iter().take_while(|span| span.bytes.start < bytes.end) {
-            let start = span.bytes.start.max(done);
-            let end = span.bytes.end.min(bytes.end);
+        let first = colors.partition_point(|(span, _)| span.end as usize <= bytes.start);
+        for (span, color) in colors[first..].iter().take_while(|(span, _)| (span.start as usize) < bytes.end) {
+            let start = (span.start as usize).max(done);
+            let end = (span.end as usize).min(bytes.end);
             if start < end {
                 append(done..start, plain(context.tokens.text));
-                append(start..end, TextFormat { italics: span.italics, ..plain(span.color) });
+                append(start..end, plain(*color));
                 done = end;
             }
         }

@@ -4,9 +4,11 @@
 
 mod brackets;
 mod find_bar;
+mod hover;
 mod keyboard;
 mod line;
 mod marks;
+mod popup;
 mod text_area;
 
 use egui::Ui;
@@ -14,6 +16,7 @@ use egui::Ui;
 use crate::command::CommandSender;
 use crate::panel::{Context, Panel};
 
+pub(crate) use hover::show_markdown;
 pub use keyboard::{editor_id, typed_text};
 
 /// The editor.

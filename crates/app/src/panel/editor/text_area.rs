@@ -8,9 +8,10 @@ use rmpl::{Severity, Span};
 
 use crate::command::{Command, CommandSender};
 use crate::icon;
+use crate::panel::editor::hover::HoverCache;
 use crate::panel::editor::line::LineLayout;
 use crate::panel::editor::marks::Shift;
-use crate::panel::editor::{brackets, editor_id, keyboard};
+use crate::panel::editor::{brackets, editor_id, keyboard, popup};
 use crate::panel::problems::severity_sign;
 use crate::panel::{Context, PanelKind};
 use crate::state::TextCommand;
@@ -25,6 +26,7 @@ pub(crate) struct TextArea {
     drag_anchor: Range<usize>,
     /// The width of the widest line, for the revision it was measured at.
     widest: (u64, usize),
+    hover: HoverCache,
     /// How far the view is scrolled.
     offset: egui::Vec2,
     /// How the text of the last answer became the present one.
@@ -59,7 +61,7 @@ impl TextArea {
         let font = TextStyle::Monospace.resolve(ui.style());
         let (text_height, character_width) =
             ui.fonts_mut(|fonts| (fonts.row_height(&font), fonts.glyph_width(&font, '0')));
-        let row_height = (text_height * 1.35).round();
+        let row_height = (text_height * 1.18).round();
         let digits = document.line_count().to_string().len().max(3);
         let gutter_width = (digits as f32 + 3.0) * character_width;
         let lines_height = document.line_count() as f32 * row_height;
@@ -93,7 +95,14 @@ impl TextArea {
             self.follow_pointer(ui, context, &geometry, &response, &lines, &layouts, commands);
             self.paint(ui, context, &geometry, &response, &lines, &layouts);
             describe(ui, context, &response);
-            show_hover(context, &response, self.offset_under_pointer(context, &geometry, &response, &lines, &layouts));
+            let offset = self.offset_under_pointer(context, &geometry, &response, &lines, &layouts);
+            let problems = shifted_problems(context, self.shift(context));
+            self.hover.show(context, &response, offset, &problems);
+            if let Some(caret) = caret_rect(context, &geometry, &lines, &layouts).filter(|_| response.has_focus()) {
+                let to_global = ui.ctx().layer_transform_to_global(ui.layer_id()).unwrap_or_default();
+                popup::show(ui, context, to_global * caret, commands);
+                popup::show_signature(ui, context, to_global * caret);
+            }
         });
         self.offset = shown.state.clamped_offset();
     }
@@ -268,8 +277,11 @@ impl TextArea {
 
 fn lay_out(ui: &Ui, context: &Context<'_>, geometry: &Geometry, lines: Range<usize>) -> Vec<LineLayout> {
     let document = &context.state.document;
+    let start = document.line_range(lines.start).start;
+    let end = document.line_range(lines.end).end;
+    let colors = context.state.language.colors(Span::new(start as u32, end as u32), context.tokens);
     lines
-        .map(|line| LineLayout::new(ui, context, &geometry.font, document.line_range(line), &[]))
+        .map(|line| LineLayout::new(ui, context, &geometry.font, document.line_range(line), &colors))
         .collect()
 }
 
@@ -392,14 +404,8 @@ impl Painting<'_> {
     }
 
     fn caret(&self, ui: &Ui, response: &Response) {
-        let document = &self.context.state.document;
-        let head = document.caret().head;
-        let line = document.line_at(head);
-        let Some(layout) = line.checked_sub(self.lines.start).and_then(|index| self.layouts.get(index)) else {
-            return;
-        };
-        let x = self.geometry.origin.x + layout.x_of(self.context, head);
-        let row = self.geometry.row(line, x..x + 1.0).shrink2(egui::vec2(0.0, 1.5));
+        let Some(row) = caret_rect(self.context, self.geometry, self.lines, self.layouts) else { return };
+        let row = row.shrink2(egui::vec2(0.0, 1.5));
         if !response.has_focus() {
             return;
         }
@@ -407,7 +413,7 @@ impl Painting<'_> {
         let is_window_focused = ui.input(|input| input.focused);
         let is_on = !is_window_focused || since.rem_euclid(1.1) < 0.65 || since > 30.0;
         if is_on {
-            self.painter.vline(x, row.y_range(), Stroke::new(1.5, self.context.tokens.accent));
+            self.painter.vline(row.left(), row.y_range(), Stroke::new(1.5, self.context.tokens.accent));
         }
         if is_window_focused && since <= 30.0 {
             let phase = since.rem_euclid(1.1);
@@ -425,6 +431,20 @@ impl Painting<'_> {
             });
         });
     }
+}
+
+/// Where the caret is on screen, if its line is visible.
+fn caret_rect(
+    context: &Context<'_>,
+    geometry: &Geometry,
+    lines: &Range<usize>,
+    layouts: &[LineLayout],
+) -> Option<Rect> {
+    let head = context.state.document.caret().head;
+    let line = context.state.document.line_at(head);
+    let layout = layouts.get(line.checked_sub(lines.start)?)?;
+    let x = geometry.origin.x + layout.x_of(context, head);
+    Some(geometry.row(line, x..x + 1.0))
 }
 
 /// The problems of the last answer, at their places in the present text.
@@ -477,39 +497,5 @@ fn describe(ui: &Ui, context: &Context<'_>, response: &Response) {
         builder.set_label("Mission text");
         builder.add_action(egui::accesskit::Action::SetValue);
         builder.add_action(egui::accesskit::Action::ReplaceSelectedText);
-    });
-}
-
-/// What is wrong under the pointer.
-fn show_hover(context: &Context<'_>, response: &Response, offset: Option<usize>) {
-    let Some(offset) = offset else { return };
-    let latest = context.state.snapshots.latest();
-    let Some(latest) = latest.filter(|latest| latest.revision == context.state.document.revision()) else {
-        return;
-    };
-    let found: Vec<&Problem> = latest
-        .problems
-        .iter()
-        .filter(|problem| problem.span.touches(offset as u32))
-        .collect();
-    if found.is_empty() {
-        return;
-    }
-    response.clone().on_hover_ui_at_pointer(|ui| {
-        ui.set_max_width(420.0);
-        for problem in found {
-            let (sign, color) = severity_sign(context.tokens, problem.severity);
-            ui.horizontal_wrapped(|ui| {
-                icon::label(ui, sign, color);
-                ui.label(&problem.message);
-                ui.colored_label(context.tokens.text_muted, problem.code.as_str());
-            });
-            if let Some(hint) = &problem.hint {
-                ui.colored_label(context.tokens.text_muted, hint);
-            }
-            if !problem.fixes.is_empty() {
-                ui.colored_label(context.tokens.accent, "Ctrl+. to fix");
-            }
-        }
     });
 }

@@ -1,0 +1,46 @@
+//! What a kind of problem means, with an example and its mending: the language's manual page.
+
+use egui::{Frame, Margin, RichText, ScrollArea, Ui};
+
+use crate::command::{Command, CommandSender};
+use crate::panel::{Context, show_markdown};
+use crate::theme::space;
+
+/// Shows the manual page of `code`.
+pub(super) fn show(ui: &mut Ui, context: &Context<'_>, code: &str, commands: &mut CommandSender) {
+    let tokens = context.tokens;
+    ui.set_width(560.0);
+    let Some(page) = rmpl::explain(code) else {
+        ui.label(format!("There is no page about {code}."));
+        close(ui, commands);
+        return;
+    };
+    ui.horizontal(|ui| {
+        ui.heading(page.title);
+        ui.label(RichText::new(code).monospace().color(tokens.text_muted));
+    });
+    ui.add_space(space::S);
+    ScrollArea::vertical().max_height(420.0).auto_shrink([false, true]).show(ui, |ui| {
+        show_markdown(ui, tokens, page.meaning);
+        for (title, text) in [("Example", page.example), ("Mended", page.mended)] {
+            ui.add_space(space::S);
+            ui.label(crate::theme::strong(title));
+            Frame::new().fill(tokens.sunken).corner_radius(4.0).inner_margin(Margin::same(8)).show(ui, |ui| {
+                ui.set_width(ui.available_width());
+                ui.label(RichText::new(text.trim()).monospace());
+            });
+            if title == "Example" {
+                ui.add_space(space::S);
+                show_markdown(ui, tokens, page.fix);
+            }
+        }
+    });
+    ui.add_space(space::M);
+    close(ui, commands);
+}
+
+fn close(ui: &mut Ui, commands: &mut CommandSender) {
+    if ui.button("Close").clicked() {
+        commands.send(Command::CloseDialog);
+    }
+}

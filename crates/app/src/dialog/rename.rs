@@ -1,0 +1,31 @@
+//! Asks for a new name of the name at the caret.
+
+use egui::{Key, RichText, TextEdit, Ui};
+
+use crate::command::{Command, CommandSender, EditorCommand};
+use crate::dialog::Dialog;
+use crate::panel::Context;
+
+/// Shows the question.
+pub(super) fn show(ui: &mut Ui, context: &Context<'_>, old: &str, name: &str, commands: &mut CommandSender) {
+    ui.set_width(300.0);
+    ui.label(format!("Rename {old} everywhere"));
+    let mut text = name.to_owned();
+    let field = ui.add(TextEdit::singleline(&mut text).desired_width(f32::INFINITY)).accessible_name("New name");
+    let enter = ui.input(|input| input.key_pressed(Key::Enter));
+    if !enter {
+        field.request_focus();
+    }
+    let state = context.state;
+    let place = state.document.caret().range().start as u32;
+    let refusal = state.language.parse().and_then(|parse| rmpl::editor::rename(parse, place, &text).err());
+    if let Some(refusal) = refusal.as_ref().filter(|_| text != old) {
+        ui.label(RichText::new(refusal.to_string()).color(context.tokens.error));
+    }
+    if enter && refusal.is_none() {
+        commands.send(Command::CloseDialog);
+        commands.send(Command::Editor(EditorCommand::RenameTo(text)));
+    } else {
+        commands.send(Command::ShowDialog(Dialog::Rename { old: old.to_owned(), name: text }));
+    }
+}
