@@ -48,7 +48,7 @@ pub fn compile(file: &ControlFile, vocabulary: &Vocabulary) -> (Option<Automaton
     compiler.collect(&program);
     let root = compiler.open(CompositeKind::Program, None, None, program.span);
     let element = compiler.expression(&program, root);
-    compiler.close(root, vec![element], vec![element]);
+    compiler.close(root, vec![element], &[element]);
     let Compiler { mut automaton, transitions, diagnostics, .. } = compiler;
     for (at, transitions) in transitions.into_iter().enumerate() {
         let start = automaton.transitions.len() as u32;
@@ -120,7 +120,9 @@ impl<'vocabulary> Compiler<'vocabulary> {
         match &constraint.kind {
             ConstraintKind::Not(inner) => self.collect_constraint(inner),
             ConstraintKind::And(parts) | ConstraintKind::Or(parts) => {
-                parts.iter().for_each(|part| self.collect_constraint(part));
+                for part in parts {
+                    self.collect_constraint(part);
+                }
             }
             ConstraintKind::Equals { variable, value } => self.collect_equality(variable, value),
             _ => {}
@@ -213,7 +215,7 @@ impl<'vocabulary> Compiler<'vocabulary> {
         id
     }
 
-    fn close(&mut self, id: CompositeId, children: Vec<Element>, started: Vec<Element>) -> Element {
+    fn close(&mut self, id: CompositeId, children: Vec<Element>, started: &[Element]) -> Element {
         let start: Vec<LocationId> =
             started.iter().flat_map(|element| self.automaton.start_of(element).to_vec()).collect();
         let end = self.automaton.locations.len() as u32;
@@ -258,19 +260,19 @@ impl<'vocabulary> Compiler<'vocabulary> {
             ExpressionKind::Parallel(parts) => {
                 let id = self.open(CompositeKind::Parallel, Some(parent), None, span);
                 let children: Vec<Element> = parts.iter().map(|part| self.expression(part, id)).collect();
-                self.close(id, children.clone(), children)
+                self.close(id, children.clone(), &children)
             }
             ExpressionKind::Sequence(parts) => {
                 let id = self.open(CompositeKind::Sequence, Some(parent), None, span);
                 let children: Vec<Element> = parts.iter().map(|part| self.expression(part, id)).collect();
-                let first = children.iter().take(1).copied().collect();
-                self.close(id, children, first)
+                let first: Vec<Element> = children.iter().take(1).copied().collect();
+                self.close(id, children, &first)
             }
             ExpressionKind::DoWatching { guard, body } => {
                 let maintenance = self.opposite(guard);
                 let id = self.open(CompositeKind::DoWatching, Some(parent), Some(maintenance), span);
                 let child = self.expression(body, id);
-                self.close(id, vec![child], vec![child])
+                self.close(id, vec![child], &[child])
             }
             ExpressionKind::Always(body) => {
                 let id = self.open(CompositeKind::Guarded, Some(parent), None, span);
@@ -279,7 +281,7 @@ impl<'vocabulary> Compiler<'vocabulary> {
                 let body = self.expression(body, id);
                 self.transition(location, None, own);
                 self.transition(location, None, body);
-                self.close(id, vec![own, body], vec![own, body])
+                self.close(id, vec![own, body], &[own, body])
             }
             ExpressionKind::IfThenNext { guard, then, otherwise } => {
                 self.guarded(LocationKind::If, guard, then, otherwise.as_deref(), parent, span)
@@ -338,7 +340,7 @@ impl<'vocabulary> Compiler<'vocabulary> {
             children.push(otherwise);
             self.transition(location, Some(fails), otherwise);
         }
-        self.close(id, children, vec![own])
+        self.close(id, children, &[own])
     }
 
     fn assertion(&mut self, constraint: &Constraint, parent: CompositeId, span: Span) -> Element {
@@ -380,13 +382,17 @@ fn constraints_of<'tree>(expression: &'tree Expression, into: &mut Vec<&'tree Co
     match &expression.kind {
         ExpressionKind::Assert(constraint) => into.push(constraint),
         ExpressionKind::Parallel(parts) | ExpressionKind::Sequence(parts) => {
-            parts.iter().for_each(|part| constraints_of(part, into));
+            for part in parts {
+                constraints_of(part, into);
+            }
         }
         ExpressionKind::Always(body) => constraints_of(body, into),
         ExpressionKind::IfThenNext { guard, then, otherwise } => {
             into.push(&guard.constraint);
             constraints_of(then, into);
-            otherwise.iter().for_each(|otherwise| constraints_of(otherwise, into));
+            for otherwise in otherwise {
+                constraints_of(otherwise, into);
+            }
         }
         ExpressionKind::UnlessThenNext { guard, body }
         | ExpressionKind::WhenDoNext { guard, body }

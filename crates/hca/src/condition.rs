@@ -93,7 +93,7 @@ impl Formula {
         let decided = |part: &Self| match part {
             Self::Member(_, set) => {
                 let (some, every) = (set.contains(&true), set.iter().all(|&value| value));
-                if !some { Some(false) } else { every.then_some(true) }
+                if some { every.then_some(true) } else { Some(false) }
             }
             _ => None,
         };
@@ -144,13 +144,12 @@ impl Condition {
                         chunk.iter().enumerate().fold(0, |word, (at, &value)| word | u64::from(value) << at)
                     })
                     .collect();
-                match words.as_slice() {
-                    [set] => Node::Member { variable: *variable, set: *set },
-                    _ => {
-                        let at = self.wide.len() as u32;
-                        self.wide.extend(words);
-                        Node::WideMember { variable: *variable, at }
-                    }
+                if let [set] = words.as_slice() {
+                    Node::Member { variable: *variable, set: *set }
+                } else {
+                    let at = self.wide.len() as u32;
+                    self.wide.extend(words);
+                    Node::WideMember { variable: *variable, at }
                 }
             }
             Formula::And(parts) => Node::And(parts.iter().map(|part| self.push(part)).collect()),

@@ -125,28 +125,25 @@ impl<'automaton> Stepper<'automaton> {
     ///
     /// An empty slice knows nothing.
     pub fn step_observed(&mut self, states: &[Estimate], observer: &mut impl StepObserver) {
-        match states {
-            [only] => {
-                if self.has_program_variables {
-                    let mut overlay = std::mem::replace(&mut self.overlay, Estimate::unknown(0));
-                    overlay.copy_from(only);
-                    self.apply_program_settings(&mut overlay);
-                    self.advance(std::slice::from_ref(&overlay), observer);
-                    self.overlay = overlay;
-                } else {
-                    self.advance(states, observer);
-                }
+        if let [only] = states {
+            if self.has_program_variables {
+                let mut overlay = std::mem::replace(&mut self.overlay, Estimate::unknown(0));
+                overlay.copy_from(only);
+                self.apply_program_settings(&mut overlay);
+                self.advance(std::slice::from_ref(&overlay), observer);
+                self.overlay = overlay;
+            } else {
+                self.advance(states, observer);
             }
-            _ => {
-                let mut states = states.to_vec();
-                if states.is_empty() {
-                    states.push(Estimate::unknown(self.automaton.variables.len()));
-                }
-                for state in &mut states {
-                    self.apply_program_settings(state);
-                }
-                self.advance(&states, observer);
+        } else {
+            let mut states = states.to_vec();
+            if states.is_empty() {
+                states.push(Estimate::unknown(self.automaton.variables.len()));
             }
+            for state in &mut states {
+                self.apply_program_settings(state);
+            }
+            self.advance(&states, observer);
         }
     }
 

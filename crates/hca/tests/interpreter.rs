@@ -39,7 +39,7 @@ impl<'tree> Running<'tree> {
     fn start(&mut self) {
         match &self.form.kind {
             ExpressionKind::Parallel(_) | ExpressionKind::DoWatching { .. } => {
-                self.parts.iter_mut().for_each(Self::start)
+                self.parts.iter_mut().for_each(Self::start);
             }
             ExpressionKind::Sequence(_) => self.parts[0].start(),
             ExpressionKind::Always(_) => {
@@ -91,13 +91,13 @@ impl<'tree> Running<'tree> {
                 }
             }
             ExpressionKind::UnlessThenNext { guard, .. } if self.marked && !holds(guard, known) => {
-                next.parts[0].start()
+                next.parts[0].start();
             }
             ExpressionKind::WhenDoNext { guard, .. } if self.marked => {
                 if holds(guard, known) {
-                    next.parts[0].start()
+                    next.parts[0].start();
                 } else {
-                    next.marked = true
+                    next.marked = true;
                 }
             }
             ExpressionKind::WheneverDoNext { guard, .. } if self.marked => {
@@ -196,7 +196,7 @@ impl Dice {
     }
 
     fn expression(&mut self, depth: u64) -> String {
-        let mut part = |dice: &mut Self| dice.expression(depth.saturating_sub(1));
+        let part = |dice: &mut Self| dice.expression(depth.saturating_sub(1));
         match self.roll(if depth == 0 { 1 } else { 10 }) {
             0 => self.constraint(1),
             1 => format!("(PARALLEL {} {})", part(self), part(self)),

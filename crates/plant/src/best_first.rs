@@ -18,6 +18,9 @@ use crate::likelihood::{Likelihoods, admits};
 use crate::model::{Commands, Model, Observation};
 use crate::successor::{EstimateError, distributions};
 
+/// How many states as likely as the last one wanted are looked at, to list the first of them in the order of modes.
+const MOST_TIES: usize = 16;
+
 /// What a search did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SearchStatistics {
@@ -216,9 +219,7 @@ impl<'model> Search<'model> {
             if found.len() >= most {
                 found.sort_by(|left, right| right.0.total_cmp(&left.0).then_with(|| left.1.cmp(&right.1)));
                 let last = found.get(most - 1).map_or(0.0, |(value, _)| *value);
-                if waiting.bound < last * (1.0 - 1e-9)
-                    || found.len() > most.saturating_mul(4).saturating_add(64)
-                {
+                if waiting.bound < last * (1.0 - 1e-9) || found.len() > most.saturating_add(MOST_TIES) {
                     break;
                 }
             }
@@ -272,25 +273,24 @@ impl<'model> Search<'model> {
         let chosen: Vec<u8> =
             (0..sets.len()).map(|component| self.best(row, component, sets[component]).1).collect();
         let state = State((0..sets.len()).map(|at| self.options[at][chosen[at] as usize]).collect());
-        let split = match self.conflict(&chosen, &state, likelihoods) {
-            Some(conflict) => conflict.into_iter().map(|(component, _)| component).collect(),
-            None => {
-                let mut value: f64 = (0..self.prior.len())
-                    .map(|row| {
-                        let table = &self.table[row];
-                        chosen.iter().zip(&self.starts).fold(self.prior[row], |product, (option, start)| {
-                            product * table[start + *option as usize]
-                        })
+        let split = if let Some(conflict) = self.conflict(&chosen, &state, likelihoods) {
+            conflict.into_iter().map(|(component, _)| component).collect()
+        } else {
+            let mut value: f64 = (0..self.prior.len())
+                .map(|row| {
+                    let table = &self.table[row];
+                    chosen.iter().zip(&self.starts).fold(self.prior[row], |product, (option, start)| {
+                        product * table[start + *option as usize]
                     })
-                    .sum();
-                for &at in &self.joint {
-                    value /= likelihoods.divisor(at, &state.0).to_f64().unwrap_or(f64::MAX).max(1.0);
-                }
-                if value > 0.0 {
-                    found.push((value, state));
-                }
-                (0..sets.len() as u32).collect::<Vec<u32>>()
+                })
+                .sum();
+            for &at in &self.joint {
+                value /= likelihoods.divisor(at, &state.0).to_f64().unwrap_or(f64::MAX).max(1.0);
             }
+            if value > 0.0 {
+                found.push((value, state));
+            }
+            (0..sets.len() as u32).collect::<Vec<u32>>()
         };
         let split: Vec<u32> = split.into_iter().filter(|&at| sets[at as usize].count_ones() > 1).collect();
         self.divide(sets, chosen, split);
@@ -303,7 +303,9 @@ impl<'model> Search<'model> {
         for row in 0..self.prior.len() {
             let mut fixed = self.prior[row];
             let mut inside = vec![false; sets.len()];
-            split.iter().for_each(|&at| inside[at as usize] = true);
+            for &at in &split {
+                inside[at as usize] = true;
+            }
             for (at, &set) in sets.iter().enumerate() {
                 if !inside[at] {
                     fixed *= self.best(row, at, set).0;

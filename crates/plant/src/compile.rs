@@ -131,7 +131,9 @@ impl Compiler<'_> {
             self.error("E-VALUE", span, format!("at most {MOST_VALUES} modes are possible"), None);
         }
         for (_, constraints) in &class.modes {
-            constraints.iter().for_each(|constraint| self.check_constraint(&class, constraint, false));
+            for constraint in constraints {
+                self.check_constraint(&class, constraint, false);
+            }
         }
         for (from, to, guard) in &class.transitions {
             self.check_mode(&class, name, from);
@@ -217,7 +219,9 @@ impl Compiler<'_> {
         match &constraint.kind {
             ConstraintKind::Not(inner) => self.check_constraint(class, inner, is_guard),
             ConstraintKind::And(parts) | ConstraintKind::Or(parts) => {
-                parts.iter().for_each(|part| self.check_constraint(class, part, is_guard));
+                for part in parts {
+                    self.check_constraint(class, part, is_guard);
+                }
             }
             ConstraintKind::Parameter(name) => {
                 let hint = Some("a constraint reads `(variable = value)`".into());

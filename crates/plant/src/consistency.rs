@@ -90,7 +90,9 @@ impl<'model> Assumed<'model> {
 
     fn settle(&self, domains: &mut Domains, mut waiting: Vec<usize>) -> Result<(), Places> {
         let mut queued = vec![false; self.modes.len()];
-        waiting.iter().for_each(|&place| queued[place] = true);
+        for &place in &waiting {
+            queued[place] = true;
+        }
         while let Some(place) = waiting.pop() {
             queued[place] = false;
             let Some(formula) = self.formula(place) else { continue };

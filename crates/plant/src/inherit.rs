@@ -181,7 +181,7 @@ impl<'file> Merger<'file> {
                         self.join(&mut merged.variables, new);
                     }
                     FieldKind::Command { name, values } => {
-                        self.join(&mut merged.commands, variable(name, values, false, None))
+                        self.join(&mut merged.commands, variable(name, values, false, None));
                     }
                     FieldKind::Port { name, class } => {
                         merged.ports.retain(|(known, _)| known.text != name.text);

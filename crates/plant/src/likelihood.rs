@@ -58,7 +58,9 @@ fn parts(assumed: &Assumed<'_>, domains: &Domains) -> Vec<Vec<u32>> {
         let (touching, apart): (Vec<Vec<u32>>, Vec<Vec<u32>>) =
             parts.into_iter().partition(|part| part.iter().any(|symbol| mine.contains(symbol)));
         parts = apart;
-        touching.into_iter().for_each(|part| mine.extend(part));
+        for part in touching {
+            mine.extend(part);
+        }
         mine.sort_unstable();
         mine.dedup();
         parts.push(mine);

@@ -94,7 +94,7 @@ impl Model {
             let offered: Vec<&str> = known
                 .clone()
                 .flat_map(|(_, variable)| &variable.values)
-                .map(|value| value.as_str())
+                .map(smol_str::SmolStr::as_str)
                 .collect();
             let found = known.find_map(|(at, variable)| {
                 Some((at, variable.values.iter().position(|known| known == value)?))
@@ -137,7 +137,7 @@ impl Model {
             let found = values.iter().position(|known| known == value).ok_or_else(|| {
                 format!(
                     "`{name}` is never `{value}`{}",
-                    meant(value, values.iter().map(|value| value.as_str()))
+                    meant(value, values.iter().map(smol_str::SmolStr::as_str))
                 )
             })?;
             observation.0.insert(id, found as u8);
@@ -158,7 +158,7 @@ impl Model {
             .map(VariableId)
             .filter_map(|variable| {
                 let set = domains.sets.get(self.variable_symbol(variable) as usize).copied()?;
-                (set.count_ones() == 1).then(|| (variable, set.trailing_zeros() as u8))
+                set.is_power_of_two().then(|| (variable, set.trailing_zeros() as u8))
             })
             .collect()
     }

@@ -24,7 +24,9 @@ impl CausalOrder {
         while let Some(at) = (0..causes.len()).find(|&at| numbers[at] == u32::MAX && effects_left[at] == 0) {
             numbers[at] = next;
             next += 1;
-            causes[at].iter().for_each(|cause| effects_left[cause.0 as usize] -= 1);
+            for cause in &causes[at] {
+                effects_left[cause.0 as usize] -= 1;
+            }
         }
         let is_cyclic = numbers.contains(&u32::MAX);
         for number in numbers.iter_mut().filter(|number| **number == u32::MAX) {

@@ -125,7 +125,7 @@ impl<'model> Planner<'model> {
         reach: &[u64],
     ) -> Option<&PlannedStep> {
         let modes = self.steps.get(component.0 as usize)?;
-        if let Some(only) = (goal.count_ones() == 1).then(|| goal.trailing_zeros() as u8)
+        if let Some(only) = goal.is_power_of_two().then(|| goal.trailing_zeros() as u8)
             && self.follows_policy(component, from, only, reach)
         {
             return self.policy(component, from, only);

@@ -150,7 +150,7 @@ impl Planner<'_> {
         for island in &self.model.islands {
             let wanted = |component: &ComponentId| {
                 let goal = goals.iter().find(|goal| goal.component == *component)?;
-                (goal.modes.count_ones() == 1).then(|| goal.modes.trailing_zeros() as u8)
+                goal.modes.is_power_of_two().then(|| goal.modes.trailing_zeros() as u8)
             };
             let mut assumed =
                 Assumed { model: self.model, island, modes: island.components.iter().map(wanted).collect() };

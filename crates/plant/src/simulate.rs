@@ -8,7 +8,7 @@ use crate::model::{Commands, ComponentId, Model, Observation, VariableId};
 use crate::observe::values;
 use crate::successor::{EstimateError, distribution, nominal};
 
-/// Random numbers from a seed, the same on every machine (SplitMix64, Steele, Lea and Flood 2014).
+/// Random numbers from a seed, the same on every machine (`SplitMix64`, Steele, Lea and Flood 2014).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Random {
     state: u64,

@@ -153,7 +153,9 @@ fn by_enumeration(
         }
     }
     let total: BigRational = posterior.values().sum();
-    posterior.values_mut().for_each(|value| *value /= &total);
+    for value in posterior.values_mut() {
+        *value /= &total;
+    }
     posterior
 }
 
