@@ -5,7 +5,7 @@
 
 use std::time::{Duration, Instant};
 
-use kirk::{ExpansionLimit, Options, Search, Status};
+use kirk::{ExpansionLimit, Options, Planner, Search, Status};
 use tpn::Network;
 use tpn::compile::{Top, compile};
 use tpn::generate::{Recipe, Tightness, mission};
@@ -22,6 +22,32 @@ fn main() {
             row(tightness, nodes);
         }
     }
+    for nodes in [100, 1_000, 10_000] {
+        replan(nodes);
+    }
+}
+
+/// One bound changes by one unit, to and fro, and the mission is planned again.
+fn replan(nodes: usize) {
+    let options = Options { explain: false, relax: false, ..Options::default() };
+    let mut times = Vec::new();
+    for seed in 0..MISSIONS {
+        let network = network(Recipe { nodes, tightness: Tightness::Feasible, seed });
+        let is_activity = |arc: &tpn::Arc| arc.kind == tpn::ArcKind::Activity && arc.upper.finite().is_some();
+        let Some(position) = network.arcs.iter().rposition(is_activity) else { continue };
+        let (lower, upper) = (network.arcs[position].lower, network.arcs[position].upper);
+        let mut planner = Planner::new(network, None);
+        for change in 0..4 {
+            let one = rmpl::Rational::from_integer(change % 2);
+            let start = Instant::now();
+            let wider = upper.checked_add(rmpl::Bound::Finite(one)).unwrap_or(upper);
+            planner.set_bounds(tpn::ArcId::from_index(position), lower, wider);
+            std::hint::black_box(planner.plan(&options, &mut ExpansionLimit(20_000)));
+            times.push(start.elapsed());
+        }
+    }
+    times.sort_unstable();
+    println!("{:<12} {nodes:>7} {:>7.3} ms", "again", times[times.len() / 2].as_secs_f64() * 1e3);
 }
 
 fn row(tightness: Tightness, nodes: usize) {

@@ -22,6 +22,8 @@ pub(crate) struct Lookahead {
     is_active_label: Vec<bool>,
     /// Where each active label stands in `labels`.
     label_position: Vec<u32>,
+    /// An assertion that could carry each requirement when it was checked last.
+    witness: Vec<u32>,
     nodes: Vec<u32>,
     labels: Vec<u32>,
     /// The decisions that each consequence follows from.
@@ -78,6 +80,7 @@ impl Lookahead {
             is_active_node: vec![false; model.num_nodes],
             is_active_label: vec![false; model.conditions.labels.len()],
             label_position: vec![0; model.conditions.labels.len()],
+            witness: vec![NONE; model.conditions.labels.len()],
             nodes: Vec::with_capacity(model.num_nodes),
             labels: Vec::with_capacity(model.conditions.labels.len()),
             reasons: Vec::new(),
@@ -330,6 +333,7 @@ impl Lookahead {
             let label = self.labels[position];
             if model.conditions.labels[label as usize].is_ask
                 && !self.is_carried(model, label)
+                && !self.can_stay(model, chosen, label)?
                 && !self.check_ask(model, chosen, label)?
             {
                 return Ok(false);
@@ -399,7 +403,10 @@ impl Lookahead {
                 // What is open may be chosen later; two possibilities leave nothing to conclude.
                 Candidate::Open => return Ok(true),
                 Candidate::Possible if only != NONE => return Ok(true),
-                Candidate::Possible => only = tell,
+                Candidate::Possible => {
+                    self.witness[ask as usize] = tell;
+                    only = tell;
+                }
             }
         }
         if only == NONE {
@@ -417,6 +424,15 @@ impl Lookahead {
             self.is_active_label[tell as usize]
                 && link_edges(model, ask, tell).iter().all(|&edge| self.holds(edge))
         })
+    }
+
+    /// Whether the assertion found last can still carry a requirement.
+    fn can_stay(&mut self, model: &Model, chosen: &[u32], ask: u32) -> Result<bool, Overflow> {
+        let tell = self.witness[ask as usize];
+        if tell == NONE || !self.is_active_label[tell as usize] {
+            return Ok(false);
+        }
+        Ok(matches!(self.candidate(model, chosen, ask, tell)?, Candidate::Possible))
     }
 
     fn candidate(

@@ -99,7 +99,7 @@ impl<'a> Replay<'a> {
                 Event::Inconsistent { cycle } => result.cycle.clone_from(cycle),
                 Event::Unclosable { ask } => (result.ask, result.threat) = (Some(*ask), None),
                 Event::Unresolvable { left, right } => {
-                    (result.ask, result.threat) = (None, Some((*left, *right)))
+                    (result.ask, result.threat) = (None, Some((*left, *right)));
                 }
                 Event::Backtrack { .. }
                 | Event::Backjump { .. }

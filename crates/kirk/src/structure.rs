@@ -470,7 +470,7 @@ impl Structure {
             match block.shape {
                 Shape::Leaf => {}
                 Shape::Sequence | Shape::Guard => {
-                    stack.extend(block.children.iter().map(|&child| (child, is_lower)))
+                    stack.extend(block.children.iter().map(|&child| (child, is_lower)));
                 }
                 Shape::Choice(decision) => {
                     let alternative = chosen[decision as usize];
