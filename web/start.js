@@ -1,6 +1,6 @@
 // Loads the front end, starts it on the canvas and puts `window.enroute` in place.
 
-import init, { start } from "../wasm/page.js";
+import init, { start, usesKey } from "../wasm/page.js";
 import { createApi } from "./api.js";
 import { startCore } from "./core.js";
 import { chooseFile, saveFile } from "./files.js";
@@ -32,7 +32,7 @@ async function load() {
 
   mirror.onAct((element, act) => frontEnd.act(element, JSON.stringify(act)));
   api.connect(frontEnd, mirror);
-  keepShortcutsFromBrowser(window);
+  keepShortcutsFromBrowser(window, usesKey);
   hideLoading();
 }
 

@@ -49,6 +49,11 @@ impl NativeHost {
         Self::start_in(wake, folder)
     }
 
+    /// The same, keeping nothing beyond the end of this run, for tests.
+    pub fn without_storage(wake: Context) -> Self {
+        Self::start_in(wake, None)
+    }
+
     fn start_in(wake: Context, folder: Option<PathBuf>) -> Self {
         let (outside, from_outside) = channel();
         let superseded = Arc::new(AtomicBool::new(false));

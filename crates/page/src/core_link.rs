@@ -87,11 +87,8 @@ impl Link {
                 link.borrow_mut().hear(number, &kind, &payload);
             }
         });
-        self.worker = Some(Worker {
-            worker: self.glue.start_core(&listener),
-            is_ready: false,
-            _listener: listener,
-        });
+        self.worker =
+            Some(Worker { worker: self.glue.start_core(&listener), is_ready: false, _listener: listener });
     }
 
     /// Ends the worker. Its listener may be the one that is being called, so it is let go of only afterwards.

@@ -3,9 +3,11 @@
 use app::{
     Enroute,
     accessibility::{AccessibilityMirror, Act},
+    command::COMMANDS,
     host::Remote,
 };
 use eframe::WebRunner;
+use egui::{Key, Modifiers};
 use wasm_bindgen::prelude::*;
 use web_sys::HtmlCanvasElement;
 
@@ -65,6 +67,20 @@ impl eframe::App for PageApp {
     }
 }
 
+/// Whether a key press is one of Enroute's commands, so that the browser should leave it alone. `key` is what
+/// JavaScript calls it. Keys that type are nobody's business here.
+#[wasm_bindgen(js_name = usesKey)]
+pub fn uses_key(key: &str, control: bool, alt: bool, shift: bool) -> bool {
+    let Some(key) = Key::from_name(key) else { return false };
+    let pressed = Modifiers { alt, shift, ctrl: control, command: control, ..Modifiers::NONE };
+    let is_function_key = key.name().len() > 1 && key.name().starts_with('F');
+    let types = !control && !alt && !is_function_key;
+    let belongs = |shortcut: &egui::KeyboardShortcut| {
+        shortcut.logical_key == key && pressed.matches_logically(shortcut.modifiers)
+    };
+    !types && COMMANDS.iter().flat_map(|command| command.keys).any(belongs)
+}
+
 /// The running front end.
 #[wasm_bindgen]
 pub struct FrontEnd {
@@ -110,9 +126,7 @@ impl FrontEnd {
     /// What changed in the accessible document since the last call, as JSON, if anything did.
     #[wasm_bindgen(js_name = takeAccessibilityChange)]
     pub fn take_accessibility_change(&self) -> Result<Option<String>, JsValue> {
-        let change = self.with(|page| {
-            page.egui.plugin_opt::<AccessibilityMirror>()?.lock().take_change()
-        })?;
+        let change = self.with(|page| page.egui.plugin_opt::<AccessibilityMirror>()?.lock().take_change())?;
         change
             .map(|change| serde_json::to_string(&change))
             .transpose()

@@ -33,12 +33,7 @@ impl PageHost {
             move || link.happened(HostEvent::FragmentChanged(fragment_of(&window.location())))
         });
         window.set_onhashchange(Some(listener.as_ref().unchecked_ref()));
-        Some(Self {
-            glue,
-            link,
-            window,
-            _fragment_listener: listener,
-        })
+        Some(Self { glue, link, window, _fragment_listener: listener })
     }
 
     fn storage(&self) -> Result<Storage, StorageError> {

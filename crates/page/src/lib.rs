@@ -9,4 +9,4 @@ mod host;
 mod painter;
 mod refusal;
 
-pub use front_end::{FrontEnd, start};
+pub use front_end::{FrontEnd, start, uses_key};

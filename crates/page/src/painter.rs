@@ -1,6 +1,10 @@
 //! Which of the browser's interfaces to the graphics card draws the canvas.
 
-use eframe::{WebOptions, egui_wgpu::{RenderState, WgpuSetup}, wgpu::{Backend, Backends}};
+use eframe::{
+    WebOptions,
+    egui_wgpu::{RenderState, WgpuSetup},
+    wgpu::{Backend, Backends},
+};
 
 /// Options for eframe: WebGPU where it really works, else WebGL2. `?renderer=webgl2` in the address asks for the
 /// latter, for comparing and for drivers whose WebGPU is broken.

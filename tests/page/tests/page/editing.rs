@@ -13,17 +13,13 @@ fn shortening_a_path_s_opening_takes_the_plan_away_and_restoring_it_brings_it_ba
     let windows = page.state()?["plan"]["windows"].clone();
 
     page.place_caret_after("PATH1=OK [450,450")?;
-    page.retype(3, "404")?;
-    page.wait_for("state.status === 'no-plan' || state.source")?;
-    page.place_caret_after("PATH1=OK [450")?;
-    page.retype(3, "404")?;
+    page.retype(7, "404,404")?;
     page.wait_for("state.status === 'no-plan'")?;
     page.settle()?;
     assert_eq!(page.state()?["plan"], json!(null));
     assert!(page.look()?.difference(&planned) > 0.01, "the picture did not change");
 
-    page.tab.press(Key::Character('z'), Modifiers::CONTROL)?;
-    page.tab.evaluate("enroute.open('enroute')")?;
+    page.retype(7, "450,450")?;
     page.wait_for("state.status === 'plan'")?;
     assert_eq!(page.state()?["plan"]["windows"], windows);
     Ok(())
@@ -46,7 +42,8 @@ fn a_syntax_error_keeps_the_last_good_network_and_points_at_the_cause() -> Resul
 
     page.tab.type_text("{")?;
     page.wait_for("state.status === 'plan' && !state.isStale")?;
-    assert_eq!(page.state()?["diagnostics"], json!([]));
+    let diagnostics = page.state()?["diagnostics"].clone();
+    assert!(diagnostics.as_array().is_some_and(|all| all.iter().all(|it| it["severity"] != "error")));
     Ok(())
 }
 

@@ -1,9 +1,14 @@
-//! What the page says when something outside it fails.
+//! What the page does when something fails: it says so, and loses nothing.
 
 use anyhow::Result;
 use xtask::browser::Graphics;
 
 use crate::opened::Opened;
+
+const CALL_OF_CORE: &str = "core.handle(data.request);";
+
+/// A text that the altered cores below stumble over, without plan or problem of its own.
+const STUMBLING_BLOCK: &str = "Stumble()[l,u] = { Work()[1,2] }";
 
 #[test]
 fn without_graphics_the_page_explains_itself() -> Result<()> {
@@ -16,13 +21,39 @@ fn without_graphics_the_page_explains_itself() -> Result<()> {
 
 #[test]
 fn a_planning_core_that_cannot_be_loaded_leaves_the_editor_usable() -> Result<()> {
-    let page = Opened::without_waiting(Graphics::WebGl2, "")?;
-    page.tab.call("Network.enable", &serde_json::json!({}))?;
-    page.tab.call("Network.setBlockedURLs", &serde_json::json!({ "urls": ["*worker_bg.wasm"] }))?;
-    page.tab.go_to(&format!("{}?blocked#mission=enroute", page.server.url()))?;
-    page.tab.wait_until_ready()?;
+    let page = Opened::altered("web/core-worker.js", |text| {
+        text.replace("../wasm/worker.js", "../wasm/missing.js")
+    })?;
     page.wait_for("state.toasts.length > 0")?;
     page.tab.evaluate("enroute.setSource('A()[l,u] = { Work()[1,2] }')")?;
     assert_eq!(page.tab.evaluate("enroute.source()")?, "A()[l,u] = { Work()[1,2] }");
     Ok(())
+}
+
+#[test]
+fn a_core_that_fails_is_reported_and_started_anew_with_nothing_lost() -> Result<()> {
+    let page = Opened::altered("web/core-worker.js", |text| {
+        let stumbling =
+            "if (new TextDecoder().decode(data.request).includes('Stumble')) throw new Error('stumbled');";
+        text.replace(CALL_OF_CORE, &format!("{stumbling} {CALL_OF_CORE}"))
+    })?;
+    page.wait_for("state.status === 'plan'")?;
+    page.tab.evaluate(&format!("enroute.setSource('{STUMBLING_BLOCK}')"))?;
+    page.wait_for("state.toasts.some((toast) => toast.includes('stumbled'))")?;
+    assert_eq!(page.tab.evaluate("enroute.source()")?, STUMBLING_BLOCK);
+    page.tab.evaluate("enroute.dispatch('edit.undo')")?;
+    page.wait_for("state.status === 'plan' && state.answeredRevision === state.revision")
+}
+
+#[test]
+fn a_core_that_never_ends_is_given_up_for_a_newer_text() -> Result<()> {
+    let page = Opened::altered("web/core-worker.js", |text| {
+        let spinning = "while (new TextDecoder().decode(data.request).includes('Stumble'));";
+        text.replace(CALL_OF_CORE, &format!("{spinning} {CALL_OF_CORE}"))
+    })?;
+    page.wait_for("state.status === 'plan'")?;
+    page.tab.evaluate(&format!("enroute.setSource('{STUMBLING_BLOCK}')"))?;
+    page.wait_for("state.status === 'working'")?;
+    page.tab.evaluate("enroute.dispatch('edit.undo')")?;
+    page.wait_for("state.status === 'plan' && state.answeredRevision === state.revision")
 }

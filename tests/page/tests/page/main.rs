@@ -9,3 +9,4 @@ mod api;
 mod drawing;
 mod editing;
 mod failure;
+mod same;

@@ -1,6 +1,13 @@
 //! The page, opened and ready.
 
-use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    sync::{
+        LazyLock, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicU32, Ordering},
+    },
+};
 
 use anyhow::{Context as _, Result, ensure};
 use serde_json::Value;
@@ -11,7 +18,7 @@ use xtask::{
 };
 
 /// The site's folder; built once per run, which is quick when nothing has changed.
-static SITE: LazyLock<std::path::PathBuf> =
+static SITE: LazyLock<PathBuf> =
     LazyLock::new(|| site::build(Flavour::Development).expect("the page can be built"));
 
 /// Lets one test at a time have the processor.
@@ -20,7 +27,8 @@ static TURN: Mutex<()> = Mutex::new(());
 /// A browser with the page in it.
 pub(crate) struct Opened {
     pub(crate) tab: Tab,
-    pub(crate) server: SiteServer,
+    copy: Option<PathBuf>,
+    _server: SiteServer,
     _browser: Browser,
     _turn: MutexGuard<'static, ()>,
 }
@@ -44,13 +52,33 @@ impl Opened {
 
     /// Goes to the page and leaves it at that.
     pub(crate) fn without_waiting(graphics: Graphics, fragment: &str) -> Result<Self> {
+        Self::from_site(&SITE, graphics, fragment)
+    }
+
+    /// Opens a copy of the page in which one file says something else, planned or not.
+    pub(crate) fn altered(file: &str, alter: impl FnOnce(String) -> String) -> Result<Self> {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let copy = std::env::temp_dir().join(format!("enroute-altered-{}-{number}", std::process::id()));
+        copy_folder(&SITE, &copy)?;
+        let text = fs::read_to_string(copy.join(file))?;
+        let altered = alter(text.clone());
+        ensure!(altered != text, "{file} was not altered");
+        fs::write(copy.join(file), altered)?;
+        let mut opened = Self::from_site(&copy, Graphics::WebGl2, "mission=enroute")?;
+        opened.copy = Some(copy);
+        opened.tab.wait_until_ready()?;
+        Ok(opened)
+    }
+
+    fn from_site(site: &Path, graphics: Graphics, fragment: &str) -> Result<Self> {
         // A test that failed in its turn has harmed nothing.
         let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
-        let server = SiteServer::start(&SITE, 0, false)?;
+        let server = SiteServer::start(site, 0, false)?;
         let browser = Browser::start(graphics)?;
         let tab = browser.open_tab(1280, 800)?;
         tab.go_to(&format!("{}#{fragment}", server.url()))?;
-        Ok(Self { tab, server, _browser: browser, _turn: turn })
+        Ok(Self { tab, copy: None, _server: server, _browser: browser, _turn: turn })
     }
 
     /// The state as JSON.
@@ -70,23 +98,13 @@ impl Opened {
         self.tab.next_frame()
     }
 
-    /// Puts the caret behind the first occurrence of a text in the editor, by the keyboard alone.
+    /// Clicks into the editor and puts the caret behind the first occurrence of a text.
     pub(crate) fn place_caret_after(&self, text: &str) -> Result<()> {
-        self.tab.evaluate("enroute.dispatch('view.editor')")?;
         let source = self.tab.evaluate("enroute.source()")?;
         let source = source.as_str().context("the source is a text")?;
         let end = source.find(text).with_context(|| format!("there is no `{text}`"))? + text.len();
-        let before = &source[..end];
-        let column = before.rsplit('\n').next().unwrap_or_default().chars().count();
         self.tab.click_widget("textbox", "Mission text")?;
-        self.tab.press(Key::Home, Modifiers::CONTROL)?;
-        for _ in before.matches('\n') {
-            self.tab.press(Key::ArrowDown, Modifiers::NONE)?;
-        }
-        self.tab.press(Key::Home, Modifiers::NONE)?;
-        for _ in 0..column {
-            self.tab.press(Key::ArrowRight, Modifiers::NONE)?;
-        }
+        self.tab.evaluate(&format!("enroute.dispatch('edit.select', {{ start: {end} }})"))?;
         self.wait_for(&format!("state.caret.head === {end}"))
     }
 
@@ -103,4 +121,27 @@ impl Opened {
         self.tab.next_frame()?;
         self.tab.screenshot()
     }
+}
+
+impl Drop for Opened {
+    fn drop(&mut self) {
+        if let Some(copy) = &self.copy {
+            // What is left behind lies among temporary files.
+            let _ = fs::remove_dir_all(copy);
+        }
+    }
+}
+
+fn copy_folder(from: &Path, to: &Path) -> Result<()> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let entry = entry?;
+        let target = to.join(entry.file_name());
+        if entry.file_type()?.is_dir() {
+            copy_folder(&entry.path(), &target)?;
+        } else {
+            fs::copy(entry.path(), target)?;
+        }
+    }
+    Ok(())
 }

@@ -1,0 +1,52 @@
+//! The page works out exactly what the native build works out.
+
+use anyhow::Result;
+use app::{Enroute, host::Remote as _, mission_file::EXAMPLES, native::NativeHost};
+use egui::{Context, RawInput};
+use serde_json::Value;
+
+use crate::opened::Opened;
+
+/// The app without a window.
+struct Native {
+    context: Context,
+    app: Enroute,
+}
+
+impl Native {
+    fn new() -> Self {
+        let context = Context::default();
+        let host = NativeHost::without_storage(context.clone());
+        let app = Enroute::new(&context, Box::new(host), "");
+        Self { context, app }
+    }
+
+    /// The state once an example has been answered in full.
+    fn state_of(&mut self, example: &str) -> Result<Value> {
+        self.app.open(example)?;
+        loop {
+            let _ = self.context.run_ui(RawInput::default(), |ui| self.app.show(ui, None));
+            let state = self.app.state();
+            if state["status"] != "working" && state["answeredRevision"] == state["revision"] {
+                return Ok(state);
+            }
+            std::thread::yield_now();
+        }
+    }
+}
+
+#[test]
+fn every_example_leads_to_the_same_network_plan_and_paths_in_the_page_and_natively() -> Result<()> {
+    let page = Opened::planned()?;
+    let mut native = Native::new();
+    for example in EXAMPLES {
+        let expected = native.state_of(example.name)?;
+        page.tab.evaluate(&format!("enroute.open('{}')", example.name))?;
+        page.settle()?;
+        let state = page.state()?;
+        for part in ["mission", "status", "diagnostics", "tpn", "plan", "verdict", "failure", "vehicles"] {
+            assert_eq!(state[part], expected[part], "{part} of {}", example.name);
+        }
+    }
+    Ok(())
+}
