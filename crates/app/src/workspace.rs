@@ -47,7 +47,7 @@ impl Workspace {
 
     /// Where its panels stand before the user moves them.
     pub fn default_layout(self) -> Tree<PanelKind> {
-        use PanelKind::{Editor, Network, Outline, Plan, Problems, Terrain, Timeline};
+        use PanelKind::{Editor, Network, Outline, Plan, Problems, Search, Terrain, Timeline};
         let mut tiles = Tiles::default();
         let root = match self {
             Self::Author => {
@@ -71,8 +71,10 @@ impl Workspace {
                 let network = tabs(&mut tiles, &[Network, Terrain]);
                 let timeline = tabs(&mut tiles, &[Timeline]);
                 let middle = split(&mut tiles, LinearDir::Vertical, &[(network, 0.7), (timeline, 0.3)]);
+                let search = tabs(&mut tiles, &[Search]);
                 let plan = tabs(&mut tiles, &[Plan, Problems]);
-                split(&mut tiles, LinearDir::Horizontal, &[(text, 0.26), (middle, 0.48), (plan, 0.26)])
+                let right = split(&mut tiles, LinearDir::Vertical, &[(search, 0.6), (plan, 0.4)]);
+                split(&mut tiles, LinearDir::Horizontal, &[(text, 0.24), (middle, 0.42), (right, 0.34)])
             }
             Self::Review => {
                 let timeline = tabs(&mut tiles, &[Timeline]);

@@ -6,6 +6,7 @@ pub mod outline;
 pub mod empty;
 pub mod plan;
 pub mod problems;
+pub mod search;
 pub mod terrain;
 pub mod timeline;
 
@@ -41,11 +42,13 @@ pub enum PanelKind {
     Timeline,
     /// The ground and the vehicles.
     Terrain,
+    /// The search that found the plan.
+    Search,
 }
 
 impl PanelKind {
     /// All of them, as the menu lists them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Editor,
         Self::Outline,
         Self::Problems,
@@ -53,6 +56,7 @@ impl PanelKind {
         Self::Plan,
         Self::Timeline,
         Self::Terrain,
+        Self::Search,
     ];
 
     /// Its name on screen.
@@ -65,6 +69,7 @@ impl PanelKind {
             Self::Plan => "Plan",
             Self::Timeline => "Timeline",
             Self::Terrain => "Terrain",
+            Self::Search => "Search",
         }
     }
 
@@ -78,6 +83,7 @@ impl PanelKind {
             Self::Plan => "plan",
             Self::Timeline => "timeline",
             Self::Terrain => "terrain",
+            Self::Search => "search",
         }
     }
 
@@ -88,7 +94,7 @@ impl PanelKind {
 
     /// Whether it has a view that can be zoomed and fitted.
     pub const fn is_zoomable(self) -> bool {
-        matches!(self, Self::Network | Self::Timeline | Self::Terrain)
+        matches!(self, Self::Network | Self::Timeline | Self::Terrain | Self::Search)
     }
 }
 
@@ -110,10 +116,12 @@ pub struct Context<'a> {
 }
 
 impl Context<'_> {
-    /// The plan that is shown, if there is one, with its network.
+    /// The plan that is shown, if there is one, with its network: what the search had selected at the step that is
+    /// looked at, if one is.
     pub fn plan(&self) -> Option<(&tpn::Network, &tpn::Plan)> {
         let snapshot = self.snapshot?;
-        Some((snapshot.network.as_deref()?, snapshot.plan()?))
+        let plan = self.state.search.plan(snapshot).or_else(|| snapshot.plan())?;
+        Some((snapshot.network.as_deref()?, plan))
     }
 
     /// The view action for `panel` that has not been followed yet. `followed` is the panel's memory of the last one.
@@ -175,6 +183,7 @@ fn create(kind: PanelKind) -> Box<dyn Panel> {
         PanelKind::Problems => Box::new(problems::ProblemsPanel::default()),
         PanelKind::Network => Box::new(network::NetworkPanel::default()),
         PanelKind::Terrain => Box::new(terrain::TerrainPanel::default()),
+        PanelKind::Search => Box::new(search::SearchPanel::default()),
         PanelKind::Editor => Box::new(editor::EditorPanel::default()),
         PanelKind::Plan => Box::new(plan::PlanPanel::default()),
         PanelKind::Timeline => Box::new(timeline::TimelinePanel::default()),

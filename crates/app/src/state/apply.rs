@@ -11,6 +11,8 @@ use crate::host::{FileKind, HostEvent};
 use crate::mission_file;
 use crate::panel::PanelKind;
 use crate::state::editor::Reveal;
+use crate::state::search::SearchCommand;
+use crate::workspace::Workspace;
 use crate::state::{AppState, Selection, ToastKind, ViewRequest, playback};
 
 /// Something that the host is to do.
@@ -67,8 +69,13 @@ impl AppState {
             Command::Hover(selection) => self.hovered = selection,
 
             Command::Seek(time) => self.playback.seek(time),
+            Command::TogglePlaying if self.steps_search() => self.apply_to_search(SearchCommand::TogglePlaying),
+            Command::StepTime(forwards) if self.steps_search() => {
+                self.apply_to_search(SearchCommand::Step(if forwards { 1 } else { -1 }));
+            }
             Command::TogglePlaying => self.playback.toggle(),
             Command::StepTime(forwards) => self.step_time(forwards),
+            Command::Search(command) => self.apply_to_search(command),
             Command::SetRate(rate) => self.playback.rate = rate.clamp(0.125, 64.0),
 
             Command::Search(command) => {
@@ -81,7 +88,14 @@ impl AppState {
             Command::SetSeed(seed) => self.settings.plan.seed = seed,
             Command::SetTrace(trace) => self.settings.plan.trace = trace,
 
-            Command::ShowWorkspace(workspace) => self.workspace = workspace,
+            Command::ShowWorkspace(workspace) => {
+                self.workspace = workspace;
+                // A lecturer steps through the search; it must have been recorded.
+                self.settings.plan.trace |= workspace == Workspace::Teach;
+                if workspace == Workspace::Teach {
+                    self.active_panel = PanelKind::Search;
+                }
+            }
             Command::ResetWorkspace => self.wants_default_layout = true,
             Command::ShowPanel(panel) => {
                 self.wanted_panel = Some(panel);
@@ -137,6 +151,16 @@ impl AppState {
     }
 
     /// Takes a new snapshot and carries selection and time over to it.
+    /// Whether the keys that step and play go to the search instead of time.
+    fn steps_search(&self) -> bool {
+        self.search.step().is_some() || self.active_panel == PanelKind::Search
+    }
+
+    fn apply_to_search(&mut self, command: SearchCommand) {
+        let shown = self.snapshots.shown().cloned();
+        self.search.apply(command, shown.as_ref());
+    }
+
     fn take_snapshot(&mut self, snapshot: Arc<Snapshot>) {
         let before = self.snapshots.shown().cloned();
         self.snapshots.take(snapshot, self.frame.now_secs);
@@ -149,6 +173,7 @@ impl AppState {
         if before.is_some_and(|before| Arc::ptr_eq(before, &after)) {
             return;
         }
+        self.search.close();
         if let Some(before) = before {
             self.selection = self.selection.carried(before, &after);
             self.hovered = Selection::None;
@@ -236,6 +261,8 @@ impl AppState {
         }
         if self.editor.find.take().is_some() {
             self.editor.wants_focus = true;
+        } else if self.search.step().is_some() {
+            self.search.close();
         } else {
             self.selection = Selection::None;
         }

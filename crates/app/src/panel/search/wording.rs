@@ -1,0 +1,89 @@
+//! A step of the search in words.
+
+use kirk::{Constraint, CycleMember, Event};
+use rmpl::Bound;
+use tpn::{LabelId, Network};
+
+use super::Shown;
+use crate::panel::Context;
+use crate::state::selection::node_name;
+
+/// Says what happens at the step that is looked at.
+pub fn show(ui: &mut egui::Ui, context: &Context<'_>, shown: &Shown<'_>) {
+    let tokens = context.tokens;
+    let Some(step) = shown.step else {
+        let count = shown.trace.events.len();
+        let more = if shown.trace.is_truncated { "; the search went on after that" } else { "" };
+        let text = format!("{count} steps recorded{more}. Press . to step, or click a state of the tree.");
+        ui.label(egui::RichText::new(text).color(tokens.text_muted));
+        return;
+    };
+    let Some(entry) = shown.trace.events.get(step.step) else { return };
+    let is_failure = matches!(
+        entry.event,
+        Event::Inconsistent { .. } | Event::Unclosable { .. } | Event::Unresolvable { .. } | Event::Known
+    );
+    let color = match entry.event {
+        Event::Solution { .. } => tokens.solution,
+        _ if is_failure => tokens.failure,
+        _ => tokens.text,
+    };
+    let position = format!("{} / {}", step.step + 1, shown.trace.events.len());
+    ui.horizontal_wrapped(|ui| {
+        ui.label(egui::RichText::new(position).color(tokens.text_muted).monospace());
+        ui.label(egui::RichText::new(event(shown.network, &entry.event)).color(color));
+    });
+    if let Event::Inconsistent { cycle } = &entry.event {
+        for member in cycle {
+            ui.label(egui::RichText::new(cycle_step(shown.network, member)).color(tokens.text_muted).small());
+        }
+    }
+}
+
+/// One event in a sentence.
+pub fn event(network: &Network, event: &Event) -> String {
+    let label = |id: LabelId| network.label_name(id);
+    match event {
+        Event::Expand { node } => format!("Follow all arcs out of {}.", node_name(network, *node)),
+        Event::Decide { decision, alternative } => {
+            format!("Decide {} = {alternative}.", Network::decision_name(*decision))
+        }
+        Event::AddArc { arc } => {
+            let arc = &network.arcs[arc.index()];
+            let (from, to) = (node_name(network, arc.from), node_name(network, arc.to));
+            format!("Add {from} → {to} [{}, {}].", Bound::Finite(arc.lower), arc.upper)
+        }
+        Event::Propagate { moved: 0 } => "Propagate: nothing has to move.".to_owned(),
+        Event::Propagate { moved: 1 } => "Propagate: one event moves.".to_owned(),
+        Event::Propagate { moved } => format!("Propagate: {moved} events move."),
+        Event::Inconsistent { cycle } => {
+            let total: rmpl::Rational = cycle.iter().map(|member| member.weight).sum();
+            format!("Dead end: a negative cycle of {}.", Bound::Finite(total))
+        }
+        Event::Unclosable { ask } => format!("Dead end: nothing can carry {}.", label(*ask)),
+        Event::TryLink { link } => format!("Let {} carry {}.", label(link.tell), label(link.ask)),
+        Event::Threat { left, right } => format!("Threat: {} and {} may overlap.", label(*left), label(*right)),
+        Event::TryOrder { order } => format!("Put {} before {}.", label(order.first), label(order.then)),
+        Event::Unresolvable { left, right } => {
+            format!("Dead end: {} and {} fit in neither order.", label(*left), label(*right))
+        }
+        Event::Known => "Dead end: these choices contain a conflict that was learned before.".to_owned(),
+        Event::Backtrack { .. } => "Back to the last choice.".to_owned(),
+        Event::Backjump { because, .. } => {
+            format!("Jump back to the last choice that is to blame, one of {}.", because.len().max(1))
+        }
+        Event::Solution { .. } => "A plan.".to_owned(),
+        Event::Exhausted => "Nothing is left to try.".to_owned(),
+    }
+}
+
+fn cycle_step(network: &Network, member: &CycleMember) -> String {
+    let (from, to) = (node_name(network, member.from), node_name(network, member.to));
+    let why = match member.constraint {
+        Constraint::Lower(_) => "least duration",
+        Constraint::Upper(_) => "greatest duration",
+        Constraint::Link(_) => "causal link",
+        Constraint::Order(_) => "ordering",
+    };
+    format!("{from} → {to}: {} ({why})", Bound::Finite(member.weight))
+}
