@@ -29,6 +29,7 @@ impl Engine<'_> {
     /// Prepares phase 2. `false` if the selection is inconsistent, or contradicts itself on one arc.
     pub(crate) fn make_leaf(&mut self) -> Result<bool, Overflow> {
         self.stats.leaves += 1;
+        self.look_harder();
         self.conflict.clear();
         self.leaf.has_pairs = false;
         self.leaf.has_windows = false;

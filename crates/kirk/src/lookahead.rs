@@ -22,6 +22,9 @@ pub(crate) struct Lookahead {
     is_active_label: Vec<bool>,
     /// Where each active label stands in `labels`.
     label_position: Vec<u32>,
+    /// Whether requirements that can still be carried are looked through for consequences again: worth its time once a
+    /// complete choice has failed.
+    pub(crate) is_thorough: bool,
     /// An assertion that could carry each requirement when it was checked last.
     witness: Vec<u32>,
     nodes: Vec<u32>,
@@ -80,6 +83,7 @@ impl Lookahead {
             is_active_node: vec![false; model.num_nodes],
             is_active_label: vec![false; model.conditions.labels.len()],
             label_position: vec![0; model.conditions.labels.len()],
+            is_thorough: false,
             witness: vec![NONE; model.conditions.labels.len()],
             nodes: Vec::with_capacity(model.num_nodes),
             labels: Vec::with_capacity(model.conditions.labels.len()),
@@ -333,7 +337,7 @@ impl Lookahead {
             let label = self.labels[position];
             if model.conditions.labels[label as usize].is_ask
                 && !self.is_carried(model, label)
-                && !self.can_stay(model, chosen, label)?
+                && (self.is_thorough || !self.can_stay(model, chosen, label)?)
                 && !self.check_ask(model, chosen, label)?
             {
                 return Ok(false);

@@ -179,6 +179,13 @@ impl<'m> Engine<'m> {
         self.structure.is_some()
     }
 
+    /// Looks ahead more thoroughly from now on.
+    pub(crate) fn look_harder(&mut self) {
+        if let Some(lookahead) = &mut self.lookahead {
+            lookahead.is_thorough = true;
+        }
+    }
+
     /// Records an event, if the search is recorded.
     pub(crate) fn log(&mut self, event: impl FnOnce(&Self) -> Event) {
         if self.recorder.is_some() {
