@@ -9,7 +9,10 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use commands::{check, execute, explain, fmt, import, path, plan, simulate, stn, tpn, verify};
+use commands::{
+    check, estimate, execute, explain, fmt, hca, import, path, plan, reconfigure, run, simulate, step, stn,
+    tpn, verify,
+};
 
 /// Plans, checks and explains missions written in RMPL.
 #[derive(Parser)]
@@ -31,6 +34,11 @@ enum Command {
     Simulate(simulate::Args),
     Path(path::Args),
     Stn(stn::Args),
+    Hca(hca::Args),
+    Step(step::Args),
+    Run(run::Args),
+    Estimate(estimate::Args),
+    Reconfigure(reconfigure::Args),
     Import(import::Args),
 }
 
@@ -46,6 +54,11 @@ fn main() -> ExitCode {
         Command::Simulate(args) => simulate::run(args),
         Command::Path(args) => path::run(args),
         Command::Stn(args) => stn::run(args),
+        Command::Hca(args) => hca::run(args),
+        Command::Step(args) => step::run(args),
+        Command::Run(args) => run::run(args),
+        Command::Estimate(args) => estimate::run(args),
+        Command::Reconfigure(args) => reconfigure::run(args),
         Command::Import(args) => import::run(args),
     };
     result.unwrap_or_else(|error| {

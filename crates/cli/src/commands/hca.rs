@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::Context as _;
 use clap::ValueEnum;
 use hca::{Automaton, Element, Vocabulary};
 use mission::Problem;
@@ -34,7 +33,7 @@ enum Form {
     Text,
     /// For Graphviz.
     Dot,
-    /// A drawing, made by Graphviz's `dot`.
+    /// A drawing.
     Svg,
 }
 
@@ -52,7 +51,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             Form::Json => print_json(&document("hca", &problems, automaton_json(automaton)))?,
             Form::Text => print_text(&automaton_text(automaton))?,
             Form::Dot => print_text(&hca::dot::dot(automaton))?,
-            Form::Svg => print_text(&svg(&hca::dot::dot(automaton))?)?,
+            Form::Svg => print_text(&drawing(automaton))?,
         },
         None if form == Form::Json => print_json(&document("hca", &problems, json!({})))?,
         None => {}
@@ -60,19 +59,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(exit(if any_error(&problems) || compilation.automaton.is_none() { WRONG } else { YES }))
 }
 
-fn svg(dot: &str) -> anyhow::Result<String> {
-    use std::io::Write as _;
-    use std::process::{Command, Stdio};
-    let mut child = Command::new("dot")
-        .arg("-Tsvg")
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .context("drawing needs the program `dot` of Graphviz, which cannot be started; use --as dot")?;
-    child.stdin.take().context("no way to write to `dot`")?.write_all(dot.as_bytes())?;
-    let output = child.wait_with_output()?;
-    anyhow::ensure!(output.status.success(), "`dot` failed");
-    Ok(String::from_utf8(output.stdout)?)
+fn drawing(automaton: &Automaton) -> String {
+    let drawing = layout::automaton(automaton, &layout::approximate_text_width);
+    layout::automaton_svg(&drawing, None, &layout::Palette::LIGHT, "Control program")
 }
 
 fn element_name(automaton: &Automaton, element: &Element) -> String {

@@ -1,13 +1,18 @@
 //! One file per command: its flags and what it does with the core's answer.
 
 pub mod check;
+pub mod estimate;
 pub mod execute;
 pub mod explain;
 pub mod fmt;
+pub mod hca;
 pub mod import;
 pub mod path;
 pub mod plan;
+pub mod reconfigure;
+pub mod run;
 pub mod simulate;
+pub mod step;
 pub mod stn;
 pub mod tpn;
 pub mod verify;
