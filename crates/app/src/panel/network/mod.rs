@@ -6,6 +6,7 @@
 mod data;
 mod describe;
 mod highlight;
+mod landmarks;
 mod minimap;
 mod paint;
 mod search;
@@ -113,15 +114,24 @@ impl NetworkPanel {
         let plan = snapshot.plan().filter(|plan| fits(plan, network));
         let (panel, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let summary = describe::summary(network, plan);
-        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("Network. {summary}")));
+        response
+            .widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("{}. {summary}", title(context))));
         self.move_view(ui, context, panel, &response, network);
 
+        let act = landmarks::show(ui, panel, &self.view, &self.drawn, network, &context.state.selection);
         let overview = if options.minimap { minimap::place(panel, &self.view, &self.drawn) } else { None };
         let pointer =
-            response.hover_pos().filter(|at| overview.is_none_or(|overview| !overview.contains(*at)));
+            pointer_over(ui, &response).filter(|at| overview.is_none_or(|overview| !overview.contains(*at)));
         let pointed = pointer.and_then(|at| self.pointed(panel, at, network, plan, options));
         self.tell_hover(context, pointed.as_ref(), commands);
-        self.click(&response, pointed.as_ref(), panel, network, commands);
+        match act {
+            Some(act) if act.is_double => self.toggle_block_under(pointer, panel, network),
+            Some(act) => {
+                self.followed_selection = act.selection.clone();
+                commands.send(Command::SelectAndReveal(act.selection));
+            }
+            None => self.click(&response, pointed.as_ref(), panel, network, commands),
+        }
 
         let painter = ui.painter_at(panel);
         let selected = Highlight::of(&context.state.selection, network);
@@ -177,7 +187,7 @@ impl NetworkPanel {
         if response.drag_stopped() {
             self.is_dragging_overview = false;
         }
-        if let Some(at) = response.hover_pos() {
+        if let Some(at) = pointer_over(ui, response) {
             let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta(), input.zoom_delta()));
             let factor =
                 if pinch == 1.0 { (f64::from(scroll.y) * WHEEL_ZOOM).exp() } else { f64::from(pinch) };
@@ -283,9 +293,7 @@ impl NetworkPanel {
         commands: &mut CommandSender,
     ) {
         if response.double_clicked() && !self.is_dragging_overview {
-            if let Some(at) = response.interact_pointer_pos() {
-                self.toggle_block_at(self.view.drawing_point(panel, at), network);
-            }
+            self.toggle_block_under(response.interact_pointer_pos(), panel, network);
         } else if response.clicked() && !self.is_dragging_overview {
             response.request_focus();
             let selection = pointed.map(|pointed| pointed.selection().clone()).unwrap_or_default();
@@ -294,8 +302,9 @@ impl NetworkPanel {
         }
     }
 
-    /// Opens the collapsed block at a point, or collapses the innermost block there.
-    fn toggle_block_at(&mut self, point: Point, network: &Network) {
+    /// Opens the collapsed block at a place, or collapses the innermost block there.
+    fn toggle_block_under(&mut self, pointer: Option<egui::Pos2>, panel: Rect, network: &Network) {
+        let Some(point) = pointer.map(|at| self.view.drawing_point(panel, at)) else { return };
         let blocks = self.drawn.drawing.blocks.iter().filter(|block| block.rect.contains(point));
         let found = blocks.rev().find_map(|block| {
             let id: BlockId = block.block?;
@@ -344,6 +353,20 @@ fn overlay_selection(curve: &OverlayCurve, plan: &Plan) -> Option<Selection> {
         }
         OverlayKind::NegativeCycle => None,
     }
+}
+
+/// The name of the drawing for screen readers.
+fn title(context: &Context<'_>) -> &'static str {
+    if context.is_stale && context.state.status() == Status::Broken {
+        "Network of the last text without errors"
+    } else {
+        "Network"
+    }
+}
+
+/// Where the pointer is, if it is over the drawing or one of its landmarks.
+fn pointer_over(ui: &Ui, response: &Response) -> Option<egui::Pos2> {
+    if response.contains_pointer() { ui.input(|input| input.pointer.hover_pos()) } else { None }
 }
 
 /// How the arrow keys move the drawing.
