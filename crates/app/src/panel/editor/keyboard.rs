@@ -95,7 +95,7 @@ fn command_of(event: &Event, is_composing: bool) -> Option<Command> {
 /// What a key does to the text.
 fn text_command(key: Key, modifiers: Modifiers) -> Option<TextCommand> {
     let select = modifiers.shift;
-    let by_word = modifiers.ctrl || modifiers.alt;
+    let by_word = modifiers.ctrl || modifiers.alt || (modifiers.command && !modifiers.mac_cmd);
     let to_edge = modifiers.mac_cmd;
     let move_to = |motion| Some(TextCommand::Move { motion, select });
     match key {
