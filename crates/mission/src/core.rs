@@ -11,6 +11,7 @@ use rmpl::{Diagnostic, Severity};
 use terrain::Terrain;
 use tpn::{Network, Top};
 
+use crate::control::read_control;
 use crate::ground::Grounds;
 use crate::planning::{self, Planned};
 use crate::problem::Problem;
@@ -66,6 +67,10 @@ impl Core {
     }
 
     fn update(&mut self, update: &Update, surroundings: &mut dyn Surroundings) {
+        if rmpl::control::is_control_text(&update.source) {
+            answer_control(update, surroundings);
+            return;
+        }
         let begun = surroundings.now_millis();
         let parse = rmpl::parse(&update.source);
         let program = Arc::new(parse.program());
@@ -166,6 +171,27 @@ impl Core {
         });
         Some(planned)
     }
+}
+
+/// A control program has no network and nothing to plan; what is wrong with it is all there is to tell.
+fn answer_control(update: &Update, surroundings: &mut dyn Surroundings) {
+    let begun = surroundings.now_millis();
+    let (_, diagnostics) = read_control(&update.source, None);
+    let snapshot = Snapshot {
+        revision: update.revision,
+        stage: Stage::Complete,
+        source: Arc::clone(&update.source),
+        problems: Problem::all(&diagnostics, &update.source),
+        program: Arc::default(),
+        network: None,
+        planning: None,
+        map: None,
+        traverses: Vec::new(),
+        motions: Vec::new(),
+        encounters: Vec::new(),
+        timings: Timings { parse_millis: surroundings.now_millis() - begun, ..Timings::default() },
+    };
+    surroundings.answer(Response::Snapshot(Arc::new(snapshot)));
 }
 
 /// The network of what is to be planned, if no error prevents it; adds what compiling finds to `diagnostics`.

@@ -4,6 +4,7 @@
 //! No planning, motion or language rules are here: this crate connects the crates that have them, and keeps each
 //! stage's result so that an edit redoes only what it touched.
 
+pub mod control;
 mod core;
 pub mod driving;
 pub mod execution;
@@ -11,9 +12,11 @@ mod ground;
 pub mod planning;
 pub mod problem;
 pub mod request;
+pub mod review;
 pub mod snapshot;
 pub mod traverse;
 
+pub use control::{Control, read_control};
 pub use self::core::{Core, Surroundings, compile};
 pub use ground::Grounds;
 pub use kirk::Search as SearchKind;

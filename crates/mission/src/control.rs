@@ -1,0 +1,94 @@
+//! Reading a control program: with the plant in its own text, with one that is given, or without any.
+
+use executive::model_based::System;
+use hca::{Automaton, Vocabulary};
+use plant::Model;
+use rmpl::control::ControlFile;
+use rmpl::{Diagnostic, Severity};
+
+/// What a text in prefix notation comes to.
+#[derive(Clone, Debug)]
+pub enum Control {
+    /// A program and the plant that it controls.
+    Bound(Box<System>),
+    /// A program alone: what is known of its variables must come from elsewhere.
+    Unbound(Box<Automaton>),
+    /// A plant without a program.
+    Plant(Box<Model>),
+    /// Neither, or with errors.
+    Nothing,
+}
+
+/// Reads a text in prefix notation, and says what is wrong with it.
+///
+/// A program without a plant of its own is bound to `plant`, a model's text, if all its names fit.
+pub fn read_control(text: &str, plant: Option<&str>) -> (Control, Vec<Diagnostic>) {
+    let parsed = rmpl::control::parse(text);
+    if parsed.has_errors() {
+        return (Control::Nothing, parsed.diagnostics);
+    }
+    let ControlFile { definitions, classes, instances } = &parsed.file;
+    match (definitions.is_empty(), classes.is_empty() && instances.is_empty()) {
+        (true, true) => (Control::Nothing, parsed.diagnostics),
+        (true, false) => {
+            let (model, found) = plant::compile(&parsed.file);
+            let control = model.map_or(Control::Nothing, |model| Control::Plant(Box::new(model)));
+            (control, joined(parsed.diagnostics, found))
+        }
+        (false, false) => {
+            let compiled = System::compile(text, None);
+            let control = compiled.system.map_or(Control::Nothing, |system| Control::Bound(Box::new(system)));
+            (control, compiled.program_diagnostics)
+        }
+        (false, true) => {
+            if let Some(system) = plant.and_then(|plant| System::compile(text, Some(plant)).system) {
+                return (Control::Bound(Box::new(system)), parsed.diagnostics);
+            }
+            let compiled = hca::compile_text(text, &Vocabulary::default());
+            let is_wrong = compiled.diagnostics.iter().any(|found| found.severity == Severity::Error);
+            let automaton = compiled.automaton.filter(|_| !is_wrong);
+            let control = automaton.map_or(Control::Nothing, |it| Control::Unbound(Box::new(it)));
+            (control, compiled.diagnostics)
+        }
+    }
+}
+
+fn joined(mut diagnostics: Vec<Diagnostic>, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    diagnostics.extend(found);
+    diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
+    diagnostics
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PROGRAM: &str = "Main ():: (WHEN-DONEXT (Lamp = On) (Lamp = Off))";
+    const PLANT: &str = "(DEFCLASS Lamp () (COMMAND cmd {none on off}) (MODE Off true) (MODE On true)
+        (TRANSITION On Off (cmd = off)) (TRANSITION Off On (cmd = on)))
+        (DEFINSTANCE Lamp Lamp INIT On)";
+
+    #[test]
+    fn a_program_takes_the_plant_beside_it_or_the_one_that_is_given() {
+        let together = format!("{PROGRAM}\n{PLANT}");
+        let (control, found) = read_control(&together, None);
+        assert!(matches!(control, Control::Bound(_)), "{found:?}");
+        assert!(matches!(read_control(PROGRAM, Some(PLANT)).0, Control::Bound(_)));
+    }
+
+    #[test]
+    fn a_program_that_does_not_fit_the_given_plant_stands_alone() {
+        let other = PROGRAM.replace("Lamp", "Engine");
+        let (control, found) = read_control(&other, Some(PLANT));
+        assert!(matches!(control, Control::Unbound(_)), "{found:?}");
+        assert!(found.is_empty(), "{found:?}");
+    }
+
+    #[test]
+    fn a_plant_alone_is_no_error_and_a_broken_text_tells_where() {
+        let (control, found) = read_control(PLANT, None);
+        assert!(matches!(control, Control::Plant(_)) && found.is_empty(), "{found:?}");
+        let (control, found) = read_control("Main ():: (WHEN-DONEXT (Lamp = On)", None);
+        assert!(matches!(control, Control::Nothing) && !found.is_empty());
+    }
+}
