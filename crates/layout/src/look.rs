@@ -5,7 +5,7 @@ use tpn::{ArcId, ArcKind, NodeId, Plan, Role};
 
 use crate::drawing::{BlockForm, Item, Route};
 use crate::geometry::Point;
-use crate::metrics::{ARROW_HALF_BREADTH, ARROW_LENGTH, TextRole};
+use crate::metrics::{ARROW_HALF_BREADTH, ARROW_LENGTH, TextRole, VERTEX_RADIUS};
 use crate::overlay::OverlayKind;
 
 /// A colour by its meaning; painters bring the colours.
@@ -144,22 +144,27 @@ pub fn arc_stroke(kind: ArcKind, route: Route, standing: Standing) -> Stroke {
     Stroke { ink, width, dash }
 }
 
-/// The rim of a node.
-pub fn node_stroke(role: Role, standing: Standing) -> Stroke {
+/// The rim of a node of this role and radius.
+pub fn node_stroke(role: Role, radius: f64, standing: Standing) -> Stroke {
     let ink = match (standing, role) {
         (Standing::Unselected, _) => Ink::PathUnselected,
         (_, Role::Decision) => Ink::Decision,
         _ => Ink::Path,
     };
-    Stroke::solid(ink, if standing == Standing::Selected { 2.2 } else { 1.4 })
+    let width = match standing {
+        _ if radius <= VERTEX_RADIUS => 0.5,
+        Standing::Selected => 2.2,
+        Standing::Plain | Standing::Unselected => 1.4,
+    };
+    Stroke::solid(ink, width)
 }
 
-/// The inside of a node.
-pub fn node_fill(role: Role, standing: Standing) -> Ink {
-    match (role, standing) {
-        (Role::Structural, Standing::Unselected) => Ink::PathUnselected,
-        (Role::Structural, _) => Ink::Path,
-        _ => Ink::NodeFill,
+/// The inside of a node of this role and radius; dots are filled.
+pub fn node_fill(role: Role, radius: f64, standing: Standing) -> Ink {
+    match standing {
+        _ if role != Role::Structural && radius > VERTEX_RADIUS => Ink::NodeFill,
+        Standing::Unselected => Ink::PathUnselected,
+        Standing::Plain | Standing::Selected => Ink::Path,
     }
 }
 

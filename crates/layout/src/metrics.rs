@@ -81,10 +81,10 @@ impl TextRole {
     pub const fn size(self) -> f64 {
         match self {
             Self::Name | Self::Title => 13.0,
-            Self::Quiet => 12.0,
+            Self::Quiet | Self::Node => 12.0,
             Self::Bounds | Self::Ask | Self::Tell => 11.5,
             Self::Window => 10.5,
-            Self::Node | Self::ZeroBounds => 10.0,
+            Self::ZeroBounds => 10.0,
         }
     }
 

@@ -5,7 +5,7 @@ use tpn::{LabelId, Network, NodeId, Plan, Role};
 
 use crate::drawing::{Item, NetworkDrawing, TextShape};
 use crate::geometry::{Piece, Point, Rect, curve_bounds};
-use crate::metrics::{TextRole, VERTEX_RADIUS};
+use crate::metrics::{EVENT_RADIUS, TextRole, VERTEX_RADIUS};
 use crate::text::{Measure, bounds_label, text_width};
 
 /// A curve over the drawing.
@@ -34,6 +34,10 @@ pub enum OverlayKind {
     NegativeCycle,
 }
 
+/// How far above the line of a row its texts end.
+const ABOVE_ROW: f64 = 27.0;
+/// Radius of the corners of a way between rows.
+const CORNER: f64 = 9.0;
 /// How far a curve between two places on one line hangs below it.
 const SAG: (f64, f64) = (34.0, 150.0);
 
@@ -105,7 +109,7 @@ pub fn windows(
         .collect()
 }
 
-/// A curve from node to node, whatever lies between.
+/// A curve from node to node: between the rows where they are on different ones, below a shared one.
 pub fn between_nodes(
     drawing: &NetworkDrawing,
     kind: OverlayKind,
@@ -114,8 +118,39 @@ pub fn between_nodes(
     to: NodeId,
 ) -> OverlayCurve {
     let radius = |node: NodeId| drawing.node(node).map_or(0.0, |shape| shape.radius);
-    let (start, piece) = free_curve(drawing.anchor(from), radius(from), drawing.anchor(to), radius(to));
-    curve(kind, number, start, vec![piece])
+    let (source, target) = (drawing.anchor(from), drawing.anchor(to));
+    if (target.y - source.y).abs() < ABOVE_ROW + EVENT_RADIUS {
+        let (start, piece) = free_curve(source, radius(from), target, radius(to));
+        return curve(kind, number, start, vec![piece]);
+    }
+    let (start, pieces) = between_rows(source, radius(from), target, radius(to));
+    curve(kind, number, start, pieces)
+}
+
+/// A way that leaves upright, runs level just above the lower of two rows, where no texts are, and arrives upright.
+fn between_rows(from: Point, from_radius: f64, to: Point, to_radius: f64) -> (Point, Vec<Piece>) {
+    let downwards = if to.y > from.y { 1.0 } else { -1.0 };
+    let run = from.y.max(to.y) - ABOVE_ROW;
+    let across = if to.x > from.x { 1.0 } else { -1.0 };
+    let corner = ((to.x - from.x).abs() / 2.0).min(CORNER);
+    let start = from.shifted(0.0, from_radius * downwards);
+    let end = to.shifted(0.0, -to_radius * downwards);
+    let pieces = vec![
+        Piece::Line(Point::new(from.x, run - corner * downwards)),
+        Piece::Cubic(
+            Point::new(from.x, run),
+            Point::new(from.x, run),
+            Point::new(from.x + corner * across, run),
+        ),
+        Piece::Line(Point::new(to.x - corner * across, run)),
+        Piece::Cubic(
+            Point::new(to.x, run),
+            Point::new(to.x, run),
+            Point::new(to.x, run + corner * downwards),
+        ),
+        Piece::Line(end),
+    ];
+    (start, pieces)
 }
 
 /// The start and the only piece of a curve between two circles. On one line it hangs below, where the arches are not.

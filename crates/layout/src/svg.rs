@@ -74,8 +74,8 @@ pub fn svg(drawing: &NetworkDrawing, network: &Network, options: &SvgOptions<'_>
     }
     for node in &drawing.nodes {
         let standing = look::node_standing(options.plan, node.id);
-        let stroke = look::node_stroke(node.role, standing);
-        canvas.circle(node.center, node.radius, look::node_fill(node.role, standing), stroke);
+        let stroke = look::node_stroke(node.role, node.radius, standing);
+        canvas.circle(node.center, node.radius, look::node_fill(node.role, node.radius, standing), stroke);
         if node.role == Role::Decision {
             canvas.circle(
                 node.center,

@@ -60,7 +60,7 @@ impl ArcTexts {
             let width = text_width(&text, role, measure);
             runs.push(Run { text, role, width, line, owner });
         };
-        if let Some((text, role)) = arc_name(network, options, arc) {
+        if let Some((text, role)) = arc_name(network, options, id, arc) {
             let text = cut_to_width(&text, role, options.longest_name, measure);
             push(&mut self.runs, text, role, -1, Item::Arc(id));
         }
@@ -164,11 +164,12 @@ fn bounds_text(arc: &Arc, options: &Options) -> Option<(SmolStr, TextRole)> {
 }
 
 /// The name written on an arc; assertions are named by their labels.
-fn arc_name(network: &Network, options: &Options, arc: &Arc) -> Option<(SmolStr, TextRole)> {
+fn arc_name(network: &Network, options: &Options, id: ArcId, arc: &Arc) -> Option<(SmolStr, TextRole)> {
     let occurrence = network.occurrences.get(arc.occurrence?.index())?;
     let is_named = match arc.kind {
         ArcKind::Activity | ArcKind::Composite | ArcKind::Delay => true,
-        ArcKind::Span => occurrence.kind == OccurrenceKind::Scenario,
+        // A scenario's own arc, and that of a traverse over its path.
+        ArcKind::Span => occurrence.arc == Some(id),
         _ => false,
     };
     if !is_named {

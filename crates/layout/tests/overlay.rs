@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{draw, enroute};
+use common::{draw, enroute, segment_meets_rect};
 use layout::overlay::{causal_links, negative_cycle, orderings, windows};
 use layout::{Item, Options, Palette, SvgOptions, approximate_text_width};
 use rmpl::{Bound, Rational};
@@ -139,4 +139,20 @@ fn the_exported_picture_shows_the_plan_and_the_theme() {
     assert!(!export(&Palette::LIGHT, None).contains(grey));
     assert!(export(&Palette::DARK, Some(&plan)).contains("fill=\"#13171d\""));
     assert!(light.contains("stroke-dasharray"), "the causal link is dashed");
+}
+
+#[test]
+fn an_ordering_between_rows_runs_over_no_text() {
+    let network = enroute();
+    let drawing = draw(&network);
+    let plan = plan(&network);
+    for curve in orderings(&drawing, &network, &plan) {
+        let line = layout::geometry::flatten(curve.start, &curve.pieces);
+        for ends in line.windows(2) {
+            let over = drawing.texts.iter().find(|text| {
+                !matches!(text.owner, Item::Node(_)) && segment_meets_rect(ends[0], ends[1], text.rect)
+            });
+            assert!(over.is_none(), "the ordering runs over {over:?}");
+        }
+    }
 }
