@@ -48,20 +48,24 @@ export function createApi(loaded) {
       frontEnd = started;
       mirror = itsMirror;
     },
-    /** A frame was drawn, with this version of the state. */
+    /** A frame was drawn, with this version of the state; answers whether it is a new one. */
     frameDrawn(current) {
       frames += 1;
-      if (current === version) return;
+      if (current === version) return false;
       version = current;
-      if (subscribers.size === 0) return;
-      const state = enroute.state();
-      for (const { callback } of [...subscribers]) {
-        try {
-          callback(state);
-        } catch (error) {
-          reportError(error);
-        }
-      }
+      if (subscribers.size > 0) tellSubscribers();
+      return true;
     },
   };
+
+  function tellSubscribers() {
+    const state = enroute.state();
+    for (const { callback } of [...subscribers]) {
+      try {
+        callback(state);
+      } catch (error) {
+        reportError(error);
+      }
+    }
+  }
 }

@@ -6,6 +6,7 @@ import { startCore } from "./core.js";
 import { chooseFile, saveFile } from "./files.js";
 import { fetchWithProgress, hideLoading, showFailure, showStep } from "./loading.js";
 import { createMirror } from "./mirror.js";
+import { keepForNextLoad, remember, takeRescued } from "./rescue.js";
 import { keepShortcutsFromBrowser } from "./shortcuts.js";
 
 const canvas = document.getElementById("canvas");
@@ -16,32 +17,38 @@ async function load() {
   showStep("Starting");
   await init({ module_or_path: module });
   const mirror = createMirror(document.getElementById("accessibility"), canvas);
-  const frontEnd = await start(canvas, {
+  let frontEnd = null;
+  const glue = {
     startCore,
     chooseFile,
     saveFile,
     // Called while a frame is being drawn. What it leads to must wait until the frame is done.
     frameDrawn: () => queueMicrotask(settle),
-  });
+  };
 
   function settle() {
+    if (!frontEnd) return;
     const change = frontEnd.takeAccessibilityChange();
     if (change) mirror.apply(change);
-    api.frameDrawn(frontEnd.stateVersion());
+    if (api.frameDrawn(frontEnd.stateVersion())) remember(() => frontEnd.source());
   }
 
+  frontEnd = await start(canvas, glue);
   mirror.onAct((element, act) => frontEnd.act(element, JSON.stringify(act)));
   api.connect(frontEnd, mirror);
   keepShortcutsFromBrowser(window, usesKey);
   hideLoading();
+  const rescued = takeRescued();
+  if (rescued !== null) frontEnd.setSource(rescued);
 }
 
 // A panic of the front end surfaces here, from whichever event led to it.
 window.addEventListener("error", ({ error }) => {
   if (error instanceof WebAssembly.RuntimeError) {
+    keepForNextLoad();
     showFailure(
       "Enroute has stopped",
-      "This is a fault in Enroute. What you typed was kept in this browser; loading the page again brings it back.",
+      "This is a fault in Enroute. Your text is kept; loading the page again brings it back.",
       error,
     );
   }

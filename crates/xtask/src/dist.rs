@@ -141,7 +141,7 @@ fn report(dist: &Path) -> Result<()> {
     let mut download = 0;
     for name in files_under(dist, Path::new(""))? {
         let shown = name.to_string_lossy().replace('\\', "/");
-        if shown.ends_with(".br") || shown.ends_with(".gz") {
+        if name.extension().is_some_and(|suffix| suffix == "br" || suffix == "gz") {
             continue;
         }
         let size = fs::metadata(dist.join(&name))?.len();

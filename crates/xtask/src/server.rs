@@ -24,7 +24,7 @@ const PORTS_TRIED: u16 = 50;
 const LONGEST_HEAD: usize = 64 * 1024;
 
 /// How long a connection may say nothing; browsers open some in advance that they never use.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_mins(1);
 
 /// Asked by a page that wants to be loaded anew when it was rebuilt; answers how often that happened.
 const BUILDS_PATH: &str = "/dev/builds";

@@ -11,9 +11,11 @@ fn frame(context: &Context, draw: impl FnMut(&mut Ui)) {
         screen_rect: Some(Rect::from_min_size(pos2(0.0, 0.0), vec2(400.0, 300.0))),
         ..RawInput::default()
     };
-    let _ = context.run_ui(input, |ui| {
+    let mut output = context.run_ui(input, |ui| {
         CentralPanel::default().show(ui, |ui| draw(ui));
     });
+    // Nothing is painted here.
+    output.textures_delta.clear();
 }
 
 fn mirrored() -> Context {

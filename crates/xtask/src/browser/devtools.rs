@@ -1,4 +1,4 @@
-//! The DevTools protocol: calls with answers, and events, as JSON over a web socket.
+//! The `DevTools` protocol: calls with answers, and events, as JSON over a web socket.
 //!
 //! Synchronous on purpose: a test does one thing after the other. The protocol is described at
 //! <https://chromedevtools.github.io/devtools-protocol/>.
@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 use tungstenite::{Message, WebSocket};
 
 /// How long a call may take; software rendering and compiling a page's wasm on a busy machine are slow.
-const CALL_LIMIT: Duration = Duration::from_secs(180);
+const CALL_LIMIT: Duration = Duration::from_mins(3);
 
 /// A connection to a browser.
 pub(super) struct Connection {

@@ -53,7 +53,7 @@ impl BitOr for Modifiers {
     }
 }
 
-/// How the DevTools protocol spells a key press.
+/// How the `DevTools` protocol spells a key press.
 pub(super) struct Spelling {
     /// What the key means: `a`, `Enter`.
     pub(super) key: String,

@@ -32,7 +32,7 @@ pub use tab::{Tab, Widget};
 use devtools::Connection;
 
 /// How long Chromium may take to start.
-const START_LIMIT: Duration = Duration::from_secs(60);
+const START_LIMIT: Duration = Duration::from_mins(1);
 
 /// What the canvas is drawn with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

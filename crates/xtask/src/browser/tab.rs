@@ -323,7 +323,7 @@ impl Tab {
         Picture::decode(&decode_picture(&answer)?)
     }
 
-    /// Calls a method of the DevTools protocol for this tab.
+    /// Calls a method of the `DevTools` protocol for this tab.
     pub fn call(&self, method: &str, params: &Value) -> Result<Value> {
         self.connection.borrow_mut().call(Some(&self.session), method, params)
     }

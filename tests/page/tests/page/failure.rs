@@ -57,3 +57,21 @@ fn a_core_that_never_ends_is_given_up_for_a_newer_text() -> Result<()> {
     page.tab.evaluate("enroute.dispatch('edit.undo')")?;
     page.wait_for("state.status === 'plan' && state.answeredRevision === state.revision")
 }
+
+#[test]
+fn a_front_end_that_stops_gives_the_text_back_when_the_page_is_loaded_again() -> Result<()> {
+    let page = Opened::planned()?;
+    page.tab.evaluate("enroute.setSource('A()[l,u] = { Work()[1,2] }')")?;
+    page.settle()?;
+    // The text is remembered now and then; a fault before that would bring the text before back.
+    page.tab.wait_until(
+        "(window.dispatchEvent(new ErrorEvent('error', { error: new WebAssembly.RuntimeError('unreachable') })),
+          sessionStorage.getItem('enroute/rescued') === enroute.source())",
+    )?;
+    page.tab.wait_until("document.querySelector('#loading[role=alert]')?.innerText.includes('Your text is kept')")?;
+    page.tab.evaluate("window.isOldPage = true; document.querySelector('#loading button').click()")?;
+    page.tab.wait_until("!('isOldPage' in window) && 'enroute' in window")?;
+    page.tab.wait_until_ready()?;
+    page.tab.wait_until("enroute.source() === 'A()[l,u] = { Work()[1,2] }'")?;
+    Ok(())
+}
