@@ -199,7 +199,7 @@ fn block(network: &mut Network, occurrence: OccurrenceId) {
 }
 
 /// Tells of a blocked traverse what blocks it, instead of the contradiction that stands for it.
-fn name_blocked(outcome: &mut Outcome, network: &Network, undrivable: &[Undrivable]) {
+pub(crate) fn name_blocked(outcome: &mut Outcome, network: &Network, undrivable: &[Undrivable]) {
     let Some(failure) = &mut outcome.failure else { return };
     for reason in &mut failure.reasons {
         let blocked = reason.cycle.iter().find_map(|member| {

@@ -147,3 +147,22 @@ fn a_broken_text_still_gets_a_complete_answer_with_its_problems() {
     assert!(snapshot.network.is_none());
     assert!(!snapshot.problems.is_empty());
 }
+
+#[test]
+fn an_answer_with_a_recorded_search_survives_the_way_to_the_page() {
+    let mut collected = Collected::default();
+    let update = Update {
+        revision: 1,
+        source: include_str!("../../../assets/missions/backjump.rmpl").into(),
+        goal: Goal::Default,
+        search: mission::SearchKind::Chronological,
+        seed: 1,
+        trace: true,
+    };
+    Core::default().handle(Request::Update(update), &mut collected);
+    let last = collected.snapshots.pop().expect("it is answered");
+    assert!(last.planning.as_ref().is_some_and(|planning| planning.outcome.trace.is_some()));
+    let bytes = postcard::to_stdvec(&Response::Snapshot(Arc::clone(&last))).expect("it can be written");
+    let back: Response = postcard::from_bytes(&bytes).expect("it can be read");
+    assert_eq!(back, Response::Snapshot(last));
+}

@@ -81,6 +81,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         _ => args.plan_network(&network, options),
     };
     let plan_millis = millis_since(begun);
+    if let Some(file) = &args.trace {
+        let trace = planned.planning.outcome.trace.as_ref().context("the search left no trace")?;
+        std::fs::write(file, kirk::trace_json_lines(&planned.network, trace))
+            .with_context(|| format!("cannot write {}", file.display()))?;
+    }
     let outcome = &planned.planning.outcome;
     match args.format {
         Format::Json => {

@@ -27,8 +27,8 @@ impl Camera {
         Self {
             target_m: center_m,
             yaw_rad: std::f32::consts::FRAC_PI_2,
-            pitch_rad: 0.85,
-            distance_m: size_m * 1.15,
+            pitch_rad: 0.95,
+            distance_m: size_m * 1.32,
         }
     }
 
@@ -73,7 +73,8 @@ impl Camera {
 
     /// Moves the target so that the ground follows a drag of so many points in an image of this height.
     pub fn pan(&mut self, drag: Vec2, image_height: f32) {
-        let metres_per_point = 2.0 * self.distance_m * (FIELD_OF_VIEW_RAD / 2.0).tan() / image_height.max(1.0);
+        let metres_per_point =
+            2.0 * self.distance_m * (FIELD_OF_VIEW_RAD / 2.0).tan() / image_height.max(1.0);
         let ahead = Vec3::new(self.yaw_rad.cos(), self.yaw_rad.sin(), 0.0);
         let slant = self.pitch_rad.sin().max(0.25);
         self.target_m -= self.right() * drag.x * metres_per_point;

@@ -66,7 +66,11 @@ fn outside(clip_from_world: &Mat4, low: Vec3, high: Vec3) -> bool {
         *clip_from_world * Vec4::new(pick(0, 0), pick(1, 1), pick(2, 2), 1.0)
     });
     let all = |test: &dyn Fn(&Vec4) -> bool| corners.iter().all(test);
-    all(&|c| c.x < -c.w) || all(&|c| c.x > c.w) || all(&|c| c.y < -c.w) || all(&|c| c.y > c.w) || all(&|c| c.w < 0.0)
+    all(&|c| c.x < -c.w)
+        || all(&|c| c.x > c.w)
+        || all(&|c| c.y < -c.w)
+        || all(&|c| c.y > c.w)
+        || all(&|c| c.w < 0.0)
 }
 
 #[cfg(test)]

@@ -86,9 +86,12 @@ impl Scene<'_> {
         }
         let near_m = 10.0 * self.camera.distance_m / size.y.max(1.0);
         let on_path = |points: &[[f64; 2]]| {
-            points.windows(2).any(|pair| segment_distance(hit, scene::place(pair[0]), scene::place(pair[1])) < near_m)
+            points
+                .windows(2)
+                .any(|pair| segment_distance(hit, scene::place(pair[0]), scene::place(pair[1])) < near_m)
         };
-        let traverse = self.snapshot.traverses.iter().find(|it| it.legs.iter().any(|leg| on_path(&leg.points_m)));
+        let traverse =
+            self.snapshot.traverses.iter().find(|it| it.legs.iter().any(|leg| on_path(&leg.points_m)));
         traverse.map_or(Selection::None, |it| Selection::Occurrence(it.occurrence))
     }
 }
@@ -198,7 +201,8 @@ fn contains(shape: &ObstacleShape, point: Vec2) -> bool {
             let corners: Vec<Vec2> = corners_m.iter().map(|&corner| scene::place(corner)).collect();
             let sides = corners.iter().zip(corners.iter().cycle().skip(1));
             let crossings = sides.filter(|(a, b)| {
-                (a.y > point.y) != (b.y > point.y) && point.x < a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x)
+                (a.y > point.y) != (b.y > point.y)
+                    && point.x < a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x)
             });
             crossings.count() % 2 == 1
         }
@@ -219,7 +223,8 @@ fn segment_distance(point: Vec2, from: Vec2, to: Vec2) -> f32 {
 mod tests {
     use super::*;
 
-    const TEXT: &str = "location A (1, 2);\nobstacle O circle (10, 10, 3);\nobstacle P polygon (0, 0, 4, 0, 4, 4);\n";
+    const TEXT: &str =
+        "location A (1, 2);\nobstacle O circle (10, 10, 3);\nobstacle P polygon (0, 0, 4, 0, 4, 4);\n";
 
     fn after(what: &Dragged, now_m: Vec2, step_m: Vec2) -> String {
         let parse = rmpl::parse(TEXT);

@@ -64,9 +64,10 @@ impl Ground {
         let floor = cell.floor();
         let part = cell - floor;
         let (column, row) = (floor.x as i64, floor.y as i64);
-        let south = self.cell_height(column, row) * (1.0 - part.x) + self.cell_height(column + 1, row) * part.x;
-        let north =
-            self.cell_height(column, row + 1) * (1.0 - part.x) + self.cell_height(column + 1, row + 1) * part.x;
+        let south =
+            self.cell_height(column, row) * (1.0 - part.x) + self.cell_height(column + 1, row) * part.x;
+        let north = self.cell_height(column, row + 1) * (1.0 - part.x)
+            + self.cell_height(column + 1, row + 1) * part.x;
         south * (1.0 - part.y) + north * part.y
     }
 
@@ -94,7 +95,10 @@ impl Ground {
     /// Whether a place is on the map.
     pub fn contains(&self, place_m: Vec2) -> bool {
         let cell = (place_m - self.origin_m) / self.cell_m;
-        cell.x >= 0.0 && cell.y >= 0.0 && cell.x <= (self.width - 1) as f32 && cell.y <= (self.height - 1) as f32
+        cell.x >= 0.0
+            && cell.y >= 0.0
+            && cell.x <= (self.width - 1) as f32
+            && cell.y <= (self.height - 1) as f32
     }
 
     /// Where a ray first meets the ground on the map.

@@ -75,17 +75,20 @@ pub fn toolbar(
                 }
             })
             .response
+            .accessible_name("Colours of the ground")
             .on_hover_text("What the colours of the ground mean");
-        for (value, name, help) in [
-            (&mut view.paths, "Paths", "The paths of the plan's traverses"),
-            (&mut view.trees, "Trees", "The search trees that found the paths"),
-            (&mut view.names, "Names", "Names of places and vehicles"),
-            (&mut view.obstacles, "Obstacles", "Declared obstacles"),
-            (&mut view.contours, "Contours", "Lines of equal height"),
-            (&mut view.grid, "Grid", "A grid in mission coordinates"),
-        ] {
-            ui.toggle_value(value, name).on_hover_text(help);
-        }
+        ui.menu_button("Show", |ui| {
+            for (value, name, help) in [
+                (&mut view.paths, "Paths", "The paths of the plan's traverses"),
+                (&mut view.trees, "Search trees", "The trees that found the paths"),
+                (&mut view.names, "Names", "Names of places and vehicles"),
+                (&mut view.obstacles, "Obstacles", "Declared obstacles"),
+                (&mut view.contours, "Contours", "Lines of equal height"),
+                (&mut view.grid, "Grid", "A grid in mission coordinates"),
+            ] {
+                ui.checkbox(value, name).on_hover_text(help);
+            }
+        });
         if let Some(camera) = camera
             && ui.button("Top view").on_hover_text("Look straight down, north up").clicked()
         {
@@ -94,13 +97,16 @@ pub fn toolbar(
         let vehicles = &snapshot.program.world.vehicles;
         if !vehicles.is_empty() {
             let name = |index: usize| vehicles.get(index).map_or("", |vehicle| vehicle.name.text.as_str());
-            let shown = follow.map_or_else(|| "Free camera".to_owned(), |index| format!("Follow {}", name(index)));
-            egui::ComboBox::from_id_salt("terrain-follow").selected_text(shown).show_ui(ui, |ui| {
-                ui.selectable_value(follow, None, "Free camera");
-                for index in 0..vehicles.len() {
-                    ui.selectable_value(follow, Some(index), format!("Follow {}", name(index)));
-                }
-            });
+            let shown =
+                follow.map_or_else(|| "Free camera".to_owned(), |index| format!("Follow {}", name(index)));
+            let picker =
+                egui::ComboBox::from_id_salt("terrain-follow").selected_text(shown).show_ui(ui, |ui| {
+                    ui.selectable_value(follow, None, "Free camera");
+                    for index in 0..vehicles.len() {
+                        ui.selectable_value(follow, Some(index), format!("Follow {}", name(index)));
+                    }
+                });
+            picker.response.accessible_name("Camera");
         }
     });
 }
@@ -174,9 +180,13 @@ impl Overlay<'_> {
     fn tag(&self, point_m: Vec3, text: &str, color: Color32, matters: bool, taken: &mut Vec<Rect>) {
         let Some(at) = self.at(point_m).filter(|at| self.rect.contains(*at)) else { return };
         let galley = self.painter.layout_no_wrap(text.to_owned(), FontId::proportional(size::SMALL), color);
-        let plate = Rect::from_center_size(at - vec2(0.0, 9.0), galley.size() + vec2(8.0, 3.0));
+        let mut plate = Rect::from_center_size(at - vec2(0.0, 9.0), galley.size() + vec2(8.0, 3.0));
         if !matters && taken.iter().any(|other| other.intersects(plate)) {
             return;
+        }
+        // Names that matter are stacked instead.
+        while let Some(other) = taken.iter().find(|other| other.intersects(plate)) {
+            plate = plate.translate(vec2(0.0, other.top() - plate.bottom() - 2.0));
         }
         taken.push(plate);
         let tokens = self.tokens();
@@ -204,7 +214,8 @@ impl Overlay<'_> {
         let width = length_m * points_per_m;
         let right_end = self.rect.right_bottom() - vec2(MARGIN * 2.0, MARGIN * 2.0);
         let left_end = right_end - vec2(width, 0.0);
-        let label = if length_m >= 1000.0 { format!("{} km", length_m / 1000.0) } else { format!("{length_m} m") };
+        let label =
+            if length_m >= 1000.0 { format!("{} km", length_m / 1000.0) } else { format!("{length_m} m") };
         let plate = Rect::from_min_max(left_end - vec2(MARGIN, 18.0), right_end + vec2(MARGIN, 7.0));
         self.plate(plate);
         let stroke = Stroke::new(1.5, self.tokens().text);
@@ -266,11 +277,14 @@ impl Overlay<'_> {
         for step in 0..steps {
             let part = step as f32 / steps as f32;
             let top = bar.bottom() - (part + 1.0 / steps as f32) * bar.height();
-            let cell = Rect::from_min_size(pos2(bar.left(), top), vec2(bar.width(), bar.height() / steps as f32 + 0.5));
+            let cell = Rect::from_min_size(
+                pos2(bar.left(), top),
+                vec2(bar.width(), bar.height() / steps as f32 + 0.5),
+            );
             self.painter.rect_filled(cell, 0.0, Tokens::ramp(part));
         }
         let font = FontId::proportional(size::SMALL);
-        let mut write = |at: Pos2, align, text: &str| {
+        let write = |at: Pos2, align, text: &str| {
             self.painter.text(at, align, text, font.clone(), tokens.text);
         };
         write(bar.left_top() - vec2(2.0, 4.0), Align2::LEFT_BOTTOM, title);
@@ -285,7 +299,9 @@ mod tests {
 
     #[test]
     fn steps_are_round_numbers_below_the_value() {
-        for (value, expected) in [(1.0, 1.0), (3.0, 2.0), (7.0, 5.0), (49.0, 20.0), (0.7, 0.5), (900.0, 500.0)] {
+        for (value, expected) in
+            [(1.0, 1.0), (3.0, 2.0), (7.0, 5.0), (49.0, 20.0), (0.7, 0.5), (900.0, 500.0)]
+        {
             assert!((round_step(value) - expected).abs() < 1e-4, "{value}: {}", round_step(value));
         }
     }

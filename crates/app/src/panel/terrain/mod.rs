@@ -76,7 +76,10 @@ impl Panel for TerrainPanel {
         let mut view = views.terrain.clone();
         hud::toolbar(ui, &mut view, self.camera.as_mut(), &mut self.follow, snapshot);
         if view != views.terrain {
-            commands.send(Command::SetViews(Box::new(crate::state::Views { terrain: view.clone(), ..views.clone() })));
+            commands.send(Command::SetViews(Box::new(crate::state::Views {
+                terrain: view.clone(),
+                ..views.clone()
+            })));
         }
         let map = snapshot.map.as_ref().and_then(|key| context.state.maps.get(key));
         self.show_ground(context, snapshot, map, &view);
@@ -97,7 +100,8 @@ impl TerrainPanel {
         let is_shown =
             self.ground.as_ref().is_some_and(|it| it.key == key && it.height_scale == view.height_scale);
         if !is_shown {
-            let ground = map.map_or_else(|| Ground::flat(Vec2::ZERO, 300.0), |map| from_map(map, view.height_scale));
+            let ground =
+                map.map_or_else(|| Ground::flat(Vec2::ZERO, 300.0), |map| from_map(map, view.height_scale));
             let is_new_place = self.ground.as_ref().is_none_or(|before| before.key != key);
             if is_new_place || self.camera.is_none() {
                 self.camera = Some(Camera::overview(ground.center_m(), ground.size_m().max_element()));
@@ -125,7 +129,7 @@ impl TerrainPanel {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let described = describe(snapshot, context.state.playback.time);
         response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::WidgetType::Image, true, format!("Terrain. {described}"))
+            egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Terrain. {described}"))
         });
         let (Some(camera), Some(shown)) = (self.camera, &self.ground) else { return };
         let mut moved = camera;
@@ -144,7 +148,8 @@ impl TerrainPanel {
             follow_action(action, &mut moved, &shown.ground, snapshot, &context.state.selection);
         }
         let time = context.state.playback.time;
-        if let Some((place, _)) = self.follow.and_then(|vehicle| scene::vehicle_pose(snapshot, vehicle, time)) {
+        if let Some((place, _)) = self.follow.and_then(|vehicle| scene::vehicle_pose(snapshot, vehicle, time))
+        {
             moved.target_m = shown.ground.drape(place, 0.5);
         } else {
             moved.target_m.z = shown.ground.height_at(moved.target_m.truncate());
@@ -161,18 +166,28 @@ impl TerrainPanel {
         } else {
             painter.rect_filled(rect, 0.0, context.tokens.sunken);
         }
-        let overlay = hud::Overlay { painter: &painter, rect, camera: &moved, ground: &shown.ground, snapshot, context, view };
+        let overlay = hud::Overlay {
+            painter: &painter,
+            rect,
+            camera: &moved,
+            ground: &shown.ground,
+            snapshot,
+            context,
+            view,
+        };
         overlay.paint(response.hover_pos());
         if response.clicked()
             && let Some(pointer) = response.interact_pointer_pos()
         {
-            let hit = drag::Scene { rect, camera: &moved, ground: &shown.ground, snapshot, context }.pick(pointer);
+            let hit =
+                drag::Scene { rect, camera: &moved, ground: &shown.ground, snapshot, context }.pick(pointer);
             commands.send(Command::SelectAndReveal(hit));
         }
         if response.double_clicked()
             && let Some(pointer) = response.interact_pointer_pos()
         {
-            let (origin, direction) = moved.ray(Vec2::new(pointer.x - rect.min.x, pointer.y - rect.min.y), size);
+            let (origin, direction) =
+                moved.ray(Vec2::new(pointer.x - rect.min.x, pointer.y - rect.min.y), size);
             if let Some(hit) = shown.ground.hit(origin, direction) {
                 moved.target_m = hit;
                 moved.zoom(0.5);
@@ -274,8 +289,12 @@ fn frame(
     let sun = Vec3::new(-0.55, 0.45, 0.70).normalize();
     let horizon = hud::rgba(tokens.sunken);
     let scale = hud::vehicle_scale(camera.distance_m);
-    let options =
-        SceneOptions { trees: view.trees, paths: view.paths, obstacles: view.obstacles, vehicle_scale: scale };
+    let options = SceneOptions {
+        trees: view.trees,
+        paths: view.paths,
+        obstacles: view.obstacles,
+        vehicle_scale: scale,
+    };
     let selection = &context.state.selection;
     let palette = palette(context);
     let time = context.state.playback.time;
@@ -316,7 +335,7 @@ fn palette(context: &Context<'_>) -> ScenePalette {
         [r, g, b, opacity]
     };
     ScenePalette {
-        obstacle: color(tokens.failure, 0.92),
+        obstacle: color(tokens.text_muted, 0.92),
         location: color(tokens.text_on_accent, 1.0),
         selected: color(tokens.accent, 1.0),
         tree: color(tokens.text_on_accent, 0.35),

@@ -176,7 +176,8 @@ fn vehicles(
         let color = if selected { palette.selected } else { own };
         trail(shapes, snapshot, ground, index, time, own);
         let model = motion::vehicle_model(&vehicle.model.text);
-        let (length_m, width_m) = model.map_or((1.0, 0.8), |model| (model.length_m as f32, model.width_m as f32));
+        let (length_m, width_m) =
+            model.map_or((1.0, 0.8), |model| (model.length_m as f32, model.width_m as f32));
         let shape = RoverShape {
             place_m: position,
             heading_rad,
@@ -193,8 +194,17 @@ fn vehicles(
     }
 }
 
-fn trail(shapes: &mut Shapes, snapshot: &Snapshot, ground: &Ground, vehicle: usize, time: f64, color: [f32; 4]) {
-    let Some(motion) = snapshot.motions.iter().find(|motion| motion.vehicle as usize == vehicle) else { return };
+fn trail(
+    shapes: &mut Shapes,
+    snapshot: &Snapshot,
+    ground: &Ground,
+    vehicle: usize,
+    time: f64,
+    color: [f32; 4],
+) {
+    let Some(motion) = snapshot.motions.iter().find(|motion| motion.vehicle as usize == vehicle) else {
+        return;
+    };
     let Some((now, _)) = motion.at(time) else { return };
     let mut before: Option<Vec2> = None;
     for frame in &motion.keyframes {

@@ -42,7 +42,8 @@ const DEPTH_LIFT: f32 = 0.0012;
 
 impl Shapes {
     fn triangle(&mut self, corners: [Vec3; 3], color: [f32; 4]) {
-        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or(Vec3::Z).to_array();
+        let normal =
+            (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or(Vec3::Z).to_array();
         for corner in corners {
             self.triangles.push(ShapeCorner { position_m: corner.to_array(), normal, color });
         }
@@ -93,7 +94,14 @@ impl Shapes {
     }
 
     /// A cylinder around `axis` (a unit vector).
-    pub fn cylinder(&mut self, center_m: Vec3, axis: Vec3, radius_m: f32, half_length_m: f32, color: [f32; 4]) {
+    pub fn cylinder(
+        &mut self,
+        center_m: Vec3,
+        axis: Vec3,
+        radius_m: f32,
+        half_length_m: f32,
+        color: [f32; 4],
+    ) {
         const SIDES: u32 = 14;
         let across = axis.any_orthonormal_vector();
         let other = axis.cross(across);
@@ -125,15 +133,31 @@ impl Shapes {
         let body = base + normal * (wheel * 1.55);
         self.cuboid(body, Vec3::new(length * 0.46, width * 0.34, wheel * 0.55), &turn, rover.color);
         let deck = body + normal * wheel * 0.6;
-        self.cuboid(deck, Vec3::new(length * 0.40, width * 0.30, wheel * 0.06), &turn, [0.09, 0.14, 0.30, 1.0]);
+        self.cuboid(
+            deck,
+            Vec3::new(length * 0.40, width * 0.30, wheel * 0.06),
+            &turn,
+            [0.09, 0.14, 0.30, 1.0],
+        );
         for (along, side) in [(0.33, 1.0), (0.33, -1.0), (-0.33, 1.0), (-0.33, -1.0)] {
             let hub = base + ahead * (length * along) + left * (width * 0.42 * side) + normal * wheel;
             self.cylinder(hub, left, wheel, width * 0.09, dark);
         }
         let mast = deck + ahead * (length * 0.28);
-        self.cylinder(mast + normal * wheel * 0.9, normal, wheel * 0.12, wheel * 0.9, [0.75, 0.75, 0.75, 1.0]);
+        self.cylinder(
+            mast + normal * wheel * 0.9,
+            normal,
+            wheel * 0.12,
+            wheel * 0.9,
+            [0.75, 0.75, 0.75, 1.0],
+        );
         let head = mast + normal * wheel * 1.95;
-        self.cuboid(head, Vec3::new(wheel * 0.25, wheel * 0.55, wheel * 0.28), &turn, [0.92, 0.92, 0.92, 1.0]);
+        self.cuboid(
+            head,
+            Vec3::new(wheel * 0.25, wheel * 0.55, wheel * 0.28),
+            &turn,
+            [0.92, 0.92, 0.92, 1.0],
+        );
     }
 
     /// An airship of this length that floats above `place_m`.
@@ -155,8 +179,12 @@ impl Shapes {
         };
         for ring in 0..RINGS {
             for side in 0..12 {
-                let corners =
-                    [point(ring, side), point(ring + 1, side), point(ring + 1, side + 1), point(ring, side + 1)];
+                let corners = [
+                    point(ring, side),
+                    point(ring + 1, side),
+                    point(ring + 1, side + 1),
+                    point(ring, side + 1),
+                ];
                 self.quad(corners, shape.color);
             }
         }

@@ -1,0 +1,161 @@
+//! Why the alternatives of a choice were not taken: each is planned once more with that alternative, and the answer is
+//! the reason.
+
+use kirk::{ExpansionLimit, Failure, Options, Outcome, Status};
+use rmpl::{Bound, Rational, Span};
+use serde::{Deserialize, Serialize};
+use tpn::{Choice, DecisionId, Network, Plan};
+
+use crate::planning;
+use crate::snapshot::Undrivable;
+
+/// An alternative of a choice.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Alternative {
+    /// Its number, from 0.
+    pub number: u32,
+    /// How its text begins.
+    pub text: String,
+    /// Where it is written.
+    pub span: Option<Span>,
+    /// What became of it.
+    pub fate: Fate,
+}
+
+/// What became of an alternative.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "fate", rename_all = "kebab-case")]
+pub enum Fate {
+    /// The plan takes it.
+    Taken,
+    /// No plan can take it, given the choices before it.
+    Impossible {
+        /// Why.
+        reason: String,
+        /// Places in the text that have to do with it, the most telling first.
+        spans: Vec<Span>,
+    },
+    /// There is a plan with it, before its own paths are looked for; an earlier alternative was preferred.
+    AlsoPossible,
+    /// It was not worked out: too many alternatives, or too long a search.
+    NotExamined,
+}
+
+impl Fate {
+    /// In one sentence, for people.
+    pub fn sentence(&self) -> String {
+        match self {
+            Self::Taken => "taken".to_owned(),
+            Self::Impossible { reason, .. } => format!("impossible: {reason}"),
+            Self::AlsoPossible => {
+                "also possible; the alternative that comes first in the text is preferred".to_owned()
+            }
+            Self::NotExamined => "not examined: too large a search for a review".to_owned(),
+        }
+    }
+}
+
+/// Alternatives that are planned again at most, and how long each search may be.
+const MOST_EXAMINED: usize = 64;
+const MOST_EXPANDED: u64 = 20_000;
+/// Explaining takes many searches; a larger network is asked only whether there is a plan.
+const MOST_EXPLAINED_NODES: usize = 4_000;
+
+/// Plans once more with each alternative that `plan` does not take.
+pub(super) struct Examiner<'input> {
+    pub(super) network: &'input Network,
+    pub(super) plan: &'input Plan,
+    pub(super) undrivable: &'input [Undrivable],
+    pub(super) source: &'input str,
+    examined: usize,
+}
+
+impl<'input> Examiner<'input> {
+    pub(super) fn new(
+        network: &'input Network,
+        plan: &'input Plan,
+        undrivable: &'input [Undrivable],
+        source: &'input str,
+    ) -> Self {
+        Self { network, plan, undrivable, source, examined: 0 }
+    }
+
+    /// The alternatives of a choice, in textual order.
+    pub(super) fn alternatives(&mut self, choice: Choice) -> Vec<Alternative> {
+        let decision = &self.network.decisions[choice.decision.index()];
+        (0..decision.alternatives.len())
+            .map(|index| {
+                let number = index as u32;
+                let span = decision.alternative_spans.get(index).copied();
+                let fate = if number == choice.alternative {
+                    Fate::Taken
+                } else {
+                    self.fate(Choice { alternative: number, ..choice })
+                };
+                Alternative { number, text: self.beginning(span), span, fate }
+            })
+            .collect()
+    }
+
+    fn beginning(&self, span: Option<Span>) -> String {
+        let text = span.and_then(|span| self.source.get(span.range())).unwrap_or("");
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let whole = words.join(" ");
+        const LONGEST: usize = 60;
+        if whole.chars().count() <= LONGEST {
+            return whole;
+        }
+        let cut: String = whole.chars().take(LONGEST - 1).collect();
+        format!("{cut}…")
+    }
+
+    fn fate(&mut self, other: Choice) -> Fate {
+        self.examined += 1;
+        if self.examined > MOST_EXAMINED {
+            return Fate::NotExamined;
+        }
+        let network = self.restricted(other);
+        let options = Options {
+            relax: false,
+            explain: network.nodes.len() <= MOST_EXPLAINED_NODES,
+            ..Options::default()
+        };
+        let mut outcome = kirk::plan(&network, &options, &mut ExpansionLimit(MOST_EXPANDED));
+        planning::name_blocked(&mut outcome, &network, self.undrivable);
+        match outcome.status {
+            Status::Plan => Fate::AlsoPossible,
+            Status::NoPlan => impossible(&outcome, other),
+            Status::Limit | Status::Error => Fate::NotExamined,
+        }
+    }
+
+    /// The network in which earlier decisions are as in the plan and this one is `other`: the arcs to their other
+    /// alternatives would have to take at least one unit and at most none.
+    fn restricted(&self, other: Choice) -> Network {
+        let mut network = self.network.clone();
+        let earlier = self.plan.choices.iter().filter(|choice| choice.decision < other.decision);
+        for choice in earlier.copied().chain([other]) {
+            let arcs = self.network.decisions[choice.decision.index()].alternatives.iter();
+            for (_, arc) in arcs.enumerate().filter(|&(number, _)| number != choice.alternative as usize) {
+                network.arcs[arc.index()].lower = Rational::from(1);
+                network.arcs[arc.index()].upper = Bound::ZERO;
+            }
+        }
+        network
+    }
+}
+
+fn impossible(outcome: &Outcome, other: Choice) -> Fate {
+    let takes = |choices: &[Choice], decision: DecisionId| {
+        choices.iter().find(|choice| choice.decision == decision).map(|choice| choice.alternative)
+    };
+    let reasons = outcome.failure.as_ref().map_or(&[][..], |failure: &Failure| &failure.reasons);
+    // Reasons that name another alternative of this decision are about what was shut out.
+    let reason = reasons.iter().find(|reason| {
+        takes(&reason.choices, other.decision).is_none_or(|alternative| alternative == other.alternative)
+    });
+    match reason {
+        Some(reason) => Fate::Impossible { reason: reason.message.clone(), spans: reason.spans.clone() },
+        None => Fate::Impossible { reason: "there is no plan with it".to_owned(), spans: Vec::new() },
+    }
+}

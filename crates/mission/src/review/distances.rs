@@ -1,0 +1,56 @@
+//! How long it is between two events in all schedules of a plan.
+
+use std::collections::BTreeMap;
+
+use kirk::PlanNetwork;
+use rmpl::Bound;
+use stn::{INFINITE, PointId};
+use tpn::{Network, NodeId, Plan};
+
+use super::TimeRange;
+
+/// The distances of one plan.
+pub(super) struct Distances {
+    network: PlanNetwork,
+}
+
+impl Distances {
+    /// `None` where times do not fit, which planning would already have said.
+    pub(super) fn new(network: &Network, plan: &Plan) -> Option<Self> {
+        PlanNetwork::new(network, plan, None).ok().map(|network| Self { network })
+    }
+
+    /// For each pair, how much later the second event is than the first; `None` if nothing bounds it from below.
+    ///
+    /// Takes one search of the plan's constraints for each different event, however many pairs share it.
+    pub(super) fn between(&mut self, pairs: &[(NodeId, NodeId)]) -> Vec<Option<TimeRange>> {
+        let mut wanted: BTreeMap<NodeId, Vec<(NodeId, usize, bool)>> = BTreeMap::new();
+        for (index, &(from, to)) in pairs.iter().enumerate() {
+            wanted.entry(from).or_default().push((to, index, true));
+            wanted.entry(to).or_default().push((from, index, false));
+        }
+        let mut found = vec![(INFINITE, INFINITE); pairs.len()];
+        let mut row = Vec::new();
+        for (source, targets) in wanted {
+            if self.network.stn().distances_from(PointId(source.0), &mut row).is_err() {
+                continue;
+            }
+            for (target, index, is_forward) in targets {
+                let distance = row.get(target.index()).copied().unwrap_or(INFINITE);
+                let slot = &mut found[index];
+                *(if is_forward { &mut slot.1 } else { &mut slot.0 }) = distance;
+            }
+        }
+        found
+            .into_iter()
+            .map(|(backward, forward)| {
+                let least = (backward != INFINITE).then(|| self.network.time(-backward))?;
+                let greatest = match forward {
+                    INFINITE => Bound::Infinite,
+                    forward => Bound::Finite(self.network.time(forward)),
+                };
+                Some(TimeRange { least, greatest })
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,31 @@
+//! What a review was made of, as one figure.
+
+use sha2::{Digest as _, Sha256};
+
+use crate::snapshot::MapKey;
+
+/// Changes when the meaning of the hashed bytes does.
+const DOMAIN: &[u8] = b"enroute-review/1";
+
+/// The SHA-256 of text, map and seed in hexadecimal: the same everywhere, and another after any edit.
+///
+/// The map counts by its key: the name, cell size, origin and import version, not by its heights.
+pub fn content_hash(source: &str, map: Option<&MapKey>, seed: u64) -> String {
+    let mut hash = Sha256::new();
+    // Each part is preceded by its length, so that no two different inputs give the same bytes.
+    let mut part = |bytes: &[u8]| {
+        hash.update((bytes.len() as u64).to_le_bytes());
+        hash.update(bytes);
+    };
+    part(DOMAIN);
+    part(source.as_bytes());
+    if let Some(map) = map {
+        part(map.asset.as_bytes());
+        part(&map.cell_mm.to_le_bytes());
+        part(&map.origin_mm[0].to_le_bytes());
+        part(&map.origin_mm[1].to_le_bytes());
+        part(&map.version.to_le_bytes());
+    }
+    part(&seed.to_le_bytes());
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,167 @@
+//! The checklist of a snapshot.
+
+use rmpl::{LineIndex, Severity, Span};
+use tpn::{Network, NodeId};
+
+use super::plan_lines::PlanLines;
+use super::{Line, Review, Section, Status, content_hash};
+use crate::snapshot::{Planning, Snapshot, Stage};
+
+/// Reviews a snapshot; `seed` is the one that its paths were planned with.
+///
+/// Alternatives that the plan does not take are planned once more each, so this takes as long as planning does, times
+/// the number of alternatives; it is meant to be asked for, not to follow every edit.
+pub fn review(snapshot: &Snapshot, seed: u64) -> Review {
+    let places = Places::new(&snapshot.source);
+    let mut review = Review {
+        content_hash: content_hash(&snapshot.source, snapshot.map.as_ref(), seed),
+        status: Status::Passed,
+        plan: plan_section(snapshot, &places),
+        choices: Vec::new(),
+        causal_links: Vec::new(),
+        conflicts: Vec::new(),
+        events: Vec::new(),
+        traverses: Vec::new(),
+        encounters: encounters(snapshot, &places),
+        warnings: warnings(snapshot, &places),
+    };
+    if let Some(mut lines) = PlanLines::new(snapshot, &places) {
+        review.choices = lines.choices();
+        review.causal_links = lines.causal_links();
+        review.conflicts = lines.conflicts();
+        review.events = lines.events();
+        review.traverses = lines.traverses();
+    }
+    let lines = Section::ALL.iter().flat_map(|&section| review.lines(section));
+    review.status = lines.map(|line| line.status).max().unwrap_or(Status::Passed);
+    review
+}
+
+/// Makes lines that know where in the text they lead.
+pub(super) struct Places<'source> {
+    source: &'source str,
+    index: LineIndex,
+}
+
+impl<'source> Places<'source> {
+    fn new(source: &'source str) -> Self {
+        Self { source, index: LineIndex::new(source) }
+    }
+
+    pub(super) fn line(
+        &self,
+        status: Status,
+        text: String,
+        span: Option<Span>,
+        names: Vec<String>,
+        nodes: Vec<NodeId>,
+    ) -> Line {
+        let line_number = span.map(|span| self.index.line_column(self.source, span.start).line);
+        Line { status, text, span, line_number, names, nodes }
+    }
+
+    fn plain(&self, status: Status, text: impl Into<String>) -> Line {
+        self.line(status, text.into(), None, Vec::new(), Vec::new())
+    }
+}
+
+fn plan_section(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
+    let Some(network) = &snapshot.network else {
+        return vec![places.plain(Status::Failed, "the text has errors, so there is no plan")];
+    };
+    let Some(planning) = &snapshot.planning else {
+        let why = match snapshot.stage {
+            Stage::Compiled => "planning has not finished",
+            Stage::Complete => "nothing was planned",
+        };
+        return vec![places.plain(Status::Failed, why)];
+    };
+    let mut lines = if planning.outcome.plans.is_empty() {
+        failure(planning, places)
+    } else {
+        let mut lines = vec![places.plain(Status::Passed, "there is a plan")];
+        lines.extend(verdict(planning, places));
+        lines
+    };
+    lines.extend(undrivable(planning, network, places));
+    lines
+}
+
+fn failure(planning: &Planning, places: &Places<'_>) -> Vec<Line> {
+    let what = match planning.outcome.status {
+        kirk::Status::Limit => "planning was stopped before it had an answer",
+        kirk::Status::Error => "a time does not fit into 64 bits after scaling by the common denominator",
+        kirk::Status::NoPlan | kirk::Status::Plan => "there is no plan",
+    };
+    let mut lines = vec![places.plain(Status::Failed, what)];
+    if let Some(failure) = &planning.outcome.failure {
+        lines.extend(failure.reasons.iter().map(|reason| {
+            let names = reason.choices.iter().map(|choice| Network::decision_name(choice.decision)).collect();
+            let span = reason.spans.first().copied();
+            places.line(Status::Failed, reason.message.clone(), span, names, Vec::new())
+        }));
+        lines.extend(failure.relaxations.iter().map(|change| {
+            let text = format!("it would have a plan: {}", change.label);
+            places.line(Status::Attention, text, change.span, Vec::new(), Vec::new())
+        }));
+    }
+    lines
+}
+
+fn verdict(planning: &Planning, places: &Places<'_>) -> Vec<Line> {
+    match &planning.verdict {
+        Some(verdict) if verdict.valid => {
+            vec![places.plain(Status::Passed, "the independent checker finds the plan valid")]
+        }
+        Some(verdict) => verdict
+            .violations
+            .iter()
+            .map(|violation| {
+                let names = violation.events.iter().chain(&violation.intervals).cloned().collect();
+                let text = format!("the independent checker objects: {}", violation.message);
+                places.line(Status::Failed, text, None, names, Vec::new())
+            })
+            .collect(),
+        None => vec![places.plain(Status::Failed, "the plan has not been checked independently")],
+    }
+}
+
+fn undrivable(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<Line> {
+    let line = |traverse: &crate::snapshot::Undrivable| {
+        let occurrence = network.occurrences.get(traverse.occurrence.index())?;
+        let name = occurrence.name.to_string();
+        let text = format!("{name} can't be driven {}, so its alternative was given up", traverse.reason);
+        let nodes = vec![occurrence.start, occurrence.end];
+        Some(places.line(Status::Attention, text, occurrence.span, vec![name], nodes))
+    };
+    planning.undrivable.iter().filter_map(line).collect()
+}
+
+fn encounters(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
+    let vehicles = &snapshot.program.world.vehicles;
+    let line = |encounter: &crate::snapshot::Encounter| {
+        let [first, second] = encounter.vehicles.map(|vehicle| vehicles.get(vehicle as usize));
+        let (first, second) = (first?, second?);
+        let text = format!(
+            "{} and {} come within {:.1} m of each other at {:.1}",
+            first.name.text, second.name.text, encounter.distance_m, encounter.time
+        );
+        let names = vec![first.name.text.to_string(), second.name.text.to_string()];
+        Some(places.line(Status::Attention, text, Some(first.span), names, Vec::new()))
+    };
+    snapshot.encounters.iter().filter_map(line).collect()
+}
+
+fn warnings(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
+    let line = |problem: &crate::Problem| {
+        let status = match problem.severity {
+            Severity::Error => Status::Failed,
+            Severity::Warning => Status::Attention,
+            Severity::Note => Status::Passed,
+        };
+        let hint = problem.hint.as_ref().map(|hint| format!(" ({hint})")).unwrap_or_default();
+        let text = format!("{}: {}{hint}", problem.code, problem.message);
+        places.line(status, text, Some(problem.span), Vec::new(), Vec::new())
+    };
+    snapshot.problems.iter().map(line).collect()
+}

@@ -1,0 +1,265 @@
+//! The review of a mission: a checklist that is computed, each line with its status and the place that it leads to.
+//!
+//! A review says what a plan is and how much room it has; it decides nothing. Every figure belongs to one text, map and
+//! seed, and [`content_hash`] names them: a review with another hash is stale.
+
+mod alternatives;
+mod distances;
+mod hash;
+mod lines;
+mod plan_lines;
+pub mod schedule;
+
+use rmpl::{Bound, Rational, Span};
+use serde::{Deserialize, Serialize};
+use tpn::{NodeId, OccurrenceId, Window};
+
+pub use alternatives::{Alternative, Fate};
+pub use hash::content_hash;
+pub use lines::review;
+
+/// A mission, reviewed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Review {
+    /// What was reviewed: see [`content_hash`].
+    pub content_hash: String,
+    /// The worst status of any line.
+    pub status: Status,
+    /// Whether there is a plan, and whether the independent checker agrees.
+    pub plan: Vec<Line>,
+    /// The choices that the plan makes, in textual order.
+    pub choices: Vec<ChoiceReview>,
+    /// The conditions that activities need, in textual order.
+    pub causal_links: Vec<LinkReview>,
+    /// The pairs of intervals that must not overlap.
+    pub conflicts: Vec<ConflictReview>,
+    /// The events, those with the least slack first.
+    pub events: Vec<EventReview>,
+    /// The traverses, in order of departure.
+    pub traverses: Vec<TraverseReview>,
+    /// Vehicles that come too near each other.
+    pub encounters: Vec<Line>,
+    /// What is wrong with the text, or could be.
+    pub warnings: Vec<Line>,
+}
+
+/// How a line of a review stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Status {
+    /// As it should be.
+    Passed,
+    /// Somebody should look at it.
+    Attention,
+    /// Not as it should be.
+    Failed,
+}
+
+impl Status {
+    /// The word for it in reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Passed => "passed",
+            Self::Attention => "attention",
+            Self::Failed => "failed",
+        }
+    }
+}
+
+/// One line of a review.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Line {
+    /// How it stands.
+    pub status: Status,
+    /// What it says, in one sentence.
+    pub text: String,
+    /// The place in the text that it leads to, if it has one.
+    pub span: Option<Span>,
+    /// The line of that place, from 1.
+    pub line_number: Option<u32>,
+    /// What it is about, by the names of all output: events, intervals, activities, decisions, vehicles.
+    pub names: Vec<String>,
+    /// The events of the network that it is about.
+    pub nodes: Vec<NodeId>,
+}
+
+/// A choice of the plan.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ChoiceReview {
+    /// Which alternative was taken.
+    pub line: Line,
+    /// The decision: `D1`.
+    pub name: String,
+    /// The alternatives, in textual order.
+    pub alternatives: Vec<Alternative>,
+}
+
+/// A condition that an activity needs, and the assertion that carries it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LinkReview {
+    /// What carries what, and with which margin.
+    pub line: Line,
+    /// The requirement.
+    pub ask: String,
+    /// The assertion.
+    pub tell: String,
+    /// How long the condition holds before it is needed.
+    pub lead: TimeRange,
+    /// How long the condition outlasts the need.
+    pub margin: TimeRange,
+}
+
+/// Two intervals that must not overlap.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConflictReview {
+    /// Which comes first.
+    pub line: Line,
+    /// The interval that comes first.
+    pub first: String,
+    /// The interval that follows.
+    pub then: String,
+    /// From the end of the first to the start of the other.
+    pub gap: TimeRange,
+    /// Whether planning had to put them in order; otherwise the program's own bounds do.
+    pub is_added: bool,
+}
+
+/// When an event may happen.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EventReview {
+    /// The event with its window.
+    pub line: Line,
+    /// Its name: `Group-Wait#1.start`.
+    pub name: String,
+    /// When it may happen.
+    pub window: Window,
+    /// How much later than its earliest time it may happen.
+    pub slack: Bound,
+}
+
+/// A traverse of the plan.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TraverseReview {
+    /// Length, duration, clearance and slope.
+    pub line: Line,
+    /// The activity.
+    pub occurrence: OccurrenceId,
+    /// Its name: `Group-Traverse-Path#1`.
+    pub name: String,
+    /// The vehicles, the leader first.
+    pub vehicles: Vec<String>,
+    /// The places it leads to, in order.
+    pub places: Vec<String>,
+    /// Along the map, in metres.
+    pub length_m: f64,
+    /// How long it may take, in mission units.
+    pub duration: TimeRange,
+    /// The least distance from the vehicle's rim to an obstacle, in metres; `None` without any obstacle.
+    pub clearance_m: Option<f64>,
+    /// The steepest slope along the path, in radians.
+    pub slope_max_rad: f64,
+}
+
+/// How long something takes in the schedules of a plan, in mission units.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TimeRange {
+    /// In every schedule at least this.
+    pub least: Rational,
+    /// In every schedule at most this.
+    pub greatest: Bound,
+}
+
+impl std::fmt::Display for TimeRange {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "[{}, {}]", short_time(Bound::Finite(self.least)), short_time(self.greatest))
+    }
+}
+
+/// A time for people: exact where that is short, otherwise to the thousandth and marked as such.
+pub fn short_time(time: Bound) -> String {
+    let exact = time.to_string();
+    match time {
+        Bound::Finite(time) if exact.contains('/') || exact.len() > 9 => {
+            format!("~{:.3}", *time.numer() as f64 / *time.denom() as f64)
+        }
+        _ => exact,
+    }
+}
+
+/// A part of a review.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Section {
+    /// [`Review::plan`].
+    Plan,
+    /// [`Review::choices`].
+    Choices,
+    /// [`Review::causal_links`].
+    CausalLinks,
+    /// [`Review::conflicts`].
+    Conflicts,
+    /// [`Review::events`].
+    Events,
+    /// [`Review::traverses`].
+    Traverses,
+    /// [`Review::encounters`].
+    Encounters,
+    /// [`Review::warnings`].
+    Warnings,
+}
+
+impl Section {
+    /// All, in the order in which they are read.
+    pub const ALL: [Self; 8] = [
+        Self::Plan,
+        Self::Choices,
+        Self::CausalLinks,
+        Self::Conflicts,
+        Self::Events,
+        Self::Traverses,
+        Self::Encounters,
+        Self::Warnings,
+    ];
+
+    /// The heading.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Plan => "Plan",
+            Self::Choices => "Choices",
+            Self::CausalLinks => "Causal links",
+            Self::Conflicts => "Conflicts",
+            Self::Events => "Events",
+            Self::Traverses => "Traverses",
+            Self::Encounters => "Encounters of vehicles",
+            Self::Warnings => "Warnings in the text",
+        }
+    }
+}
+
+impl Review {
+    /// The lines of a section, in order.
+    pub fn lines(&self, section: Section) -> Vec<&Line> {
+        match section {
+            Section::Plan => self.plan.iter().collect(),
+            Section::Choices => self.choices.iter().map(|it| &it.line).collect(),
+            Section::CausalLinks => self.causal_links.iter().map(|it| &it.line).collect(),
+            Section::Conflicts => self.conflicts.iter().map(|it| &it.line).collect(),
+            Section::Events => self.events.iter().map(|it| &it.line).collect(),
+            Section::Traverses => self.traverses.iter().map(|it| &it.line).collect(),
+            Section::Encounters => self.encounters.iter().collect(),
+            Section::Warnings => self.warnings.iter().collect(),
+        }
+    }
+
+    /// How many lines have each status: passed, attention, failed.
+    pub fn counts(&self) -> [usize; 3] {
+        let mut counts = [0; 3];
+        for line in Section::ALL.iter().flat_map(|&section| self.lines(section)) {
+            counts[line.status as usize] += 1;
+        }
+        counts
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,205 @@
+//! The lines about a plan: its choices, links, conflicts, events and traverses.
+
+use rmpl::{Bound, Span};
+use tpn::{EventEnd, LabelId, Network, NodeId, Plan};
+
+use super::alternatives::Examiner;
+use super::distances::Distances;
+use super::lines::Places;
+use super::schedule::slack;
+use super::{
+    ChoiceReview, ConflictReview, EventReview, Fate, LinkReview, Status, TimeRange, TraverseReview,
+    short_time,
+};
+use crate::snapshot::{Planning, Snapshot};
+
+/// Vehicles that pass obstacles nearer than this, in metres, deserve a look.
+const NEAR_M: f64 = 0.25;
+
+/// What the lines about a plan are made from.
+pub(super) struct PlanLines<'input> {
+    snapshot: &'input Snapshot,
+    network: &'input Network,
+    planning: &'input Planning,
+    plan: &'input Plan,
+    distances: Distances,
+    places: &'input Places<'input>,
+}
+
+impl<'input> PlanLines<'input> {
+    /// `None` without a plan.
+    pub(super) fn new(snapshot: &'input Snapshot, places: &'input Places<'input>) -> Option<Self> {
+        let network = snapshot.network.as_deref()?;
+        let planning = snapshot.planning.as_deref()?;
+        let plan = planning.outcome.plans.first()?;
+        let distances = Distances::new(network, plan)?;
+        Some(Self { snapshot, network, planning, plan, distances, places })
+    }
+
+    pub(super) fn choices(&mut self) -> Vec<ChoiceReview> {
+        let mut examiner =
+            Examiner::new(self.network, self.plan, &self.planning.undrivable, &self.snapshot.source);
+        let review = |&choice: &tpn::Choice| {
+            let name = Network::decision_name(choice.decision);
+            let decision = &self.network.decisions[choice.decision.index()];
+            let alternatives = examiner.alternatives(choice);
+            let is_open = alternatives.iter().any(|it| it.fate == Fate::NotExamined);
+            let status = if is_open { Status::Attention } else { Status::Passed };
+            let text = format!(
+                "{name} takes alternative {} of {}",
+                choice.alternative,
+                alternatives.len().saturating_sub(1)
+            );
+            let nodes = vec![decision.node];
+            let line = self.places.line(status, text, decision.span, vec![name.clone()], nodes);
+            ChoiceReview { line, name, alternatives }
+        };
+        self.plan.choices.iter().map(review).collect()
+    }
+
+    pub(super) fn causal_links(&mut self) -> Vec<LinkReview> {
+        let links = &self.plan.causal_links;
+        let pairs: Vec<(NodeId, NodeId)> = links
+            .iter()
+            .flat_map(|link| {
+                let ((ask_start, ask_end), (tell_start, tell_end)) =
+                    (self.interval(link.ask), self.interval(link.tell));
+                [(tell_start, ask_start), (ask_end, tell_end)]
+            })
+            .collect();
+        let ranges = self.distances.between(&pairs);
+        let review = |(link, ranges): (&tpn::CausalLink, &[Option<TimeRange>])| {
+            let [lead, margin] = *ranges else { return None };
+            let (lead, margin) = (lead?, margin?);
+            let (ask, tell) = (self.network.label_name(link.ask), self.network.label_name(link.tell));
+            // Without any room, the slightest delay breaks the link.
+            let is_rigid = margin.greatest == Bound::ZERO;
+            let status = if is_rigid { Status::Attention } else { Status::Passed };
+            let text = format!(
+                "{tell} carries {ask}, and outlasts it by {} to {}",
+                short_time(Bound::Finite(margin.least)),
+                short_time(margin.greatest)
+            );
+            let (start, end) = self.interval(link.ask);
+            let names = vec![ask.clone(), tell.clone()];
+            let line = self.places.line(status, text, self.label_span(link.ask), names, vec![start, end]);
+            Some(LinkReview { line, ask, tell, lead, margin })
+        };
+        links.iter().zip(ranges.chunks(2)).filter_map(review).collect()
+    }
+
+    pub(super) fn conflicts(&mut self) -> Vec<ConflictReview> {
+        let orders = &self.plan.conflict_order;
+        let pairs: Vec<(NodeId, NodeId)> =
+            orders.iter().map(|order| (self.interval(order.first).1, self.interval(order.then).0)).collect();
+        let gaps = self.distances.between(&pairs);
+        let review = |((order, gap), (end, start)): ((&tpn::Ordering, &Option<TimeRange>), &(NodeId, NodeId))| {
+            let gap = (*gap)?;
+            let (first, then) = (self.network.label_name(order.first), self.network.label_name(order.then));
+            let is_added = self.plan.orderings_added.contains(order);
+            let by = if is_added { "put in order by planning" } else { "in order by the program's own bounds" };
+            let text = format!(
+                "{first} is over {} to {} before {then} begins; {by}",
+                short_time(Bound::Finite(gap.least)),
+                short_time(gap.greatest)
+            );
+            let names = vec![first.clone(), then.clone()];
+            let span = self.label_span(order.first);
+            let line = self.places.line(Status::Passed, text, span, names, vec![*end, *start]);
+            Some(ConflictReview { line, first, then, gap, is_added })
+        };
+        orders.iter().zip(&gaps).zip(&pairs).filter_map(review).collect()
+    }
+
+    pub(super) fn events(&self) -> Vec<EventReview> {
+        let mut events: Vec<(bool, EventReview)> = Vec::new();
+        for (index, node) in self.network.nodes.iter().enumerate() {
+            let Some(window) = self.plan.windows.get(index).copied().flatten() else { continue };
+            for &event in &node.events {
+                let name = self.network.event_name(event);
+                let text = format!(
+                    "{name} may happen from {} to {}",
+                    short_time(Bound::Finite(window.earliest)),
+                    short_time(window.latest)
+                );
+                let span = self.network.occurrences[event.occurrence.index()].span;
+                let nodes = vec![NodeId::from_index(index)];
+                let line = self.places.line(Status::Passed, text, span, vec![name.clone()], nodes);
+                let is_vertex = matches!(event.end, EventEnd::PathVertex { .. });
+                events.push((is_vertex, EventReview { line, name, window, slack: slack(window) }));
+            }
+        }
+        // Points of a path follow the events that they lie between.
+        events.sort_by(|(left_vertex, left), (right_vertex, right)| {
+            let key = |event: &EventReview| (event.slack, event.window.earliest);
+            (key(left), left_vertex).cmp(&(key(right), right_vertex))
+        });
+        events.into_iter().map(|(_, event)| event).collect()
+    }
+
+    pub(super) fn traverses(&mut self) -> Vec<TraverseReview> {
+        let pairs: Vec<(NodeId, NodeId)> = self
+            .snapshot
+            .traverses
+            .iter()
+            .map(|traverse| {
+                let occurrence = &self.network.occurrences[traverse.occurrence.index()];
+                (occurrence.start, occurrence.end)
+            })
+            .collect();
+        let durations = self.distances.between(&pairs);
+        let review = |(traverse, duration): (&crate::Traverse, &Option<TimeRange>)| {
+            Some(self.traverse(traverse, (*duration)?))
+        };
+        self.snapshot.traverses.iter().zip(&durations).filter_map(review).collect()
+    }
+
+    fn traverse(&self, traverse: &crate::Traverse, duration: TimeRange) -> TraverseReview {
+        let occurrence = &self.network.occurrences[traverse.occurrence.index()];
+        let name = occurrence.name.to_string();
+        let vehicles: Vec<String> = traverse
+            .vehicles
+            .iter()
+            .filter_map(|&vehicle| self.snapshot.program.world.vehicles.get(vehicle as usize))
+            .map(|vehicle| vehicle.name.text.to_string())
+            .collect();
+        let clearance_m = traverse.clearance_m.is_finite().then_some(traverse.clearance_m);
+        let status = match clearance_m {
+            Some(clearance_m) if clearance_m < 0.0 => Status::Failed,
+            Some(clearance_m) if clearance_m < NEAR_M => Status::Attention,
+            _ => Status::Passed,
+        };
+        let clearance = match clearance_m {
+            Some(clearance_m) => format!("{clearance_m:.2} m clear of obstacles"),
+            None => "no obstacle near".to_owned(),
+        };
+        let text = format!(
+            "{name}: {:.1} m in {duration}, {clearance}, slope up to {:.1}°",
+            traverse.length_m,
+            traverse.slope_max_rad.to_degrees()
+        );
+        let mut names = vec![name.clone()];
+        names.extend(vehicles.iter().cloned());
+        let nodes = vec![occurrence.start, occurrence.end];
+        TraverseReview {
+            line: self.places.line(status, text, occurrence.span, names, nodes),
+            occurrence: traverse.occurrence,
+            name,
+            vehicles,
+            places: traverse.legs.iter().map(|leg| leg.to.to_string()).collect(),
+            length_m: traverse.length_m,
+            duration,
+            clearance_m,
+            slope_max_rad: traverse.slope_max_rad,
+        }
+    }
+
+    fn interval(&self, label: LabelId) -> (NodeId, NodeId) {
+        let arc = &self.network.arcs[self.network.labels[label.index()].arc.index()];
+        (arc.from, arc.to)
+    }
+
+    fn label_span(&self, label: LabelId) -> Option<Span> {
+        self.network.labels[label.index()].span
+    }
+}

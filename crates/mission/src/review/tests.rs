@@ -1,0 +1,183 @@
+//! The Enroute mission, reviewed: the figures are those of SPEC 3.6.
+
+use std::sync::Arc;
+
+use rmpl::{Bound, Rational};
+
+use super::{Fate, Review, Section, Status, TimeRange, content_hash, review};
+use crate::{Core, Goal, Request, Response, SearchKind, Snapshot, Surroundings, Update};
+
+const SCENARIO: &str = include_str!("../../../../tests/conformance/t01_enroute_scenario.rmpl");
+const MISSION: &str = include_str!("../../../../assets/missions/enroute.rmpl");
+
+#[derive(Default)]
+struct Answers(Option<Arc<Snapshot>>);
+
+impl Surroundings for Answers {
+    fn now_millis(&self) -> f64 {
+        0.0
+    }
+
+    fn is_superseded(&mut self) -> bool {
+        false
+    }
+
+    fn answer(&mut self, response: Response) {
+        if let Response::Snapshot(snapshot) = response {
+            self.0 = Some(snapshot);
+        }
+    }
+}
+
+fn reviewed(source: &str) -> Review {
+    let update = Update {
+        revision: 1,
+        source: source.into(),
+        goal: Goal::Default,
+        search: SearchKind::default(),
+        seed: 0,
+        trace: false,
+    };
+    let mut answers = Answers::default();
+    Core::default().handle(Request::Update(update), &mut answers);
+    review(&answers.0.expect("an update is always answered"), 0)
+}
+
+fn range(least: i64, greatest: i64) -> TimeRange {
+    TimeRange { least: Rational::from(least), greatest: Bound::Finite(Rational::from(greatest)) }
+}
+
+#[test]
+fn the_enroute_plan_exists_and_is_verified() {
+    let review = reviewed(SCENARIO);
+    assert_eq!(review.plan.iter().map(|line| line.status).collect::<Vec<_>>(), [Status::Passed; 2]);
+    assert!(review.status < Status::Failed, "{review:?}");
+}
+
+#[test]
+fn path_2_is_impossible_because_nothing_asserts_its_condition() {
+    let review = reviewed(SCENARIO);
+    let [choice] = review.choices.as_slice() else { panic!("one choice: {:?}", review.choices) };
+    assert_eq!(choice.alternatives[0].fate, Fate::Taken);
+    let Fate::Impossible { reason, .. } = &choice.alternatives[1].fate else {
+        panic!("{:?}", choice.alternatives[1])
+    };
+    assert!(reason.contains("PATH2=OK") && reason.contains("nothing asserts it"), "{reason}");
+}
+
+#[test]
+fn an_alternative_that_would_do_as_well_is_said_to() {
+    let both = include_str!("../../../../tests/conformance/t03_enroute_both_paths.rmpl");
+    let review = reviewed(both);
+    assert_eq!(review.choices[0].alternatives[0].fate, Fate::Taken);
+    assert_eq!(review.choices[0].alternatives[1].fate, Fate::AlsoPossible);
+}
+
+#[test]
+fn the_path_1_condition_outlasts_the_drive_by_up_to_45_minutes() {
+    let review = reviewed(SCENARIO);
+    let [link] = review.causal_links.as_slice() else { panic!("one link: {:?}", review.causal_links) };
+    assert_eq!((link.ask.as_str(), link.tell.as_str()), (
+        "Ask(PATH1=OK)@Group-Traverse-Path#1",
+        "Tell(PATH1=OK)@Tell(PATH1=OK)#1"
+    ));
+    // Event 4 is in [10,55] and event 14 at 10; event 15 is at 460 and event 5 in [415,460].
+    assert_eq!((link.lead, link.margin), (range(0, 45), range(0, 45)));
+}
+
+#[test]
+fn the_wait_is_over_1_to_185_minutes_before_permission() {
+    let review = reviewed(SCENARIO);
+    let [conflict] = review.conflicts.as_slice() else { panic!("one pair: {:?}", review.conflicts) };
+    assert!(conflict.first.contains("Group-Wait#1") && conflict.then.contains("Tell(PROCEED=OK)"));
+    assert_eq!(conflict.gap, range(1, 185));
+    assert!(conflict.is_added);
+}
+
+#[test]
+fn events_come_with_their_windows_the_tightest_first() {
+    let review = reviewed(SCENARIO);
+    let slacks: Vec<Bound> = review.events.iter().map(|event| event.slack).collect();
+    assert!(slacks.is_sorted(), "{slacks:?}");
+    let window = |name: &str| {
+        let event = review.events.iter().find(|event| event.name == name);
+        let window = event.unwrap_or_else(|| panic!("no {name}")).window;
+        (window.earliest, window.latest)
+    };
+    let expected = |least: i64, greatest: i64| {
+        let TimeRange { least, greatest } = range(least, greatest);
+        (least, greatest)
+    };
+    assert_eq!(window("Group-Traverse-Path#1.start"), expected(10, 55));
+    assert_eq!(window("Group-Wait#1.end"), expected(415, 514));
+    assert_eq!(window("Group-Transmit#1.end"), expected(415, 462));
+    assert_eq!(window("Tell(PROCEED=OK)#1.start"), expected(460, 600));
+    assert_eq!(window("scenario#1.end"), expected(660, 800));
+}
+
+#[test]
+fn a_traverse_is_reviewed_with_its_way() {
+    let review = reviewed(MISSION);
+    let [traverse] = review.traverses.as_slice() else { panic!("one traverse: {:?}", review.traverses) };
+    assert_eq!(traverse.vehicles, ["Rover1", "Rover2"]);
+    assert_eq!(traverse.places, ["PATH1_1", "PATH1_2", "PATH1_3", "TAI_POS"]);
+    // The way is at least as long as the straight lines between its places.
+    let straight_m: f64 = [[24.0, 52.0], [44.0, 120.0], [64.0, 214.0], [176.0, 252.0], [256.0, 238.0]]
+        .windows(2)
+        .map(|pair: &[[f64; 2]]| {
+            let (east, north) = (pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
+            (east * east + north * north).sqrt()
+        })
+        .sum();
+    assert!(traverse.length_m >= straight_m - 1e-6, "{} < {straight_m}", traverse.length_m);
+    assert_eq!(traverse.duration, range(405, 450));
+    assert!(traverse.clearance_m.is_none_or(|clearance_m| clearance_m >= 0.0));
+}
+
+#[test]
+fn a_mission_without_a_plan_says_why_and_what_would_help() {
+    let review = reviewed(&SCENARIO.replace("PATH1=OK [450,450]", "PATH1=OK [400,400]"));
+    assert_eq!(review.status, Status::Failed);
+    assert!(review.plan.iter().any(|line| line.text == "there is no plan"), "{:?}", review.plan);
+    assert!(review.plan.iter().any(|line| line.text.contains("PATH1=OK") && line.span.is_some()));
+    assert!(review.events.is_empty());
+}
+
+#[test]
+fn errors_of_the_text_fail_the_review_at_their_line() {
+    let review = reviewed("scenario S[0,10] = { Nothing-Here( }");
+    assert_eq!(review.status, Status::Failed);
+    let line = review.warnings.first().expect("the error");
+    assert_eq!((line.status, line.line_number), (Status::Failed, Some(1)));
+}
+
+#[test]
+fn every_line_of_the_plan_leads_to_its_place() {
+    let review = reviewed(SCENARIO);
+    for section in [Section::Choices, Section::CausalLinks, Section::Conflicts, Section::Events] {
+        for line in review.lines(section) {
+            assert!(!line.names.is_empty() && !line.nodes.is_empty(), "{line:?}");
+        }
+    }
+    let link = &review.causal_links[0].line;
+    let text = link.span.and_then(|span| SCENARIO.get(span.range())).unwrap_or_default();
+    assert!(text.contains("PATH1"), "{text}");
+}
+
+#[test]
+fn the_hash_follows_text_map_and_seed() {
+    let map = crate::MapKey { asset: "a".into(), cell_mm: 600, origin_mm: [0, 0], version: 0 };
+    let moved = crate::MapKey { origin_mm: [1, 0], ..map.clone() };
+    let hashes = [
+        content_hash("text", Some(&map), 0),
+        content_hash("text ", Some(&map), 0),
+        content_hash("text", Some(&moved), 0),
+        content_hash("text", None, 0),
+        content_hash("text", Some(&map), 1),
+    ];
+    for (index, hash) in hashes.iter().enumerate() {
+        assert_eq!(hash.len(), 64);
+        assert!(!hashes[..index].contains(hash), "{hashes:?}");
+    }
+    assert_eq!(reviewed(SCENARIO), reviewed(SCENARIO));
+}
