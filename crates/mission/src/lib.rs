@@ -16,8 +16,8 @@ pub mod review;
 pub mod snapshot;
 pub mod traverse;
 
-pub use control::{Control, read_control};
 pub use self::core::{Core, Surroundings, compile};
+pub use control::{Control, read_control};
 pub use ground::Grounds;
 pub use kirk::Search as SearchKind;
 pub use problem::{Problem, TextEdit, TextFix};

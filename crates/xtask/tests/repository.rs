@@ -10,7 +10,7 @@ use serde_json::Value;
 use xtask::process::{cargo, root};
 
 /// What each crate may depend on in the workspace, directly: ARCHITECTURE.md's layers.
-const LAYERS: [(&str, &[&str]); 17] = [
+const LAYERS: [(&str, &[&str]); 18] = [
     ("rmpl", &[]),
     ("stn", &[]),
     ("terrain", &[]),
@@ -23,6 +23,7 @@ const LAYERS: [(&str, &[&str]); 17] = [
     ("executive", &["hca", "kirk", "motion", "plant", "rmpl", "stn", "terrain", "tpn"]),
     ("mission", &["executive", "hca", "kirk", "motion", "plant", "rmpl", "stn", "terrain", "tpn", "verify"]),
     ("layout", &["hca", "rmpl", "tpn"]),
+    ("report", &["layout", "mission", "rmpl", "terrain", "tpn"]),
     ("app", &["hca", "kirk", "layout", "mission", "plant", "rmpl", "terrain", "tpn", "verify"]),
     ("page", &["app", "mission"]),
     ("worker", &["mission"]),
@@ -36,6 +37,7 @@ const LAYERS: [(&str, &[&str]); 17] = [
             "mission",
             "motion",
             "plant",
+            "report",
             "rmpl",
             "stn",
             "terrain",
@@ -47,7 +49,7 @@ const LAYERS: [(&str, &[&str]); 17] = [
 ];
 
 /// Crates that compute the same everywhere: no clocks, no threads, no files, nothing from the operating system.
-const PURE: [&str; 12] = [
+const PURE: [&str; 13] = [
     "rmpl",
     "stn",
     "tpn",
@@ -60,6 +62,7 @@ const PURE: [&str; 12] = [
     "executive",
     "mission",
     "layout",
+    "report",
 ];
 
 /// What pure crates leave alone.

@@ -93,21 +93,27 @@ impl<'input> PlanLines<'input> {
         let pairs: Vec<(NodeId, NodeId)> =
             orders.iter().map(|order| (self.interval(order.first).1, self.interval(order.then).0)).collect();
         let gaps = self.distances.between(&pairs);
-        let review = |((order, gap), (end, start)): ((&tpn::Ordering, &Option<TimeRange>), &(NodeId, NodeId))| {
-            let gap = (*gap)?;
-            let (first, then) = (self.network.label_name(order.first), self.network.label_name(order.then));
-            let is_added = self.plan.orderings_added.contains(order);
-            let by = if is_added { "put in order by planning" } else { "in order by the program's own bounds" };
-            let text = format!(
-                "{first} is over {} to {} before {then} begins; {by}",
-                short_time(Bound::Finite(gap.least)),
-                short_time(gap.greatest)
-            );
-            let names = vec![first.clone(), then.clone()];
-            let span = self.label_span(order.first);
-            let line = self.places.line(Status::Passed, text, span, names, vec![*end, *start]);
-            Some(ConflictReview { line, first, then, gap, is_added })
-        };
+        let review =
+            |((order, gap), (end, start)): ((&tpn::Ordering, &Option<TimeRange>), &(NodeId, NodeId))| {
+                let gap = (*gap)?;
+                let (first, then) =
+                    (self.network.label_name(order.first), self.network.label_name(order.then));
+                let is_added = self.plan.orderings_added.contains(order);
+                let by = if is_added {
+                    "put in order by planning"
+                } else {
+                    "in order by the program's own bounds"
+                };
+                let text = format!(
+                    "{first} is over {} to {} before {then} begins; {by}",
+                    short_time(Bound::Finite(gap.least)),
+                    short_time(gap.greatest)
+                );
+                let names = vec![first.clone(), then.clone()];
+                let span = self.label_span(order.first);
+                let line = self.places.line(Status::Passed, text, span, names, vec![*end, *start]);
+                Some(ConflictReview { line, first, then, gap, is_added })
+            };
         orders.iter().zip(&gaps).zip(&pairs).filter_map(review).collect()
     }
 

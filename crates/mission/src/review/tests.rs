@@ -62,7 +62,7 @@ fn path_2_is_impossible_because_nothing_asserts_its_condition() {
     let Fate::Impossible { reason, .. } = &choice.alternatives[1].fate else {
         panic!("{:?}", choice.alternatives[1])
     };
-    assert!(reason.contains("PATH2=OK") && reason.contains("nothing asserts it"), "{reason}");
+    assert!(reason.contains("PATH2") && reason.contains("nothing asserts it"), "{reason}");
 }
 
 #[test]
@@ -77,10 +77,10 @@ fn an_alternative_that_would_do_as_well_is_said_to() {
 fn the_path_1_condition_outlasts_the_drive_by_up_to_45_minutes() {
     let review = reviewed(SCENARIO);
     let [link] = review.causal_links.as_slice() else { panic!("one link: {:?}", review.causal_links) };
-    assert_eq!((link.ask.as_str(), link.tell.as_str()), (
-        "Ask(PATH1=OK)@Group-Traverse-Path#1",
-        "Tell(PATH1=OK)@Tell(PATH1=OK)#1"
-    ));
+    assert_eq!(
+        (link.ask.as_str(), link.tell.as_str()),
+        ("Ask(PATH1=OK)@Group-Traverse-Path#1", "Tell(PATH1=OK)@Tell(PATH1=OK)#1")
+    );
     // Event 4 is in [10,55] and event 14 at 10; event 15 is at 460 and event 5 in [415,460].
     assert_eq!((link.lead, link.margin), (range(0, 45), range(0, 45)));
 }

@@ -1,0 +1,37 @@
+//! Calendar dates of mission times.
+
+use jiff::{SignedDuration, Timestamp, civil, tz::TimeZone};
+use rmpl::Rational;
+use rmpl::program::TimeUnit;
+
+/// The moment at which a mission starts, and the unit that its times count from there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Calendar {
+    epoch: Timestamp,
+    unit: TimeUnit,
+}
+
+impl Calendar {
+    /// Reads an ISO 8601 date, `2004-01-25`, or date with time, `2004-01-25T05:05:00Z`; without an offset it is UTC.
+    /// `None` if it is neither.
+    pub fn new(epoch: &str, unit: TimeUnit) -> Option<Self> {
+        let in_utc = || {
+            let local: civil::DateTime = epoch.parse().ok()?;
+            Some(local.to_zoned(TimeZone::UTC).ok()?.timestamp())
+        };
+        let epoch = epoch.parse::<Timestamp>().ok().or_else(in_utc)?;
+        Some(Self { epoch, unit })
+    }
+
+    /// When a mission time is, to the millisecond before; `None` beyond the calendar.
+    pub fn at(&self, time: Rational) -> Option<Timestamp> {
+        let millis = i128::from(*time.numer()) * i128::from(self.unit.seconds()) * 1000;
+        let millis = i64::try_from(millis.div_euclid(i128::from(*time.denom()))).ok()?;
+        self.epoch.checked_add(SignedDuration::from_millis(millis)).ok()
+    }
+
+    /// The start of the mission.
+    pub fn epoch(&self) -> Timestamp {
+        self.epoch
+    }
+}

@@ -1,0 +1,106 @@
+//! The review report: one HTML file that needs nothing else, prints well and reads without scripts.
+
+use mission::Snapshot;
+use mission::review::{Review, Status};
+use rmpl::program::TimeUnit;
+use terrain::Terrain;
+
+use crate::escape::escaped;
+use crate::style::STYLE;
+use crate::{figure, listing, tables};
+
+/// What goes into a report.
+#[derive(Clone, Copy)]
+pub struct Document<'a> {
+    /// The mission's name: that of its file.
+    pub name: &'a str,
+    /// The mission as it was worked out.
+    pub snapshot: &'a Snapshot,
+    /// Its review.
+    pub review: &'a Review,
+    /// The seed of its paths.
+    pub seed: u64,
+    /// The ground, if the mission has one.
+    pub ground: Option<&'a Terrain>,
+}
+
+/// Writes the report.
+pub fn html(document: &Document<'_>) -> String {
+    let title = format!("Mission review: {}", document.name);
+    let mut out = format!(
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>{0}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
+        escaped(&title)
+    );
+    out.push_str(&facts(document));
+    out.push_str(&tables::sections(document.review));
+    out.push_str(&figures(document));
+    out.push_str("<h2 class=\"page\">Program</h2>\n");
+    out.push_str(&listing::listing(&document.snapshot.source));
+    out.push_str("</body>\n</html>\n");
+    out
+}
+
+fn facts(document: &Document<'_>) -> String {
+    let review = document.review;
+    let [passed, attention, failed] = review.counts();
+    let verdict = match review.status {
+        Status::Passed => "everything is as it should be",
+        Status::Attention => "some lines deserve a look",
+        Status::Failed => "not ready",
+    };
+    let unit = match document.snapshot.program.options.time_unit {
+        TimeUnit::Minute => "minutes",
+        TimeUnit::Second => "seconds",
+    };
+    let map = match &document.snapshot.map {
+        Some(key) if !key.asset.is_empty() => key.asset.to_string(),
+        Some(_) => "flat ground".to_owned(),
+        None => "none".to_owned(),
+    };
+    format!(
+        "<dl class=\"facts\">\n<dt>Verdict</dt><dd>{}: {verdict}</dd>\n\
+         <dt>Checklist</dt><dd>{passed} passed, {attention} for attention, {failed} failed</dd>\n\
+         <dt>Times</dt><dd>in {unit} from the start of the mission</dd>\n\
+         <dt>Map, seed</dt><dd>{}, {}</dd>\n\
+         <dt>Content hash</dt><dd class=\"hash\">{}</dd>\n</dl>\n",
+        tables::status(review.status),
+        escaped(&map),
+        document.seed,
+        escaped(&review.content_hash)
+    )
+}
+
+fn figures(document: &Document<'_>) -> String {
+    let snapshot = document.snapshot;
+    let figures = [
+        (
+            "Timeline",
+            figure::timeline(snapshot),
+            "Solid: the earliest schedule. Pale: all the time in which it may happen. Green rows are conditions.",
+        ),
+        (
+            "Network",
+            figure::network(snapshot),
+            "What the plan selects is drawn strongly; windows stand below events.",
+        ),
+        (
+            "Map",
+            figure::map(snapshot, document.ground),
+            "North is up. Lines are the paths of the plan; shaded areas are obstacles.",
+        ),
+    ];
+    let mut out = String::new();
+    for (heading, drawing, caption) in figures {
+        if let Some(drawing) = drawing {
+            // A drawing inside HTML needs no namespace of its own.
+            let drawing = drawing.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
+            out.push_str(&format!(
+                "<h2>{heading}</h2>\n<figure>\n{drawing}<figcaption>{}</figcaption>\n</figure>\n",
+                escaped(caption)
+            ));
+        }
+    }
+    out
+}

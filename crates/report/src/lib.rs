@@ -1,0 +1,18 @@
+//! A mission and its review as documents: one HTML file for people, and schedules for other tools.
+//!
+//! Every function here turns data into text; reading and writing files is the caller's. The same snapshot gives the
+//! same bytes everywhere.
+
+pub mod calendar;
+mod escape;
+pub mod export;
+mod figure;
+mod html;
+mod listing;
+mod style;
+mod tables;
+
+pub use html::{Document, html};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,54 @@
+//! The report's look, on screen and on A4 and Letter paper.
+
+/// The style sheet. Sizes are relative or in points, so that both paper formats hold the same content; colours are
+/// those of the light theme.
+pub(crate) const STYLE: &str = "
+:root { color: #161d26; background: #fff; font: 10.5pt/1.45 'Ubuntu', 'Inter', 'Segoe UI', 'Helvetica Neue', Arial, sans-serif; }
+body { max-width: 62rem; margin: 2rem auto; padding: 0 1.5rem; }
+h1 { font-size: 1.7em; margin: 0 0 .2em; line-height: 1.2; }
+h2 { font-size: 1.2em; margin: 2em 0 .5em; padding-bottom: .2em; border-bottom: 1px solid #d9dfe6; }
+a { color: #0068a8; text-decoration: none; }
+a:hover { text-decoration: underline; }
+p, ul { margin: .4em 0; }
+table { border-collapse: collapse; width: 100%; margin: .5em 0 1em; font-size: .92em; }
+th { text-align: left; font-weight: 600; color: #4e5b6a; border-bottom: 1px solid #a9b5c2; }
+th, td { padding: .25em .8em .25em 0; vertical-align: top; overflow-wrap: anywhere; }
+td { border-bottom: 1px solid #eef1f4; }
+td.figure, th.figure { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
+thead { display: table-header-group; }
+.facts { display: grid; grid-template-columns: max-content 1fr; gap: .1em 1.2em; margin: 1em 0; }
+.facts dt { color: #4e5b6a; }
+.facts dd { margin: 0; overflow-wrap: anywhere; }
+.hash, code { font-family: 'Ubuntu Mono', 'JetBrains Mono', Menlo, Consolas, monospace; font-size: .95em; }
+.status { white-space: nowrap; font-weight: 600; }
+.passed { color: #007555; }
+.attention { color: #9a6200; }
+.failed { color: #b84300; }
+.muted { color: #6a7684; }
+figure { margin: .8em 0; }
+figure svg { display: block; max-width: 100%; height: auto; }
+figcaption { color: #4e5b6a; font-size: .9em; margin-top: .4em; }
+.listing { font-size: .86em; line-height: 1.45; white-space: pre-wrap; overflow-wrap: anywhere; margin: 0; }
+.listing .line { display: block; padding-left: 3.6em; text-indent: -3.6em; }
+.listing .line:target { background: #fff3d6; }
+.listing b { display: inline-block; width: 2.8em; margin-right: .8em; text-align: right; text-indent: 0; font-weight: 400; color: #a3aeba; user-select: none; }
+.listing i { font-style: normal; }
+.listing .comment { color: #6a7684; font-style: italic; }
+.listing .keyword { color: #0072b2; font-weight: 600; }
+.listing .activity { color: #161d26; font-weight: 600; }
+.listing .condition { color: #007555; }
+.listing .parameter { color: #9a6200; }
+.listing .place { color: #9c3f77; }
+.listing .number, .listing .string { color: #0068a8; }
+.listing .unknown { color: #b84300; text-decoration: underline wavy; }
+@page { margin: 16mm 15mm 18mm; }
+@media print {
+  :root { font-size: 9.5pt; -webkit-print-color-adjust: exact; print-color-adjust: exact; }
+  body { max-width: none; margin: 0; padding: 0; }
+  a { color: inherit; }
+  h2 { break-after: avoid; }
+  tr, figure { break-inside: avoid; }
+  figure svg { max-height: 225mm; }
+  h2.page { break-before: page; }
+}
+";

@@ -1,0 +1,263 @@
+//! The Enroute mission as documents, each read back; the times are those of SPEC 3.6.
+
+use std::sync::Arc;
+
+use mission::review::{Review, review};
+use mission::{Core, Goal, Request, Response, SearchKind, Snapshot, Surroundings, Update};
+use rmpl::program::TimeUnit;
+use terrain::Terrain;
+
+use crate::calendar::Calendar;
+use crate::{Document, export, html};
+
+const SCENARIO: &str = include_str!("../../../tests/conformance/t01_enroute_scenario.rmpl");
+const MISSION: &str = include_str!("../../../assets/missions/enroute.rmpl");
+const EPOCH: &str = "2004-01-25T05:05:00Z";
+
+#[derive(Default)]
+struct Answers {
+    snapshot: Option<Arc<Snapshot>>,
+    ground: Option<Arc<Terrain>>,
+}
+
+impl Surroundings for Answers {
+    fn now_millis(&self) -> f64 {
+        0.0
+    }
+
+    fn is_superseded(&mut self) -> bool {
+        false
+    }
+
+    fn answer(&mut self, response: Response) {
+        match response {
+            Response::Snapshot(snapshot) => self.snapshot = Some(snapshot),
+            Response::Map { map, .. } => self.ground = Some(map),
+            Response::MapRejected { .. } => {}
+        }
+    }
+}
+
+struct Planned {
+    snapshot: Arc<Snapshot>,
+    ground: Option<Arc<Terrain>>,
+    review: Review,
+}
+
+fn planned(source: &str) -> Planned {
+    let update = Update {
+        revision: 1,
+        source: source.into(),
+        goal: Goal::Default,
+        search: SearchKind::default(),
+        seed: 0,
+        trace: false,
+    };
+    let mut answers = Answers::default();
+    Core::default().handle(Request::Update(update), &mut answers);
+    let snapshot = answers.snapshot.expect("an update is always answered");
+    let review = review(&snapshot, 0);
+    Planned { snapshot, ground: answers.ground, review }
+}
+
+fn report(source: &str, name: &str) -> String {
+    let planned = planned(source);
+    html(&Document {
+        name,
+        snapshot: &planned.snapshot,
+        review: &planned.review,
+        seed: 0,
+        ground: planned.ground.as_deref(),
+    })
+}
+
+fn calendar() -> Calendar {
+    Calendar::new(EPOCH, TimeUnit::Minute).expect("a date")
+}
+
+/// The row of a table of the report that has this cell, without its tags.
+fn row_with(page: &str, cell: &str) -> String {
+    let row = page
+        .split("<tr>")
+        .find(|row| row.contains(&format!(">{cell}<")))
+        .unwrap_or_else(|| panic!("no row for {cell}"));
+    let row = row.split("</tr>").next().unwrap_or("");
+    row.split('<')
+        .filter_map(|piece| piece.split_once('>'))
+        .map(|(_, text)| text)
+        .collect::<Vec<_>>()
+        .join("|")
+}
+
+#[test]
+fn the_report_has_the_windows_the_margins_and_the_hash() {
+    let page = report(SCENARIO, "t01.rmpl");
+    assert!(
+        row_with(&page, "Group-Wait#1.end").contains("|415||514||99|"),
+        "{}",
+        row_with(&page, "Group-Wait#1.end")
+    );
+    assert!(row_with(&page, "Tell(PROCEED=OK)#1.start").contains("|460||600||140|"));
+    assert!(row_with(&page, "Ask(PATH1=OK)@Group-Traverse-Path#1").contains("[0, 45]"));
+    assert!(page.contains("[1, 185]"));
+    assert!(page.contains(&planned(SCENARIO).review.content_hash));
+}
+
+#[test]
+fn the_report_needs_nothing_from_elsewhere_and_no_scripts() {
+    let page = report(MISSION, "enroute.rmpl");
+    for outside in ["http://", "https://", "src=", "url(", "@import", "<script", "<link", "<iframe"] {
+        assert!(!page.contains(outside), "{outside}");
+    }
+    for drawing in ["Timeline of the plan", "Temporal plan network", "Map with the paths of the plan"] {
+        assert!(page.contains(&format!("<title>{drawing}</title>")), "{drawing}");
+    }
+    assert!(page.contains("<polyline") && page.contains("@page") && page.contains("@media print"));
+}
+
+#[test]
+fn what_the_author_wrote_stands_for_itself() {
+    let page = report(&format!("// <script>alert(\"1\" & '2')</script>\n{SCENARIO}"), "<b>.rmpl");
+    assert!(!page.contains("<script"));
+    assert!(page.contains("&lt;script&gt;alert(&quot;1&quot; &amp; &#39;2&#39;)&lt;/script&gt;"));
+    assert!(page.contains("<title>Mission review: &lt;b&gt;.rmpl</title>"));
+}
+
+#[test]
+fn every_element_of_the_report_is_closed() {
+    let page = report(MISSION, "enroute.rmpl");
+    let mut open: Vec<&str> = Vec::new();
+    for tag in page.split('<').skip(1) {
+        let (tag, _) = tag.split_once('>').expect("a tag ends");
+        let name = tag.trim_start_matches('/').split([' ', '/', '\n']).next().unwrap_or("");
+        if tag.starts_with('/') {
+            assert_eq!(open.pop(), Some(name), "</{name}>");
+        } else if !tag.ends_with('/') && !["!doctype", "meta"].contains(&name) {
+            open.push(name);
+        }
+    }
+    assert!(open.is_empty(), "{open:?}");
+}
+
+#[test]
+fn the_listing_is_the_program_and_links_lead_into_it() {
+    let page = report(SCENARIO, "t01.rmpl");
+    let listing = page.split("<pre").nth(1).and_then(|rest| rest.split("</pre>").next()).expect("a listing");
+    let without_numbers: String = listing
+        .split("</b>")
+        .skip(1)
+        .map(|line| {
+            let line = line.split("</span>").next().unwrap_or("");
+            let text: String = format!("x>{line}")
+                .split('<')
+                .filter_map(|piece| piece.split_once('>'))
+                .map(|(_, text)| text)
+                .collect();
+            text.replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", "\"").replace("&amp;", "&")
+                + "\n"
+        })
+        .collect();
+    assert_eq!(without_numbers.trim_end(), SCENARIO.replace('\r', "").trim_end());
+    for link in page.split("href=\"#").skip(1) {
+        let target = link.split('"').next().unwrap_or("");
+        assert!(page.contains(&format!("id=\"{target}\"")), "{target}");
+    }
+}
+
+#[test]
+fn a_mission_without_a_plan_has_a_report_that_says_why() {
+    let page = report(&SCENARIO.replace("PATH1=OK [450,450]", "PATH1=OK [400,400]"), "none.rmpl");
+    assert!(page.contains("there is no plan") && page.contains("not ready"));
+    assert!(page.contains("Temporal plan network") && !page.contains("Timeline of the plan"));
+}
+
+#[test]
+fn the_table_is_read_back_with_its_times() {
+    let text = export::csv(&planned(MISSION).snapshot).expect("a plan");
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    assert_eq!(reader.headers().expect("headings"), &csv::StringRecord::from(export::CSV_COLUMNS.to_vec()));
+    let rows: Vec<csv::StringRecord> = reader.records().collect::<Result<_, _>>().expect("rows");
+    let row = |name: &str| rows.iter().find(|row| &row[0] == name).unwrap_or_else(|| panic!("no {name}"));
+    let wait: Vec<&str> = row("Group-Wait#1").iter().skip(3).collect();
+    assert_eq!(wait, ["TAI_HOLD1 TAI_HOLD2", "415", "460", "415", "514", "45", "99"]);
+    assert_eq!(&row("scenario#1")[7], "800");
+    assert!(text.ends_with("\r\n") && !text.replace("\r\n", "").contains('\n'));
+}
+
+#[test]
+fn the_open_mct_plan_has_its_groups_and_milliseconds() {
+    let plan = export::open_mct(&planned(SCENARIO).snapshot, &calendar()).expect("a plan");
+    let plan: serde_json::Value = serde_json::from_str(&plan.to_string()).expect("JSON");
+    let groups = plan.as_object().expect("an object of groups");
+    for entry in groups.values().flat_map(|group| group.as_array().expect("a list")) {
+        assert!(entry["start"].as_i64() <= entry["end"].as_i64(), "{entry}");
+        for member in ["name", "type", "color", "textColor"] {
+            assert!(entry[member].is_string(), "{member}: {entry}");
+        }
+    }
+    // 2004-01-25T05:05:00Z is 1075007100 s after 1970; the drive starts 10 and ends 415 minutes later.
+    let drive = groups["Activities"].as_array().expect("a list");
+    let drive = drive.iter().find(|it| it["name"] == "Group-Traverse-Path#1").expect("the drive");
+    assert_eq!(drive["start"], 1_075_007_700_000_i64);
+    assert_eq!(drive["end"], 1_075_032_000_000_i64);
+}
+
+/// Reads an iCalendar: its events, as names and values, after undoing the folding.
+fn calendar_events(text: &str) -> Vec<Vec<(String, String)>> {
+    assert!(text.ends_with("\r\n"));
+    assert!(text.split("\r\n").all(|line| line.len() <= 75 && !line.contains('\n')), "long lines are folded");
+    let unfolded = text.replace("\r\n ", "");
+    let mut events = Vec::new();
+    for line in unfolded.split("\r\n").filter(|line| !line.is_empty()) {
+        let (name, value) = line.split_once(':').expect("a name and a value");
+        let value = value.replace("\\,", ",").replace("\\;", ";").replace("\\\\", "\\");
+        match (name, value.as_str()) {
+            ("BEGIN", "VEVENT") => events.push(Vec::new()),
+            _ => {
+                if let Some(event) = events.last_mut() {
+                    event.push((name.to_owned(), value));
+                }
+            }
+        }
+    }
+    events
+}
+
+#[test]
+fn the_calendar_has_an_event_for_each_activity() {
+    let planned = planned(SCENARIO);
+    let text =
+        export::icalendar(&planned.snapshot, &calendar(), &planned.review.content_hash).expect("a plan");
+    assert!(
+        text.starts_with("BEGIN:VCALENDAR\r\nVERSION:2.0\r\nPRODID:") && text.ends_with("END:VCALENDAR\r\n")
+    );
+    let events = calendar_events(&text);
+    let value = |event: &[(String, String)], name: &str| {
+        event.iter().find(|(key, _)| key == name).map(|(_, value)| value.clone())
+    };
+    let find = |summary: &str| {
+        events
+            .iter()
+            .find(|event| value(event, "SUMMARY").as_deref() == Some(summary))
+            .unwrap_or_else(|| panic!("no {summary}"))
+    };
+    let drive = find("Group-Traverse-Path#1");
+    assert_eq!(value(drive, "DTSTART").as_deref(), Some("20040125T051500Z"));
+    assert_eq!(value(drive, "DTEND").as_deref(), Some("20040125T120000Z"));
+    // The wait takes no time in the earliest schedule.
+    assert_eq!(value(find("Group-Wait#1"), "DTEND"), None);
+    let mut identifiers: Vec<_> = events.iter().map(|event| value(event, "UID")).collect();
+    identifiers.sort();
+    identifiers.dedup();
+    assert_eq!(identifiers.len(), events.len());
+    assert!(value(drive, "DESCRIPTION").is_some_and(|text| text.contains("10 to 55, ends from 415 to 460")));
+}
+
+#[test]
+fn a_start_of_the_mission_is_a_date_with_or_without_a_time() {
+    let at = |epoch: &str| Calendar::new(epoch, TimeUnit::Second).map(|it| it.epoch().to_string());
+    assert_eq!(at("2004-01-25").as_deref(), Some("2004-01-25T00:00:00Z"));
+    assert_eq!(at("2004-01-25T05:05").as_deref(), Some("2004-01-25T05:05:00Z"));
+    assert_eq!(at("2004-01-25T05:05:00+02:00").as_deref(), Some("2004-01-25T03:05:00Z"));
+    assert_eq!([at("tomorrow"), at("2004-13-01"), at("")], [None, None, None]);
+}
