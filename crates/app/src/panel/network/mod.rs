@@ -11,7 +11,7 @@ mod minimap;
 mod paint;
 mod search;
 mod toolbar;
-mod view;
+pub(in crate::panel) mod view;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;

@@ -3,8 +3,8 @@
 use egui::{Align2, Color32, CornerRadius, FontId, Rect, Shape, Stroke, StrokeKind, vec2};
 use layout::look::{self, Dash, Ink, Standing};
 use layout::metrics::{ARROW_LENGTH, DECISION_INSET};
-use layout::{BlockForm, Item, OverlayCurve, Piece, Point, Route, TextRole, TextShape};
-use tpn::{LabelId, Network, Plan, Role};
+use layout::{BlockForm, Item, OverlayCurve, OverlayKind, Piece, Point, Route, TextRole, TextShape};
+use tpn::{ArcKind, LabelId, Network, Plan, Role};
 
 use super::data::Drawn;
 use super::highlight::Highlight;
@@ -18,6 +18,10 @@ const LEAST_TEXT: f64 = 6.0;
 const LEAST_SHAPE: f64 = 1.5;
 /// Below this zoom, activities are named by their outlines instead of their arcs.
 const FAR_ZOOM: f64 = 0.42;
+/// Below this zoom only activities and structure are drawn: single connections would run together.
+const OVERVIEW_ZOOM: f64 = 0.06;
+/// With more curves over the drawing than this, they are drawn thin and faint, but for those of the selection.
+const MANY_CURVES: usize = 80;
 /// From the edge of the panel to a heading that was moved into view.
 const HEADING_INSET: f64 = 16.0;
 
@@ -95,6 +99,16 @@ impl Scene<'_> {
         ink_color(self.tokens, ink)
     }
 
+    /// How strong lines are: at small zooms they lie so close that full strength would make an area of them.
+    fn line_strength(&self) -> f32 {
+        (self.view.zoom() / 0.15).clamp(0.35, 1.0) as f32
+    }
+
+    /// Whether so little of the drawing can be told apart that only activities and structure are drawn.
+    fn is_overview(&self) -> bool {
+        self.view.zoom() < OVERVIEW_ZOOM
+    }
+
     /// A line width in points for one in drawing units: never so thin that it vanishes.
     fn width(&self, width: f64) -> f32 {
         (width * self.view.zoom()).clamp(0.35 * width + 0.25, 2.0 * width) as f32
@@ -103,7 +117,7 @@ impl Scene<'_> {
     fn blocks(&self, blocks: &[u32]) {
         for &at in blocks {
             let block = &self.drawn.drawing.blocks[at as usize];
-            let is_outline = block.form == BlockForm::Activity && self.is_far();
+            let is_outline = block.form == BlockForm::Activity && self.is_far() || self.is_overview();
             if !(self.options.structure || is_outline || block.form == BlockForm::Collapsed) {
                 continue;
             }
@@ -168,7 +182,14 @@ impl Scene<'_> {
                     continue;
                 }
                 let look = look::arc_stroke(arc.kind, arc.route, standing);
-                let color = self.color(look.ink);
+                let is_connection = matches!(
+                    arc.kind,
+                    ArcKind::Glue | ArcKind::Fork | ArcKind::Join | ArcKind::Choice | ArcKind::Merge
+                );
+                if is_connection && self.is_overview() {
+                    continue;
+                }
+                let color = self.color(look.ink).gamma_multiply(self.line_strength());
                 self.curve(
                     arc.start,
                     drawing.pieces(arc),
@@ -197,17 +218,51 @@ impl Scene<'_> {
     fn overlays(&self) {
         let links = self.options.links.then_some(&self.drawn.links);
         let orderings = self.options.orderings.then_some(&self.drawn.orderings);
-        let curves = links.into_iter().chain(orderings).chain([&self.drawn.cycle]).flatten();
         let area = self.view.visible(self.panel);
-        for curve in curves.filter(|curve| curve.bounds.touches(area)) {
-            let look = look::overlay_stroke(curve.kind);
-            let color = self.color(look.ink);
-            let stroke = Stroke::new(self.width(look.width).max(1.2), color);
-            self.curve(curve.start, &curve.pieces, stroke, look.dash);
-            if let Some((tip, before)) = end_of(curve) {
-                self.arrow(tip, before, color);
+        let all = links.into_iter().chain(orderings).flatten();
+        let in_view: Vec<&OverlayCurve> = all.filter(|curve| curve.bounds.touches(area)).collect();
+        let is_crowded = in_view.len() > MANY_CURVES;
+        for curve in in_view {
+            if is_crowded && self.is_overview() && !self.is_chosen(curve) {
+                // A cloud of lines says nothing; those of the selection do.
+                continue;
+            }
+            if is_crowded && !self.is_chosen(curve) {
+                let color = self.color(look::overlay_stroke(curve.kind).ink).gamma_multiply(0.22);
+                self.curve(curve.start, &curve.pieces, Stroke::new(1.0, color), Dash::Solid);
+            } else {
+                self.overlay(curve);
             }
         }
+        self.drawn
+            .cycle
+            .iter()
+            .filter(|curve| curve.bounds.touches(area))
+            .for_each(|curve| self.overlay(curve));
+    }
+
+    fn overlay(&self, curve: &OverlayCurve) {
+        let look = look::overlay_stroke(curve.kind);
+        let color = self.color(look.ink);
+        let stroke = Stroke::new(self.width(look.width).max(1.2), color);
+        self.curve(curve.start, &curve.pieces, stroke, look.dash);
+        if let Some((tip, before)) = end_of(curve) {
+            self.arrow(tip, before, color);
+        }
+    }
+
+    /// Whether a curve belongs to what is selected or pointed at.
+    fn is_chosen(&self, curve: &OverlayCurve) -> bool {
+        let Some(plan) = self.plan else { return false };
+        let number = curve.number as usize;
+        let labels = match curve.kind {
+            OverlayKind::CausalLink => plan.causal_links.get(number).map(|link| [link.ask, link.tell]),
+            OverlayKind::Ordering => plan.orderings_added.get(number).map(|order| [order.first, order.then]),
+            OverlayKind::NegativeCycle => None,
+        };
+        let arc = |label: LabelId| self.network.labels.get(label.index()).map(|label| label.arc);
+        let mut arcs = labels.into_iter().flatten().filter_map(arc);
+        arcs.any(|arc| self.selected.arcs.contains(&arc) || self.hovered.arcs.contains(&arc))
     }
 
     fn nodes(&self, nodes: &[u32]) {
@@ -217,10 +272,10 @@ impl Scene<'_> {
             if !self.is_shown(standing) {
                 continue;
             }
-            let stroke = look::node_stroke(node.role, standing);
+            let stroke = look::node_stroke(node.role, node.radius, standing);
             let center = self.view.screen_point(self.panel, node.center);
             let radius = ((node.radius * self.view.zoom()) as f32).max(1.0);
-            let fill = self.color(look::node_fill(node.role, standing));
+            let fill = self.color(look::node_fill(node.role, node.radius, standing));
             let line = Stroke::new(self.width(stroke.width), self.color(stroke.ink));
             self.painter.circle(center, radius, fill, line);
             let inset = (DECISION_INSET * self.view.zoom()) as f32;

@@ -5,7 +5,7 @@ use layout::Point;
 
 /// A view of the drawing: the point in the middle, and points of the screen per unit of the drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct View {
+pub(in crate::panel) struct View {
     center: Point,
     zoom: f64,
     /// Whether the view keeps showing all of the drawing as it changes; ends when the user moves the view.
@@ -27,39 +27,39 @@ impl Default for View {
 
 impl View {
     /// Points of the screen per unit of the drawing.
-    pub(super) fn zoom(&self) -> f64 {
+    pub(in crate::panel) fn zoom(&self) -> f64 {
         self.zoom
     }
 
     /// Whether all of the drawing is to stay in view.
-    pub(super) fn is_fitted(&self) -> bool {
+    pub(in crate::panel) fn is_fitted(&self) -> bool {
         self.is_fitted
     }
 
     /// Where a point of the drawing is on the screen.
-    pub(super) fn screen_point(&self, panel: Rect, point: Point) -> Pos2 {
+    pub(in crate::panel) fn screen_point(&self, panel: Rect, point: Point) -> Pos2 {
         let offset = ((point.x - self.center.x) * self.zoom, (point.y - self.center.y) * self.zoom);
         panel.center() + vec2(offset.0 as f32, offset.1 as f32)
     }
 
     /// Where a rectangle of the drawing is on the screen.
-    pub(super) fn screen_rect(&self, panel: Rect, rect: layout::Rect) -> Rect {
+    pub(in crate::panel) fn screen_rect(&self, panel: Rect, rect: layout::Rect) -> Rect {
         Rect::from_min_max(self.screen_point(panel, rect.min), self.screen_point(panel, rect.max))
     }
 
     /// What point of the drawing is at a place of the screen.
-    pub(super) fn drawing_point(&self, panel: Rect, position: Pos2) -> Point {
+    pub(in crate::panel) fn drawing_point(&self, panel: Rect, position: Pos2) -> Point {
         let offset = position - panel.center();
         self.center.shifted(f64::from(offset.x) / self.zoom, f64::from(offset.y) / self.zoom)
     }
 
     /// The part of the drawing that is seen.
-    pub(super) fn visible(&self, panel: Rect) -> layout::Rect {
+    pub(in crate::panel) fn visible(&self, panel: Rect) -> layout::Rect {
         layout::Rect { min: self.drawing_point(panel, panel.min), max: self.drawing_point(panel, panel.max) }
     }
 
     /// Moves the drawing by a distance on the screen.
-    pub(super) fn pan(&mut self, by: Vec2) {
+    pub(in crate::panel) fn pan(&mut self, by: Vec2) {
         if by != Vec2::ZERO {
             self.center = self.center.shifted(-f64::from(by.x) / self.zoom, -f64::from(by.y) / self.zoom);
             self.is_fitted = false;
@@ -67,7 +67,7 @@ impl View {
     }
 
     /// Makes the drawing larger by `factor`; what is at `fixed` on the screen stays there.
-    pub(super) fn zoom_at(&mut self, panel: Rect, fixed: Pos2, factor: f64) {
+    pub(in crate::panel) fn zoom_at(&mut self, panel: Rect, fixed: Pos2, factor: f64) {
         let before = self.drawing_point(panel, fixed);
         self.zoom = (self.zoom * factor).clamp(ZOOM_LIMITS.0, ZOOM_LIMITS.1);
         let after = self.drawing_point(panel, fixed);
@@ -76,19 +76,19 @@ impl View {
     }
 
     /// Shows the drawing at its designed size, keeping the middle.
-    pub(super) fn reset_zoom(&mut self) {
+    pub(in crate::panel) fn reset_zoom(&mut self) {
         self.zoom = 1.0;
         self.is_fitted = false;
     }
 
     /// Shows all of `bounds`, and keeps doing so until the user moves the view.
-    pub(super) fn fit(&mut self, panel: Rect, bounds: layout::Rect) {
+    pub(in crate::panel) fn fit(&mut self, panel: Rect, bounds: layout::Rect) {
         self.show(panel, bounds, LARGEST_FIT);
         self.is_fitted = true;
     }
 
     /// Shows `area` as large as it goes, up to `largest`.
-    pub(super) fn show(&mut self, panel: Rect, area: layout::Rect, largest: f64) {
+    pub(in crate::panel) fn show(&mut self, panel: Rect, area: layout::Rect, largest: f64) {
         let room = panel.shrink(FIT_MARGIN).size().max(vec2(1.0, 1.0));
         let across = f64::from(room.x) / area.width().max(1.0);
         let down = f64::from(room.y) / area.height().max(1.0);
@@ -98,14 +98,14 @@ impl View {
     }
 
     /// Puts a point into the middle.
-    pub(super) fn look_at(&mut self, point: Point) {
+    pub(in crate::panel) fn look_at(&mut self, point: Point) {
         self.center = point;
         self.is_fitted = false;
     }
 }
 
 /// The place of the screen with these coordinates inside `outer`, for a point of `bounds`; used by the overview.
-pub(super) fn scaled(bounds: layout::Rect, outer: Rect, point: Point) -> Pos2 {
+pub(in crate::panel) fn scaled(bounds: layout::Rect, outer: Rect, point: Point) -> Pos2 {
     let across = ((point.x - bounds.min.x) / bounds.width().max(1.0)) as f32;
     let down = ((point.y - bounds.min.y) / bounds.height().max(1.0)) as f32;
     pos2(outer.left() + across * outer.width(), outer.top() + down * outer.height())
