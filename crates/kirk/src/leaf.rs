@@ -143,11 +143,12 @@ impl Engine<'_> {
         if self.ends_by(left_end, right_start, gap_after_left) {
             return Ok(Relation::Before);
         }
-        if self.ends_by(right_end, left_start, gap_after_right) {
-            return Ok(Relation::After);
-        }
+        // Two instants at one time are each before the other where no gap is asked for: the first one counts as such.
         if self.is_entailed(left_end, right_start, gap_after_left)? {
             return Ok(Relation::Before);
+        }
+        if self.ends_by(right_end, left_start, gap_after_right) {
+            return Ok(Relation::After);
         }
         if self.is_entailed(right_end, left_start, gap_after_right)? {
             return Ok(Relation::After);

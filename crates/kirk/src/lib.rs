@@ -5,6 +5,7 @@
 //! its own answers: that is `verify`'s work.
 
 mod conditions;
+mod enclosed;
 mod explain;
 mod failure;
 mod leaf;

@@ -9,6 +9,7 @@
 use stn::Overflow;
 use tpn::{BlockKind, Network};
 
+use crate::enclosed::{Durations, Enclosed};
 use crate::model::{INFINITE, Model, NONE};
 
 /// The tree, with the duration of each block before any choice.
@@ -21,6 +22,8 @@ pub(crate) struct Structure {
     /// The block that each arc is a leaf or a spanning arc of.
     arc_blocks: Vec<u32>,
     root: u32,
+    /// Blocks without choices whose assertions conflict only with each other.
+    enclosed: Vec<Enclosed>,
 }
 
 #[derive(Clone, Debug)]
@@ -39,6 +42,10 @@ struct TreeBlock {
     has_choices: bool,
     /// Whether a label is in it.
     has_labels: bool,
+    /// Its position in `enclosed`, or [`NONE`].
+    enclosed: u32,
+    /// Whether it is inside a block that is in `enclosed`.
+    is_inside_enclosed: bool,
     /// Its first and last event.
     ends: (u32, u32),
     /// Its own arcs.
@@ -118,6 +125,9 @@ pub(crate) enum Relation {
     Open,
 }
 
+/// Parts of more blocks are not looked at for enclosed conditions.
+const MAX_ENCLOSED_BLOCKS: usize = 64;
+
 impl Structure {
     /// `None` if the blocks do not account for their own arcs, as in networks changed by other tools.
     pub(crate) fn new(network: &Network, model: &Model) -> Result<Option<Self>, Overflow> {
@@ -128,6 +138,7 @@ impl Structure {
             decision_blocks: vec![NONE; network.decisions.len()],
             arc_blocks: vec![NONE; network.arcs.len()],
             root: root.0,
+            enclosed: Vec::new(),
         };
         for (id, block) in (0..).zip(&network.blocks) {
             let (shape, children, arcs) = match &block.kind {
@@ -171,6 +182,8 @@ impl Structure {
                 own,
                 has_choices,
                 has_labels,
+                enclosed: NONE,
+                is_inside_enclosed: false,
                 ends: (block.start.0, block.end.0),
                 own_arcs: arcs,
                 around_arcs: (NONE, NONE),
@@ -187,6 +200,7 @@ impl Structure {
         for id in 0..structure.blocks.len() {
             structure.find_around_arcs(model, id);
         }
+        structure.find_enclosed(model);
         if structure.refresh(network, model)? { Ok(Some(structure)) } else { Ok(None) }
     }
 
@@ -209,7 +223,7 @@ impl Structure {
                 let child = self.blocks[id].children[position];
                 self.blocks[child as usize].around = around;
             }
-            self.initial[id] = self.initial_duration(id)?;
+            self.initial[id] = self.initial_duration(model, id)?;
         }
         Ok(true)
     }
@@ -228,8 +242,9 @@ impl Structure {
             _ => bounds(model, arc),
         };
         while id != NONE {
-            let duration = self.initial_duration(id as usize)?;
-            if duration == self.initial[id as usize] {
+            let duration = self.initial_duration(model, id as usize)?;
+            let is_inside_enclosed = self.blocks[id as usize].is_inside_enclosed;
+            if duration == self.initial[id as usize] && !is_inside_enclosed {
                 break;
             }
             self.initial[id as usize] = duration;
@@ -307,6 +322,11 @@ impl Structure {
             hull(Hull { from, to, lower: duration.lower, upper: duration.upper(), decision: choice });
             return;
         }
+        if block.enclosed != NONE {
+            let duration = self.initial[id as usize];
+            let (from, to) = block.ends;
+            hull(Hull { from, to, lower: duration.lower, upper: duration.upper(), decision: NONE });
+        }
         for &arc in &block.own_arcs {
             arrive(arc);
         }
@@ -323,6 +343,66 @@ impl Structure {
                 arrive(arc);
             }
         }
+    }
+
+    /// Finds, for each variable, the smallest block with all its labels, and keeps those that are enclosed.
+    fn find_enclosed(&mut self, model: &Model) {
+        let conditions = &model.conditions;
+        for variable in &conditions.variables {
+            let mut blocks = variable
+                .labels
+                .iter()
+                .map(|&label| self.arc_blocks[conditions.labels[label as usize].arc as usize]);
+            let Some(first) = blocks.next() else { continue };
+            let common = blocks.fold(first, |common, block| self.common_ancestor(common, block));
+            if common == NONE {
+                continue;
+            }
+            let block = &self.blocks[common as usize];
+            if block.has_choices || block.enclosed != NONE || block.is_inside_enclosed {
+                continue;
+            }
+            let Some(inside) = self.blocks_inside(common) else { continue };
+            let mut arcs = block.own_arcs.clone();
+            for &id in &inside {
+                let block = &self.blocks[id as usize];
+                let (enter, leave) = block.around_arcs;
+                arcs.extend([enter, leave].into_iter().filter(|&arc| arc != NONE));
+                arcs.extend_from_slice(&block.own_arcs);
+            }
+            let Some(enclosed) = Enclosed::new(model, block.ends, arcs) else { continue };
+            self.blocks[common as usize].enclosed = self.enclosed.len() as u32;
+            self.enclosed.push(enclosed);
+            for id in inside {
+                self.blocks[id as usize].is_inside_enclosed = true;
+            }
+        }
+    }
+
+    /// The blocks inside another; `None` if there are many.
+    fn blocks_inside(&self, id: u32) -> Option<Vec<u32>> {
+        let mut inside = self.blocks[id as usize].children.clone();
+        let mut next = 0;
+        while let Some(&id) = inside.get(next) {
+            inside.extend_from_slice(&self.blocks[id as usize].children);
+            next += 1;
+            if inside.len() > MAX_ENCLOSED_BLOCKS {
+                return None;
+            }
+        }
+        Some(inside)
+    }
+
+    /// The smallest block that holds two others, or [`NONE`].
+    fn common_ancestor(&self, mut left: u32, mut right: u32) -> u32 {
+        while left != right && left != NONE && right != NONE {
+            if self.blocks[left as usize].depth >= self.blocks[right as usize].depth {
+                left = self.blocks[left as usize].parent;
+            } else {
+                right = self.blocks[right as usize].parent;
+            }
+        }
+        if left == right { left } else { NONE }
     }
 
     fn find_around_arcs(&mut self, model: &Model, id: usize) {
@@ -515,7 +595,23 @@ impl Structure {
         add(state.durations[id as usize], self.blocks[id as usize].around)
     }
 
-    fn initial_duration(&self, id: usize) -> Result<Duration, Overflow> {
+    fn initial_duration(&self, model: &Model, id: usize) -> Result<Duration, Overflow> {
+        let duration = self.nested_duration(id)?;
+        let enclosed = self.blocks[id].enclosed;
+        if enclosed == NONE || duration.is_empty() {
+            return Ok(duration);
+        }
+        Ok(match self.enclosed[enclosed as usize].durations(model) {
+            Durations::Never => Duration::NEVER,
+            Durations::Unknown => duration,
+            Durations::Between(lower, upper) => {
+                let (lower, upper) = intersect((duration.lower, duration.upper()), (lower, upper));
+                Duration::new(lower, upper)
+            }
+        })
+    }
+
+    fn nested_duration(&self, id: usize) -> Result<Duration, Overflow> {
         let block = &self.blocks[id];
         let parts = block.children.iter().map(|&child| {
             let inside = self.initial[child as usize];
