@@ -1,5 +1,7 @@
 //! The app as a whole: takes events in, applies commands, shows bars, panels and dialogs, and talks to the host.
 
+use std::cell::Cell;
+
 use eframe::egui_wgpu::RenderState;
 use egui::{CentralPanel, Frame, Ui};
 use egui_tiles::{Behavior, TileId, Tiles, UiResponse};
@@ -137,6 +139,9 @@ impl Enroute {
         render_state: Option<&RenderState>,
         commands: &mut CommandSender,
     ) {
+        let layout_millis = Cell::new(None);
+        let host = self.host.as_ref();
+        let clock = || host.monotonic_secs();
         let context = Context {
             state: &self.state,
             snapshot: self.state.shown(),
@@ -144,6 +149,8 @@ impl Enroute {
             tokens: self.state.settings.theme.tokens(),
             render_state,
             now_secs: self.state.frame.now_secs,
+            clock: &clock,
+            layout_millis: &layout_millis,
         };
         bar::top::show(ui, &context, commands);
         bar::bottom::show(ui, &context, commands);
@@ -157,6 +164,10 @@ impl Enroute {
         });
         dialog::show(ui.ctx(), &context, commands);
         toasts::show(ui.ctx(), &context, commands);
+        if let Some(millis) = layout_millis.get() {
+            self.state.frame.layout_millis = millis;
+            self.version += 1;
+        }
         if is_editor_shown {
             // The editor has scrolled and taken the focus as it was asked to.
             self.state.editor.reveal = None;

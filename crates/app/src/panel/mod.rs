@@ -10,6 +10,7 @@ pub mod search;
 pub mod terrain;
 pub mod timeline;
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -111,8 +112,12 @@ pub struct Context<'a> {
     pub tokens: &'static Tokens,
     /// For panels that draw with wgpu; `None` in tests without a graphics adapter.
     pub render_state: Option<&'a eframe::egui_wgpu::RenderState>,
-    /// Seconds on the host's clock.
+    /// Seconds on the host's clock at the start of this frame.
     pub now_secs: f64,
+    /// The host's clock itself, for measuring.
+    pub clock: &'a dyn Fn() -> f64,
+    /// Where a panel that lays out its drawing anew says how long that took.
+    pub layout_millis: &'a Cell<Option<f64>>,
 }
 
 impl Context<'_> {

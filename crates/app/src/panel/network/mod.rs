@@ -63,7 +63,10 @@ impl Panel for NetworkPanel {
             show_empty(ui, context, "The network appears when the mission has been read.");
             return;
         };
-        self.drawn.follow(snapshot, network, &self.collapsed);
+        let begun_secs = (context.clock)();
+        if self.drawn.follow(snapshot, network, &self.collapsed) {
+            context.layout_millis.set(Some(((context.clock)() - begun_secs) * 1000.0));
+        }
         self.search.follow(network, self.drawn.version);
         let views = &context.state.settings.views;
         let mut options = views.network.clone();
