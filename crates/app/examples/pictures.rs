@@ -13,7 +13,7 @@ fn main() {
     let script: Vec<String> = arguments.collect();
     std::fs::create_dir_all(&folder).expect("the folder can be made");
     for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
-        let mut app = support::start_in(std::rc::Rc::default(), |builder| builder.wgpu());
+        let mut app = support::start_in(std::rc::Rc::default(), egui_kittest::HarnessBuilder::wgpu);
         app.harness.state_mut().run(Command::SetTheme(theme));
         for workspace in Workspace::ALL {
             app.harness.state_mut().run(Command::ShowWorkspace(workspace));
@@ -26,7 +26,9 @@ fn main() {
             app.settle();
             let image = app.harness.render().expect("the app can be drawn");
             let theme = if theme == ThemeChoice::Dark { "dark" } else { "light" };
-            image.save(format!("{folder}/{}-{theme}.png", workspace.name())).expect("the picture can be written");
+            image
+                .save(format!("{folder}/{}-{theme}.png", workspace.name()))
+                .expect("the picture can be written");
         }
     }
 }

@@ -13,14 +13,31 @@ pub fn bound(value: Bound) -> String {
     value.finite().map_or_else(|| "∞".to_owned(), time)
 }
 
+/// A time short enough for a table: exact if that is short, otherwise rounded and marked by `≈`.
+pub fn short(value: Rational) -> String {
+    let exact = time(value);
+    if exact.len() <= LONGEST_EXACT {
+        return exact;
+    }
+    format!("≈ {:.2}", *value.numer() as f64 / *value.denom() as f64)
+}
+
+/// A bound short enough for a table.
+pub fn short_bound(value: Bound) -> String {
+    value.finite().map_or_else(|| "∞".to_owned(), short)
+}
+
+/// Characters of an exact number that a table has room for.
+const LONGEST_EXACT: usize = 8;
+
 /// `earliest` to `latest`, as intervals are written.
 pub fn interval(earliest: Rational, latest: Bound) -> String {
     format!("[{}, {}]", time(earliest), bound(latest))
 }
 
-/// What is between the two, `∞` if the latest is.
+/// What is between the two, short enough for a table; `∞` if the latest is.
 pub fn slack(earliest: Rational, latest: Bound) -> String {
-    latest.finite().map_or_else(|| "∞".to_owned(), |latest| time(latest - earliest))
+    latest.finite().map_or_else(|| "∞".to_owned(), |latest| short(latest - earliest))
 }
 
 /// The short name of a unit.
@@ -51,6 +68,8 @@ mod tests {
         assert_eq!(time(Rational::new(819, 2)), "409.5");
         assert_eq!(time(Rational::new(1, 3)), "1/3");
         assert_eq!(bound(Bound::Infinite), "∞");
+        assert_eq!(short(Rational::new(1_580_809, 15_000)), "≈ 105.39");
+        assert_eq!(short(Rational::new(819, 2)), "409.5");
         assert_eq!(slack(Rational::from(10), Bound::Finite(Rational::from(55))), "45");
     }
 

@@ -119,7 +119,8 @@ fn the_clipboard_cuts_and_pastes_the_selection() {
 #[test]
 fn text_being_composed_is_no_part_of_the_document_until_it_is_committed() {
     let mut app = editing("// $0");
-    let preedit = |text: &str| Event::Ime(ImeEvent::Preedit { text: text.to_owned(), active_range_chars: None });
+    let preedit =
+        |text: &str| Event::Ime(ImeEvent::Preedit { text: text.to_owned(), active_range_chars: None });
     app.harness.event(preedit("´"));
     app.settle();
     assert_eq!(app.text(), "// $0");
@@ -210,7 +211,9 @@ fn the_caret_selects_in_all_panels_and_a_bar_of_the_timeline_selects_too() {
     app.harness.state_mut().run(Command::Text(TextCommand::Select { anchor: at, head: at }));
     app.settle();
     assert_eq!(app.json()["selection"]["name"], "Group-Enroute#1");
-    app.harness.get_by(|node| node.label().is_some_and(|it| it.starts_with("Group-Traverse-Path#1: starts"))).click();
+    app.harness
+        .get_by(|node| node.label().is_some_and(|it| it.starts_with("Group-Traverse-Path#1: starts")))
+        .click();
     app.settle();
     assert_eq!(app.json()["selection"]["name"], "Group-Traverse-Path#1");
 }

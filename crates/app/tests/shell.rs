@@ -113,10 +113,7 @@ fn a_host_page_can_drive_the_app_and_is_told_what_is_wrong_with_a_call() {
     enroute.dispatch("view.workspace", &json!({ "name": "teach" })).expect("a workspace");
     assert_eq!(enroute.source(), "scenario S[0,10] = { delay[5,5] }");
     assert!(matches!(enroute.open("nowhere"), Err(RemoteError::UnknownMission { .. })));
-    assert!(matches!(
-        enroute.dispatch("no.such", &json!(null)),
-        Err(RemoteError::UnknownCommand { .. })
-    ));
+    assert!(matches!(enroute.dispatch("no.such", &json!(null)), Err(RemoteError::UnknownCommand { .. })));
     assert!(matches!(
         enroute.dispatch("view.workspace", &json!({ "name": "kitchen" })),
         Err(RemoteError::BadArguments { .. })

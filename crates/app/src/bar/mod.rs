@@ -1,6 +1,7 @@
 //! The bars above and below the panels, and the titles of tabs.
 
 pub mod bottom;
+pub mod tab;
 pub mod top;
 
 use egui::RichText;

@@ -43,7 +43,7 @@ fn take_in_dialog(context: &Context) -> Vec<Command> {
 }
 
 fn focus(context: &Context, editor: egui::Id) -> Focus {
-    match context.memory(|memory| memory.focused()) {
+    match context.memory(egui::Memory::focused) {
         None => Focus::Nothing,
         Some(id) if id == editor => Focus::Editor,
         Some(_) if context.text_edit_focused() => Focus::TextField,
@@ -62,16 +62,16 @@ fn best_match(
     matching
         .filter(|(spec, keys)| {
             keys.logical_key == key
-                && matches_modifiers(modifiers, keys)
-                && works(spec.scope, focus, keys)
+                && matches_modifiers(modifiers, **keys)
+                && works(spec.scope, focus, **keys)
                 && (spec.available)(state).is_ok()
         })
-        .max_by_key(|(_, keys)| specificity(keys))
+        .max_by_key(|(_, keys)| specificity(**keys))
         .map(|(spec, _)| spec)
 }
 
 /// Letters and function keys want exactly their modifiers; signs may need Shift on some keyboards.
-fn matches_modifiers(pressed: egui::Modifiers, keys: &KeyboardShortcut) -> bool {
+fn matches_modifiers(pressed: egui::Modifiers, keys: KeyboardShortcut) -> bool {
     let is_sign = keys.logical_key.name().chars().count() != 1 && is_sign_key(keys.logical_key);
     if is_sign { pressed.matches_logically(keys.modifiers) } else { pressed.matches_exact(keys.modifiers) }
 }
@@ -84,7 +84,7 @@ fn is_sign_key(key: egui::Key) -> bool {
     )
 }
 
-fn works(scope: Scope, focus: Focus, keys: &KeyboardShortcut) -> bool {
+fn works(scope: Scope, focus: Focus, keys: KeyboardShortcut) -> bool {
     match scope {
         Scope::Everywhere => true,
         Scope::Editor => focus != Focus::TextField,
@@ -103,7 +103,7 @@ fn is_widget_key(key: egui::Key) -> bool {
     matches!(key, Key::Space | Key::Enter | Key::ArrowLeft | Key::ArrowRight | Key::ArrowUp | Key::ArrowDown)
 }
 
-fn specificity(keys: &KeyboardShortcut) -> u32 {
+fn specificity(keys: KeyboardShortcut) -> u32 {
     let modifiers = keys.modifiers;
     u32::from(modifiers.shift) + u32::from(modifiers.alt) + u32::from(modifiers.command)
 }

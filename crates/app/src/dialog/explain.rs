@@ -25,10 +25,13 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, code: &str, commands: &mu
         for (title, text) in [("Example", page.example), ("Mended", page.mended)] {
             ui.add_space(space::S);
             ui.label(crate::theme::strong(title));
-            Frame::new().fill(tokens.sunken).corner_radius(4.0).inner_margin(Margin::same(8)).show(ui, |ui| {
-                ui.set_width(ui.available_width());
-                ui.label(RichText::new(text.trim()).monospace());
-            });
+            Frame::new().fill(tokens.sunken).corner_radius(4.0).inner_margin(Margin::same(8)).show(
+                ui,
+                |ui| {
+                    ui.set_width(ui.available_width());
+                    ui.label(RichText::new(text.trim()).monospace());
+                },
+            );
             if title == "Example" {
                 ui.add_space(space::S);
                 show_markdown(ui, tokens, page.fix);

@@ -11,7 +11,8 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, old: &str, name: &str, co
     ui.set_width(300.0);
     ui.label(format!("Rename {old} everywhere"));
     let mut text = name.to_owned();
-    let field = ui.add(TextEdit::singleline(&mut text).desired_width(f32::INFINITY)).accessible_name("New name");
+    let field =
+        ui.add(TextEdit::singleline(&mut text).desired_width(f32::INFINITY)).accessible_name("New name");
     let enter = ui.input(|input| input.key_pressed(Key::Enter));
     if !enter {
         field.request_focus();

@@ -380,3 +380,132 @@ fn line_starts(text: &str) -> Vec<usize> {
     let breaks = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n').map(|(at, _)| at + 1);
     std::iter::once(0).chain(breaks).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::typing::{Motion, TextCommand};
+
+    fn apply(document: &mut Document, commands: &[TextCommand]) {
+        for command in commands {
+            command.apply(document);
+        }
+    }
+
+    fn typed(text: &str) -> Vec<TextCommand> {
+        text.chars().map(|character| TextCommand::Insert(character.to_string())).collect()
+    }
+
+    #[test]
+    fn words_are_undone_one_by_one_and_a_moved_caret_starts_a_new_step() {
+        let mut document = Document::new("");
+        apply(&mut document, &typed("delay two"));
+        apply(&mut document, &[TextCommand::Move { motion: Motion::Left, select: false }]);
+        apply(&mut document, &typed("x"));
+        assert_eq!(document.text(), "delay twxo");
+        document.undo();
+        assert_eq!(document.text(), "delay two");
+        document.undo();
+        assert_eq!(document.text(), "delay ");
+        document.undo();
+        assert_eq!(document.text(), "");
+        assert!(!document.can_undo());
+    }
+
+    #[test]
+    fn several_edits_are_one_step_and_the_caret_stays_with_its_text() {
+        let mut document = Document::new("a b a b");
+        document.set_caret(Caret::at(6));
+        let edit = |start, end, text: &str| Edit { span: Span::new(start, end), text: text.to_owned() };
+        document.edit(&[edit(0, 1, "long"), edit(4, 5, "")], EditKind::Single, None);
+        assert_eq!(document.text(), "long b  b");
+        assert_eq!(document.caret(), Caret::at(8));
+        document.undo();
+        assert_eq!(document.text(), "a b a b");
+        assert_eq!(document.caret(), Caret::at(6));
+        document.redo();
+        assert_eq!(document.text(), "long b  b");
+    }
+
+    #[test]
+    fn a_drag_is_undone_as_a_whole() {
+        let mut document = Document::new("location A (1, 2);");
+        for x in ["3", "45", "6"] {
+            let end = document.text().find(',').expect("a comma") as u32;
+            document.replace(Span::new(12, end), x, EditKind::Drag(1));
+        }
+        assert_eq!(document.text(), "location A (6, 2);");
+        document.undo();
+        assert_eq!(document.text(), "location A (1, 2);");
+    }
+
+    #[test]
+    fn the_smallest_difference_respects_characters_of_several_bytes() {
+        for (old, new) in [("aéb", "aèb"), ("", "∞"), ("∞∞", "∞"), ("[0,∞]", "[0,inf]"), ("same", "same")]
+        {
+            let edit = difference(old, new);
+            let mut text = old.to_owned();
+            text.replace_range(edit.span.range(), &edit.text);
+            assert_eq!(text, new);
+        }
+    }
+
+    #[test]
+    fn any_mix_of_keys_can_be_undone_to_the_start_and_redone_to_the_end() {
+        let motions = [
+            Motion::Left,
+            Motion::Right,
+            Motion::WordLeft,
+            Motion::WordRight,
+            Motion::LineStart,
+            Motion::LineEnd,
+            Motion::Up(1),
+            Motion::Down(2),
+            Motion::TextStart,
+            Motion::TextEnd,
+        ];
+        let start = "scenario S = {\n  délai[0,∞];\n\tA(x, y)\n}\n";
+        for seed in 0..200_u64 {
+            let mut document = Document::new(start);
+            let mut random = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+            let mut next = |below: u64| {
+                random ^= random << 13;
+                random ^= random >> 7;
+                random ^= random << 17;
+                random % below
+            };
+            for _ in 0..40 {
+                let motion = motions[next(motions.len() as u64) as usize];
+                let command = match next(14) {
+                    0 => TextCommand::Insert("é".to_owned()),
+                    1 => TextCommand::Insert("}".to_owned()),
+                    2 => TextCommand::Paste("a\r\n∞b".to_owned()),
+                    3 => TextCommand::NewLine,
+                    4 => TextCommand::Indent,
+                    5 => TextCommand::Outdent,
+                    6 => TextCommand::Delete(motion),
+                    7 => TextCommand::DuplicateLines,
+                    8 => TextCommand::MoveLinesUp,
+                    9 => TextCommand::MoveLinesDown,
+                    10 => TextCommand::ToggleComment,
+                    11 => TextCommand::SelectWord(next(60) as usize),
+                    12 => TextCommand::DeleteLines,
+                    _ => TextCommand::Move { motion, select: next(2) == 0 },
+                };
+                command.apply(&mut document);
+                let caret = document.caret();
+                assert!(document.text().is_char_boundary(caret.head), "seed {seed}: {command:?}");
+                assert!(document.text().is_char_boundary(caret.anchor), "seed {seed}: {command:?}");
+            }
+            let end = document.text().to_owned();
+            while document.can_undo() {
+                document.undo();
+            }
+            assert_eq!(document.text(), start, "seed {seed}");
+            while document.can_redo() {
+                document.redo();
+            }
+            assert_eq!(document.text(), end, "seed {seed}");
+        }
+    }
+}

@@ -2,8 +2,8 @@
 //!
 //! Completion, fixes and renaming are in [`super::services`].
 
-use rmpl::editor;
 use rmpl::Span;
+use rmpl::editor;
 
 use crate::command::EditorCommand;
 use crate::panel::PanelKind;
@@ -151,13 +151,13 @@ impl AppState {
     fn go_to_problem(&mut self, forwards: bool) {
         let Some(latest) = self.snapshots.latest().cloned() else { return };
         let caret = self.document.caret().range();
-        let starts = || latest.problems.iter().map(|problem| problem.span);
+        let spans: Vec<Span> = latest.problems.iter().map(|problem| problem.span).collect();
         let next = if forwards {
-            starts().find(|span| span.start as usize > caret.start).or_else(|| starts().next())
+            spans.iter().find(|span| span.start as usize > caret.start).or(spans.first())
         } else {
-            starts().filter(|span| (span.start as usize) < caret.start).last().or_else(|| starts().last())
+            spans.iter().rev().find(|span| (span.start as usize) < caret.start).or(spans.last())
         };
-        if let Some(span) = next {
+        if let Some(&span) = next {
             self.reveal(span);
             self.editor.wants_focus = true;
         }

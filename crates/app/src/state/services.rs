@@ -65,7 +65,8 @@ impl AppState {
             }
             return;
         }
-        self.editor.popup = Some(Popup { kind: PopupKind::Completion, items, chosen: 0, span: found.replaces });
+        self.editor.popup =
+            Some(Popup { kind: PopupKind::Completion, items, chosen: 0, span: found.replaces });
     }
 
     /// Lists what mends the problems at the caret, in its line if there are none right there.
@@ -112,7 +113,11 @@ impl AppState {
                 let line = self.document.line_at(found.span.start as usize);
                 PopupItem {
                     label: self.document.line_text(line).trim().to_owned(),
-                    detail: format!("{}{}", if found.is_definition { "declared, line " } else { "line " }, line + 1),
+                    detail: format!(
+                        "{}{}",
+                        if found.is_definition { "declared, line " } else { "line " },
+                        line + 1
+                    ),
                     kind: None,
                     action: PopupAction::Reveal(found.span),
                 }

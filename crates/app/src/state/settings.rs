@@ -125,6 +125,8 @@ pub struct PlanView {
     pub sort: WindowSort,
     /// Whether the order is reversed.
     pub descending: bool,
+    /// Whether the vertices of planned paths are listed among the events.
+    pub path_points: bool,
 }
 
 /// The columns of the table of windows.

@@ -129,13 +129,7 @@ impl TextCommand {
 /// The word around `offset`, or the run of blanks or signs there.
 pub fn word_at(text: &str, offset: usize) -> std::ops::Range<usize> {
     let class = |c: char| {
-        if is_name_character(c) {
-            2
-        } else if c.is_whitespace() {
-            0
-        } else {
-            1
-        }
+        if is_name_character(c) { 2 } else { u8::from(!c.is_whitespace()) }
     };
     let before = text[..offset].chars().next_back().filter(|&c| c != '\n').map(class);
     let after = text[offset..].chars().next().filter(|&c| c != '\n').map(class);

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use egui::{
-    Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Shadow, Stroke, Style,
-    TextStyle, Theme, Vec2, Visuals, style::ScrollStyle,
+    Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Shadow, Stroke,
+    Style, TextStyle, Theme, Vec2, Visuals, style::ScrollStyle,
 };
 
 use super::{ThemeChoice, Tokens, size, space};
@@ -28,7 +28,9 @@ pub fn apply(context: &Context, theme: ThemeChoice, text_scale: f32) {
 /// Gives `context` the app's fonts.
 pub fn install_fonts(context: &Context) {
     let mut fonts = FontDefinitions::default();
-    for (name, bytes) in [("Inter", INTER), ("Inter SemiBold", INTER_STRONG), ("JetBrains Mono", JETBRAINS_MONO)] {
+    for (name, bytes) in
+        [("Inter", INTER), ("Inter SemiBold", INTER_STRONG), ("JetBrains Mono", JETBRAINS_MONO)]
+    {
         fonts.font_data.insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
     }
     // egui's own fonts fill in for missing characters.
@@ -102,7 +104,7 @@ fn set_visuals(visuals: &mut Visuals, tokens: &Tokens) {
     let shadow = Shadow { offset: [0, 6], blur: 18, spread: 0, color: tokens.shadow };
     visuals.window_shadow = shadow;
     visuals.popup_shadow = shadow;
-    visuals.selection.bg_fill = tokens.selection;
+    visuals.selection.bg_fill = tokens.accent_soft;
     visuals.selection.stroke = Stroke::new(1.0, tokens.accent);
     visuals.striped = false;
     visuals.indent_has_left_vline = false;

@@ -3,6 +3,7 @@
 //! Categories use the palette of Okabe and Ito, which stays apart for the common kinds of colour blindness; shades are
 //! adapted to each background so that text keeps a contrast of 4.5 : 1.
 #![expect(clippy::disallowed_methods, reason = "this is the one place where colours are made")]
+#![expect(clippy::mistyped_literal_suffixes, reason = "the digits stand in pairs: red, green, blue")]
 
 use egui::Color32;
 
@@ -184,7 +185,7 @@ pub static DARK: Tokens = Tokens {
         rgb(0x2F_BF_94),
         rgb(0xDE_93_BE),
         rgb(0xF0_E4_42),
-        rgb(0x5C_9E_E0),
+        rgb(0x4C_82_E8),
         rgb(0xF2_7F_3D),
         rgb(0xA9_B4_C2),
     ],

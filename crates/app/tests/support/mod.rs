@@ -51,11 +51,14 @@ pub fn start() -> App {
 }
 
 /// Starts the app in a given world, with a changed harness.
-pub fn start_in(world: Rc<World>, build: impl FnOnce(HarnessBuilder<Enroute>) -> HarnessBuilder<Enroute>) -> App {
+pub fn start_in(
+    world: Rc<World>,
+    build: impl FnOnce(HarnessBuilder<Enroute>) -> HarnessBuilder<Enroute>,
+) -> App {
     let host = TestHost { core: Core::default(), world: Rc::clone(&world) };
-    let builder = build(Harness::builder().with_size([1440.0, 900.0]).with_max_steps(8).with_step_dt(1.0 / 60.0));
-    let harness = builder
-        .build_eframe(move |creation| Enroute::new(&creation.egui_ctx, Box::new(host), ""));
+    let builder =
+        build(Harness::builder().with_size([1440.0, 900.0]).with_max_steps(8).with_step_dt(1.0 / 60.0));
+    let harness = builder.build_eframe(move |creation| Enroute::new(&creation.egui_ctx, Box::new(host), ""));
     App { harness, world }
 }
 

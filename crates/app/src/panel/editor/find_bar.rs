@@ -32,7 +32,9 @@ pub(crate) fn show(ui: &mut Ui, context: &Context<'_>, find: &Find, commands: &m
         if find.replacing {
             ui.horizontal(|ui| {
                 ui.add_space(26.0);
-                let field = TextEdit::singleline(&mut changed.replacement).hint_text("Replace by").desired_width(200.0);
+                let field = TextEdit::singleline(&mut changed.replacement)
+                    .hint_text("Replace by")
+                    .desired_width(200.0);
                 ui.add(field).accessible_name("Replace by");
                 if ui.button("Replace").clicked() {
                     commands.send(Command::Editor(EditorCommand::ReplaceOne));

@@ -20,7 +20,13 @@ pub(crate) struct LineLayout {
 
 impl LineLayout {
     /// Lays out the line that covers `bytes`. `colors` are coloured parts of the text in textual order.
-    pub(crate) fn new(ui: &Ui, context: &Context<'_>, font: &FontId, bytes: Range<usize>, colors: &[(Span, Color32)]) -> Self {
+    pub(crate) fn new(
+        ui: &Ui,
+        context: &Context<'_>,
+        font: &FontId,
+        bytes: Range<usize>,
+        colors: &[(Span, Color32)],
+    ) -> Self {
         let document = &context.state.document;
         let text = document.text().get(bytes.clone()).unwrap_or_default();
         let plain = |color| TextFormat::simple(font.clone(), color);
@@ -32,7 +38,8 @@ impl LineLayout {
             }
         };
         let first = colors.partition_point(|(span, _)| span.end as usize <= bytes.start);
-        for (span, color) in colors[first..].iter().take_while(|(span, _)| (span.start as usize) < bytes.end) {
+        for (span, color) in colors[first..].iter().take_while(|(span, _)| (span.start as usize) < bytes.end)
+        {
             let start = (span.start as usize).max(done);
             let end = (span.end as usize).min(bytes.end);
             if start < end {

@@ -1,6 +1,8 @@
 //! The list at the caret, and the signature of the call around it.
 
-use egui::{Align2, Area, Frame, Id, Margin, Order, Pos2, Rect, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo};
+use egui::{
+    Align2, Area, Frame, Id, Margin, Order, Pos2, Rect, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo,
+};
 use rmpl::editor::CompletionKind;
 
 use crate::command::{Command, CommandSender, EditorCommand};
@@ -20,23 +22,26 @@ pub(crate) fn show(ui: &Ui, context: &Context<'_>, caret: Rect, commands: &mut C
     let is_below = caret.bottom() + height + 12.0 < screen.bottom();
     let y = if is_below { caret.bottom() + 3.0 } else { caret.top() - height - 5.0 };
     let x = (caret.left() - 26.0).min(screen.right() - WIDTH - 12.0).max(screen.left() + 4.0);
-    Area::new(Id::unique("editor popup")).order(Order::Foreground).fixed_pos(Pos2::new(x, y)).show(ui.ctx(), |ui| {
-        Frame::popup(ui.style()).inner_margin(Margin::same(4)).show(ui, |ui| {
-            ui.set_width(WIDTH);
-            ui.spacing_mut().item_spacing.y = 0.0;
-            ScrollArea::vertical().max_height(ROWS as f32 * row).show(ui, |ui| {
-                for (index, item) in popup.items.iter().enumerate() {
-                    let response = show_item(ui, context, popup, item, index == popup.chosen, row);
-                    if index == popup.chosen && !ui.clip_rect().contains_rect(response.rect) {
-                        response.scroll_to_me(None);
+    Area::new(Id::unique("editor popup")).order(Order::Foreground).fixed_pos(Pos2::new(x, y)).show(
+        ui.ctx(),
+        |ui| {
+            Frame::popup(ui.style()).inner_margin(Margin::same(4)).show(ui, |ui| {
+                ui.set_width(WIDTH);
+                ui.spacing_mut().item_spacing.y = 0.0;
+                ScrollArea::vertical().max_height(ROWS as f32 * row).show(ui, |ui| {
+                    for (index, item) in popup.items.iter().enumerate() {
+                        let response = show_item(ui, context, popup, item, index == popup.chosen, row);
+                        if index == popup.chosen && !ui.clip_rect().contains_rect(response.rect) {
+                            response.scroll_to_me(None);
+                        }
+                        if response.clicked() {
+                            commands.send(Command::Editor(EditorCommand::TakeFromPopup(Some(index))));
+                        }
                     }
-                    if response.clicked() {
-                        commands.send(Command::Editor(EditorCommand::TakeFromPopup(Some(index))));
-                    }
-                }
+                });
             });
-        });
-    });
+        },
+    );
 }
 
 fn show_item(

@@ -2,7 +2,10 @@
 
 use std::ops::Range;
 
-use egui::{Align2, CursorIcon, FontId, Pos2, Rect, Response, Role, ScrollArea, Sense, Stroke, TextStyle, Ui, WidgetInfo};
+use egui::{
+    Align2, CursorIcon, FontId, Pos2, Rect, Response, Role, ScrollArea, Sense, Stroke, TextStyle, Ui,
+    WidgetInfo,
+};
 use mission::Problem;
 use rmpl::{Severity, Span};
 
@@ -90,15 +93,17 @@ impl TextArea {
             let last = ((viewport.bottom() / row_height).ceil().max(0.0) as usize).min(document.line_count());
             let lines = first.min(last)..last;
             let response = ui.interact(ui.clip_rect().intersect(rect), editor_id(), Sense::click_and_drag());
-            self.follow_focus(ui, context, &response);
+            Self::follow_focus(ui, context, &response);
             let layouts = lay_out(ui, context, &geometry, lines.clone());
             self.follow_pointer(ui, context, &geometry, &response, &lines, &layouts, commands);
             self.paint(ui, context, &geometry, &response, &lines, &layouts);
             describe(ui, context, &response);
-            let offset = self.offset_under_pointer(context, &geometry, &response, &lines, &layouts);
+            let offset = Self::offset_under_pointer(context, &geometry, &response, &lines, &layouts);
             let problems = shifted_problems(context, self.shift(context));
             self.hover.show(context, &response, offset, &problems);
-            if let Some(caret) = caret_rect(context, &geometry, &lines, &layouts).filter(|_| response.has_focus()) {
+            if let Some(caret) =
+                caret_rect(context, &geometry, &lines, &layouts).filter(|_| response.has_focus())
+            {
                 let to_global = ui.ctx().layer_transform_to_global(ui.layer_id()).unwrap_or_default();
                 popup::show(ui, context, to_global * caret, commands);
                 popup::show_signature(ui, context, to_global * caret);
@@ -121,7 +126,8 @@ impl TextArea {
         let top = document.line_at(head) as f32 * geometry.row_height;
         let margin = geometry.row_height * 2.0;
         let offset = self.offset;
-        let is_visible = top >= offset.y + margin.min(top) && top + geometry.row_height + margin <= offset.y + available.y;
+        let is_visible =
+            top >= offset.y + margin.min(top) && top + geometry.row_height + margin <= offset.y + available.y;
         let y = if is_visible {
             offset.y
         } else if reveal.center {
@@ -153,7 +159,7 @@ impl TextArea {
         self.widest.1
     }
 
-    fn follow_focus(&self, ui: &Ui, context: &Context<'_>, response: &Response) {
+    fn follow_focus(ui: &Ui, context: &Context<'_>, response: &Response) {
         let wants_focus = context.state.editor.wants_focus && context.state.dialog.is_none();
         if wants_focus || response.is_pointer_button_down_on() {
             response.request_focus();
@@ -167,7 +173,6 @@ impl TextArea {
     }
 
     fn offset_under_pointer(
-        &self,
         context: &Context<'_>,
         geometry: &Geometry,
         response: &Response,
@@ -202,7 +207,8 @@ impl TextArea {
             Some(layout) => layout.offset_at(context, x),
             None => document.offset_at(line, (x / geometry.character_width).max(0.0) as usize),
         };
-        let primary_pressed = ui.input(|input| input.pointer.primary_pressed()) && response.is_pointer_button_down_on();
+        let primary_pressed =
+            ui.input(|input| input.pointer.primary_pressed()) && response.is_pointer_button_down_on();
         if primary_pressed {
             self.presses = ui.input(|input| {
                 if input.pointer.button_triple_clicked(egui::PointerButton::Primary) {

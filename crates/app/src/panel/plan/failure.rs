@@ -136,7 +136,10 @@ fn show_cycle(ui: &mut Ui, context: &Context<'_>, network: &Network, reason: &Re
                 );
                 ui.label(RichText::new(step).small().color(tokens.text_muted));
             }
-            let sum = format!("Around the circle this adds up to {}, less than zero.", crate::time_text::time(total));
+            let sum = format!(
+                "Around the circle this adds up to {}, less than zero.",
+                crate::time_text::time(total)
+            );
             ui.label(RichText::new(sum).small().color(tokens.threat));
         });
 }
@@ -146,9 +149,5 @@ fn one_line(text: &str) -> String {
     const LONGEST: usize = 48;
     let words: Vec<&str> = text.split_whitespace().collect();
     let line = words.join(" ");
-    if line.chars().count() <= LONGEST {
-        line
-    } else {
-        line.chars().take(LONGEST).chain(['…']).collect()
-    }
+    if line.chars().count() <= LONGEST { line } else { line.chars().take(LONGEST).chain(['…']).collect() }
 }

@@ -52,6 +52,11 @@ impl Panel for PlanPanel {
     }
 }
 
+/// A number with its noun, in the plural where it belongs.
+fn counted(count: u64, noun: &str) -> String {
+    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
+}
+
 /// The title of a section.
 pub(crate) fn section(ui: &mut Ui, context: &Context<'_>, title: &str, note: &str) {
     ui.add_space(space::M);
@@ -96,8 +101,8 @@ fn show_verdict(ui: &mut Ui, context: &Context<'_>, planning: &mission::Planning
             }
             Some(verdict) => {
                 icon::label(ui, Icon::Error, tokens.error);
-                let count = verdict.violations.len();
-                let text = format!("The independent checker refuses this plan: {count} violations.");
+                let count = counted(verdict.violations.len() as u64, "violation");
+                let text = format!("The independent checker refuses this plan: {count}.");
                 ui.label(RichText::new(text).color(tokens.error));
             }
             None => {
@@ -105,7 +110,8 @@ fn show_verdict(ui: &mut Ui, context: &Context<'_>, planning: &mission::Planning
                 ui.label(RichText::new("Not checked yet.").color(tokens.text_muted));
             }
         }
-        let effort = format!("{} alternatives tried, {} dead ends", stats.expanded, stats.conflicts);
+        let tried = counted(stats.expanded, "alternative");
+        let effort = format!("{tried} tried, {}", counted(stats.conflicts, "dead end"));
         ui.label(RichText::new(effort).small().color(tokens.text_muted));
     });
     for violation in planning.verdict.iter().flat_map(|verdict| &verdict.violations) {
@@ -198,10 +204,12 @@ fn show_orderings(
         return;
     }
     let added = plan.orderings_added.len();
-    let note = format!("{} conflicting pairs, {added} ordered by planning", plan.conflict_order.len());
+    let pairs = counted(plan.conflict_order.len() as u64, "conflicting pair");
+    let note = format!("{pairs}, {added} ordered by planning");
     section(ui, context, "Threats and orderings", &note);
     for &ordering in &plan.conflict_order {
-        let text = format!("{} before {}", network.label_name(ordering.first), network.label_name(ordering.then));
+        let text =
+            format!("{} before {}", network.label_name(ordering.first), network.label_name(ordering.then));
         let is_added = plan.orderings_added.contains(&ordering);
         let (note, color) = if is_added {
             ("   added", context.tokens.ordering)

@@ -1,8 +1,8 @@
 //! The table of windows: every event of the plan, sortable and searchable.
 
-use egui::{Align2, Role, RichText, Sense, TextEdit, TextStyle, Ui, WidgetInfo};
+use egui::{Align2, RichText, Role, Sense, TextEdit, TextStyle, Ui, WidgetInfo};
 use rmpl::{Bound, Rational};
-use tpn::{Network, NodeId, Plan};
+use tpn::{EventEnd, EventRef, Network, NodeId, Plan};
 
 use crate::command::{Command, CommandSender};
 use crate::panel::Context;
@@ -41,24 +41,36 @@ impl WindowTable {
         let rows = self.rows(context, network, plan);
         section(ui, context, "Windows", "when each event can happen, from the start of the mission");
         let field = TextEdit::singleline(&mut self.filter).hint_text("Filter events").desired_width(180.0);
-        ui.add(field).accessible_name("Filter events");
+        ui.horizontal(|ui| {
+            ui.add(field).accessible_name("Filter events");
+            let shown = context.state.settings.views.plan.path_points;
+            if ui.add(egui::Button::selectable(shown, RichText::new("Path points").small())).clicked() {
+                let mut views = context.state.settings.views.clone();
+                views.plan.path_points = !shown;
+                commands.send(Command::SetViews(Box::new(views)));
+            }
+        });
         ui.add_space(space::XS);
         show_header(ui, context, commands);
         let height = space::ROW - 2.0;
-        let (table, _) =
-            ui.allocate_exact_size(egui::vec2(ui.available_width(), height * rows.len() as f32), Sense::hover());
+        let (table, _) = ui.allocate_exact_size(
+            egui::vec2(ui.available_width(), height * rows.len() as f32),
+            Sense::hover(),
+        );
         let clip = ui.clip_rect();
         let first = ((clip.top() - table.top()) / height).floor().max(0.0) as usize;
         let last = ((clip.bottom() - table.top()) / height).ceil().max(0.0) as usize;
         for (index, row) in rows.iter().enumerate().take(last).skip(first) {
             let top = table.top() + index as f32 * height;
-            let rect = egui::Rect::from_min_size(egui::pos2(table.left(), top), egui::vec2(table.width(), height));
+            let rect =
+                egui::Rect::from_min_size(egui::pos2(table.left(), top), egui::vec2(table.width(), height));
             show_row(ui, context, network, row, rect, commands);
         }
     }
 
     fn rows(&self, context: &Context<'_>, network: &Network, plan: &Plan) -> Vec<Row> {
         let filter = self.filter.to_lowercase();
+        let shows_path_points = context.state.settings.views.plan.path_points;
         let mut rows: Vec<Row> = network
             .nodes
             .iter()
@@ -66,7 +78,10 @@ impl WindowTable {
             .enumerate()
             .filter_map(|(index, (node, window))| Some((index, node, (*window)?)))
             .flat_map(|(index, node, window)| {
-                node.events.iter().map(move |&event| Row {
+                let is_shown = move |event: &&EventRef| {
+                    shows_path_points || !matches!(event.end, EventEnd::PathVertex { .. })
+                };
+                node.events.iter().filter(is_shown).map(move |&event| Row {
                     node: NodeId::from_index(index),
                     name: network.event_name(event),
                     earliest: window.earliest,
@@ -107,12 +122,14 @@ fn show_header(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender)
         ("Slack", WindowSort::Slack, name_width + 2.0 * NUMBER_WIDTH, NUMBER_WIDTH),
     ];
     for (title, sort, left, width) in columns {
-        let cell = egui::Rect::from_min_size(rect.min + egui::vec2(left, 0.0), egui::vec2(width, rect.height()));
+        let cell =
+            egui::Rect::from_min_size(rect.min + egui::vec2(left, 0.0), egui::vec2(width, rect.height()));
         let response = ui.interact(cell, ui.scope_id().with(title), Sense::click());
         let is_sorted = view.sort == sort;
         let name = format!("Sort by {}", title.to_lowercase());
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_sorted, &name));
-        let color = if is_sorted || response.hovered() { context.tokens.text } else { context.tokens.text_muted };
+        let color =
+            if is_sorted || response.hovered() { context.tokens.text } else { context.tokens.text_muted };
         let arrow = match (is_sorted, view.descending) {
             (true, false) => " ↑",
             (true, true) => " ↓",
@@ -167,8 +184,8 @@ fn show_row(
         tokens.text,
     );
     let numbers = [
-        (time_text::time(row.earliest), tokens.text),
-        (time_text::bound(row.latest), tokens.text),
+        (time_text::short(row.earliest), tokens.text),
+        (time_text::short_bound(row.latest), tokens.text),
         (time_text::slack(row.earliest, row.latest), tokens.slack),
     ];
     for (column, (text, color)) in numbers.into_iter().enumerate() {
@@ -197,9 +214,8 @@ fn is_selected(context: &Context<'_>, network: &Network, row: &Row) -> bool {
             let node = network.nodes.get(row.node.index());
             occurrence.is_some_and(|occurrence| {
                 let name = network.occurrences.get(occurrence.index()).map(|it| format!("{}.", it.name));
-                let is_its_event = node.is_some_and(|node| {
-                    node.events.iter().any(|event| event.occurrence == occurrence)
-                });
+                let is_its_event =
+                    node.is_some_and(|node| node.events.iter().any(|event| event.occurrence == occurrence));
                 is_its_event && name.is_some_and(|name| row.name.starts_with(&name))
             })
         }

@@ -56,12 +56,11 @@ pub(crate) fn bars(network: &Network, plan: &Plan, view: &TimelineView) -> Vec<B
     for (index, occurrence) in network.occurrences.iter().enumerate() {
         let id = OccurrenceId::from_index(index);
         let kind = match occurrence.kind {
-            OccurrenceKind::Scenario | OccurrenceKind::Scope => continue,
             OccurrenceKind::Activity => BarKind::Composite,
             OccurrenceKind::Primitive => BarKind::Activity,
             OccurrenceKind::Assertion if view.conditions => BarKind::Condition,
             OccurrenceKind::Delay if view.delays => BarKind::Delay,
-            OccurrenceKind::Assertion | OccurrenceKind::Delay => continue,
+            _ => continue,
         };
         let Some((start, end)) = window(occurrence.start).zip(window(occurrence.end)) else { continue };
         let labels = |mode: LabelMode| {
@@ -90,7 +89,10 @@ pub(crate) fn bars(network: &Network, plan: &Plan, view: &TimelineView) -> Vec<B
 
 /// The last time that is certain to matter: every finite bound of every bar.
 pub(crate) fn horizon(bars: &[Bar]) -> f64 {
-    bars.iter().flat_map(|bar| [bar.start[1], bar.end[0], bar.end[1]]).filter(|time| time.is_finite()).fold(1.0, f64::max)
+    bars.iter()
+        .flat_map(|bar| [bar.start[1], bar.end[0], bar.end[1]])
+        .filter(|time| time.is_finite())
+        .fold(1.0, f64::max)
 }
 
 fn words(start: Window, end: Window) -> String {

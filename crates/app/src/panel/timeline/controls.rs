@@ -2,6 +2,8 @@
 
 use egui::{Align, Button, ComboBox, Frame, Layout, Margin, RichText, Ui};
 
+use rmpl::program::TimeUnit;
+
 use crate::command::{Command, CommandSender, ViewAction};
 use crate::icon::{self, Icon};
 use crate::panel::{Context, PanelKind};
@@ -47,10 +49,11 @@ fn playing(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
 }
 
 fn clock(ui: &mut Ui, context: &Context<'_>) {
-    let unit = context.snapshot.map(|snapshot| snapshot.program.options.time_unit).unwrap_or(rmpl::program::TimeUnit::Minute);
+    let unit = context.snapshot.map_or(TimeUnit::Minute, |snapshot| snapshot.program.options.time_unit);
     let time = context.state.playback.time;
     let text = format!("{time:.1} {}", time_text::unit(unit));
     ui.label(RichText::new(text).monospace().color(context.tokens.text));
+    ui.add_space(space::M);
     ui.label(RichText::new(time_text::clock(time, unit)).small().color(context.tokens.text_muted));
 }
 

@@ -48,7 +48,7 @@ impl Panel for TimelinePanel {
         );
         let mut view = self.view_for(axis, horizon);
         self.follow_request(context, network, plan, axis, horizon, &mut view);
-        self.scrub(ui, axis, view, commands);
+        Self::scrub(ui, axis, view, commands);
         paint::axis(ui, context, axis, &view);
 
         let below = Rect::from_min_max(egui::pos2(rect.left(), axis.bottom()), rect.max);
@@ -56,7 +56,10 @@ impl Panel for TimelinePanel {
         ScrollArea::vertical().auto_shrink(false).show_viewport(&mut lower, |ui, viewport| {
             let size = egui::vec2(below.width(), (bars.len() as f32 * ROW_HEIGHT + 6.0).max(below.height()));
             let (area, _) = ui.allocate_exact_size(size, Sense::hover());
-            let track = Rect::from_min_max(egui::pos2(axis.left(), area.top()), egui::pos2(axis.right(), area.bottom()));
+            let track = Rect::from_min_max(
+                egui::pos2(axis.left(), area.top()),
+                egui::pos2(axis.right(), area.bottom()),
+            );
             self.navigate(ui, track.intersect(below), horizon, &mut view, commands);
             let first = (viewport.top() / ROW_HEIGHT).floor().max(0.0) as usize;
             let last = (viewport.bottom() / ROW_HEIGHT).ceil().max(0.0) as usize;
@@ -109,9 +112,7 @@ impl TimelinePanel {
                 let selected = context.state.selection.occurrence(network);
                 let occurrence = selected.and_then(|id| network.occurrences.get(id.index()));
                 let window = |node: tpn::NodeId| plan.windows.get(node.index()).copied().flatten();
-                if let Some((start, end)) =
-                    occurrence.and_then(|it| window(it.start).zip(window(it.end)))
-                {
+                if let Some((start, end)) = occurrence.and_then(|it| window(it.start).zip(window(it.end))) {
                     let from = crate::state::playback::number(start.earliest);
                     let to = crate::state::playback::bound(end.latest).min(horizon);
                     *view = TimeView::range(from, to, axis.width());
@@ -121,7 +122,7 @@ impl TimelinePanel {
     }
 
     /// Dragging along the axis moves the time.
-    fn scrub(&mut self, ui: &Ui, axis: Rect, view: TimeView, commands: &mut CommandSender) {
+    fn scrub(ui: &Ui, axis: Rect, view: TimeView, commands: &mut CommandSender) {
         let response = ui.interact(axis, ui.scope_id().with("axis"), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Time axis"));
         if let Some(pointer) = response.interact_pointer_pos()
@@ -170,13 +171,7 @@ impl TimelinePanel {
     }
 }
 
-fn show_bar(
-    ui: &Ui,
-    painting: &paint::Painting<'_>,
-    bar: &Bar,
-    index: usize,
-    commands: &mut CommandSender,
-) {
+fn show_bar(ui: &Ui, painting: &paint::Painting<'_>, bar: &Bar, index: usize, commands: &mut CommandSender) {
     let context = painting.context;
     let row = painting.row(index);
     let selection = Selection::Occurrence(bar.occurrence);

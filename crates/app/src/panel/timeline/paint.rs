@@ -4,9 +4,9 @@ use egui::{Align2, Color32, Pos2, Rect, Shape, Stroke, StrokeKind, TextStyle, Ui
 use tpn::{LabelId, Network, Plan};
 
 use crate::panel::Context;
+use crate::panel::timeline::ROW_HEIGHT;
 use crate::panel::timeline::bars::{Bar, BarKind, ticks};
 use crate::panel::timeline::view::TimeView;
-use crate::panel::timeline::ROW_HEIGHT;
 use crate::state::Selection;
 use crate::theme::space;
 
@@ -35,7 +35,13 @@ pub(crate) fn axis(ui: &Ui, context: &Context<'_>, rect: Rect, view: &TimeView) 
         if mark >= 0.0 && rect.x_range().contains(x) {
             painter.vline(x, rect.bottom() - 6.0..=rect.bottom(), Stroke::new(1.0, tokens.line_strong));
             let text = round_number(mark, step);
-            painter.text(Pos2::new(x, rect.top() + 3.0), Align2::CENTER_TOP, text, font.clone(), tokens.text_muted);
+            painter.text(
+                Pos2::new(x, rect.top() + 3.0),
+                Align2::CENTER_TOP,
+                text,
+                font.clone(),
+                tokens.text_muted,
+            );
         }
     }
     ui.painter().hline(rect.x_range(), rect.bottom(), Stroke::new(1.0, tokens.line));
@@ -85,8 +91,7 @@ impl Painting<'_> {
     pub(crate) fn grid(&self, ui: &Ui) {
         let clip = self.track.intersect(ui.clip_rect());
         let painter = ui.painter().with_clip_rect(clip);
-        let (from, to) =
-            (self.view.time(self.track, clip.left()), self.view.time(self.track, clip.right()));
+        let (from, to) = (self.view.time(self.track, clip.left()), self.view.time(self.track, clip.right()));
         let line = Stroke::new(1.0, self.context.tokens.raised);
         for mark in ticks(from, to, self.track.width(), TICK_POINTS).0 {
             painter.vline(self.x(mark), clip.y_range(), line);
@@ -109,7 +114,10 @@ impl Painting<'_> {
         let middle = row.center().y;
         let slot = |from: f64, to: f64| {
             let to = if to.is_finite() { self.x(to) } else { self.track.right() };
-            Rect::from_min_max(Pos2::new(self.x(from), middle - height / 2.0), Pos2::new(to, middle + height / 2.0))
+            Rect::from_min_max(
+                Pos2::new(self.x(from), middle - height / 2.0),
+                Pos2::new(to, middle + height / 2.0),
+            )
         };
         let whole = slot(bar.start[0], bar.end[1]);
         painter.rect_filled(whole, 3.0, tokens.mixed(color, 0.16));
@@ -121,7 +129,11 @@ impl Painting<'_> {
             }
             None => self.hatch(&painter, whole, color),
         }
-        let outline = if is_selected { Stroke::new(1.5, tokens.accent) } else { Stroke::new(1.0, tokens.mixed(color, 0.6)) };
+        let outline = if is_selected {
+            Stroke::new(1.5, tokens.accent)
+        } else {
+            Stroke::new(1.0, tokens.mixed(color, 0.6))
+        };
         painter.rect_stroke(whole, 3.0, outline, StrokeKind::Inside);
         // The earliest schedule, which playing follows.
         let earliest = slot(bar.start[0], bar.end[0].max(bar.start[0]));

@@ -1,0 +1,147 @@
+//! The panels that show what planning found: problems, plan, outline, timeline.
+
+mod support;
+
+use app::command::{COMMANDS, Command};
+use app::host::Remote as _;
+use egui::Role;
+use egui_kittest::kittest::Queryable as _;
+use serde_json::json;
+
+#[test]
+fn every_event_of_the_plan_is_listed_with_its_window() {
+    let mut app = support::start_in(std::rc::Rc::default(), |builder| builder.with_size([1600.0, 2200.0]));
+    app.settle();
+    app.harness.state_mut().dispatch("view.workspace", &json!("review")).expect("a workspace");
+    app.settle();
+    // SPEC 3.6.
+    for (event, window) in [
+        ("Group-Enroute#1.start", "[10, 55]"),
+        ("Group-Traverse-Path#1.end", "[415, 460]"),
+        ("Group-Wait#1.end", "[415, 514]"),
+        ("Group-Transmit#1.end", "[415, 462]"),
+        ("Group-Enroute#1.end", "[460, 595]"),
+        ("Tell(PROCEED=OK)#1.start", "[460, 600]"),
+        ("scenario#1.end", "[660, 800]"),
+    ] {
+        app.harness.get_by_role_and_label(Role::Button, &format!("{event} {window}"));
+    }
+}
+
+#[test]
+fn the_windows_are_sorted_by_the_column_that_is_clicked() {
+    let mut app = support::start_in(std::rc::Rc::default(), |builder| builder.with_size([1600.0, 2200.0]));
+    app.settle();
+    app.harness.state_mut().dispatch("view.workspace", &json!("review")).expect("a workspace");
+    app.settle();
+    let top =
+        |app: &support::App, label: &str| app.harness.get_by_role_and_label(Role::Button, label).rect().top();
+    let (early, late) = ("scenario#1.start [0, 0]", "scenario#1.end [660, 800]");
+    assert!(top(&app, early) < top(&app, late));
+    app.harness.get_by_label("Sort by latest").click();
+    app.settle();
+    app.harness.get_by_label("Sort by latest").click();
+    app.settle();
+    assert!(top(&app, early) > top(&app, late));
+}
+
+#[test]
+fn a_mission_without_a_plan_offers_a_change_of_bounds_that_gives_one() {
+    let mut app = support::start_in(std::rc::Rc::default(), |builder| builder.with_size([1600.0, 2200.0]));
+    app.settle();
+    let source = app.harness.state().source();
+    app.harness.state_mut().set_source(&source.replace("PATH1=OK [450,450]", "PATH1=OK [404,404]"));
+    app.settle();
+    assert_eq!(app.json()["status"], "no-plan");
+    let relaxations = app.json()["failure"]["relaxations"].clone();
+    let label = relaxations[0].as_str().expect("a relaxation").to_owned();
+    app.harness.get_by_label(&format!("Fix: {label}")).click();
+    app.settle();
+    assert_eq!(app.json()["status"], "plan");
+}
+
+#[test]
+fn a_problem_leads_to_its_place_and_can_be_explained() {
+    let mut app = support::start();
+    app.settle();
+    let source = "primitive Drive(to);\nscenario S = { Driv(A) }";
+    app.harness.state_mut().run(Command::OpenSource { name: "test".into(), source: source.to_owned() });
+    app.settle();
+    let problem = app.json()["diagnostics"][0].clone();
+    let code = problem["code"].as_str().expect("a code").to_owned();
+    let place = format!("Line {}: {code}", problem["span"]["line"]);
+    app.harness.get_by(|node| node.label().is_some_and(|label| label.starts_with(&place))).click();
+    app.settle();
+    assert_eq!(app.json()["caret"]["anchor"], problem["span"]["start"]);
+    app.harness.get_by_label("Explain").click();
+    app.settle();
+    assert_eq!(app.json()["dialog"], "explain");
+    app.harness.get_by_label("Close").click();
+    app.settle();
+    assert_eq!(app.json()["dialog"], serde_json::Value::Null);
+}
+
+#[test]
+fn a_click_on_the_time_axis_goes_to_that_time() {
+    let mut app = support::start();
+    app.settle();
+    let axis = app.harness.get_by_label("Time axis").rect();
+    app.harness.drag_at(axis.center());
+    app.settle();
+    app.harness.drop_at(axis.center());
+    app.settle();
+    let time = app.json()["time"].as_f64().expect("a time");
+    assert!((300.0..500.0).contains(&time), "{time}");
+}
+
+#[test]
+fn the_outline_lists_the_declarations_and_leads_to_them() {
+    let mut app = support::start();
+    app.settle();
+    app.harness.state_mut().dispatch("view.panel", &json!("outline")).expect("a panel");
+    app.settle();
+    app.harness.get_by_role_and_label(Role::Button, "location PATH1_2").click();
+    app.settle();
+    let source = app.harness.state().source();
+    let at = source.find("PATH1_2").expect("a location");
+    assert_eq!(app.json()["caret"]["anchor"], at);
+}
+
+#[test]
+fn command_names_are_unique_and_no_two_commands_share_a_key_where_both_work() {
+    for (index, left) in COMMANDS.iter().enumerate() {
+        for right in &COMMANDS[index + 1..] {
+            assert_ne!(left.id, right.id);
+            for key in left.keys {
+                assert!(!right.keys.contains(key), "{} and {} share {key:?}", left.id, right.id);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_text_of_ten_thousand_lines_lays_out_only_what_is_seen() {
+    let mut source = String::from("scenario S = {\n");
+    for line in 0..10_000 {
+        source.push_str(&format!("  Step-{line}()[1,2];\n"));
+    }
+    source.push('}');
+    let world = std::rc::Rc::<support::World>::default();
+    let mut app = support::start_in(std::rc::Rc::clone(&world), |builder| builder);
+    app.settle();
+    world.is_deaf.set(true);
+    app.harness.state_mut().run(Command::OpenSource { name: "long".into(), source });
+    app.harness.state_mut().dispatch("edit.select", &json!({ "start": 120_000 })).expect("an offset");
+    app.settle();
+    let lines = app.harness.output().shapes.iter().filter(|shape| is_line(&shape.shape)).count();
+    assert!((10..120).contains(&lines), "{lines} lines of text are painted");
+}
+
+/// Whether a shape is a line of the long text.
+fn is_line(shape: &egui::Shape) -> bool {
+    match shape {
+        egui::Shape::Text(text) => text.galley.text().contains("Step-"),
+        egui::Shape::Vec(shapes) => shapes.iter().any(is_line),
+        _ => false,
+    }
+}
