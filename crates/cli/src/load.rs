@@ -73,7 +73,8 @@ impl Target {
         Ok(Loaded { name, source, problems, program, parse_millis, network })
     }
 
-    fn goal(&self) -> anyhow::Result<Goal> {
+    /// What the call asks to be planned.
+    pub fn goal(&self) -> anyhow::Result<Goal> {
         if let Some(name) = &self.activity {
             let (lower, upper) = match &self.bounds {
                 Some(bounds) => parse_bounds(bounds)?,

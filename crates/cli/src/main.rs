@@ -4,14 +4,15 @@ mod commands;
 mod input;
 mod load;
 mod output;
+mod worked_out;
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
 use commands::{
-    check, estimate, execute, explain, fmt, hca, import, path, plan, reconfigure, run, simulate, step, stn,
-    tpn, verify,
+    check, estimate, execute, explain, export, fmt, hca, import, path, plan, reconfigure, report, run,
+    simulate, step, stn, tpn, verify,
 };
 
 /// Plans, checks and explains missions written in RMPL.
@@ -40,6 +41,8 @@ enum Command {
     Estimate(estimate::Args),
     Reconfigure(reconfigure::Args),
     Import(import::Args),
+    Report(report::Args),
+    Export(export::Args),
 }
 
 fn main() -> ExitCode {
@@ -60,6 +63,8 @@ fn main() -> ExitCode {
         Command::Estimate(args) => estimate::run(args),
         Command::Reconfigure(args) => reconfigure::run(args),
         Command::Import(args) => import::run(args),
+        Command::Report(args) => report::run(args),
+        Command::Export(args) => export::run(args),
     };
     result.unwrap_or_else(|error| {
         eprintln!("error: {error:#}");

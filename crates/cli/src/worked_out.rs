@@ -1,0 +1,68 @@
+//! A mission text worked out by the shared core, as the page does it: compiled, planned, and driven.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use mission::{Core, Request, Response, SearchKind, Snapshot, Surroundings, Update};
+use terrain::Terrain;
+
+use crate::input::read_text;
+use crate::load::Target;
+
+/// A mission, worked out.
+pub struct WorkedOut {
+    /// Its file's name, for messages.
+    pub name: String,
+    /// Everything known of it.
+    pub snapshot: Arc<Snapshot>,
+    /// Its ground, if it has one.
+    pub ground: Option<Arc<Terrain>>,
+}
+
+/// Works out the mission that `target` names. Fails when it cannot be read, or is a network.
+pub fn work_out(target: &Target, seed: u64) -> anyhow::Result<WorkedOut> {
+    let is_network = target.file.extension().is_some_and(|ending| ending == "json" || ending == "edn");
+    anyhow::ensure!(!is_network, "this command wants a mission text, not a network");
+    let update = Update {
+        revision: 1,
+        source: read_text(&target.file)?.into(),
+        goal: target.goal()?,
+        search: SearchKind::default(),
+        seed,
+        trace: false,
+    };
+    let mut answers = Answers { begun: Instant::now(), snapshot: None, ground: None };
+    Core::default().handle(Request::Update(update), &mut answers);
+    let name = target.file.file_name().filter(|name| *name != "-");
+    let name = name.map_or_else(|| "mission".to_owned(), |name| name.to_string_lossy().into_owned());
+    Ok(WorkedOut {
+        name,
+        snapshot: answers.snapshot.ok_or_else(|| anyhow::anyhow!("the planning core gave no answer"))?,
+        ground: answers.ground,
+    })
+}
+
+/// Keeps the last answers of the core.
+struct Answers {
+    begun: Instant,
+    snapshot: Option<Arc<Snapshot>>,
+    ground: Option<Arc<Terrain>>,
+}
+
+impl Surroundings for Answers {
+    fn now_millis(&self) -> f64 {
+        self.begun.elapsed().as_secs_f64() * 1000.0
+    }
+
+    fn is_superseded(&mut self) -> bool {
+        false
+    }
+
+    fn answer(&mut self, response: Response) {
+        match response {
+            Response::Snapshot(snapshot) => self.snapshot = Some(snapshot),
+            Response::Map { map, .. } => self.ground = Some(map),
+            Response::MapRejected { .. } => {}
+        }
+    }
+}
