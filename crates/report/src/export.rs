@@ -32,7 +32,7 @@ pub fn csv(snapshot: &Snapshot) -> Option<String> {
     out.push_str("\r\n");
     for row in rows {
         let occurrence = &network.occurrences[row.occurrence.index()];
-        let arguments: Vec<&str> = occurrence.arguments.iter().map(|it| it.as_str()).collect();
+        let arguments: Vec<&str> = occurrence.arguments.iter().map(smol_str::SmolStr::as_str).collect();
         let cells = [
             occurrence.name.to_string(),
             kind_name(occurrence.kind).to_owned(),

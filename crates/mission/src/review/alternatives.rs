@@ -60,6 +60,8 @@ const MOST_EXAMINED: usize = 64;
 const MOST_EXPANDED: u64 = 20_000;
 /// Explaining takes many searches; a larger network is asked only whether there is a plan.
 const MOST_EXPLAINED_NODES: usize = 4_000;
+/// Characters of an alternative that are shown.
+const LONGEST_BEGINNING: usize = 60;
 
 /// Plans once more with each alternative that `plan` does not take.
 pub(super) struct Examiner<'input> {
@@ -101,11 +103,10 @@ impl<'input> Examiner<'input> {
         let text = span.and_then(|span| self.source.get(span.range())).unwrap_or("");
         let words: Vec<&str> = text.split_whitespace().collect();
         let whole = words.join(" ");
-        const LONGEST: usize = 60;
-        if whole.chars().count() <= LONGEST {
+        if whole.chars().count() <= LONGEST_BEGINNING {
             return whole;
         }
-        let cut: String = whole.chars().take(LONGEST - 1).collect();
+        let cut: String = whole.chars().take(LONGEST_BEGINNING - 1).collect();
         format!("{cut}…")
     }
 

@@ -27,5 +27,10 @@ pub fn content_hash(source: &str, map: Option<&MapKey>, seed: u64) -> String {
         part(&map.version.to_le_bytes());
     }
     part(&seed.to_le_bytes());
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hash.finalize().iter().fold(String::with_capacity(64), |mut text, byte| {
+        for half in [byte >> 4, byte & 15] {
+            text.push(char::from_digit(u32::from(half), 16).unwrap_or('0'));
+        }
+        text
+    })
 }
