@@ -390,7 +390,7 @@ fn constraints_of<'tree>(expression: &'tree Expression, into: &mut Vec<&'tree Co
         ExpressionKind::IfThenNext { guard, then, otherwise } => {
             into.push(&guard.constraint);
             constraints_of(then, into);
-            for otherwise in otherwise {
+            if let Some(otherwise) = otherwise {
                 constraints_of(otherwise, into);
             }
         }
