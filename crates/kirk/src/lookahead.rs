@@ -42,6 +42,12 @@ pub(crate) struct Lookahead {
     /// Arcs being activated.
     arriving: Vec<Arriving>,
     rank: Vec<u32>,
+    /// Bounds on each node's distances from and to the start that rest on nothing but its own context, so that most
+    /// assertions that are too early or too late for a requirement are refused at once.
+    from_start: Vec<i64>,
+    to_start: Vec<i64>,
+    /// Nodes that have just been activated.
+    is_new: Vec<bool>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -95,6 +101,9 @@ impl Lookahead {
             hulls: Vec::new(),
             arriving: Vec::new(),
             rank,
+            from_start: Vec::new(),
+            to_start: Vec::new(),
+            is_new: vec![false; model.num_nodes],
         }
     }
 
@@ -139,6 +148,8 @@ impl Lookahead {
         if !self.is_ok(model, settled)? {
             return Ok(false);
         }
+        let start = PointId(model.twin[model.start as usize]);
+        self.stn.sweep_distances(start, &order, &mut self.from_start, &mut self.to_start)?;
         self.check_labels(model, structure, chosen, 0)
     }
 
@@ -168,6 +179,9 @@ impl Lookahead {
         self.collect(model, structure, Some((decision, alternative)));
         let decision_node = structure.decision_node(decision);
         let inserted = self.insert_arriving(first_node, model.twin[decision_node as usize]);
+        if inserted.is_ok() {
+            self.bound_new_nodes(first_node);
+        }
         self.arriving.clear();
         self.hulls.clear();
         if !self.is_ok(model, inserted)? {
@@ -288,6 +302,45 @@ impl Lookahead {
             )?;
         }
         Ok(())
+    }
+
+    /// Bounds the times of new nodes by what arrived with them.
+    fn bound_new_nodes(&mut self, first_node: usize) {
+        let Self { nodes, arriving, from_start, to_start, is_new, .. } = self;
+        for &node in &nodes[first_node..] {
+            is_new[node as usize] = true;
+            (from_start[node as usize], to_start[node as usize]) = (INFINITE, INFINITE);
+        }
+        let mut relax = |arc: &Arriving| {
+            let (from, to) = (arc.from as usize, arc.to as usize);
+            if is_new[to] {
+                shorten(from_start, from, to, arc.upper);
+                shorten(to_start, from, to, -arc.lower);
+            }
+            if is_new[from] {
+                shorten(from_start, to, from, -arc.lower);
+                shorten(to_start, to, from, arc.upper);
+            }
+        };
+        for _ in 0..2 {
+            for arc in arriving.iter().chain(arriving.iter().rev()) {
+                relax(arc);
+            }
+        }
+        for &node in &nodes[first_node..] {
+            is_new[node as usize] = false;
+        }
+    }
+
+    /// Whether the start of everything keeps `to − from ≤ weight` from holding, by the nodes' own contexts.
+    fn is_refused(&self, (from, to, weight): (PointId, PointId, i64)) -> bool {
+        let (latest, least) = (self.from_start[from.index()], self.to_start[to.index()]);
+        latest != INFINITE
+            && least != INFINITE
+            && latest
+                .checked_add(weight)
+                .and_then(|time| time.checked_add(least))
+                .is_some_and(|slack| slack < 0)
     }
 
     /// Turns a contradiction into blame.
@@ -462,6 +515,10 @@ impl Lookahead {
         if edges.iter().all(|&edge| self.holds(edge)) {
             return Ok(Candidate::Possible);
         }
+        if edges.iter().any(|&edge| self.is_refused(edge)) {
+            self.blame_label(model, tell);
+            return Ok(Candidate::Impossible);
+        }
         let checkpoint = self.stn.checkpoint();
         let mut result = Ok(());
         for (from, to, weight) in edges {
@@ -512,6 +569,16 @@ impl Lookahead {
     ) -> Result<bool, Overflow> {
         let admitted = self.stn.admits(from, to, weight, HULL);
         self.is_ok(model, admitted)
+    }
+}
+
+/// Bounds the distance of `to` by that of `from` and an edge.
+fn shorten(distances: &mut [i64], from: usize, to: usize, weight: i64) {
+    if distances[from] != INFINITE
+        && weight != INFINITE
+        && let Some(reached) = distances[from].checked_add(weight)
+    {
+        distances[to] = distances[to].min(reached);
     }
 }
 
