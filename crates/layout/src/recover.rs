@@ -317,7 +317,8 @@ fn push_parallel(
         },
         [only] => *only,
         _ => {
-            let branches: Vec<Branch> = branches.iter().map(|&part| branch(part, tree)).collect();
+            let branches: Vec<Branch> =
+                branches.iter().map(|&part| tree.peeled(part, Branch::default())).collect();
             let begin = tree.branches.len() as u32;
             tree.branches.extend(branches);
             let branches = begin..tree.branches.len() as u32;
@@ -331,29 +332,6 @@ fn push_parallel(
     tree.spanning.extend(spans);
     let arcs = begin..tree.spanning.len() as u32;
     tree.push(PartKind::Span { child, arcs, occurrence: None }, from, to, None)
-}
-
-/// A branch whose first and last arcs are those of the fork and the join.
-fn branch(part: PartId, tree: &mut Tree) -> Branch {
-    let none = Branch { fork: None, child: None, join: None, block: None };
-    let arc_of = |tree: &Tree, part: PartId| match tree.part(part).kind {
-        PartKind::Arc(arc) => Some(arc),
-        _ => None,
-    };
-    if let Some(arc) = arc_of(tree, part) {
-        return Branch { fork: Some(arc), ..none };
-    }
-    let PartKind::Series(range) = &tree.part(part).kind else {
-        return Branch { child: Some(part), ..none };
-    };
-    let members = tree.children(range).to_vec();
-    let fork = members.first().and_then(|&first| arc_of(tree, first));
-    let join = members.last().and_then(|&last| arc_of(tree, last));
-    let inner = &members[usize::from(fork.is_some())..members.len() - usize::from(join.is_some())];
-    let middle = tree.part(members[0]).end;
-    let child = tree.push_series(inner, None);
-    let child = child.unwrap_or_else(|| tree.push(PartKind::Nothing, middle, middle, None));
-    Branch { fork, child: Some(child), join, block: None }
 }
 
 /// What could not be reduced, as a graph.

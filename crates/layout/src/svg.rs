@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use tpn::{LabelId, Network, Plan, Role};
+use tpn::{ArcKind, LabelId, Network, Plan, Role};
 
-use crate::drawing::{BlockForm, NetworkDrawing, TextShape};
+use crate::drawing::{BlockForm, NetworkDrawing, Route, TextShape};
 use crate::geometry::{Piece, Point, Rect};
 use crate::look::{self, Ink, Standing, Stroke};
 use crate::metrics::DECISION_INSET;
@@ -44,11 +44,8 @@ pub fn svg(drawing: &NetworkDrawing, network: &Network, options: &SvgOptions<'_>
         }
     }
     for connector in &drawing.connectors {
-        let stroke = Stroke::solid(Ink::Path, 1.2);
-        let stroke = match look::node_standing(options.plan, connector.node) {
-            Standing::Unselected => Stroke { ink: Ink::PathUnselected, ..stroke },
-            _ => stroke,
-        };
+        let standing = look::node_standing(options.plan, connector.node);
+        let stroke = look::arc_stroke(ArcKind::Glue, Route::Along, standing);
         canvas.curve(connector.start, &[connector.piece], stroke);
     }
     // What the plan selects lies over what it does not.

@@ -67,7 +67,7 @@ pub(crate) enum PartKind {
 }
 
 /// One branch of a fan: `fork`, then `child`, then `join`. Without child and join, `fork` goes all the way.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Branch {
     pub(crate) fork: Option<ArcId>,
     pub(crate) child: Option<PartId>,
@@ -125,6 +125,34 @@ impl Tree {
 
     pub(crate) fn spanning(&self, range: &Range<u32>) -> &[ArcId] {
         &self.spanning[range.start as usize..range.end as usize]
+    }
+
+    /// The branch that consists of `part`, with the fork and join arcs that `known` has. Where it has none, the arc that
+    /// the part begins or ends with takes the place, so that it runs all the way from the fork or to the join.
+    pub(crate) fn peeled(&mut self, part: PartId, known: Branch) -> Branch {
+        let arc_of = |tree: &Self, part: PartId| match tree.part(part).kind {
+            PartKind::Arc(arc) => Some(arc),
+            _ => None,
+        };
+        if let (Some(arc), None, None) = (arc_of(self, part), known.fork, known.join) {
+            return Branch { fork: Some(arc), child: None, ..known };
+        }
+        let members = match &self.part(part).kind {
+            PartKind::Series(range) => self.children(range).to_vec(),
+            PartKind::Arc(_) => vec![part],
+            _ => return Branch { child: Some(part), ..known },
+        };
+        let first = members.first().and_then(|&first| arc_of(self, first)).filter(|_| known.fork.is_none());
+        let last = members.last().and_then(|&last| arc_of(self, last)).filter(|_| known.join.is_none());
+        let (begin, end) = (usize::from(first.is_some()), members.len() - usize::from(last.is_some()));
+        let middle = if first.is_some() { self.part(members[0]).end } else { self.part(part).start };
+        let child = match members.get(begin..end) {
+            Some(inner) if inner.len() == members.len() => Some(part),
+            Some(inner) => self.push_series(inner, None),
+            None => None,
+        };
+        let child = child.unwrap_or_else(|| self.push(PartKind::Nothing, middle, middle, None));
+        Branch { fork: first.or(known.fork), child: Some(child), join: last.or(known.join), ..known }
     }
 
     /// Whether a part begins with a gap, so that no line leads into it.
@@ -360,7 +388,7 @@ impl Builder<'_> {
             let part = self.tree.part(child);
             let fork = if part.start == block.start { None } else { self.arc_to[part.start.index()] };
             let join = if part.end == block.end { None } else { self.arc_from[part.end.index()] };
-            branches.push(Branch { fork, child: Some(child), join, block: Some(branch) });
+            branches.push(self.tree.peeled(child, Branch { fork, child: None, join, block: Some(branch) }));
         }
         for &arc in &network.nodes[block.start.index()].out_arcs {
             self.arc_to[network.arcs[arc.index()].to.index()] = None;

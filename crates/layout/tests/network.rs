@@ -359,3 +359,20 @@ fn the_path_of_a_traverse_is_strung_above_its_arc() {
     assert!(beads.iter().all(|bead| start.x < bead.x && bead.x < end.x && bead.y < start.y));
     assert_eq!(drawing.bounds.width(), draw(&network).bounds.width(), "a short path needs no more room");
 }
+
+#[test]
+fn an_arc_that_begins_a_branch_runs_all_the_way_from_the_fork() {
+    let network = network_of(
+        "primitive A()[1,2]; scenario S[0,50] = { { delay[3,4]; A() }, { A() }, { A(); delay[1,2] } }",
+    );
+    let drawing = draw(&network);
+    assert!(drawing.connectors.is_empty(), "no arc begins or ends beside its node");
+    for arc in &drawing.arcs {
+        let ends = &network.arcs[arc.id.index()];
+        let tip = drawing.pieces(arc).last().expect("it goes somewhere").end();
+        for (point, node) in [(arc.start, ends.from), (tip, ends.to)] {
+            let shape = drawing.node(node).expect("visible");
+            assert!((point.distance(shape.center) - shape.radius).abs() < 0.5, "{:?}", arc.id);
+        }
+    }
+}
