@@ -11,8 +11,8 @@ export function createMirror(root, canvas) {
       kind,
       (event) => {
         const element = event.target.closest("[data-id]");
-        // Focus that the mirror itself moved is no wish of the user.
-        if (element && event.isTrusted) act(element.dataset.id, kind);
+        if (element) act(element.dataset.id, kind);
+        // Keys go to the canvas, which passes them on to the widget that has egui's focus.
         if (kind === "focus") canvas.focus({ preventScroll: true });
       },
       true,

@@ -1,7 +1,7 @@
 //! The canvas is really drawn, and what the user does changes it.
 
 use anyhow::Result;
-use xtask::browser::{Key, Modifiers};
+use xtask::browser::{Graphics, Key, Modifiers};
 
 use crate::opened::Opened;
 
@@ -48,5 +48,16 @@ fn dragging_over_the_terrain_turns_the_view() -> Result<()> {
     page.tab.next_frame()?;
     let nearer = page.tab.screenshot_of(&terrain)?;
     assert!(nearer.difference(&turned) > 0.01, "only {}", nearer.difference(&turned));
+    Ok(())
+}
+
+#[test]
+fn web_gpu_draws_the_page_where_there_is_one() -> Result<()> {
+    let page = Opened::without_waiting(Graphics::WebGpu, "mission=enroute")?;
+    page.tab.wait_until_ready()?;
+    page.settle()?;
+    assert_eq!(page.state()?["renderer"], "webgpu");
+    let picture = page.look()?;
+    assert!(picture.colours() > 50, "only {} colours", picture.colours());
     Ok(())
 }

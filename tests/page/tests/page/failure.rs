@@ -68,7 +68,9 @@ fn a_front_end_that_stops_gives_the_text_back_when_the_page_is_loaded_again() ->
         "(window.dispatchEvent(new ErrorEvent('error', { error: new WebAssembly.RuntimeError('unreachable') })),
           sessionStorage.getItem('enroute/rescued') === enroute.source())",
     )?;
-    page.tab.wait_until("document.querySelector('#loading[role=alert]')?.innerText.includes('Your text is kept')")?;
+    page.tab.wait_until(
+        "document.querySelector('#loading[role=alert]')?.innerText.includes('Your text is kept')",
+    )?;
     page.tab.evaluate("window.isOldPage = true; document.querySelector('#loading button').click()")?;
     page.tab.wait_until("!('isOldPage' in window) && 'enroute' in window")?;
     page.tab.wait_until_ready()?;

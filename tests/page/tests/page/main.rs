@@ -5,6 +5,7 @@
 
 mod opened;
 
+mod accessibility;
 mod api;
 mod drawing;
 mod editing;
