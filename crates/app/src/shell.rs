@@ -326,6 +326,24 @@ impl Behavior<PanelKind> for PanelTiles<'_> {
         bar::tab_title(self.context, *kind).into()
     }
 
+    fn tab_ui(
+        &mut self,
+        tiles: &mut Tiles<PanelKind>,
+        ui: &mut Ui,
+        id: egui::Id,
+        tile: TileId,
+        state: &egui_tiles::TabState,
+    ) -> egui::Response {
+        let kind = tiles.get_pane(&tile).copied();
+        let tab = bar::tab::show(ui, self.context, kind, id, state);
+        if tab.is_closed
+            && let Some(kind) = kind
+        {
+            self.commands.send(Command::ClosePanel(kind));
+        }
+        tab.response
+    }
+
     fn is_tab_closable(&self, _tiles: &Tiles<PanelKind>, _tile: TileId) -> bool {
         true
     }

@@ -1,4 +1,4 @@
-//! The three workspaces and where their panels stand.
+//! The workspaces and where their panels stand.
 
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use serde::{Deserialize, Serialize};
@@ -62,7 +62,7 @@ impl Workspace {
                 let right = split(
                     &mut tiles,
                     LinearDir::Vertical,
-                    &[(network, 0.42), (lower, 0.34), (timeline, 0.24)],
+                    &[(network, 0.40), (lower, 0.32), (timeline, 0.28)],
                 );
                 split(&mut tiles, LinearDir::Horizontal, &[(left, 0.36), (right, 0.64)])
             }

@@ -21,9 +21,10 @@ fn has(app: &support::App, label: &str) -> bool {
 #[test]
 fn the_network_says_what_it_shows() {
     let app = started();
-    let nodes = app.json()["tpn"]["nodes"].as_array().map(Vec::len).or_else(|| {
-        app.json()["tpn"]["nodes"].as_u64().map(|count| count as usize)
-    });
+    let nodes = app.json()["tpn"]["nodes"]
+        .as_array()
+        .map(Vec::len)
+        .or_else(|| app.json()["tpn"]["nodes"].as_u64().map(|count| count as usize));
     let nodes = nodes.expect("the state tells how many nodes there are");
     let found = app.harness.query_all_by_role(egui::Role::Image).any(|node| {
         node.accesskit_node().label().is_some_and(|label| {
@@ -68,7 +69,9 @@ fn a_text_with_errors_keeps_the_last_network_and_says_so() {
     app.settle();
     assert!(has(&app, "Group-Wait#1 in the network"), "the network is still there");
     let says_so = app.harness.query_all_by_role(egui::Role::Image).any(|node| {
-        node.accesskit_node().label().is_some_and(|label| label.starts_with("Network of the last text without errors"))
+        node.accesskit_node()
+            .label()
+            .is_some_and(|label| label.starts_with("Network of the last text without errors"))
     });
     assert!(says_so);
 }

@@ -82,6 +82,26 @@ fn a_problem_leads_to_its_place_and_can_be_explained() {
 }
 
 #[test]
+fn what_is_selected_in_a_panel_is_shown_in_the_text_and_the_caret_stays() {
+    let mut app = support::start();
+    app.settle();
+    let line_number = |app: &support::App, line: &str| {
+        app.harness.output().shapes.iter().any(|shape| match &shape.shape {
+            egui::Shape::Text(text) => text.galley.text() == line,
+            _ => false,
+        })
+    };
+    let source = app.harness.state().source();
+    let call = source.rfind("Group-Enroute").expect("a call");
+    let line = (source[..call].matches('\n').count() + 1).to_string();
+    assert!(!line_number(&app, &line));
+    app.harness.state_mut().dispatch("go.select", &json!("Group-Enroute#1")).expect("an occurrence");
+    app.settle();
+    assert!(line_number(&app, &line));
+    assert_eq!(app.json()["caret"], json!({ "anchor": 0, "head": 0 }));
+}
+
+#[test]
 fn a_click_on_the_time_axis_goes_to_that_time() {
     let mut app = support::start();
     app.settle();

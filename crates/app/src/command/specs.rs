@@ -24,6 +24,7 @@ const ALT: Modifiers = Modifiers::ALT;
 const ALT_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::ALT };
 const CTRL_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
 
+#[expect(clippy::unnecessary_wraps, reason = "it stands beside conditions that can fail")]
 fn always(_: &AppState) -> Availability {
     Ok(())
 }
@@ -168,18 +169,33 @@ pub static COMMANDS: &[CommandSpec] = &[
     plain("edit.complete", "Complete", Group::Edit, &[keys(CTRL, Key::Space)], Scope::Typing, |_| {
         Command::Editor(EditorCommand::Complete)
     }),
-    plain("edit.quickFix", "Quick fix…", Group::Edit, &[keys(CTRL, Key::Period)], Scope::Everywhere, |_| {
-        Command::Editor(EditorCommand::QuickFix)
-    }),
+    plain(
+        "edit.quickFix",
+        "Quick fix…",
+        Group::Edit,
+        &[keys(CTRL, Key::Period)],
+        Scope::Everywhere,
+        |_| Command::Editor(EditorCommand::QuickFix),
+    ),
     plain("edit.rename", "Rename…", Group::Edit, &[keys(PLAIN, Key::F2)], Scope::Editor, |_| {
         Command::Editor(EditorCommand::Rename)
     }),
-    plain("edit.format", "Format the text", Group::Edit, &[keys(ALT_SHIFT, Key::F)], Scope::Everywhere, |_| {
-        Command::Editor(EditorCommand::Format)
-    }),
-    plain("edit.expandSelection", "Select more", Group::Edit, &[keys(ALT_SHIFT, Key::ArrowRight)], Scope::Typing, |_| {
-        Command::Editor(EditorCommand::ExpandSelection)
-    }),
+    plain(
+        "edit.format",
+        "Format the text",
+        Group::Edit,
+        &[keys(ALT_SHIFT, Key::F)],
+        Scope::Everywhere,
+        |_| Command::Editor(EditorCommand::Format),
+    ),
+    plain(
+        "edit.expandSelection",
+        "Select more",
+        Group::Edit,
+        &[keys(ALT_SHIFT, Key::ArrowRight)],
+        Scope::Typing,
+        |_| Command::Editor(EditorCommand::ExpandSelection),
+    ),
     called("edit.setSource", "Replace the text", Group::Edit, |_, arguments| {
         text_argument(arguments, "text").map(|text| Command::SetSource(text.to_owned()))
     }),

@@ -58,7 +58,7 @@ impl AppState {
             Command::Reveal(span) => self.reveal(span),
             Command::Editor(command) => self.apply_to_editor(command),
 
-            Command::Select(selection) => self.selection = selection,
+            Command::Select(selection) => self.select(selection),
             Command::SelectAndReveal(selection) => {
                 let span = self.shown().and_then(|shown| selection.span(shown));
                 self.selection = selection;
@@ -77,11 +77,6 @@ impl AppState {
             Command::StepTime(forwards) => self.step_time(forwards),
             Command::Search(command) => self.apply_to_search(command),
             Command::SetRate(rate) => self.playback.rate = rate.clamp(0.125, 64.0),
-
-            Command::Search(command) => {
-                let shown = self.snapshots.shown().cloned();
-                self.search.apply(command, shown.as_ref());
-            }
 
             Command::SetGoal(goal) => self.settings.plan.goal = goal,
             Command::SetSearch(search) => self.settings.plan.search = search,

@@ -49,6 +49,16 @@ impl AppState {
         self.selection = found;
     }
 
+    /// Selects something in all panels; the editor shows its text, and the caret stays where it is.
+    pub(super) fn select(&mut self, selection: Selection) {
+        let is_current = !self.snapshots.is_stale(self.document.revision());
+        let span = self.shown().filter(|_| is_current).and_then(|shown| selection.span(shown));
+        self.selection = selection;
+        if let Some(span) = span {
+            self.editor.reveal = Some(Reveal { span, center: true });
+        }
+    }
+
     pub(super) fn reveal(&mut self, span: Span) {
         self.document.set_caret(Caret::selecting(span.start as usize, span.end as usize));
         self.editor.reveal = Some(Reveal { span, center: true });

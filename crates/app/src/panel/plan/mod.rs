@@ -77,8 +77,9 @@ pub(crate) fn selectable_row(
     commands: &mut CommandSender,
 ) {
     let is_selected = context.state.selection == *selection;
+    let whole = text.text().to_owned();
     let button = egui::Button::selectable(is_selected, text).truncate();
-    let response = ui.add(button);
+    let response = ui.add(button).on_hover_text(whole);
     if response.hovered() && context.state.hovered != *selection {
         commands.send(Command::Hover(selection.clone()));
     }
