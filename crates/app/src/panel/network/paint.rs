@@ -168,8 +168,8 @@ impl Scene<'_> {
             let connector = &drawing.connectors[at as usize];
             let standing = look::node_standing(self.plan, connector.node);
             if self.is_shown(standing) {
-                let ink = if standing == Standing::Unselected { Ink::PathUnselected } else { Ink::Path };
-                let stroke = Stroke::new(self.width(1.2), self.color(ink));
+                let look = look::arc_stroke(ArcKind::Glue, Route::Along, standing);
+                let stroke = Stroke::new(self.width(look.width), self.color(look.ink));
                 self.curve(connector.start, &[connector.piece], stroke, Dash::Solid);
             }
         }
