@@ -395,7 +395,7 @@ fn show_badges(painter: &egui::Painter, panel: Rect, context: &Context<'_>, snap
     }
     let failure = snapshot.planning.as_ref().and_then(|planning| planning.outcome.failure.as_ref());
     if let Some(reason) = failure.and_then(|failure| failure.reasons.first()) {
-        badge(painter, corner, &format!("✖ No plan: {}", reason.message), tokens.error, tokens, width);
+        badge(painter, corner, &format!("✗ No plan: {}", reason.message), tokens.error, tokens, width);
     }
 }
 
