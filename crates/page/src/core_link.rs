@@ -34,7 +34,7 @@ struct Link {
 
 /// A running worker with what listens to it.
 struct Worker {
-    worker: CoreWorker,
+    core: CoreWorker,
     is_ready: bool,
     _listener: Closure<dyn FnMut(String, JsValue)>,
 }
@@ -88,13 +88,13 @@ impl Link {
             }
         });
         self.worker =
-            Some(Worker { worker: self.glue.start_core(&listener), is_ready: false, _listener: listener });
+            Some(Worker { core: self.glue.start_core(&listener), is_ready: false, _listener: listener });
     }
 
     /// Ends the worker. Its listener may be the one that is being called, so it is let go of only afterwards.
     fn stop_worker(&mut self) {
         if let Some(stopped) = self.worker.take() {
-            stopped.worker.stop();
+            stopped.core.stop();
             wasm_bindgen_futures::spawn_local(async move { drop(stopped) });
         }
     }
@@ -107,11 +107,11 @@ impl Link {
         let Some(worker) = &self.worker else { return };
         if let Some(request) = self.queue.next() {
             match postcard::to_allocvec(request) {
-                Ok(bytes) => worker.worker.send(Uint8Array::from(bytes.as_slice())),
+                Ok(bytes) => worker.core.send(Uint8Array::from(bytes.as_slice())),
                 Err(reason) => self.give_up(&format!("a request cannot be written: {reason}")),
             }
         } else if self.queue.is_superseded() {
-            worker.worker.supersede();
+            worker.core.supersede();
         }
     }
 
