@@ -38,6 +38,7 @@ async function load() {
   api.connect(frontEnd, mirror);
   keepShortcutsFromBrowser(window, usesKey);
   hideLoading();
+  performance.mark("enroute ready");
   const rescued = takeRescued();
   if (rescued !== null) frontEnd.setSource(rescued);
 }

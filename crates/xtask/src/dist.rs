@@ -1,4 +1,4 @@
-//! `cargo xtask dist`: the page as files for any web server, small, and working offline once loaded.
+//! Packs the page as files for any web server, small, and working offline once loaded.
 
 use std::{
     fs,
@@ -10,13 +10,10 @@ use std::{
 use anyhow::{Context as _, Result, ensure};
 use brotli::enc::BrotliEncoderParams;
 use flate2::{Compression, write::GzEncoder};
-use xtask::{
-    process::root,
-    site::{self, Flavour},
-};
 
-/// What browsers load before the first frame.
-const DOWNLOAD: [&str; 2] = ["wasm/page_bg.wasm", "wasm/page.js"];
+/// What browsers load before the first frame, and what they load beside it before the first plan.
+const FRONT_END: [&str; 2] = ["wasm/page_bg.wasm", "wasm/page.js"];
+const CORE: [&str; 2] = ["wasm/worker_bg.wasm", "wasm/worker.js"];
 
 /// Kinds of files that are worth compressing.
 const COMPRESSED: [&str; 8] = ["css", "html", "js", "json", "svg", "ts", "wasm", "webmanifest"];
@@ -26,15 +23,13 @@ const FILES_LINE: &str = "const FILES = [];";
 const VERSION_LINE: &str = "const VERSION = \"development\";";
 const PAGE_BEGINS: &str = "<html lang=\"en\"";
 
-/// Builds `dist/`.
-pub(crate) fn run() -> Result<()> {
-    let site = site::build(Flavour::Release)?;
-    let dist = root().join("dist");
+/// Makes `dist` hold a built site, with a service worker that keeps a copy of it in the browser.
+pub fn pack(site: &Path, dist: &Path) -> Result<()> {
     if dist.exists() {
-        fs::remove_dir_all(&dist).with_context(|| format!("clearing {}", dist.display()))?;
+        fs::remove_dir_all(dist).with_context(|| format!("clearing {}", dist.display()))?;
     }
     let mut files = Vec::new();
-    for name in files_under(&site, Path::new(""))? {
+    for name in files_under(site, Path::new(""))? {
         let target = dist.join(&name);
         if let Some(folder) = target.parent() {
             fs::create_dir_all(folder)?;
@@ -42,11 +37,9 @@ pub(crate) fn run() -> Result<()> {
         fs::copy(site.join(&name), &target)?;
         files.push(name);
     }
-    let version = version_of(&dist, &files)?;
+    let version = version_of(dist, &files)?;
     mark_version(&dist.join("index.html"), &version)?;
-    write_service_worker(&dist, &files, &version)?;
-    compress_all(&dist)?;
-    report(&dist)
+    write_service_worker(dist, &files, &version)
 }
 
 /// All files of a folder by their paths in it, in alphabetical order.
@@ -105,7 +98,7 @@ fn write_service_worker(dist: &Path, files: &[PathBuf], version: &str) -> Result
 }
 
 /// Puts `name.br` and `name.gz` beside every file that shrinks by it, for servers that hand them out.
-fn compress_all(dist: &Path) -> Result<()> {
+pub fn compress(dist: &Path) -> Result<()> {
     for name in files_under(dist, Path::new(""))? {
         let kind = name.extension().and_then(|kind| kind.to_str()).unwrap_or_default();
         if !COMPRESSED.contains(&kind) {
@@ -135,23 +128,29 @@ fn gzip(content: &[u8]) -> Result<Vec<u8>> {
     Ok(encoder.finish()?)
 }
 
-/// Says how large everything became.
-fn report(dist: &Path) -> Result<()> {
-    println!("{:>10} {:>10}  file", "bytes", "brotli");
-    let mut download = 0;
+/// How large everything became: a table for people.
+pub fn sizes(dist: &Path) -> Result<String> {
+    let mut table = format!("{:>10} {:>10}  file\n", "bytes", "brotli");
+    let (mut front_end, mut core) = (0, 0);
     for name in files_under(dist, Path::new(""))? {
-        let shown = name.to_string_lossy().replace('\\', "/");
         if name.extension().is_some_and(|suffix| suffix == "br" || suffix == "gz") {
             continue;
         }
+        let shown = name.to_string_lossy().replace('\\', "/");
         let size = fs::metadata(dist.join(&name))?.len();
         let compressed = fs::metadata(dist.join(format!("{shown}.br"))).map_or(size, |data| data.len());
-        if DOWNLOAD.contains(&shown.as_str()) {
-            download += compressed;
+        if FRONT_END.contains(&shown.as_str()) {
+            front_end += compressed;
+        } else if CORE.contains(&shown.as_str()) {
+            core += compressed;
         }
-        println!("{size:>10} {compressed:>10}  {shown}");
+        table.push_str(&format!("{size:>10} {compressed:>10}  {shown}\n"));
     }
-    println!("download before the first frame: {:.2} MB (Brotli)", download as f64 / 1e6);
-    println!("{}", dist.display());
-    Ok(())
+    let megabytes = |bytes: u64| bytes as f64 / 1e6;
+    table.push_str(&format!(
+        "download (Brotli): {:.2} MB before the first frame, {:.2} MB before the first plan\n",
+        megabytes(front_end),
+        megabytes(front_end + core)
+    ));
+    Ok(table)
 }

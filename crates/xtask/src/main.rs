@@ -2,14 +2,18 @@
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a command line talks to its user")]
 
 mod bench;
-mod dist;
 mod serve;
 mod shot;
 mod test;
 
 use std::process::ExitCode;
 
+use anyhow::Result;
 use clap::{Parser, Subcommand};
+use xtask::{
+    dist, process,
+    site::{self, Flavour},
+};
 
 /// Builds, serves, tests, benchmarks and packs the page.
 #[derive(Parser)]
@@ -33,11 +37,20 @@ enum Task {
     Shot(shot::Options),
 }
 
+fn write_dist() -> Result<()> {
+    let dist = process::root().join("dist");
+    dist::pack(&site::build(Flavour::Release)?, &dist)?;
+    dist::compress(&dist)?;
+    print!("{}", dist::sizes(&dist)?);
+    println!("{}", dist.display());
+    Ok(())
+}
+
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().task {
         Task::Serve(options) => serve::run(&options),
         Task::Test => test::run_all(),
-        Task::Dist => dist::run(),
+        Task::Dist => write_dist(),
         Task::Bench(options) => bench::run_all(&options),
         Task::Shot(options) => shot::run(&options),
     };

@@ -10,4 +10,5 @@ mod api;
 mod drawing;
 mod editing;
 mod failure;
+mod offline;
 mod same;

@@ -18,11 +18,17 @@ use xtask::{
 };
 
 /// The site's folder; built once per run, which is quick when nothing has changed.
-static SITE: LazyLock<PathBuf> =
+pub(crate) static SITE: LazyLock<PathBuf> =
     LazyLock::new(|| site::build(Flavour::Development).expect("the page can be built"));
 
 /// Lets one test at a time have the processor.
 static TURN: Mutex<()> = Mutex::new(());
+
+/// Waits until no other test has the processor.
+pub(crate) fn take_turn() -> MutexGuard<'static, ()> {
+    // A test that failed in its turn has harmed nothing.
+    TURN.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// A browser with the page in it.
 pub(crate) struct Opened {
@@ -72,8 +78,7 @@ impl Opened {
     }
 
     fn from_site(site: &Path, graphics: Graphics, fragment: &str) -> Result<Self> {
-        // A test that failed in its turn has harmed nothing.
-        let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        let turn = take_turn();
         let server = SiteServer::start(site, 0, false)?;
         let browser = Browser::start(graphics)?;
         let tab = browser.open_tab(1280, 800)?;
