@@ -49,7 +49,12 @@ fn write_dist() -> Result<()> {
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().task {
         Task::Serve(options) => serve::run(&options),
-        Task::Test => test::run_all(),
+        // The count of what passed and failed is the last line; nothing is to be said after it.
+        Task::Test => match test::run_all() {
+            Ok(true) => Ok(()),
+            Ok(false) => return ExitCode::FAILURE,
+            Err(reason) => Err(reason),
+        },
         Task::Dist => write_dist(),
         Task::Bench(options) => bench::run_all(&options),
         Task::Shot(options) => shot::run(&options),
