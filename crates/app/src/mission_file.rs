@@ -43,7 +43,20 @@ pub const EXAMPLES: &[Example] = &[
         title: "Backjumping",
         source: include_str!("../../../assets/missions/backjump.rmpl"),
     },
+    Example {
+        name: "orbit-insertion",
+        title: "Orbit insertion",
+        source: include_str!("../../../assets/programs/orbit-insertion.rmpl"),
+    },
+    Example {
+        name: "esterel-idioms",
+        title: "Esterel's idioms",
+        source: include_str!("../../../assets/programs/esterel-idioms.rmpl"),
+    },
 ];
+
+/// The plant that a control program without one runs on, if its names fit.
+pub const PLANT: &str = include_str!("../../../assets/programs/orbit-plant.rmpl");
 
 /// The example of this name.
 pub fn example(name: &str) -> Option<&'static Example> {

@@ -122,6 +122,11 @@ impl Enroute {
             self.version += u64::from(self.state.search.advance(elapsed_secs, rate));
             self.egui.request_repaint_after_secs(0.05);
         }
+        if self.state.automaton.is_playing {
+            let rate = self.state.playback.rate;
+            self.version += u64::from(self.state.automaton.advance(elapsed_secs, rate));
+            self.egui.request_repaint_after_secs(0.05);
+        }
         if self.state.playback.is_playing {
             self.state.playback.advance(elapsed_secs);
             self.version += 1;

@@ -16,11 +16,13 @@ pub enum Workspace {
     Teach,
     /// Judge a plan.
     Review,
+    /// Run a control program.
+    Execute,
 }
 
 impl Workspace {
     /// All of them, as the tabs stand.
-    pub const ALL: [Self; 3] = [Self::Author, Self::Teach, Self::Review];
+    pub const ALL: [Self; 4] = [Self::Author, Self::Teach, Self::Review, Self::Execute];
 
     /// Its name on screen.
     pub const fn title(self) -> &'static str {
@@ -28,6 +30,7 @@ impl Workspace {
             Self::Author => "Author",
             Self::Teach => "Teach",
             Self::Review => "Review",
+            Self::Execute => "Execute",
         }
     }
 
@@ -37,6 +40,7 @@ impl Workspace {
             Self::Author => "author",
             Self::Teach => "teach",
             Self::Review => "review",
+            Self::Execute => "execute",
         }
     }
 
@@ -47,7 +51,7 @@ impl Workspace {
 
     /// Where its panels stand before the user moves them.
     pub fn default_layout(self) -> Tree<PanelKind> {
-        use PanelKind::{Editor, Network, Outline, Plan, Problems, Search, Terrain, Timeline};
+        use PanelKind::{Automaton, Editor, Network, Outline, Plan, Problems, Search, Terrain, Timeline};
         let mut tiles = Tiles::default();
         let root = match self {
             Self::Author => {
@@ -86,6 +90,13 @@ impl Workspace {
                 let text = tabs(&mut tiles, &[Editor, Problems, Outline]);
                 let right = split(&mut tiles, LinearDir::Vertical, &[(plan, 0.6), (text, 0.4)]);
                 split(&mut tiles, LinearDir::Horizontal, &[(left, 0.64), (right, 0.36)])
+            }
+            Self::Execute => {
+                let text = tabs(&mut tiles, &[Editor]);
+                let problems = tabs(&mut tiles, &[Problems]);
+                let left = split(&mut tiles, LinearDir::Vertical, &[(text, 0.8), (problems, 0.2)]);
+                let automaton = tabs(&mut tiles, &[Automaton]);
+                split(&mut tiles, LinearDir::Horizontal, &[(left, 0.3), (automaton, 0.7)])
             }
         };
         Tree::new(egui::Id::unique(("workspace", self.name())), root, tiles)

@@ -121,6 +121,7 @@ fn status(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         }
         Status::Broken => (Icon::Warning, "Errors", tokens.error, error, PanelKind::Problems),
         Status::Empty => (Icon::Nothing, "Nothing to plan", tokens.warning, warning, PanelKind::Problems),
+        Status::Program => (Icon::Play, "Program", tokens.good, good, PanelKind::Automaton),
         Status::Plan if verdict.is_some_and(|verdict| verdict.valid) => {
             (Icon::Check, "Plan · verified", tokens.good, good, PanelKind::Plan)
         }
@@ -141,7 +142,8 @@ fn status(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let stroke = Stroke::new(1.0, color);
         ui.painter().rect_stroke(rect, rect.height() / 2.0, stroke, egui::StrokeKind::Inside);
     }
-    let sign_rect = egui::Rect::from_min_size(rect.min + egui::vec2(8.0, 0.0), egui::vec2(16.0, rect.height()));
+    let sign_rect =
+        egui::Rect::from_min_size(rect.min + egui::vec2(8.0, 0.0), egui::vec2(16.0, rect.height()));
     icon::paint(ui.painter(), sign, sign_rect, 13.0, color);
     let at = egui::pos2(rect.left() + 28.0, rect.center().y - galley.size().y / 2.0);
     ui.painter().galley(at, galley, color);
@@ -155,6 +157,7 @@ fn status_name(context: &Context<'_>) -> &'static str {
         Status::Working => "Status: planning",
         Status::Broken => "Status: the text has errors",
         Status::Empty => "Status: nothing to plan",
+        Status::Program => "Status: a control program",
         Status::Plan => "Status: plan found",
         Status::NoPlan => "Status: no plan",
     }

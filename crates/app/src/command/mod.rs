@@ -11,6 +11,7 @@ use smol_str::SmolStr;
 use crate::dialog::Dialog;
 use crate::host::FileKind;
 use crate::panel::PanelKind;
+use crate::state::automaton::AutomatonCommand;
 use crate::state::editor::Find;
 use crate::state::search::SearchCommand;
 use crate::state::{EditKind, Selection, TextCommand, ToastKind, Views};
@@ -74,6 +75,8 @@ pub enum Command {
 
     /// Something that concerns the step of the search that is looked at.
     Search(SearchCommand),
+    /// Something that concerns the run of a control program.
+    Automaton(AutomatonCommand),
 
     /// What to plan.
     SetGoal(Goal),

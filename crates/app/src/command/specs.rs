@@ -301,6 +301,14 @@ pub static COMMANDS: &[CommandSpec] = &[
         Scope::Everywhere,
         |_| Command::ShowWorkspace(Workspace::Review),
     ),
+    plain(
+        "view.execute",
+        "Execute workspace",
+        Group::View,
+        &[keys(CTRL, Key::Num4)],
+        Scope::Everywhere,
+        |_| Command::ShowWorkspace(Workspace::Execute),
+    ),
     plain("view.resetWorkspace", "Reset the panels", Group::View, &[], Scope::Everywhere, |_| {
         Command::ResetWorkspace
     }),

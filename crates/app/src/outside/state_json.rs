@@ -141,6 +141,7 @@ fn status_name(status: Status) -> &'static str {
         Status::Working => "working",
         Status::Broken => "broken",
         Status::Empty => "empty",
+        Status::Program => "program",
         Status::Plan => "plan",
         Status::NoPlan => "no-plan",
     }

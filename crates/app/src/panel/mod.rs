@@ -1,9 +1,10 @@
 //! The panels: each reads the state and emits commands, and changes nothing else.
 
+pub mod automaton;
 pub mod editor;
+pub mod empty;
 pub mod network;
 pub mod outline;
-pub mod empty;
 pub mod plan;
 pub mod problems;
 pub mod search;
@@ -45,11 +46,13 @@ pub enum PanelKind {
     Terrain,
     /// The search that found the plan.
     Search,
+    /// The run of a control program.
+    Automaton,
 }
 
 impl PanelKind {
     /// All of them, as the menu lists them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Editor,
         Self::Outline,
         Self::Problems,
@@ -58,6 +61,7 @@ impl PanelKind {
         Self::Timeline,
         Self::Terrain,
         Self::Search,
+        Self::Automaton,
     ];
 
     /// Its name on screen.
@@ -71,6 +75,7 @@ impl PanelKind {
             Self::Timeline => "Timeline",
             Self::Terrain => "Terrain",
             Self::Search => "Search",
+            Self::Automaton => "Automaton",
         }
     }
 
@@ -85,6 +90,7 @@ impl PanelKind {
             Self::Timeline => "timeline",
             Self::Terrain => "terrain",
             Self::Search => "search",
+            Self::Automaton => "automaton",
         }
     }
 
@@ -95,7 +101,7 @@ impl PanelKind {
 
     /// Whether it has a view that can be zoomed and fitted.
     pub const fn is_zoomable(self) -> bool {
-        matches!(self, Self::Network | Self::Timeline | Self::Terrain | Self::Search)
+        matches!(self, Self::Network | Self::Timeline | Self::Terrain | Self::Search | Self::Automaton)
     }
 }
 
@@ -189,6 +195,7 @@ fn create(kind: PanelKind) -> Box<dyn Panel> {
         PanelKind::Network => Box::new(network::NetworkPanel::default()),
         PanelKind::Terrain => Box::new(terrain::TerrainPanel::default()),
         PanelKind::Search => Box::new(search::SearchPanel::default()),
+        PanelKind::Automaton => Box::new(automaton::AutomatonPanel::default()),
         PanelKind::Editor => Box::new(editor::EditorPanel::default()),
         PanelKind::Plan => Box::new(plan::PlanPanel::default()),
         PanelKind::Timeline => Box::new(timeline::TimelinePanel::default()),

@@ -10,10 +10,11 @@ use crate::command::Command;
 use crate::host::{FileKind, HostEvent};
 use crate::mission_file;
 use crate::panel::PanelKind;
+use crate::state::automaton::AutomatonCommand;
 use crate::state::editor::Reveal;
 use crate::state::search::SearchCommand;
-use crate::workspace::Workspace;
 use crate::state::{AppState, Selection, ToastKind, ViewRequest, playback};
+use crate::workspace::Workspace;
 
 /// Something that the host is to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +43,7 @@ impl AppState {
     pub fn apply(&mut self, command: Command) {
         self.do_command(command);
         self.language.follow(&self.document);
+        self.automaton.follow(&self.document, self.language.is_control());
     }
 
     fn do_command(&mut self, command: Command) {
@@ -69,7 +71,16 @@ impl AppState {
             Command::Hover(selection) => self.hovered = selection,
 
             Command::Seek(time) => self.playback.seek(time),
-            Command::TogglePlaying if self.steps_search() => self.apply_to_search(SearchCommand::TogglePlaying),
+            Command::TogglePlaying if self.automaton.program().is_some() => {
+                self.automaton.apply(AutomatonCommand::TogglePlaying);
+            }
+            Command::StepTime(forwards) if self.automaton.program().is_some() => {
+                self.automaton.apply(AutomatonCommand::Step(if forwards { 1 } else { -1 }));
+            }
+            Command::Automaton(command) => self.automaton.apply(command),
+            Command::TogglePlaying if self.steps_search() => {
+                self.apply_to_search(SearchCommand::TogglePlaying);
+            }
             Command::StepTime(forwards) if self.steps_search() => {
                 self.apply_to_search(SearchCommand::Step(if forwards { 1 } else { -1 }));
             }
@@ -189,12 +200,27 @@ impl AppState {
         self.editor.popup = None;
         self.mission = name;
         self.snapshots.clear();
+        self.automaton.forget();
+        self.turn_to_notation(source);
         self.selection = Selection::None;
         self.hovered = Selection::None;
         self.playback = playback::Playback { rate: self.playback.rate, ..Default::default() };
         self.settings.plan.goal = mission::Goal::Default;
         self.editor.reveal = Some(Reveal { span: Span::new(0, 0), center: false });
         self.dialog = None;
+    }
+
+    /// Control programs and missions are looked at in different workspaces.
+    fn turn_to_notation(&mut self, source: &str) {
+        let is_control = rmpl::control::is_control_text(source);
+        if is_control {
+            self.workspace = Workspace::Execute;
+            self.wanted_panel = Some(PanelKind::Automaton);
+            self.active_panel = PanelKind::Automaton;
+        } else if self.workspace == Workspace::Execute {
+            self.workspace = Workspace::Author;
+            self.active_panel = PanelKind::Editor;
+        }
     }
 
     fn open_file(&mut self, kind: FileKind, name: &str, bytes: Vec<u8>) {

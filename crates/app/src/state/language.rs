@@ -63,6 +63,11 @@ impl Language {
         }
     }
 
+    /// Whether the text is a control program.
+    pub const fn is_control(&self) -> bool {
+        matches!(self.notation, Notation::Control(..))
+    }
+
     /// The colours of the text in `range`, in textual order.
     pub fn colors(&self, range: Span, tokens: &Tokens) -> Vec<(Span, egui::Color32)> {
         let syntax = &tokens.syntax;

@@ -1,16 +1,17 @@
 //! Everything the app knows: the one thing that commands change and panels read.
 
 mod apply;
-mod editing;
+pub mod automaton;
 pub mod document;
+mod editing;
 pub mod editor;
 pub mod language;
 pub mod playback;
+pub mod search;
 pub mod search_text;
 pub mod selection;
 mod services;
 pub mod settings;
-pub mod search;
 mod snapshots;
 pub mod toast;
 pub mod typing;
@@ -57,6 +58,8 @@ pub struct AppState {
     pub hovered: Selection,
     /// The step of the search that is looked at.
     pub search: search::SearchState,
+    /// The control program, if the text is one, and its run.
+    pub automaton: automaton::AutomatonState,
     /// The time shown, and whether it runs.
     pub playback: Playback,
     /// Which workspace is shown.
@@ -123,6 +126,7 @@ impl AppState {
             selection: Selection::None,
             hovered: Selection::None,
             search: search::SearchState::default(),
+            automaton: automaton::AutomatonState::default(),
             playback: Playback::default(),
             workspace: Workspace::default(),
             settings: Settings::default(),
@@ -146,7 +150,10 @@ impl AppState {
 
     /// Where the plan stands, for the status display.
     pub fn status(&self) -> Status {
-        self.snapshots.status(self.document.revision())
+        match self.snapshots.status(self.document.revision()) {
+            Status::Empty if self.automaton.program().is_some() => Status::Program,
+            status => status,
+        }
     }
 
     /// Takes what the host is to do.

@@ -21,8 +21,10 @@ pub enum Status {
     Working,
     /// The text has errors; what is drawn belongs to an older text.
     Broken,
-    /// There is no network to plan, though nothing is wrong: an empty text, a control program.
+    /// There is no network to plan, though nothing is wrong: an empty text.
     Empty,
+    /// A control program, which is not planned but run.
+    Program,
     /// There is a plan.
     Plan,
     /// There is none.
@@ -95,9 +97,8 @@ impl Snapshots {
         let has_errors = latest.problems.iter().any(|problem| problem.severity == Severity::Error);
         match (&latest.network, &latest.planning) {
             (None, _) if has_errors => Status::Broken,
-            (None, _) if latest.stage == Stage::Compiled => Status::Working,
+            (_, None) if latest.stage == Stage::Compiled => Status::Working,
             (None, _) => Status::Empty,
-            (Some(_), None) if latest.stage == Stage::Compiled => Status::Working,
             (Some(_), Some(_)) if latest.plan().is_some() => Status::Plan,
             (Some(_), _) => Status::NoPlan,
         }

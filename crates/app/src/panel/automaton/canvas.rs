@@ -1,0 +1,164 @@
+//! The automaton on screen: pan, zoom, point at things, press a location to see its text.
+
+use egui::{Rect, Role, Sense, Ui, WidgetInfo};
+use hca::{Automaton, LocationId, LocationKind};
+use layout::{AutomatonDrawing, AutomatonItem};
+
+use super::shapes::Scene;
+use super::{Shown, log};
+use crate::command::{Command, CommandSender, ViewAction};
+use crate::panel::network::view::View;
+use crate::panel::{Context, PanelKind};
+
+/// Where the drawing is scrolled to.
+#[derive(Default)]
+pub(super) struct Canvas {
+    view: View,
+    followed_action: u64,
+}
+
+const WHEEL_ZOOM: f64 = 0.0022;
+const KEY_ZOOM: f64 = 1.3;
+/// How far from the pointer something may be to be pointed at, in points.
+const REACH: f64 = 6.0;
+
+impl Canvas {
+    /// Shows the drawing in the rest of `ui`.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        context: &Context<'_>,
+        shown: Shown<'_>,
+        drawing: &AutomatonDrawing,
+        commands: &mut CommandSender,
+    ) {
+        let (panel, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        let name = format!(
+            "Automaton. {} locations. Step {}, marked: {}.",
+            shown.automaton.locations.len(),
+            shown.moment.upcoming.step,
+            log::marked_text(shown.automaton, shown.moment)
+        );
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
+        self.navigate(&response, panel, drawing, context);
+        let caret = context.state.document.caret().head;
+        let at_caret = location_at(shown.automaton, caret);
+        let painter = ui.painter_at(panel);
+        Scene { painter: &painter, panel, view: &self.view, tokens: context.tokens, shown, at_caret }
+            .paint(drawing);
+        self.locations(ui, panel, shown, drawing, commands);
+        if response.clicked() {
+            commands.send(Command::Activate(PanelKind::Automaton));
+        }
+        let pointed = response
+            .hover_pos()
+            .and_then(|at| drawing.pick(self.view.drawing_point(panel, at), REACH / self.view.zoom()));
+        if let Some(text) = pointed.and_then(|item| describe(shown.automaton, item)) {
+            response.on_hover_text_at_pointer(text);
+        }
+    }
+
+    fn navigate(
+        &mut self,
+        response: &egui::Response,
+        panel: Rect,
+        drawing: &AutomatonDrawing,
+        context: &Context<'_>,
+    ) {
+        self.view.pan(response.drag_delta());
+        if let Some(pointer) = response.hover_pos() {
+            let (scroll, pinch) =
+                response.ctx.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            let factor = f64::from(pinch) * (f64::from(scroll) * WHEEL_ZOOM).exp();
+            if factor != 1.0 {
+                self.view.zoom_at(panel, pointer, factor);
+            }
+        }
+        match context.view_action(PanelKind::Automaton, &mut self.followed_action) {
+            None => {}
+            Some(ViewAction::ZoomIn) => self.view.zoom_at(panel, panel.center(), KEY_ZOOM),
+            Some(ViewAction::ZoomOut) => self.view.zoom_at(panel, panel.center(), 1.0 / KEY_ZOOM),
+            Some(ViewAction::ZoomReset) => self.view.reset_zoom(),
+            Some(ViewAction::Fit | ViewAction::FitSelection) => self.view.fit(panel, drawing.bounds),
+        }
+        if self.view.is_fitted() {
+            self.view.fit(panel, drawing.bounds);
+        }
+    }
+
+    /// Locations as buttons, for pointers, keys and screen readers.
+    fn locations(
+        &self,
+        ui: &mut Ui,
+        panel: Rect,
+        shown: Shown<'_>,
+        drawing: &AutomatonDrawing,
+        commands: &mut CommandSender,
+    ) {
+        for shape in &drawing.locations {
+            let rect = self.view.screen_rect(panel, shape.rect).intersect(panel);
+            let Some(location) = shown.automaton.location(shape.id).filter(|_| rect.is_positive()) else {
+                continue;
+            };
+            let is_marked = shown.moment.marking.contains(shape.id);
+            let standing = if is_marked { ", marked" } else { "" };
+            let name = format!("{}: {}{standing}", shown.automaton.location_name(shape.id), location.label);
+            let id = ui.scope_id().with(("location", shape.id.0));
+            let response = ui.interact(rect, id, Sense::click());
+            response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_marked, &name));
+            if response.has_focus() {
+                let stroke = egui::Stroke::new(1.5, ui.visuals().selection.stroke.color);
+                ui.painter_at(panel).rect_stroke(rect.expand(3.0), 5.0, stroke, egui::StrokeKind::Outside);
+            }
+            if response.clicked() {
+                commands.send(Command::Reveal(location.span));
+                commands.send(Command::Activate(PanelKind::Automaton));
+            }
+            if let Some(text) = describe(shown.automaton, AutomatonItem::Location(shape.id)) {
+                response.on_hover_text(text);
+            }
+        }
+    }
+}
+
+/// The location whose text is the smallest around a place of the text.
+fn location_at(automaton: &Automaton, offset: usize) -> Option<LocationId> {
+    let numbered = (0..).map(LocationId).zip(&automaton.locations);
+    let around = numbered.filter(|(_, location)| {
+        let range = location.span.range();
+        range.start <= offset && offset < range.end
+    });
+    around.min_by_key(|(_, location)| location.span.range().len()).map(|(id, _)| id)
+}
+
+/// What something on the drawing means, in a sentence.
+fn describe(automaton: &Automaton, item: AutomatonItem) -> Option<String> {
+    match item {
+        AutomatonItem::Location(id) => {
+            let location = automaton.location(id)?;
+            let meaning = match location.kind {
+                LocationKind::Assert => "stays marked, and its goal pursued, until the goal holds",
+                LocationKind::Always => "starts its body at every step",
+                LocationKind::If => "chooses once",
+                LocationKind::Unless => "starts its body once unless something is known to hold",
+                LocationKind::When => "waits until something is known to hold, then starts its body once",
+                LocationKind::Whenever => "starts its body whenever something is known to hold",
+            };
+            Some(format!("{}: {}\n{meaning}", automaton.location_name(id), location.label))
+        }
+        AutomatonItem::Transition(id) => {
+            let transition = automaton.transitions.get(id.0 as usize)?;
+            let Some(guard) = transition.guard.and_then(|guard| automaton.guard(guard)) else {
+                return Some("Fires at every step".to_owned());
+            };
+            let verb = if guard.non_entailed { "is not known to hold" } else { "is known to hold" };
+            Some(format!("Fires when {} {verb}", guard.constraint))
+        }
+        AutomatonItem::Composite(id) => {
+            let guard = automaton.guard(automaton.composite(id)?.maintenance?)?;
+            let verb =
+                if guard.non_entailed { "becomes known to hold" } else { "is no longer known to hold" };
+            Some(format!("All of this ends as soon as {} {verb}", guard.constraint))
+        }
+    }
+}
