@@ -81,7 +81,7 @@ fn a_fault_is_injected_by_pressing_a_component() {
 fn a_program_is_no_mission_with_errors() {
     let app = orbit_insertion();
     assert_eq!(app.json()["status"], json!("program"));
-    assert_eq!(app.json()["problems"], json!([]));
+    assert_eq!(app.json()["diagnostics"], json!([]));
     let app = opened("Main ():: (WHEN-DONEXT (start = on) (shutter = open))");
     assert_eq!(app.json()["status"], json!("program"));
 }

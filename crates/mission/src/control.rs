@@ -41,7 +41,8 @@ pub fn read_control(text: &str, plant: Option<&str>) -> (Control, Vec<Diagnostic
             (control, compiled.program_diagnostics)
         }
         (false, true) => {
-            if let Some(system) = plant.and_then(|plant| System::compile(text, Some(plant)).system) {
+            let system = plant.and_then(|plant| System::compile(text, Some(plant)).system);
+            if let Some(system) = system.filter(speaks_of_plant) {
                 return (Control::Bound(Box::new(system)), parsed.diagnostics);
             }
             let compiled = hca::compile_text(text, &Vocabulary::default());
@@ -51,6 +52,11 @@ pub fn read_control(text: &str, plant: Option<&str>) -> (Control, Vec<Diagnostic
             (control, compiled.diagnostics)
         }
     }
+}
+
+/// Whether a program has anything to do with its plant: one whose variables are all its own fits every plant.
+fn speaks_of_plant(system: &System) -> bool {
+    system.automaton.variables.iter().any(|variable| !variable.is_program_variable)
 }
 
 fn joined(mut diagnostics: Vec<Diagnostic>, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
@@ -82,6 +88,12 @@ mod tests {
         let (control, found) = read_control(&other, Some(PLANT));
         assert!(matches!(control, Control::Unbound(_)), "{found:?}");
         assert!(found.is_empty(), "{found:?}");
+    }
+
+    #[test]
+    fn a_program_that_does_not_speak_of_the_given_plant_stands_alone() {
+        let own = "Main ():: (WHEN-DONEXT (ready = yes) (ready = no))";
+        assert!(matches!(read_control(own, Some(PLANT)).0, Control::Unbound(_)));
     }
 
     #[test]

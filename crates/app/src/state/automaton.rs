@@ -511,7 +511,7 @@ mod tests {
         document.replace_all(&format!("; A note.\n{}", document.text()));
         state.follow(&document, true);
         assert_eq!((state.at(), marked(&state)), (3, vec!["a4".to_owned(), "w2".to_owned()]));
-        document.replace_all("Main ():: (Camera = Off)");
+        document.replace_all("Main ():: (WHEN-DONEXT (lamp = off) (lamp = on))");
         state.follow(&document, true);
         assert_eq!(state.at(), 0);
     }
