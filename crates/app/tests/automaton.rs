@@ -64,6 +64,17 @@ fn orbit_insertion_shows_its_marking_step_by_step() {
 }
 
 #[test]
+fn the_keys_that_step_through_plans_step_the_program() {
+    let mut app = orbit_insertion();
+    app.harness.key_press(egui::Key::Period);
+    app.settle();
+    assert_eq!(marked(&app).len(), 4, "one step on");
+    app.harness.key_press(egui::Key::Comma);
+    app.settle();
+    assert_eq!(marked(&app).len(), 5, "and back");
+}
+
+#[test]
 fn a_fault_is_injected_by_pressing_a_component() {
     let mut app = orbit_insertion();
     press(&mut app, "Step");

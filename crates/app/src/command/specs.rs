@@ -9,6 +9,7 @@ use crate::dialog::Dialog;
 use crate::host::FileKind;
 use crate::mission_file;
 use crate::panel::PanelKind;
+use crate::state::search::recorded;
 use crate::state::{AppState, Selection, TextCommand};
 use crate::theme::ThemeChoice;
 use crate::workspace::Workspace;
@@ -32,6 +33,12 @@ fn always(_: &AppState) -> Availability {
 fn with_plan(state: &AppState) -> Availability {
     let has_plan = state.shown().is_some_and(|shown| shown.plan().is_some());
     if has_plan { Ok(()) } else { Err("there is no plan") }
+}
+
+/// Whether there is something to step through: a plan, a recorded search, or a control program.
+fn with_steps(state: &AppState) -> Availability {
+    let has_search = state.shown().is_some_and(|shown| recorded(shown).is_some());
+    if has_search || state.automaton.program().is_some() { Ok(()) } else { with_plan(state) }
 }
 
 fn with_selection(state: &AppState) -> Availability {
@@ -418,7 +425,7 @@ pub static COMMANDS: &[CommandSpec] = &[
             Scope::NotTyping,
             |_| Command::TogglePlaying,
         ),
-        with_plan,
+        with_steps,
     ),
     when(
         plain(
@@ -429,7 +436,7 @@ pub static COMMANDS: &[CommandSpec] = &[
             Scope::NotTyping,
             |_| Command::StepTime(true),
         ),
-        with_plan,
+        with_steps,
     ),
     when(
         plain(
@@ -440,7 +447,7 @@ pub static COMMANDS: &[CommandSpec] = &[
             Scope::NotTyping,
             |_| Command::StepTime(false),
         ),
-        with_plan,
+        with_steps,
     ),
     when(
         plain("play.start", "To the start", Group::Play, &[keys(PLAIN, Key::Home)], Scope::NotTyping, |_| {

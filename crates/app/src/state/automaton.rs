@@ -86,7 +86,7 @@ pub struct PlantMoment {
 }
 
 /// What can be asked of the automaton's view.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AutomatonCommand {
     /// So many steps forwards, or backwards if negative.
     Step(i64),

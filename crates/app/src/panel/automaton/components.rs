@@ -1,7 +1,7 @@
 //! The components as cards: their modes, the one that is believed, the true one, and the menu that makes one fail.
 
 use egui::{Color32, Frame, Margin, RichText, Stroke, Ui};
-use num_traits::ToPrimitive as _;
+use num_traits::ToPrimitive;
 use plant::{ComponentId, Model};
 
 use super::title;
@@ -50,7 +50,8 @@ fn card(
             ui.spacing_mut().item_spacing.x = space::S;
             fault_menu(ui, model, id, injected, commands);
             for (mode, data) in (0_u8..).zip(&component.modes) {
-                let likelihood = likelihoods.get(usize::from(mode)).and_then(|it| it.to_f64()).unwrap_or(0.0);
+                let likelihood =
+                    likelihoods.get(usize::from(mode)).and_then(ToPrimitive::to_f64).unwrap_or(0.0);
                 let text = mode_text(&data.name, mode == estimate, mode == truth, likelihood);
                 let (color, fill) = match (mode == estimate, mode == truth) {
                     (true, _) => (tokens.text, tokens.accent_soft),
@@ -131,7 +132,7 @@ pub(super) fn percent(probability: f64) -> String {
     match percent {
         _ if percent >= 99.995 && probability < 1.0 => ">99.99 %".to_owned(),
         _ if percent > 0.0 && percent < 0.005 => "<0.01 %".to_owned(),
-        _ if percent >= 10.0 && percent < 99.0 => format!("{percent:.1} %"),
+        _ if (10.0..99.0).contains(&percent) => format!("{percent:.1} %"),
         _ => format!("{percent:.2} %"),
     }
 }
