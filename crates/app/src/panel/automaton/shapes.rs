@@ -139,6 +139,10 @@ impl Scene<'_> {
                     StrokeKind::Middle,
                 );
             }
+            let font = FontId::proportional((9.5 * self.view.zoom()).clamp(6.0, 12.0) as f32);
+            let name = self.shown.automaton.location_name(shape.id);
+            let corner = rect.right_bottom() + vec2(-4.0, 1.0);
+            self.painter.text(corner, Align2::RIGHT_TOP, name, font, tokens.text_muted);
             if is_marked {
                 let radius = (5.0 * self.view.zoom()).clamp(3.0, 8.0) as f32;
                 let outline = Stroke::new(1.5, tokens.surface);
