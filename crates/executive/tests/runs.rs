@@ -37,7 +37,8 @@ fn execute(network: &Arc<Network>, disturbances: &[Disturbance]) -> (RunOutcome,
     let plan = outcome.plans.into_iter().next().expect("the mission has a plan");
     let mut kirk = Kirk { network: Arc::clone(network), facts: Vec::new() };
     let world = World::new(disturbances);
-    let outcome = run(Arc::clone(network), plan, network.nodes.len(), &world, &mut kirk).expect("its times fit");
+    let outcome =
+        run(Arc::clone(network), plan, network.nodes.len(), &world, &mut kirk).expect("its times fit");
     (outcome, kirk.facts)
 }
 
@@ -101,7 +102,10 @@ fn disturbed_runs_keep_the_rules_or_report_a_violation_and_stop() {
             }
         }
     }
-    assert!(finished > 20 && stopped > 5 && replanned > 20, "{finished} finished, {stopped} stopped, {replanned}");
+    assert!(
+        finished > 20 && stopped > 5 && replanned > 20,
+        "{finished} finished, {stopped} stopped, {replanned}"
+    );
 }
 
 #[test]

@@ -156,9 +156,10 @@ impl SearchState {
         let Some(entry) = trace.events.get(step) else { return false };
         match entry.event {
             Event::Decide { .. } => self.breakpoints.decision,
-            Event::Inconsistent { .. } | Event::Unclosable { .. } | Event::Unresolvable { .. } | Event::Known => {
-                self.breakpoints.failure
-            }
+            Event::Inconsistent { .. }
+            | Event::Unclosable { .. }
+            | Event::Unresolvable { .. }
+            | Event::Known => self.breakpoints.failure,
             Event::Threat { .. } => self.breakpoints.threat,
             Event::Solution { .. } => self.breakpoints.solution,
             _ => false,

@@ -114,7 +114,8 @@ impl View {
             self.fits = false;
         }
         if let Some(pointer) = response.hover_pos() {
-            let (scroll, pinch) = response.ctx.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            let (scroll, pinch) =
+                response.ctx.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
             let factor = pinch * (scroll * 0.003).exp();
             if factor != 1.0 {
                 let before = self.zoom;
@@ -204,7 +205,9 @@ fn is_discovered(drawing: &TreeDrawing, id: TreeNodeId, step: usize) -> bool {
 fn is_offered(drawing: &TreeDrawing, id: TreeNodeId, step: usize) -> bool {
     let siblings = drawing.children.iter().find(|children| children.contains(&id));
     siblings.is_some_and(|siblings| {
-        siblings.iter().any(|&sibling| drawing.first_step[sibling as usize].is_some_and(|first| first <= step))
+        siblings
+            .iter()
+            .any(|&sibling| drawing.first_step[sibling as usize].is_some_and(|first| first <= step))
     })
 }
 

@@ -31,7 +31,12 @@ pub fn show(
         button(ui, "▶", "One step forward (.)", SearchCommand::Step(1));
         button(ui, "Run", "To the next breakpoint, or to the end", SearchCommand::Run(true));
         if shown.step.is_some() {
-            button(ui, "Show the plan", "Leaves the search and shows the plan again (Esc)", SearchCommand::Close);
+            button(
+                ui,
+                "Show the plan",
+                "Leaves the search and shows the plan again (Esc)",
+                SearchCommand::Close,
+            );
         }
         let mut step = shown.step.map_or(last, |step| step.step);
         let slider = egui::Slider::new(&mut step, 0..=last).text("step");
@@ -66,7 +71,9 @@ pub fn show(
         if breakpoints != search.breakpoints {
             commands.send(Command::Search(SearchCommand::SetBreakpoints(breakpoints)));
         }
-        ui.toggle_value(hides_failed, "Fold failures").on_hover_text("Hides what is below states in which all fails");
-        ui.toggle_value(shows_matrix, "Distances").on_hover_text("The distance matrix of the events selected so far");
+        ui.toggle_value(hides_failed, "Fold failures")
+            .on_hover_text("Hides what is below states in which all fails");
+        ui.toggle_value(shows_matrix, "Distances")
+            .on_hover_text("The distance matrix of the events selected so far");
     });
 }

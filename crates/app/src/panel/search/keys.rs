@@ -18,7 +18,8 @@ pub fn follow(
     drawing: &TreeDrawing,
     commands: &mut CommandSender,
 ) {
-    let is_meant = context.state.active_panel == PanelKind::Search && ui.memory(|memory| memory.focused().is_none());
+    let is_meant =
+        context.state.active_panel == PanelKind::Search && ui.memory(|memory| memory.focused().is_none());
     if !is_meant {
         return;
     }
@@ -65,7 +66,8 @@ fn sibling(shown: &Shown<'_>, drawing: &TreeDrawing, node: TreeNodeId, forwards:
 /// The state that was first entered just after, or just before, this one.
 fn discovered(drawing: &TreeDrawing, node: TreeNodeId, forwards: bool) -> Option<TreeNodeId> {
     let here = drawing.first_step[node as usize]?;
-    let others = (0..).zip(&drawing.first_step).filter_map(|(id, step): (TreeNodeId, _)| Some((id, (*step)?)));
+    let others =
+        (0..).zip(&drawing.first_step).filter_map(|(id, step): (TreeNodeId, _)| Some((id, (*step)?)));
     if forwards {
         others.filter(|&(_, step)| step > here).min_by_key(|&(_, step)| step).map(|(id, _)| id)
     } else {

@@ -17,7 +17,9 @@ const MOST_EVENTS: usize = 24;
 pub fn show(ui: &mut egui::Ui, context: &Context<'_>, shown: &Shown<'_>) {
     let tokens = context.tokens;
     let Some(step) = shown.step else {
-        ui.label(egui::RichText::new("Distances are shown while a step is looked at.").color(tokens.text_muted));
+        ui.label(
+            egui::RichText::new("Distances are shown while a step is looked at.").color(tokens.text_muted),
+        );
         return;
     };
     let named: Vec<NodeId> = step
@@ -54,7 +56,8 @@ pub fn show(ui: &mut egui::Ui, context: &Context<'_>, shown: &Shown<'_>) {
                         Bound::Infinite => tokens.text_faint,
                         Bound::Finite(_) => tokens.text,
                     };
-                    let shown = if distance == Bound::Infinite { "∞".to_owned() } else { distance.to_string() };
+                    let shown =
+                        if distance == Bound::Infinite { "∞".to_owned() } else { distance.to_string() };
                     ui.label(text(shown).color(color));
                 }
                 ui.end_row();
@@ -66,7 +69,8 @@ pub fn show(ui: &mut egui::Ui, context: &Context<'_>, shown: &Shown<'_>) {
 /// All distances between the selected nodes, by Floyd and Warshall.
 fn distances(network: &Network, step: &kirk::ReplayStep) -> BTreeMap<(NodeId, NodeId), Bound> {
     let nodes = &step.nodes;
-    let position: BTreeMap<NodeId, usize> = nodes.iter().enumerate().map(|(index, &node)| (node, index)).collect();
+    let position: BTreeMap<NodeId, usize> =
+        nodes.iter().enumerate().map(|(index, &node)| (node, index)).collect();
     let count = nodes.len();
     let mut matrix = vec![Bound::Infinite; count * count];
     for index in 0..count {
@@ -126,11 +130,15 @@ mod tests {
         let network = tpn::compile(&program, &tpn::Top::Scenario(None)).0.expect("it compiles");
         let options = kirk::Options { trace_events: Some(10_000), ..kirk::Options::default() };
         let trace = kirk::plan(&network, &options, &mut kirk::Unlimited).trace.expect("it was recorded");
-        let solution = trace.events.iter().position(|entry| matches!(entry.event, kirk::Event::Solution { .. }));
+        let solution =
+            trace.events.iter().position(|entry| matches!(entry.event, kirk::Event::Solution { .. }));
         let replay = kirk::Replay::new(&network, None, &trace).expect("its times fit");
         let distances = distances(&network, &replay.at(solution.expect("there is a plan")));
         let node = |name: &str| {
-            let found = network.nodes.iter().position(|node| node.events.iter().any(|&it| network.event_name(it) == name));
+            let found = network
+                .nodes
+                .iter()
+                .position(|node| node.events.iter().any(|&it| network.event_name(it) == name));
             NodeId::from_index(found.expect("the event exists"))
         };
         let bounds = |from: &str, to: &str| {

@@ -99,7 +99,8 @@ impl SearchPanel {
             let failed = whole.failed_subtrees(trace);
             collapsed = failed.symmetric_difference(&self.collapsed).copied().collect();
         }
-        let is_current = is_same_search && self.drawn.as_ref().is_some_and(|drawn| drawn.collapsed == collapsed);
+        let is_current =
+            is_same_search && self.drawn.as_ref().is_some_and(|drawn| drawn.collapsed == collapsed);
         if !is_current {
             let drawing = TreeDrawing::new(trace, &collapsed);
             self.drawn = Some(Drawn { snapshot: Arc::clone(snapshot), collapsed, drawing });
@@ -114,7 +115,8 @@ fn show_unrecorded(ui: &mut egui::Ui, context: &Context<'_>, commands: &mut Comm
             ui.label(egui::RichText::new("There is no search to show yet.").color(context.tokens.text_muted));
             return;
         }
-        let text = "The search is not recorded. Recording it lets you step through every decision and dead end.";
+        let text =
+            "The search is not recorded. Recording it lets you step through every decision and dead end.";
         ui.label(egui::RichText::new(text).color(context.tokens.text_muted));
         ui.add_space(space::M);
         if ui.button("Record the search").clicked() {

@@ -78,7 +78,8 @@ impl TreeDrawing {
                 self.places[id as usize] = Some([middle, down as f32]);
             } else {
                 pending.push((id, down, true));
-                pending.extend(self.children[id as usize].iter().rev().map(|&child| (child, down + 1, false)));
+                pending
+                    .extend(self.children[id as usize].iter().rev().map(|&child| (child, down + 1, false)));
             }
         }
         self.width = (next_across - 1.0_f32).max(0.0);
@@ -86,7 +87,8 @@ impl TreeDrawing {
 
     /// The states below which every attempt failed: what is collapsed on request.
     pub fn failed_subtrees(&self, trace: &Trace) -> BTreeSet<TreeNodeId> {
-        let is_failed = |id: TreeNodeId| !self.has_solution[id as usize] && self.first_step[id as usize].is_some();
+        let is_failed =
+            |id: TreeNodeId| !self.has_solution[id as usize] && self.first_step[id as usize].is_some();
         (0..trace.tree.len() as TreeNodeId)
             .filter(|&id| is_failed(id) && !self.children[id as usize].is_empty())
             .filter(|&id| trace.tree[id as usize].parent.is_none_or(|parent| !is_failed(parent)))

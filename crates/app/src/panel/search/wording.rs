@@ -62,7 +62,9 @@ pub fn event(network: &Network, event: &Event) -> String {
         }
         Event::Unclosable { ask } => format!("Dead end: nothing can carry {}.", label(*ask)),
         Event::TryLink { link } => format!("Let {} carry {}.", label(link.tell), label(link.ask)),
-        Event::Threat { left, right } => format!("Threat: {} and {} may overlap.", label(*left), label(*right)),
+        Event::Threat { left, right } => {
+            format!("Threat: {} and {} may overlap.", label(*left), label(*right))
+        }
         Event::TryOrder { order } => format!("Put {} before {}.", label(order.first), label(order.then)),
         Event::Unresolvable { left, right } => {
             format!("Dead end: {} and {} fit in neither order.", label(*left), label(*right))
