@@ -67,7 +67,7 @@ fn main() -> ExitCode {
         Command::Export(args) => export::run(args),
     };
     result.unwrap_or_else(|error| {
-        eprintln!("error: {error:#}");
+        output::print_error(&format!("error: {error:#}"));
         output::exit(output::WRONG)
     })
 }

@@ -66,6 +66,11 @@ pub fn print_text(text: &str) -> anyhow::Result<()> {
     }
 }
 
+/// Prints a line on standard error; where that is closed, there is nobody to tell.
+pub fn print_error(line: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
+}
+
 /// Prints diagnostics on standard error with the lines they are about, coloured only on a terminal.
 pub fn print_problems(name: &str, source: &str, problems: &[Problem]) -> anyhow::Result<()> {
     let colored = std::io::stderr().is_terminal();

@@ -74,12 +74,11 @@ impl Dispatcher {
     /// When a point may still happen: its earliest and latest tick, [`NEVER`] if there is no latest.
     pub fn window(&self, point: PointId) -> (i64, i64) {
         let (component, offset) = self.place[point.index()];
-        match self.time[component] {
-            Some(time) => (time + offset, time + offset),
-            None => {
-                let (earliest, latest) = self.windows[component];
-                (earliest + offset, if latest == NEVER { NEVER } else { latest + offset })
-            }
+        if let Some(time) = self.time[component] {
+            (time + offset, time + offset)
+        } else {
+            let (earliest, latest) = self.windows[component];
+            (earliest + offset, if latest == NEVER { NEVER } else { latest + offset })
         }
     }
 

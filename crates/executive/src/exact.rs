@@ -4,7 +4,6 @@ use rmpl::Rational;
 use serde::{Deserialize as _, Deserializer, Serializer, de::Error as _};
 
 /// Writes a time.
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
 pub fn serialize<S: Serializer>(time: &Rational, serializer: S) -> Result<S::Ok, S::Error> {
     let value = tpn::number::time_to_json(*time);
     serde::Serialize::serialize(&value, serializer)

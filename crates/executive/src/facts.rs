@@ -48,13 +48,13 @@ impl Facts {
                 }
             }
         }
-        for index in 0..network.nodes.len() {
+        for (index, (time, described)) in times.iter().zip(&network.nodes).enumerate() {
             let node = NodeId::from_index(index);
             let is_vertex = index >= num_program_nodes;
-            if node == network.start || network.nodes[index].role == Role::Decision {
+            if node == network.start || described.role == Role::Decision {
                 continue;
             }
-            match times[index] {
+            match *time {
                 Some(time) => add_back_arc(&mut changed, node, time, time),
                 // A vertex that was not reported lies between others that are held.
                 None if is_vertex => {}

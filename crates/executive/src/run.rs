@@ -57,7 +57,7 @@ pub fn run(
         news: Facts::default(),
         replans: 0,
     };
-    let ending = run.to_the_end(replanner)?;
+    let ending = run.run_to_end(replanner)?;
     Ok(RunOutcome {
         log: run.log,
         ending,
@@ -130,7 +130,7 @@ impl Stage {
 }
 
 impl Run<'_> {
-    fn to_the_end(&mut self, replanner: &mut dyn Replanner) -> Result<Ending, PlanError> {
+    fn run_to_end(&mut self, replanner: &mut dyn Replanner) -> Result<Ending, PlanError> {
         loop {
             let Some(next) = self.next() else {
                 let is_over = self.stage.times[self.stage.network.end.index()].is_some();

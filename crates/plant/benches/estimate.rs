@@ -2,7 +2,7 @@
 
 #![expect(clippy::print_stdout, reason = "a benchmark prints its table")]
 
-use std::time::Instant;
+use std::{fmt::Write as _, time::Instant};
 
 use plant::{
     Belief, Commands, Model, Observation, SimulatedPlant, State, compile, update_best, update_exact,
@@ -95,8 +95,10 @@ fn micros(mut work: impl FnMut()) -> f64 {
 fn main() {
     println!("{:<28} {:>14} {:>14} {:>14}", "one update, engines", "exact, µs", "1 best, µs", "10 best, µs");
     for count in [1, 2, 4, 8, 16, 50, 100] {
-        let instances: String =
-            (0..count).map(|at| format!("(DEFINSTANCE E{at} Engine INIT Standby)\n")).collect();
+        let mut instances = String::new();
+        for at in 0..count {
+            let _ = writeln!(instances, "(DEFINSTANCE E{at} Engine INIT Standby)");
+        }
         let model = model(&format!("{ENGINE}{instances}"));
         let mut plant = SimulatedPlant::new(&model, None);
         let fire = Commands(vec![3; count]);

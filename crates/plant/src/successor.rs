@@ -97,13 +97,16 @@ pub(crate) fn distribution(
     Ok((weights, mode.denominator))
 }
 
-/// The distributions of all components over denominators that are common to all `states` (by component).
+/// The modes that a component may be in next, each with its weight.
+pub(crate) type ModeWeights = Vec<(u8, u64)>;
+
+/// The distributions of all components over denominators that are common to all `states` (by state, then component).
 pub(crate) fn distributions(
     model: &Model,
     states: &[&State],
     commands: &Commands,
-) -> Result<Vec<Vec<Vec<(u8, u64)>>>, EstimateError> {
-    let mut all: Vec<Vec<(Vec<(u8, u64)>, u64)>> = Vec::with_capacity(states.len());
+) -> Result<Vec<Vec<ModeWeights>>, EstimateError> {
+    let mut all: Vec<Vec<(ModeWeights, u64)>> = Vec::with_capacity(states.len());
     for state in states {
         let each = model.component_ids().map(|component| distribution(model, component, state, commands));
         all.push(each.collect::<Result<_, _>>()?);
@@ -115,7 +118,7 @@ pub(crate) fn distributions(
                 .fold(1, |common, (_, denominator)| lcm(common, *denominator))
         })
         .collect();
-    let scaled = |(weights, denominator): (Vec<(u8, u64)>, u64), common: u64| -> Vec<(u8, u64)> {
+    let scaled = |(weights, denominator): (ModeWeights, u64), common: u64| -> ModeWeights {
         weights.into_iter().map(|(mode, weight)| (mode, weight * (common / denominator))).collect()
     };
     Ok(all

@@ -1,7 +1,7 @@
 //! Reactive plans: the examples of SPEC 9.2, and random plants against breadth-first search over whole states.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::{fmt::Write as _, path::Path};
 
 use plant::{Goal, Model, Planner, Random, State, compile, successor};
 
@@ -112,7 +112,11 @@ fn goals_with_nothing_in_common_are_commanded_in_the_same_step() {
 fn random_model(random: &mut Random) -> String {
     let mut text = String::new();
     for at in 0..3 {
-        let ports: String = (0..at).map(|other| format!("(PORT p{other} C{other})")).collect();
+        let (mut ports, mut connected) = (String::new(), String::new());
+        for other in 0..at {
+            let _ = write!(ports, "(PORT p{other} C{other})");
+            let _ = write!(connected, "(p{other} c{other})");
+        }
         let mut arcs = String::new();
         for from in 0..3 {
             for to in 0..3 {
@@ -128,7 +132,6 @@ fn random_model(random: &mut Random) -> String {
                 arcs.push_str(&format!("(TRANSITION M{from} M{to} ((cmd = to{to}){needs}))\n"));
             }
         }
-        let connected: String = (0..at).map(|other| format!("(p{other} c{other})")).collect();
         text.push_str(&format!(
             "(DEFCLASS C{at} () {ports} (COMMAND cmd {{none to0 to1 to2}}) (MODE M0 true) (MODE M1 true) (MODE M2 true) {arcs})
              (DEFINSTANCE c{at} C{at} {connected})\n"

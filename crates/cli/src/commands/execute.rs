@@ -38,23 +38,20 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         report_errors(args, &loaded)?;
         return Ok(exit(WRONG));
     };
-    let plan = match &args.plan {
-        Some(file) => {
-            let document: Value = read_json(file)?;
-            let plans = tpn::plan_json::plans_from_json(network, &document)?;
-            plans.into_iter().next().with_context(|| format!("{} holds no plan", file.display()))?
-        }
-        None => {
-            let outcome = kirk::plan(network, &kirk::Options::default(), &mut kirk::Unlimited);
-            outcome.plans.into_iter().next().context("the mission has no plan to execute")?
-        }
+    let plan = if let Some(file) = &args.plan {
+        let document: Value = read_json(file)?;
+        let plans = tpn::plan_json::plans_from_json(network, &document)?;
+        plans.into_iter().next().with_context(|| format!("{} holds no plan", file.display()))?
+    } else {
+        let outcome = kirk::plan(network, &kirk::Options::default(), &mut kirk::Unlimited);
+        outcome.plans.into_iter().next().context("the mission has no plan to execute")?
     };
     let observed = observations(network, &read_json(&args.observe)?)?;
     let progress = executive::progress(network, &plan, &observed)?;
     let is_consistent = matches!(progress, Progress::Consistent(_));
     match args.format {
         Format::Json => {
-            print_json(&document("execute", &loaded.problems, progress_json(network, &progress)))?
+            print_json(&document("execute", &loaded.problems, progress_json(network, &progress)))?;
         }
         Format::Text => print_text(&progress_text(network, &plan, &progress))?,
     }

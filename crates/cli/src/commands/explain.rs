@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use crate::output::{WRONG, YES, exit, print_text};
+use crate::output::{WRONG, YES, exit, print_error, print_text};
 
 /// Explains a diagnostic code such as E-BOUNDS; without one, lists all codes.
 #[derive(clap::Args)]
@@ -26,6 +26,6 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         print_text(&explanation.markdown())?;
         return Ok(exit(YES));
     }
-    eprintln!("there is no diagnostic called {code}; `enroute explain` lists all of them");
+    print_error(&format!("there is no diagnostic called {code}; `enroute explain` lists all of them"));
     Ok(exit(WRONG))
 }

@@ -64,9 +64,9 @@ fn drawing(automaton: &Automaton) -> String {
     layout::automaton_svg(&drawing, None, &layout::Palette::LIGHT, "Control program")
 }
 
-fn element_name(automaton: &Automaton, element: &Element) -> String {
+fn element_name(automaton: &Automaton, element: Element) -> String {
     match element {
-        Element::Location(location) => automaton.location_name(*location),
+        Element::Location(location) => automaton.location_name(location),
         Element::Composite(composite) => format!("c{}", composite.0),
     }
 }
@@ -98,7 +98,7 @@ fn automaton_json(automaton: &Automaton) -> Value {
         .map(|transition| {
             json!({
                 "from": automaton.location_name(transition.source),
-                "to": element_name(automaton, &transition.target),
+                "to": element_name(automaton, transition.target),
                 "guard": guard(transition.guard).unwrap_or_else(|| "true".into()),
             })
         })
@@ -112,7 +112,7 @@ fn automaton_json(automaton: &Automaton) -> Value {
                 "id": format!("c{at}"),
                 "kind": composite.kind,
                 "parent": composite.parent.map(|parent| format!("c{}", parent.0)),
-                "children": composite.children.iter().map(|child| element_name(automaton, child)).collect::<Vec<_>>(),
+                "children": composite.children.iter().map(|&child| element_name(automaton, child)).collect::<Vec<_>>(),
                 "start": composite.start.iter().map(|id| automaton.location_name(*id)).collect::<Vec<_>>(),
                 "maintenance": guard(composite.maintenance),
                 "span": { "start": composite.span.start, "end": composite.span.end },
@@ -124,17 +124,17 @@ fn automaton_json(automaton: &Automaton) -> Value {
 
 fn automaton_text(automaton: &Automaton) -> String {
     let mut out = String::new();
-    tree(automaton, &Element::Composite(Automaton::ROOT), 0, &mut out);
+    tree(automaton, Element::Composite(Automaton::ROOT), 0, &mut out);
     out
 }
 
-fn tree(automaton: &Automaton, element: &Element, depth: usize, out: &mut String) {
+fn tree(automaton: &Automaton, element: Element, depth: usize, out: &mut String) {
     let indent = "  ".repeat(depth);
     match element {
         Element::Location(id) => {
-            let Some(location) = automaton.location(*id) else { return };
-            let mark = if automaton.start().contains(*id) { " (start)" } else { "" };
-            out.push_str(&format!("{indent}{}: {}{mark}\n", automaton.location_name(*id), location.label));
+            let Some(location) = automaton.location(id) else { return };
+            let mark = if automaton.start().contains(id) { " (start)" } else { "" };
+            out.push_str(&format!("{indent}{}: {}{mark}\n", automaton.location_name(id), location.label));
             for at in location.transitions.clone() {
                 let Some(transition) = automaton.transitions.get(at as usize) else { continue };
                 let guard = transition.guard.and_then(|test| automaton.guard(test));
@@ -148,7 +148,7 @@ fn tree(automaton: &Automaton, element: &Element, depth: usize, out: &mut String
             }
         }
         Element::Composite(id) => {
-            let Some(composite) = automaton.composite(*id) else { return };
+            let Some(composite) = automaton.composite(id) else { return };
             let kind = match composite.kind {
                 hca::CompositeKind::Parallel => Some("parallel".to_owned()),
                 hca::CompositeKind::Sequence => Some("sequence".to_owned()),
@@ -162,7 +162,9 @@ fn tree(automaton: &Automaton, element: &Element, depth: usize, out: &mut String
             if let Some(kind) = kind {
                 out.push_str(&format!("{indent}{kind}\n"));
             }
-            composite.children.iter().for_each(|child| tree(automaton, child, inner, out));
+            for &child in &composite.children {
+                tree(automaton, child, inner, out);
+            }
         }
     }
 }

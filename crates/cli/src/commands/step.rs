@@ -33,8 +33,8 @@ struct Estimates {
     domains: BTreeMap<SmolStr, Vec<SmolStr>>,
     #[serde(default)]
     program_vars: BTreeSet<SmolStr>,
-    #[serde(default)]
-    estimates: Vec<BTreeMap<String, String>>,
+    #[serde(default, rename = "estimates")]
+    each_step: Vec<BTreeMap<String, String>>,
 }
 
 /// Runs the command.
@@ -54,7 +54,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         return Ok(exit(WRONG));
     };
     let estimates: Vec<Estimate> = given
-        .estimates
+        .each_step
         .iter()
         .map(|known| automaton.estimate(known.iter().map(|(name, value)| (name.as_str(), value.as_str()))))
         .collect();

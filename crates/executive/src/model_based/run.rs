@@ -241,17 +241,16 @@ impl<'system> Run<'system> {
         let mut unachievable: Vec<(SmolStr, String)> = Vec::new();
         for location in self.stepper.marking().iter() {
             let Some(wish) = system.wish(location) else { continue };
-            match wish.goals(self.mind.planner(), &state) {
-                Some(found) => goals.extend(found),
-                None => {
-                    let label = system
-                        .automaton
-                        .location(location)
-                        .map(|location| location.label.clone())
-                        .unwrap_or_default();
-                    let goal = SmolStr::new(label.trim_start_matches("assert "));
-                    unachievable.push((goal, "no mode of the plant makes it true".into()));
-                }
+            if let Some(found) = wish.goals(self.mind.planner(), &state) {
+                goals.extend(found);
+            } else {
+                let label = system
+                    .automaton
+                    .location(location)
+                    .map(|location| location.label.clone())
+                    .unwrap_or_default();
+                let goal = SmolStr::new(label.trim_start_matches("assert "));
+                unachievable.push((goal, "no mode of the plant makes it true".into()));
             }
         }
         goals.sort_unstable();

@@ -84,9 +84,9 @@ impl System {
                         "declare components by DEFCLASS and DEFINSTANCE, here or in a model of their own",
                     );
                     if place {
-                        model_diagnostics.push(diagnostic)
+                        model_diagnostics.push(diagnostic);
                     } else {
-                        program_diagnostics.push(diagnostic)
+                        program_diagnostics.push(diagnostic);
                     }
                 }
                 Some(plant) => {
@@ -200,13 +200,17 @@ impl Uses {
         match &expression.kind {
             ExpressionKind::Assert(constraint) => names(constraint, &mut self.asserted),
             ExpressionKind::Parallel(parts) | ExpressionKind::Sequence(parts) => {
-                parts.iter().for_each(|part| self.expression(part));
+                for part in parts {
+                    self.expression(part);
+                }
             }
             ExpressionKind::Always(body) => self.expression(body),
             ExpressionKind::IfThenNext { guard, then, otherwise } => {
                 names(&guard.constraint, &mut self.tested);
                 self.expression(then);
-                otherwise.iter().for_each(|otherwise| self.expression(otherwise));
+                if let Some(otherwise) = otherwise {
+                    self.expression(otherwise);
+                }
             }
             ExpressionKind::UnlessThenNext { guard, body }
             | ExpressionKind::WhenDoNext { guard, body }
@@ -232,7 +236,9 @@ fn names(constraint: &Constraint, into: &mut Vec<Name>) {
         ConstraintKind::Equals { variable, .. } => into.push(variable.clone()),
         ConstraintKind::Not(inner) => names(inner, into),
         ConstraintKind::And(parts) | ConstraintKind::Or(parts) => {
-            parts.iter().for_each(|part| names(part, into))
+            for part in parts {
+                names(part, into);
+            }
         }
         _ => {}
     }

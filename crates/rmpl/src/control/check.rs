@@ -43,13 +43,17 @@ impl<'file> Checker<'file> {
         match &expression.kind {
             ExpressionKind::Assert(constraint) => self.constraint(constraint, within),
             ExpressionKind::Parallel(parts) | ExpressionKind::Sequence(parts) => {
-                parts.iter().for_each(|part| self.expression(part, within));
+                for part in parts {
+                    self.expression(part, within);
+                }
             }
             ExpressionKind::Always(body) => self.expression(body, within),
             ExpressionKind::IfThenNext { guard, then, otherwise } => {
                 self.constraint(&guard.constraint, within);
                 self.expression(then, within);
-                otherwise.iter().for_each(|otherwise| self.expression(otherwise, within));
+                if let Some(otherwise) = otherwise {
+                    self.expression(otherwise, within);
+                }
             }
             ExpressionKind::UnlessThenNext { guard, body }
             | ExpressionKind::WhenDoNext { guard, body }
@@ -67,12 +71,16 @@ impl<'file> Checker<'file> {
         match &constraint.kind {
             ConstraintKind::Not(inner) => self.constraint(inner, within),
             ConstraintKind::And(parts) | ConstraintKind::Or(parts) => {
-                parts.iter().for_each(|part| self.constraint(part, within));
+                for part in parts {
+                    self.constraint(part, within);
+                }
             }
             ConstraintKind::Parameter(name) if !is_parameter(name, within) => {
                 let hint = nearest(&name.text, within.parameters.iter().map(|known| known.text.as_str()))
-                    .map(|known| format!("did you mean the parameter `{known}`?"))
-                    .unwrap_or_else(|| "a constraint reads `(variable = value)`".into());
+                    .map_or_else(
+                        || "a constraint reads `(variable = value)`".into(),
+                        |known| format!("did you mean the parameter `{known}`?"),
+                    );
                 self.error(
                     "E-UNDEF",
                     name,
@@ -208,11 +216,15 @@ fn called<'file>(expression: &'file Expression, into: &mut Vec<&'file Name>) {
     match &expression.kind {
         ExpressionKind::Assert(_) | ExpressionKind::Unreadable => {}
         ExpressionKind::Parallel(parts) | ExpressionKind::Sequence(parts) => {
-            parts.iter().for_each(|part| called(part, into));
+            for part in parts {
+                called(part, into);
+            }
         }
         ExpressionKind::IfThenNext { then, otherwise, .. } => {
             called(then, into);
-            otherwise.iter().for_each(|otherwise| called(otherwise, into));
+            if let Some(otherwise) = otherwise {
+                called(otherwise, into);
+            }
         }
         ExpressionKind::Always(body)
         | ExpressionKind::UnlessThenNext { body, .. }

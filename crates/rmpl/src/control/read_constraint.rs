@@ -11,7 +11,7 @@ use super::tree::{List, Node};
 impl Reader<'_> {
     /// Whether a list is a constraint rather than a form or call.
     pub(super) fn is_constraint(&self, list: &List) -> bool {
-        if list.items.iter().any(|node| self.is_leaf(node, TokenKind::Equals)) {
+        if list.items.iter().any(|node| is_leaf(node, TokenKind::Equals)) {
             return true;
         }
         match list.items.first() {
@@ -29,10 +29,6 @@ impl Reader<'_> {
 
     fn has_connective(&self, items: &[Node]) -> bool {
         items.iter().skip(1).any(|node| self.is_connective(node))
-    }
-
-    fn is_leaf(&self, node: &Node, kind: TokenKind) -> bool {
-        matches!(node, Node::Leaf(token) if token.kind == kind)
     }
 
     fn upper(&self, node: &Node) -> String {
@@ -80,16 +76,14 @@ impl Reader<'_> {
             _ => {}
         }
         match self.upper(&items[0]).as_str() {
-            "NOT" if !items.get(1).is_some_and(|node| self.is_leaf(node, TokenKind::Equals)) => {
+            "NOT" if !items.get(1).is_some_and(|node| is_leaf(node, TokenKind::Equals)) => {
                 let [_, inner] = items else {
                     self.error("E-ARITY", items[0].span(), "NOT takes one constraint");
                     return ConstraintKind::Unreadable;
                 };
                 return ConstraintKind::Not(Box::new(self.constraint(inner)));
             }
-            joint @ ("AND" | "OR")
-                if !items.get(1).is_some_and(|node| self.is_leaf(node, TokenKind::Equals)) =>
-            {
+            joint @ ("AND" | "OR") if !items.get(1).is_some_and(|node| is_leaf(node, TokenKind::Equals)) => {
                 if items.len() < 3 {
                     self.error("E-ARITY", items[0].span(), format!("{joint} takes at least two constraints"));
                     return ConstraintKind::Unreadable;
@@ -104,12 +98,12 @@ impl Reader<'_> {
 
     fn equality(&mut self, items: &[Node], list: &List) -> ConstraintKind {
         if let [variable, equals, value] = items
-            && self.is_leaf(equals, TokenKind::Equals)
+            && is_leaf(equals, TokenKind::Equals)
             && let (Some(variable), Some(value)) = (self.name(variable), self.name(value))
         {
             return ConstraintKind::Equals { variable, value };
         }
-        if items.iter().any(|node| self.is_leaf(node, TokenKind::Tilde)) {
+        if items.iter().any(|node| is_leaf(node, TokenKind::Tilde)) {
             self.error(
                 "E-CONSTRAINT",
                 list.span,
@@ -117,9 +111,9 @@ impl Reader<'_> {
             )
             .hint =
                 Some("inside a constraint write `(NOT c)`; a guard reads `~c` or `(NOT-ENTAILED c)`".into());
-        } else if matches!(items, [_, equals] if self.is_leaf(equals, TokenKind::Equals)) {
+        } else if matches!(items, [_, equals] if is_leaf(equals, TokenKind::Equals)) {
             self.error("E-CONSTRAINT", list.span, "the value is missing after `=`");
-        } else if matches!(items, [equals, _] if self.is_leaf(equals, TokenKind::Equals)) {
+        } else if matches!(items, [equals, _] if is_leaf(equals, TokenKind::Equals)) {
             self.error("E-CONSTRAINT", list.span, "the variable is missing before `=`");
         } else {
             self.error("E-CONSTRAINT", list.span, "this is no constraint").hint =
@@ -158,4 +152,8 @@ impl Reader<'_> {
     fn is_connective(&self, node: &Node) -> bool {
         matches!(self.upper(node).as_str(), "AND" | "OR")
     }
+}
+
+fn is_leaf(node: &Node, kind: TokenKind) -> bool {
+    matches!(node, Node::Leaf(token) if token.kind == kind)
 }
