@@ -24,7 +24,7 @@ impl CoreQueue {
     }
 
     /// The request to send now, if the core is free; it counts as under way from here on.
-    pub fn next(&mut self) -> Option<&Request> {
+    pub fn start_next(&mut self) -> Option<&Request> {
         if self.under_way.is_some() {
             return None;
         }
@@ -111,22 +111,22 @@ mod tests {
         for revision in 1..=3 {
             queue.post(update(revision));
         }
-        assert_eq!(queue.next(), Some(&update(3)));
+        assert_eq!(queue.start_next(), Some(&update(3)));
         queue.finished();
-        assert_eq!(queue.next(), None);
+        assert_eq!(queue.start_next(), None);
     }
 
     #[test]
     fn one_request_is_under_way_at_a_time_and_knows_when_it_is_superseded() {
         let mut queue = CoreQueue::default();
         queue.post(update(1));
-        assert!(queue.next().is_some());
+        assert!(queue.start_next().is_some());
         assert!(!queue.is_superseded());
         queue.post(update(2));
         assert!(queue.is_superseded());
-        assert_eq!(queue.next(), None);
+        assert_eq!(queue.start_next(), None);
         queue.finished();
-        assert_eq!(queue.next(), Some(&update(2)));
+        assert_eq!(queue.start_next(), Some(&update(2)));
         assert!(!queue.is_superseded());
     }
 
@@ -136,28 +136,28 @@ mod tests {
         queue.post(update(1));
         queue.post(map("m", b"1"));
         queue.post(update(2));
-        assert_eq!(queue.next(), Some(&map("m", b"1")));
+        assert_eq!(queue.start_next(), Some(&map("m", b"1")));
         queue.finished();
-        assert_eq!(queue.next(), Some(&update(2)));
+        assert_eq!(queue.start_next(), Some(&update(2)));
     }
 
     #[test]
     fn a_restarted_core_is_told_its_maps_again_but_not_what_stopped_it() {
         let mut queue = CoreQueue::default();
         queue.post(map("a", b"1"));
-        assert!(queue.next().is_some());
+        assert!(queue.start_next().is_some());
         queue.finished();
         queue.post(map("b", b"2"));
-        assert!(queue.next().is_some());
+        assert!(queue.start_next().is_some());
         queue.finished();
         queue.post(update(7));
-        assert!(queue.next().is_some());
+        assert!(queue.start_next().is_some());
         queue.post(map("a", b"3"));
         assert_eq!(queue.restarted(), Some(update(7)));
-        assert_eq!(queue.next(), Some(&map("b", b"2")));
+        assert_eq!(queue.start_next(), Some(&map("b", b"2")));
         queue.finished();
-        assert_eq!(queue.next(), Some(&map("a", b"3")));
+        assert_eq!(queue.start_next(), Some(&map("a", b"3")));
         queue.finished();
-        assert_eq!(queue.next(), None);
+        assert_eq!(queue.start_next(), None);
     }
 }

@@ -72,7 +72,7 @@ impl NativeHost {
 
     /// Sends what can be sent, and lets the core know whether it works in vain.
     fn push_on(&mut self) {
-        if let Some(request) = self.queue.next() {
+        if let Some(request) = self.queue.start_next() {
             self.superseded.store(false, Ordering::Relaxed);
             // The core's thread ends only when this sender is dropped.
             let _ = self.to_core.send(request.clone());

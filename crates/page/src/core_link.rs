@@ -105,7 +105,7 @@ impl Link {
             self.start_worker();
         }
         let Some(worker) = &self.worker else { return };
-        if let Some(request) = self.queue.next() {
+        if let Some(request) = self.queue.start_next() {
             match postcard::to_allocvec(request) {
                 Ok(bytes) => worker.core.send(Uint8Array::from(bytes.as_slice())),
                 Err(reason) => self.give_up(&format!("a request cannot be written: {reason}")),
