@@ -68,7 +68,9 @@ impl CoreQueue {
 /// The revision of the text that a request is about.
 pub fn revision(request: &Request) -> Option<u64> {
     match request {
-        Request::Update(update) => Some(update.revision),
+        Request::Update(update) | Request::Execute { update, .. } | Request::Sample { update, .. } => {
+            Some(update.revision)
+        }
         Request::ImportMap { .. } => None,
     }
 }
@@ -76,7 +78,9 @@ pub fn revision(request: &Request) -> Option<u64> {
 /// Whether answering `newer` makes answering `earlier` pointless.
 fn replaces(newer: &Request, earlier: &Request) -> bool {
     match (newer, earlier) {
-        (Request::Update(_), Request::Update(_)) => true,
+        (Request::Update(_), Request::Update(_) | Request::Execute { .. } | Request::Sample { .. })
+        | (Request::Execute { .. }, Request::Execute { .. })
+        | (Request::Sample { .. }, Request::Sample { .. }) => true,
         (Request::ImportMap { name: newer, .. }, Request::ImportMap { name: earlier, .. }) => {
             newer == earlier
         }

@@ -24,8 +24,17 @@ pub enum Happening {
         /// Its name.
         name: SmolStr,
     },
+    /// What an activity under way shows of itself, such as a step of its control program.
+    Progress {
+        /// The activity.
+        name: SmolStr,
+        /// What was done.
+        text: String,
+    },
     /// The plan can no longer be kept.
     Violation {
+        /// The event that broke it.
+        name: SmolStr,
         /// Why.
         reason: String,
     },

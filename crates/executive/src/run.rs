@@ -4,16 +4,19 @@
 //! log. Start events call their activities, and events that only the plan restricts happen as early as they may. What
 //! the world decides comes when the world says so: if that is outside the event's window, the plan is violated.
 
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 use rmpl::Rational;
+use smol_str::SmolStr;
 use stn::PointId;
-use tpn::{EventEnd, EventRef, Network, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Plan};
+use tpn::{EventEnd, EventRef, Network, NodeId, OccurrenceId, OccurrenceKind, Plan};
 
-use crate::dispatch::{Dispatcher, NEVER};
 use crate::facts::Facts;
 use crate::log::{Ending, Entry, Happening};
-use crate::plan_network::{PlanError, PlanNetwork};
+use crate::performance::{AsPlanned, Ends, Performer};
+use crate::plan_network::PlanError;
+use crate::stage::{ExecutedPlan, Stage};
 use crate::world::World;
 
 /// Makes a new plan from facts.
@@ -29,63 +32,74 @@ pub struct RunOutcome {
     pub log: Vec<Entry>,
     /// How it ended.
     pub ending: Ending,
-    /// The network of the last plan.
-    pub network: Arc<Network>,
-    /// The last plan.
-    pub plan: Plan,
-    /// When each node of it happened.
-    pub times: Vec<Option<Rational>>,
+    /// The plans that were executed, one after the other; there is at least one.
+    pub plans: Vec<ExecutedPlan>,
+}
+
+impl RunOutcome {
+    /// The plan that was executed last.
+    pub fn last(&self) -> &ExecutedPlan {
+        &self.plans[self.plans.len() - 1]
+    }
 }
 
 /// A run that replans more often than this is stopped: something is wrong with the world or with the mission.
 const MOST_REPLANS: usize = 50;
 
-/// Executes `plan` in `world`. `num_program_nodes` is how many nodes the network has without inserted paths.
+/// Executes `plan` in `world`, with activities that take as long as planned where the world does not say otherwise.
+/// `num_program_nodes` is how many nodes the network has without inserted paths.
 pub fn run(
-    network: Arc<Network>,
+    network: &Arc<Network>,
     plan: Plan,
     num_program_nodes: usize,
     world: &World,
     replanner: &mut dyn Replanner,
 ) -> Result<RunOutcome, PlanError> {
+    let stage = Stage::new(Arc::clone(network), plan, &world.times(network))?;
+    run_stage(stage, num_program_nodes, world, &mut AsPlanned, replanner)
+}
+
+/// Executes a plan that was made ready, in ticks that fit `world` and `performer`.
+pub fn run_stage(
+    stage: Stage,
+    num_program_nodes: usize,
+    world: &World,
+    performer: &mut dyn Performer,
+    replanner: &mut dyn Replanner,
+) -> Result<RunOutcome, PlanError> {
     let mut run = Run {
-        stage: Stage::new(network, plan)?,
+        stage,
         num_program_nodes,
         world,
+        performer,
         now: Rational::default(),
         log: Vec::new(),
+        coming: VecDeque::new(),
+        performed: BTreeMap::new(),
         news: Facts::default(),
-        replans: 0,
+        plans: Vec::new(),
     };
     let ending = run.run_to_end(replanner)?;
-    Ok(RunOutcome {
-        log: run.log,
-        ending,
-        network: run.stage.network,
-        plan: run.stage.plan,
-        times: run.stage.times,
-    })
+    let Run { stage, mut plans, log, .. } = run;
+    plans.push(stage.close());
+    Ok(RunOutcome { log, ending, plans })
 }
 
 struct Run<'a> {
     stage: Stage,
     num_program_nodes: usize,
     world: &'a World,
+    performer: &'a mut dyn Performer,
     now: Rational,
     log: Vec<Entry>,
+    /// What is known to be seen of the activities under way, in order of time.
+    coming: VecDeque<(OccurrenceId, Entry)>,
+    /// When the activities that were started will be over.
+    performed: BTreeMap<OccurrenceId, Ends>,
     /// What the world has made known against the plan, kept over all replans.
     news: Facts,
-    replans: usize,
-}
-
-/// The execution of one plan.
-struct Stage {
-    network: Arc<Network>,
-    plan: Plan,
-    made: PlanNetwork,
-    dispatcher: Dispatcher,
-    /// When each node happened.
-    times: Vec<Option<Rational>>,
+    /// The plans that were given up.
+    plans: Vec<ExecutedPlan>,
 }
 
 /// What comes next.
@@ -96,37 +110,29 @@ struct Next {
 }
 
 struct Violation {
+    /// The event that could not be kept.
+    name: SmolStr,
     reason: String,
     news: News,
 }
 
+#[derive(Clone, Copy)]
 enum News {
     None,
     Duration(OccurrenceId, Rational),
     Begins(OccurrenceId, Rational),
 }
 
-impl Stage {
-    fn new(network: Arc<Network>, plan: Plan) -> Result<Self, PlanError> {
-        let mut made = PlanNetwork::new(&network, &plan)?;
-        let dispatcher = Dispatcher::new(&mut made)?;
-        let times = vec![None; network.nodes.len()];
-        Ok(Self { network, plan, made, dispatcher, times })
-    }
-
-    /// The window of a point in mission units; no latest time if it is not bounded.
-    fn window(&self, point: PointId) -> (Rational, Option<Rational>) {
-        let (earliest, latest) = self.dispatcher.window(point);
-        (self.made.time(earliest), (latest != NEVER).then(|| self.made.time(latest)))
-    }
-
-    fn occurrence(&self, event: EventRef) -> &Occurrence {
-        &self.network.occurrences[event.occurrence.index()]
-    }
-
-    fn name(&self, node: NodeId) -> String {
-        tpn::plan_json::node_name(&self.network, node)
-    }
+/// When the world lets something happen.
+enum ByWorld {
+    /// Whenever the plan says.
+    Free,
+    /// Just then, and what is learnt if the plan did not allow for it.
+    At(Rational, News),
+    /// Not at all, which is known from this time on; why, and what is learnt.
+    Gone(Rational, String, News),
+    /// Not at all, which is known only when its time is over; why.
+    Never(String),
 }
 
 impl Run<'_> {
@@ -141,27 +147,43 @@ impl Run<'_> {
                 self.write(Happening::Stopped { reason: "nothing can happen any more".to_owned() });
                 return Ok(Ending::Stopped);
             };
-            self.now = self.now.max(next.time);
+            self.advance(next.time);
             let violation = match next.violation {
                 Some(violation) => Some(violation),
                 None => self.happen(next.point).err(),
             };
             let Some(violation) = violation else { continue };
-            self.write(Happening::Violation { reason: violation.reason });
-            match violation.news {
-                News::None => {}
-                News::Duration(occurrence, duration) => {
-                    self.news.durations.retain(|&(known, _)| known != occurrence);
-                    self.news.durations.push((occurrence, duration));
-                }
-                News::Begins(occurrence, time) => {
-                    self.news.begins.retain(|&(known, _)| known != occurrence);
-                    self.news.begins.push((occurrence, time));
-                }
-            }
+            self.write(Happening::Violation { name: violation.name, reason: violation.reason });
+            self.learn(violation.news);
             if let Some(reason) = self.replan(replanner)? {
                 self.write(Happening::Stopped { reason });
                 return Ok(Ending::Stopped);
+            }
+        }
+    }
+
+    /// Time goes on; what is seen of the activities under way is written down.
+    fn advance(&mut self, time: Rational) {
+        while let Some((occurrence, entry)) = self.coming.pop_front_if(|(_, entry)| entry.time <= time) {
+            let end = self.stage.network.occurrences[occurrence.index()].end;
+            if self.stage.times[end.index()].is_none() {
+                self.now = self.now.max(entry.time);
+                self.log.push(entry);
+            }
+        }
+        self.now = self.now.max(time);
+    }
+
+    fn learn(&mut self, news: News) {
+        match news {
+            News::None => {}
+            News::Duration(occurrence, duration) => {
+                self.news.durations.retain(|&(known, _)| known != occurrence);
+                self.news.durations.push((occurrence, duration));
+            }
+            News::Begins(occurrence, time) => {
+                self.news.begins.retain(|&(known, _)| known != occurrence);
+                self.news.begins.push((occurrence, time));
             }
         }
     }
@@ -191,27 +213,50 @@ impl Run<'_> {
         let (earliest, latest) = self.stage.window(point);
         let mut time = earliest.max(self.now);
         let mut known = News::None;
+        let violation = |time: Rational, reason: String, news: News| {
+            let name = self.stage.name(node).into();
+            Some(Next { point, time, violation: Some(Violation { name, reason, news }) })
+        };
         for &event in &self.stage.network.nodes[node.index()].events {
             match self.by_world(event, time)? {
                 ByWorld::Free => {}
                 ByWorld::At(at, news) => (time, known) = (at, news),
+                ByWorld::Gone(at, reason, news) => return violation(at.max(self.now), reason, news),
+                ByWorld::Never(reason) => {
+                    let latest = latest?.max(self.now);
+                    return violation(latest, self.too_late(node, latest, Some(&reason)), News::None);
+                }
             }
         }
         if time < earliest {
-            let reason = format!(
-                "{} came at {}, before it could at {}",
-                self.stage.name(node),
-                shown(time),
-                shown(earliest)
-            );
-            return Some(Next { point, time, violation: Some(Violation { reason, news: known }) });
+            return violation(time, self.too_early(node, time, earliest), known);
         }
         if let Some(latest) = latest.filter(|&latest| time > latest) {
-            let reason = format!("{} had to come by {} and did not", self.stage.name(node), shown(latest));
-            let time = latest.max(self.now);
-            return Some(Next { point, time, violation: Some(Violation { reason, news: known }) });
+            return violation(latest.max(self.now), self.too_late(node, latest, None), known);
         }
         Some(Next { point, time, violation: None })
+    }
+
+    fn too_early(&self, node: NodeId, time: Rational, earliest: Rational) -> String {
+        let (name, time, earliest) = (self.stage.name(node), shown(time), shown(earliest));
+        let events = &self.stage.network.nodes[node.index()].events;
+        let withdrawn = events.iter().find_map(|&event| {
+            let occurrence = self.stage.occurrence(event);
+            let is_end = occurrence.kind == OccurrenceKind::Assertion && event.end == EventEnd::End;
+            is_end.then_some(&occurrence.name)
+        });
+        match withdrawn {
+            Some(condition) => {
+                format!("{condition} was withdrawn at {time}; it was to hold until {earliest}")
+            }
+            None => format!("{name} came at {time}, before it could at {earliest}"),
+        }
+    }
+
+    fn too_late(&self, node: NodeId, latest: Rational, reason: Option<&str>) -> String {
+        let (name, latest) = (self.stage.name(node), shown(latest));
+        let because = reason.map_or_else(String::new, |reason| format!(": {reason}"));
+        format!("{name} had to come by {latest} and did not{because}")
     }
 
     /// When the world lets an event happen, given when the plan would. `None` while that is not known yet.
@@ -220,8 +265,12 @@ impl Run<'_> {
         let started = self.stage.times[occurrence.start.index()];
         match (occurrence.kind, event.end) {
             (OccurrenceKind::Primitive, EventEnd::End) => {
-                let Some(duration) = self.world.duration(&self.stage.network, occurrence) else {
-                    return Some(ByWorld::Free);
+                let given = self.world.duration(&self.stage.network, occurrence);
+                let duration = match (given, self.performed.get(&event.occurrence)) {
+                    (Some(given), _) => given,
+                    (None, Some(Ends::After(duration))) => *duration,
+                    (None, Some(Ends::Never(reason))) => return Some(ByWorld::Never(reason.clone())),
+                    (None, Some(Ends::AsPlanned) | None) => return Some(ByWorld::Free),
                 };
                 // An activity that was given up in a replan has no more say.
                 let started = started?;
@@ -235,7 +284,9 @@ impl Run<'_> {
                 {
                     // It never begins: for planning it is over as soon as it would have begun.
                     let gone = News::Duration(event.occurrence, Rational::default());
-                    return Some(ByWorld::At(planned - Rational::from(1), gone));
+                    let reason =
+                        format!("{} was withdrawn at {} and will not come", occurrence.name, shown(at));
+                    return Some(ByWorld::Gone(at, reason, gone));
                 }
                 Some(begins.map_or(ByWorld::Free, |at| ByWorld::At(at, News::Begins(event.occurrence, at))))
             }
@@ -262,29 +313,44 @@ impl Run<'_> {
     /// A point happens now.
     fn happen(&mut self, point: PointId) -> Result<(), Violation> {
         let node = self.stage.made.node(point);
-        let none = |reason: String| Violation { reason, news: News::None };
+        let name = self.stage.name(node);
+        let none = |reason: String| Violation { name: name.as_str().into(), reason, news: News::None };
         let Some(ticks) = self.stage.made.ticks(self.now) else {
             return Err(none(format!("the plan's time is too coarse for {}", shown(self.now))));
         };
         if self.stage.dispatcher.settle(point, ticks).is_err() {
-            return Err(none(format!("{} could not come at {}", self.stage.name(node), shown(self.now))));
+            return Err(none(format!("{name} could not come at {}", shown(self.now))));
         }
         self.stage.times[node.index()] = Some(self.now);
         for event in self.stage.network.nodes[node.index()].events.clone() {
             let name = self.stage.network.event_name(event).into();
             self.write(Happening::Executed { name });
+            self.begin(event);
         }
         Ok(())
     }
 
+    /// Calls the activity whose start has just happened.
+    fn begin(&mut self, event: EventRef) {
+        let occurrence = self.stage.occurrence(event);
+        let is_start = occurrence.kind == OccurrenceKind::Primitive && event.end == EventEnd::Start;
+        if !is_start || self.world.duration(&self.stage.network, occurrence).is_some() {
+            return;
+        }
+        let performance = self.performer.start(&self.stage.network, event.occurrence, self.now);
+        self.performed.insert(event.occurrence, performance.ends);
+        for entry in performance.entries {
+            let at = self.coming.partition_point(|(_, before)| before.time <= entry.time);
+            self.coming.insert(at, (event.occurrence, entry));
+        }
+    }
+
     /// Plans again from now; an answer says why there is no plan.
     fn replan(&mut self, replanner: &mut dyn Replanner) -> Result<Option<String>, PlanError> {
-        self.replans += 1;
-        if self.replans > MOST_REPLANS {
+        if self.plans.len() >= MOST_REPLANS {
             return Ok(Some(format!("planned again {MOST_REPLANS} times without an end")));
         }
         let mut facts = Facts { now: self.now, ..self.news.clone() };
-        let mut past: Vec<(Rational, usize)> = Vec::new();
         for (index, time) in self.stage.times.iter().enumerate() {
             let Some(time) = *time else { continue };
             if index < self.num_program_nodes {
@@ -292,7 +358,6 @@ impl Run<'_> {
             } else if let Some(&event) = self.stage.network.nodes[index].events.first() {
                 facts.passed.push((event, time));
             }
-            past.push((time, index));
         }
         let (network, plan) = match replanner.replan(&facts) {
             Ok(found) => found,
@@ -300,40 +365,26 @@ impl Run<'_> {
         };
         let changes = changed_choices(&self.stage.plan, &plan);
         self.write(Happening::Replanned { changes });
-        let mut stage = Stage::new(network, plan)?;
+        let mut grid = self.world.times(&network);
+        grid.push(self.performer.granularity());
+        grid.push(self.now);
+        let mut stage = Stage::new(network, plan, &grid)?;
+        stage.from = self.now;
         let happened = facts.happened.iter().map(|&(node, time)| (time, node));
         let passed = facts.passed.iter().filter_map(|&(event, time)| {
             let index = stage.network.nodes.iter().position(|node| node.events.contains(&event))?;
             Some((time, NodeId::from_index(index)))
         });
-        let mut past: Vec<(Rational, NodeId)> = happened.chain(passed).collect();
-        past.sort();
-        for (time, node) in past {
-            stage.times[node.index()] = Some(time);
-            let settled = stage
-                .made
-                .point(node)
-                .zip(stage.made.ticks(time))
-                .map(|(point, ticks)| stage.dispatcher.settle(point, ticks));
-            if !matches!(settled, Some(Ok(()))) {
-                return Ok(Some(format!("the new plan does not keep {} in the past", stage.name(node))));
-            }
-        }
-        self.stage = stage;
-        Ok(None)
+        let past: Vec<(Rational, NodeId)> = happened.chain(passed).collect();
+        let kept = stage.enter_past(past);
+        let before = std::mem::replace(&mut self.stage, stage);
+        self.plans.push(before.close());
+        Ok(kept.err().map(|node| format!("the new plan does not keep {} in the past", self.stage.name(node))))
     }
 
     fn write(&mut self, happening: Happening) {
         self.log.push(Entry { time: self.now, happening });
     }
-}
-
-/// When the world lets something happen.
-enum ByWorld {
-    /// Whenever the plan says.
-    Free,
-    /// Just then, and what is learnt if the plan did not allow for it.
-    At(Rational, News),
 }
 
 fn shown(time: Rational) -> String {

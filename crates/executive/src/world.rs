@@ -56,6 +56,14 @@ impl Disturbance {
     }
 }
 
+/// What goes otherwise than planned in one run, as a file holds it: `{"disturbances": […]}`. Other members are not
+/// looked at, so that the log of a run can be given as the script of the next.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Script {
+    /// In any order; of two of a kind about one thing the later counts.
+    pub disturbances: Vec<Disturbance>,
+}
+
 /// The world of one run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct World {
@@ -93,6 +101,13 @@ impl World {
         Some(least_drive(network, occurrence) / factor)
     }
 
+    /// All times and durations that it brings into a run of `network`: ticks must be fine enough for them.
+    pub fn times(&self, network: &Network) -> Vec<Rational> {
+        let absolute = self.durations.values().chain(self.withdrawn.values()).chain(self.late.values());
+        let slow = network.occurrences.iter().filter(|occurrence| self.slow.contains_key(&occurrence.name));
+        absolute.copied().chain(slow.filter_map(|occurrence| self.duration(network, occurrence))).collect()
+    }
+
     /// When a condition is withdrawn.
     pub fn withdrawn_at(&self, occurrence: &Occurrence) -> Option<Rational> {
         self.withdrawn.get(&occurrence.name).copied()
@@ -115,7 +130,7 @@ impl World {
 }
 
 /// The least time for a traverse: its path at full speed, or its lower bound where it has none.
-fn least_drive(network: &Network, occurrence: &Occurrence) -> Rational {
+pub fn least_drive(network: &Network, occurrence: &Occurrence) -> Rational {
     let own = occurrence.arc.map_or_else(Rational::default, |arc| network.arcs[arc.index()].lower);
     let pieces: Rational = network
         .arcs

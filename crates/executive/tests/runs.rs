@@ -37,8 +37,7 @@ fn execute(network: &Arc<Network>, disturbances: &[Disturbance]) -> (RunOutcome,
     let plan = outcome.plans.into_iter().next().expect("the mission has a plan");
     let mut kirk = Kirk { network: Arc::clone(network), facts: Vec::new() };
     let world = World::new(disturbances);
-    let outcome =
-        run(Arc::clone(network), plan, network.nodes.len(), &world, &mut kirk).expect("its times fit");
+    let outcome = run(network, plan, network.nodes.len(), &world, &mut kirk).expect("its times fit");
     (outcome, kirk.facts)
 }
 
@@ -72,8 +71,8 @@ fn undisturbed_runs_follow_the_earliest_schedule_and_pass_the_schedule_check() {
         let (outcome, facts) = execute(&network, &[]);
         assert_eq!(outcome.ending, Ending::Finished, "seed {seed}: {:?}", outcome.log.last());
         assert!(facts.is_empty(), "seed {seed} planned again");
-        assert_eq!(outcome.times, verify::earliest_schedule(&outcome.plan), "seed {seed}");
-        let verdict = verify::check_schedule(&network, &outcome.plan, &outcome.times);
+        assert_eq!(outcome.last().times, verify::earliest_schedule(&outcome.last().plan), "seed {seed}");
+        let verdict = verify::check_schedule(&network, &outcome.last().plan, &outcome.last().times);
         assert!(verdict.valid, "seed {seed}: {:?}", verdict.violations);
     }
 }
@@ -91,7 +90,11 @@ fn disturbed_runs_keep_the_rules_or_report_a_violation_and_stop() {
         match outcome.ending {
             Ending::Finished => {
                 finished += 1;
-                let verdict = verify::check_schedule(&outcome.network, &outcome.plan, &outcome.times);
+                let verdict = verify::check_schedule(
+                    &outcome.last().network,
+                    &outcome.last().plan,
+                    &outcome.last().times,
+                );
                 assert!(verdict.valid, "seed {seed}: {:?}", verdict.violations);
             }
             Ending::Stopped => {
@@ -123,7 +126,7 @@ fn planning_again_never_changes_the_past_and_time_never_goes_back() {
         }
         if let (Some(last), Ending::Finished) = (facts.last(), outcome.ending) {
             for &(node, time) in &last.happened {
-                assert_eq!(outcome.times[node.index()], Some(time), "seed {seed}");
+                assert_eq!(outcome.last().times[node.index()], Some(time), "seed {seed}");
             }
         }
     }
@@ -147,7 +150,7 @@ fn a_window_withdrawn_while_the_rovers_wait_sends_them_the_other_way() {
     let (outcome, facts) = execute(&network, &[withdrawn]);
     assert_eq!(outcome.ending, Ending::Finished);
     assert_eq!(facts.len(), 1);
-    assert_eq!(outcome.plan.choices[0].alternative, 1);
+    assert_eq!(outcome.last().plan.choices[0].alternative, 1);
     let changes = outcome.log.iter().find_map(|entry| match &entry.happening {
         Happening::Replanned { changes } => Some((entry.time, changes.clone())),
         _ => None,

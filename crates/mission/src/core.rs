@@ -3,6 +3,8 @@
 //! A request redoes only what its text changed: an edit that leaves the network as it was keeps the plan, and paths are
 //! kept by their inputs. The caller gives the clock, is asked whether to go on, and gets answers as stages complete.
 
+mod running;
+
 use std::sync::Arc;
 
 use kirk::Options;
@@ -38,6 +40,7 @@ pub struct Core {
     paths: Paths,
     sent: Option<MapKey>,
     last: Option<Last>,
+    sampler: Option<running::Sampled>,
 }
 
 /// What the last planned request led to, and what it depended on.
@@ -63,6 +66,10 @@ impl Core {
                 }
             }
             Request::Update(update) => self.update(&update, surroundings),
+            Request::Execute { update, script } => self.execute(&update, script, surroundings),
+            Request::Sample { update, settings, from } => {
+                self.sample(&update, settings, from, surroundings);
+            }
         }
     }
 
@@ -92,6 +99,7 @@ impl Core {
             traverses: Vec::new(),
             motions: Vec::new(),
             encounters: Vec::new(),
+            robustness: None,
             timings: Timings {
                 parse_millis: parsed - begun,
                 compile_millis: compiled - parsed,
@@ -189,6 +197,7 @@ fn answer_control(update: &Update, surroundings: &mut dyn Surroundings) {
         traverses: Vec::new(),
         motions: Vec::new(),
         encounters: Vec::new(),
+        robustness: None,
         timings: Timings { parse_millis: surroundings.now_millis() - begun, ..Timings::default() },
     };
     surroundings.answer(Response::Snapshot(Arc::new(snapshot)));

@@ -9,19 +9,24 @@ mod core;
 pub mod driving;
 pub mod execution;
 mod ground;
+pub mod json_text;
 pub mod planning;
 pub mod problem;
 pub mod request;
 pub mod review;
+pub mod robustness;
+mod sampling;
 pub mod snapshot;
 pub mod traverse;
 
 pub use self::core::{Core, Surroundings, compile};
 pub use control::{Control, read_control};
+pub use execution::{Executed, Execution};
 pub use ground::Grounds;
 pub use kirk::Search as SearchKind;
 pub use problem::{Problem, TextEdit, TextFix};
 pub use request::{Goal, Request, Response, Update};
+pub use robustness::{Robustness, RobustnessSettings, Tally, Uncertainty};
 pub use snapshot::{
     Encounter, Keyframe, Leg, MapKey, Planning, Snapshot, Stage, Timings, Traverse, Undrivable, VehicleMotion,
 };

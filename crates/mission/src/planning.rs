@@ -255,6 +255,24 @@ fn conclude(
     Planned { network, planning, traverses, motions, encounters, warnings }
 }
 
+/// Where the vehicles are over time when `plan` is driven along known `traverses`.
+pub fn motions_of(
+    program: &Program,
+    network: &Network,
+    plan: &Plan,
+    traverses: &[Traverse],
+) -> Vec<VehicleMotion> {
+    let routes = traverse::routes(network, program, plan);
+    let drives: Vec<Drive> = routes
+        .iter()
+        .filter_map(|route| {
+            let traverse = traverses.iter().find(|traverse| traverse.occurrence == route.occurrence)?;
+            drive(program, network, plan, route, joined(&traverse.legs), &mut BTreeMap::new())
+        })
+        .collect();
+    driving::motions(&drives)
+}
+
 fn joined(legs: &[Leg]) -> Vec<[f64; 2]> {
     let mut points: Vec<[f64; 2]> = Vec::new();
     for leg in legs {

@@ -6,6 +6,8 @@ use rmpl::{Bound, Rational};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
+use crate::execution::Execution;
+use crate::robustness::{RobustnessSettings, Tally};
 use crate::snapshot::{MapKey, Snapshot};
 
 /// Asks for a mission to be worked out.
@@ -13,6 +15,23 @@ use crate::snapshot::{MapKey, Snapshot};
 pub enum Request {
     /// Compile and plan a text; a later one supersedes an earlier one that is still under way.
     Update(Update),
+    /// Execute the plan of a text in the simulated world.
+    Execute {
+        /// The text and how it is planned.
+        update: Update,
+        /// What goes otherwise than planned.
+        #[serde(with = "crate::json_text")]
+        script: executive::Script,
+    },
+    /// Execute the plan of a text many times, with chance: the runs from one number on. The answer says how far it got.
+    Sample {
+        /// The text and how it is planned.
+        update: Update,
+        /// What is left to chance.
+        settings: RobustnessSettings,
+        /// The first run, from 0.
+        from: u64,
+    },
     /// Makes a map file available to `terrain "name"` declarations.
     ImportMap {
         /// The name that the declaration uses.
@@ -71,6 +90,26 @@ pub enum Response {
         key: MapKey,
         /// Its heights.
         map: Arc<terrain::Terrain>,
+    },
+    /// A run of a mission.
+    Execution(Arc<Execution>),
+    /// A mission cannot be executed.
+    NotExecuted {
+        /// The revision of its text.
+        revision: u64,
+        /// Why not.
+        reason: String,
+    },
+    /// Some of many runs of a mission.
+    Sampled {
+        /// The revision of its text.
+        revision: u64,
+        /// What was left to chance.
+        settings: RobustnessSettings,
+        /// The first of these runs.
+        from: u64,
+        /// How they went; as many as there was time for, at least one.
+        tally: Tally,
     },
     /// A map file could not be read.
     MapRejected {

@@ -9,6 +9,7 @@ use smol_str::SmolStr;
 use tpn::{Network, OccurrenceId};
 
 use crate::problem::Problem;
+use crate::robustness::Robustness;
 
 /// One revision of a mission, as far as it has been worked out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,6 +36,8 @@ pub struct Snapshot {
     pub motions: Vec<VehicleMotion>,
     /// Traverses whose vehicles come within their safety radius of each other.
     pub encounters: Vec<Encounter>,
+    /// How the plan fares in many runs with chance, when that was asked for; bound to this very text and plan.
+    pub robustness: Option<Arc<Robustness>>,
     /// How long the stages took.
     pub timings: Timings,
 }

@@ -26,7 +26,7 @@ impl Surroundings for Collected {
         match response {
             Response::Snapshot(snapshot) => self.snapshots.push(snapshot),
             Response::Map { .. } => self.maps += 1,
-            Response::MapRejected { .. } => {}
+            _ => {}
         }
     }
 }

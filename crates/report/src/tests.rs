@@ -33,7 +33,7 @@ impl Surroundings for Answers {
         match response {
             Response::Snapshot(snapshot) => self.snapshot = Some(snapshot),
             Response::Map { map, .. } => self.ground = Some(map),
-            Response::MapRejected { .. } => {}
+            _ => {}
         }
     }
 }

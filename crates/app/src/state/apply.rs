@@ -144,6 +144,9 @@ impl AppState {
             HostEvent::Answer(Response::MapRejected { name, reason }) => {
                 self.toasts.add(ToastKind::Failed, format!("The map {name} cannot be used: {reason}"));
             }
+            HostEvent::Answer(
+                Response::Execution(_) | Response::NotExecuted { .. } | Response::Sampled { .. },
+            ) => {}
             HostEvent::CoreFailed { message, .. } => self.toasts.add(
                 ToastKind::Failed,
                 format!("Planning stopped and was started anew. Edit the text to plan again. ({message})"),

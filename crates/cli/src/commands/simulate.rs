@@ -5,11 +5,10 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use anyhow::Context as _;
-use executive::{Disturbance, Ending, Entry, Happening, World};
+use executive::{Ending, Entry, Happening, Script, World};
 use mission::planning::{self, Problem};
 use mission::{Paths, execution};
 use rmpl::rational::display;
-use serde::Deserialize;
 use serde_json::json;
 
 use crate::input::read_json;
@@ -30,13 +29,6 @@ pub struct Args {
     /// For whom the answer is.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
-}
-
-/// The file of `--disturb`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Script {
-    disturbances: Vec<Disturbance>,
 }
 
 /// Runs the command.
@@ -76,11 +68,16 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         }
         return Ok(exit(NO));
     };
-    let outcome = outcome?;
+    let outcome = outcome?.outcome;
     match args.format {
         Format::Text => print_text(&outcome.log.iter().map(line).collect::<String>())?,
         Format::Json => {
-            let body = json!({ "status": outcome.ending, "log": outcome.log });
+            let body = json!({
+                "status": outcome.ending,
+                "seed": args.seed,
+                "disturbances": disturbances,
+                "log": outcome.log,
+            });
             print_json(&document("simulate", &loaded.problems, body))?;
         }
     }
@@ -96,7 +93,8 @@ fn line(entry: &Entry) -> String {
     };
     let text = match &entry.happening {
         Happening::Executed { name } => name.to_string(),
-        Happening::Violation { reason } => format!("VIOLATION  {reason}"),
+        Happening::Progress { name, text } => format!("  {name}: {text}"),
+        Happening::Violation { reason, .. } => format!("VIOLATION  {reason}"),
         Happening::Replanned { changes } if changes.is_empty() => {
             "planned again, with the same choices".to_owned()
         }

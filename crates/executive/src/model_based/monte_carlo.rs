@@ -51,16 +51,23 @@ pub fn monte_carlo(
     }
     let mean_steps = if reached == 0 { 0.0 } else { steps as f64 / f64::from(reached) };
     let probability = if runs == 0 { 0.0 } else { f64::from(reached) / f64::from(runs) };
-    Ok(MonteCarlo { runs, reached, probability, interval: wilson_interval(reached, runs), mean_steps })
+    Ok(MonteCarlo {
+        runs,
+        reached,
+        probability,
+        interval: wilson_interval(reached.into(), runs.into()),
+        mean_steps,
+    })
 }
 
 /// The 95 % confidence interval of a share (Wilson 1927); everything is possible without any run.
-pub fn wilson_interval(successes: u32, runs: u32) -> (f64, f64) {
+pub fn wilson_interval(successes: u64, runs: u64) -> (f64, f64) {
     const NORMAL_QUANTILE: f64 = 1.959_963_984_540_054;
     if runs == 0 {
         return (0.0, 1.0);
     }
-    let (share, count) = (f64::from(successes) / f64::from(runs), f64::from(runs));
+    let count = runs as f64;
+    let share = successes as f64 / count;
     let square = NORMAL_QUANTILE * NORMAL_QUANTILE;
     let scale = 1.0 + square / count;
     let middle = (share + square / (2.0 * count)) / scale;

@@ -1,0 +1,49 @@
+//! Who carries an activity out: between its start, which the plan decides, and its end, which is reported.
+
+use rmpl::Rational;
+use tpn::{Network, OccurrenceId};
+
+use crate::log::Entry;
+
+/// How an activity that has just been started will go.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Performance {
+    /// When it will be over.
+    pub ends: Ends,
+    /// What will be seen of it until then, in order of time. Of an activity that is stopped the rest is not seen.
+    pub entries: Vec<Entry>,
+}
+
+/// When an activity will be over.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Ends {
+    /// When the plan wants it to be.
+    #[default]
+    AsPlanned,
+    /// After this long, in mission units.
+    After(Rational),
+    /// Never; the reason, such as `the program did not reach its end in 40 steps`.
+    Never(String),
+}
+
+/// Carries activities out. Whatever it does must follow from its own inputs: a run is worked out as often as it is
+/// looked at.
+pub trait Performer {
+    /// Starts an activity at `start`, in mission units. Not called for one whose duration the world decides.
+    fn start(&mut self, network: &Network, occurrence: OccurrenceId, start: Rational) -> Performance;
+
+    /// All durations that it gives are multiples of this, which is above 0.
+    fn granularity(&self) -> Rational {
+        Rational::from(1)
+    }
+}
+
+/// Performs nothing: every activity takes as long as the plan wants it to.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct AsPlanned;
+
+impl Performer for AsPlanned {
+    fn start(&mut self, _: &Network, _: OccurrenceId, _: Rational) -> Performance {
+        Performance::default()
+    }
+}

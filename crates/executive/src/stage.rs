@@ -1,0 +1,82 @@
+//! One plan under execution, between two replans.
+
+use std::sync::Arc;
+
+use rmpl::Rational;
+use stn::PointId;
+use tpn::{EventRef, Network, NodeId, Occurrence, Plan};
+
+use crate::dispatch::{Dispatcher, NEVER};
+use crate::plan_network::{PlanError, PlanNetwork};
+
+/// A plan made ready for dispatch: the dispatchable form, in ticks fine enough for all times that the world brings.
+///
+/// Making it takes time cubic in the number of events; many runs of one plan share it.
+#[derive(Clone, Debug)]
+pub struct Stage {
+    pub(crate) network: Arc<Network>,
+    pub(crate) plan: Plan,
+    pub(crate) made: PlanNetwork,
+    pub(crate) dispatcher: Dispatcher,
+    /// When each node happened.
+    pub(crate) times: Vec<Option<Rational>>,
+    /// When this plan was made.
+    pub(crate) from: Rational,
+}
+
+impl Stage {
+    /// Makes `plan` ready. `grid` are the times, or their common divisors, that are not the network's own.
+    pub fn new(network: Arc<Network>, plan: Plan, grid: &[Rational]) -> Result<Self, PlanError> {
+        let mut made = PlanNetwork::new(&network, &plan)?;
+        made.refine_for(&network, &plan, grid)?;
+        let dispatcher = Dispatcher::new(&mut made)?;
+        let times = vec![None; network.nodes.len()];
+        Ok(Self { network, plan, made, dispatcher, times, from: Rational::default() })
+    }
+
+    /// The window of a point in mission units; no latest time if it is not bounded.
+    pub(crate) fn window(&self, point: PointId) -> (Rational, Option<Rational>) {
+        let (earliest, latest) = self.dispatcher.window(point);
+        (self.made.time(earliest), (latest != NEVER).then(|| self.made.time(latest)))
+    }
+
+    pub(crate) fn occurrence(&self, event: EventRef) -> &Occurrence {
+        &self.network.occurrences[event.occurrence.index()]
+    }
+
+    pub(crate) fn name(&self, node: NodeId) -> String {
+        tpn::plan_json::node_name(&self.network, node)
+    }
+
+    /// Enters what happened before this plan was made. Fails for a plan that does not keep it, with the node.
+    pub(crate) fn enter_past(&mut self, mut past: Vec<(Rational, NodeId)>) -> Result<(), NodeId> {
+        past.sort();
+        for (time, node) in past {
+            self.times[node.index()] = Some(time);
+            let point = self.made.point(node).zip(self.made.ticks(time));
+            let settled = point.map(|(point, ticks)| self.dispatcher.settle(point, ticks));
+            if !matches!(settled, Some(Ok(()))) {
+                return Err(node);
+            }
+        }
+        Ok(())
+    }
+
+    /// What is left of it when it is over.
+    pub(crate) fn close(self) -> ExecutedPlan {
+        ExecutedPlan { from: self.from, network: self.network, plan: self.plan, times: self.times }
+    }
+}
+
+/// A plan that was executed, as far as it was.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExecutedPlan {
+    /// When it was made.
+    pub from: Rational,
+    /// Its network, with the facts known then.
+    pub network: Arc<Network>,
+    /// The plan.
+    pub plan: Plan,
+    /// When each node happened, those before `from` included; `None` for those that did not while this plan held.
+    pub times: Vec<Option<Rational>>,
+}

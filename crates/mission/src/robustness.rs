@@ -1,0 +1,210 @@
+//! How robust a plan is: what is left to chance, and what many runs with chance came to (Monte Carlo).
+//!
+//! Run number i of a seed is the same run whoever makes it, and tallies hold only whole numbers: however the runs are
+//! shared out, the sum is the same.
+
+use std::collections::BTreeMap;
+
+use executive::model_based::wilson_interval;
+use rmpl::Rational;
+use serde::{Deserialize, Serialize};
+use smol_str::SmolStr;
+
+/// What is left to chance. Activities and conditions are named by occurrence (`Drill#2`) or, for all their occurrences,
+/// without the count (`Drill`, `Tell(LIGHT)`).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Uncertainty {
+    /// How long activities take.
+    pub durations: BTreeMap<SmolStr, Distribution>,
+    /// Conditions that may come late.
+    pub late: BTreeMap<SmolStr, Incident>,
+    /// Conditions that may be withdrawn.
+    pub withdrawn: BTreeMap<SmolStr, Incident>,
+    /// What is taken for activities that `durations` does not name.
+    pub others: Others,
+    /// Whether components fail by chance while control programs run.
+    pub faults: Faults,
+}
+
+/// How long the activities take that nothing is said about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Others {
+    /// Anything between their bounds, all equally likely, if both are finite and the plan does not end them itself.
+    #[default]
+    Uniform,
+    /// As long as the plan wants.
+    Planned,
+}
+
+/// Whether components fail by chance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Faults {
+    /// With the probabilities of the plant's model.
+    #[default]
+    ByChance,
+    /// Not at all.
+    Never,
+}
+
+/// A random time, in mission units. Draws are multiples of a thousandth of a unit above the least value.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Distribution {
+    /// Always the same.
+    Fixed(Time),
+    /// From the first to the second, all equally likely.
+    Uniform(Time, Time),
+    /// From the first to the third, the second most likely.
+    Triangular(Time, Time, Time),
+    /// With this mean and standard deviation; never below 0.
+    Normal(Time, Time),
+}
+
+/// An exact time in JSON.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Time(#[serde(with = "executive::exact")] pub Rational);
+
+/// Something that may happen to a condition.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Incident {
+    /// How likely it is, from 0 to 1.
+    pub probability: f64,
+    /// When the condition comes, or goes, if it does.
+    pub at: Distribution,
+}
+
+/// What the runs are.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RobustnessSettings {
+    /// How many.
+    pub runs: u64,
+    /// Seeds chance.
+    pub seed: u64,
+    /// What is left to chance.
+    #[serde(with = "crate::json_text")]
+    pub uncertainty: Uncertainty,
+}
+
+/// How some runs went. Tallies of different runs add up.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Tally {
+    /// How many runs there were.
+    pub runs: u64,
+    /// How many reached the mission's end.
+    pub succeeded: u64,
+    /// How many of those had to plan again.
+    pub succeeded_by_replanning: u64,
+    /// The events that broke plans.
+    pub breaks: BTreeMap<SmolStr, Breaks>,
+    /// How much of its window each event used, by event.
+    pub slack: BTreeMap<SmolStr, SlackUsed>,
+    /// When the successful runs ended, in thousandths of a unit, summed, and the earliest and the latest.
+    pub end_sum: i64,
+    /// The earliest end, in thousandths of a unit.
+    pub end_least: Option<i64>,
+    /// The latest.
+    pub end_most: Option<i64>,
+}
+
+/// What an event broke.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Breaks {
+    /// How often it could not be kept.
+    pub violations: u64,
+    /// After how many of those there was no plan any more.
+    pub stops: u64,
+    /// An example, in words: that of the run with the least number.
+    pub example: String,
+    /// The number of that run.
+    pub example_run: u64,
+}
+
+/// How far into its window an event came: 0 at the earliest moment, 1000 at the latest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SlackUsed {
+    /// In how many runs it happened while the first plan held.
+    pub count: u64,
+    /// The thousandths, summed.
+    pub sum_permille: u64,
+    /// The greatest.
+    pub most_permille: u64,
+}
+
+/// What is known of a plan's robustness.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Robustness {
+    /// What was asked for.
+    pub settings: RobustnessSettings,
+    /// What the runs made so far came to.
+    pub tally: Tally,
+}
+
+impl Tally {
+    /// Adds the runs of `other`, which are different ones.
+    pub fn merge(&mut self, other: &Self) {
+        self.runs += other.runs;
+        self.succeeded += other.succeeded;
+        self.succeeded_by_replanning += other.succeeded_by_replanning;
+        for (event, breaks) in &other.breaks {
+            let mine = self.breaks.entry(event.clone()).or_default();
+            if mine.violations == 0 || (breaks.violations > 0 && breaks.example_run < mine.example_run) {
+                (mine.example, mine.example_run) = (breaks.example.clone(), breaks.example_run);
+            }
+            mine.violations += breaks.violations;
+            mine.stops += breaks.stops;
+        }
+        for (event, used) in &other.slack {
+            let mine = self.slack.entry(event.clone()).or_default();
+            mine.count += used.count;
+            mine.sum_permille += used.sum_permille;
+            mine.most_permille = mine.most_permille.max(used.most_permille);
+        }
+        self.end_sum += other.end_sum;
+        self.end_least = self.end_least.into_iter().chain(other.end_least).min();
+        self.end_most = self.end_most.into_iter().chain(other.end_most).max();
+    }
+
+    /// The share of runs that reached the end; 0 without any run.
+    pub fn probability(&self) -> f64 {
+        if self.runs == 0 { 0.0 } else { self.succeeded as f64 / self.runs as f64 }
+    }
+
+    /// Its 95 % confidence interval (Wilson).
+    pub fn interval(&self) -> (f64, f64) {
+        wilson_interval(self.succeeded, self.runs)
+    }
+
+    /// The events that broke plans, those after which most runs stopped first.
+    pub fn worst_events(&self) -> Vec<(&SmolStr, &Breaks)> {
+        let mut events: Vec<_> = self.breaks.iter().collect();
+        events.sort_by_key(|(name, breaks)| (std::cmp::Reverse((breaks.stops, breaks.violations)), *name));
+        events
+    }
+
+    /// The events that used most of their windows on average, with the mean and greatest share from 0 to 1.
+    pub fn tightest_events(&self) -> Vec<(&SmolStr, f64, f64)> {
+        let mut events: Vec<(&SmolStr, f64, f64)> = self
+            .slack
+            .iter()
+            .filter(|(_, used)| used.count > 0)
+            .map(|(name, used)| {
+                let mean = used.sum_permille as f64 / used.count as f64 / 1000.0;
+                (name, mean, used.most_permille as f64 / 1000.0)
+            })
+            .collect();
+        events.sort_by(|left, right| right.1.total_cmp(&left.1).then(left.0.cmp(right.0)));
+        events
+    }
+}
+
+impl Robustness {
+    /// Whether all runs have been made.
+    pub const fn is_complete(&self) -> bool {
+        self.tally.runs >= self.settings.runs
+    }
+}

@@ -1,0 +1,327 @@
+//! One run with chance: what is drawn, and what it adds to the tally.
+
+use std::sync::Arc;
+
+use executive::{Disturbance, Ending, Entry, Happening, PlanError, RunOutcome, Stage, World};
+use plant::Random;
+use rmpl::program::LabelMode;
+use rmpl::{Bound, Rational};
+use smol_str::SmolStr;
+use tpn::{Network, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Plan};
+
+use crate::execution::{self, Ran};
+use crate::ground::Grounds;
+use crate::planning::{Planned, Problem};
+use crate::robustness::{
+    Breaks, Distribution, Incident, Others, RobustnessSettings, Tally, Time, Uncertainty,
+};
+use crate::traverse::Paths;
+
+/// Draws are multiples of this part of a unit.
+const PER_UNIT: i64 = 1000;
+
+/// A plan made ready for many runs with chance.
+pub struct Sampler {
+    stage: Stage,
+    windows: Vec<(SmolStr, NodeId, Rational, Rational)>,
+    durations: Vec<(SmolStr, Distribution)>,
+    late: Vec<(SmolStr, Incident)>,
+    withdrawn: Vec<(SmolStr, Incident)>,
+}
+
+impl Sampler {
+    /// Makes the plan of `planned` ready; `None` if there is none.
+    pub fn new(planned: &Planned, uncertainty: &Uncertainty) -> Option<Result<Self, PlanError>> {
+        let plan = planned.planning.outcome.plans.first()?;
+        let network = &planned.network;
+        let durations = durations(network, uncertainty);
+        let late = incidents(network, &uncertainty.late);
+        let withdrawn = incidents(network, &uncertainty.withdrawn);
+        let mut grid = vec![Rational::new(1, PER_UNIT)];
+        let incidents = late.iter().chain(&withdrawn).map(|(_, incident)| incident.at);
+        grid.extend(durations.iter().map(|&(_, it)| it).chain(incidents).map(least));
+        let stage = Stage::new(Arc::clone(network), plan.clone(), &grid);
+        let windows = windows(network, plan);
+        Some(stage.map(|stage| Self { stage, windows, durations, late, withdrawn }))
+    }
+
+    /// Makes run `number` and adds it to `tally`.
+    pub fn run(
+        &self,
+        problem: &Problem<'_>,
+        settings: &RobustnessSettings,
+        number: u64,
+        grounds: &mut Grounds,
+        paths: &mut Paths,
+        tally: &mut Tally,
+    ) -> Result<(), PlanError> {
+        let world = World::new(&self.draw(settings.seed, number));
+        let ran = execution::execute_stage(problem, self.stage.clone(), &world, grounds, paths)?;
+        self.count(&ran, number, tally);
+        Ok(())
+    }
+
+    /// What goes otherwise than planned in run `number`.
+    pub fn draw(&self, seed: u64, number: u64) -> Vec<Disturbance> {
+        let mut seeds = Random::new(seed);
+        let mut random = Random::new(seeds.next_bits() ^ Random::new(number).next_bits());
+        let mut drawn = Vec::new();
+        for (activity, distribution) in &self.durations {
+            let duration = distribution.draw(&mut random);
+            drawn.push(Disturbance::Duration { activity: activity.clone(), duration });
+        }
+        for (condition, incident) in &self.late {
+            if let Some(at) = incident.draw(&mut random) {
+                drawn.push(Disturbance::Late { condition: condition.clone(), at });
+            }
+        }
+        for (condition, incident) in &self.withdrawn {
+            if let Some(at) = incident.draw(&mut random) {
+                drawn.push(Disturbance::Withdrawn { condition: condition.clone(), at });
+            }
+        }
+        drawn
+    }
+
+    fn count(&self, ran: &Ran, number: u64, tally: &mut Tally) {
+        let outcome = &ran.outcome;
+        tally.runs += 1;
+        if outcome.ending == Ending::Finished {
+            tally.succeeded += 1;
+            tally.succeeded_by_replanning += u64::from(outcome.plans.len() > 1);
+            let end = outcome.log.last().map_or(0, |entry| thousandths(entry.time));
+            tally.end_sum += end;
+            tally.end_least = tally.end_least.into_iter().chain([end]).min();
+            tally.end_most = tally.end_most.into_iter().chain([end]).max();
+        }
+        count_breaks(outcome, number, tally);
+        let Some(first) = outcome.plans.first() else { return };
+        for (event, node, earliest, latest) in &self.windows {
+            let Some(time) = first.times[node.index()] else { continue };
+            let share = (float(time) - float(*earliest)) / (float(*latest) - float(*earliest));
+            let used = ((share * 1000.0).floor() as i64).clamp(0, 1000) as u64;
+            let slack = tally.slack.entry(event.clone()).or_default();
+            slack.count += 1;
+            slack.sum_permille += used;
+            slack.most_permille = slack.most_permille.max(used);
+        }
+    }
+}
+
+fn count_breaks(outcome: &RunOutcome, number: u64, tally: &mut Tally) {
+    for (index, entry) in outcome.log.iter().enumerate() {
+        let Happening::Violation { name, reason } = &entry.happening else { continue };
+        let next = outcome.log.get(index + 1);
+        let is_stop = matches!(next, Some(Entry { happening: Happening::Stopped { .. }, .. }));
+        let breaks = tally.breaks.entry(name.clone()).or_insert_with(|| Breaks {
+            example: reason.clone(),
+            example_run: number,
+            ..Breaks::default()
+        });
+        if number < breaks.example_run {
+            (breaks.example, breaks.example_run) = (reason.clone(), number);
+        }
+        breaks.violations += 1;
+        breaks.stops += u64::from(is_stop);
+    }
+}
+
+fn thousandths(time: Rational) -> i64 {
+    (time * PER_UNIT).floor().to_integer()
+}
+
+/// The starts and ends of activities and conditions whose windows are neither a moment nor without an end.
+fn windows(network: &Network, plan: &Plan) -> Vec<(SmolStr, NodeId, Rational, Rational)> {
+    let mut found = Vec::new();
+    for (index, node) in network.nodes.iter().enumerate() {
+        let Some(window) = plan.windows[index] else { continue };
+        let Bound::Finite(latest) = window.latest else { continue };
+        let event = node.events.iter().find(|event| {
+            let kind = network.occurrences[event.occurrence.index()].kind;
+            let is_vertex = matches!(event.end, tpn::EventEnd::PathVertex { .. });
+            matches!(kind, OccurrenceKind::Primitive | OccurrenceKind::Assertion) && !is_vertex
+        });
+        if let Some(&event) = event.filter(|_| window.earliest < latest) {
+            found.push((
+                network.event_name(event).into(),
+                NodeId::from_index(index),
+                window.earliest,
+                latest,
+            ));
+        }
+    }
+    found
+}
+
+/// How long each activity takes that is left to chance.
+fn durations(network: &Network, uncertainty: &Uncertainty) -> Vec<(SmolStr, Distribution)> {
+    let primitives = network.occurrences.iter().enumerate();
+    primitives
+        .filter(|(_, occurrence)| occurrence.kind == OccurrenceKind::Primitive)
+        .filter_map(|(index, occurrence)| {
+            let named = uncertainty.durations.get(&occurrence.name);
+            let named = named.or_else(|| uncertainty.durations.get(&occurrence.activity));
+            let distribution = match (named, uncertainty.others) {
+                (Some(named), _) => *named,
+                (None, Others::Planned) => return None,
+                (None, Others::Uniform) => by_bounds(network, OccurrenceId::from_index(index))?,
+            };
+            Some((occurrence.name.clone(), distribution))
+        })
+        .collect()
+}
+
+/// Anything between the bounds, for an activity that is not ended by the executive itself: one that is watched.
+fn by_bounds(network: &Network, id: OccurrenceId) -> Option<Distribution> {
+    let occurrence = network.occurrences.get(id.index())?;
+    let arc = network.arcs.get(occurrence.arc?.index())?;
+    let Bound::Finite(upper) = arc.upper else { return None };
+    let lower = arc.lower.max(executive::world::least_drive(network, occurrence));
+    (lower < upper && !is_watched(network, id)).then_some(Distribution::Uniform(Time(lower), Time(upper)))
+}
+
+/// Whether an activity is the body of a `watching`, or inside one: then it asserts that its condition is false.
+fn is_watched(network: &Network, id: OccurrenceId) -> bool {
+    let ancestors: Vec<OccurrenceId> =
+        std::iter::successors(Some(id), |at| network.occurrences.get(at.index())?.parent)
+            .take(network.occurrences.len())
+            .collect();
+    let span = |id: OccurrenceId| network.occurrences.get(id.index()).and_then(|occurrence| occurrence.span);
+    network.labels.iter().filter(|label| label.mode == LabelMode::Tell).any(|label| {
+        let Some(owner) = label.owner else { return false };
+        let Some(kind) = network.occurrences.get(owner.index()).map(|occurrence| occurrence.kind) else {
+            return false;
+        };
+        let contains = || {
+            let (outer, inner) = (span(owner)?, span(id)?);
+            Some(outer.start <= inner.start && inner.end <= outer.end)
+        };
+        match kind {
+            OccurrenceKind::Primitive | OccurrenceKind::Activity => ancestors.contains(&owner),
+            OccurrenceKind::Scope => contains().unwrap_or(false),
+            _ => false,
+        }
+    })
+}
+
+/// The conditions that something may happen to.
+fn incidents(
+    network: &Network,
+    declared: &std::collections::BTreeMap<SmolStr, Incident>,
+) -> Vec<(SmolStr, Incident)> {
+    let is_meant = |occurrence: &Occurrence, name: &SmolStr| {
+        occurrence.kind == OccurrenceKind::Assertion
+            && (occurrence.name == *name || occurrence.activity == *name || base(&occurrence.name) == *name)
+    };
+    network
+        .occurrences
+        .iter()
+        .filter_map(|occurrence| {
+            let (_, incident) = declared.iter().find(|(name, _)| is_meant(occurrence, name))?;
+            Some((occurrence.name.clone(), *incident))
+        })
+        .collect()
+}
+
+/// The name without its count.
+fn base(name: &str) -> &str {
+    name.rsplit_once('#').map_or(name, |(base, _)| base)
+}
+
+impl Uncertainty {
+    /// The names in it that nothing in `network` has.
+    pub fn unknown_names(&self, network: &Network) -> Vec<SmolStr> {
+        let is_known = |name: &SmolStr, kind: OccurrenceKind| {
+            network.occurrences.iter().any(|occurrence| {
+                occurrence.kind == kind
+                    && (occurrence.name == *name
+                        || occurrence.activity == *name
+                        || base(&occurrence.name) == *name)
+            })
+        };
+        let activities = self.durations.keys().filter(|name| !is_known(name, OccurrenceKind::Primitive));
+        let conditions = self
+            .late
+            .keys()
+            .chain(self.withdrawn.keys())
+            .filter(|name| !is_known(name, OccurrenceKind::Assertion));
+        activities.chain(conditions).cloned().collect()
+    }
+}
+
+impl Incident {
+    fn draw(&self, random: &mut Random) -> Option<Rational> {
+        // Both are always drawn, so that a probability can be changed without changing the rest of a run.
+        let chance = unit(random);
+        let at = self.at.draw(random);
+        (chance < self.probability).then_some(at)
+    }
+}
+
+/// A number from 0 up to 1.
+fn unit(random: &mut Random) -> f64 {
+    (random.next_bits() >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+fn least(distribution: Distribution) -> Rational {
+    match distribution {
+        Distribution::Fixed(Time(least))
+        | Distribution::Uniform(Time(least), _)
+        | Distribution::Triangular(Time(least), ..) => least,
+        Distribution::Normal(..) => Rational::default(),
+    }
+}
+
+impl Distribution {
+    /// Draws a time.
+    pub fn draw(&self, random: &mut Random) -> Rational {
+        let least = least(*self);
+        let part = Rational::new(1, PER_UNIT);
+        match *self {
+            Self::Fixed(Time(time)) => time,
+            Self::Uniform(_, Time(most)) => {
+                let steps = thousandths(most - least).max(0) as u64;
+                least + part * random.below(steps + 1) as i64
+            }
+            Self::Triangular(_, Time(likely), Time(most)) => {
+                let (width, peak) = (float(most - least), float(likely - least));
+                let share = unit(random);
+                let offset = if width <= 0.0 {
+                    0.0
+                } else if share * width < peak {
+                    (share * width * peak).sqrt()
+                } else {
+                    width - ((1.0 - share) * width * (width - peak)).sqrt()
+                };
+                least + part * rounded(offset)
+            }
+            Self::Normal(Time(mean), Time(deviation)) => {
+                let (radius, angle) = (1.0 - unit(random), unit(random));
+                let normal =
+                    (-2.0 * libm::log(radius)).sqrt() * libm::cos(2.0 * std::f64::consts::PI * angle);
+                part * rounded(float(mean) + float(deviation) * normal).max(0)
+            }
+        }
+    }
+
+    /// Whether it can be drawn from: in order, and not below 0.
+    pub fn is_sound(&self) -> bool {
+        let zero = Rational::default();
+        match *self {
+            Self::Fixed(Time(time)) => time >= zero,
+            Self::Uniform(Time(least), Time(most)) => zero <= least && least <= most,
+            Self::Triangular(Time(least), Time(likely), Time(most)) => {
+                zero <= least && least <= likely && likely <= most
+            }
+            Self::Normal(Time(mean), Time(deviation)) => mean >= zero && deviation >= zero,
+        }
+    }
+}
+
+fn float(time: Rational) -> f64 {
+    *time.numer() as f64 / *time.denom() as f64
+}
+
+fn rounded(units: f64) -> i64 {
+    (units * PER_UNIT as f64).round() as i64
+}
