@@ -41,8 +41,41 @@ export interface Vehicle {
   name: string;
   x: number;
   y: number;
-  z: number;
+  /** The height of the ground there, for a blimp its height over it; `null` off the map. */
+  z: number | null;
   heading: number;
+  time: number;
+}
+
+/** How a control program stands at the step that is looked at. */
+export interface ProgramRun {
+  /** The steps taken before this moment, and all that were taken. */
+  step: number;
+  steps: number;
+  locations: number;
+  /** The labels of what is marked, and the goals that it asserts. */
+  marked: string[] | null;
+  goals: string[] | null;
+  /** The transitions of the step that led here. */
+  fired: { from: string }[] | null;
+  canStep: boolean;
+  isPlaying: boolean;
+  trouble: string | null;
+  plant: PlantState | null;
+}
+
+/** What is believed and true of a plant; modes and values by component and variable. */
+export interface PlantState {
+  /** Most likely first; probabilities are exact fractions. */
+  belief: { state: Record<string, string>; probability: string }[];
+  trueState: Record<string, string>;
+  observations: Record<string, string> | null;
+  commands: Record<string, string> | null;
+  nextCommands: Record<string, string> | null;
+  unachievable: { goal: string; reason: string }[];
+  isUnexplained: boolean;
+  /** Which assumptions the observations contradict. */
+  conflicts: string[] | null;
 }
 
 /** Everything the page shows, for one revision of the text. */
@@ -51,11 +84,13 @@ export interface State {
   revision: number;
   workspace: string;
   diagnostics: Diagnostic[];
-  tpn: { nodes: unknown[]; arcs: unknown[] } | null;
+  /** How many of each the network has; `null` while the text does not compile. */
+  tpn: { nodes: number; arcs: number; decisions: number; occurrences: number } | null;
   plan: Plan | null;
   verdict: unknown;
-  search: { step: number; steps: number } | null;
-  hca: unknown;
+  search: { step: number; steps: number };
+  /** The run of a control program; `null` for a mission. */
+  hca: ProgramRun | null;
   vehicles: Vehicle[];
   time: Time;
   selection: unknown;

@@ -29,6 +29,7 @@ pub struct Enroute {
     egui: egui::Context,
     posted: Option<Posted>,
     stored: Settings,
+    drafts: outside::DraftKeeper,
     last_secs: f64,
     version: u64,
 }
@@ -48,6 +49,7 @@ impl Enroute {
             state.settings = settings;
         }
         renderer.clone_into(&mut state.frame.renderer);
+        let drafts = outside::DraftKeeper::start(&mut state, host.as_ref());
         outside::open_fragment(&mut state, &host.fragment());
         theme::install_fonts(egui);
         theme::apply(egui, state.settings.theme, state.settings.text_scale);
@@ -62,6 +64,7 @@ impl Enroute {
             egui: egui.clone(),
             posted: None,
             stored,
+            drafts,
             last_secs,
             version: 1,
         }
@@ -97,6 +100,9 @@ impl Enroute {
         self.show_everything(ui, render_state, &mut commands);
         self.apply(commands.take());
         self.layouts.follow(&mut self.state);
+        if let Some(seconds) = self.drafts.follow(&mut self.state, self.host.as_mut(), begun_secs) {
+            self.egui.request_repaint_after_secs(seconds as f32);
+        }
         self.remember();
         self.state.frame.cpu_millis = (self.host.monotonic_secs() - begun_secs) * 1000.0;
     }

@@ -34,6 +34,8 @@ pub enum Command {
         /// The text.
         source: String,
     },
+    /// Opens the text of an earlier run that was not opened again.
+    OpenEarlierDraft,
     /// Lets the user choose a file.
     OpenFile(FileKind),
     /// Lets the user save the mission text.

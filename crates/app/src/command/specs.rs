@@ -53,6 +53,10 @@ fn with_redo(state: &AppState) -> Availability {
     if state.document.can_redo() { Ok(()) } else { Err("nothing has been undone") }
 }
 
+fn with_earlier_draft(state: &AppState) -> Availability {
+    if state.earlier_draft.is_some() { Ok(()) } else { Err("no draft of an earlier visit is kept") }
+}
+
 fn with_problems(state: &AppState) -> Availability {
     let has_problems = state.snapshots.latest().is_some_and(|latest| !latest.problems.is_empty());
     if has_problems { Ok(()) } else { Err("there are no problems") }
@@ -99,6 +103,12 @@ pub static COMMANDS: &[CommandSpec] = &[
     plain("file.open", "Open a mission…", Group::File, &[keys(CTRL, Key::O)], Scope::Everywhere, |_| {
         Command::OpenFile(FileKind::Mission)
     }),
+    when(
+        plain("file.openDraft", "Bring back the last draft", Group::File, &[], Scope::Everywhere, |_| {
+            Command::OpenEarlierDraft
+        }),
+        with_earlier_draft,
+    ),
     plain("file.save", "Save the mission", Group::File, &[keys(CTRL, Key::S)], Scope::Everywhere, |_| {
         Command::SaveMission
     }),

@@ -1,12 +1,15 @@
 //! What the app tells and hears through its host: remembered settings, addresses, and its state as plain JSON.
 
 mod address;
+mod draft;
+mod hca_json;
 mod state_json;
 
 use crate::host::Host;
 use crate::state::Settings;
 
 pub use address::{fragment, open_fragment};
+pub use draft::DraftKeeper;
 pub use state_json::state_json;
 
 const SETTINGS_KEY: &str = "enroute/settings-1";

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use tpn::Network;
 use tpn::plan_json::plan_to_json;
 
+use super::hca_json::hca_json;
 use crate::state::{AppState, Status};
 
 /// The state. `revision` is the text's; everything that was worked out is under the revision it belongs to, which is
@@ -40,7 +41,8 @@ pub fn state_json(state: &AppState) -> Value {
         "verdict": verdict.map(verdict_json),
         "failure": network.zip(failure).map(|(network, failure)| failure_json(network, failure)),
         "search": { "step": 0, "steps": steps.unwrap_or_default() },
-        "vehicles": shown.map(|shown| vehicles_json(shown, state.playback.time)).unwrap_or_default(),
+        "hca": hca_json(&state.automaton),
+        "vehicles": shown.map(|shown| vehicles_json(state, shown)).unwrap_or_default(),
         "time": state.playback.time,
         "endTime": state.playback.end,
         "isPlaying": state.playback.is_playing,
@@ -109,15 +111,26 @@ fn problem_json(problem: &Problem) -> Value {
     })
 }
 
-fn vehicles_json(snapshot: &Snapshot, time: f64) -> Vec<Value> {
-    let names = &snapshot.program.world.vehicles;
+/// Where the vehicles are; `z` is the height of the ground under them, or their flight over it.
+fn vehicles_json(state: &AppState, snapshot: &Snapshot) -> Vec<Value> {
+    let time = state.playback.time;
+    let ground = snapshot.map.as_ref().and_then(|key| state.maps.get(key));
+    let vehicles = &snapshot.program.world.vehicles;
     snapshot
         .motions
         .iter()
         .filter_map(|motion| {
             let ([x, y], heading) = motion.at(time)?;
-            let name = names.get(motion.vehicle as usize)?.name.text.as_str();
-            Some(json!({ "name": name, "x": x, "y": y, "z": Value::Null, "heading": heading, "time": time }))
+            let vehicle = vehicles.get(motion.vehicle as usize)?;
+            let name = vehicle.name.text.as_str();
+            let altitude = motion::vehicle_model(&vehicle.model.text).map(|model| match model.drive {
+                motion::Drive::Flight { altitude_band_m: [low, high], .. } => f64::midpoint(low, high),
+                _ => 0.0,
+            });
+            let z = ground
+                .and_then(|ground| ground.height_at([x, y]))
+                .map(|height| height + altitude.unwrap_or_default());
+            Some(json!({ "name": name, "x": x, "y": y, "z": z, "heading": heading, "time": time }))
         })
         .collect()
 }

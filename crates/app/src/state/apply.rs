@@ -50,6 +50,11 @@ impl AppState {
         match command {
             Command::OpenExample(name) => self.open_example(&name),
             Command::OpenSource { name, source } => self.open(name, &source),
+            Command::OpenEarlierDraft => {
+                if let Some(draft) = self.earlier_draft.take() {
+                    self.open(draft.name, &draft.source);
+                }
+            }
             Command::OpenFile(kind) => self.effects.push(Effect::OpenFile(kind)),
             Command::SaveMission => self.save(),
             Command::CopyLink => self.effects.push(Effect::CopyLink),

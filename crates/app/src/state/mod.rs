@@ -3,6 +3,7 @@
 mod apply;
 pub mod automaton;
 pub mod document;
+mod draft;
 mod editing;
 pub mod editor;
 pub mod language;
@@ -24,6 +25,7 @@ use smol_str::SmolStr;
 
 pub use apply::Effect;
 pub use document::{Caret, Document, EditKind};
+pub use draft::Draft;
 pub use editor::EditorState;
 pub use language::Language;
 pub use playback::Playback;
@@ -48,6 +50,8 @@ pub struct AppState {
     pub language: Language,
     /// The name of the open mission, without extension.
     pub mission: SmolStr,
+    /// An edited text that is not the open one: of an earlier run, or of another mission of this one.
+    pub earlier_draft: Option<Draft>,
     /// What the planning core answered.
     pub snapshots: Snapshots,
     /// The ground of the missions opened so far.
@@ -121,6 +125,7 @@ impl AppState {
             language: Language::new(&document),
             document,
             mission: example.name.into(),
+            earlier_draft: None,
             snapshots: Snapshots::default(),
             maps: BTreeMap::new(),
             selection: Selection::None,

@@ -17,6 +17,8 @@ pub struct World {
     pub now_secs: Cell<f64>,
     /// What is kept between runs.
     pub storage: RefCell<BTreeMap<String, String>>,
+    /// Whether there is no room to keep more.
+    pub is_full: Cell<bool>,
     /// Files that were saved.
     pub saved: RefCell<Vec<(String, Vec<u8>)>>,
     /// What files the app asked for.
@@ -100,6 +102,9 @@ impl Host for TestHost {
     }
 
     fn store(&mut self, key: &str, value: &str) -> Result<(), StorageError> {
+        if self.world.is_full.get() {
+            return Err(StorageError::Full { bytes: value.len() });
+        }
         self.world.storage.borrow_mut().insert(key.to_owned(), value.to_owned());
         Ok(())
     }
