@@ -68,17 +68,24 @@ impl CoreQueue {
 /// The revision of the text that a request is about.
 pub fn revision(request: &Request) -> Option<u64> {
     match request {
-        Request::Update(update) | Request::Execute { update, .. } | Request::Sample { update, .. } => {
-            Some(update.revision)
-        }
-        Request::ImportMap { .. } => None,
+        Request::Update(update)
+        | Request::Review(update)
+        | Request::Execute { update, .. }
+        | Request::Sample { update, .. } => Some(update.revision),
+        Request::ImportMap { .. } | Request::WorkOut { .. } => None,
     }
 }
 
 /// Whether answering `newer` makes answering `earlier` pointless.
 fn replaces(newer: &Request, earlier: &Request) -> bool {
     match (newer, earlier) {
-        (Request::Update(_), Request::Update(_) | Request::Execute { .. } | Request::Sample { .. })
+        // A newer text ends what was asked of the older one; a text to compare with stands for itself.
+        (
+            Request::Update(_),
+            Request::Update(_) | Request::Review(_) | Request::Execute { .. } | Request::Sample { .. },
+        )
+        | (Request::Review(_), Request::Review(_))
+        | (Request::WorkOut { .. }, Request::WorkOut { .. })
         | (Request::Execute { .. }, Request::Execute { .. })
         | (Request::Sample { .. }, Request::Sample { .. }) => true,
         (Request::ImportMap { name: newer, .. }, Request::ImportMap { name: earlier, .. }) => {
@@ -143,6 +150,23 @@ mod tests {
         assert_eq!(queue.start_next(), Some(&map("m", b"1")));
         queue.finished();
         assert_eq!(queue.start_next(), Some(&update(2)));
+    }
+
+    #[test]
+    fn a_newer_text_ends_a_review_but_not_the_other_way_round() {
+        let review = |revision| match update(revision) {
+            Request::Update(update) => Request::Review(update),
+            other => other,
+        };
+        let mut queue = CoreQueue::default();
+        queue.post(update(1));
+        queue.post(review(1));
+        assert_eq!(queue.start_next(), Some(&update(1)));
+        assert!(!queue.is_superseded());
+        queue.finished();
+        assert_eq!(queue.start_next(), Some(&review(1)));
+        queue.post(update(2));
+        assert!(queue.is_superseded());
     }
 
     #[test]

@@ -11,8 +11,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use commands::{
-    check, estimate, execute, explain, export, fmt, hca, import, path, plan, reconfigure, report, run,
-    simulate, step, stn, tpn, verify,
+    check, compare, estimate, execute, explain, export, fmt, hca, import, path, plan, reconfigure, report,
+    run, simulate, step, stn, tpn, verify,
 };
 
 /// Plans, checks and explains missions written in RMPL.
@@ -43,6 +43,7 @@ enum Command {
     Import(import::Args),
     Report(report::Args),
     Export(export::Args),
+    Compare(compare::Args),
 }
 
 fn main() -> ExitCode {
@@ -65,6 +66,7 @@ fn main() -> ExitCode {
         Command::Import(args) => import::run(args),
         Command::Report(args) => report::run(args),
         Command::Export(args) => export::run(args),
+        Command::Compare(args) => compare::run(args),
     };
     result.unwrap_or_else(|error| {
         output::print_error(&format!("error: {error:#}"));

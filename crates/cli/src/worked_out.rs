@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use mission::{Core, Request, Response, SearchKind, Snapshot, Surroundings, Update};
+use mission::{Core, Goal, Request, Response, SearchKind, Snapshot, Surroundings, Update};
 use terrain::Terrain;
 
 use crate::input::read_text;
@@ -23,18 +23,23 @@ pub struct WorkedOut {
 pub fn work_out(target: &Target, seed: u64) -> anyhow::Result<WorkedOut> {
     let is_network = target.file.extension().is_some_and(|ending| ending == "json" || ending == "edn");
     anyhow::ensure!(!is_network, "this command wants a mission text, not a network");
+    let name = target.file.file_name().filter(|name| *name != "-");
+    let name = name.map_or_else(|| "mission".to_owned(), |name| name.to_string_lossy().into_owned());
+    work_out_text(name, &read_text(&target.file)?, target.goal()?, seed)
+}
+
+/// Works out a mission text.
+pub fn work_out_text(name: String, source: &str, goal: Goal, seed: u64) -> anyhow::Result<WorkedOut> {
     let update = Update {
         revision: 1,
-        source: read_text(&target.file)?.into(),
-        goal: target.goal()?,
+        source: source.into(),
+        goal,
         search: SearchKind::default(),
         seed,
         trace: false,
     };
     let mut answers = Answers { begun: Instant::now(), snapshot: None, ground: None };
     Core::default().handle(Request::Update(update), &mut answers);
-    let name = target.file.file_name().filter(|name| *name != "-");
-    let name = name.map_or_else(|| "mission".to_owned(), |name| name.to_string_lossy().into_owned());
     Ok(WorkedOut {
         name,
         snapshot: answers.snapshot.ok_or_else(|| anyhow::anyhow!("the planning core gave no answer"))?,

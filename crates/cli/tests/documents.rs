@@ -56,3 +56,51 @@ fn a_file_with_errors_has_no_schedule() {
     assert_eq!(output.status.code(), Some(2), "{output:?}");
     assert!(output.stdout.is_empty());
 }
+
+#[test]
+fn a_plan_does_not_differ_from_its_mission() {
+    let plan = written(&enroute(&["plan", MISSION, "--format", "json"]));
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("enroute.plan.json");
+    std::fs::write(&path, plan).expect("a writable folder");
+    let output = enroute(&["compare", path.to_str().expect("UTF-8"), MISSION, "--format", "json"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let document: Value = serde_json::from_str(&written(&output)).expect("JSON");
+    assert_eq!(document["format"], "enroute-compare/1");
+    assert_eq!(document["same"], json!(true));
+    assert_eq!(document["differences"], json!([]));
+    // SPEC 3.6.
+    let drive = json!([[10, 55], [415, 460]]);
+    assert_eq!(document["windows"]["Group-Traverse-Path#1"], json!({ "before": drive, "after": drive }));
+}
+
+#[test]
+fn two_revisions_are_compared_by_name() {
+    let source = std::fs::read_to_string(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../",
+        "assets/missions/enroute.rmpl"
+    ))
+    .expect("the mission");
+    let changed = source.replace("PATH1=OK [450,450]", "PATH1=OK [460,460]");
+    assert_ne!(changed, source);
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("changed.rmpl");
+    std::fs::write(&path, changed).expect("a writable folder");
+    let path = path.to_str().expect("UTF-8");
+    let output = enroute(&["compare", MISSION, path]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let line = "condition Tell(PATH1=OK)#1 moved: starts [10, 10], ends [460, 460] → starts [10, 10], ends [470, 470]";
+    assert!(written(&output).contains(line), "{}", written(&output));
+    let output = enroute(&["compare", MISSION, path, "--format", "json"]);
+    let document: Value = serde_json::from_str(&written(&output)).expect("JSON");
+    assert!(document["counts"]["moved"].as_u64().expect("a count") >= 2, "{}", document["counts"]);
+    assert_eq!(document["counts"]["added"], json!(0));
+}
+
+#[test]
+fn what_is_no_plan_cannot_be_compared() {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("no-plan.json");
+    std::fs::write(&path, "{\"format\":\"enroute-stn/1\"}").expect("a writable folder");
+    let output = enroute(&["compare", path.to_str().expect("UTF-8"), MISSION]);
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert!(output.stdout.is_empty());
+}

@@ -18,6 +18,7 @@ use crate::ground::Grounds;
 use crate::planning::{self, Planned};
 use crate::problem::Problem;
 use crate::request::{Goal, Request, Response, Update};
+use crate::review;
 use crate::snapshot::{MapKey, Snapshot, Stage, Timings};
 use crate::traverse::Paths;
 
@@ -70,6 +71,33 @@ impl Core {
             Request::Sample { update, settings, from } => {
                 self.sample(&update, settings, from, surroundings);
             }
+            Request::Review(update) => self.review(&update, surroundings),
+            Request::WorkOut { token, update } => self.work_out_beside(token, &update, surroundings),
+        }
+    }
+
+    /// The plan is kept from the update before, so this takes only the time of the review itself.
+    fn review(&mut self, update: &Update, surroundings: &mut dyn Surroundings) {
+        let mut quiet = Quiet { surroundings, passes_maps: true, last: None };
+        self.update(update, &mut quiet);
+        let Some(snapshot) = quiet.last else { return };
+        let mut stop = || surroundings.is_superseded();
+        let review = review::review(&snapshot, &update.goal, update.seed, &mut stop);
+        if !surroundings.is_superseded() {
+            let review = Arc::new(review);
+            surroundings.answer(Response::Review { revision: update.revision, review });
+        }
+    }
+
+    /// The open text's own plan is kept.
+    fn work_out_beside(&mut self, token: u64, update: &Update, surroundings: &mut dyn Surroundings) {
+        let (last, sent) = (self.last.take(), self.sent.take());
+        let mut quiet = Quiet { surroundings, passes_maps: false, last: None };
+        self.update(update, &mut quiet);
+        let found = quiet.last;
+        (self.last, self.sent) = (last, sent);
+        if let Some(snapshot) = found.filter(|snapshot| snapshot.stage == Stage::Complete) {
+            surroundings.answer(Response::WorkedOut { token, snapshot });
         }
     }
 
@@ -178,6 +206,31 @@ impl Core {
             planned: planned.clone(),
         });
         Some(planned)
+    }
+}
+
+/// Keeps the last snapshot instead of answering with it.
+struct Quiet<'a> {
+    surroundings: &'a mut dyn Surroundings,
+    passes_maps: bool,
+    last: Option<Arc<Snapshot>>,
+}
+
+impl Surroundings for Quiet<'_> {
+    fn now_millis(&self) -> f64 {
+        self.surroundings.now_millis()
+    }
+
+    fn is_superseded(&mut self) -> bool {
+        self.surroundings.is_superseded()
+    }
+
+    fn answer(&mut self, response: Response) {
+        match response {
+            Response::Snapshot(snapshot) => self.last = Some(snapshot),
+            Response::Map { .. } if !self.passes_maps => {}
+            other => self.surroundings.answer(other),
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use motion::VehicleModel;
 use rmpl::program::{ObstacleShape, TerrainDecl, World};
 use rmpl::{Code, Diagnostic};
+use sha2::{Digest as _, Sha256};
 use smol_str::SmolStr;
 use terrain::format::ImportOptions;
 use terrain::{ConfigurationSpace, GridFrame, Obstacle, Occupancy, Terrain};
@@ -42,7 +43,7 @@ impl Grounds {
     pub fn import(&mut self, name: &str, bytes: &[u8]) -> Result<(), String> {
         let map = terrain::format::read_terrain(bytes, &ImportOptions::default())
             .map_err(|error| error.to_string())?;
-        let version = self.imported.get(name).map_or(1, |before| before.version + 1);
+        let version = version(bytes);
         self.maps.retain(|key, _| key.asset != name);
         self.imported.insert(SmolStr::new(name), Imported { version, map });
         Ok(())
@@ -132,6 +133,13 @@ impl Grounds {
         Diagnostic::error(Code("E-UNDEF"), declared.asset_span, message)
             .with_hint(format!("import a map file of that name, or use one of: {}", known.join(", ")))
     }
+}
+
+/// Tells files apart that are imported under the same name, in this run or another; never 0.
+fn version(bytes: &[u8]) -> u32 {
+    let hash = Sha256::digest(bytes);
+    let first = [hash[0], hash[1], hash[2], hash[3]];
+    u32::from_le_bytes(first).max(1)
 }
 
 /// The least and greatest coordinates of the places of a world.

@@ -4,6 +4,7 @@
 //! No planning, motion or language rules are here: this crate connects the crates that have them, and keeps each
 //! stage's result so that an edit redoes only what it touched.
 
+pub mod compare;
 pub mod control;
 mod core;
 pub mod driving;

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
 use crate::execution::Execution;
+use crate::review::Review;
 use crate::robustness::{RobustnessSettings, Tally};
 use crate::snapshot::{MapKey, Snapshot};
 
@@ -31,6 +32,15 @@ pub enum Request {
         settings: RobustnessSettings,
         /// The first run, from 0.
         from: u64,
+    },
+    /// Work a text out once more and review it: see [`crate::review`].
+    Review(Update),
+    /// Work out another text than the open one, to compare with: answered once, when it is done.
+    WorkOut {
+        /// Comes back with the answer.
+        token: u64,
+        /// The other text.
+        update: Update,
     },
     /// Makes a map file available to `terrain "name"` declarations.
     ImportMap {
@@ -84,6 +94,20 @@ pub enum Goal {
 pub enum Response {
     /// The state of a revision; a revision is answered more than once as its stages complete.
     Snapshot(Arc<Snapshot>),
+    /// The review of a revision.
+    Review {
+        /// The revision of the text.
+        revision: u64,
+        /// What was found.
+        review: Arc<Review>,
+    },
+    /// Another text, worked out.
+    WorkedOut {
+        /// That of the request.
+        token: u64,
+        /// The other text's last snapshot.
+        snapshot: Arc<Snapshot>,
+    },
     /// The ground of the missions that name `key`; sent once, before the first snapshot that refers to it.
     Map {
         /// Which map.

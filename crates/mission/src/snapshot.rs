@@ -82,7 +82,7 @@ pub struct MapKey {
     pub cell_mm: u32,
     /// Mission coordinates of the south-west corner in millimetres.
     pub origin_mm: [i64; 2],
-    /// Counts imports under the same name.
+    /// Tells files apart that were imported under the same name; 0 for what comes with the program.
     pub version: u32,
 }
 

@@ -56,7 +56,7 @@ fn planned(source: &str) -> Planned {
     let mut answers = Answers::default();
     Core::default().handle(Request::Update(update), &mut answers);
     let snapshot = answers.snapshot.expect("an update is always answered");
-    let review = review(&snapshot, 0);
+    let review = review(&snapshot, &Goal::Default, 0, &mut || false);
     Planned { snapshot, ground: answers.ground, review }
 }
 

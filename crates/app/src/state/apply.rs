@@ -152,6 +152,7 @@ impl AppState {
             HostEvent::Answer(
                 Response::Execution(_) | Response::NotExecuted { .. } | Response::Sampled { .. },
             ) => {}
+            HostEvent::Answer(Response::Review { .. } | Response::WorkedOut { .. }) => {}
             HostEvent::CoreFailed { message, .. } => self.toasts.add(
                 ToastKind::Failed,
                 format!("Planning stopped and was started anew. Edit the text to plan again. ({message})"),

@@ -90,7 +90,8 @@ impl Args {
                 Ok(format!("{}\n", serde_json::to_string_pretty(&plan)?))
             }
             Form::Icalendar => {
-                let hash = content_hash(&snapshot.source, snapshot.map.as_ref(), self.seed);
+                let hash =
+                    content_hash(&snapshot.source, snapshot.map.as_ref(), &self.target.goal()?, self.seed);
                 export::icalendar(snapshot, &self.calendar(snapshot)?, &hash).context(beyond)
             }
         }

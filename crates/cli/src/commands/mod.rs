@@ -1,6 +1,7 @@
 //! One file per command: its flags and what it does with the core's answer.
 
 pub mod check;
+pub mod compare;
 pub mod estimate;
 pub mod execute;
 pub mod explain;

@@ -32,7 +32,7 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let worked_out = work_out(&args.target, args.seed)?;
     let WorkedOut { name, snapshot, ground } = &worked_out;
-    let review = review(snapshot, args.seed);
+    let review = review(snapshot, &args.target.goal()?, args.seed, &mut || false);
     if let Some(path) = &args.output {
         let page = report::html(&report::Document {
             name,

@@ -1,7 +1,7 @@
 //! Why the alternatives of a choice were not taken: each is planned once more with that alternative, and the answer is
 //! the reason.
 
-use kirk::{ExpansionLimit, Failure, Options, Outcome, Status};
+use kirk::{Failure, Options, Outcome, Stats, Status};
 use rmpl::{Bound, Rational, Span};
 use serde::{Deserialize, Serialize};
 use tpn::{Choice, DecisionId, Network, Plan};
@@ -83,7 +83,11 @@ impl<'input> Examiner<'input> {
     }
 
     /// The alternatives of a choice, in textual order.
-    pub(super) fn alternatives(&mut self, choice: Choice) -> Vec<Alternative> {
+    pub(super) fn alternatives(
+        &mut self,
+        choice: Choice,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Vec<Alternative> {
         let decision = &self.network.decisions[choice.decision.index()];
         (0..decision.alternatives.len())
             .map(|index| {
@@ -92,7 +96,7 @@ impl<'input> Examiner<'input> {
                 let fate = if number == choice.alternative {
                     Fate::Taken
                 } else {
-                    self.fate(Choice { alternative: number, ..choice })
+                    self.fate(Choice { alternative: number, ..choice }, stop)
                 };
                 Alternative { number, text: self.beginning(span), span, fate }
             })
@@ -110,9 +114,9 @@ impl<'input> Examiner<'input> {
         format!("{cut}…")
     }
 
-    fn fate(&mut self, other: Choice) -> Fate {
+    fn fate(&mut self, other: Choice, stop: &mut dyn FnMut() -> bool) -> Fate {
         self.examined += 1;
-        if self.examined > MOST_EXAMINED {
+        if self.examined > MOST_EXAMINED || stop() {
             return Fate::NotExamined;
         }
         let network = self.restricted(other);
@@ -121,7 +125,8 @@ impl<'input> Examiner<'input> {
             explain: network.nodes.len() <= MOST_EXPLAINED_NODES,
             ..Options::default()
         };
-        let mut outcome = kirk::plan(&network, &options, &mut ExpansionLimit(MOST_EXPANDED));
+        let mut outcome =
+            kirk::plan(&network, &options, &mut |stats: &Stats| stats.expanded >= MOST_EXPANDED || stop());
         planning::name_blocked(&mut outcome, &network, self.undrivable);
         match outcome.status {
             Status::Plan => Fate::AlsoPossible,

@@ -2,15 +2,17 @@
 
 use sha2::{Digest as _, Sha256};
 
+use crate::request::Goal;
 use crate::snapshot::MapKey;
 
 /// Changes when the meaning of the hashed bytes does.
 const DOMAIN: &[u8] = b"enroute-review/1";
 
-/// The SHA-256 of text, map and seed in hexadecimal: the same everywhere, and another after any edit.
+/// The SHA-256 of text, map, goal and seed in hexadecimal: the same everywhere, and another after any edit.
 ///
-/// The map counts by its key: the name, cell size, origin and import version, not by its heights.
-pub fn content_hash(source: &str, map: Option<&MapKey>, seed: u64) -> String {
+/// The map counts by its key: the name, cell size, origin and what was imported under that name. The goal counts where
+/// it is not the first scenario, which is what the text itself says.
+pub fn content_hash(source: &str, map: Option<&MapKey>, goal: &Goal, seed: u64) -> String {
     let mut hash = Sha256::new();
     // Each part is preceded by its length, so that no two different inputs give the same bytes.
     let mut part = |bytes: &[u8]| {
@@ -25,6 +27,18 @@ pub fn content_hash(source: &str, map: Option<&MapKey>, seed: u64) -> String {
         part(&map.origin_mm[0].to_le_bytes());
         part(&map.origin_mm[1].to_le_bytes());
         part(&map.version.to_le_bytes());
+    }
+    match goal {
+        Goal::Default | Goal::FirstScenario => {}
+        Goal::Scenario(name) => {
+            part(b"scenario");
+            part(name.as_bytes());
+        }
+        Goal::Activity { name, lower, upper } => {
+            part(b"activity");
+            part(name.as_bytes());
+            part(format!("{} {upper}", rmpl::rational::display(*lower)).as_bytes());
+        }
     }
     part(&seed.to_le_bytes());
     hash.finalize().iter().fold(String::with_capacity(64), |mut text, byte| {

@@ -5,16 +5,18 @@ use tpn::{Network, NodeId};
 
 use super::plan_lines::PlanLines;
 use super::{Line, Review, Section, Status, content_hash};
+use crate::request::Goal;
 use crate::snapshot::{Planning, Snapshot, Stage};
 
-/// Reviews a snapshot; `seed` is the one that its paths were planned with.
+/// Reviews a snapshot; `goal` and `seed` are those it was planned with. When `stop` says so, the alternatives that have
+/// not been looked at yet are left as [`super::Fate::NotExamined`].
 ///
 /// Alternatives that the plan does not take are planned once more each, so this takes as long as planning does, times
 /// the number of alternatives; it is meant to be asked for, not to follow every edit.
-pub fn review(snapshot: &Snapshot, seed: u64) -> Review {
+pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut() -> bool) -> Review {
     let places = Places::new(&snapshot.source);
     let mut review = Review {
-        content_hash: content_hash(&snapshot.source, snapshot.map.as_ref(), seed),
+        content_hash: content_hash(&snapshot.source, snapshot.map.as_ref(), goal, seed),
         status: Status::Passed,
         plan: plan_section(snapshot, &places),
         choices: Vec::new(),
@@ -26,7 +28,7 @@ pub fn review(snapshot: &Snapshot, seed: u64) -> Review {
         warnings: warnings(snapshot, &places),
     };
     if let Some(mut lines) = PlanLines::new(snapshot, &places) {
-        review.choices = lines.choices();
+        review.choices = lines.choices(stop);
         review.causal_links = lines.causal_links();
         review.conflicts = lines.conflicts();
         review.events = lines.events();

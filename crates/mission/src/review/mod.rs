@@ -8,6 +8,7 @@ mod distances;
 mod hash;
 mod lines;
 mod plan_lines;
+pub mod record;
 pub mod schedule;
 
 use rmpl::{Bound, Rational, Span};
@@ -17,6 +18,7 @@ use tpn::{NodeId, OccurrenceId, Window};
 pub use alternatives::{Alternative, Fate};
 pub use hash::content_hash;
 pub use lines::review;
+pub use record::Record;
 
 /// A mission, reviewed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -227,10 +229,10 @@ impl Section {
             Self::Plan => "Plan",
             Self::Choices => "Choices",
             Self::CausalLinks => "Causal links",
-            Self::Conflicts => "Conflicts",
-            Self::Events => "Events",
+            Self::Conflicts => "Threats and orderings",
+            Self::Events => "Windows and slack",
             Self::Traverses => "Traverses",
-            Self::Encounters => "Encounters of vehicles",
+            Self::Encounters => "Conflicts between vehicles",
             Self::Warnings => "Warnings in the text",
         }
     }
@@ -248,6 +250,30 @@ impl Review {
             Section::Traverses => self.traverses.iter().map(|it| &it.line).collect(),
             Section::Encounters => self.encounters.iter().collect(),
             Section::Warnings => self.warnings.iter().collect(),
+        }
+    }
+
+    /// Whether there is a plan to say anything about.
+    pub fn is_planned(&self) -> bool {
+        !self.events.is_empty()
+    }
+
+    /// The worst status of a section's lines; a section without lines has passed.
+    pub fn section_status(&self, section: Section) -> Status {
+        self.lines(section).into_iter().map(|line| line.status).max().unwrap_or(Status::Passed)
+    }
+
+    /// What a section without lines says: that there is nothing to find fault with, or no plan to look at.
+    pub fn nothing(&self, section: Section) -> &'static str {
+        match section {
+            Section::Warnings => "The text has no errors and no warnings.",
+            _ if !self.is_planned() => "There is no plan to look at.",
+            Section::Plan | Section::Events => "There is nothing to look at.",
+            Section::Choices => "The plan has no choice to make.",
+            Section::CausalLinks => "Nothing requires a condition.",
+            Section::Conflicts => "No two conditions contradict each other, so there is no threat.",
+            Section::Traverses => "No vehicle drives.",
+            Section::Encounters => "No two vehicles come too near each other.",
         }
     }
 

@@ -36,13 +36,13 @@ impl<'input> PlanLines<'input> {
         Some(Self { snapshot, network, planning, plan, distances, places })
     }
 
-    pub(super) fn choices(&mut self) -> Vec<ChoiceReview> {
+    pub(super) fn choices(&mut self, stop: &mut dyn FnMut() -> bool) -> Vec<ChoiceReview> {
         let mut examiner =
             Examiner::new(self.network, self.plan, &self.planning.undrivable, &self.snapshot.source);
         let review = |&choice: &tpn::Choice| {
             let name = Network::decision_name(choice.decision);
             let decision = &self.network.decisions[choice.decision.index()];
-            let alternatives = examiner.alternatives(choice);
+            let alternatives = examiner.alternatives(choice, stop);
             let is_open = alternatives.iter().any(|it| it.fate == Fate::NotExamined);
             let status = if is_open { Status::Attention } else { Status::Passed };
             let text = format!(

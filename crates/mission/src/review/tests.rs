@@ -40,7 +40,7 @@ fn reviewed(source: &str) -> Review {
     };
     let mut answers = Answers::default();
     Core::default().handle(Request::Update(update), &mut answers);
-    review(&answers.0.expect("an update is always answered"), 0)
+    review(&answers.0.expect("an update is always answered"), &Goal::Default, 0, &mut || false)
 }
 
 fn range(least: i64, greatest: i64) -> TimeRange {
@@ -169,11 +169,12 @@ fn the_hash_follows_text_map_and_seed() {
     let map = crate::MapKey { asset: "a".into(), cell_mm: 600, origin_mm: [0, 0], version: 0 };
     let moved = crate::MapKey { origin_mm: [1, 0], ..map.clone() };
     let hashes = [
-        content_hash("text", Some(&map), 0),
-        content_hash("text ", Some(&map), 0),
-        content_hash("text", Some(&moved), 0),
-        content_hash("text", None, 0),
-        content_hash("text", Some(&map), 1),
+        content_hash("text", Some(&map), &Goal::Default, 0),
+        content_hash("text ", Some(&map), &Goal::Default, 0),
+        content_hash("text", Some(&moved), &Goal::Default, 0),
+        content_hash("text", None, &Goal::Default, 0),
+        content_hash("text", Some(&map), &Goal::Default, 1),
+        content_hash("text", Some(&map), &Goal::Scenario("S".into()), 0),
     ];
     for (index, hash) in hashes.iter().enumerate() {
         assert_eq!(hash.len(), 64);

@@ -1,0 +1,151 @@
+//! `enroute compare`: what differs between two plans, by name.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::Context as _;
+use mission::compare::{Change, Comparison, Side, compare};
+use mission::review::Record;
+use mission::{Goal, Problem};
+use serde_json::{Value, json};
+use tpn::Window;
+use tpn::number::{bound_to_json, time_to_json};
+
+use crate::input::read_text;
+use crate::load::Target;
+use crate::output::{
+    Format, NO, WRONG, YES, any_error, document, exit, print_json, print_problems, print_text,
+};
+use crate::worked_out::{WorkedOut, work_out_text};
+
+/// Compares two plans: what was added, removed, moved, re-chosen or done otherwise.
+///
+/// The exit status is 0 when nothing differs, and 1 when something does.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The plan before: a mission text, a plan or a signed review in JSON; `-` is standard input.
+    before: PathBuf,
+    /// The plan after, likewise.
+    after: PathBuf,
+    /// The scenario of mission texts; the first of the file by default.
+    #[arg(long)]
+    scenario: Option<String>,
+    /// Seeds path planning.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// For whom the answer is.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// One side, read.
+struct Read {
+    side: Side,
+    source: String,
+    problems: Vec<Problem>,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let (before, after) = (args.read(&args.before)?, args.read(&args.after)?);
+    let comparison = compare(&before.side, &after.side);
+    let is_wrong = any_error(&before.problems) || any_error(&after.problems);
+    match args.format {
+        Format::Json => {
+            let problems: Vec<Problem> = before.problems.iter().chain(&after.problems).cloned().collect();
+            print_json(&document("compare", &problems, body(&before.side, &after.side, &comparison)))?;
+        }
+        Format::Text => {
+            for read in [&before, &after] {
+                // Warnings are about one mission; here only what prevents a plan matters.
+                if any_error(&read.problems) {
+                    print_problems(&read.side.name, &read.source, &read.problems)?;
+                }
+            }
+            print_text(&text(&before.side, &after.side, &comparison))?;
+        }
+    }
+    Ok(exit(match (is_wrong, comparison.is_same() && before.side.is_planned == after.side.is_planned) {
+        (true, _) => WRONG,
+        (_, true) => YES,
+        (_, false) => NO,
+    }))
+}
+
+impl Args {
+    fn read(&self, path: &Path) -> anyhow::Result<Read> {
+        let text = read_text(path)?;
+        let name = path.display().to_string();
+        let is_json = path.extension().is_some_and(|ending| ending == "json")
+            || (name == "-" && text.trim_start().starts_with('{'));
+        if !is_json {
+            let target = Target {
+                file: path.to_owned(),
+                scenario: self.scenario.clone(),
+                activity: None,
+                bounds: None,
+            };
+            return Self::worked_out(name, &text, target.goal()?, self.seed);
+        }
+        let value: Value = serde_json::from_str(&text).with_context(|| format!("{name} is not JSON"))?;
+        if value["format"] == mission::review::record::FORMAT {
+            let record = Record::from_json(&text).with_context(|| format!("cannot read {name}"))?;
+            let signed =
+                record.sign_offs.last().with_context(|| format!("nobody has signed the review {name}"))?;
+            return Self::worked_out(name, &signed.source, signed.goal.clone(), signed.seed);
+        }
+        let side = Side::of_json(&name, &value).with_context(|| format!("cannot read {name}"))?;
+        Ok(Read { side, source: String::new(), problems: Vec::new() })
+    }
+
+    fn worked_out(name: String, source: &str, goal: Goal, seed: u64) -> anyhow::Result<Read> {
+        let WorkedOut { name, snapshot, .. } = work_out_text(name, source, goal, seed)?;
+        let side = Side::of_snapshot(&name, &snapshot);
+        Ok(Read { side, source: source.to_owned(), problems: snapshot.problems.clone() })
+    }
+}
+
+fn text(before: &Side, after: &Side, comparison: &Comparison) -> String {
+    let stands = |side: &Side| if side.is_planned { "" } else { " (no plan)" };
+    let mut out = format!(
+        "before: {}{}\nafter:  {}{}\n{}\n",
+        before.name,
+        stands(before),
+        after.name,
+        stands(after),
+        comparison.summary()
+    );
+    for difference in &comparison.differences {
+        out.push_str(&format!("  {}\n", difference.sentence()));
+    }
+    out
+}
+
+fn body(before: &Side, after: &Side, comparison: &Comparison) -> Value {
+    let side = |side: &Side| json!({ "name": side.name, "planned": side.is_planned });
+    let counts: serde_json::Map<String, Value> = Change::ALL
+        .into_iter()
+        .zip(comparison.counts())
+        .map(|(change, count)| (change.name().to_owned(), count.into()))
+        .collect();
+    let windows: serde_json::Map<String, Value> = comparison
+        .rows
+        .iter()
+        .map(|row| {
+            let windows = |windows: Option<[Window; 2]>| windows.map(|pair| pair.map(window_json));
+            (row.name.clone(), json!({ "before": windows(row.before), "after": windows(row.after) }))
+        })
+        .collect();
+    json!({
+        "same": comparison.is_same(),
+        "before": side(before),
+        "after": side(after),
+        "counts": counts,
+        "differences": comparison.differences,
+        "windows": windows,
+    })
+}
+
+fn window_json(window: Window) -> Value {
+    json!([time_to_json(window.earliest), bound_to_json(window.latest)])
+}
