@@ -17,6 +17,56 @@ pub fn small_mission(seed: u64) -> String {
     format!("{declared}scenario S{horizon} = {{ {} }}\n", threads.join(", "))
 }
 
+/// The text of crowded mission number `seed`: several intervals that exclude each other, most of them touching in the
+/// schedule that the mission is built around, so that it depends on the choices which of them may touch.
+pub fn crowded_mission(seed: u64) -> String {
+    let mut rng = Rng::new(seed ^ 0xC0_0D3D);
+    let mut now = if rng.chance(70) { 0 } else { rng.between(1, 3) };
+    let mut threads: Vec<String> = Vec::new();
+    for index in 0..rng.between(3, 4) {
+        let length = rng.between(0, 3);
+        let longest = length + if rng.chance(20) { rng.between(1, 2) } else { 0 };
+        let value = ["A", "B", "C"][(index as u64 + rng.below(2)) as usize % 3];
+        let lead = lead(&mut rng, now);
+        let end = if rng.chance(15) { format!("; delay{}", exactly(&mut rng)) } else { String::new() };
+        threads.push(format!("{{ {lead}MODE={value} [{length},{longest}]{end} }}"));
+        now += length + i64::from(rng.chance(25));
+    }
+    if rng.chance(30) {
+        threads.push(format!("choose {{ P0(){}, P1(){} }}", exactly(&mut rng), exactly(&mut rng)));
+    }
+    if rng.chance(20) {
+        threads.push(format!("{{ {}ask MODE=B [0,1] }}", lead(&mut rng, now)));
+    }
+    // In any textual order.
+    for position in 0..threads.len() {
+        let other = position + rng.below((threads.len() - position) as u64) as usize;
+        threads.swap(position, other);
+    }
+    let horizon = (now + rng.between(-1, 1)).max(0);
+    let bounds = if rng.chance(80) { format!("[0,{horizon}]") } else { String::new() };
+    format!("var MODE : {{A, B, C}};\nscenario S{bounds} = {{ {} }}\n", threads.join(", "))
+}
+
+/// What comes before an interval that begins at `time` in the schedule that a mission is built around: that time, any
+/// time, or a choice.
+fn lead(rng: &mut Rng, time: i64) -> String {
+    let (exact, other) = (format!("[{time},{time}]"), exactly(rng));
+    match rng.below(7) {
+        0 => "delay[0,inf]; ".to_owned(),
+        1 => format!("delay{exact}; "),
+        2 | 3 => format!("choose {{ delay[0,inf], delay{exact} }}; "),
+        4 => format!("choose {{ delay{other}, delay{exact} }}; "),
+        5 => format!("choose {{ delay{other}, delay[0,{}], delay{exact} }}; ", time + 1),
+        _ => format!("choose {{ delay{exact}, delay{other} }}; "),
+    }
+}
+
+fn exactly(rng: &mut Rng) -> String {
+    let time = rng.between(0, 6);
+    format!("[{time},{time}]")
+}
+
 struct Maker {
     rng: Rng,
     /// How many more leaves the mission may have.

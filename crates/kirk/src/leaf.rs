@@ -80,6 +80,23 @@ impl Engine<'_> {
         Ok(None)
     }
 
+    /// Every conflicting pair, with the one that comes first in front. A pair that is in both orders at once, as
+    /// intervals of no length at one instant are where no gap is asked for, is in the textual one: what the search met
+    /// last on its way may have forced them together.
+    pub(crate) fn conflict_order(&mut self) -> Result<Vec<(u32, u32)>, Overflow> {
+        let mut ordered = self.leaf.pairs.clone();
+        for (position, pair) in ordered.iter_mut().enumerate() {
+            let (left, right) = *pair;
+            let ((_, left_end), (right_start, _)) = (self.model.interval(left), self.model.interval(right));
+            if self.leaf.is_swapped[position]
+                && !self.is_entailed(left_end, right_start, self.model.gap_after[left as usize])?
+            {
+                *pair = (right, left);
+            }
+        }
+        Ok(ordered)
+    }
+
     /// All selected arcs of the present choices, pushed but not propagated.
     fn select_chosen(&mut self) {
         let model = self.model;

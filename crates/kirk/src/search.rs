@@ -423,20 +423,33 @@ impl<'m> Engine<'m> {
                 if self.insert(then_start, first_end, -self.model.gap, tag, FailureKind::Threat)? {
                     return Ok(true);
                 }
-                self.blame_touching(depth, first);
+                self.blame_touching(depth);
                 Ok(false)
             }
         }
     }
 
-    /// An order that fails only because of its gap could still hold by touching, if other choices forced it to: then
-    /// the failure rests on all choices, because none of them does.
-    fn blame_touching(&mut self, depth: usize, first: u32) {
-        let total: i128 = self.stn.cycle().iter().map(|edge| i128::from(edge.weight)).sum();
-        let most = total + i128::from(self.model.gap);
-        if most >= i128::from(self.model.gap_after[first as usize]) {
+    /// An order that fails only because of gaps could still hold by touching, if other choices forced it to: then the
+    /// failure rests on all choices, because none of them does. Every order in the contradiction asks for its gap.
+    fn blame_touching(&mut self, depth: usize) {
+        let weights = self
+            .stn
+            .cycle()
+            .iter()
+            .map(|edge| i128::from(edge.weight) + i128::from(self.excess_gap(edge.tag)));
+        if weights.sum::<i128>() >= 0 {
             self.conflict.insert_all_below(depth as u32);
         }
+    }
+
+    /// By how much the order added at a level asks for more than what counts as ordered once it is entailed.
+    fn excess_gap(&self, tag: Tag) -> i64 {
+        let Some(level) = tag.checked_sub(LEVEL_TAG).and_then(|depth| self.levels.get(depth as usize)) else {
+            return 0;
+        };
+        let Kind::Threat { left, right, .. } = level.kind else { return 0 };
+        let first = if level.next == 1 { left } else { right };
+        self.model.gap - self.model.gap_after[first as usize]
     }
 
     fn choose(&mut self, depth: usize, decision: u32, alternative: u32) -> Result<bool, Overflow> {

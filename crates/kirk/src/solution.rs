@@ -10,6 +10,7 @@ use crate::search::Engine;
 
 /// The plan that the search stands at.
 pub(crate) fn plan_at(engine: &mut Engine<'_>) -> Result<Plan, Overflow> {
+    let conflict_order = engine.conflict_order()?;
     let model = engine.model;
     let (mut latest, mut earliest) = (Vec::new(), Vec::new());
     engine.stn.sweep_distances(PointId(model.start), &model.order, &mut latest, &mut earliest)?;
@@ -41,17 +42,15 @@ pub(crate) fn plan_at(engine: &mut Engine<'_>) -> Result<Plan, Overflow> {
             }
         }
     }
-    let pairs = engine.leaf.pairs.iter().zip(&engine.leaf.is_swapped);
-    let conflict_order = pairs.map(|(&(left, right), &is_swapped)| {
-        let (first, then) = if is_swapped { (right, left) } else { (left, right) };
-        Ordering { first: LabelId(first), then: LabelId(then) }
-    });
     Ok(Plan {
         choices,
         selected_nodes: engine.is_selected_node.clone(),
         selected_arcs: engine.is_selected_arc.clone(),
         causal_links,
-        conflict_order: conflict_order.collect(),
+        conflict_order: conflict_order
+            .into_iter()
+            .map(|(first, then)| Ordering { first: LabelId(first), then: LabelId(then) })
+            .collect(),
         orderings_added,
         windows,
     })

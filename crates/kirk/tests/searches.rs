@@ -49,6 +49,24 @@ fn both_searches_enumerate_the_same_plans() {
 }
 
 #[test]
+fn a_failure_that_only_gaps_cause_rests_on_every_choice() {
+    // Two intervals fit only where the choices force them to touch others. The gaps that they lack otherwise are those
+    // of two orders at once, and no bound of the choice that helps is part of that contradiction.
+    let text = "var MODE : {A, B, C};
+scenario S[0,9] = {
+  { delay[0,inf]; MODE=B [0,0]; delay[6,6] },
+  { choose { delay[0,inf], delay[7,7] }; MODE=A [1,3] },
+  { choose { delay[0,inf], delay[0,0] }; MODE=A [2,2] },
+  { delay[3,3]; MODE=A [3,3] }
+}";
+    let network = network(text);
+    let all = |search| plan(&network, search, true).plans;
+    let plans = all(Search::Chronological);
+    assert!(plans.iter().any(|plan| plan.choices.iter().any(|choice| choice.alternative == 1)), "{plans:#?}");
+    assert_eq!(all(Search::ConflictDirected), plans);
+}
+
+#[test]
 fn networks_without_their_program_are_planned_the_same() {
     for seed in 100..140 {
         for tightness in TIGHTNESS {

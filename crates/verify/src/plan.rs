@@ -278,7 +278,11 @@ impl<'plan> Checker<'plan> {
             );
         }
         for ordering in &self.plan.orderings_added {
-            if !said.contains(&(ordering.first, ordering.then)) {
+            // Intervals of no length at one instant are each before the other: then the stated order, which has been
+            // looked at above, may be the other one.
+            let is_said = said.contains(&(ordering.first, ordering.then))
+                || said.contains(&(ordering.then, ordering.first));
+            if !is_said {
                 let (first, then) = (network.label_name(ordering.first), network.label_name(ordering.then));
                 complain(
                     format!("{first} was put before {then}, which the order of conflicts does not say"),
