@@ -245,3 +245,22 @@ fn a_plain_key_types_in_the_editor_and_commands_elsewhere() {
     assert_eq!(app.text(), "f$0");
     assert_eq!(app.json()["dialog"], serde_json::Value::Null);
 }
+
+#[test]
+fn a_block_folds_at_the_caret_and_its_lines_take_no_rows() {
+    let mut app = editing("primitive Drive(to);\nscenario S = {\n    Drive(A);$0\n    Drive(B)\n};\n");
+    let rows = |app: &App| {
+        let state = app.harness.state().app_state();
+        state.editor.folding.rows().count(state.document.line_count())
+    };
+    assert_eq!(rows(&app), 6);
+    app.press(CTRL | Modifiers::SHIFT, Key::OpenBracket);
+    assert_eq!(rows(&app), 4);
+    // The caret stands at the end of the line that stays, and steps over what is gone.
+    assert_eq!(app.text(), "primitive Drive(to);\nscenario S = {$0\n    Drive(A);\n    Drive(B)\n};\n");
+    app.press(NONE, Key::ArrowDown);
+    assert_eq!(app.text(), "primitive Drive(to);\nscenario S = {\n    Drive(A);\n    Drive(B)\n};$0\n");
+    app.harness.state_mut().dispatch("edit.unfoldAll", &json!({})).expect("always possible");
+    app.settle();
+    assert_eq!(rows(&app), 6);
+}

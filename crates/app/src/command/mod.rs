@@ -177,6 +177,12 @@ pub enum EditorCommand {
     Format,
     /// Selects the next larger piece of structure.
     ExpandSelection,
+    /// Folds away or shows the piece of text that begins in this line, from 0.
+    ToggleFold(usize),
+    /// Folds the innermost open piece of text around the caret, or shows it again.
+    FoldAtCaret(bool),
+    /// Folds every outermost piece, or shows everything.
+    FoldAll(bool),
     /// Cuts or copies the selection, or the line of the caret.
     CopySelection {
         /// Whether it is taken away.

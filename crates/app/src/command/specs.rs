@@ -213,6 +213,23 @@ pub static COMMANDS: &[CommandSpec] = &[
         Scope::Typing,
         |_| Command::Editor(EditorCommand::ExpandSelection),
     ),
+    plain("edit.fold", "Fold", Group::Edit, &[keys(CTRL_SHIFT, Key::OpenBracket)], Scope::Typing, |_| {
+        Command::Editor(EditorCommand::FoldAtCaret(true))
+    }),
+    plain(
+        "edit.unfold",
+        "Unfold",
+        Group::Edit,
+        &[keys(CTRL_SHIFT, Key::CloseBracket)],
+        Scope::Typing,
+        |_| Command::Editor(EditorCommand::FoldAtCaret(false)),
+    ),
+    plain("edit.foldAll", "Fold everything", Group::Edit, &[], Scope::Everywhere, |_| {
+        Command::Editor(EditorCommand::FoldAll(true))
+    }),
+    plain("edit.unfoldAll", "Unfold everything", Group::Edit, &[], Scope::Everywhere, |_| {
+        Command::Editor(EditorCommand::FoldAll(false))
+    }),
     called("edit.setSource", "Replace the text", Group::Edit, |_, arguments| {
         text_argument(arguments, "text").map(|text| Command::SetSource(text.to_owned()))
     }),

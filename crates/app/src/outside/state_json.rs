@@ -123,13 +123,9 @@ fn vehicles_json(state: &AppState, snapshot: &Snapshot) -> Vec<Value> {
             let ([x, y], heading) = motion.at(time)?;
             let vehicle = vehicles.get(motion.vehicle as usize)?;
             let name = vehicle.name.text.as_str();
-            let altitude = motion::vehicle_model(&vehicle.model.text).map(|model| match model.drive {
-                motion::Drive::Flight { altitude_band_m: [low, high], .. } => f64::midpoint(low, high),
-                _ => 0.0,
-            });
             let z = ground
                 .and_then(|ground| ground.height_at([x, y]))
-                .map(|height| height + altitude.unwrap_or_default());
+                .map(|height| height + flight_height_m(&vehicle.model.text));
             Some(json!({ "name": name, "x": x, "y": y, "z": z, "heading": heading, "time": time }))
         })
         .collect()
@@ -157,5 +153,13 @@ fn status_name(status: Status) -> &'static str {
         Status::Program => "program",
         Status::Plan => "plan",
         Status::NoPlan => "no-plan",
+    }
+}
+
+/// How high over the ground a vehicle of this model is drawn; 0 for what drives.
+fn flight_height_m(model: &str) -> f64 {
+    match motion::vehicle_model(model).map(|model| model.drive) {
+        Some(motion::Drive::Flight { altitude_band_m: [low, high], .. }) => f64::midpoint(low, high),
+        _ => 0.0,
     }
 }

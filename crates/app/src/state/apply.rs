@@ -43,6 +43,7 @@ impl AppState {
     pub fn apply(&mut self, command: Command) {
         self.do_command(command);
         self.language.follow(&self.document);
+        self.editor.folding.follow(&mut self.document, self.language.parse());
         self.automaton.follow(&self.document, self.language.is_control());
     }
 
@@ -207,6 +208,7 @@ impl AppState {
     fn open(&mut self, name: SmolStr, source: &str) {
         self.document.open(source);
         self.editor.popup = None;
+        self.editor.folding.unfold_all();
         self.mission = name;
         self.snapshots.clear();
         self.automaton.forget();

@@ -9,6 +9,7 @@ use crate::command::EditorCommand;
 use crate::panel::PanelKind;
 use crate::state::document::Caret;
 use crate::state::editor::{Find, Reveal};
+use crate::state::folding::Folding;
 use crate::state::{AppState, EditKind, Effect, Selection, TextCommand, ToastKind};
 
 impl AppState {
@@ -106,6 +107,12 @@ impl AppState {
             EditorCommand::Rename => self.ask_for_name(),
             EditorCommand::RenameTo(name) => self.rename_to(&name),
             EditorCommand::Format => self.format(),
+            EditorCommand::ToggleFold(line) => self.fold(|folding, document, parse| {
+                folding.toggle(line, document, parse);
+            }),
+            EditorCommand::FoldAtCaret(folds) => self.fold_at_caret(folds),
+            EditorCommand::FoldAll(false) => self.editor.folding.unfold_all(),
+            EditorCommand::FoldAll(true) => self.fold(Folding::fold_all),
             EditorCommand::ExpandSelection => self.expand_selection(),
         }
     }

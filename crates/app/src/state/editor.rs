@@ -3,6 +3,8 @@
 use rmpl::editor::CompletionKind;
 use rmpl::{Edit, Span};
 
+use crate::state::folding::Folding;
+
 /// The editor's own state.
 #[derive(Clone, Debug, Default)]
 pub struct EditorState {
@@ -10,6 +12,8 @@ pub struct EditorState {
     pub find: Option<Find>,
     /// The list at the caret: completions, fixes, references.
     pub popup: Option<Popup>,
+    /// What is folded away.
+    pub folding: Folding,
     /// Text that an input method is composing at the caret; it is not part of the document yet.
     pub composition: String,
     /// A place that the editor is to scroll to, once.

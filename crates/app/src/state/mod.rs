@@ -6,6 +6,7 @@ pub mod document;
 mod draft;
 mod editing;
 pub mod editor;
+pub mod folding;
 pub mod language;
 pub mod playback;
 pub mod search;

@@ -1,11 +1,12 @@
 //! The editor's language services: completion, quick fixes, definitions, references, renaming, formatting.
 
-use rmpl::editor;
+use rmpl::{Parse, editor};
 
 use crate::dialog::Dialog;
-use crate::state::document::Caret;
+use crate::state::document::{Caret, Document};
 use crate::state::editing::span_of;
 use crate::state::editor::{Popup, PopupAction, PopupItem, PopupKind};
+use crate::state::folding::Folding;
 use crate::state::typing::is_name_character;
 use crate::state::{AppState, EditKind, TextCommand, ToastKind};
 
@@ -194,6 +195,32 @@ impl AppState {
                 self.toasts.add(ToastKind::Done, "Formatted");
             }
             None => self.toasts.add(ToastKind::Info, "The text is formatted already"),
+        }
+    }
+
+    /// Folds the innermost open piece around the caret, or opens what is folded at its line.
+    pub(super) fn fold_at_caret(&mut self, folds: bool) {
+        let line = self.document.line_at(self.document.caret().head);
+        if !folds && !self.editor.folding.rows().is_folded_at(line) {
+            return;
+        }
+        self.fold(|folding, document, parse| {
+            if folds {
+                folding.fold_around(line, document, parse);
+            } else {
+                folding.toggle(line, document, parse);
+            }
+        });
+    }
+
+    /// Folds and unfolds; a caret in what disappears goes to the end of the line that stays.
+    pub(super) fn fold(&mut self, change: impl FnOnce(&mut Folding, &Document, &Parse)) {
+        let Some(parse) = self.language.parse() else { return };
+        change(&mut self.editor.folding, &self.document, parse);
+        let line = self.document.line_at(self.document.caret().head);
+        if let Some(hidden) = self.editor.folding.rows().hiding(line) {
+            let end = self.document.line_range(hidden.start.saturating_sub(1)).end;
+            self.document.set_caret(Caret::at(end));
         }
     }
 

@@ -10,5 +10,6 @@ mod api;
 mod drawing;
 mod editing;
 mod failure;
+mod language;
 mod offline;
 mod same;

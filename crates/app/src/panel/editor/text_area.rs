@@ -9,8 +9,8 @@ use egui::{
 use mission::Problem;
 use rmpl::{Severity, Span};
 
-use crate::command::{Command, CommandSender};
-use crate::icon;
+use crate::command::{Command, CommandSender, EditorCommand};
+use crate::icon::{self, Icon};
 use crate::panel::editor::hover::HoverCache;
 use crate::panel::editor::line::LineLayout;
 use crate::panel::editor::marks::Shift;
@@ -18,6 +18,8 @@ use crate::panel::editor::{brackets, editor_id, keyboard, popup};
 use crate::panel::problems::severity_sign;
 use crate::panel::{Context, PanelKind};
 use crate::state::TextCommand;
+use crate::state::document::Document;
+use crate::state::folding::{self, Rows};
 use crate::theme::space;
 
 /// The text with its gutter.
@@ -30,6 +32,8 @@ pub(crate) struct TextArea {
     /// The width of the widest line, for the revision it was measured at.
     widest: (u64, usize),
     hover: HoverCache,
+    /// The lines at which something can be folded, for the revision they were found at.
+    foldable: (u64, Vec<usize>),
     /// How far the view is scrolled.
     offset: egui::Vec2,
     /// How the text of the last answer became the present one.
@@ -37,18 +41,50 @@ pub(crate) struct TextArea {
 }
 
 /// Sizes and places that hold for one frame.
-struct Geometry {
+struct Geometry<'a> {
     font: FontId,
     row_height: f32,
     character_width: f32,
     gutter_width: f32,
     /// The top left corner of the first line's text.
     origin: Pos2,
+    /// Which line stands in which row.
+    rows: &'a Rows,
 }
 
-impl Geometry {
+/// The lines on screen, laid out, in order; what is folded is left out.
+struct ShownLines {
+    lines: Vec<usize>,
+    layouts: Vec<LineLayout>,
+}
+
+impl ShownLines {
+    fn each(&self) -> impl Iterator<Item = (usize, &LineLayout)> {
+        self.lines.iter().copied().zip(&self.layouts)
+    }
+
+    fn layout_of(&self, line: usize) -> Option<&LineLayout> {
+        self.layouts.get(self.lines.binary_search(&line).ok()?)
+    }
+
+    /// From the first line to the last, those between that are folded included.
+    fn bytes(&self, document: &Document) -> Range<usize> {
+        match (self.lines.first(), self.lines.last()) {
+            (Some(&first), Some(&last)) => document.line_range(first).start..document.line_range(last).end,
+            _ => 0..0,
+        }
+    }
+}
+
+impl Geometry<'_> {
     fn top_of(&self, line: usize) -> f32 {
-        self.origin.y + line as f32 * self.row_height
+        self.origin.y + self.rows.row_of(line) as f32 * self.row_height
+    }
+
+    /// The line at a height, whether there is text or not.
+    fn line_at(&self, y: f32) -> Option<usize> {
+        let row = ((y - self.origin.y) / self.row_height).floor();
+        (row >= 0.0).then(|| self.rows.line_of(row as usize))
     }
 
     fn row(&self, line: usize, x: Range<f32>) -> Rect {
@@ -67,7 +103,9 @@ impl TextArea {
         let row_height = (text_height * 1.18).round();
         let digits = document.line_count().to_string().len().max(3);
         let gutter_width = (digits as f32 + 3.0) * character_width;
-        let lines_height = document.line_count() as f32 * row_height;
+        let rows = context.state.editor.folding.rows();
+        let num_rows = rows.count(document.line_count());
+        let lines_height = num_rows as f32 * row_height;
         let widest = self.widest_line(context) as f32 * character_width;
         let available = ui.available_size();
         let size = egui::vec2(
@@ -82,6 +120,7 @@ impl TextArea {
             character_width,
             gutter_width,
             origin: origin + egui::vec2(gutter_width, 0.0),
+            rows,
         };
         if let Some(reveal) = context.state.editor.reveal {
             area = self.scroll_to(context, area, reveal, &geometry_of(Pos2::ZERO), available);
@@ -90,20 +129,18 @@ impl TextArea {
             let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
             let geometry = geometry_of(rect.min);
             let first = (viewport.top() / row_height).floor().max(0.0) as usize;
-            let last = ((viewport.bottom() / row_height).ceil().max(0.0) as usize).min(document.line_count());
-            let lines = first.min(last)..last;
+            let last = ((viewport.bottom() / row_height).ceil().max(0.0) as usize).min(num_rows);
+            let lines = (first.min(last)..last).map(|row| rows.line_of(row)).collect();
             let response = ui.interact(ui.clip_rect().intersect(rect), editor_id(), Sense::click_and_drag());
             Self::follow_focus(ui, context, &response);
-            let layouts = lay_out(ui, context, &geometry, lines.clone());
-            self.follow_pointer(ui, context, &geometry, &response, &lines, &layouts, commands);
-            self.paint(ui, context, &geometry, &response, &lines, &layouts);
+            let shown = lay_out(ui, context, &geometry, lines);
+            self.follow_pointer(ui, context, &geometry, &response, &shown, commands);
+            self.paint(ui, context, &geometry, &response, &shown);
             describe(ui, context, &response);
-            let offset = Self::offset_under_pointer(context, &geometry, &response, &lines, &layouts);
+            let offset = Self::offset_under_pointer(context, &geometry, &response, &shown);
             let problems = shifted_problems(context, self.shift(context));
             self.hover.show(context, &response, offset, &problems);
-            if let Some(caret) =
-                caret_rect(context, &geometry, &lines, &layouts).filter(|_| response.has_focus())
-            {
+            if let Some(caret) = caret_rect(context, &geometry, &shown).filter(|_| response.has_focus()) {
                 let to_global = ui.ctx().layer_transform_to_global(ui.layer_id()).unwrap_or_default();
                 popup::show(ui, context, to_global * caret, commands);
                 popup::show_signature(ui, context, to_global * caret);
@@ -118,12 +155,12 @@ impl TextArea {
         context: &Context<'_>,
         area: ScrollArea,
         reveal: crate::state::editor::Reveal,
-        geometry: &Geometry,
+        geometry: &Geometry<'_>,
         available: egui::Vec2,
     ) -> ScrollArea {
         let document = &context.state.document;
         let head = document.boundary_before(reveal.span.start as usize);
-        let top = document.line_at(head) as f32 * geometry.row_height;
+        let top = geometry.top_of(document.line_at(head));
         let margin = geometry.row_height * 2.0;
         let offset = self.offset;
         let is_visible =
@@ -174,15 +211,12 @@ impl TextArea {
 
     fn offset_under_pointer(
         context: &Context<'_>,
-        geometry: &Geometry,
+        geometry: &Geometry<'_>,
         response: &Response,
-        lines: &Range<usize>,
-        layouts: &[LineLayout],
+        shown: &ShownLines,
     ) -> Option<usize> {
         let pointer = response.hover_pos()?;
-        let line = ((pointer.y - geometry.origin.y) / geometry.row_height).floor();
-        let line = (line >= 0.0).then_some(line as usize)?;
-        let layout = layouts.get(line.checked_sub(lines.start)?)?;
+        let layout = shown.layout_of(geometry.line_at(pointer.y)?)?;
         let x = pointer.x - geometry.origin.x;
         (x >= 0.0 && x <= layout.galley().size().x).then(|| layout.offset_at(context, x))
     }
@@ -192,23 +226,30 @@ impl TextArea {
         &mut self,
         ui: &Ui,
         context: &Context<'_>,
-        geometry: &Geometry,
+        geometry: &Geometry<'_>,
         response: &Response,
-        lines: &Range<usize>,
-        layouts: &[LineLayout],
+        shown: &ShownLines,
         commands: &mut CommandSender,
     ) {
         let Some(pointer) = response.interact_pointer_pos() else { return };
         let document = &context.state.document;
-        let line = ((pointer.y - geometry.origin.y) / geometry.row_height).floor().max(0.0) as usize;
-        let line = line.min(document.line_count() - 1);
+        let line = geometry.line_at(pointer.y).unwrap_or_default().min(document.line_count() - 1);
         let x = pointer.x - geometry.origin.x;
-        let offset = match line.checked_sub(lines.start).and_then(|index| layouts.get(index)) {
+        let primary_pressed =
+            ui.input(|input| input.pointer.primary_pressed()) && response.is_pointer_button_down_on();
+        if x < 0.0 && primary_pressed && pointer.x >= fold_signs(geometry, ui.clip_rect()).min {
+            let is_foldable = context.state.language.parse().is_some_and(|parse| {
+                folding::regions(document, parse).iter().any(|region| region.first_line == line)
+            });
+            if is_foldable {
+                commands.send(Command::Editor(EditorCommand::ToggleFold(line)));
+                return;
+            }
+        }
+        let offset = match shown.layout_of(line) {
             Some(layout) => layout.offset_at(context, x),
             None => document.offset_at(line, (x / geometry.character_width).max(0.0) as usize),
         };
-        let primary_pressed =
-            ui.input(|input| input.pointer.primary_pressed()) && response.is_pointer_button_down_on();
         if primary_pressed {
             self.presses = ui.input(|input| {
                 if input.pointer.button_triple_clicked(egui::PointerButton::Primary) {
@@ -240,29 +281,51 @@ impl TextArea {
         &mut self,
         ui: &Ui,
         context: &Context<'_>,
-        geometry: &Geometry,
+        geometry: &Geometry<'_>,
         response: &Response,
-        lines: &Range<usize>,
-        layouts: &[LineLayout],
+        shown: &ShownLines,
     ) {
         let clip = ui.clip_rect();
         let text_left = clip.left() + geometry.gutter_width;
         let text_clip = Rect::from_min_max(Pos2::new(text_left - 1.0, clip.top()), clip.max);
         let painter = ui.painter().with_clip_rect(text_clip);
-        let marks = Painting { context, geometry, lines, layouts, painter: &painter, right: clip.right() };
+        let marks = Painting { context, geometry, shown, painter: &painter, right: clip.right() };
         marks.current_line(clip.left());
         marks.selected_thing(self.shift(context));
         marks.matches_of_find();
         marks.selected_text(response.has_focus());
         marks.brackets();
-        for (line, layout) in lines.clone().zip(layouts) {
+        for (line, layout) in shown.each() {
             let text_top = geometry.top_of(line) + (geometry.row_height - layout.galley().size().y) / 2.0;
             let at = Pos2::new(geometry.origin.x, text_top);
             painter.galley(at, layout.galley().clone(), context.tokens.text);
+            if geometry.rows.is_folded_at(line) {
+                marks.folded(line, layout);
+            }
         }
         marks.problems(self.shift(context));
         marks.caret(ui, response);
-        paint_gutter(ui, context, geometry, lines, self.shift(context));
+        let foldable = self.foldable_lines(ui, context, geometry);
+        paint_gutter(ui, context, geometry, shown, self.shift(context), &foldable);
+    }
+
+    /// The lines at which something can be folded; looked for only while the pointer is in the gutter.
+    fn foldable_lines(&mut self, ui: &Ui, context: &Context<'_>, geometry: &Geometry<'_>) -> Vec<usize> {
+        let clip = ui.clip_rect();
+        let gutter =
+            Rect::from_min_max(clip.min, Pos2::new(clip.left() + geometry.gutter_width, clip.bottom()));
+        let pointer = ui.input(|input| input.pointer.hover_pos());
+        let Some(parse) =
+            context.state.language.parse().filter(|_| pointer.is_some_and(|it| gutter.contains(it)))
+        else {
+            return Vec::new();
+        };
+        let revision = context.state.document.revision();
+        if self.foldable.0 != revision {
+            let regions = folding::regions(&context.state.document, parse);
+            self.foldable = (revision, regions.iter().map(|region| region.first_line).collect());
+        }
+        self.foldable.1.clone()
     }
 
     /// How the text of the last answer became the present one.
@@ -281,22 +344,30 @@ impl TextArea {
     }
 }
 
-fn lay_out(ui: &Ui, context: &Context<'_>, geometry: &Geometry, lines: Range<usize>) -> Vec<LineLayout> {
+fn lay_out(ui: &Ui, context: &Context<'_>, geometry: &Geometry<'_>, lines: Vec<usize>) -> ShownLines {
     let document = &context.state.document;
-    let start = document.line_range(lines.start).start;
-    let end = document.line_range(lines.end).end;
+    let mut shown = ShownLines { lines, layouts: Vec::new() };
+    let Range { start, end } = shown.bytes(document);
     let colors = context.state.language.colors(Span::new(start as u32, end as u32), context.tokens);
-    lines
-        .map(|line| LineLayout::new(ui, context, &geometry.font, document.line_range(line), &colors))
-        .collect()
+    let layouts = shown
+        .lines
+        .iter()
+        .map(|&line| LineLayout::new(ui, context, &geometry.font, document.line_range(line), &colors));
+    shown.layouts = layouts.collect();
+    shown
+}
+
+/// The column of the gutter in which folds are opened and closed.
+fn fold_signs(geometry: &Geometry<'_>, clip: Rect) -> egui::Rangef {
+    let right = clip.left() + geometry.gutter_width;
+    egui::Rangef::new(right - 1.5 * geometry.character_width, right)
 }
 
 /// What is painted onto the lines of one frame.
 struct Painting<'a> {
     context: &'a Context<'a>,
-    geometry: &'a Geometry,
-    lines: &'a Range<usize>,
-    layouts: &'a [LineLayout],
+    geometry: &'a Geometry<'a>,
+    shown: &'a ShownLines,
     painter: &'a egui::Painter,
     right: f32,
 }
@@ -306,7 +377,7 @@ impl Painting<'_> {
     fn rects(&self, span: Range<usize>) -> Vec<Rect> {
         let document = &self.context.state.document;
         let mut rects = Vec::new();
-        for (line, layout) in self.lines.clone().zip(self.layouts) {
+        for (line, layout) in self.shown.each() {
             let bytes = document.line_range(line);
             if span.end < bytes.start || span.start > bytes.end {
                 continue;
@@ -333,6 +404,16 @@ impl Painting<'_> {
         }
     }
 
+    /// A sign behind a line whose rest is folded away.
+    fn folded(&self, line: usize, layout: &LineLayout) {
+        let left = self.geometry.origin.x + layout.galley().size().x + self.geometry.character_width * 0.6;
+        let width = self.geometry.character_width * 2.6;
+        let plate = self.geometry.row(line, left..left + width).shrink2(egui::vec2(0.0, 3.0));
+        self.painter.rect_filled(plate, 3.0, self.context.tokens.pressed);
+        let color = self.context.tokens.text_faint;
+        self.painter.text(plate.center(), Align2::CENTER_CENTER, "…", self.geometry.font.clone(), color);
+    }
+
     /// A quiet bar behind what is selected in the other panels.
     fn selected_thing(&self, shift: Shift) {
         let Some(snapshot) = self.context.snapshot.filter(|_| !self.context.is_stale) else { return };
@@ -346,8 +427,7 @@ impl Painting<'_> {
         let Some(find) = &self.context.state.editor.find else { return };
         let Ok(pattern) = find.pattern() else { return };
         let document = &self.context.state.document;
-        let start = document.line_range(self.lines.start).start;
-        let end = document.line_range(self.lines.end).start;
+        let Range { start, end } = self.shown.bytes(document);
         let visible = document.text().get(start..end).unwrap_or_default();
         let stroke = Stroke::new(1.0, self.context.tokens.warning);
         for found in pattern.matches(visible) {
@@ -410,7 +490,7 @@ impl Painting<'_> {
     }
 
     fn caret(&self, ui: &Ui, response: &Response) {
-        let Some(row) = caret_rect(self.context, self.geometry, self.lines, self.layouts) else { return };
+        let Some(row) = caret_rect(self.context, self.geometry, self.shown) else { return };
         let row = row.shrink2(egui::vec2(0.0, 1.5));
         if !response.has_focus() {
             return;
@@ -440,15 +520,10 @@ impl Painting<'_> {
 }
 
 /// Where the caret is on screen, if its line is visible.
-fn caret_rect(
-    context: &Context<'_>,
-    geometry: &Geometry,
-    lines: &Range<usize>,
-    layouts: &[LineLayout],
-) -> Option<Rect> {
+fn caret_rect(context: &Context<'_>, geometry: &Geometry<'_>, shown: &ShownLines) -> Option<Rect> {
     let head = context.state.document.caret().head;
     let line = context.state.document.line_at(head);
-    let layout = layouts.get(line.checked_sub(lines.start)?)?;
+    let layout = shown.layout_of(line)?;
     let x = geometry.origin.x + layout.x_of(context, head);
     Some(geometry.row(line, x..x + 1.0))
 }
@@ -460,7 +535,14 @@ fn shifted_problems<'a>(context: &Context<'a>, shift: Shift) -> Vec<(&'a Problem
     problems.iter().filter_map(|problem| Some((problem, shift.span(problem.span)?))).collect()
 }
 
-fn paint_gutter(ui: &Ui, context: &Context<'_>, geometry: &Geometry, lines: &Range<usize>, shift: Shift) {
+fn paint_gutter(
+    ui: &Ui,
+    context: &Context<'_>,
+    geometry: &Geometry<'_>,
+    shown: &ShownLines,
+    shift: Shift,
+    foldable: &[usize],
+) {
     let tokens = context.tokens;
     let document = &context.state.document;
     let clip = ui.clip_rect();
@@ -475,11 +557,24 @@ fn paint_gutter(ui: &Ui, context: &Context<'_>, geometry: &Geometry, lines: &Ran
         let entry = worst.entry(line).or_insert(problem.severity);
         *entry = (*entry).min(problem.severity);
     }
-    for line in lines.clone() {
-        let row = geometry.row(line, left..left + geometry.gutter_width - 1.5 * geometry.character_width);
+    let signs = fold_signs(geometry, clip);
+    for &line in &shown.lines {
+        let row = geometry.row(line, left..signs.min);
         let color = if line == current { tokens.text } else { tokens.text_faint };
         let number = (line + 1).to_string();
         painter.text(row.right_center(), Align2::RIGHT_CENTER, number, geometry.font.clone(), color);
+        let is_folded = geometry.rows.is_folded_at(line);
+        if is_folded || foldable.binary_search(&line).is_ok() {
+            let sign = if is_folded { Icon::ChevronRight } else { Icon::ChevronDown };
+            let at = Pos2::new(signs.center(), row.center().y);
+            icon::paint(
+                &painter,
+                sign,
+                Rect::from_center_size(at, egui::Vec2::ZERO),
+                10.0,
+                tokens.text_faint,
+            );
+        }
         if let Some(&severity) = worst.get(&line) {
             let (sign, color) = severity_sign(tokens, severity);
             let at = Pos2::new(left + space::M + 2.0, row.center().y);

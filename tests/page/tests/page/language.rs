@@ -1,0 +1,116 @@
+//! The editor's help with real keys: complete, hover, rename, fix, format.
+//!
+//! With `ENROUTE_RECORDING` naming a folder, a picture of the page after each press is kept there.
+
+use std::{env, fs, path::PathBuf};
+
+use anyhow::{Context as _, Result};
+use xtask::browser::{Key, Modifiers};
+
+use crate::opened::Opened;
+
+/// A mission small enough to be read whole, with everything in it still to be done.
+const MISSION: &str = "var LAMP : {ON, OFF};
+primitive Drive(to)[2,4];
+location Ridge (10, 20);
+scenario Survey = { Drive(Ridge) };
+";
+
+struct Recording {
+    page: Opened,
+    folder: Option<PathBuf>,
+    count: u32,
+}
+
+impl Recording {
+    fn of(source: &str) -> Result<Self> {
+        let page = Opened::with_fragment("")?;
+        page.tab.evaluate(&format!("enroute.setSource({})", serde_json::to_string(source)?))?;
+        page.settle()?;
+        Ok(Self { page, folder: env::var_os("ENROUTE_RECORDING").map(PathBuf::from), count: 0 })
+    }
+
+    fn keep(&mut self, name: &str) -> Result<()> {
+        self.page.tab.next_frame()?;
+        self.count += 1;
+        if let Some(folder) = &self.folder {
+            fs::create_dir_all(folder)?;
+            fs::write(folder.join(format!("{name}-{:02}.png", self.count)), self.page.tab.screenshot_png()?)?;
+        }
+        Ok(())
+    }
+
+    fn press(&mut self, key: Key, modifiers: Modifiers) -> Result<()> {
+        self.page.tab.press(key, modifiers)?;
+        self.keep("press")
+    }
+
+    fn source_has(&self, text: &str) -> Result<()> {
+        let text = serde_json::to_string(text)?;
+        self.page.tab.wait_until(&format!("enroute.source().includes({text})"))?;
+        Ok(())
+    }
+
+    fn widget(&self, role: &str, label: &str) -> Result<()> {
+        let (role, label) = (serde_json::to_string(role)?, serde_json::to_string(label)?);
+        self.page.tab.wait_until(&format!("enroute.widgets({role}, {label}).length > 0"))?;
+        Ok(())
+    }
+}
+
+#[test]
+fn keys_complete_a_value_rename_a_name_fix_a_mistake_and_format_the_text() -> Result<()> {
+    let mut recording = Recording::of(MISSION)?;
+
+    // Completion knows that a variable's value is wanted, and Tab takes the chosen one.
+    recording.page.place_caret_after("Drive(Ridge)")?;
+    recording.page.tab.type_text("; LAMP=")?;
+    recording.widget("button", "ON")?;
+    recording.widget("button", "OFF")?;
+    recording.keep("complete")?;
+    recording.press(Key::Tab, Modifiers::NONE)?;
+    recording.page.tab.wait_until("/LAMP=O(N|FF) }/.test(enroute.source())")?;
+
+    // F2 renames the declaration and the call at once, as one step of undo.
+    recording.page.place_caret_after("primitive Dri")?;
+    recording.press(Key::Function(2), Modifiers::NONE)?;
+    recording.page.wait_for("state.dialog === 'rename'")?;
+    recording.press(Key::Character('a'), Modifiers::CONTROL)?;
+    recording.page.tab.type_text("Go")?;
+    recording.press(Key::Enter, Modifiers::NONE)?;
+    recording.source_has("primitive Go(to)")?;
+    recording.source_has("{ Go(Ridge)")?;
+    recording.press(Key::Character('z'), Modifiers::CONTROL)?;
+    recording.source_has("{ Drive(Ridge)")?;
+    recording.press(Key::Character('y'), Modifiers::CONTROL)?;
+    recording.source_has("{ Go(Ridge)")?;
+
+    // A wrong name is told, and Control with the full stop mends it.
+    recording.page.place_caret_after("Go(Ridg")?;
+    recording.press(Key::Delete, Modifiers::NONE)?;
+    recording.page.wait_for("state.diagnostics.some((it) => it.message.includes('Ridg'))")?;
+    recording.press(Key::Character('.'), Modifiers::CONTROL)?;
+    recording.press(Key::Enter, Modifiers::NONE)?;
+    recording.source_has("Go(Ridge)")?;
+    recording.page.wait_for("!state.diagnostics.some((it) => it.message.includes('`Ridg`'))")?;
+
+    // Alt, Shift and F give the scenario its lines.
+    recording.press(Key::Character('f'), Modifiers::ALT | Modifiers::SHIFT)?;
+    recording.page.tab.wait_until("/scenario Survey = \\{\\n    Go\\(Ridge\\)/.test(enroute.source())")?;
+    recording.keep("formatted")?;
+    Ok(())
+}
+
+#[test]
+fn resting_on_a_call_shows_its_signature() -> Result<()> {
+    let mut recording = Recording::of(MISSION)?;
+    recording.page.place_caret_after("scenario Survey = { Driv")?;
+    // The hidden field in which input methods compose lies at the caret.
+    let place = recording.page.tab.evaluate(
+        "(() => { const box = document.querySelector('input').getBoundingClientRect(); return [box.x, box.y]; })()",
+    )?;
+    let at = |index: usize| place[index].as_f64().context("the field has a place");
+    recording.page.tab.hover(at(0)?, at(1)? + 8.0)?;
+    recording.widget("text", "primitive Drive(to)")?;
+    recording.keep("hover")
+}
