@@ -1,18 +1,26 @@
-//! `cargo xtask bench`: the benchmark tables of all crates, one after the other so that none disturbs another.
+//! `cargo xtask bench`: the benchmark tables of all crates, one after the other so that none disturbs another; with
+//! `--peers` the tables of `bench/peers`, which run the same problems through other programs too.
 
 use std::{fs, path::Path};
 
 use anyhow::{Context as _, Result, bail};
-use xtask::process::{cargo, root, run};
+use xtask::process::{cargo, root, run, target_dir};
 
 /// What to measure.
 #[derive(clap::Args)]
 pub(crate) struct Options {
-    /// Also measures other programs that solve the same problems, where they are installed.
-    #[arg(long)]
+    /// Runs the same problems through ours and through other programs that solve them, instead of ours alone. Sets up
+    /// what it needs below the target folder; what is not there is a line in the table.
+    #[arg(long, conflicts_with = "tables")]
     peers: bool,
-    /// Only the tables of these crates, or only these tables.
+    /// With `--peers`, only this comparison: planner, stn, layout, paths, language or automata. May be given again.
+    #[arg(long, requires = "peers")]
     only: Vec<String>,
+    /// With `--peers`, fewer and smaller problems, to see that everything runs.
+    #[arg(long, requires = "peers")]
+    quick: bool,
+    /// Only the tables of these crates, or only these tables.
+    tables: Vec<String>,
 }
 
 /// One benchmark program.
@@ -23,12 +31,15 @@ struct Table {
 
 /// Runs the tables.
 pub(crate) fn run_all(options: &Options) -> Result<()> {
+    if options.peers {
+        return run_peers(options);
+    }
     let tables: Vec<Table> = find_tables(&root().join("crates"))?
         .into_iter()
         .filter(|table| {
-            options.only.is_empty()
-                || options.only.contains(&table.package)
-                || options.only.contains(&table.name)
+            options.tables.is_empty()
+                || options.tables.contains(&table.package)
+                || options.tables.contains(&table.name)
         })
         .collect();
     if tables.is_empty() {
@@ -36,14 +47,31 @@ pub(crate) fn run_all(options: &Options) -> Result<()> {
     }
     for Table { package, name } in tables {
         println!("\n{package}: {name}");
-        let mut command = cargo();
-        command.args(["bench", "--quiet", "--package", &package, "--bench", &name]);
-        if options.peers {
-            command.args(["--", "--peers"]);
-        }
-        run(&mut command)?;
+        run(cargo().args(["bench", "--quiet", "--package", &package, "--bench", &name]))?;
     }
     Ok(())
+}
+
+/// Builds and runs `bench/peers`, a workspace of its own so that nobody else has to build the peers.
+fn run_peers(options: &Options) -> Result<()> {
+    let folder = target_dir().join("peers");
+    let mut command = cargo();
+    command.args([
+        "run",
+        "--quiet",
+        "--release",
+        "--manifest-path",
+        "bench/peers/Cargo.toml",
+        "--target-dir",
+    ]);
+    command.arg(&folder).args(["--", "--work"]).arg(&folder);
+    for subject in &options.only {
+        command.args(["--only", subject]);
+    }
+    if options.quick {
+        command.arg("--quick");
+    }
+    run(&mut command)
 }
 
 /// The programs in the `benches` folders of the crates, in alphabetical order.
