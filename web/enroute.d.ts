@@ -78,6 +78,24 @@ export interface PlantState {
   conflicts: string[] | null;
 }
 
+/** A path between two waypoints. Lengths in metres, durations in mission units. */
+export interface Leg {
+  to: string;
+  path: [number, number][];
+  length_m: number;
+  /** Beyond the vehicle's rim and margin; null where there is no obstacle. */
+  min_clearance_m: number | null;
+  max_slope_deg: number;
+  duration: [Time, Time];
+}
+
+/** A traverse of the plan with its path. */
+export interface Traverse {
+  activity: string | null;
+  vehicles: (string | null)[];
+  legs: Leg[];
+}
+
 /** Everything the page shows, for one revision of the text. */
 export interface State {
   /** Counts the edits of the text; everything below belongs to the revision it says. */
@@ -92,6 +110,7 @@ export interface State {
   /** The run of a control program; `null` for a mission. */
   hca: ProgramRun | null;
   vehicles: Vehicle[];
+  traverses: Traverse[] | null;
   time: Time;
   selection: unknown;
   /** What draws the canvas: WebGPU or WebGL2. */

@@ -20,7 +20,10 @@ fn traverse(network: &Network, name: &str) -> OccurrenceId {
 }
 
 fn legs(lengths: &[&[f64]]) -> Vec<PathLeg> {
-    lengths.iter().map(|lengths| PathLeg { segment_lengths_m: lengths.to_vec() }).collect()
+    lengths
+        .iter()
+        .map(|lengths| PathLeg { segment_lengths_m: lengths.to_vec(), ..PathLeg::default() })
+        .collect()
 }
 
 fn spec_path(network: &Network, lengths: &[&[f64]], may_stop: bool) -> TraversePath {
@@ -126,6 +129,24 @@ fn seconds_are_thousandths_of_a_millisecond_count() {
     let arc = after.arcs.last().expect("an arc");
     // 10 / 3 s, rounded up to the millisecond; at speed zero there is no greatest duration.
     assert_eq!((arc.lower, arc.upper), (Rational::new(3334, 1000), rmpl::Bound::Infinite));
+}
+
+#[test]
+fn a_slope_that_slows_the_rover_down_makes_its_segment_longer_in_time() {
+    let before = enroute();
+    let mut path = spec_path(&before, &[&[300.0, 500.0], &[415.0]], false);
+    // 300 m at 0.04 m/s are 125 minutes, more than the 111 at the least speed; 500 m at 0.048 are 173.611 minutes.
+    path.legs[0].slope_speeds_mps = vec![Some(0.04), Some(0.048)];
+    let after = insert_paths(&before, &[path], 60).expect("a path");
+    let durations: Vec<(i64, i64)> = (after.arcs.iter())
+        .filter(|arc| arc.kind == ArcKind::Path)
+        .map(|arc| (arc.lower, arc.upper.finite().expect("it may not stop")))
+        .map(|(lower, upper)| {
+            let thousandths = |time: Rational| (time * Rational::from_integer(1000)).round().to_integer();
+            (thousandths(lower), thousandths(upper))
+        })
+        .collect();
+    assert_eq!(durations, [(125_000, 125_000), (173_611, 185_185), (138_333, 153_704)]);
 }
 
 #[test]

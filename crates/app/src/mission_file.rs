@@ -24,6 +24,11 @@ pub const EXAMPLES: &[Example] = &[
         source: include_str!("../../../assets/missions/both-paths.rmpl"),
     },
     Example {
+        name: "detour",
+        title: "A detour",
+        source: include_str!("../../../assets/missions/detour.rmpl"),
+    },
+    Example {
         name: "negative-cycle",
         title: "A negative cycle",
         source: include_str!("../../../assets/missions/negative-cycle.rmpl"),

@@ -340,9 +340,13 @@ fn the_path_of_a_traverse_is_strung_above_its_arc() {
     let network = enroute();
     let traverse =
         network.occurrences.iter().position(|it| it.name == "Group-Traverse-Path#1").expect("it is there");
+    let leg = |length_m: f64, count: usize| PathLeg {
+        segment_lengths_m: vec![length_m; count],
+        ..PathLeg::default()
+    };
     let path = TraversePath {
         occurrence: OccurrenceId::from_index(traverse),
-        legs: vec![PathLeg { segment_lengths_m: vec![10.0; 7] }, PathLeg { segment_lengths_m: vec![5.0; 4] }],
+        legs: vec![leg(10.0, 7), leg(5.0, 4)],
         speed_mps: (Rational::new(1, 10), Rational::new(1, 2)),
         may_stop: false,
     };

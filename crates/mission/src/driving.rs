@@ -1,21 +1,31 @@
 //! Where vehicles are over time: the paths of a plan's traverses laid along the times of a schedule.
 //!
-//! The leader of a traverse drives its path at constant speed from the traverse's start to its end; the others follow
-//! in its track, each a fixed distance behind the one before, and stop that much short of the end.
+//! The leader of a traverse drives its path at constant speed from the traverse's start to its end; the others keep
+//! formation behind it. When the same vehicles drive on, their formation goes on along the path before.
 
+use std::sync::Arc;
+
+use motion::{Formation, Path};
 use rmpl::Rational;
+use terrain::ConfigurationSpace;
+use tpn::OccurrenceId;
 
 use crate::snapshot::{Keyframe, VehicleMotion};
+use crate::traverse::segment_length_m;
 
 /// One traverse with times: who drives which way, from when to when.
 #[derive(Clone, Debug)]
 pub struct Drive {
+    /// The activity.
+    pub occurrence: OccurrenceId,
     /// The vehicles, as indices into the program's world; the first leads.
     pub vehicles: Vec<u32>,
-    /// How far behind the leader each vehicle drives, in metres; zero for the leader.
-    pub behind_m: Vec<f64>,
-    /// The leader's path, in metres.
-    pub path_m: Vec<[f64; 2]>,
+    /// Metres between the centres of two of them, at least.
+    pub spacing_m: f64,
+    /// Where they can be.
+    pub space: Arc<ConfigurationSpace>,
+    /// The leader's path.
+    pub path: Path,
     /// Departure, in mission units.
     pub start: Rational,
     /// Arrival.
@@ -24,96 +34,164 @@ pub struct Drive {
 
 /// Times are rounded to this fraction of a unit: positions between keyframes are interpolated anyway.
 const TICKS_PER_UNIT: f64 = 1000.0;
+/// Followers are placed this often along the leader's path, in metres.
+const FOLLOWER_STEP_M: f64 = 0.4;
+/// A place is left out where driving evenly past it comes this near to it, in metres.
+const EVEN_M: f64 = 0.02;
 
 /// The motions of all vehicles that move, in the order of the vehicles.
 pub fn motions(drives: &[Drive]) -> Vec<VehicleMotion> {
     let mut motions: Vec<VehicleMotion> = Vec::new();
-    for drive in drives {
-        for (&vehicle, &behind_m) in drive.vehicles.iter().zip(&drive.behind_m) {
-            let at = motions.iter().position(|motion| motion.vehicle == vehicle).unwrap_or_else(|| {
-                motions.push(VehicleMotion { vehicle, keyframes: Vec::new() });
+    for (index, drive) in drives.iter().enumerate() {
+        let before = &drives[..index];
+        for (vehicle, track) in drive.vehicles.iter().zip(tracks(drive, before)) {
+            let at = motions.iter().position(|motion| motion.vehicle == *vehicle).unwrap_or_else(|| {
+                motions.push(VehicleMotion { vehicle: *vehicle, keyframes: Vec::new() });
                 motions.len() - 1
             });
-            let before = motions[at].keyframes.last().map(|frame| frame.position_m);
-            let track = track_behind(&drive.path_m, behind_m, before);
-            motions[at].keyframes.extend(keyframes(&track, drive.start, drive.end));
+            let frames = &mut motions[at].keyframes;
+            // A vehicle that comes from elsewhere joins the formation on the way.
+            let joins = frames.last().filter(|last| {
+                track
+                    .first()
+                    .is_some_and(|first| segment_length_m(last.position_m, first.position_m) > EVEN_M)
+            });
+            let from = joins.map(|last| last.position_m);
+            frames.extend(keyframes(&track, from, drive.start, drive.end));
         }
     }
     motions.sort_by_key(|motion| motion.vehicle);
     motions
 }
 
-/// The way of a vehicle `behind_m` behind the leader: from where it is, or from behind the start, along the leader's
-/// path, to `behind_m` before its end.
-fn track_behind(path_m: &[[f64; 2]], behind_m: f64, before: Option<[f64; 2]>) -> Vec<[f64; 2]> {
-    let (Some(&first), Some(&second)) = (path_m.first(), path_m.get(1)) else {
-        return before.or(path_m.first().copied()).into_iter().collect();
-    };
-    if behind_m <= 0.0 {
-        return path_m.to_vec();
-    }
-    let direction = unit(first, second);
-    let start = before.unwrap_or([first[0] - direction[0] * behind_m, first[1] - direction[1] * behind_m]);
-    let mut track = vec![start];
-    let total: f64 = path_m.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
-    let mut left = total - behind_m;
-    if left <= 0.0 {
-        return track;
-    }
-    track.push(first);
-    for pair in path_m.windows(2) {
-        let length = distance(pair[0], pair[1]);
-        if length >= left {
-            let part = if length > 0.0 { left / length } else { 0.0 };
-            track.push([0, 1].map(|axis| pair[0][axis] + part * (pair[1][axis] - pair[0][axis])));
-            break;
-        }
-        track.push(pair[1]);
-        left -= length;
-    }
-    track
+/// A place on the way of a vehicle, and which share of its time has then gone by.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    share: f64,
+    position_m: [f64; 2],
 }
 
-fn keyframes(track: &[[f64; 2]], start: Rational, end: Rational) -> Vec<Keyframe> {
-    let total: f64 = track.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
-    let mut frames = Vec::with_capacity(track.len());
-    let (from, until) = (ratio(start), ratio(end));
-    let mut driven = 0.0;
-    for (index, &position_m) in track.iter().enumerate() {
+/// The ways of the vehicles of a drive, the leader's first.
+fn tracks(drive: &Drive, before: &[Drive]) -> Vec<Vec<Place>> {
+    let (path, driven_m) = prolonged_back(drive, before);
+    let length_m = drive.path.length_m();
+    let share = |way_m: f64| if length_m > 0.0 { way_m / length_m } else { 1.0 };
+    let mut leader = Vec::with_capacity(drive.path.points_m.len());
+    let mut way_m = 0.0;
+    for (index, &position_m) in drive.path.points_m.iter().enumerate() {
         if index > 0 {
-            driven += distance(track[index - 1], position_m);
+            way_m += segment_length_m(drive.path.points_m[index - 1], position_m);
         }
-        let ahead = track.get(index + 1).copied();
-        let heading_rad = match (ahead, index.checked_sub(1).map(|before| track[before])) {
-            (Some(next), _) if distance(position_m, next) > 1e-9 => heading(position_m, next),
-            (_, Some(before)) => heading(before, position_m),
-            _ => 0.0,
+        leader.push(Place { share: share(way_m), position_m });
+    }
+    let mut tracks = vec![leader];
+    let followers = drive.vehicles.len() as u32 - 1;
+    if followers == 0 {
+        return tracks;
+    }
+    tracks.resize(drive.vehicles.len(), Vec::new());
+    let formation = Formation { spacing_m: drive.spacing_m };
+    let steps = (length_m / FOLLOWER_STEP_M).ceil().max(1.0) as u32;
+    for step in 0..=steps {
+        let part = f64::from(step) / f64::from(steps);
+        let places = formation.positions_m(&drive.space, &path, driven_m + part * length_m, followers);
+        for (track, &position_m) in tracks.iter_mut().zip(&places).skip(1) {
+            track.push(Place { share: part, position_m });
+        }
+    }
+    for track in tracks.iter_mut().skip(1) {
+        *track = even_stretches(track);
+    }
+    tracks
+}
+
+/// The path with what the same vehicles drove directly before it, and how long that was in metres: the formation
+/// goes on from where it stopped.
+fn prolonged_back(drive: &Drive, before: &[Drive]) -> (Path, f64) {
+    let mut points: Vec<[f64; 2]> = drive.path.points_m.clone();
+    let mut driven_m = 0.0;
+    for earlier in before.iter().rev() {
+        let ends_here = earlier.path.points_m.last() == points.first();
+        if earlier.vehicles != drive.vehicles || !ends_here {
+            let is_other_group = !earlier.vehicles.iter().any(|vehicle| drive.vehicles.contains(vehicle));
+            if is_other_group {
+                continue;
+            }
+            break;
+        }
+        driven_m += earlier.path.length_m();
+        let mut longer = earlier.path.points_m.clone();
+        longer.extend(points.iter().skip(1));
+        points = longer;
+    }
+    (Path::new(points), driven_m)
+}
+
+/// The same way with fewer places: none that an even drive between its neighbours passes.
+fn even_stretches(track: &[Place]) -> Vec<Place> {
+    const LONGEST: usize = 64;
+    let mut kept: Vec<Place> = track.first().copied().into_iter().collect();
+    let mut from = 0;
+    while from + 1 < track.len() {
+        let is_even = |to: usize| {
+            let (a, b) = (track[from], track[to]);
+            track[from + 1..to].iter().all(|place| {
+                let part = (place.share - a.share) / (b.share - a.share);
+                segment_length_m(mix(a.position_m, b.position_m, part), place.position_m) <= EVEN_M
+            })
+        };
+        let farthest = (from + LONGEST).min(track.len() - 1);
+        let to = (from + 2..=farthest).take_while(|&to| is_even(to)).last().unwrap_or(from + 1);
+        kept.push(track[to]);
+        from = to;
+    }
+    kept
+}
+
+/// The share of a drive in which a vehicle that comes from elsewhere joins the others.
+const JOINING: f64 = 0.1;
+
+fn keyframes(track: &[Place], from: Option<[f64; 2]>, start: Rational, end: Rational) -> Vec<Keyframe> {
+    let mut places: Vec<Place> = track.to_vec();
+    if let Some(position_m) = from {
+        places.retain(|place| place.share >= JOINING);
+        places.insert(0, Place { share: 0.0, position_m });
+    }
+    let (begin, length) = (ratio(start), ratio(end) - ratio(start));
+    let mut heading_rad = 0.0;
+    let mut frames = Vec::with_capacity(places.len());
+    for (index, place) in places.iter().enumerate() {
+        let next = places[index + 1..].iter().find(|next| is_apart(place, next));
+        let before = places[..index].iter().rev().find(|before| is_apart(before, place));
+        heading_rad = match (next, before) {
+            (Some(next), _) => heading(place.position_m, next.position_m),
+            (None, Some(before)) => heading(before.position_m, place.position_m),
+            (None, None) => heading_rad,
         };
         let time = if index == 0 {
             start
-        } else if index + 1 == track.len() || total <= 0.0 {
+        } else if index + 1 == places.len() {
             end
         } else {
-            let exact = from + driven / total * (until - from);
+            let exact = begin + place.share * length;
             Rational::new((exact * TICKS_PER_UNIT).round() as i64, TICKS_PER_UNIT as i64).clamp(start, end)
         };
-        frames.push(Keyframe { time, position_m, heading_rad });
+        frames.push(Keyframe { time, position_m: place.position_m, heading_rad });
     }
     frames
+}
+
+/// Whether two places are so far apart that the way between them shows a heading.
+fn is_apart(a: &Place, b: &Place) -> bool {
+    segment_length_m(a.position_m, b.position_m) > 1e-3
 }
 
 fn ratio(time: Rational) -> f64 {
     *time.numer() as f64 / *time.denom() as f64
 }
 
-fn distance(from: [f64; 2], to: [f64; 2]) -> f64 {
-    let (east, north) = (to[0] - from[0], to[1] - from[1]);
-    (east * east + north * north).sqrt()
-}
-
-fn unit(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
-    let length = distance(from, to).max(1e-12);
-    [(to[0] - from[0]) / length, (to[1] - from[1]) / length]
+fn mix(from: [f64; 2], to: [f64; 2], part: f64) -> [f64; 2] {
+    [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis]))
 }
 
 fn heading(from: [f64; 2], to: [f64; 2]) -> f64 {
@@ -122,21 +200,32 @@ fn heading(from: [f64; 2], to: [f64; 2]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use terrain::{GridFrame, Occupancy};
+
     use super::*;
 
-    fn drive() -> Drive {
+    const SPACING_M: f64 = 2.0;
+
+    fn drive(points_m: Vec<[f64; 2]>, times: [i64; 2]) -> Drive {
+        let frame = GridFrame { width: 100, height: 100, cell_size_m: 0.6, origin_m: [-20.0, -20.0] };
         Drive {
+            occurrence: OccurrenceId::from_index(0),
             vehicles: vec![0, 1],
-            behind_m: vec![0.0, 2.0],
-            path_m: vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]],
-            start: Rational::from(10),
-            end: Rational::from(30),
+            spacing_m: SPACING_M,
+            space: Arc::new(ConfigurationSpace::new(Occupancy::free(frame), 0.7)),
+            path: Path::new(points_m),
+            start: times[0].into(),
+            end: times[1].into(),
         }
+    }
+
+    fn first() -> Drive {
+        drive(vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]], [10, 30])
     }
 
     #[test]
     fn a_leader_drives_its_path_at_constant_speed() {
-        let motions = motions(&[drive()]);
+        let motions = motions(&[first()]);
         assert_eq!(motions[0].at(5.0).map(|(place, _)| place), Some([0.0, 0.0]));
         assert_eq!(motions[0].at(15.0).map(|(place, _)| place), Some([5.0, 0.0]));
         assert_eq!(motions[0].at(20.0).map(|(place, _)| place), Some([10.0, 0.0]));
@@ -144,17 +233,18 @@ mod tests {
     }
 
     #[test]
-    fn a_follower_keeps_behind_and_goes_on_from_where_it_stopped() {
-        let mut second = drive();
-        second.path_m = vec![[10.0, 10.0], [0.0, 10.0]];
-        (second.start, second.end) = (Rational::from(40), Rational::from(50));
-        let motions = motions(&[drive(), second]);
-        let place = |time: f64| motions[1].at(time).map(|(place, _)| place);
-        assert_eq!(place(0.0), Some([-2.0, 0.0]));
-        assert_eq!(place(35.0), Some([10.0, 8.0]));
-        assert_eq!(place(60.0), Some([2.0, 10.0]));
-        let [leader, follower] =
-            [motions[0].at(25.0), motions[1].at(25.0)].map(|it| it.unwrap_or_default().0);
-        assert!((distance(leader, follower) - 2.0).abs() < 0.3, "{leader:?} {follower:?}");
+    fn a_follower_never_comes_nearer_than_its_spacing_and_goes_on_from_where_it_stopped() {
+        let second = drive(vec![[10.0, 10.0], [0.0, 10.0]], [40, 50]);
+        let motions = motions(&[first(), second]);
+        let place = |vehicle: usize, time: f64| motions[vehicle].at(time).expect("it moves").0;
+        for tenth in 0..600 {
+            let time = f64::from(tenth) / 10.0;
+            let apart = segment_length_m(place(0, time), place(1, time));
+            assert!(apart >= SPACING_M - 2.0 * EVEN_M, "{apart} m apart at {time}");
+            assert!(apart <= 3.0 * SPACING_M, "{apart} m apart at {time}");
+        }
+        assert_eq!(place(1, 30.0), place(1, 40.0));
+        let moved = segment_length_m(place(1, 39.9), place(1, 40.1));
+        assert!(moved < 0.5, "it jumps by {moved} m");
     }
 }

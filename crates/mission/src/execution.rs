@@ -110,7 +110,7 @@ impl Execution {
                 let (network, plan) = without_facts(&executed.network, executed.plan);
                 let as_run = with_times(&plan, &times);
                 let traverses = planned.traverses.clone();
-                let motions = planning::motions_of(program, &network, &as_run, &traverses);
+                let motions = planning::motions_of(program, &network, &as_run, planned);
                 Executed { from: executed.from, network, plan, times, traverses, motions }
             })
             .collect();

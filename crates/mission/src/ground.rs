@@ -9,7 +9,7 @@ use rmpl::{Code, Diagnostic};
 use sha2::{Digest as _, Sha256};
 use smol_str::SmolStr;
 use terrain::format::ImportOptions;
-use terrain::{ConfigurationSpace, GridFrame, Obstacle, Occupancy, Terrain};
+use terrain::{ConfigurationSpace, GridFrame, Obstacle, Terrain};
 
 use crate::snapshot::MapKey;
 
@@ -23,7 +23,39 @@ const FLAT_CELLS: u32 = 256;
 pub struct Grounds {
     imported: BTreeMap<SmolStr, Imported>,
     maps: BTreeMap<MapKey, Arc<Terrain>>,
-    spaces: Vec<(SpaceKey, Arc<ConfigurationSpace>)>,
+    spaces: Vec<(SpaceKey, FreeSpace)>,
+}
+
+/// Where a kind of vehicle can be.
+#[derive(Clone, Debug)]
+pub struct FreeSpace {
+    /// With circumradius and margin, as SPEC 7.1 says.
+    pub exact: Arc<ConfigurationSpace>,
+    /// With more room around the vehicle, most room first: where paths are looked for first.
+    pub roomy: Vec<Arc<ConfigurationSpace>>,
+}
+
+/// Metres of room beyond the margin that a path keeps where that makes it little longer.
+const ROOM_M: [f64; 2] = [1.5, 0.5];
+
+/// The clearance of a map for one kind of vehicle, as a picture over the ground.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClearanceOverlay {
+    /// Where the cells lie.
+    pub frame: GridFrame,
+    /// Metres from a vehicle's rim and margin to the nearest obstacle, row by row from the south; negative where it
+    /// can't be, infinite on a map without obstacles.
+    pub clearance_m: Vec<f32>,
+}
+
+impl ClearanceOverlay {
+    /// For vehicles of `model` among the obstacles of `world`. Linear in the number of cells: keep it while the map,
+    /// the obstacles and the model stay the same.
+    pub fn new(map: &Terrain, world: &World, model: &VehicleModel) -> Self {
+        let shapes: Vec<Obstacle> = world.obstacles.iter().map(|it| obstacle(&it.shape)).collect();
+        let space = model.configuration_space(map, &shapes);
+        Self { frame: *space.frame(), clearance_m: space.clearance_map_m() }
+    }
 }
 
 struct Imported {
@@ -80,28 +112,23 @@ impl Grounds {
     }
 
     /// The free space of vehicles of `model` among the mission's obstacles.
-    pub fn space(
-        &mut self,
-        key: &MapKey,
-        map: &Terrain,
-        world: &World,
-        model: &VehicleModel,
-    ) -> Arc<ConfigurationSpace> {
+    pub fn space(&mut self, key: &MapKey, map: &Terrain, world: &World, model: &VehicleModel) -> FreeSpace {
         let obstacles: Vec<ObstacleShape> = world.obstacles.iter().map(|it| it.shape.clone()).collect();
         let wanted = SpaceKey { map: key.clone(), model: SmolStr::new(model.name), obstacles };
         if let Some(at) = self.spaces.iter().position(|(known, _)| *known == wanted) {
             let found = self.spaces.remove(at);
-            let space = Arc::clone(&found.1);
+            let space = found.1.clone();
             self.spaces.push(found);
             return space;
         }
         let shapes: Vec<Obstacle> = wanted.obstacles.iter().map(obstacle).collect();
-        let occupancy = Occupancy::of_terrain(map, &shapes, &model.traversability(map));
-        let space = Arc::new(ConfigurationSpace::new(occupancy, model.radius_m()));
+        let exact = model.configuration_space(map, &shapes);
+        let wider = |room_m: f64| Arc::new(exact.with_radius_m(exact.radius_m() + room_m));
+        let space = FreeSpace { roomy: ROOM_M.map(wider).into(), exact: Arc::new(exact) };
         if self.spaces.len() >= MOST_SPACES {
             self.spaces.remove(0);
         }
-        self.spaces.push((wanted, Arc::clone(&space)));
+        self.spaces.push((wanted, space.clone()));
         space
     }
 
@@ -151,7 +178,8 @@ fn extent(world: &World) -> Option<([f64; 2], [f64; 2])> {
     }))
 }
 
-fn obstacle(shape: &ObstacleShape) -> Obstacle {
+/// A declared obstacle as the terrain knows it.
+pub fn obstacle(shape: &ObstacleShape) -> Obstacle {
     match shape {
         ObstacleShape::Circle { center_m, radius_m } => {
             Obstacle::Circle { center_m: *center_m, radius_m: *radius_m }

@@ -8,9 +8,11 @@ pub mod compare;
 pub mod control;
 mod core;
 pub mod driving;
+pub mod encounter;
 pub mod execution;
-mod ground;
+pub mod ground;
 pub mod json_text;
+pub mod paths_json;
 pub mod planning;
 pub mod problem;
 pub mod request;
@@ -23,12 +25,13 @@ pub mod traverse;
 pub use self::core::{Core, Surroundings, compile};
 pub use control::{Control, read_control};
 pub use execution::{Executed, Execution};
-pub use ground::Grounds;
+pub use ground::{ClearanceOverlay, FreeSpace, Grounds};
 pub use kirk::Search as SearchKind;
 pub use problem::{Problem, TextEdit, TextFix};
 pub use request::{Goal, Request, Response, Update};
 pub use robustness::{Robustness, RobustnessSettings, Tally, Uncertainty};
 pub use snapshot::{
-    Encounter, Keyframe, Leg, MapKey, Planning, Snapshot, Stage, Timings, Traverse, Undrivable, VehicleMotion,
+    Encounter, Keyframe, Leg, MapKey, PathFigures, Planning, Snapshot, Stage, Timings, Traverse, Undrivable,
+    VehicleMotion,
 };
 pub use traverse::Paths;

@@ -7,18 +7,20 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use executive::Facts;
-use kirk::{Constraint, Options, Outcome, Stats, Status};
+use kirk::{Constraint, CycleMember, Options, Outcome, Stats, Status};
+use motion::{SegmentTiming, SpeedLimits};
 use num_traits::ToPrimitive as _;
-use rmpl::program::Program;
+use rmpl::program::{Program, World};
 use rmpl::{Bound, Diagnostic, Rational};
-use terrain::Terrain;
+use terrain::{ConfigurationSpace, Terrain};
 use tpn::path::{PathLeg, TraversePath};
 use tpn::{ArcId, ArcKind, Network, OccurrenceId, Plan};
 
 use crate::driving::{self, Drive};
-use crate::ground::Grounds;
-use crate::snapshot::{Encounter, Leg, MapKey, Planning, Traverse, Undrivable, VehicleMotion};
-use crate::traverse::{self, Paths, Route, Waypoint};
+use crate::encounter;
+use crate::ground::{FreeSpace, Grounds};
+use crate::snapshot::{Encounter, Leg, MapKey, PathFigures, Planning, Traverse, Undrivable, VehicleMotion};
+use crate::traverse::{self, Paths, Preference, Route, Waypoint};
 
 /// What to plan and how.
 #[derive(Clone, Copy)]
@@ -46,6 +48,8 @@ pub struct Planned {
     pub planning: Arc<Planning>,
     /// The plan's traverses.
     pub traverses: Vec<Traverse>,
+    /// Where the vehicles of each traverse can be.
+    pub spaces: Vec<(OccurrenceId, Arc<ConfigurationSpace>)>,
     /// Where vehicles are over time.
     pub motions: Vec<VehicleMotion>,
     /// Vehicles too near each other.
@@ -100,6 +104,7 @@ pub fn without_paths(network: &Arc<Network>, outcome: Outcome) -> Planned {
         network: Arc::clone(network),
         planning,
         traverses: Vec::new(),
+        spaces: Vec::new(),
         motions: Vec::new(),
         encounters: Vec::new(),
         warnings: Vec::new(),
@@ -122,11 +127,12 @@ fn find_paths(
             continue;
         }
         let space = grounds.space(key, map, &problem.program.world, route.model);
-        let legs = paths.legs(&route, &space, problem.seed).map_err(|(leg, reason)| Undrivable {
-            occurrence: route.occurrence,
-            leg,
-            reason,
-        });
+        let mut legs = paths.legs(&route, &space, problem.seed, Preference::Roomy);
+        let does_not_fit = |legs: &Vec<Leg>| out_of_bounds(problem, &route, legs, map).is_some();
+        if legs.as_ref().is_ok_and(does_not_fit) {
+            legs = paths.legs(&route, &space, problem.seed, Preference::Shortest);
+        }
+        let legs = legs.map_err(|(leg, reason)| Undrivable { occurrence: route.occurrence, leg, reason });
         is_new = true;
         let waypoints = route.waypoints.clone();
         inserted.insert(route.occurrence, Inserted { waypoints, legs, route });
@@ -157,20 +163,83 @@ fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId, Inserted>
 }
 
 fn traverse_path(route: &Route, legs: &[Leg], map: &Terrain) -> Option<TraversePath> {
-    let lengths = |leg: &Leg| PathLeg {
-        segment_lengths_m: leg
-            .points_m
-            .windows(2)
-            .map(|pair| map.draped_length_m(pair[0], pair[1]))
-            .collect(),
-    };
+    let legs = legs.iter().map(|leg| {
+        let timings = timings(route, leg, map);
+        PathLeg {
+            segment_lengths_m: timings.iter().map(|timing| timing.ground_length_m).collect(),
+            slope_speeds_mps: timings.iter().map(|timing| timing.slope_speed_mps).collect(),
+        }
+    });
     let path = TraversePath {
         occurrence: route.occurrence,
-        legs: legs.iter().map(lengths).filter(|leg| !leg.segment_lengths_m.is_empty()).collect(),
+        legs: legs.filter(|leg| !leg.segment_lengths_m.is_empty()).collect(),
         speed_mps: route.speed_mps,
         may_stop: route.speed_mps.0 == Rational::default(),
     };
     (!path.legs.is_empty()).then_some(path)
+}
+
+fn timings(route: &Route, leg: &Leg, map: &Terrain) -> Vec<SegmentTiming> {
+    let [least_mps, greatest_mps] =
+        [route.speed_mps.0, route.speed_mps.1].map(|speed| speed.to_f64().unwrap_or(0.0));
+    let path = motion::Path::new(leg.points_m.clone());
+    motion::time_path(&path, map, route.model, SpeedLimits { least_mps, greatest_mps })
+}
+
+/// Why a traverse can't be driven within its own bounds (SPEC 7.3), if so.
+fn out_of_bounds(problem: &Problem<'_>, route: &Route, legs: &[Leg], map: &Terrain) -> Option<Undrivable> {
+    let arc = problem.network.occurrences[route.occurrence.index()].arc?;
+    let (lower, upper) = {
+        let arc = &problem.network.arcs[arc.index()];
+        (arc.lower, arc.upper)
+    };
+    let unit = problem.program.options.time_unit;
+    let path = traverse_path(route, legs, map)?;
+    let segments = tpn::path::segment_bounds(&path, unit.seconds()).ok()?;
+    let least: Rational = segments.iter().map(|segment| segment.least).sum();
+    let most = segments.iter().try_fold(Rational::default(), |sum, it| Some(sum + it.greatest.finite()?));
+    let length_m: f64 = path.legs.iter().flat_map(|leg| &leg.segment_lengths_m).sum();
+    let shown = |time: Rational| format!("{:.1}", time.to_f64().unwrap_or(0.0));
+    let reason = match (upper, most) {
+        (Bound::Finite(upper), _) if least > upper => format!(
+            "within its bounds: its path of {length_m:.0} m takes at least {}, and at most {} is allowed",
+            shown(least),
+            shown(upper)
+        ),
+        (_, Some(most)) if most < lower => format!(
+            "within its bounds: its path of {length_m:.0} m takes at most {} without stopping, and at least {} is \
+             asked for",
+            shown(most),
+            shown(lower)
+        ),
+        _ => return None,
+    };
+    Some(Undrivable { occurrence: route.occurrence, leg: 0, reason })
+}
+
+/// What the legs of a traverse come to.
+fn figures(
+    problem: &Problem<'_>,
+    route: &Route,
+    legs: &[Leg],
+    map: &Terrain,
+    space: &FreeSpace,
+) -> Vec<PathFigures> {
+    let unit_seconds = problem.program.options.time_unit.seconds();
+    let Some(path) = traverse_path(route, legs, map) else { return Vec::new() };
+    let bounds = tpn::path::segment_bounds(&path, unit_seconds).unwrap_or_default();
+    let of_leg = |(index, leg): (usize, &Leg)| {
+        let own = || bounds.iter().filter(move |segment| segment.leg as usize == index + 1);
+        let greatest = own().try_fold(Rational::default(), |sum, it| Some(sum + it.greatest.finite()?));
+        PathFigures {
+            length_m: path.legs.get(index).map_or(0.0, |leg| leg.segment_lengths_m.iter().sum()),
+            min_clearance_m: traverse::clearance_m(&space.exact, &leg.points_m),
+            max_slope_deg: traverse::steepest_slope_rad(map, &leg.points_m).to_degrees(),
+            least_duration: own().map(|segment| segment.least).sum(),
+            greatest_duration: greatest.map_or(Bound::Infinite, Bound::Finite),
+        }
+    };
+    legs.iter().enumerate().map(of_leg).collect()
 }
 
 /// Makes a traverse that can't be driven impossible: it would have to take no time and also one unit.
@@ -202,10 +271,17 @@ fn block(network: &mut Network, occurrence: OccurrenceId) {
 pub(crate) fn name_blocked(outcome: &mut Outcome, network: &Network, undrivable: &[Undrivable]) {
     let Some(failure) = &mut outcome.failure else { return };
     for reason in &mut failure.reasons {
-        let blocked = reason.cycle.iter().find_map(|member| {
+        let arc = |member: &CycleMember| {
             let (Constraint::Lower(arc) | Constraint::Upper(arc)) = member.constraint else { return None };
-            let arc = network.arcs.get(arc.index()).filter(|arc| arc.kind == ArcKind::Path)?;
-            undrivable.iter().find(|traverse| Some(traverse.occurrence) == arc.occurrence)
+            network.arcs.get(arc.index())
+        };
+        let mut members = reason.cycle.iter().map(arc);
+        let blocked = members.clone().flatten().filter(|arc| arc.kind == ArcKind::Path).find_map(|arc| {
+            // A traverse that only its own bounds leave no time for is in conflict with nothing else.
+            let is_alone = members.all(|other| other.is_some_and(|other| other.occurrence == arc.occurrence));
+            undrivable.iter().find(|traverse| {
+                Some(traverse.occurrence) == arc.occurrence && (traverse.leg > 0 || is_alone)
+            })
         });
         if let Some(traverse) = blocked {
             let occurrence = &network.occurrences[traverse.occurrence.index()];
@@ -226,172 +302,90 @@ fn conclude(
     inserted: BTreeMap<OccurrenceId, Inserted>,
 ) -> Planned {
     let verdict = outcome.plans.first().map(|plan| verify::check_plan(&network, plan));
-    let warnings = traverse::check(problem.network, problem.program);
+    let mut warnings = traverse::check(problem.network, problem.program);
     let mut traverses = Vec::new();
-    let mut drives = Vec::new();
-    let mut radii_m: BTreeMap<u32, f64> = BTreeMap::new();
+    let mut drives: Vec<Drive> = Vec::new();
+    let mut spaces = Vec::new();
+    let world = &problem.program.world;
     if let (Some((key, map)), Some(plan)) = (problem.ground, outcome.plans.first()) {
         for route in traverse::routes(&network, problem.program, plan) {
             let Some(Inserted { legs: Ok(legs), .. }) = inserted.get(&route.occurrence) else { continue };
-            let points: Vec<[f64; 2]> = joined(legs);
-            let space = grounds.space(key, map, &problem.program.world, route.model);
+            let path = traverse::joined(legs);
+            let space = grounds.space(key, map, world, route.model);
             traverses.push(Traverse {
                 occurrence: route.occurrence,
                 vehicles: route.vehicles.iter().map(|&vehicle| vehicle as u32).collect(),
-                length_m: traverse::length_m(&points),
-                clearance_m: traverse::clearance_m(&space, &points),
-                slope_max_rad: traverse::steepest_slope_rad(map, &points),
+                length_m: path.length_m(),
+                clearance_m: traverse::clearance_m(&space.exact, &path.points_m),
+                slope_max_rad: traverse::steepest_slope_rad(map, &path.points_m),
+                leg_figures: figures(problem, &route, legs, map, &space),
                 legs: legs.clone(),
             });
-            drives.extend(drive(problem.program, &network, plan, &route, points, &mut radii_m));
+            drives.extend(drive(world, &network, plan, &route, path, &space.exact));
+            spaces.push((route.occurrence, space.exact));
         }
     }
     let motions = driving::motions(&drives);
-    let encounters = encounters(&drives, &motions, &radii_m);
-    let undrivable: Vec<Undrivable> =
-        inserted.into_values().filter_map(|traverse| traverse.legs.err()).collect();
+    let encounters = encounter::encounters(&drives, &motions, world);
+    warnings.extend(encounter::warnings(&encounters, &drives, &network, world));
+    let undrivable: Vec<Undrivable> = inserted
+        .into_values()
+        .filter_map(|traverse| match traverse.legs {
+            Ok(legs) => out_of_bounds(problem, &traverse.route, &legs, problem.ground?.1),
+            Err(undrivable) => Some(undrivable),
+        })
+        .collect();
     name_blocked(&mut outcome, &network, &undrivable);
     let planning = Arc::new(Planning { outcome, verdict, undrivable });
-    Planned { network, planning, traverses, motions, encounters, warnings }
+    Planned { network, planning, traverses, spaces, motions, encounters, warnings }
 }
 
-/// Where the vehicles are over time when `plan` is driven along known `traverses`.
+/// Where the vehicles are over time when `plan` is driven along the traverses of `planned`.
 pub fn motions_of(
     program: &Program,
     network: &Network,
     plan: &Plan,
-    traverses: &[Traverse],
+    planned: &Planned,
 ) -> Vec<VehicleMotion> {
     let routes = traverse::routes(network, program, plan);
     let drives: Vec<Drive> = routes
         .iter()
         .filter_map(|route| {
-            let traverse = traverses.iter().find(|traverse| traverse.occurrence == route.occurrence)?;
-            drive(program, network, plan, route, joined(&traverse.legs), &mut BTreeMap::new())
+            let is_its = |traverse: &&Traverse| traverse.occurrence == route.occurrence;
+            let traverse = planned.traverses.iter().find(is_its)?;
+            let (_, space) = planned.spaces.iter().find(|(occurrence, _)| *occurrence == route.occurrence)?;
+            drive(&program.world, network, plan, route, traverse::joined(&traverse.legs), space)
         })
         .collect();
     driving::motions(&drives)
 }
 
-fn joined(legs: &[Leg]) -> Vec<[f64; 2]> {
-    let mut points: Vec<[f64; 2]> = Vec::new();
-    for leg in legs {
-        let repeated = usize::from(!points.is_empty());
-        points.extend(leg.points_m.iter().skip(repeated));
-    }
-    points
+/// Room between the centres of vehicles that drive together, in metres.
+fn spacing_m(world: &World, vehicles: &[usize]) -> f64 {
+    let radii = |vehicle: &usize| encounter::radius_m(world, *vehicle as u32);
+    let mut widest: Vec<f64> = vehicles.iter().map(radii).collect();
+    widest.sort_by(f64::total_cmp);
+    widest.iter().rev().take(2).sum::<f64>() + encounter::GAP_M
 }
 
-/// Room between vehicles that follow each other, beyond their radii, in metres.
-const FORMATION_GAP_M: f64 = 1.0;
-
 fn drive(
-    program: &Program,
+    world: &World,
     network: &Network,
     plan: &Plan,
     route: &Route,
-    path_m: Vec<[f64; 2]>,
-    radii_m: &mut BTreeMap<u32, f64>,
+    path: motion::Path,
+    space: &Arc<ConfigurationSpace>,
 ) -> Option<Drive> {
     let occurrence = &network.occurrences[route.occurrence.index()];
-    let start = plan.windows[occurrence.start.index()]?.earliest;
-    let end = plan.windows[occurrence.end.index()]?.earliest;
-    let mut behind_m = Vec::new();
-    let mut behind = 0.0;
-    let mut ahead_radius_m = None;
-    for &vehicle in &route.vehicles {
-        let model = motion::vehicle_model(&program.world.vehicles[vehicle].model.text);
-        let radius_m = model.map_or(0.5, |model| model.circumradius_m);
-        radii_m.insert(vehicle as u32, radius_m);
-        if let Some(ahead) = ahead_radius_m {
-            behind += ahead + radius_m + FORMATION_GAP_M;
-        }
-        ahead_radius_m = Some(radius_m);
-        behind_m.push(behind);
-    }
-    let vehicles = route.vehicles.iter().map(|&vehicle| vehicle as u32).collect();
-    Some(Drive { vehicles, behind_m, path_m, start, end })
-}
-
-/// Vehicles of different traverses that come nearer than the sum of their radii and the formation gap.
-fn encounters(drives: &[Drive], motions: &[VehicleMotion], radii_m: &BTreeMap<u32, f64>) -> Vec<Encounter> {
-    let together = |a: u32, b: u32| {
-        drives.iter().any(|drive| drive.vehicles.contains(&a) && drive.vehicles.contains(&b))
-    };
-    let timed: Vec<Vec<(f64, [f64; 2])>> = motions
-        .iter()
-        .map(|motion| motion.keyframes.iter().map(|frame| (units(frame.time), frame.position_m)).collect())
-        .collect();
-    let mut found = Vec::new();
-    for (index, first) in motions.iter().enumerate() {
-        for (offset, second) in motions[index + 1..].iter().enumerate() {
-            if together(first.vehicle, second.vehicle) {
-                continue;
-            }
-            let radius = |motion: &VehicleMotion| radii_m.get(&motion.vehicle).copied().unwrap_or(0.5);
-            let safe_m = radius(first) + radius(second) + FORMATION_GAP_M;
-            if let Some((time, position_m, distance_m)) = nearest(&timed[index], &timed[index + 1 + offset])
-                && distance_m < safe_m
-            {
-                found.push(Encounter {
-                    vehicles: [first.vehicle, second.vehicle],
-                    time,
-                    position_m,
-                    distance_m,
-                });
-            }
-        }
-    }
-    found
-}
-
-fn units(time: Rational) -> f64 {
-    time.to_f64().unwrap_or(0.0)
-}
-
-/// When and where two moving points are nearest: exact on each stretch on which both move evenly.
-fn nearest(a: &[(f64, [f64; 2])], b: &[(f64, [f64; 2])]) -> Option<(f64, [f64; 2], f64)> {
-    let mut times: Vec<f64> = a.iter().chain(b).map(|&(time, _)| time).collect();
-    times.sort_by(f64::total_cmp);
-    times.dedup();
-    let last = *times.last()?;
-    times.push(last + 1.0);
-    let mut best: Option<(f64, [f64; 2], f64)> = None;
-    for pair in times.windows(2) {
-        let (from, to) = (pair[0], pair[1]);
-        let apart = |time: f64| {
-            let (here, there) = (position(a, time), position(b, time));
-            [there[0] - here[0], there[1] - here[1]]
-        };
-        let (begin, end) = (apart(from), apart(to));
-        let change = [end[0] - begin[0], end[1] - begin[1]];
-        let speed_squared = change[0] * change[0] + change[1] * change[1];
-        let along = if speed_squared > 0.0 {
-            (-(begin[0] * change[0] + begin[1] * change[1]) / speed_squared).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        let time = from + along * (to - from);
-        let at = [begin[0] + along * change[0], begin[1] + along * change[1]];
-        let distance_m = (at[0] * at[0] + at[1] * at[1]).sqrt();
-        if best.is_none_or(|(_, _, least)| distance_m < least) {
-            let here = position(a, time);
-            best = Some((time, [here[0] + at[0] / 2.0, here[1] + at[1] / 2.0], distance_m));
-        }
-    }
-    best
-}
-
-fn position(track: &[(f64, [f64; 2])], time: f64) -> [f64; 2] {
-    let after = track.partition_point(|&(at, _)| at <= time);
-    let Some(&(from, here)) = track.get(after.saturating_sub(1)) else { return [0.0, 0.0] };
-    match track.get(after).filter(|_| after > 0) {
-        Some(&(to, there)) if to > from => {
-            let part = (time - from) / (to - from);
-            [here[0] + part * (there[0] - here[0]), here[1] + part * (there[1] - here[1])]
-        }
-        _ => here,
-    }
+    Some(Drive {
+        occurrence: route.occurrence,
+        vehicles: route.vehicles.iter().map(|&vehicle| vehicle as u32).collect(),
+        spacing_m: spacing_m(world, &route.vehicles),
+        space: Arc::clone(space),
+        path,
+        start: plan.windows[occurrence.start.index()]?.earliest,
+        end: plan.windows[occurrence.end.index()]?.earliest,
+    })
 }
 
 /// The latest time anything of the plan can happen, as far as it is bounded, for time axes.

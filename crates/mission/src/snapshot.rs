@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use rmpl::Rational;
+use motion::GrowthTrace;
 use rmpl::program::Program;
+use rmpl::{Bound, Rational};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 use tpn::{Network, OccurrenceId};
@@ -67,7 +68,7 @@ pub struct Planning {
 pub struct Undrivable {
     /// Which one.
     pub occurrence: OccurrenceId,
-    /// The leg, from 1.
+    /// The leg, from 1; 0 when it is the whole traverse that does not fit its bounds.
     pub leg: u32,
     /// Why, for the author.
     pub reason: String,
@@ -101,6 +102,23 @@ pub struct Traverse {
     pub clearance_m: f64,
     /// The steepest slope along the path, in radians.
     pub slope_max_rad: f64,
+    /// What each leg comes to, in order.
+    pub leg_figures: Vec<PathFigures>,
+}
+
+/// What a path comes to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PathFigures {
+    /// Length over the ground in metres, or through the air.
+    pub length_m: f64,
+    /// The least distance from the leader's rim and margin to an obstacle, in metres; infinite without obstacles.
+    pub min_clearance_m: f64,
+    /// The steepest slope in degrees.
+    pub max_slope_deg: f64,
+    /// Least duration in mission units, from length, slope and the greatest speed.
+    pub least_duration: Rational,
+    /// Greatest duration, from length and the least speed.
+    pub greatest_duration: Bound,
 }
 
 /// The path between two waypoints.
@@ -112,6 +130,8 @@ pub struct Leg {
     pub points_m: Vec<[f64; 2]>,
     /// The search tree that found it, as segments, for display.
     pub tree_m: Arc<Vec<[[f64; 2]; 2]>>,
+    /// How the search grew, sample by sample, for showing it step by step.
+    pub growth: Arc<GrowthTrace>,
     /// Samples that the search drew.
     pub samples: u32,
 }
@@ -141,7 +161,9 @@ pub struct Keyframe {
 pub struct Encounter {
     /// The vehicles, as indices into the program's world.
     pub vehicles: [u32; 2],
-    /// When they are nearest, in mission units.
+    /// When they first come within their safety radius, in mission units.
+    pub since: f64,
+    /// When they are nearest.
     pub time: f64,
     /// Half way between them, in metres.
     pub position_m: [f64; 2],

@@ -1,14 +1,16 @@
 //! Which activities of a plan are traverses, from where to where they drive, and the paths that they take.
 
+use std::cmp::Ordering;
 use std::sync::Arc;
 
-use motion::{PlannerKind, Query, ShortcutSettings, VehicleModel};
+use motion::{Path, PlannerKind, Query, SearchResult, ShortcutSettings, VehicleModel};
 use rmpl::program::{Moves, Program, World};
 use rmpl::{Rational, Span};
 use smol_str::SmolStr;
 use terrain::{ConfigurationSpace, Terrain};
 use tpn::{Network, OccurrenceId, OccurrenceKind, Plan};
 
+use crate::ground::FreeSpace;
 use crate::snapshot::Leg;
 
 /// A traverse of a plan: who drives, and through which places.
@@ -18,7 +20,7 @@ pub struct Route {
     pub occurrence: OccurrenceId,
     /// Indices of the vehicles into the program's world; the first leads.
     pub vehicles: Vec<usize>,
-    /// The leader's model.
+    /// The model whose ground the path must be: of the vehicles that drive, or of all if none drives, the widest.
     pub model: &'static VehicleModel,
     /// Least and greatest speed in metres per second. At a least speed of 0 the vehicle may stop on its way.
     pub speed_mps: (Rational, Rational),
@@ -91,7 +93,14 @@ fn route(
         .filter_map(|name| world.vehicles.iter().position(|vehicle| vehicle.name.text == name.text))
         .collect();
     let &leader = vehicles.first()?;
-    let model = motion::vehicle_model(&world.vehicles[leader].model.text)?;
+    let models =
+        || vehicles.iter().filter_map(|&vehicle| motion::vehicle_model(&world.vehicles[vehicle].model.text));
+    let drives = |model: &&VehicleModel| matches!(model.drive, motion::Drive::SkidSteer { .. });
+    let widest = |a: &&'static VehicleModel, b: &&'static VehicleModel| {
+        (drives(a), a.radius_m()).partial_cmp(&(drives(b), b.radius_m())).unwrap_or(Ordering::Equal)
+    };
+    let model = models().max_by(widest)?;
+    let own_mps = models().map(|model| model.speed_mps).fold(f64::INFINITY, f64::min);
     let mut waypoints: Vec<Waypoint> = positions[leader].clone().into_iter().collect();
     let arguments = &network.occurrences[id.index()].arguments;
     let named: Vec<Waypoint> = arguments.iter().filter_map(|name| waypoint(world, name)).collect();
@@ -100,7 +109,7 @@ fn route(
     }
     waypoints.extend(named);
     waypoints.dedup_by(|next, before| next.position_m == before.position_m);
-    let own_speed_mps = Rational::new((model.speed_mps * 1000.0).round() as i64, 1000);
+    let own_speed_mps = Rational::new((own_mps * 1000.0).round() as i64, 1000);
     let speed_mps = moves.speed_mps.unwrap_or((Rational::default(), own_speed_mps));
     Some(Route { occurrence: id, vehicles, model, speed_mps, waypoints })
 }
@@ -150,6 +159,16 @@ pub fn check(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
 #[derive(Default)]
 pub struct Paths {
     known: Vec<(LegKey, Result<Leg, String>)>,
+    searches: u64,
+}
+
+/// What kind of path is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Preference {
+    /// One that keeps away from obstacles where that costs little.
+    Roomy,
+    /// The shortest that many seeds find: for a traverse that has no time for more.
+    Shortest,
 }
 
 /// A leg's inputs. The free space stands for map, obstacles and vehicle: it is shared while they stay the same.
@@ -158,40 +177,49 @@ struct LegKey {
     from_m: [f64; 2],
     to_m: [f64; 2],
     seed: u64,
+    preference: Preference,
 }
 
 /// Legs kept; a mission in work has far fewer, and each holds its search tree.
 const MOST_LEGS: usize = 128;
 
 impl Paths {
+    /// How many legs were really searched for, not taken from those kept.
+    pub const fn searches(&self) -> u64 {
+        self.searches
+    }
+
     /// The legs of a route. A leg that can't be driven gives its number, from 1, and the reason.
     pub fn legs(
         &mut self,
         route: &Route,
-        space: &Arc<ConfigurationSpace>,
+        space: &FreeSpace,
         seed: u64,
+        preference: Preference,
     ) -> Result<Vec<Leg>, (u32, String)> {
         let pairs = route.waypoints.windows(2);
         pairs
             .enumerate()
             .map(|(index, pair)| {
-                self.leg(space, &pair[0], &pair[1], seed).map_err(|reason| (index as u32 + 1, reason))
+                self.leg(space, &pair[0], &pair[1], seed, preference)
+                    .map_err(|reason| (index as u32 + 1, reason))
             })
             .collect()
     }
 
     fn leg(
         &mut self,
-        space: &Arc<ConfigurationSpace>,
+        space: &FreeSpace,
         from: &Waypoint,
         to: &Waypoint,
         seed: u64,
+        preference: Preference,
     ) -> Result<Leg, String> {
         let matches = |key: &LegKey| {
-            Arc::ptr_eq(&key.space, space)
+            Arc::ptr_eq(&key.space, &space.exact)
                 && key.from_m == from.position_m
                 && key.to_m == to.position_m
-                && key.seed == seed
+                && (key.seed, key.preference) == (seed, preference)
         };
         if let Some(at) = self.known.iter().position(|(key, _)| matches(key)) {
             let kept = self.known.remove(at);
@@ -199,11 +227,18 @@ impl Paths {
             self.known.push(kept);
             return leg.map(|leg| Leg { to: to.name.clone(), ..leg });
         }
-        let leg = find_leg(space, from, to, seed);
+        self.searches += 1;
+        let leg = find_leg(space, from, to, seed, preference);
         if self.known.len() >= MOST_LEGS {
             drop(self.known.remove(0));
         }
-        let key = LegKey { space: Arc::clone(space), from_m: from.position_m, to_m: to.position_m, seed };
+        let key = LegKey {
+            space: Arc::clone(&space.exact),
+            from_m: from.position_m,
+            to_m: to.position_m,
+            seed,
+            preference,
+        };
         self.known.push((key, leg.clone()));
         leg
     }
@@ -211,31 +246,79 @@ impl Paths {
 
 /// Metres that a path may be longer for each corner that it does without: corners become events of the plan.
 const CORNER_EXTRA_M: f64 = 0.3;
+/// How much longer a path may be for keeping away from obstacles: this share and so many metres.
+const ROOMY_SHARE: f64 = 1.06;
+const ROOMY_EXTRA_M: f64 = 2.0;
+/// Searches for each leg: obstacles leave several ways around, and one search takes any of them.
+const TRIES: u32 = 6;
+const TRIES_FOR_SHORTEST: u32 = 40;
+/// Samples of a search that can be shown one by one.
+const MOST_TRACED_STEPS: usize = 4000;
 
 /// Searches for one leg; says why there is none, for the author.
-fn find_leg(space: &ConfigurationSpace, from: &Waypoint, to: &Waypoint, seed: u64) -> Result<Leg, String> {
+fn find_leg(
+    free: &FreeSpace,
+    from: &Waypoint,
+    to: &Waypoint,
+    seed: u64,
+    preference: Preference,
+) -> Result<Leg, String> {
     let query = Query { start_m: from.position_m, goal_m: to.position_m };
+    let (tries, roomy) = match preference {
+        Preference::Roomy => (TRIES, free.roomy.as_slice()),
+        Preference::Shortest => (TRIES_FOR_SHORTEST, &[][..]),
+    };
     let settings = motion::Settings { seed, ..motion::Settings::of(PlannerKind::RrtConnect) };
     let shortcut = ShortcutSettings { seed, ..ShortcutSettings::default() };
-    let found = motion::find_path(space, query, &settings, Some(&shortcut), &mut |_| false);
-    let path = found.path.map_err(|failure| format!("from {} to {}: {}", from.name, to.name, failure))?;
-    let tree_m = found.trees.iter().flat_map(|tree| {
+    let search = |space: &ConfigurationSpace| {
+        motion::find_shortest_path(space, query, &settings, &shortcut, tries, &mut |_| false)
+    };
+    let mut found = search(&free.exact);
+    let mut space: &ConfigurationSpace = &free.exact;
+    let path = found.path.as_ref();
+    let length_m =
+        path.map_err(|failure| format!("from {} to {}: {failure}", from.name, to.name))?.length_m();
+    let longest_m = length_m * ROOMY_SHARE + ROOMY_EXTRA_M;
+    for wider in roomy {
+        let other = search(wider);
+        if other.path.as_ref().is_ok_and(|path| path.length_m() <= longest_m) {
+            (found, space) = (other, wider);
+            break;
+        }
+    }
+    let SearchResult { path: Ok(path), trees, statistics, seed, .. } = found else {
+        return Err(format!("from {} to {}: no path", from.name, to.name));
+    };
+    let tree_m = trees.iter().flat_map(|tree| {
         tree.vertices.iter().filter_map(|vertex| {
             let parent = tree.vertices.get(vertex.parent? as usize)?;
             Some([parent.point_m, vertex.point_m])
         })
     });
+    let settings = motion::Settings { seed, ..settings };
+    let growth = motion::trace(space, query, settings, MOST_TRACED_STEPS).unwrap_or_default();
     Ok(Leg {
         to: to.name.clone(),
         tree_m: Arc::new(tree_m.collect()),
+        growth: Arc::new(growth),
         points_m: motion::thin(space, &path, CORNER_EXTRA_M).points_m,
-        samples: found.statistics.samples,
+        samples: statistics.samples,
     })
 }
 
 /// The length of a path in metres.
 pub fn length_m(points_m: &[[f64; 2]]) -> f64 {
     points_m.windows(2).map(|pair| segment_length_m(pair[0], pair[1])).sum()
+}
+
+/// The points of all legs, each waypoint once.
+pub fn joined(legs: &[Leg]) -> Path {
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for leg in legs {
+        let repeated = usize::from(!points.is_empty());
+        points.extend(leg.points_m.iter().skip(repeated));
+    }
+    Path::new(points)
 }
 
 /// The distance between two points in metres.

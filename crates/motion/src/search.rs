@@ -220,6 +220,8 @@ pub struct SearchResult {
     pub trees: Vec<Tree>,
     /// Counts.
     pub statistics: Statistics,
+    /// The seed of the search: [`trace`](crate::trace()) with it shows how the trees grew.
+    pub seed: u64,
 }
 
 impl Search {
@@ -348,7 +350,7 @@ impl Search {
             Planner::RrtStar(planner) => vec![planner.into_tree()],
             Planner::Kinodynamic(planner) => vec![planner.into_tree()],
         };
-        SearchResult { path, trajectory, trees, statistics }
+        SearchResult { path, trajectory, trees, statistics, seed: self.settings.seed }
     }
 }
 
@@ -387,6 +389,7 @@ pub fn find_path(
                 trajectory: None,
                 trees: Vec::new(),
                 statistics: Statistics::default(),
+                seed: settings.seed,
             };
         }
     };

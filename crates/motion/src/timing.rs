@@ -25,6 +25,9 @@ pub struct SegmentTiming {
     pub ground_length_m: f64,
     /// Metres up for each metre forward from the segment's start to its end.
     pub grade: f64,
+    /// The mean speed in metres per second at which the vehicle is there soonest, where slopes keep it below the
+    /// greatest speed; none where they do not.
+    pub slope_speed_mps: Option<f64>,
     /// Least duration in milliseconds, rounded up.
     pub least_millis: u64,
     /// Greatest duration in milliseconds, rounded up and never below the least; none when the vehicle may stop.
@@ -65,6 +68,7 @@ fn time_segment(
         // The time of a segment is the sum over pieces of different slope; an equal speed over the whole length gives
         // the same sum.
         let mut seconds = 0.0;
+        let mut is_limited = false;
         ground_length_m = 0.0;
         let ground = terrain.drape(from_m, to_m);
         for pair in ground.windows(2) {
@@ -73,9 +77,10 @@ fn time_segment(
             let length = (ahead * ahead + up * up).sqrt();
             let limit = if ahead > 0.0 { model.speed_on_grade_mps(up / ahead) } else { model.speed_mps };
             ground_length_m += length;
+            is_limited |= limit < speeds.greatest_mps;
             seconds += length / limit.min(speeds.greatest_mps);
         }
-        if seconds > 0.0 {
+        if seconds > 0.0 && is_limited {
             slowest = ground_length_m / seconds;
         }
         if let (Some(first), Some(last)) = (ground.first(), ground.last())
@@ -84,10 +89,11 @@ fn time_segment(
             grade = (last[2] - first[2]) / plan_length_m;
         }
     }
+    let slope_speed_mps = (slowest < speeds.greatest_mps).then_some(slowest);
     let least_millis = duration_millis(ground_length_m, slowest).unwrap_or(u64::MAX);
     let greatest_millis =
         duration_millis(ground_length_m, speeds.least_mps).map(|greatest| greatest.max(least_millis));
-    SegmentTiming { plan_length_m, ground_length_m, grade, least_millis, greatest_millis }
+    SegmentTiming { plan_length_m, ground_length_m, grade, slope_speed_mps, least_millis, greatest_millis }
 }
 
 #[cfg(test)]
@@ -137,5 +143,7 @@ mod tests {
         let reachable = model.speed_on_grade_mps(0.2);
         let expected = (length / reachable * 1000.0).ceil();
         assert!((timing(0.8).least_millis as f64 - expected).abs() <= 1.0);
+        assert!((timing(0.8).slope_speed_mps.unwrap() - reachable).abs() < 1e-6);
+        assert_eq!(timing(0.2).slope_speed_mps, None);
     }
 }

@@ -76,6 +76,17 @@ impl ConfigurationSpace {
         Self { occupancy, radius_m: radius_m.max(0.0), clearance, flags, regions, free_box_m, radius }
     }
 
+    /// The free places of a vehicle of another radius on the same map. What does not depend on the radius is kept.
+    pub fn with_radius_m(&self, radius_m: f64) -> Self {
+        let radius_m = radius_m.max(0.0);
+        let frame = *self.frame();
+        let radius = radius_m / frame.cell_size_m;
+        let regions = Regions::label(frame.width as usize, frame.height as usize, |index| {
+            possibly_free(radius, f64::from(self.clearance[index]), self.flags[index] & OCCUPIED != 0)
+        });
+        Self { radius_m, regions, radius, ..self.clone() }
+    }
+
     /// Where the map lies.
     pub const fn frame(&self) -> &GridFrame {
         self.occupancy.frame()

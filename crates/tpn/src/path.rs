@@ -20,10 +20,13 @@ pub struct TraversePath {
 }
 
 /// The path between two waypoints.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PathLeg {
     /// The length of each segment in metres, in order. The vertex that ends the last one is the waypoint.
     pub segment_lengths_m: Vec<f64>,
+    /// The mean speed in metres per second that the ground allows on each segment, where that is less than the
+    /// greatest speed. A segment beyond the end of this list is driven as fast as the traverse may be.
+    pub slope_speeds_mps: Vec<Option<f64>>,
 }
 
 /// Why a path cannot be inserted.
@@ -47,6 +50,7 @@ pub enum PathError {
 ///
 /// Every id of `network` stays valid: nodes and arcs are only appended. Each segment takes its length divided by the
 /// speed, rounded up to the millisecond, and has no greatest duration if the rover may stop or may drive at speed zero.
+/// On a slope that is too steep for the least speed, the greatest duration is that of the slope.
 /// The arc of the traverse keeps its bounds and labels and spans the path. The new events are named
 /// `X#1.leg1.vertex1`; the last vertex is the traverse's end. Time is linear in the result.
 pub fn insert_paths(
@@ -61,31 +65,55 @@ pub fn insert_paths(
     Ok(extended)
 }
 
+/// One segment of a path with the time it takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SegmentBounds {
+    /// Its leg, from 1.
+    pub leg: u32,
+    /// The vertex that ends it, from 1 within its leg.
+    pub vertex: u32,
+    /// Least duration in mission units.
+    pub least: Rational,
+    /// Greatest duration.
+    pub greatest: Bound,
+}
+
+/// The times of a path's segments in order, exactly as [`insert_paths`] puts them into a network.
+pub fn segment_bounds(path: &TraversePath, unit_seconds: i64) -> Result<Vec<SegmentBounds>, PathError> {
+    let (least_mps, greatest_mps) = path.speed_mps;
+    let zero = Rational::from_integer(0);
+    if greatest_mps <= zero || least_mps < zero || least_mps > greatest_mps {
+        let [least, greatest] = [least_mps, greatest_mps].map(rmpl::rational::display);
+        return Err(PathError::Speed(least, greatest));
+    }
+    let has_slowest = !path.may_stop && least_mps > zero;
+    let mut bounds = Vec::new();
+    for (leg, number) in path.legs.iter().zip(1..) {
+        let speeds = leg.slope_speeds_mps.iter().copied().chain(std::iter::repeat(None));
+        for ((&length_m, slope_mps), vertex) in leg.segment_lengths_m.iter().zip(speeds).zip(1..) {
+            let error = || PathError::Length(length_m.to_string());
+            let at_speed = |speed| duration(length_m, speed, unit_seconds).ok_or_else(error);
+            let mut least = at_speed(greatest_mps)?;
+            if let Some(speed) = slope_mps {
+                least = least.max(slope_duration(length_m, speed, unit_seconds).ok_or_else(error)?);
+            }
+            let greatest =
+                if has_slowest { Bound::Finite(at_speed(least_mps)?.max(least)) } else { Bound::Infinite };
+            bounds.push(SegmentBounds { leg: number, vertex, least, greatest });
+        }
+    }
+    if bounds.is_empty() { Err(PathError::Empty) } else { Ok(bounds) }
+}
+
 fn insert_path(network: &mut Network, path: &TraversePath, unit_seconds: i64) -> Result<(), PathError> {
     let occurrence = network.occurrences.get(path.occurrence.index()).ok_or(PathError::NoTraverse)?;
     let spanning = occurrence.arc.ok_or(PathError::NoTraverse)?;
     let (start, end, span) = (occurrence.start, occurrence.end, network.arcs[spanning.index()].span);
-    let (least, greatest) = path.speed_mps;
-    if greatest <= Rational::from_integer(0) || least < Rational::from_integer(0) || least > greatest {
-        return Err(PathError::Speed(rmpl::rational::display(least), rmpl::rational::display(greatest)));
-    }
-    let has_slowest = !path.may_stop && least > Rational::from_integer(0);
-    let segments: Vec<(u32, u32, f64)> = (path.legs.iter().zip(1..))
-        .flat_map(|(leg, number)| {
-            leg.segment_lengths_m.iter().zip(1..).map(move |(&length, vertex)| (number, vertex, length))
-        })
-        .collect();
-    let count = segments.len();
-    if count == 0 {
-        return Err(PathError::Empty);
-    }
+    let segments = segment_bounds(path, unit_seconds)?;
     network.arcs[spanning.index()].kind = ArcKind::Span;
+    let count = segments.len();
     let mut from = start;
-    for (position, (leg, vertex, length_m)) in segments.into_iter().enumerate() {
-        let error = || PathError::Length(length_m.to_string());
-        let duration = |speed| duration(length_m, speed, unit_seconds).ok_or_else(error);
-        let lower = duration(greatest)?;
-        let upper = if has_slowest { Bound::Finite(duration(least)?) } else { Bound::Infinite };
+    for (position, SegmentBounds { leg, vertex, least, greatest }) in segments.into_iter().enumerate() {
         let to = if position + 1 == count {
             end
         } else {
@@ -97,8 +125,8 @@ fn insert_path(network: &mut Network, path: &TraversePath, unit_seconds: i64) ->
         network.arcs.push(Arc {
             from,
             to,
-            lower,
-            upper,
+            lower: least,
+            upper: greatest,
             kind: ArcKind::Path,
             labels: Vec::new(),
             occurrence: Some(path.occurrence),
@@ -142,6 +170,15 @@ pub fn duration(length_m: f64, speed_mps: Rational, unit_seconds: i64) -> Option
         }
     };
     Some(Rational::new(i64::try_from(millis).ok()?, unit_seconds.checked_mul(1000)?))
+}
+
+/// The time for `length_m` at a speed that was itself computed, rounded up to the millisecond. Division of doubles is the
+/// same on every machine.
+fn slope_duration(length_m: f64, speed_mps: f64, unit_seconds: i64) -> Option<Rational> {
+    let millis = (1000.0 * length_m / speed_mps).ceil();
+    // Beyond this a double no longer counts single milliseconds.
+    let is_exact = (0.0..9e15).contains(&millis);
+    is_exact.then(|| Some(Rational::new(millis as i64, unit_seconds.checked_mul(1000)?)))?
 }
 
 fn divide_up(dividend: i128, divisor: i128) -> Option<i128> {

@@ -1,5 +1,6 @@
 //! The state as plain JSON, for host pages and tests (DESIGN 4.3).
 
+use mission::paths_json::traverses_json;
 use mission::{Problem, Snapshot};
 use serde_json::{Value, json};
 use tpn::Network;
@@ -43,6 +44,9 @@ pub fn state_json(state: &AppState) -> Value {
         "search": { "step": 0, "steps": steps.unwrap_or_default() },
         "hca": hca_json(&state.automaton),
         "vehicles": shown.map(|shown| vehicles_json(state, shown)).unwrap_or_default(),
+        "traverses": shown
+            .zip(network)
+            .map(|(shown, network)| traverses_json(&shown.traverses, network, &shown.program.world)),
         "time": state.playback.time,
         "endTime": state.playback.end,
         "isPlaying": state.playback.is_playing,

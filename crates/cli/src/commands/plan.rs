@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use anyhow::Context as _;
 use clap::ValueEnum;
 use kirk::{Failure, Options, Outcome, Search, Stats, Status};
+use mission::paths_json::{encounters_json, traverses_json};
 use mission::planning::{self, Planned};
 use mission::{Paths, Problem};
 use rmpl::program::Program;
@@ -189,6 +190,7 @@ fn status_name(status: Status) -> &'static str {
 fn outcome_json(planned: &Planned, loaded: &Loaded, [compile_millis, plan_millis]: [f64; 2]) -> Value {
     let outcome = &planned.planning.outcome;
     let stats = &outcome.stats;
+    let world = loaded.program.as_ref().map(|program| &program.world);
     let plans: Vec<Value> =
         outcome.plans.iter().map(|plan| tpn::plan_json::plan_to_json(&planned.network, plan)).collect();
     json!({
@@ -201,6 +203,8 @@ fn outcome_json(planned: &Planned, loaded: &Loaded, [compile_millis, plan_millis
             "leg": undrivable.leg,
             "reason": undrivable.reason,
         })).collect::<Vec<_>>(),
+        "traverses": world.map(|world| traverses_json(&planned.traverses, &planned.network, world)),
+        "encounters": world.map(|world| encounters_json(&planned.encounters, world)),
         "stats": {
             "parse_millis": loaded.parse_millis,
             "compile_millis": compile_millis - loaded.parse_millis,
@@ -293,7 +297,7 @@ fn outcome_text(planned: &Planned, loaded: &Loaded) -> String {
     }
     for undrivable in &planned.planning.undrivable {
         let name = &planned.network.occurrences[undrivable.occurrence.index()].name;
-        text.push_str(&format!("{name} can't be driven: {}\n", undrivable.reason));
+        text.push_str(&format!("{name} can't be driven {}\n", undrivable.reason));
     }
     text.push_str(&stats_text(outcome));
     text

@@ -145,8 +145,13 @@ fn encounters(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
         let [first, second] = encounter.vehicles.map(|vehicle| vehicles.get(vehicle as usize));
         let (first, second) = (first?, second?);
         let text = format!(
-            "{} and {} come within {:.1} m of each other at {:.1}",
-            first.name.text, second.name.text, encounter.distance_m, encounter.time
+            "{} and {} come within {:.1} m of each other at {:.1}, near ({:.0}, {:.0})",
+            first.name.text,
+            second.name.text,
+            encounter.distance_m,
+            encounter.time,
+            encounter.position_m[0],
+            encounter.position_m[1]
         );
         let names = vec![first.name.text.to_string(), second.name.text.to_string()];
         Some(places.line(Status::Attention, text, Some(first.span), names, Vec::new()))
@@ -165,5 +170,6 @@ fn warnings(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
         let text = format!("{}: {}{hint}", problem.code, problem.message);
         places.line(status, text, Some(problem.span), Vec::new(), Vec::new())
     };
-    snapshot.problems.iter().map(line).collect()
+    // Encounters have lines of their own.
+    snapshot.problems.iter().filter(|problem| problem.code != crate::encounter::CODE.0).map(line).collect()
 }

@@ -5,6 +5,7 @@ pub mod bounds;
 pub mod choice;
 pub mod constraint;
 pub mod duplicate;
+pub mod encounter;
 pub mod form;
 pub mod lex;
 pub mod limit;
@@ -52,6 +53,7 @@ pub const EXPLANATIONS: &[&Explanation] = &[
     &unused::EXPLANATION,
     &option::EXPLANATION,
     &traverse::EXPLANATION,
+    &encounter::EXPLANATION,
 ];
 
 /// The manual page of a code such as `E-BOUNDS`; upper and lower case are the same.

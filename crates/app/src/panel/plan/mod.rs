@@ -119,7 +119,12 @@ fn show_verdict(ui: &mut Ui, context: &Context<'_>, planning: &mission::Planning
         ui.label(RichText::new(&violation.message).color(tokens.error));
     }
     for undrivable in &planning.undrivable {
-        ui.label(RichText::new(&undrivable.reason).color(tokens.warning));
+        let network = context.state.shown().and_then(|shown| shown.network.as_ref());
+        let name = network
+            .and_then(|network| network.occurrences.get(undrivable.occurrence.index()))
+            .map_or("A traverse", |occurrence| occurrence.name.as_str());
+        let text = format!("{name} can't be driven {}", undrivable.reason);
+        ui.label(RichText::new(text).color(tokens.warning));
     }
 }
 

@@ -1,0 +1,103 @@
+//! Vehicles of different traverses that come too near each other, with time and place.
+
+use motion::TimedPoint;
+use num_traits::ToPrimitive as _;
+use rmpl::program::World;
+use rmpl::{Code, Diagnostic, Rational};
+use tpn::Network;
+
+use crate::driving::Drive;
+use crate::snapshot::{Encounter, VehicleMotion};
+
+/// The warning of an encounter.
+pub const CODE: Code = Code("W-ENCOUNTER");
+
+/// Room between vehicles beyond their radii, in metres: what a formation keeps and what others have to.
+pub const GAP_M: f64 = 1.0;
+
+/// Vehicles that don't drive together and come nearer than the sum of their radii and [`GAP_M`], at the earliest
+/// schedule. A vehicle that has not begun to move or has stopped is where it is.
+pub fn encounters(drives: &[Drive], motions: &[VehicleMotion], world: &World) -> Vec<Encounter> {
+    let together = |a: u32, b: u32| {
+        drives.iter().any(|drive| drive.vehicles.contains(&a) && drive.vehicles.contains(&b))
+    };
+    let last = drives.iter().map(|drive| units(drive.end)).fold(0.0, f64::max);
+    let tracks: Vec<Vec<TimedPoint>> = motions.iter().map(|motion| track(motion, last)).collect();
+    let mut found = Vec::new();
+    for (index, (first, first_track)) in motions.iter().zip(&tracks).enumerate() {
+        for (second, second_track) in motions.iter().zip(&tracks).skip(index + 1) {
+            if together(first.vehicle, second.vehicle) {
+                continue;
+            }
+            let safety_m = radius_m(world, first.vehicle) + radius_m(world, second.vehicle) + GAP_M;
+            let Some(near) = motion::proximity(first_track, second_track, safety_m) else { continue };
+            let Some(conflict) = near.conflict else { continue };
+            let [a, b] = near.closest.positions_m;
+            found.push(Encounter {
+                vehicles: [first.vehicle, second.vehicle],
+                since: conflict.time_s,
+                time: near.closest.time_s,
+                position_m: [f64::midpoint(a[0], b[0]), f64::midpoint(a[1], b[1])],
+                distance_m: near.closest.distance_m,
+            });
+        }
+    }
+    found
+}
+
+/// A vehicle's circumradius in metres.
+pub fn radius_m(world: &World, vehicle: u32) -> f64 {
+    let model = world.vehicles.get(vehicle as usize).and_then(|it| motion::vehicle_model(&it.model.text));
+    model.map_or(0.5, |model| model.circumradius_m)
+}
+
+/// Tells the author, at the traverse of the second vehicle.
+pub fn warnings(
+    encounters: &[Encounter],
+    drives: &[Drive],
+    network: &Network,
+    world: &World,
+) -> Vec<Diagnostic> {
+    let name = |vehicle: u32| world.vehicles.get(vehicle as usize).map_or("?", |it| it.name.text.as_str());
+    encounters
+        .iter()
+        .filter_map(|encounter| {
+            let [first, second] = encounter.vehicles;
+            let under_way = |drive: &&Drive| {
+                drive.vehicles.contains(&second) && units(drive.start) <= encounter.time
+            };
+            let drive = drives.iter().rev().find(under_way).or_else(|| {
+                drives.iter().find(|drive| drive.vehicles.contains(&second))
+            })?;
+            let span = network.occurrences.get(drive.occurrence.index())?.span?;
+            let [east, north] = encounter.position_m;
+            let message = format!(
+                "{} and {} come within {:.1} m of each other near ({east:.0}, {north:.0}) at {:.1}, in the plan's \
+                 earliest schedule",
+                name(first),
+                name(second),
+                encounter.distance_m,
+                encounter.time
+            );
+            Some(Diagnostic::warning(CODE, span, message).with_hint(
+                "order the traverses, or lead one of them by another way; vehicles of one traverse keep formation",
+            ))
+        })
+        .collect()
+}
+
+/// The positions of a vehicle from the mission's start till all have stopped.
+fn track(motion: &VehicleMotion, last: f64) -> Vec<TimedPoint> {
+    let frames = motion.keyframes.iter();
+    let mut points: Vec<TimedPoint> =
+        frames.map(|frame| TimedPoint { time_s: units(frame.time), position_m: frame.position_m }).collect();
+    if let (Some(&first), Some(&end)) = (points.first(), points.last()) {
+        points.insert(0, TimedPoint { time_s: 0.0, ..first });
+        points.push(TimedPoint { time_s: last.max(end.time_s), ..end });
+    }
+    points
+}
+
+fn units(time: Rational) -> f64 {
+    time.to_f64().unwrap_or(0.0)
+}

@@ -1,0 +1,135 @@
+//! How a search grew, sample by sample, so that it can be shown growing.
+
+use serde::{Deserialize, Serialize};
+use terrain::ConfigurationSpace;
+
+use crate::search::{Failure, Growth, Query, Search, Settings};
+
+/// All steps of a search. The same arguments give the same trace.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct GrowthTrace {
+    /// The root of each tree in metres: the start, and for a planner with two trees the goal.
+    pub roots_m: Vec<[f64; 2]>,
+    /// What each sample did, in order.
+    pub steps: Vec<GrowthStep>,
+}
+
+/// What one sample did.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GrowthStep {
+    /// The sample in metres.
+    pub sample_m: [f64; 2],
+    /// The vertices that were added, in order; none where an obstacle was in the way.
+    pub added: Vec<GrownVertex>,
+    /// Vertices that got another parent, as tree, vertex and parent: RRT* does this.
+    pub rewired: Vec<[u32; 3]>,
+    /// The first path, or a shorter one, that this sample led to, in metres.
+    pub path_m: Option<Vec<[f64; 2]>>,
+}
+
+/// A vertex as it was added to its tree. Vertices are numbered by tree in the order in which they appear; the root is 0.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GrownVertex {
+    /// The tree, an index into [`GrowthTrace::roots_m`].
+    pub tree: u32,
+    /// Its parent's number in the same tree.
+    pub parent: u32,
+    /// Where its parent is, in metres.
+    pub from_m: [f64; 2],
+    /// Where it is, in metres.
+    pub point_m: [f64; 2],
+}
+
+impl GrowthTrace {
+    /// Vertices of all trees after the first `steps` steps, without the roots.
+    pub fn grown(&self, steps: usize) -> impl Iterator<Item = &GrownVertex> {
+        self.steps.iter().take(steps).flat_map(|step| &step.added)
+    }
+
+    /// The best path after the first `steps` steps.
+    pub fn path_m(&self, steps: usize) -> Option<&[[f64; 2]]> {
+        self.steps.iter().take(steps).rev().find_map(|step| step.path_m.as_deref())
+    }
+}
+
+/// Runs a search to its end, or for `most_steps` samples, and notes what each sample did. Linear in the trees for each
+/// step of RRT*, whose vertices change parents, and in what was added for the others.
+pub fn trace(
+    space: &ConfigurationSpace,
+    query: Query,
+    settings: Settings,
+    most_steps: usize,
+) -> Result<GrowthTrace, Failure> {
+    let mut search = Search::new(space, query, settings)?;
+    let roots_m = search.trees().iter().map(|tree| tree.vertices[0].point_m).collect();
+    let mut parents: Vec<Vec<Option<u32>>> = search.trees().iter().map(|_| vec![None]).collect();
+    let mut steps = Vec::new();
+    while !search.is_finished() && steps.len() < most_steps {
+        let event = search.step(space);
+        let (mut added, mut rewired) = (Vec::new(), Vec::new());
+        for (number, (tree, known)) in search.trees().into_iter().zip(&mut parents).enumerate() {
+            let number = number as u32;
+            if settings.planner == crate::PlannerKind::RrtStar {
+                for (index, (vertex, parent)) in tree.vertices.iter().zip(known.iter_mut()).enumerate() {
+                    if let (true, Some(now)) = (vertex.parent != *parent, vertex.parent) {
+                        *parent = Some(now);
+                        rewired.push([number, index as u32, now]);
+                    }
+                }
+            }
+            for vertex in &tree.vertices[known.len()..] {
+                let parent = vertex.parent.unwrap_or_default();
+                let from_m = tree.vertices[parent as usize].point_m;
+                added.push(GrownVertex { tree: number, parent, from_m, point_m: vertex.point_m });
+            }
+            known.extend(tree.vertices[known.len()..].iter().map(|vertex| vertex.parent));
+        }
+        let is_found = matches!(event.growth, Growth::Found { .. });
+        let path_m = search.path().filter(|_| is_found).map(|path| path.points_m);
+        steps.push(GrowthStep { sample_m: event.sample_m, added, rewired, path_m });
+    }
+    Ok(GrowthTrace { roots_m, steps })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::search::{PlannerKind, find_path};
+    use terrain::{CellState, GridFrame, Obstacle, Occupancy};
+
+    #[test]
+    fn a_trace_ends_with_the_trees_and_the_path_of_the_search() {
+        let mut occupancy = Occupancy::free(GridFrame::new(100, 100, 0.6));
+        let disc = Obstacle::Circle { center_m: [30.0, 30.0], radius_m: 9.0 };
+        occupancy.mark(&disc, CellState::Obstacle);
+        let space = ConfigurationSpace::new(occupancy, 0.7);
+        let query = Query { start_m: [6.0, 29.0], goal_m: [54.0, 31.0] };
+        for planner in [PlannerKind::Rrt, PlannerKind::RrtConnect, PlannerKind::RrtStar] {
+            let settings = Settings { seed: 5, improving_samples: 200, ..Settings::of(planner) };
+            let found = find_path(&space, query, &settings, None, &mut |_| false);
+            let traced = trace(&space, query, settings, usize::MAX).expect("both ends are free");
+            assert_eq!(found.seed, 5);
+            assert_eq!(traced.steps.len(), found.statistics.samples as usize, "{planner:?}");
+            let mut trees: Vec<Vec<([f64; 2], Option<u32>)>> =
+                traced.roots_m.iter().map(|&root| vec![(root, None)]).collect();
+            for step in &traced.steps {
+                for vertex in &step.added {
+                    let tree = &mut trees[vertex.tree as usize];
+                    assert_eq!(tree[vertex.parent as usize].0, vertex.from_m);
+                    tree.push((vertex.point_m, Some(vertex.parent)));
+                }
+                for &[tree, vertex, parent] in &step.rewired {
+                    trees[tree as usize][vertex as usize].1 = Some(parent);
+                }
+            }
+            for (tree, expected) in trees.iter().zip(&found.trees) {
+                let expected: Vec<_> =
+                    expected.vertices.iter().map(|vertex| (vertex.point_m, vertex.parent)).collect();
+                assert_eq!(*tree, expected, "{planner:?}");
+            }
+            let path = found.path.expect("there is a way around").points_m;
+            assert_eq!(traced.path_m(usize::MAX), Some(path.as_slice()), "{planner:?}");
+            assert_eq!(traced.path_m(0), None);
+        }
+    }
+}

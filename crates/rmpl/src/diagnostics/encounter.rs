@@ -1,0 +1,32 @@
+//! `W-ENCOUNTER`: vehicles of different traverses that come too near each other. Only planning can find it.
+
+use crate::diagnostic::{Code, Severity};
+use crate::explanation::Explanation;
+
+/// The code.
+pub const CODE: Code = Code("W-ENCOUNTER");
+
+/// What it means, with an example.
+pub const EXPLANATION: Explanation = Explanation {
+    code: CODE,
+    severity: Severity::Warning,
+    title: "vehicles that come too near each other",
+    meaning: "At the plan's earliest schedule, two vehicles that do not drive together come nearer to each other than their
+radii and a metre. The message says when and where. Vehicles of one traverse keep formation and are not reported.",
+    example: "location WEST (0, 0);
+location EAST (60, 0);
+vehicle Rover1 : ATRV at WEST;
+vehicle Rover2 : ATRV at EAST;
+primitive Drive1(to)[2,10] moves Rover1;
+primitive Drive2(to)[2,10] moves Rover2;
+scenario Day[0,60] = { Drive1(EAST), Drive2(WEST) }",
+    fix: "Let one wait for the other, or lead one of them by another way.",
+    mended: "location WEST (0, 0);
+location EAST (60, 0);
+location NORTH (0, 40);
+vehicle Rover1 : ATRV at WEST;
+vehicle Rover2 : ATRV at EAST;
+primitive Drive1(to)[2,10] moves Rover1;
+primitive Drive2(to)[2,10] moves Rover2;
+scenario Day[0,60] = { Drive1(NORTH); Drive2(WEST) }",
+};
