@@ -72,6 +72,7 @@ pub fn revision(request: &Request) -> Option<u64> {
         | Request::Review(update)
         | Request::Execute { update, .. }
         | Request::Sample { update, .. } => Some(update.revision),
+        Request::CompareSearches { revision } => Some(*revision),
         Request::ImportMap { .. } | Request::WorkOut { .. } => None,
     }
 }
@@ -82,8 +83,13 @@ fn replaces(newer: &Request, earlier: &Request) -> bool {
         // A newer text ends what was asked of the older one; a text to compare with stands for itself.
         (
             Request::Update(_),
-            Request::Update(_) | Request::Review(_) | Request::Execute { .. } | Request::Sample { .. },
+            Request::Update(_)
+            | Request::Review(_)
+            | Request::Execute { .. }
+            | Request::Sample { .. }
+            | Request::CompareSearches { .. },
         )
+        | (Request::CompareSearches { .. }, Request::CompareSearches { .. })
         | (Request::Review(_), Request::Review(_))
         | (Request::WorkOut { .. }, Request::WorkOut { .. })
         | (Request::Execute { .. }, Request::Execute { .. })
@@ -125,6 +131,19 @@ mod tests {
         assert_eq!(queue.start_next(), Some(&update(3)));
         queue.finished();
         assert_eq!(queue.start_next(), None);
+    }
+
+    #[test]
+    fn a_comparison_gives_way_to_a_newer_text_and_waits_for_an_earlier_one() {
+        let mut queue = CoreQueue::default();
+        queue.post(update(1));
+        queue.post(Request::CompareSearches { revision: 1 });
+        assert_eq!(queue.start_next(), Some(&update(1)));
+        assert!(!queue.is_superseded());
+        queue.finished();
+        assert_eq!(queue.start_next(), Some(&Request::CompareSearches { revision: 1 }));
+        queue.post(update(2));
+        assert!(queue.is_superseded());
     }
 
     #[test]

@@ -39,6 +39,10 @@ pub enum Icon {
     StepForward,
     /// To the previous event.
     StepBack,
+    /// To the next place at which it stops.
+    Run,
+    /// To the place before at which it stops.
+    RunBack,
     /// To the start.
     ToStart,
     /// To the end.
@@ -211,6 +215,14 @@ impl Drawing<'_> {
             Icon::StepBack => {
                 self.fill(&[(11.8, 4.0), (11.8, 12.0), (6.0, 8.0)]);
                 self.line(&[(4.4, 4.0), (4.4, 12.0)]);
+            }
+            Icon::Run => {
+                self.line(&[(3.0, 4.0), (7.0, 8.0), (3.0, 12.0)]);
+                self.dot((11.4, 8.0), 2.6);
+            }
+            Icon::RunBack => {
+                self.line(&[(13.0, 4.0), (9.0, 8.0), (13.0, 12.0)]);
+                self.dot((4.6, 8.0), 2.6);
             }
             Icon::ToStart => {
                 self.line(&[(3.2, 4.0), (3.2, 12.0)]);

@@ -124,9 +124,16 @@ impl Enroute {
             self.state.follow_shown(shown.as_ref());
         }
         if self.state.search.is_playing {
-            let rate = self.state.playback.rate;
-            self.version += u64::from(self.state.search.advance(elapsed_secs, rate));
-            self.egui.request_repaint_after_secs(0.05);
+            let shown = self.state.shown().cloned();
+            if self.state.search.advance(elapsed_secs, shown.as_ref()) {
+                self.state.reveal_step();
+                self.version += 1;
+            }
+            self.egui.request_repaint_after_secs(if self.state.search.steps_per_sec > 20.0 {
+                0.0
+            } else {
+                0.05
+            });
         }
         if self.state.automaton.is_playing {
             let rate = self.state.playback.rate;
@@ -166,12 +173,12 @@ impl Enroute {
         bar::top::show(ui, &context, commands);
         bar::bottom::show(ui, &context, commands);
         let tree = self.layouts.tree_mut(self.state.workspace);
-        let mut is_editor_shown = false;
+        let mut shown = Vec::new();
         CentralPanel::default().frame(Frame::new().fill(context.tokens.background)).show(ui, |ui| {
             let mut tiles =
                 PanelTiles { panels: &mut self.panels, context: &context, commands, shown: Vec::new() };
             tree.ui(&mut tiles, ui);
-            is_editor_shown = tiles.shown.contains(&PanelKind::Editor);
+            shown = tiles.shown;
         });
         dialog::show(ui.ctx(), &context, commands);
         toasts::show(ui.ctx(), &context, commands);
@@ -179,6 +186,8 @@ impl Enroute {
             self.state.frame.layout_millis = millis;
             self.version += 1;
         }
+        let is_editor_shown = shown.contains(&PanelKind::Editor);
+        self.state.panels_on_screen = shown;
         if is_editor_shown {
             // The editor has scrolled and taken the focus as it was asked to.
             self.state.editor.reveal = None;
@@ -207,6 +216,11 @@ impl Enroute {
                 Effect::SaveFile { name, bytes } => self.host.save_file(&name, bytes),
                 Effect::CopyLink => self.copy_link(),
                 Effect::Post(request) => self.host.post(request),
+                Effect::DropFocus => self.egui.memory_mut(|memory| {
+                    if let Some(focused) = memory.focused() {
+                        memory.surrender_focus(focused);
+                    }
+                }),
                 Effect::Restyle => {
                     let Settings { theme, text_scale, .. } = self.state.settings;
                     theme::apply(&self.egui, theme, text_scale);

@@ -1,7 +1,7 @@
 //! A recorded search, replayed to any step: what was selected, added and possible there.
 //!
-//! Nothing but the trace is kept: the state before each step is computed from the events up to it, and windows are
-//! propagated again. A step costs time linear in the events before it.
+//! Nothing but the trace is kept: the state after each step is computed from the events of the states that lead to it,
+//! and windows are propagated again. A step costs time linear in those events, not in the length of the search.
 
 use rmpl::{Bound, Rational};
 use serde::{Deserialize, Serialize};
@@ -13,9 +13,11 @@ use crate::trace::{Constraint, CycleMember, Event, Trace, TreeNodeId};
 
 /// Replays a [`Trace`] on the network it was recorded on.
 #[derive(Clone, Debug)]
-pub struct Replay<'a> {
-    trace: &'a Trace,
+pub struct Replay {
     model: Model,
+    /// The events of state `n` are `events[event_start[n]..event_start[n + 1]]`, in order.
+    event_start: Vec<u32>,
+    events: Vec<u32>,
 }
 
 /// The search just after one of its events.
@@ -58,78 +60,75 @@ struct Frame {
     order: Option<Ordering>,
 }
 
-impl<'a> Replay<'a> {
+impl Replay {
     /// `None` if the network's times do not fit, which the search would have reported.
-    pub fn new(network: &Network, threat_gap: Option<Rational>, trace: &'a Trace) -> Option<Self> {
-        Some(Self { trace, model: Model::new(network, threat_gap).ok()? })
-    }
-
-    /// How many steps there are.
-    pub fn num_steps(&self) -> usize {
-        self.trace.events.len()
-    }
-
-    /// The state after event `step`; of the last one if there are fewer.
-    pub fn at(&self, step: usize) -> ReplayStep {
-        let mut frames = vec![Frame::default()];
-        let mut result =
-            ReplayStep { step: step.min(self.num_steps().saturating_sub(1)), ..ReplayStep::default() };
-        for entry in self.trace.events.iter().take(step.saturating_add(1)) {
-            self.enter(&mut frames, entry.tree_node);
-            let Some(frame) = frames.last_mut() else { break };
-            result.cycle.clear();
-            match &entry.event {
-                Event::Decide { decision, alternative } => {
-                    frame.choice = Some(Choice { decision: *decision, alternative: *alternative });
-                    (result.decision, result.ask, result.threat) = (Some(*decision), None, None);
-                }
-                Event::AddArc { arc } => frame.arcs.push(*arc),
-                Event::TryLink { link } => {
-                    frame.link = Some(*link);
-                    (result.decision, result.ask, result.threat) = (None, Some(link.ask), None);
-                }
-                Event::Threat { left, right } => {
-                    (result.decision, result.ask, result.threat) = (None, None, Some((*left, *right)));
-                }
-                Event::TryOrder { order } => {
-                    frame.order = Some(*order);
-                    (result.decision, result.ask, result.threat) =
-                        (None, None, Some((order.first, order.then)));
-                }
-                Event::Inconsistent { cycle } => result.cycle.clone_from(cycle),
-                Event::Unclosable { ask } => (result.ask, result.threat) = (Some(*ask), None),
-                Event::Unresolvable { left, right } => {
-                    (result.ask, result.threat) = (None, Some((*left, *right)));
-                }
-                Event::Backtrack { .. }
-                | Event::Backjump { .. }
-                | Event::Solution { .. }
-                | Event::Exhausted => {
-                    (result.decision, result.ask, result.threat) = (None, None, None);
-                }
-                Event::Expand { .. } | Event::Propagate { .. } | Event::Known => {}
+    pub fn new(network: &Network, threat_gap: Option<Rational>, trace: &Trace) -> Option<Self> {
+        let model = Model::new(network, threat_gap).ok()?;
+        let states = trace.tree.len();
+        let mut event_start = vec![0_u32; states + 1];
+        let state_of = |tree_node: TreeNodeId| Some(tree_node as usize).filter(|&node| node < states);
+        for node in trace.events.iter().filter_map(|entry| state_of(entry.tree_node)) {
+            event_start[node + 1] += 1;
+        }
+        for node in 0..states {
+            event_start[node + 1] += event_start[node];
+        }
+        let mut next = event_start.clone();
+        let mut events = vec![0; event_start.last().map_or(0, |&count| count as usize)];
+        for (step, entry) in (0_u32..).zip(&trace.events) {
+            if let Some(node) = state_of(entry.tree_node) {
+                events[next[node] as usize] = step;
+                next[node] += 1;
             }
         }
+        Some(Self { model, event_start, events })
+    }
+
+    /// The state after event `step` of `trace`, which must be the one this was made for; after the last event if there
+    /// are fewer.
+    pub fn at(&self, trace: &Trace, step: usize) -> ReplayStep {
+        let step = step.min(trace.events.len().saturating_sub(1));
+        let mut result = ReplayStep { step, ..ReplayStep::default() };
+        let Some(entry) = trace.events.get(step) else { return result };
+        let frames = self.frames(trace, entry.tree_node, step);
+        if let Event::Inconsistent { cycle } = &entry.event {
+            result.cycle.clone_from(cycle);
+        }
+        look_at(trace, step, &mut result);
         self.collect(&frames, &mut result);
         result
     }
 
-    /// Makes the frames those on the path from the root to `tree_node`.
-    fn enter(&self, frames: &mut Vec<Frame>, tree_node: TreeNodeId) {
-        if frames.last().is_some_and(|frame| frame.tree_node == tree_node) {
-            return;
-        }
+    /// What the states from the root to `tree_node` had added until `step`.
+    fn frames(&self, trace: &Trace, tree_node: TreeNodeId, step: usize) -> Vec<Frame> {
         let mut path = Vec::new();
         let mut at = Some(tree_node);
         while let Some(node) = at {
             path.push(node);
-            at = self.trace.tree.get(node as usize).and_then(|node| node.parent);
+            at = trace.tree.get(node as usize).and_then(|node| node.parent);
         }
         path.reverse();
-        let common =
-            path.iter().zip(frames.iter()).take_while(|(node, frame)| **node == frame.tree_node).count();
-        frames.truncate(common);
-        frames.extend(path[common..].iter().map(|&tree_node| Frame { tree_node, ..Frame::default() }));
+        path.into_iter().map(|node| self.frame(trace, node, step)).collect()
+    }
+
+    fn frame(&self, trace: &Trace, tree_node: TreeNodeId, step: usize) -> Frame {
+        let mut frame = Frame { tree_node, ..Frame::default() };
+        let bounds =
+            self.event_start.get(tree_node as usize).zip(self.event_start.get(tree_node as usize + 1));
+        let own = bounds.and_then(|(&from, &to)| self.events.get(from as usize..to as usize));
+        for entry in own.unwrap_or_default().iter().map(|&event| event as usize).take_while(|&it| it <= step)
+        {
+            match trace.events.get(entry).map(|entry| &entry.event) {
+                Some(Event::Decide { decision, alternative }) => {
+                    frame.choice = Some(Choice { decision: *decision, alternative: *alternative });
+                }
+                Some(Event::AddArc { arc }) => frame.arcs.push(*arc),
+                Some(Event::TryLink { link }) => frame.link = Some(*link),
+                Some(Event::TryOrder { order }) => frame.order = Some(*order),
+                _ => {}
+            }
+        }
+        frame
     }
 
     fn collect(&self, frames: &[Frame], result: &mut ReplayStep) {
@@ -200,5 +199,35 @@ impl<'a> Replay<'a> {
             });
         }
         Ok(windows)
+    }
+}
+
+/// What is being decided, closed or ordered at `step`: what the last event said that set it.
+fn look_at(trace: &Trace, step: usize, result: &mut ReplayStep) {
+    let mut is_ask_known = false;
+    for entry in trace.events.iter().take(step + 1).rev() {
+        let (decision, ask, threat) = match &entry.event {
+            Event::Unclosable { ask } if !is_ask_known => {
+                (result.ask, is_ask_known) = (Some(*ask), true);
+                continue;
+            }
+            Event::Unresolvable { left, right } if !is_ask_known => {
+                (result.threat, is_ask_known) = (Some((*left, *right)), true);
+                continue;
+            }
+            Event::Decide { decision, .. } => (Some(*decision), None, None),
+            Event::TryLink { link } => (None, Some(link.ask), None),
+            Event::Threat { left, right } => (None, None, Some((*left, *right))),
+            Event::TryOrder { order } => (None, None, Some((order.first, order.then))),
+            Event::Backtrack { .. } | Event::Backjump { .. } | Event::Solution { .. } | Event::Exhausted => {
+                (None, None, None)
+            }
+            _ => continue,
+        };
+        result.decision = decision;
+        if !is_ask_known {
+            (result.ask, result.threat) = (ask, threat);
+        }
+        return;
     }
 }

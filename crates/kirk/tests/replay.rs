@@ -24,7 +24,7 @@ fn the_last_step_has_the_plan_with_its_links_orders_and_windows() {
             assert!(!trace.is_truncated);
             let plan = &outcome.plans[0];
             let replay = Replay::new(&network, None, &trace).expect("small numbers");
-            let last = replay.at(replay.num_steps());
+            let last = replay.at(&trace, trace.events.len());
             assert_eq!(last.windows, plan.windows, "seed {seed}, {search:?}");
             assert_eq!(last.choices, plan.choices, "seed {seed}, {search:?}");
             assert_eq!(last.links, plan.causal_links, "seed {seed}, {search:?}");
@@ -44,9 +44,46 @@ fn steps_can_be_visited_in_any_order() {
     let network = network(&mission(Recipe { nodes: 24, tightness: Tightness::Infeasible, seed: 3 }));
     let (_, trace) = traced(&network, Search::Chronological, 2_000);
     let replay = Replay::new(&network, None, &trace).expect("small numbers");
-    let forwards: Vec<_> = (0..replay.num_steps()).step_by(7).map(|step| replay.at(step)).collect();
+    let forwards: Vec<_> = (0..trace.events.len()).step_by(7).map(|step| replay.at(&trace, step)).collect();
     for expected in forwards.iter().rev() {
-        assert_eq!(replay.at(expected.step), *expected);
+        assert_eq!(replay.at(&trace, expected.step), *expected);
+    }
+}
+
+/// The arcs, choices, links and orders in force after every step, kept as a stack while going through the events.
+#[test]
+fn a_step_has_what_the_states_that_lead_to_it_have_added() {
+    for search in [Search::Chronological, Search::ConflictDirected] {
+        let network = network(&mission(Recipe { nodes: 40, tightness: Tightness::Infeasible, seed: 11 }));
+        let (_, trace) = traced(&network, search, 3_000);
+        let replay = Replay::new(&network, None, &trace).expect("small numbers");
+        let mut stack: Vec<(u32, usize, usize)> = vec![(0, 0, 0)];
+        for (step, entry) in trace.events.iter().enumerate() {
+            let ancestors: Vec<u32> = std::iter::successors(Some(entry.tree_node), |&node| {
+                trace.tree.get(node as usize).and_then(|node| node.parent)
+            })
+            .collect();
+            stack.retain(|(node, ..)| ancestors.contains(node));
+            if !stack.iter().any(|(node, ..)| *node == entry.tree_node) {
+                stack.push((entry.tree_node, 0, 0));
+            }
+            let (_, arcs, choices) = stack.last_mut().expect("the present state");
+            match entry.event {
+                Event::AddArc { .. } => *arcs += 1,
+                Event::Decide { .. } | Event::TryLink { .. } | Event::TryOrder { .. } => *choices = 1,
+                _ => {}
+            }
+            if step % 5 == 0 {
+                let replayed = replay.at(&trace, step);
+                assert_eq!(replayed.arcs.len(), stack.iter().map(|(_, arcs, _)| arcs).sum::<usize>());
+                let added = replayed.choices.len() + replayed.links.len() + replayed.orders.len();
+                assert_eq!(
+                    added,
+                    stack.iter().map(|(.., choices)| choices).sum::<usize>(),
+                    "{search:?} {step}"
+                );
+            }
+        }
     }
 }
 
@@ -58,7 +95,7 @@ fn a_failed_step_shows_its_contradiction_and_the_state_before_it() {
     let (_, trace) = traced(&network, Search::Chronological, 1_000);
     let failed = trace.events.iter().position(|entry| matches!(entry.event, Event::Inconsistent { .. }));
     let failed = failed.expect("the first alternative is too long");
-    let step = Replay::new(&network, None, &trace).expect("small numbers").at(failed);
+    let step = Replay::new(&network, None, &trace).expect("small numbers").at(&trace, failed);
     assert_eq!(step.choices.len(), 1);
     let total: rmpl::Rational = step.cycle.iter().map(|member| member.weight).sum();
     assert_eq!(total, (-10).into(), "30 does not fit into 20");
@@ -75,7 +112,7 @@ fn a_trace_is_bounded() {
     assert!(trace.is_truncated);
     assert_eq!(trace.events.len(), 50);
     assert_eq!(outcome.plans, whole.plans, "recording less does not change the plan");
-    assert_eq!(Replay::new(&network, None, &trace).expect("small numbers").at(49).step, 49);
+    assert_eq!(Replay::new(&network, None, &trace).expect("small numbers").at(&trace, 49).step, 49);
 }
 
 #[test]

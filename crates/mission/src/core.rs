@@ -13,6 +13,7 @@ use rmpl::{Diagnostic, Severity};
 use terrain::Terrain;
 use tpn::{Network, Top};
 
+use crate::both_searches;
 use crate::control::read_control;
 use crate::ground::Grounds;
 use crate::planning::{self, Planned};
@@ -46,6 +47,7 @@ pub struct Core {
 
 /// What the last planned request led to, and what it depended on.
 struct Last {
+    revision: u64,
     network: Arc<Network>,
     program: Arc<Program>,
     map: Option<MapKey>,
@@ -73,6 +75,7 @@ impl Core {
             }
             Request::Review(update) => self.review(&update, surroundings),
             Request::WorkOut { token, update } => self.work_out_beside(token, &update, surroundings),
+            Request::CompareSearches { revision } => self.search_both_ways(revision, surroundings),
         }
     }
 
@@ -98,6 +101,15 @@ impl Core {
         (self.last, self.sent) = (last, sent);
         if let Some(snapshot) = found.filter(|snapshot| snapshot.stage == Stage::Complete) {
             surroundings.answer(Response::WorkedOut { token, snapshot });
+        }
+    }
+
+    /// Searches the network planned last both ways; says nothing when that was another text, or a newer one waits.
+    fn search_both_ways(&self, revision: u64, surroundings: &mut dyn Surroundings) {
+        let Some(last) = self.last.as_ref().filter(|last| last.revision == revision) else { return };
+        let network = &last.planned.network;
+        if let Some(comparison) = both_searches::search(network, revision, TRACE_EVENTS, surroundings) {
+            surroundings.answer(Response::Searches(Arc::new(comparison)));
         }
     }
 
@@ -177,11 +189,12 @@ impl Core {
             ..Options::default()
         };
         let map = ground.map(|(key, _)| key.clone());
-        if let Some(last) = &self.last
+        if let Some(last) = &mut self.last
             && last.network == *network
             && last.program == *program
             && (last.options, last.seed, &last.map) == (options, update.seed, &map)
         {
+            last.revision = update.revision;
             return Some(last.planned.clone());
         }
         let problem = planning::Problem {
@@ -198,6 +211,7 @@ impl Core {
             return None;
         }
         self.last = Some(Last {
+            revision: update.revision,
             network: Arc::clone(network),
             program: Arc::clone(program),
             map,

@@ -4,6 +4,7 @@
 //! No planning, motion or language rules are here: this crate connects the crates that have them, and keeps each
 //! stage's result so that an edit redoes only what it touched.
 
+pub mod both_searches;
 pub mod compare;
 pub mod control;
 mod core;
@@ -23,6 +24,7 @@ pub mod snapshot;
 pub mod traverse;
 
 pub use self::core::{Core, Surroundings, compile};
+pub use both_searches::{BothSearches, Searched};
 pub use control::{Control, read_control};
 pub use execution::{Executed, Execution};
 pub use ground::{ClearanceOverlay, FreeSpace, Grounds};

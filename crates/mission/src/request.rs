@@ -6,6 +6,7 @@ use rmpl::{Bound, Rational};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
+use crate::both_searches::BothSearches;
 use crate::execution::Execution;
 use crate::review::Review;
 use crate::robustness::{RobustnessSettings, Tally};
@@ -48,6 +49,11 @@ pub enum Request {
         name: SmolStr,
         /// The file.
         bytes: Vec<u8>,
+    },
+    /// Searches the network that was planned last in both ways, recorded and measured, for showing side by side.
+    CompareSearches {
+        /// The revision of the text; another one than that planned last is not answered.
+        revision: u64,
     },
 }
 
@@ -135,6 +141,8 @@ pub enum Response {
         /// How they went; as many as there was time for, at least one.
         tally: Tally,
     },
+    /// The two searches of a revision.
+    Searches(Arc<BothSearches>),
     /// A map file could not be read.
     MapRejected {
         /// The name it was to have.

@@ -11,6 +11,7 @@ use tpn::NodeId;
 struct Collected {
     snapshots: Vec<Arc<Snapshot>>,
     maps: usize,
+    comparisons: Vec<Arc<mission::BothSearches>>,
 }
 
 impl Surroundings for Collected {
@@ -26,6 +27,7 @@ impl Surroundings for Collected {
         match response {
             Response::Snapshot(snapshot) => self.snapshots.push(snapshot),
             Response::Map { .. } => self.maps += 1,
+            Response::Searches(comparison) => self.comparisons.push(comparison),
             _ => {}
         }
     }
@@ -165,4 +167,34 @@ fn an_answer_with_a_recorded_search_survives_the_way_to_the_page() {
     let bytes = postcard::to_stdvec(&Response::Snapshot(Arc::clone(&last))).expect("it can be written");
     let back: Response = postcard::from_bytes(&bytes).expect("it can be read");
     assert_eq!(back, Response::Snapshot(last));
+}
+
+#[test]
+fn both_searches_of_a_mission_are_recorded_for_comparison() {
+    let mut collected = Collected::default();
+    let mut core = Core::default();
+    let update = Update {
+        revision: 7,
+        source: include_str!("../../../assets/missions/backjump.rmpl").into(),
+        goal: Goal::Default,
+        search: mission::SearchKind::ConflictDirected,
+        seed: 1,
+        trace: false,
+    };
+    core.handle(Request::Update(update), &mut collected);
+    core.handle(Request::CompareSearches { revision: 6 }, &mut collected);
+    assert!(collected.comparisons.is_empty(), "another text was planned last");
+    core.handle(Request::CompareSearches { revision: 7 }, &mut collected);
+    let comparison = collected.comparisons.pop().expect("it is answered");
+    let [chronological, directed] = &comparison.searches;
+    assert_eq!(chronological.search, mission::SearchKind::Chronological);
+    assert_eq!(directed.search, mission::SearchKind::ConflictDirected);
+    // The lesson of this mission: sixteen combinations of the later choices are tried in vain, or one.
+    assert!(chronological.stats.backtracks > 8 * directed.stats.backtracks);
+    for searched in &comparison.searches {
+        assert!(matches!(
+            searched.trace.events.last().map(|it| &it.event),
+            Some(kirk::Event::Solution { .. })
+        ));
+    }
 }

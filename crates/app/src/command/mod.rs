@@ -99,6 +99,8 @@ pub enum Command {
     ClosePanel(PanelKind),
     /// The user turned to a panel.
     Activate(PanelKind),
+    /// Gives the keyboard to the next (`true`) or the previous (`false`) panel on screen.
+    TurnPanel(bool),
     /// A view action for the panel used last.
     View(ViewAction),
     /// A view action for one panel.

@@ -9,7 +9,7 @@ use crate::dialog::Dialog;
 use crate::host::FileKind;
 use crate::mission_file;
 use crate::panel::PanelKind;
-use crate::state::search::recorded;
+use crate::state::search::{SearchCommand, recorded};
 use crate::state::{AppState, Selection, TextCommand};
 use crate::theme::ThemeChoice;
 use crate::workspace::Workspace;
@@ -37,8 +37,26 @@ fn with_plan(state: &AppState) -> Availability {
 
 /// Whether there is something to step through: a plan, a recorded search, or a control program.
 fn with_steps(state: &AppState) -> Availability {
-    let has_search = state.shown().is_some_and(|shown| recorded(shown).is_some());
-    if has_search || state.automaton.program().is_some() { Ok(()) } else { with_plan(state) }
+    if with_search(state).is_ok() || state.automaton.program().is_some() { Ok(()) } else { with_plan(state) }
+}
+
+fn with_search(state: &AppState) -> Availability {
+    let is_compared = state.search.recordings(state.shown()).len() > 1;
+    let is_recorded = state.shown().is_some_and(|shown| recorded(shown).is_some());
+    if is_recorded || is_compared { Ok(()) } else { Err("no search is recorded") }
+}
+
+fn with_step(state: &AppState) -> Availability {
+    if state.search.step().is_some() { Ok(()) } else { Err("no step of the search is shown") }
+}
+
+fn with_comparison(state: &AppState) -> Availability {
+    let is_compared = state.search.recordings(state.shown()).len() > 1;
+    if is_compared { Ok(()) } else { Err("no searches are compared") }
+}
+
+fn search(command: SearchCommand) -> Command {
+    Command::Search(command)
 }
 
 fn with_selection(state: &AppState) -> Availability {
@@ -401,6 +419,17 @@ pub static COMMANDS: &[CommandSpec] = &[
     plain("view.textReset", "Normal text size", Group::View, &[], Scope::Everywhere, |_| {
         Command::SetTextScale(1.0)
     }),
+    plain("view.nextPanel", "Next panel", Group::View, &[keys(PLAIN, Key::F6)], Scope::Everywhere, |_| {
+        Command::TurnPanel(true)
+    }),
+    plain(
+        "view.previousPanel",
+        "Previous panel",
+        Group::View,
+        &[keys(SHIFT, Key::F6)],
+        Scope::Everywhere,
+        |_| Command::TurnPanel(false),
+    ),
     called("view.panel", "Show a panel", Group::View, |_, arguments| {
         panel_argument(arguments).map(Command::ShowPanel)
     }),
@@ -432,6 +461,9 @@ pub static COMMANDS: &[CommandSpec] = &[
         Scope::Everywhere,
         |_| Command::SetSearch(mission::SearchKind::ConflictDirected),
     ),
+    plain("plan.compare", "Compare both searches", Group::Plan, &[], Scope::Everywhere, |state| {
+        Command::Search(SearchCommand::Compare(!state.search.compares()))
+    }),
     plain("plan.otherPaths", "Plan other paths", Group::Plan, &[], Scope::Everywhere, |state| {
         Command::SetSeed(state.settings.plan.seed + 1)
     }),
@@ -477,22 +509,118 @@ pub static COMMANDS: &[CommandSpec] = &[
         with_steps,
     ),
     when(
-        plain("play.start", "To the start", Group::Play, &[keys(PLAIN, Key::Home)], Scope::NotTyping, |_| {
-            Command::Seek(0.0)
-        }),
-        with_plan,
+        plain(
+            "play.start",
+            "To the start",
+            Group::Play,
+            &[keys(PLAIN, Key::Home)],
+            Scope::NotTyping,
+            |state| {
+                if state.steps_search() { search(SearchCommand::GoTo(0)) } else { Command::Seek(0.0) }
+            },
+        ),
+        with_steps,
     ),
     when(
         plain("play.end", "To the end", Group::Play, &[keys(PLAIN, Key::End)], Scope::NotTyping, |state| {
-            Command::Seek(state.playback.end)
+            if state.steps_search() {
+                search(SearchCommand::GoTo(usize::MAX))
+            } else {
+                Command::Seek(state.playback.end)
+            }
         }),
-        with_plan,
+        with_steps,
     ),
     plain("play.faster", "Faster", Group::Play, &[], Scope::Everywhere, |state| {
-        Command::SetRate(state.playback.rate * 2.0)
+        if state.steps_search() {
+            search(SearchCommand::SetSpeed(state.search.steps_per_sec * 2.0))
+        } else {
+            Command::SetRate(state.playback.rate * 2.0)
+        }
     }),
     plain("play.slower", "Slower", Group::Play, &[], Scope::Everywhere, |state| {
-        Command::SetRate(state.playback.rate / 2.0)
+        if state.steps_search() {
+            search(SearchCommand::SetSpeed(state.search.steps_per_sec / 2.0))
+        } else {
+            Command::SetRate(state.playback.rate / 2.0)
+        }
+    }),
+    // The recorded search.
+    when(
+        plain(
+            "search.run",
+            "Run to the next breakpoint",
+            Group::Play,
+            &[keys(PLAIN, Key::CloseBracket)],
+            Scope::NotTyping,
+            |_| search(SearchCommand::Run(true)),
+        ),
+        with_search,
+    ),
+    when(
+        plain(
+            "search.runBack",
+            "Run back to the breakpoint before",
+            Group::Play,
+            &[keys(PLAIN, Key::OpenBracket)],
+            Scope::NotTyping,
+            |_| search(SearchCommand::Run(false)),
+        ),
+        with_search,
+    ),
+    when(
+        plain("search.close", "Show the plan again", Group::Play, &[], Scope::Everywhere, |_| {
+            search(SearchCommand::Close)
+        }),
+        with_step,
+    ),
+    when(
+        plain("search.turn", "Turn to the other search", Group::Play, &[], Scope::Everywhere, |state| {
+            search(SearchCommand::Turn(1 - state.search.side().min(1)))
+        }),
+        with_comparison,
+    ),
+    when(
+        plain("search.link", "Step both searches together", Group::Play, &[], Scope::Everywhere, |state| {
+            search(SearchCommand::Link(!state.search.is_linked()))
+        }),
+        with_comparison,
+    ),
+    when(
+        called("search.goTo", "Go to a step of the search", Group::Play, |_, arguments| {
+            let step = number_argument(arguments, "step")?;
+            if step < 1.0 {
+                return Ok(search(SearchCommand::Close));
+            }
+            Ok(search(SearchCommand::GoTo(step as usize - 1)))
+        }),
+        with_search,
+    ),
+    when(
+        called("search.goToState", "Go to a state of the search", Group::Play, |_, arguments| {
+            let state = number_argument(arguments, "state")?;
+            Ok(search(SearchCommand::GoToNode(state.max(0.0) as u32)))
+        }),
+        with_search,
+    ),
+    called("search.breakpoints", "Choose where the search stops", Group::Play, |state, arguments| {
+        let mut chosen = state.search.breakpoints;
+        for (name, value) in [
+            ("decision", &mut chosen.decision),
+            ("failure", &mut chosen.failure),
+            ("threat", &mut chosen.threat),
+            ("solution", &mut chosen.solution),
+        ] {
+            match arguments.get(name) {
+                None => {}
+                Some(Value::Bool(stops)) => *value = *stops,
+                Some(_) => return Err(format!("\"{name}\" is true or false")),
+            }
+        }
+        Ok(search(SearchCommand::SetBreakpoints(chosen)))
+    }),
+    called("search.speed", "Choose how many steps go by in a second", Group::Play, |_, arguments| {
+        number_argument(arguments, "steps").map(|speed| search(SearchCommand::SetSpeed(speed)))
     }),
     called("play.seek", "Go to a time", Group::Play, |_, arguments| {
         number_argument(arguments, "time").map(Command::Seek)

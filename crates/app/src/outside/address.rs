@@ -1,4 +1,4 @@
-//! What stands after `#` in the page's address (DESIGN 4.3): `mission=`, `source=`, `workspace=`, `t=`.
+//! What stands after `#` in the page's address (DESIGN 4.3): `mission=`, `source=`, `workspace=`, `step=`, `t=`.
 //!
 //! A shared text is compressed (deflate) and written in the alphabet of base64 for addresses.
 
@@ -7,7 +7,7 @@ use crate::mission_file;
 use crate::state::{AppState, ToastKind};
 use crate::workspace::Workspace;
 
-/// The fragment that brings back the open mission, the workspace and the time.
+/// The fragment that brings back the open mission, the workspace, the step of the search and the time.
 pub fn fragment(state: &AppState) -> String {
     let example = mission_file::example(&state.mission);
     let is_example = example.is_some_and(|example| example.source == state.document.text());
@@ -18,13 +18,14 @@ pub fn fragment(state: &AppState) -> String {
     };
     let time = state.playback.time;
     let time = if time > 0.0 { format!("&t={time}") } else { String::new() };
-    format!("{mission}&workspace={}{time}", state.workspace.name())
+    let step = state.search.step().map(|step| format!("&step={}", step.step + 1)).unwrap_or_default();
+    format!("{mission}&workspace={}{step}{time}", state.workspace.name())
 }
 
 /// Opens what a fragment names; parts that it does not name stay as they are.
 pub fn open_fragment(state: &mut AppState, fragment: &str) {
-    for part in fragment.trim_start_matches('#').split('&') {
-        let Some((key, value)) = part.split_once('=') else { continue };
+    let parts = || fragment.trim_start_matches('#').split('&').filter_map(|part| part.split_once('='));
+    for (key, value) in parts() {
         match key {
             "mission" => match mission_file::example(value) {
                 Some(example) => state.apply(Command::OpenExample(example.name.into())),
@@ -39,6 +40,18 @@ pub fn open_fragment(state: &mut AppState, fragment: &str) {
             "workspace" => {
                 if let Some(workspace) = Workspace::by_name(value) {
                     state.apply(Command::ShowWorkspace(workspace));
+                }
+            }
+            _ => {}
+        }
+    }
+    // These are about the mission that the others open, wherever they stand.
+    for (key, value) in parts() {
+        match key {
+            "step" => {
+                if let Ok(step) = value.parse::<usize>() {
+                    state.apply(Command::SetTrace(true));
+                    state.want_step(step);
                 }
             }
             "t" => {
@@ -107,6 +120,15 @@ mod tests {
         }
         assert_eq!(state.document.text(), before);
         assert!(!state.toasts.shown().is_empty());
+    }
+
+    #[test]
+    fn a_fragment_names_the_step_in_any_order_and_without_it_none() {
+        let mut state = AppState::new();
+        open_fragment(&mut state, "step=12&mission=backjump&workspace=teach");
+        assert_eq!(state.mission, "backjump");
+        assert!(state.settings.plan.trace, "there is nothing to step through without a recorded search");
+        assert!(!fragment(&state).contains("step="), "the search has not been recorded yet");
     }
 
     #[test]

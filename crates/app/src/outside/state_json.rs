@@ -7,6 +7,8 @@ use tpn::Network;
 use tpn::plan_json::plan_to_json;
 
 use super::hca_json::hca_json;
+use crate::state::search::{Counts, Recording};
+use crate::state::selection::node_name;
 use crate::state::{AppState, Status};
 
 /// The state. `revision` is the text's; everything that was worked out is under the revision it belongs to, which is
@@ -19,7 +21,6 @@ pub fn state_json(state: &AppState) -> Value {
     let plan = network.zip(shown.and_then(|shown| shown.plan()));
     let failure = planning.and_then(|planning| planning.outcome.failure.as_ref());
     let verdict = planning.and_then(|planning| planning.verdict.as_ref());
-    let steps = planning.and_then(|planning| planning.outcome.trace.as_ref()).map(|trace| trace.events.len());
     let problems = latest.map(|latest| latest.problems.iter().map(problem_json).collect::<Vec<_>>());
     let caret = state.document.caret();
     json!({
@@ -30,6 +31,8 @@ pub fn state_json(state: &AppState) -> Value {
         "isStale": state.snapshots.is_stale(state.document.revision()),
         "mission": state.mission.as_str(),
         "workspace": state.workspace.name(),
+        "activePanel": state.active_panel.name(),
+        "panels": state.panels_on_screen.iter().map(|panel| panel.name()).collect::<Vec<_>>(),
         "theme": state.settings.theme,
         "diagnostics": problems.unwrap_or_default(),
         "tpn": network.map(|network| json!({
@@ -41,7 +44,7 @@ pub fn state_json(state: &AppState) -> Value {
         "plan": plan.map(|(network, plan)| plan_to_json(network, plan)),
         "verdict": verdict.map(verdict_json),
         "failure": network.zip(failure).map(|(network, failure)| failure_json(network, failure)),
-        "search": { "step": 0, "steps": steps.unwrap_or_default() },
+        "search": search_json(state),
         "hca": hca_json(&state.automaton),
         "vehicles": shown.map(|shown| vehicles_json(state, shown)).unwrap_or_default(),
         "traverses": shown
@@ -59,6 +62,77 @@ pub fn state_json(state: &AppState) -> Value {
         "renderer": state.frame.renderer,
         "timings": timings_json(state),
     })
+}
+
+/// The search: `step` counts from 1 and is 0 while the plan is shown.
+fn search_json(state: &AppState) -> Value {
+    let recordings = state.search.recordings(state.shown());
+    let side = state.search.side();
+    let step = state.search.step().map_or(0, |step| step.step + 1);
+    let known = state.search.shown().map(|view| {
+        let network = view.recording.network();
+        let entry = view.recording.trace().events.get(view.step.step);
+        let mut known = plan_to_json(network, &view.plan);
+        known["event"] = json!(entry.map(|entry| event_name(&entry.event)));
+        known["text"] = json!(entry.map(|entry| crate::panel::event_in_words(network, &entry.event)));
+        known["state"] = json!(view.step.tree_node);
+        known["cycle"] = view.step.cycle.iter().map(|it| json!(node_name(network, it.from))).collect();
+        known
+    });
+    let compared: Vec<Value> = recordings
+        .iter()
+        .enumerate()
+        .filter_map(|(side, recording)| {
+            let searched = recording.searched()?;
+            let counts = Counts::of(recording.trace());
+            Some(json!({
+                "search": searched.search,
+                "status": searched.status,
+                "step": state.search.view(side).map_or(0, |view| view.step.step + 1),
+                "steps": recording.steps(),
+                "states": counts.states,
+                "propagations": counts.propagations,
+                "backtracks": counts.backtracks,
+                "deadEnds": counts.dead_ends,
+                "millis": searched.millis,
+            }))
+        })
+        .collect();
+    json!({
+        "step": step,
+        "steps": recordings.get(side).or(recordings.first()).map_or(0, Recording::steps),
+        "isPlaying": state.search.is_playing,
+        "stepsPerSecond": state.search.steps_per_sec,
+        "breakpoints": state.search.breakpoints,
+        "known": known,
+        "compare": state.search.compares().then(|| json!({
+            "side": side,
+            "isLinked": state.search.is_linked(),
+            "searches": compared,
+        })),
+    })
+}
+
+/// The name of an event of the search, as in recorded searches on the command line.
+fn event_name(event: &kirk::Event) -> &'static str {
+    use kirk::Event;
+    match event {
+        Event::Expand { .. } => "expand",
+        Event::Decide { .. } => "decide",
+        Event::AddArc { .. } => "add-arc",
+        Event::Propagate { .. } => "propagate",
+        Event::Inconsistent { .. } => "inconsistent",
+        Event::Unclosable { .. } => "unclosable",
+        Event::TryLink { .. } => "try-link",
+        Event::Threat { .. } => "threat",
+        Event::TryOrder { .. } => "try-order",
+        Event::Unresolvable { .. } => "unresolvable",
+        Event::Known => "known",
+        Event::Backtrack { .. } => "backtrack",
+        Event::Backjump { .. } => "backjump",
+        Event::Solution { .. } => "solution",
+        Event::Exhausted => "exhausted",
+    }
 }
 
 /// Why there is no plan.

@@ -1,6 +1,7 @@
 //! The panels: each reads the state and emits commands, and changes nothing else.
 
 pub mod automaton;
+pub mod distances;
 pub mod editor;
 pub mod empty;
 pub mod network;
@@ -20,11 +21,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::command::{CommandSender, ViewAction};
 use crate::state::AppState;
+use crate::state::search::Focus;
 use crate::theme::Tokens;
 
 pub(crate) use editor::show_markdown;
 pub use editor::{editor_id, typed_text};
 pub use empty::show_empty;
+pub use search::event_in_words;
 
 /// The kinds of panel. A layout holds at most one of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -46,13 +49,15 @@ pub enum PanelKind {
     Terrain,
     /// The search that found the plan.
     Search,
+    /// The distances between the events of the plan, or of the step that is looked at.
+    Distances,
     /// The run of a control program.
     Automaton,
 }
 
 impl PanelKind {
     /// All of them, as the menu lists them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Editor,
         Self::Outline,
         Self::Problems,
@@ -61,6 +66,7 @@ impl PanelKind {
         Self::Timeline,
         Self::Terrain,
         Self::Search,
+        Self::Distances,
         Self::Automaton,
     ];
 
@@ -75,6 +81,7 @@ impl PanelKind {
             Self::Timeline => "Timeline",
             Self::Terrain => "Terrain",
             Self::Search => "Search",
+            Self::Distances => "Distances",
             Self::Automaton => "Automaton",
         }
     }
@@ -90,6 +97,7 @@ impl PanelKind {
             Self::Timeline => "timeline",
             Self::Terrain => "terrain",
             Self::Search => "search",
+            Self::Distances => "distances",
             Self::Automaton => "automaton",
         }
     }
@@ -101,7 +109,10 @@ impl PanelKind {
 
     /// Whether it has a view that can be zoomed and fitted.
     pub const fn is_zoomable(self) -> bool {
-        matches!(self, Self::Network | Self::Timeline | Self::Terrain | Self::Search | Self::Automaton)
+        matches!(
+            self,
+            Self::Network | Self::Timeline | Self::Terrain | Self::Search | Self::Distances | Self::Automaton
+        )
     }
 }
 
@@ -131,8 +142,20 @@ impl Context<'_> {
     /// looked at, if one is.
     pub fn plan(&self) -> Option<(&tpn::Network, &tpn::Plan)> {
         let snapshot = self.snapshot?;
-        let plan = self.state.search.plan(snapshot).or_else(|| snapshot.plan())?;
-        Some((snapshot.network.as_deref()?, plan))
+        let step = self.state.search.plan(snapshot).map(std::convert::AsRef::as_ref);
+        Some((snapshot.network.as_deref()?, step.or_else(|| snapshot.plan())?))
+    }
+
+    /// The step of the search that is looked at, if one is, with what the search knew there.
+    pub fn step(&self) -> Option<&crate::state::search::View> {
+        self.state.search.plan(self.snapshot?)?;
+        self.state.search.shown()
+    }
+
+    /// What the step that is looked at is about.
+    pub fn focus(&self) -> Option<Focus> {
+        let view = self.step()?;
+        Some(Focus::of(view.recording.network(), view.recording.trace(), &view.step))
     }
 
     /// The view action for `panel` that has not been followed yet. `followed` is the panel's memory of the last one.
@@ -195,6 +218,7 @@ fn create(kind: PanelKind) -> Box<dyn Panel> {
         PanelKind::Network => Box::new(network::NetworkPanel::default()),
         PanelKind::Terrain => Box::new(terrain::TerrainPanel::default()),
         PanelKind::Search => Box::new(search::SearchPanel::default()),
+        PanelKind::Distances => Box::new(distances::DistancesPanel::default()),
         PanelKind::Automaton => Box::new(automaton::AutomatonPanel::default()),
         PanelKind::Editor => Box::new(editor::EditorPanel::default()),
         PanelKind::Plan => Box::new(plan::PlanPanel::default()),

@@ -12,7 +12,7 @@ use crate::mission_file;
 use crate::panel::PanelKind;
 use crate::state::automaton::AutomatonCommand;
 use crate::state::editor::Reveal;
-use crate::state::search::SearchCommand;
+use crate::state::search::{self, SearchCommand};
 use crate::state::{AppState, Selection, ToastKind, ViewRequest, playback};
 use crate::workspace::Workspace;
 
@@ -36,6 +36,8 @@ pub enum Effect {
     Post(Request),
     /// The appearance changed.
     Restyle,
+    /// Take the keyboard from the widget that has it, so that plain keys go to the active panel.
+    DropFocus,
 }
 
 impl AppState {
@@ -45,6 +47,7 @@ impl AppState {
         self.language.follow(&self.document);
         self.editor.folding.follow(&mut self.document, self.language.parse());
         self.automaton.follow(&self.document, self.language.is_control());
+        self.ask_for_comparison();
     }
 
     fn do_command(&mut self, command: Command) {
@@ -93,6 +96,7 @@ impl AppState {
             Command::TogglePlaying => self.playback.toggle(),
             Command::StepTime(forwards) => self.step_time(forwards),
             Command::Search(command) => self.apply_to_search(command),
+            Command::TurnPanel(forwards) => self.turn_panel(forwards),
             Command::SetRate(rate) => self.playback.rate = rate.clamp(0.125, 64.0),
 
             Command::SetGoal(goal) => self.settings.plan.goal = goal,
@@ -105,7 +109,7 @@ impl AppState {
                 // A lecturer steps through the search; it must have been recorded.
                 self.settings.plan.trace |= workspace == Workspace::Teach;
                 if workspace == Workspace::Teach {
-                    self.active_panel = PanelKind::Search;
+                    self.focus_panel(PanelKind::Search);
                 }
             }
             Command::ResetWorkspace => self.wants_default_layout = true,
@@ -142,22 +146,39 @@ impl AppState {
 
     /// Takes in something that happened outside.
     pub fn receive(&mut self, event: HostEvent) {
+        self.take(event);
+        self.ask_for_comparison();
+    }
+
+    fn take(&mut self, event: HostEvent) {
         match event {
             HostEvent::Answer(Response::Snapshot(snapshot)) => self.take_snapshot(snapshot),
             HostEvent::Answer(Response::Map { key, map }) => {
                 self.maps.insert(key, map);
             }
+            HostEvent::Answer(Response::Searches(comparison)) => {
+                let shown = self.snapshots.shown().cloned();
+                self.search.take_comparison(comparison, shown.as_ref(), self.settings.plan.search);
+            }
             HostEvent::Answer(Response::MapRejected { name, reason }) => {
                 self.toasts.add(ToastKind::Failed, format!("The map {name} cannot be used: {reason}"));
             }
             HostEvent::Answer(
-                Response::Execution(_) | Response::NotExecuted { .. } | Response::Sampled { .. },
+                Response::Execution(_)
+                | Response::NotExecuted { .. }
+                | Response::Sampled { .. }
+                | Response::Review { .. }
+                | Response::WorkedOut { .. },
             ) => {}
-            HostEvent::Answer(Response::Review { .. } | Response::WorkedOut { .. }) => {}
-            HostEvent::CoreFailed { message, .. } => self.toasts.add(
-                ToastKind::Failed,
-                format!("Planning stopped and was started anew. Edit the text to plan again. ({message})"),
-            ),
+            HostEvent::CoreFailed { message, revision } => {
+                self.search.give_comparison_up(revision);
+                self.toasts.add(
+                    ToastKind::Failed,
+                    format!(
+                        "Planning stopped and was started anew. Edit the text to plan again. ({message})"
+                    ),
+                );
+            }
             HostEvent::FileOpened { kind, name, bytes } => self.open_file(kind, &name, bytes),
             HostEvent::FileFailed { name, reason } => {
                 self.toasts.add(ToastKind::Failed, format!("{name}: {reason}"));
@@ -166,17 +187,77 @@ impl AppState {
         }
     }
 
-    /// Takes a new snapshot and carries selection and time over to it.
     /// Whether the keys that step and play go to the search instead of time.
-    fn steps_search(&self) -> bool {
-        self.search.step().is_some() || self.active_panel == PanelKind::Search
+    pub fn steps_search(&self) -> bool {
+        let shows_time = matches!(self.active_panel, PanelKind::Timeline | PanelKind::Terrain);
+        self.active_panel == PanelKind::Search || self.search.step().is_some() && !shows_time
     }
 
     fn apply_to_search(&mut self, command: SearchCommand) {
         let shown = self.snapshots.shown().cloned();
         self.search.apply(command, shown.as_ref());
+        self.reveal_step();
     }
 
+    /// Shows in the editor what a new step is about; the caret stays where it is.
+    pub(crate) fn reveal_step(&mut self) {
+        if self.snapshots.is_stale(self.document.revision()) {
+            return;
+        }
+        let Some(view) = self.search.shown() else { return };
+        let focus = search::Focus::of(view.recording.network(), view.recording.trace(), &view.step);
+        if let Some(&span) = focus.spans.first() {
+            self.editor.reveal = Some(Reveal { span, center: true });
+        }
+    }
+
+    /// Shows a step of the search, counted from 1: at once if it is recorded, otherwise as soon as it is.
+    pub fn want_step(&mut self, step: usize) {
+        match self.snapshots.shown().cloned() {
+            Some(shown)
+                if search::recorded(&shown).is_some()
+                    && !self.snapshots.is_stale(self.document.revision()) =>
+            {
+                let target = step.checked_sub(1).map_or(SearchCommand::Close, SearchCommand::GoTo);
+                self.search.apply(target, Some(&shown));
+            }
+            _ => self.search.want_step(step),
+        }
+    }
+
+    fn ask_for_comparison(&mut self) {
+        let shown = self.snapshots.shown().cloned();
+        if let Some(revision) = self.search.ask_for_comparison(shown.as_ref(), self.document.revision()) {
+            self.effects.push(Effect::Post(Request::CompareSearches { revision }));
+        }
+    }
+
+    /// Turns to the next or the previous panel on screen, and gives it the keyboard.
+    fn turn_panel(&mut self, forwards: bool) {
+        let panels = &self.panels_on_screen;
+        let at = panels.iter().position(|&panel| panel == self.active_panel);
+        let next = match (at, forwards) {
+            (None, _) => 0,
+            (Some(at), true) => (at + 1) % panels.len(),
+            (Some(at), false) => (at + panels.len() - 1) % panels.len(),
+        };
+        if let Some(&panel) = panels.get(next) {
+            self.focus_panel(panel);
+        }
+    }
+
+    /// Gives a panel the keyboard.
+    fn focus_panel(&mut self, panel: PanelKind) {
+        self.active_panel = panel;
+        if panel == PanelKind::Editor {
+            self.editor.wants_focus = true;
+        } else {
+            self.editor.wants_focus = false;
+            self.effects.push(Effect::DropFocus);
+        }
+    }
+
+    /// Takes a new snapshot and carries selection and time over to it.
     fn take_snapshot(&mut self, snapshot: Arc<Snapshot>) {
         let before = self.snapshots.shown().cloned();
         self.snapshots.take(snapshot, self.frame.now_secs);
@@ -189,7 +270,7 @@ impl AppState {
         if before.is_some_and(|before| Arc::ptr_eq(before, &after)) {
             return;
         }
-        self.search.close();
+        self.search.follow(before, &after);
         if let Some(before) = before {
             self.selection = self.selection.carried(before, &after);
             self.hovered = Selection::None;
@@ -212,6 +293,7 @@ impl AppState {
         self.mission = name;
         self.snapshots.clear();
         self.automaton.forget();
+        self.search.forget();
         self.turn_to_notation(source);
         self.selection = Selection::None;
         self.hovered = Selection::None;

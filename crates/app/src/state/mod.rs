@@ -79,6 +79,8 @@ pub struct AppState {
     pub dialog: Option<Dialog>,
     /// The panel that was used last; view actions go to it.
     pub active_panel: PanelKind,
+    /// The panels that were on screen in the last frame, in the order of the layout.
+    pub panels_on_screen: Vec<PanelKind>,
     /// The last view action, for its panel to follow once.
     pub view_request: Option<ViewRequest>,
     /// A panel that is to be brought back or to the front of its tabs.
@@ -140,6 +142,7 @@ impl AppState {
             toasts: Toasts::default(),
             dialog: None,
             active_panel: PanelKind::Editor,
+            panels_on_screen: Vec::new(),
             view_request: None,
             wanted_panel: None,
             unwanted_panel: None,

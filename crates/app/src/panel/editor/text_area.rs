@@ -291,6 +291,7 @@ impl TextArea {
         let painter = ui.painter().with_clip_rect(text_clip);
         let marks = Painting { context, geometry, shown, painter: &painter, right: clip.right() };
         marks.current_line(clip.left());
+        marks.step(self.shift(context));
         marks.selected_thing(self.shift(context));
         marks.matches_of_find();
         marks.selected_text(response.has_focus());
@@ -420,6 +421,20 @@ impl Painting<'_> {
         let span = self.context.state.selection.span(snapshot).and_then(|span| shift.span(span));
         for rect in span.map(|span| self.rects(span.range())).unwrap_or_default() {
             self.painter.rect_filled(rect, 3.0, self.context.tokens.accent_soft);
+        }
+    }
+
+    /// A frame around what the step of the search that is looked at is about.
+    fn step(&self, shift: Shift) {
+        let Some(focus) = self.context.focus().filter(|_| !self.context.is_stale) else { return };
+        let tokens = self.context.tokens;
+        let color = if focus.is_failure { tokens.failure } else { tokens.decision };
+        for span in focus.spans.iter().filter_map(|&span| shift.span(span)) {
+            for rect in self.rects(span.range()) {
+                self.painter.rect_filled(rect, 3.0, color.gamma_multiply(0.16));
+                let line = rect.bottom() - 1.0;
+                self.painter.hline(rect.x_range(), line, Stroke::new(2.0, color.gamma_multiply(0.8)));
+            }
         }
     }
 

@@ -8,6 +8,7 @@ use layout::{NetworkDrawing, Options, OverlayCurve, Piece, Point, TextShape, app
 use mission::{Planning, Snapshot};
 use tpn::{BlockId, BlockKind, Network, NodeId, Plan};
 
+use crate::state::search::View;
 use crate::state::selection::node_name;
 
 /// A drawing with what lies over it.
@@ -15,6 +16,8 @@ use crate::state::selection::node_name;
 pub(super) struct Drawn {
     network: Option<Arc<Network>>,
     planning: Option<Arc<Planning>>,
+    /// What the search had selected at the step that is looked at.
+    step: Option<Arc<Plan>>,
     collapsed: BTreeSet<String>,
     /// The shapes.
     pub(super) drawing: NetworkDrawing,
@@ -40,6 +43,7 @@ impl Drawn {
         &mut self,
         snapshot: &Snapshot,
         network: &Arc<Network>,
+        step: Option<&View>,
         collapsed: &BTreeSet<String>,
     ) -> bool {
         let same = |one: &Option<Arc<Network>>| one.as_ref().is_some_and(|one| Arc::ptr_eq(one, network));
@@ -58,23 +62,33 @@ impl Drawn {
             (None, None) => true,
             _ => false,
         };
-        if is_new || !same_planning {
+        let same_step = match (&self.step, step) {
+            (Some(one), Some(view)) => Arc::ptr_eq(one, &view.plan),
+            (None, None) => true,
+            _ => false,
+        };
+        if is_new || !same_planning || !same_step {
             self.planning.clone_from(&snapshot.planning);
-            self.lay_over(network, snapshot);
+            self.step = step.map(|view| Arc::clone(&view.plan));
+            self.lay_over(network, snapshot, step);
         }
         is_new
     }
 
-    fn lay_over(&mut self, network: &Network, snapshot: &Snapshot) {
+    fn lay_over(&mut self, network: &Network, snapshot: &Snapshot, step: Option<&View>) {
         self.links.clear();
         self.orderings.clear();
         self.windows.clear();
         self.cycle.clear();
-        if let Some(plan) = snapshot.plan().filter(|plan| fits(plan, network)) {
+        let plan = step.map(|view| view.plan.as_ref()).or_else(|| snapshot.plan());
+        if let Some(plan) = plan.filter(|plan| fits(plan, network)) {
             self.links = causal_links(&self.drawing, network, plan);
             self.orderings = orderings(&self.drawing, network, plan);
             let width = Options::default().window_width;
             self.windows = windows(&self.drawing, plan, width, &approximate_text_width);
+            let cycle: Vec<NodeId> =
+                step.iter().flat_map(|view| &view.step.cycle).map(|member| member.from).collect();
+            self.cycle = negative_cycle(&self.drawing, network, &cycle);
         } else if let Some(events) = cycle_events(snapshot) {
             self.cycle = negative_cycle(&self.drawing, network, &events);
         }

@@ -4,6 +4,7 @@ use layout::{Item, NetworkDrawing, Rect};
 use tpn::{ArcId, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind};
 
 use crate::state::Selection;
+use crate::state::search::Focus;
 
 /// The shapes of one selection.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,6 +41,19 @@ impl Highlight {
             Selection::Link(link) => shapes.add_labels(network, [link.tell, link.ask]),
             Selection::Ordering(ordering) => shapes.add_labels(network, [ordering.first, ordering.then]),
             _ => {}
+        }
+        shapes
+    }
+
+    /// The shapes that a step of the search is about.
+    pub(super) fn of_focus(focus: &Focus, network: &Network) -> Self {
+        let mut shapes = Self::default();
+        shapes.nodes.extend(focus.nodes.iter().filter(|node| node.index() < network.nodes.len()));
+        for &arc in &focus.arcs {
+            shapes.add_arc(network, arc);
+        }
+        for &label in &focus.labels {
+            shapes.add_label(network, label);
         }
         shapes
     }

@@ -43,6 +43,8 @@ pub struct NetworkPanel {
     followed_action: u64,
     /// The selection that was last brought into view.
     followed_selection: Selection,
+    /// The step of the search that was last brought into view.
+    followed_step: Option<usize>,
     /// What this panel last said the pointer is over.
     told_hover: Selection,
     /// Whether the overview is being dragged.
@@ -64,7 +66,7 @@ impl Panel for NetworkPanel {
             return;
         };
         let begun_secs = (context.clock)();
-        if self.drawn.follow(snapshot, network, &self.collapsed) {
+        if self.drawn.follow(snapshot, network, context.step(), &self.collapsed) {
             context.layout_millis.set(Some(((context.clock)() - begun_secs) * 1000.0));
         }
         self.search.follow(network, self.drawn.version);
@@ -114,7 +116,7 @@ impl NetworkPanel {
         options: &NetworkView,
         commands: &mut CommandSender,
     ) {
-        let plan = snapshot.plan().filter(|plan| fits(plan, network));
+        let plan = context.plan().map(|(_, plan)| plan).filter(|plan| fits(plan, network));
         let (panel, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let summary = describe::summary(network, plan);
         response
@@ -139,6 +141,7 @@ impl NetworkPanel {
         let painter = ui.painter_at(panel);
         let selected = Highlight::of(&context.state.selection, network);
         let hovered = Highlight::of(&context.state.hovered, network);
+        let focus = context.focus();
         let scene = Scene {
             painter: &painter,
             panel,
@@ -150,6 +153,7 @@ impl NetworkPanel {
             tokens: context.tokens,
             selected: &selected,
             hovered: &hovered,
+            focus: focus.as_ref(),
         };
         scene.paint();
         if let Some(place) = overview {
@@ -205,6 +209,7 @@ impl NetworkPanel {
         let action = context.view_action(PanelKind::Network, &mut self.followed_action);
         self.follow_action(action, panel, context, network);
         self.follow_selection(panel, context, network);
+        self.follow_step(panel, context, network);
         if self.view.is_fitted() {
             self.view.fit(panel, self.drawn.drawing.bounds);
         }
@@ -242,6 +247,20 @@ impl NetworkPanel {
         self.followed_selection = selection.clone();
         let Some(area) = Highlight::of(selection, network).bounds(&self.drawn.drawing) else { return };
         if !self.view.visible(panel).overlaps(area.expanded(1.0)) {
+            self.view.look_at(area.center());
+        }
+    }
+
+    /// Brings what a new step is about into view if none of it is.
+    fn follow_step(&mut self, panel: Rect, context: &Context<'_>, network: &Network) {
+        let step = context.state.search.step().map(|step| step.step);
+        if step == self.followed_step {
+            return;
+        }
+        self.followed_step = step;
+        let Some(focus) = context.focus() else { return };
+        let area = Highlight::of_focus(&focus, network).bounds(&self.drawn.drawing);
+        if let Some(area) = area.filter(|area| !self.view.visible(panel).overlaps(area.expanded(1.0))) {
             self.view.look_at(area.center());
         }
     }
@@ -392,6 +411,16 @@ fn show_badges(painter: &egui::Painter, panel: Rect, context: &Context<'_>, snap
         let text = "⚠ The text has errors: this is its last good network";
         badge(painter, corner, text, tokens.warning, tokens, width);
         corner.y += 30.0;
+    }
+    if let Some(view) = context.step() {
+        let trace = view.recording.trace();
+        let (step, steps) = (view.step.step, trace.events.len());
+        let Some(entry) = trace.events.get(step) else { return };
+        let text = crate::panel::event_in_words(view.recording.network(), &entry.event);
+        let is_failure = crate::state::search::focus::is_failure(&entry.event);
+        let color = if is_failure { tokens.failure } else { tokens.accent };
+        badge(painter, corner, &format!("Step {} / {steps}: {text}", step + 1), color, tokens, width);
+        return;
     }
     let failure = snapshot.planning.as_ref().and_then(|planning| planning.outcome.failure.as_ref());
     if let Some(reason) = failure.and_then(|failure| failure.reasons.first()) {

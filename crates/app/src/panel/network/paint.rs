@@ -9,6 +9,7 @@ use tpn::{ArcKind, LabelId, Network, Plan, Role};
 use super::data::Drawn;
 use super::highlight::Highlight;
 use super::view::View;
+use crate::state::search::Focus;
 use crate::state::settings::NetworkView;
 use crate::theme::Tokens;
 
@@ -47,6 +48,8 @@ pub(super) struct Scene<'a> {
     pub(super) selected: &'a Highlight,
     /// What the pointer is over, here or in another panel.
     pub(super) hovered: &'a Highlight,
+    /// What the step of the search that is looked at is about.
+    pub(super) focus: Option<&'a Focus>,
 }
 
 /// The shapes in view, by their places in the drawing.
@@ -136,9 +139,13 @@ impl Scene<'_> {
 
     fn highlights(&self) {
         let drawing = &self.drawn.drawing;
-        let marks = [(self.hovered, 0.22), (self.selected, 0.45)];
-        for (shapes, strength) in marks {
-            let color = self.tokens.accent.gamma_multiply(strength);
+        let step = self.focus.map(|focus| Highlight::of_focus(focus, self.network)).unwrap_or_default();
+        let is_failure = self.focus.is_some_and(|focus| focus.is_failure);
+        let step_color = if is_failure { self.tokens.failure } else { self.tokens.decision };
+        let accent = self.tokens.accent;
+        let marks = [(&step, 0.40, step_color), (self.hovered, 0.22, accent), (self.selected, 0.45, accent)];
+        for (shapes, strength, hue) in marks {
+            let color = hue.gamma_multiply(strength);
             if let Some(occurrence) = shapes.occurrence {
                 let outlines = drawing.blocks.iter().filter(|block| block.occurrence == Some(occurrence));
                 for block in outlines {

@@ -39,7 +39,10 @@ impl Panel for PlanPanel {
                 }
                 match context.plan() {
                     Some((network, plan)) => {
-                        show_verdict(ui, context, planning);
+                        match context.step() {
+                            Some(view) => show_step(ui, context, view),
+                            None => show_verdict(ui, context, planning),
+                        }
                         show_choices(ui, context, network, plan, commands);
                         show_links(ui, context, network, plan, commands);
                         show_orderings(ui, context, network, plan, commands);
@@ -89,6 +92,17 @@ pub(crate) fn selectable_row(
     if response.double_clicked() {
         commands.send(Command::SelectAndReveal(selection.clone()));
     }
+}
+
+/// Says that what follows is not the plan.
+fn show_step(ui: &mut Ui, context: &Context<'_>, view: &crate::state::search::View) {
+    ui.horizontal_wrapped(|ui| {
+        let (step, steps) = (view.step.step + 1, view.recording.steps());
+        let text = format!("Step {step} / {steps} of the search");
+        ui.label(crate::theme::strong(&text).color(context.tokens.accent));
+        let note = "what was chosen, added and possible then";
+        ui.label(RichText::new(note).small().color(context.tokens.text_muted));
+    });
 }
 
 fn show_verdict(ui: &mut Ui, context: &Context<'_>, planning: &mission::Planning) {

@@ -1,123 +1,283 @@
-//! The search: the tree that planning walked, step by step, with what was tried and why it failed.
+//! The search: the tree that planning walked, step by step, with what was tried and why it failed; or the trees of both
+//! searches side by side.
 //!
 //! While a step is looked at, the other panels show that step: what was selected then, and the windows then.
 
 mod canvas;
 mod controls;
+mod details;
 mod keys;
-mod matrix;
+mod statistics;
 mod tree;
 mod wording;
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
-use kirk::{Trace, TreeNodeId};
-use mission::Snapshot;
-use tpn::Network;
+use egui::{RichText, Ui, UiBuilder};
+use kirk::TreeNodeId;
+use mission::SearchKind;
 
 use crate::command::{Command, CommandSender};
 use crate::panel::{Context, Panel, PanelKind};
-use crate::state::search::{SearchCommand, recorded};
+use crate::state::Selection;
+use crate::state::search::focus::selection_of;
+use crate::state::search::{Recording, SearchCommand};
 use crate::theme::space;
-use tree::TreeDrawing;
+use canvas::{Pointed, Tree};
+use tree::{TreeDrawing, TreeIndex};
 
-/// The panel, with what concerns only it: where the tree is scrolled to and which states are collapsed.
+pub use wording::event as event_in_words;
+
+/// The panel, with what concerns only it: where each tree is scrolled to and which of its states are folded.
 #[derive(Default)]
 pub struct SearchPanel {
-    drawn: Option<Drawn>,
-    collapsed: BTreeSet<TreeNodeId>,
-    hides_failed: bool,
-    shows_matrix: bool,
-    view: canvas::View,
+    sides: [Side; 2],
     followed_action: u64,
+    /// What this panel last said the pointer is over.
+    told_hover: Selection,
 }
 
-/// The tree of the search that was drawn last.
+/// One tree on screen.
+#[derive(Default)]
+struct Side {
+    drawn: Option<Drawn>,
+    /// States that were folded or opened by hand: the other way round than they would be.
+    toggled: BTreeSet<TreeNodeId>,
+    /// Whether failed subtrees are folded; large searches begin like that.
+    folds_failed: bool,
+    view: canvas::View,
+}
+
+/// The tree that was laid out last.
 struct Drawn {
-    snapshot: Arc<Snapshot>,
-    collapsed: BTreeSet<TreeNodeId>,
+    recording: Recording,
+    index: TreeIndex,
     drawing: TreeDrawing,
+    /// What the layout depends on besides.
+    toggled: BTreeSet<TreeNodeId>,
+    folds_failed: bool,
+    /// The states above and at the step, which are open.
+    open: Vec<TreeNodeId>,
 }
 
-/// What the panel draws from.
-struct Shown<'a> {
-    network: &'a Network,
-    trace: &'a Trace,
-    /// The step that is looked at.
-    step: Option<&'a kirk::ReplayStep>,
-}
+/// A search with more states than this begins with its failed subtrees folded.
+const MANY_STATES: usize = 300;
+/// The least height of the tree, and that of what is said about the step.
+const LEAST_TREE: f32 = 120.0;
+const DETAILS: f32 = 132.0;
+/// Narrower panels show two trees one above the other.
+const SIDE_BY_SIDE: f32 = 420.0;
 
 impl Panel for SearchPanel {
-    fn show(&mut self, ui: &mut egui::Ui, context: &Context<'_>, commands: &mut CommandSender) {
-        let snapshot = context.snapshot.filter(|snapshot| recorded(snapshot).is_some());
-        let parts = snapshot.and_then(|it| Some((it, it.network.as_deref()?, recorded(it)?)));
-        let Some((snapshot, network, trace)) = parts else {
+    fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+        let search = &context.state.search;
+        let recordings = search.recordings(context.snapshot);
+        let side = search.side().min(recordings.len().saturating_sub(1));
+        if recordings.is_empty() {
             show_unrecorded(ui, context, commands);
             return;
+        }
+        for (side, recording) in self.sides.iter_mut().zip(&recordings) {
+            side.begin(recording);
+        }
+        let folds_failed = &mut self.sides[side].folds_failed;
+        controls::show(ui, context, &recordings, folds_failed, commands);
+        for (number, recording) in recordings.iter().enumerate() {
+            self.sides[number].follow(recording, context, number);
+        }
+        if let Some(drawn) = &self.sides[side].drawn {
+            keys::follow(ui, context, drawn.recording.trace(), &drawn.index, commands);
+        }
+        let action = context.view_action(PanelKind::Search, &mut self.followed_action);
+        let room = ui.available_rect_before_wrap();
+        let details = DETAILS.min((room.height() - LEAST_TREE).max(room.height() * 0.3));
+        let (upper, lower) = room.split_top_bottom_at_y(room.bottom() - details);
+        if let Some(action) = action {
+            self.sides[side].view.follow(action, upper);
+        }
+        let pointed = self.show_trees(ui, context, &recordings, upper, commands);
+        let mut below = ui.new_child(UiBuilder::new().max_rect(lower.shrink2(egui::vec2(space::M, 2.0))));
+        ui.painter().hline(lower.x_range(), lower.top(), egui::Stroke::new(1.0, context.tokens.line));
+        let hovered = pointed.filter(|(_, pointed)| pointed.hovered.is_some());
+        let (shown, state) = match hovered {
+            Some((side, pointed)) => (side, pointed.hovered),
+            None => (side, None),
         };
-        let shown = Shown { network, trace, step: context.state.search.step() };
-        controls::show(ui, context, &shown, &mut self.hides_failed, &mut self.shows_matrix, commands);
-        self.layout(snapshot, trace);
-        let Some(drawn) = &self.drawn else { return };
-        keys::follow(ui, context, &shown, &drawn.drawing, commands);
-        wording::show(ui, context, &shown);
-        if self.shows_matrix {
-            matrix::show(ui, context, &shown);
+        if let Some(drawn) = &self.sides[shown].drawn {
+            details::show(&mut below, context, &drawn.recording, &drawn.index, state, commands);
         }
-        if let Some(action) = context.view_action(PanelKind::Search, &mut self.followed_action) {
-            self.view.follow(action);
-        }
-        let clicked = self.view.show(ui, context, &shown, &drawn.drawing);
-        match clicked {
-            Some(canvas::Clicked::State(node)) => {
-                commands.send(Command::Activate(PanelKind::Search));
-                commands.send(Command::Search(SearchCommand::GoToNode(node)));
-            }
-            Some(canvas::Clicked::Toggle(node)) => {
-                if !self.collapsed.remove(&node) {
-                    self.collapsed.insert(node);
-                }
-            }
-            None => {}
-        }
+        self.tell_hover(context, shown, state, commands);
+        ui.advance_cursor_after_rect(room);
     }
 }
 
 impl SearchPanel {
-    /// Lays the tree out again if it is another one, or other states are collapsed.
-    fn layout(&mut self, snapshot: &Arc<Snapshot>, trace: &Trace) {
-        let is_same_search = self.drawn.as_ref().is_some_and(|drawn| Arc::ptr_eq(&drawn.snapshot, snapshot));
-        if !is_same_search {
-            self.collapsed.clear();
-            self.view = canvas::View::default();
+    /// Shows the tree, or both, and answers what the pointer does in which of them.
+    fn show_trees(
+        &mut self,
+        ui: &mut Ui,
+        context: &Context<'_>,
+        recordings: &[Recording],
+        room: egui::Rect,
+        commands: &mut CommandSender,
+    ) -> Option<(usize, Pointed)> {
+        let mut found = None;
+        for (number, recording) in recordings.iter().enumerate() {
+            let place = match recordings.len() {
+                2 if room.width() >= SIDE_BY_SIDE => {
+                    let (left, right) = room.split_left_right_at_fraction(0.5);
+                    [left, right][number]
+                }
+                2 => {
+                    let (upper, lower) = room.split_top_bottom_at_fraction(0.5);
+                    [upper, lower][number]
+                }
+                _ => room,
+            };
+            let mut part = ui.new_child(UiBuilder::new().max_rect(place).id_salt(("search", number)));
+            let is_active = context.state.search.side() == number;
+            if recording.searched().is_some() {
+                statistics::show(&mut part, context, recording, number, commands);
+                if is_active {
+                    let edge = place.shrink(1.0);
+                    let stroke = egui::Stroke::new(1.0, context.tokens.accent);
+                    ui.painter().rect_stroke(edge, 3.0, stroke, egui::StrokeKind::Inside);
+                }
+            }
+            let side = &mut self.sides[number];
+            let Some(drawn) = &side.drawn else { continue };
+            let view = context.state.search.view(number);
+            let tree = Tree {
+                network: recording.network(),
+                trace: recording.trace(),
+                index: &drawn.index,
+                drawing: &drawn.drawing,
+                step: view.map(|view| (view.step.step, view.step.tree_node)),
+                name: recording.kind().map_or("Search", kind_name),
+            };
+            let pointed = side.view.show(&mut part, context, &tree);
+            side.answer(pointed, number, commands);
+            if pointed.hovered.is_some() {
+                found = Some((number, pointed));
+            }
         }
-        let mut collapsed = self.collapsed.clone();
-        if self.hides_failed {
-            let whole = TreeDrawing::new(trace, &BTreeSet::new());
-            // A click on a failed state opens it: what was toggled by hand is the other way round.
-            let failed = whole.failed_subtrees(trace);
-            collapsed = failed.symmetric_difference(&self.collapsed).copied().collect();
-        }
-        let is_current =
-            is_same_search && self.drawn.as_ref().is_some_and(|drawn| drawn.collapsed == collapsed);
-        if !is_current {
-            let drawing = TreeDrawing::new(trace, &collapsed);
-            self.drawn = Some(Drawn { snapshot: Arc::clone(snapshot), collapsed, drawing });
+        found
+    }
+
+    /// Lets the other panels hint at what is chosen in the state under the pointer.
+    fn tell_hover(
+        &mut self,
+        context: &Context<'_>,
+        side: usize,
+        state: Option<TreeNodeId>,
+        commands: &mut CommandSender,
+    ) {
+        let drawn = self.sides[side].drawn.as_ref();
+        let choice = drawn.zip(state).and_then(|(drawn, state)| {
+            drawn.recording.trace().tree.get(state as usize).and_then(|node| node.choice)
+        });
+        let hover = selection_of(choice);
+        if hover != self.told_hover {
+            if !hover.is_none() || context.state.hovered == self.told_hover {
+                commands.send(Command::Hover(hover.clone()));
+            }
+            self.told_hover = hover;
         }
     }
 }
 
-fn show_unrecorded(ui: &mut egui::Ui, context: &Context<'_>, commands: &mut CommandSender) {
+impl Side {
+    /// Begins anew with another search.
+    fn begin(&mut self, recording: &Recording) {
+        if self.drawn.as_ref().is_some_and(|drawn| drawn.recording.is(recording)) {
+            return;
+        }
+        let trace = recording.trace();
+        if self.drawn.as_ref().is_some_and(|drawn| drawn.recording.trace() == trace) {
+            // The same search, come anew: everything stays where it is.
+            if let Some(drawn) = &mut self.drawn {
+                drawn.recording = recording.clone();
+            }
+            return;
+        }
+        self.toggled.clear();
+        self.folds_failed = trace.tree.len() > MANY_STATES;
+        self.view = canvas::View::default();
+        self.drawn = Some(Drawn {
+            recording: recording.clone(),
+            index: TreeIndex::new(trace),
+            drawing: TreeDrawing::default(),
+            toggled: BTreeSet::new(),
+            folds_failed: false,
+            open: Vec::new(),
+        });
+    }
+
+    /// Lays the tree out again if other states are folded than before.
+    fn follow(&mut self, recording: &Recording, context: &Context<'_>, number: usize) {
+        let Some(drawn) = &mut self.drawn else { return };
+        let trace = recording.trace();
+        let state = context.state.search.view(number).map(|view| view.step.tree_node);
+        let above = |&id: &TreeNodeId| trace.tree.get(id as usize).and_then(|node| node.parent);
+        let is_above_step = |id: &TreeNodeId| drawn.index.is_failed_subtree(*id);
+        let mut open: Vec<TreeNodeId> = if self.folds_failed {
+            std::iter::successors(state, above).filter(is_above_step).collect()
+        } else {
+            Vec::new()
+        };
+        open.sort_unstable();
+        let is_laid_out = !drawn.drawing.rows.is_empty()
+            && drawn.toggled == self.toggled
+            && drawn.folds_failed == self.folds_failed
+            && drawn.open == open;
+        if is_laid_out {
+            return;
+        }
+        let index = &drawn.index;
+        let folds = |id: TreeNodeId| {
+            let is_folded = self.folds_failed && index.is_failed_subtree(id);
+            is_folded != self.toggled.contains(&id) && open.binary_search(&id).is_err()
+        };
+        drawn.drawing = TreeDrawing::new(index, &folds);
+        drawn.toggled.clone_from(&self.toggled);
+        drawn.folds_failed = self.folds_failed;
+        drawn.open = open;
+    }
+
+    fn answer(&mut self, pointed: Pointed, number: usize, commands: &mut CommandSender) {
+        let (Some(state), Some(drawn)) = (pointed.hovered, &self.drawn) else { return };
+        if pointed.toggled {
+            if !self.toggled.remove(&state) {
+                self.toggled.insert(state);
+            }
+        } else if pointed.clicked {
+            commands.send(Command::Activate(PanelKind::Search));
+            commands.send(Command::Search(SearchCommand::Turn(number)));
+            commands.send(Command::Search(SearchCommand::GoToNode(state)));
+            let choice = drawn.recording.trace().tree.get(state as usize).and_then(|node| node.choice);
+            commands.send(Command::Select(selection_of(choice)));
+        }
+    }
+}
+
+/// How a search is called on screen.
+fn kind_name(kind: SearchKind) -> &'static str {
+    match kind {
+        SearchKind::Chronological => "Chronological",
+        SearchKind::ConflictDirected => "Conflict-directed",
+    }
+}
+
+fn show_unrecorded(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     ui.vertical_centered(|ui| {
         ui.add_space(space::XL * 2.0);
         if context.state.settings.plan.trace {
-            ui.label(egui::RichText::new("There is no search to show yet.").color(context.tokens.text_muted));
+            ui.label(RichText::new("There is no search to show yet.").color(context.tokens.text_muted));
             return;
         }
         let text =
             "The search is not recorded. Recording it lets you step through every decision and dead end.";
-        ui.label(egui::RichText::new(text).color(context.tokens.text_muted));
+        ui.label(RichText::new(text).color(context.tokens.text_muted));
         ui.add_space(space::M);
         if ui.button("Record the search").clicked() {
             commands.send(Command::SetTrace(true));

@@ -1,42 +1,59 @@
 //! A step of the search in words.
 
-use kirk::{Constraint, CycleMember, Event};
+use kirk::{Constraint, CycleMember, Event, TreeChoice};
 use rmpl::Bound;
 use tpn::{LabelId, Network};
 
-use super::Shown;
 use crate::panel::Context;
+use crate::state::search::Recording;
+use crate::state::search::focus::is_failure;
 use crate::state::selection::node_name;
 
 /// Says what happens at the step that is looked at.
-pub fn show(ui: &mut egui::Ui, context: &Context<'_>, shown: &Shown<'_>) {
+pub fn show(ui: &mut egui::Ui, context: &Context<'_>, recording: &Recording) {
     let tokens = context.tokens;
-    let Some(step) = shown.step else {
-        let count = shown.trace.events.len();
-        let more = if shown.trace.is_truncated { "; the search went on after that" } else { "" };
-        let text = format!("{count} steps recorded{more}. Press . to step, or click a state of the tree.");
+    let trace = recording.trace();
+    let Some(view) = context.state.search.shown() else {
+        let more = if trace.is_truncated { "; the search went on after that" } else { "" };
+        let text = format!(
+            "{} steps recorded{more}. Press . to step, or click a state of the tree.",
+            recording.steps()
+        );
         ui.label(egui::RichText::new(text).color(tokens.text_muted));
         return;
     };
-    let Some(entry) = shown.trace.events.get(step.step) else { return };
-    let is_failure = matches!(
-        entry.event,
-        Event::Inconsistent { .. } | Event::Unclosable { .. } | Event::Unresolvable { .. } | Event::Known
-    );
+    let step = view.step.step;
+    let Some(entry) = trace.events.get(step) else { return };
     let color = match entry.event {
         Event::Solution { .. } => tokens.solution,
-        _ if is_failure => tokens.failure,
+        _ if is_failure(&entry.event) => tokens.failure,
         _ => tokens.text,
     };
-    let position = format!("{} / {}", step.step + 1, shown.trace.events.len());
+    let position = format!("{} / {}", step + 1, trace.events.len());
     ui.horizontal_wrapped(|ui| {
         ui.label(egui::RichText::new(position).color(tokens.text_muted).monospace());
-        ui.label(egui::RichText::new(event(shown.network, &entry.event)).color(color));
+        ui.label(egui::RichText::new(event(recording.network(), &entry.event)).color(color));
     });
     if let Event::Inconsistent { cycle } = &entry.event {
         for member in cycle {
-            ui.label(egui::RichText::new(cycle_step(shown.network, member)).color(tokens.text_muted).small());
+            let text = cycle_step(recording.network(), member);
+            ui.label(egui::RichText::new(text).color(tokens.text_muted).small());
         }
+    }
+}
+
+/// What was chosen in a state, in words.
+pub fn choice(network: &Network, choice: Option<TreeChoice>) -> String {
+    let label = |id: LabelId| network.label_name(id);
+    match choice {
+        None => "Before any choice".to_owned(),
+        Some(TreeChoice::Decision { decision, alternative }) => {
+            let text = crate::panel::plan::alternative_text(network, decision, alternative);
+            format!("{} = {text}", Network::decision_name(decision))
+        }
+        Some(TreeChoice::Link(link)) => format!("{} carries {}", label(link.tell), label(link.ask)),
+        Some(TreeChoice::Order(order)) => format!("{} before {}", label(order.first), label(order.then)),
+        Some(TreeChoice::NoLink { ask }) => format!("Nothing carries {}", label(ask)),
     }
 }
 
@@ -49,7 +66,7 @@ pub fn event(network: &Network, event: &Event) -> String {
             format!("Decide {} = {alternative}.", Network::decision_name(*decision))
         }
         Event::AddArc { arc } => {
-            let arc = &network.arcs[arc.index()];
+            let Some(arc) = network.arcs.get(arc.index()) else { return String::new() };
             let (from, to) = (node_name(network, arc.from), node_name(network, arc.to));
             format!("Add {from} → {to} [{}, {}].", Bound::Finite(arc.lower), arc.upper)
         }

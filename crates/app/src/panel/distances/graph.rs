@@ -1,0 +1,229 @@
+//! The distance graph as data (SPEC 4): what is selected as vertices, and every bound as an edge with its weight.
+//!
+//! Events that the language keeps at the same time are one vertex, and chains of path points are one edge, so that the
+//! graph stays readable.
+
+use std::collections::BTreeMap;
+
+use kirk::{Constraint, CycleMember};
+use rmpl::{Bound, Rational};
+use tpn::{ArcId, CausalLink, EventEnd, Network, NodeId, Ordering};
+
+use crate::state::selection::node_name;
+
+/// What the graph is made of.
+#[derive(Clone, Copy)]
+pub struct Selected<'a> {
+    /// The network.
+    pub network: &'a Network,
+    /// Selected events.
+    pub nodes: &'a [NodeId],
+    /// Selected constraints.
+    pub arcs: &'a [ArcId],
+    /// Links in force.
+    pub links: &'a [CausalLink],
+    /// Orders in force.
+    pub orders: &'a [Ordering],
+    /// The contradiction, if there is one.
+    pub cycle: &'a [CycleMember],
+}
+
+/// The distance graph.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DistanceGraph {
+    /// Its vertices, those that can happen first before the others.
+    pub vertices: Vec<Vertex>,
+    /// Its edges.
+    pub edges: Vec<Edge>,
+}
+
+/// Events at the same time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Vertex {
+    /// They.
+    pub nodes: Vec<NodeId>,
+    /// The name of the first that has one; empty for forks and merges.
+    pub name: String,
+}
+
+/// `to` happens at most `weight` after `from`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    /// By position.
+    pub from: usize,
+    /// By position.
+    pub to: usize,
+    /// In time units.
+    pub weight: Rational,
+    /// Why.
+    pub constraint: Constraint,
+    /// Whether it is part of the contradiction.
+    pub is_in_cycle: bool,
+}
+
+impl DistanceGraph {
+    /// The graph of what is selected. Linear in it, but for sorting.
+    pub fn new(selected: &Selected<'_>) -> Self {
+        let network = selected.network;
+        let mut groups = Groups::new(network.nodes.len());
+        for arc in selected.arcs.iter().filter_map(|arc| network.arcs.get(arc.index())) {
+            if arc.lower == Rational::default() && arc.upper == Bound::ZERO {
+                groups.join(arc.from.index(), arc.to.index());
+            }
+        }
+        let mut graph = Self::default();
+        let mut vertex_of: BTreeMap<usize, usize> = BTreeMap::new();
+        for &node in selected.nodes {
+            let vertex = *vertex_of.entry(groups.find(node.index())).or_insert_with(|| {
+                graph.vertices.push(Vertex::default());
+                graph.vertices.len() - 1
+            });
+            graph.vertices[vertex].nodes.push(node);
+        }
+        for vertex in &mut graph.vertices {
+            vertex.nodes.sort_unstable();
+            vertex.name = name(network, &vertex.nodes);
+        }
+        let mut place = |node: NodeId| vertex_of.get(&groups.find(node.index())).copied();
+        for edge in bounds(selected) {
+            if let (Some(from), Some(to)) = (place(edge.from), place(edge.to))
+                && from != to
+            {
+                let is_in_cycle = selected.cycle.iter().any(|member| member.constraint == edge.constraint);
+                graph.edges.push(Edge {
+                    from,
+                    to,
+                    weight: edge.weight,
+                    constraint: edge.constraint,
+                    is_in_cycle,
+                });
+            }
+        }
+        graph.keep_tightest();
+        graph.join_chains();
+        graph
+    }
+
+    /// Of edges between the same two vertices, the tightest says all.
+    fn keep_tightest(&mut self) {
+        self.edges.sort_by_key(|edge| (edge.from, edge.to, edge.weight, !edge.is_in_cycle));
+        self.edges.dedup_by_key(|edge| (edge.from, edge.to));
+    }
+
+    /// A nameless vertex with one neighbour before and one after it is passed over.
+    fn join_chains(&mut self) {
+        for vertex in 0..self.vertices.len() {
+            if !self.vertices[vertex].name.is_empty() {
+                continue;
+            }
+            let incoming: Vec<Edge> = self.edges.iter().filter(|edge| edge.to == vertex).copied().collect();
+            let outgoing: Vec<Edge> = self.edges.iter().filter(|edge| edge.from == vertex).copied().collect();
+            let mut neighbours: Vec<usize> =
+                incoming.iter().map(|edge| edge.from).chain(outgoing.iter().map(|edge| edge.to)).collect();
+            neighbours.sort_unstable();
+            neighbours.dedup();
+            if neighbours.len() != 2 {
+                continue;
+            }
+            self.edges.retain(|edge| edge.from != vertex && edge.to != vertex);
+            for before in &incoming {
+                for after in outgoing.iter().filter(|after| after.to != before.from) {
+                    let is_in_cycle = before.is_in_cycle && after.is_in_cycle;
+                    let weight = before.weight + after.weight;
+                    self.edges.push(Edge { from: before.from, to: after.to, weight, is_in_cycle, ..*before });
+                }
+            }
+        }
+        self.keep_tightest();
+        let is_used = |vertex: usize| self.edges.iter().any(|edge| edge.from == vertex || edge.to == vertex);
+        let kept: Vec<usize> = (0..self.vertices.len())
+            .filter(|&vertex| !self.vertices[vertex].name.is_empty() || is_used(vertex))
+            .collect();
+        let mut position = vec![0; self.vertices.len()];
+        for (new, &old) in kept.iter().enumerate() {
+            position[old] = new;
+        }
+        self.vertices = kept.iter().map(|&old| std::mem::take(&mut self.vertices[old])).collect();
+        for edge in &mut self.edges {
+            (edge.from, edge.to) = (position[edge.from], position[edge.to]);
+        }
+    }
+}
+
+/// A bound of the network.
+struct Between {
+    from: NodeId,
+    to: NodeId,
+    weight: Rational,
+    constraint: Constraint,
+}
+
+/// Every bound of what is selected: `to − from ≤ weight`.
+fn bounds(selected: &Selected<'_>) -> Vec<Between> {
+    let network = selected.network;
+    let mut all = Vec::new();
+    for &id in selected.arcs {
+        let Some(arc) = network.arcs.get(id.index()) else { continue };
+        if let Bound::Finite(weight) = arc.upper {
+            all.push(Between { from: arc.from, to: arc.to, weight, constraint: Constraint::Upper(id) });
+        }
+        let constraint = Constraint::Lower(id);
+        all.push(Between { from: arc.to, to: arc.from, weight: -arc.lower, constraint });
+    }
+    let ends = |label: tpn::LabelId| {
+        let arc = network.arcs.get(network.labels.get(label.index())?.arc.index())?;
+        Some((arc.from, arc.to))
+    };
+    for &link in selected.links {
+        let Some(((tell_start, tell_end), (ask_start, ask_end))) = ends(link.tell).zip(ends(link.ask)) else {
+            continue;
+        };
+        for (from, to) in [(ask_start, tell_start), (tell_end, ask_end)] {
+            all.push(Between { from, to, weight: Rational::default(), constraint: Constraint::Link(link) });
+        }
+    }
+    for &order in selected.orders {
+        if let Some(((_, first_end), (then_start, _))) = ends(order.first).zip(ends(order.then)) {
+            let weight = -network.threat_gap;
+            let constraint = Constraint::Order(order);
+            all.push(Between { from: then_start, to: first_end, weight, constraint });
+        }
+    }
+    all
+}
+
+/// The name of events at the same time: that of the outermost, and how many others there are.
+fn name(network: &Network, nodes: &[NodeId]) -> String {
+    let is_event = |node: &&NodeId| {
+        network.nodes.get(node.index()).is_some_and(|node| {
+            let is_point = |event: &tpn::EventRef| matches!(event.end, EventEnd::PathVertex { .. });
+            node.decision.is_some() || node.events.iter().any(|event| !is_point(event))
+        })
+    };
+    let named: Vec<&NodeId> = nodes.iter().filter(is_event).collect();
+    let Some(first) = named.first() else { return String::new() };
+    let name = node_name(network, **first);
+    if named.len() > 1 { format!("{name} +{}", named.len() - 1) } else { name }
+}
+
+/// Events that are at the same time, found by joining.
+struct Groups(Vec<usize>);
+
+impl Groups {
+    fn new(count: usize) -> Self {
+        Self((0..count).collect())
+    }
+
+    fn find(&mut self, mut at: usize) -> usize {
+        while self.0[at] != at {
+            self.0[at] = self.0[self.0[at]];
+            at = self.0[at];
+        }
+        at
+    }
+
+    fn join(&mut self, one: usize, other: usize) {
+        let (one, other) = (self.find(one), self.find(other));
+        self.0[one.max(other)] = one.min(other);
+    }
+}

@@ -1,0 +1,45 @@
+//! How much work a recorded search had done after each of its steps.
+
+use kirk::{Event, Trace};
+
+use super::focus::is_failure;
+
+/// Work, counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// States entered, the root included.
+    pub states: u32,
+    /// Times that bounds were propagated.
+    pub propagations: u32,
+    /// Times that the search went back to an earlier choice, by a step or by a jump.
+    pub backtracks: u32,
+    /// Dead ends met.
+    pub dead_ends: u32,
+}
+
+impl Counts {
+    /// The work of a whole recording.
+    pub fn of(trace: &Trace) -> Self {
+        Self::until(trace, trace.events.len())
+    }
+
+    /// The work of the first `steps` steps. Linear in them.
+    pub fn until(trace: &Trace, steps: usize) -> Self {
+        let mut counts = Self::default();
+        let mut is_entered = vec![false; trace.tree.len()];
+        for entry in trace.events.iter().take(steps) {
+            if let Some(is_entered) = is_entered.get_mut(entry.tree_node as usize)
+                && !*is_entered
+            {
+                *is_entered = true;
+                counts.states += 1;
+            }
+            match entry.event {
+                Event::Propagate { .. } => counts.propagations += 1,
+                Event::Backtrack { .. } | Event::Backjump { .. } => counts.backtracks += 1,
+                _ => counts.dead_ends += u32::from(is_failure(&entry.event)),
+            }
+        }
+        counts
+    }
+}

@@ -1,0 +1,84 @@
+//! Both searches of one network, recorded and measured, for showing side by side.
+
+use kirk::{Options, Search, Stats, Status, Trace};
+use serde::{Deserialize, Serialize};
+use tpn::Network;
+
+use crate::core::Surroundings;
+
+/// The two searches of a revision's network, with the paths that its plan needs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BothSearches {
+    /// The revision of the text.
+    pub revision: u64,
+    /// The chronological search, then the one directed by conflicts.
+    pub searches: [Searched; 2],
+}
+
+/// One search, recorded.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Searched {
+    /// How it searched.
+    pub search: Search,
+    /// How it ended; [`Status::Limit`] when it was stopped because it took too long.
+    pub status: Status,
+    /// How much work it was.
+    pub stats: Stats,
+    /// How long it took in milliseconds, recording included, by the host's clock.
+    pub millis: f64,
+    /// What it did.
+    pub trace: Trace,
+}
+
+/// Alternatives after which a search of a network with one node would be stopped. Larger networks take longer for each,
+/// and get less in proportion.
+const MOST_WORK: u64 = 20_000_000;
+/// Every network gets as many alternatives.
+const LEAST_ALTERNATIVES: u64 = 2_000;
+/// None gets more.
+const MOST_ALTERNATIVES: u64 = 200_000;
+
+/// Searches `network` both ways, recording up to `trace_events` events of each. `None` when superseded.
+pub fn search(
+    network: &Network,
+    revision: u64,
+    trace_events: usize,
+    surroundings: &mut dyn Surroundings,
+) -> Option<BothSearches> {
+    let first = searched(network, Search::Chronological, trace_events, surroundings)?;
+    let second = searched(network, Search::ConflictDirected, trace_events, surroundings)?;
+    Some(BothSearches { revision, searches: [first, second] })
+}
+
+fn searched(
+    network: &Network,
+    search: Search,
+    trace_events: usize,
+    surroundings: &mut dyn Surroundings,
+) -> Option<Searched> {
+    let options = Options {
+        search,
+        trace_events: Some(trace_events),
+        explain: false,
+        relax: false,
+        ..Options::default()
+    };
+    let nodes = network.nodes.len().max(1) as u64;
+    let most = (MOST_WORK / nodes).clamp(LEAST_ALTERNATIVES, MOST_ALTERNATIVES);
+    let begun = surroundings.now_millis();
+    let mut is_superseded = false;
+    let outcome = kirk::plan(network, &options, &mut |stats: &Stats| {
+        is_superseded |= surroundings.is_superseded();
+        is_superseded || stats.expanded >= most
+    });
+    if is_superseded {
+        return None;
+    }
+    Some(Searched {
+        search,
+        status: outcome.status,
+        stats: outcome.stats,
+        millis: surroundings.now_millis() - begun,
+        trace: outcome.trace.unwrap_or_default(),
+    })
+}
