@@ -4,7 +4,7 @@
 
 use std::{env, fs, path::PathBuf};
 
-use anyhow::{Context as _, Result};
+use anyhow::{Result, bail};
 use xtask::browser::{Key, Modifiers};
 
 use crate::opened::Opened;
@@ -86,13 +86,14 @@ fn keys_complete_a_value_rename_a_name_fix_a_mistake_and_format_the_text() -> Re
     recording.source_has("{ Go(Ridge)")?;
 
     // A wrong name is told, and Control with the full stop mends it.
-    recording.page.place_caret_after("Go(Ridg")?;
-    recording.press(Key::Delete, Modifiers::NONE)?;
-    recording.page.wait_for("state.diagnostics.some((it) => it.message.includes('Ridg'))")?;
+    recording.page.place_caret_after("Survey = { Go")?;
+    recording.page.tab.type_text("o")?;
+    recording.page.wait_for("state.diagnostics.some((it) => it.code === 'W-UNDEF')")?;
+    recording.press(Key::Escape, Modifiers::NONE)?;
     recording.press(Key::Character('.'), Modifiers::CONTROL)?;
     recording.press(Key::Enter, Modifiers::NONE)?;
-    recording.source_has("Go(Ridge)")?;
-    recording.page.wait_for("!state.diagnostics.some((it) => it.message.includes('`Ridg`'))")?;
+    recording.source_has("{ Go(Ridge)")?;
+    recording.page.wait_for("!state.diagnostics.some((it) => it.code === 'W-UNDEF')")?;
 
     // Alt, Shift and F give the scenario its lines.
     recording.press(Key::Character('f'), Modifiers::ALT | Modifiers::SHIFT)?;
@@ -104,13 +105,25 @@ fn keys_complete_a_value_rename_a_name_fix_a_mistake_and_format_the_text() -> Re
 #[test]
 fn resting_on_a_call_shows_its_signature() -> Result<()> {
     let mut recording = Recording::of(MISSION)?;
-    recording.page.place_caret_after("scenario Survey = { Driv")?;
-    // The hidden field in which input methods compose lies at the caret.
-    let place = recording.page.tab.evaluate(
-        "(() => { const box = document.querySelector('input').getBoundingClientRect(); return [box.x, box.y]; })()",
-    )?;
-    let at = |index: usize| place[index].as_f64().context("the field has a place");
-    recording.page.tab.hover(at(0)?, at(1)? + 8.0)?;
-    recording.widget("text", "primitive Drive(to)")?;
-    recording.keep("hover")
+    let editor = recording.page.tab.widget("textbox", "Mission text")?;
+    // Down the column in which the call stands, until the pointer is on it.
+    let shows_signature = "enroute.widgets('text', 'primitive Drive(to)').length > 0";
+    for step in 0..20 {
+        recording.page.tab.hover(editor.x + 215.0, editor.y + 8.0 * f64::from(step))?;
+        let rested = format!(
+            "new Promise((resolve) => {{
+                const end = performance.now() + 1500;
+                const look = () => {{
+                    if ({shows_signature} || performance.now() > end) resolve({shows_signature});
+                    else setTimeout(look, 20);
+                }};
+                look();
+            }})"
+        );
+        if recording.page.tab.evaluate(&rested)? == true {
+            return recording.keep("hover");
+        }
+    }
+    recording.keep("nowhere")?;
+    bail!("no place of the column shows the signature: {}", recording.page.tab.evaluate("enroute.widgets('text').map((it) => it.label)")?)
 }

@@ -37,9 +37,13 @@ pub fn typed_text(context: &Context, state: &AppState) -> Vec<Command> {
     let mut has_popup = state.editor.popup.is_some();
     for event in &events {
         let in_popup = popup_command(event).filter(|_| has_popup);
-        // Only the first key of a frame can mean the list: whatever it does, the list may be gone then.
-        has_popup &= in_popup.as_ref().is_some_and(|it| matches!(it, EditorCommand::MoveInPopup(_)));
-        commands.extend(in_popup.map(Command::Editor).or_else(|| command_of(event, is_composing)));
+        let command = in_popup.map(Command::Editor).or_else(|| command_of(event, is_composing));
+        // Only the first command of a frame can mean the list: whatever it does, the list may be gone then. Keys that
+        // are let go, and the pointer, leave it.
+        if let Some(command) = &command {
+            has_popup &= matches!(command, Command::Editor(EditorCommand::MoveInPopup(_)));
+        }
+        commands.extend(command);
     }
     commands
 }
