@@ -9,6 +9,15 @@ const [, , which, runs, file] = process.argv;
 const graph = JSON.parse(fs.readFileSync(file, "utf8"));
 const SIZE = 24;
 
+/** Milliseconds of wall time or of the processor, whichever is less: other work on the machine disturbs that little. */
+const stopwatch = () => {
+  const [wall, cpu] = [performance.now(), process.cpuUsage()];
+  return () => {
+    const { user, system } = process.cpuUsage(cpu);
+    return Math.min(performance.now() - wall, (user + system) / 1000);
+  };
+};
+
 const small = { nodes: 60, edges: Array.from({ length: 59 }, (_, at) => [at >> 1, at + 1]) };
 
 async function elk() {
@@ -21,9 +30,9 @@ async function elk() {
       children: Array.from({ length: graph.nodes }, (_, at) => ({ id: `n${at}`, width: SIZE, height: SIZE })),
       edges: graph.edges.map(([from, to], at) => ({ id: `e${at}`, sources: [`n${from}`], targets: [`n${to}`] })),
     };
-    const start = performance.now();
+    const elapsed = stopwatch();
     const output = await engine.layout(input);
-    const millis = performance.now() - start;
+    const millis = elapsed();
     const lines = output.edges.flatMap((edge) =>
       edge.sections.map((section) =>
         [section.startPoint, ...(section.bendPoints ?? []), section.endPoint].map(({ x, y }) => [x, y]),
@@ -41,9 +50,9 @@ async function dagre() {
     input.setDefaultEdgeLabel(() => ({}));
     for (let at = 0; at < graph.nodes; at++) input.setNode(`n${at}`, { width: SIZE, height: SIZE });
     graph.edges.forEach(([from, to], at) => input.setEdge(`n${from}`, `n${to}`, {}, `e${at}`));
-    const start = performance.now();
+    const elapsed = stopwatch();
     dagre.layout(input);
-    const millis = performance.now() - start;
+    const millis = elapsed();
     return { millis, lines: input.edges().map((edge) => input.edge(edge).points.map(({ x, y }) => [x, y])) };
   };
 }

@@ -1,12 +1,13 @@
 //! Steps per second on orbit insertion: our interpreted automaton against the statechart engine `XState`.
 
 use std::process::Command;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use anyhow::{Context as _, Result};
 use hca::{Estimate, Stepper, Vocabulary, compile_text};
 use serde::Deserialize;
 
+use crate::stopwatch::Stopwatch;
 use crate::table::{Table, ratio};
 use crate::tools::{Absent, Tools, answer};
 
@@ -79,7 +80,7 @@ fn ours(course: &[(&str, &str, usize)], seconds: f64) -> Result<f64> {
     let start_marking = automaton.start();
     let mut stepper = Stepper::new(&automaton);
     let mut steps = 0_u64;
-    let begun = Instant::now();
+    let begun = Stopwatch::start();
     while begun.elapsed().as_secs_f64() < seconds {
         for _ in 0..10_000 {
             stepper.set_marking(&start_marking);

@@ -5,12 +5,12 @@
 
 use std::fmt::Write as _;
 use std::hint::black_box;
-use std::time::Instant;
 
 use anyhow::{Context as _, Result};
 use rmpl::{Edit, Span};
 use tree_sitter::{InputEdit, Language, Parser, Point};
 
+use crate::stopwatch::Stopwatch;
 use crate::table::{Table, figure, median, millis, quantile, ratio};
 
 /// Prints one table.
@@ -59,7 +59,7 @@ type Writer = fn(usize) -> String;
 const KEYSTROKES: usize = 400;
 
 fn timed(mut work: impl FnMut()) -> f64 {
-    let start = Instant::now();
+    let start = Stopwatch::start();
     work();
     millis(start.elapsed())
 }

@@ -9,6 +9,7 @@ mod layouts;
 mod network;
 mod paths;
 mod planner;
+mod stopwatch;
 mod table;
 mod tools;
 

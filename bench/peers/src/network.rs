@@ -1,11 +1,10 @@
 //! Simple temporal networks whose arcs come one by one, by ours and by the difference logic of `aries-solver`.
 
-use std::time::Instant;
-
 use aries_solver::prelude::{Model, Solver, Var, leq};
 use stn::{PointId, Stn};
 use tpn::generate::Rng;
 
+use crate::stopwatch::Stopwatch;
 use crate::table::{Table, figure, median, millis, quantile, ratio};
 
 /// An edge: `time of to − time of from ≤ weight`.
@@ -64,7 +63,7 @@ fn random(seed: u64, points: u32, count: usize) -> Vec<Edge> {
 fn ours(points: u32, edges: &[Edge]) -> f64 {
     let mut stn = Stn::new(points as usize);
     stn.reserve(edges.len());
-    let start = Instant::now();
+    let start = Stopwatch::start();
     for (tag, &(from, to, weight)) in (0..).zip(edges) {
         let kept = stn.insert(PointId(from), PointId(to), i64::from(weight), tag).is_ok();
         assert!(kept, "the hidden schedule keeps all arcs");
@@ -84,7 +83,7 @@ fn aries(points: u32, edges: &[Edge], one_by_one: bool) -> f64 {
     let mut model = Model::new();
     let times: Vec<Var> = (0..points).map(|_| model.new_variable(0, HORIZON)).collect();
     let mut solver = Solver::new(model);
-    let start = Instant::now();
+    let start = Stopwatch::start();
     for &(from, to, weight) in edges {
         solver.enforce(leq(times[to as usize] - weight, times[from as usize]));
         if one_by_one {

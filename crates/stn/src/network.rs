@@ -89,6 +89,8 @@ pub struct Stn {
     pub(crate) potential: Vec<i64>,
     pub(crate) cycle: Vec<CycleEdge>,
     pub(crate) heap: Heap,
+    /// Points that must rise exactly as far as the one that is being raised, and so come before all in `heap`.
+    level: Vec<u32>,
     /// By how much a point must rise, negative, valid where `stamp` is the current one.
     rise: Vec<i64>,
     pub(crate) parent: Vec<u32>,
@@ -263,11 +265,16 @@ impl Stn {
         }
         self.next_stamp();
         self.heap.clear();
+        self.level.clear();
         self.rise[from as usize] = rise;
         self.stamp[from as usize] = self.now;
         self.parent[from as usize] = NONE;
         self.heap.push(rise, from);
-        while let Some((rise, point)) = self.heap.pop() {
+        let mut present = rise;
+        while let Some((rise, point)) =
+            self.level.pop().map(|point| (present, point)).or_else(|| self.heap.pop())
+        {
+            present = rise;
             if self.done[point as usize] == self.now || self.rise[point as usize] != rise {
                 continue;
             }
@@ -306,7 +313,12 @@ impl Stn {
                         self.restore();
                         return Err(Inconsistency::NegativeCycle);
                     }
-                    self.heap.push(rise, edge.from);
+                    // What is tightly bound rises as one piece: most points take this way past the heap.
+                    if rise == present {
+                        self.level.push(edge.from);
+                    } else {
+                        self.heap.push(rise, edge.from);
+                    }
                 }
                 next = edge.next_in;
             }

@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 use tpn::generate::{Recipe, Tightness, mission};
 use tpn::{Network, Top};
 
+use crate::stopwatch::Stopwatch;
 use crate::table::{Table, figure, median, millis, ratio};
 use crate::tools::{Absent, Tools, answer};
 use crossings::{Line, crossings};
@@ -97,7 +98,7 @@ fn generated(nodes: usize) -> Network {
 fn timed(runs: usize, mut draw: impl FnMut()) -> f64 {
     let times: Vec<f64> = (0..runs)
         .map(|_| {
-            let start = Instant::now();
+            let start = Stopwatch::start();
             draw();
             millis(start.elapsed())
         })

@@ -4,12 +4,13 @@ mod map;
 
 use std::fs;
 use std::process::Command;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use anyhow::Result;
 use motion::{PlannerKind, Query, Search, Settings, ShortcutSettings, find_shortest_path, shorten};
 use serde::Deserialize;
 
+use crate::stopwatch::Stopwatch;
 use crate::table::{Table, figure, median, millis, quantile};
 use crate::tools::{Absent, Tools, answer};
 use map::{ENDS, Map};
@@ -145,7 +146,7 @@ fn length(path: &[[f64; 2]]) -> f64 {
 fn ours(map: &Map, planner: PlannerKind, seed: u64) -> Run {
     let query = Query { start_m: ENDS[0], goal_m: ENDS[1] };
     let settings = Settings { step_m: 20.0, goal_bias: 0.05, seed, ..Settings::of(planner) };
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let mut search = Search::new(&map.space, query, settings).expect("both ends are free");
     while search.statistics().samples_to_first_path.is_none() && !search.is_finished() {
         search.step(&map.space);
@@ -155,7 +156,7 @@ fn ours(map: &Map, planner: PlannerKind, seed: u64) -> Run {
     let Some(path) = path else {
         return Run { first_ms, path: Vec::new(), simplify_ms: 0.0, simplified: Vec::new() };
     };
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let short = shorten(&map.space, &path, &ShortcutSettings { seed, ..ShortcutSettings::default() });
     Run { first_ms, path: path.points_m, simplify_ms: millis(start.elapsed()), simplified: short.points_m }
 }
@@ -165,7 +166,7 @@ fn best_of_six(map: &Map, seed: u64) -> Run {
     let query = Query { start_m: ENDS[0], goal_m: ENDS[1] };
     let settings = Settings { step_m: 20.0, seed, ..Settings::of(PlannerKind::RrtConnect) };
     let shortcut = ShortcutSettings { seed, ..ShortcutSettings::default() };
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let found = find_shortest_path(&map.space, query, &settings, &shortcut, 6, &mut |_| false);
     let first_ms = millis(start.elapsed());
     let path = found.path.map(|path| path.points_m).unwrap_or_default();

@@ -1,15 +1,17 @@
 //! The instance as `aries-solver` takes it: optional times, half-reified differences, clauses.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use aries_solver::prelude::{Lit, Model, SearchLimit, Solver, Var, leq, or};
+
+use crate::stopwatch::Stopwatch;
 
 use super::instance::{Instance, Interval};
 use super::{Answer, Verdict};
 
 /// Solves the instance; times are optional variables that are present with their literal.
 pub(crate) fn solve(instance: &Instance, limit: Duration) -> Answer {
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let (model, is_trivially_infeasible) = encode(instance);
     let encoded = start.elapsed();
     if is_trivially_infeasible {

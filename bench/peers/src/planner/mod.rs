@@ -5,7 +5,7 @@ mod instance;
 
 use std::fs;
 use std::process::Command;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use anyhow::Result;
 use kirk::{ExpansionLimit, Options, Planner, Status};
@@ -14,6 +14,7 @@ use tpn::Network;
 use tpn::compile::{Top, compile};
 use tpn::generate::{Recipe, Tightness, mission};
 
+use crate::stopwatch::Stopwatch;
 use crate::table::{Table, figure, median, millis, quantile, ratio};
 use crate::tools::{Absent, Tools, answer, source_path};
 use instance::Instance;
@@ -72,7 +73,7 @@ pub(crate) fn compare(tools: &mut Tools, quick: bool) -> Result<()> {
             compare_missions(tools, &mut table, tightness, nodes, count)?;
         }
     }
-    table.note("Times hold encoding and solving, from a compiled network in memory; each mission is solved three times (the general solvers once from 10,000 nodes on) and its best time counts. CP-SAT has one worker and no presolve.");
+    table.note("Times are of the processor and hold encoding and solving, from a compiled network in memory; each mission is solved three times (the general solvers once from 10,000 nodes on) and its best time counts. CP-SAT has one worker and no presolve.");
     table.note("All solvers but ours get one and the same constraint problem: choices, time bounds, causal links and the orders of conflicting conditions (`src/planner/instance.rs`).");
     table.print();
     Ok(())
@@ -190,7 +191,7 @@ fn ours(network: &Network) -> Answer {
 }
 
 fn plan(network: &Network, options: &Options) -> Answer {
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let outcome = std::hint::black_box(kirk::plan(network, options, &mut ExpansionLimit(20_000)));
     Answer { verdict: verdict(outcome.status), encoding: Duration::ZERO, total: start.elapsed() }
 }
@@ -207,7 +208,7 @@ fn again(network: &Network) -> Option<Answer> {
         change += 1;
         let one = rmpl::Rational::from_integer(change % 2);
         let wider = upper.checked_add(rmpl::Bound::Finite(one)).unwrap_or(upper);
-        let start = Instant::now();
+        let start = Stopwatch::start();
         planner.set_bounds(tpn::ArcId::from_index(position), lower, wider);
         let outcome = std::hint::black_box(planner.plan(&options, &mut ExpansionLimit(20_000)));
         Answer { verdict: verdict(outcome.status), encoding: Duration::ZERO, total: start.elapsed() }
