@@ -96,6 +96,33 @@ export interface Traverse {
   legs: Leg[];
 }
 
+/** The review of the mission. */
+export interface Review {
+  /** The hash of what was reviewed; `null` before the first review of this mission. */
+  hash: string | null;
+  /** The hash of the present text, map and seed. */
+  currentHash: string | null;
+  /** Whether the two differ. */
+  stale: boolean;
+  running: boolean;
+  status: "passed" | "attention" | "failed" | null;
+  counts: { passed: number; attention: number; failed: number } | null;
+  items: {
+    section: string;
+    status: "passed" | "attention" | "failed";
+    text: string;
+    /** The line of its place in the text, from 1. */
+    line: number | null;
+    /** What it is about, by the names of all output. */
+    names: string[];
+  }[];
+  /** The latest sign-off of the present content, otherwise the latest of any. */
+  signed: { name: string; time: string; hash: string; stale: boolean } | null;
+  comments: { author: string; time: string; about: string | null; text: string; content_hash: string }[];
+  /** Why comments and sign-offs are not kept beyond this visit, if they are not. */
+  unkept: string | null;
+}
+
 /** Everything the page shows, for one revision of the text. */
 export interface State {
   /** Counts the edits of the text; everything below belongs to the revision it says. */
@@ -106,6 +133,9 @@ export interface State {
   tpn: { nodes: number; arcs: number; decisions: number; occurrences: number } | null;
   plan: Plan | null;
   verdict: unknown;
+  review: Review;
+  /** What the mission is compared with. */
+  compare: { with: string; planned: boolean } | null;
   search: { step: number; steps: number };
   /** The run of a control program; `null` for a mission. */
   hca: ProgramRun | null;

@@ -26,6 +26,10 @@ pub trait Host {
     /// Seconds since an arbitrary fixed moment; never goes back.
     fn monotonic_secs(&self) -> f64;
 
+    /// The date and time, in milliseconds since the start of 1970 in UTC; for saying when something was written, not
+    /// for measuring.
+    fn unix_millis(&self) -> i64;
+
     /// The text kept under this key, if any.
     fn stored(&self, key: &str) -> Option<String>;
 
@@ -94,8 +98,10 @@ pub enum FileKind {
     Mission,
     /// An elevation or occupancy map.
     Map,
-    /// A plan, a network or another JSON document.
+    /// What reviewers said and signed, or another JSON document.
     Json,
+    /// A mission, a saved plan or a signed review, to compare the open mission with.
+    Comparison,
 }
 
 impl FileKind {
@@ -105,6 +111,7 @@ impl FileKind {
             Self::Mission => "RMPL missions",
             Self::Map => "Maps",
             Self::Json => "JSON documents",
+            Self::Comparison => "Missions, plans and reviews",
         }
     }
 
@@ -114,6 +121,7 @@ impl FileKind {
             Self::Mission => &["rmpl", "txt", "lisp"],
             Self::Map => &["pgm", "png", "map", "tif", "tiff", "asc", "dem"],
             Self::Json => &["json", "edn"],
+            Self::Comparison => &["rmpl", "txt", "json"],
         }
     }
 }

@@ -63,6 +63,12 @@ pub enum Icon {
     Fit,
     /// Options.
     Options,
+    /// Two arrows apart: at another time.
+    Moved,
+    /// Two arrows past each other: decided otherwise.
+    Rechosen,
+    /// Not equal: done otherwise.
+    Changed,
 }
 
 /// Draws `icon` in the middle of `rect`, `size` points wide.
@@ -258,6 +264,22 @@ impl Drawing<'_> {
                         (8.0 + x * outer, 8.0 + y * inner),
                     ]);
                 }
+            }
+            Icon::Moved => {
+                self.line(&[(2.4, 8.0), (13.6, 8.0)]);
+                self.line(&[(5.4, 5.0), (2.4, 8.0), (5.4, 11.0)]);
+                self.line(&[(10.6, 5.0), (13.6, 8.0), (10.6, 11.0)]);
+            }
+            Icon::Rechosen => {
+                self.line(&[(2.6, 5.4), (12.6, 5.4)]);
+                self.line(&[(10.0, 2.8), (12.8, 5.4), (10.0, 8.0)]);
+                self.line(&[(13.4, 10.8), (3.4, 10.8)]);
+                self.line(&[(6.0, 8.2), (3.2, 10.8), (6.0, 13.4)]);
+            }
+            Icon::Changed => {
+                self.line(&[(3.0, 6.2), (13.0, 6.2)]);
+                self.line(&[(3.0, 10.0), (13.0, 10.0)]);
+                self.line(&[(10.6, 3.0), (5.4, 13.2)]);
             }
             Icon::Options => {
                 for (y, x) in [(4.2, 10.0), (8.0, 5.6), (11.8, 9.0)] {

@@ -16,7 +16,7 @@ pub struct Layouts {
 }
 
 fn key(workspace: Workspace) -> String {
-    format!("enroute/layout-1/{}", workspace.name())
+    format!("enroute/layout-2/{}", workspace.name())
 }
 
 impl Layouts {

@@ -12,7 +12,7 @@ use std::{
         mpsc::{Receiver, Sender, channel},
     },
     thread,
-    time::Instant,
+    time::{Instant, SystemTime},
 };
 
 use egui::Context;
@@ -128,6 +128,11 @@ impl Host for NativeHost {
 
     fn monotonic_secs(&self) -> f64 {
         self.begun.elapsed().as_secs_f64()
+    }
+
+    fn unix_millis(&self) -> i64 {
+        let since_1970 = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+        i64::try_from(since_1970.as_millis()).unwrap_or(i64::MAX)
     }
 
     fn stored(&self, key: &str) -> Option<String> {

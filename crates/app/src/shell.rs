@@ -111,6 +111,7 @@ impl Enroute {
         let elapsed_secs = (now_secs - self.last_secs).clamp(0.0, 0.25);
         self.last_secs = now_secs;
         self.state.frame.now_secs = now_secs;
+        self.state.frame.unix_millis = self.host.unix_millis();
         while let Some(event) = self.host.poll() {
             if let crate::host::HostEvent::FragmentChanged(fragment) = &event {
                 outside::open_fragment(&mut self.state, fragment);
@@ -221,6 +222,10 @@ impl Enroute {
                         memory.surrender_focus(focused);
                     }
                 }),
+                Effect::KeepReview { joins } => {
+                    outside::keep_review(self.host.as_mut(), &mut self.state, joins);
+                }
+                Effect::RecallReview => outside::recall_review(self.host.as_ref(), &mut self.state),
                 Effect::Restyle => {
                     let Settings { theme, text_scale, .. } = self.state.settings;
                     theme::apply(&self.egui, theme, text_scale);

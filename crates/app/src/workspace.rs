@@ -51,7 +51,9 @@ impl Workspace {
 
     /// Where its panels stand before the user moves them.
     pub fn default_layout(self) -> Tree<PanelKind> {
-        use PanelKind::{Automaton, Editor, Network, Outline, Plan, Problems, Search, Terrain, Timeline};
+        use PanelKind::{
+            Automaton, Compare, Editor, Network, Outline, Plan, Problems, Review, Search, Terrain, Timeline,
+        };
         let mut tiles = Tiles::default();
         let root = match self {
             Self::Author => {
@@ -81,15 +83,15 @@ impl Workspace {
                 split(&mut tiles, LinearDir::Horizontal, &[(text, 0.24), (middle, 0.42), (right, 0.34)])
             }
             Self::Review => {
-                let timeline = tabs(&mut tiles, &[Timeline]);
+                let review = tabs(&mut tiles, &[Review, Plan]);
+                let timeline = tabs(&mut tiles, &[Timeline, Compare]);
                 let network = tabs(&mut tiles, &[Network]);
                 let terrain = tabs(&mut tiles, &[Terrain]);
-                let lower = split(&mut tiles, LinearDir::Horizontal, &[(network, 0.55), (terrain, 0.45)]);
-                let left = split(&mut tiles, LinearDir::Vertical, &[(timeline, 0.55), (lower, 0.45)]);
-                let plan = tabs(&mut tiles, &[Plan]);
                 let text = tabs(&mut tiles, &[Editor, Problems, Outline]);
-                let right = split(&mut tiles, LinearDir::Vertical, &[(plan, 0.6), (text, 0.4)]);
-                split(&mut tiles, LinearDir::Horizontal, &[(left, 0.64), (right, 0.36)])
+                let middle = split(&mut tiles, LinearDir::Horizontal, &[(network, 0.5), (terrain, 0.5)]);
+                let right =
+                    split(&mut tiles, LinearDir::Vertical, &[(timeline, 0.36), (middle, 0.34), (text, 0.30)]);
+                split(&mut tiles, LinearDir::Horizontal, &[(review, 0.38), (right, 0.62)])
             }
             Self::Execute => {
                 let text = tabs(&mut tiles, &[Editor]);

@@ -8,12 +8,18 @@ use egui::Role;
 use egui_kittest::kittest::Queryable as _;
 use serde_json::json;
 
+/// Shows the plan's tables where there is room for all of them.
+fn show_windows(app: &mut support::App) {
+    app.harness.state_mut().dispatch("view.workspace", &json!("review")).expect("a workspace");
+    app.harness.state_mut().dispatch("view.panel", &json!("plan")).expect("a panel");
+    app.settle();
+}
+
 #[test]
 fn every_event_of_the_plan_is_listed_with_its_window() {
     let mut app = support::start_in(std::rc::Rc::default(), |builder| builder.with_size([1600.0, 2200.0]));
     app.settle();
-    app.harness.state_mut().dispatch("view.workspace", &json!("review")).expect("a workspace");
-    app.settle();
+    show_windows(&mut app);
     // SPEC 3.6.
     for (event, window) in [
         ("Group-Enroute#1.start", "[10, 55]"),
@@ -32,8 +38,7 @@ fn every_event_of_the_plan_is_listed_with_its_window() {
 fn the_windows_are_sorted_by_the_column_that_is_clicked() {
     let mut app = support::start_in(std::rc::Rc::default(), |builder| builder.with_size([1600.0, 2200.0]));
     app.settle();
-    app.harness.state_mut().dispatch("view.workspace", &json!("review")).expect("a workspace");
-    app.settle();
+    show_windows(&mut app);
     let top =
         |app: &support::App, label: &str| app.harness.get_by_role_and_label(Role::Button, label).rect().top();
     let (early, late) = ("scenario#1.start [0, 0]", "scenario#1.end [660, 800]");

@@ -59,6 +59,10 @@ impl Host for PageHost {
         self.window.performance().map_or(0.0, |clock| clock.now() / 1e3)
     }
 
+    fn unix_millis(&self) -> i64 {
+        js_sys::Date::now() as i64
+    }
+
     fn stored(&self, key: &str) -> Option<String> {
         self.storage().ok()?.get_item(&prefixed(key)).ok()?
     }

@@ -4,6 +4,12 @@ use jiff::{SignedDuration, Timestamp, civil, tz::TimeZone};
 use rmpl::Rational;
 use rmpl::program::TimeUnit;
 
+/// A time in milliseconds since the start of 1970, to the second, as `2026-01-02T03:04:05Z`; empty beyond the calendar.
+pub fn utc_text(unix_millis: i64) -> String {
+    let time = Timestamp::from_millisecond(unix_millis);
+    time.map(|time| time.strftime("%Y-%m-%dT%H:%M:%SZ").to_string()).unwrap_or_default()
+}
+
 /// The moment at which a mission starts, and the unit that its times count from there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Calendar {

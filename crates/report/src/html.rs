@@ -1,7 +1,7 @@
 //! The review report: one HTML file that needs nothing else, prints well and reads without scripts.
 
 use mission::Snapshot;
-use mission::review::{Review, Status};
+use mission::review::{Record, Review, Status};
 use rmpl::program::TimeUnit;
 use terrain::Terrain;
 
@@ -18,6 +18,8 @@ pub struct Document<'a> {
     pub snapshot: &'a Snapshot,
     /// Its review.
     pub review: &'a Review,
+    /// What reviewers said and signed, if that is to stand in the report.
+    pub record: Option<&'a Record>,
     /// The seed of its paths.
     pub seed: u64,
     /// The ground, if the mission has one.
@@ -35,6 +37,10 @@ pub fn html(document: &Document<'_>) -> String {
     );
     out.push_str(&facts(document));
     out.push_str(&tables::sections(document.review));
+    out.push_str(&tables::robustness(document.snapshot.robustness.as_deref()));
+    if let Some(record) = document.record {
+        out.push_str(&tables::record(record, &document.review.content_hash));
+    }
     out.push_str(&figures(document));
     out.push_str("<h2 class=\"page\">Program</h2>\n");
     out.push_str(&listing::listing(&document.snapshot.source));
@@ -64,12 +70,41 @@ fn facts(document: &Document<'_>) -> String {
          <dt>Checklist</dt><dd>{passed} passed, {attention} for attention, {failed} failed</dd>\n\
          <dt>Times</dt><dd>in {unit} from the start of the mission</dd>\n\
          <dt>Map, seed</dt><dd>{}, {}</dd>\n\
+         <dt>Signed off</dt><dd>{}</dd>\n\
          <dt>Content hash</dt><dd class=\"hash\">{}</dd>\n</dl>\n",
         tables::status(review.status),
         escaped(&map),
         document.seed,
+        signed(document),
         escaped(&review.content_hash)
     )
+}
+
+/// Who has signed this very content; somebody who signed another one is named as such.
+fn signed(document: &Document<'_>) -> String {
+    let record = document.record;
+    let current = record.and_then(|record| record.sign_off_of(&document.review.content_hash));
+    let last = record.and_then(|record| record.sign_offs.last());
+    match (current, last) {
+        (Some(signed), _) => {
+            format!("by {}, {}", escaped(&signed.name), escaped(&readable_time(&signed.time)))
+        }
+        (None, Some(stale)) => format!(
+            "{} not as it is now; other content by {}, {}",
+            tables::word("attention", "stale"),
+            escaped(&stale.name),
+            escaped(&readable_time(&stale.time))
+        ),
+        (None, None) => "not signed off".to_owned(),
+    }
+}
+
+/// `2026-01-02T03:04:05Z` as `2026-01-02 03:04 UTC`; another text as it is.
+pub(crate) fn readable_time(time: &str) -> String {
+    match (time.get(..10), time.get(11..16), time.ends_with('Z')) {
+        (Some(day), Some(minute), true) => format!("{day} {minute} UTC"),
+        _ => time.to_owned(),
+    }
 }
 
 fn figures(document: &Document<'_>) -> String {

@@ -7,6 +7,7 @@ pub(crate) const STYLE: &str = "
 body { max-width: 62rem; margin: 2rem auto; padding: 0 1.5rem; }
 h1 { font-size: 1.7em; margin: 0 0 .2em; line-height: 1.2; }
 h2 { font-size: 1.2em; margin: 2em 0 .5em; padding-bottom: .2em; border-bottom: 1px solid #d9dfe6; }
+h3 { font-size: 1em; margin: 1.4em 0 .3em; color: #4e5b6a; }
 a { color: #0068a8; text-decoration: none; }
 a:hover { text-decoration: underline; }
 p, ul { margin: .4em 0; }
@@ -47,7 +48,7 @@ figcaption { color: #4e5b6a; font-size: .9em; margin-top: .4em; }
   :root { font-size: 9.5pt; -webkit-print-color-adjust: exact; print-color-adjust: exact; }
   body { max-width: none; margin: 0; padding: 0; }
   a { color: inherit; }
-  h2 { break-after: avoid; }
+  h2, h3 { break-after: avoid; }
   tr, figure { break-inside: avoid; }
   figure svg { max-height: 225mm; }
   h2.page { break-before: page; }

@@ -1,18 +1,21 @@
 //! The tables of a report: one for each section of the review.
 
-use mission::review::{Line, Review, Section, Status, short_time};
+use mission::Robustness;
+use mission::review::{EventReview, Line, Record, Review, Section, Status, short_time};
 use rmpl::Bound;
 
 use crate::escape::escaped;
+use crate::html::readable_time;
 
-/// All sections that have lines, each with its heading.
+/// All sections, each with its heading; one without lines says so.
 pub(crate) fn sections(review: &Review) -> String {
     let mut out = String::new();
     for section in Section::ALL {
+        out.push_str(&format!("<h2>{}</h2>\n", section.title()));
         if review.lines(section).is_empty() {
+            out.push_str(&format!("<p class=\"muted\">{}</p>\n", escaped(review.nothing(section))));
             continue;
         }
-        out.push_str(&format!("<h2>{}</h2>\n", section.title()));
         out.push_str(&match section {
             Section::Plan | Section::Encounters | Section::Warnings => lines(&review.lines(section)),
             Section::Choices => choices(review),
@@ -25,10 +28,61 @@ pub(crate) fn sections(review: &Review) -> String {
     out
 }
 
-/// The word for a status, in its colour.
+/// Who signed what, and what was said.
+pub(crate) fn record(record: &Record, content_hash: &str) -> String {
+    if record.is_empty() {
+        return String::new();
+    }
+    let state = |hash: &str| {
+        if hash == content_hash { word("passed", "current") } else { word("attention", "stale") }
+    };
+    let mut out = String::from("<h2>Sign-off and comments</h2>\n");
+    if !record.sign_offs.is_empty() {
+        let rows = record.sign_offs.iter().rev().map(|signed| {
+            let [passed, attention, failed] = signed.counts;
+            vec![
+                state(&signed.content_hash),
+                escaped(&signed.name),
+                escaped(&readable_time(&signed.time)),
+                format!("{passed} passed, {attention} for attention, {failed} failed"),
+                format!("<code>{}</code>", escaped(short_hash(&signed.content_hash))),
+            ]
+        });
+        out.push_str(&table(&["", "Signed off by", "When", "Checklist", "Content"], rows));
+    }
+    if !record.comments.is_empty() {
+        let rows = record.comments.iter().map(|comment| {
+            vec![
+                state(&comment.content_hash),
+                escaped(&comment.author),
+                escaped(&readable_time(&comment.time)),
+                escaped(comment.about.as_deref().unwrap_or("the mission")),
+                escaped(&comment.text).replace('\n', "<br>"),
+            ]
+        });
+        out.push_str(&table(&["", "Comment by", "When", "About", "Words"], rows));
+    }
+    out
+}
+
+/// As much of a hash as people compare.
+fn short_hash(hash: &str) -> &str {
+    hash.get(..12).unwrap_or(hash)
+}
+
+/// The word for a status, with its sign and in its colour.
 pub(crate) fn status(status: Status) -> String {
-    let name = status.name();
-    format!("<span class=\"status {name}\">{name}</span>")
+    word(status.name(), status.name())
+}
+
+/// A word in the look of a status.
+pub(crate) fn word(status: &str, word: &str) -> String {
+    let sign = match status {
+        "passed" => "✓",
+        "attention" => "!",
+        _ => "✕",
+    };
+    format!("<span class=\"status {status}\"><b>{sign}</b> {word}</span>")
 }
 
 /// A table of rows of cells that are HTML already; a heading that begins with `#` is that of figures.
@@ -119,8 +173,9 @@ fn conflicts(review: &Review) -> String {
     table(&["", "First", "Then", "#Apart", "Ordered by", "Where"], rows)
 }
 
+/// Events of the program first; the points of paths, which are many and follow from them, in a table of their own.
 fn events(review: &Review) -> String {
-    let rows = review.events.iter().map(|event| {
+    let row = |event: &EventReview| {
         vec![
             escaped(&event.name),
             time(Bound::Finite(event.window.earliest)),
@@ -128,8 +183,53 @@ fn events(review: &Review) -> String {
             time(event.slack),
             place(&event.line),
         ]
-    });
-    table(&["Event", "#Earliest", "#Latest", "#Slack", "Where"], rows)
+    };
+    let (points, events): (Vec<&EventReview>, Vec<&EventReview>) =
+        review.events.iter().partition(|event| event.name.contains(".leg"));
+    let headings = ["Event", "#Earliest", "#Latest", "#Slack", "Where"];
+    let mut out = table(&headings, events.into_iter().map(row));
+    if !points.is_empty() {
+        out.push_str("<h3>Points of paths</h3>\n");
+        out.push_str(&table(&headings, points.into_iter().map(row)));
+    }
+    out
+}
+
+/// How many runs with chance reached the end, and what broke the others; before such runs, that there were none.
+pub(crate) fn robustness(found: Option<&Robustness>) -> String {
+    let mut out = String::from("<h2>Robustness</h2>\n");
+    let Some(found) = found.filter(|found| found.tally.runs > 0) else {
+        out.push_str("<p class=\"muted\">No runs with chance were made.</p>\n");
+        return out;
+    };
+    let tally = &found.tally;
+    let (low, high) = tally.interval();
+    let percent = |part: f64| format!("{:.1} %", part * 100.0);
+    out.push_str(&format!(
+        "<p>{} of {} runs reached the end: {} (95 % confidence: {} to {}). {} of them had to plan again.</p>\n",
+        tally.succeeded,
+        tally.runs,
+        percent(tally.probability()),
+        percent(low),
+        percent(high),
+        tally.succeeded_by_replanning
+    ));
+    let rows: Vec<Vec<String>> = tally
+        .worst_events()
+        .into_iter()
+        .map(|(event, breaks)| {
+            vec![
+                escaped(event),
+                breaks.violations.to_string(),
+                breaks.stops.to_string(),
+                escaped(&breaks.example),
+            ]
+        })
+        .collect();
+    if !rows.is_empty() {
+        out.push_str(&table(&["Event", "#Not kept", "#Ended the run", "For example"], rows));
+    }
+    out
 }
 
 fn traverses(review: &Review) -> String {

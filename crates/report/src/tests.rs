@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use mission::review::{Review, review};
+use mission::review::record::{Comment, SignOff};
+use mission::review::{Record, Review, review};
 use mission::{Core, Goal, Request, Response, SearchKind, Snapshot, Surroundings, Update};
 use rmpl::program::TimeUnit;
 use terrain::Terrain;
@@ -66,6 +67,7 @@ fn report(source: &str, name: &str) -> String {
         name,
         snapshot: &planned.snapshot,
         review: &planned.review,
+        record: None,
         seed: 0,
         ground: planned.ground.as_deref(),
     })
@@ -260,4 +262,49 @@ fn a_start_of_the_mission_is_a_date_with_or_without_a_time() {
     assert_eq!(at("2004-01-25T05:05").as_deref(), Some("2004-01-25T05:05:00Z"));
     assert_eq!(at("2004-01-25T05:05:00+02:00").as_deref(), Some("2004-01-25T03:05:00Z"));
     assert_eq!([at("tomorrow"), at("2004-13-01"), at("")], [None, None, None]);
+}
+
+#[test]
+fn a_report_names_who_signed_and_marks_what_belongs_to_another_content() {
+    let planned = planned(SCENARIO);
+    let sign_off = |name: &str, content_hash: &str| SignOff {
+        name: name.to_owned(),
+        time: "2026-01-02T03:04:05Z".to_owned(),
+        content_hash: content_hash.to_owned(),
+        counts: [9, 1, 0],
+        source: SCENARIO.to_owned(),
+        goal: Goal::Default,
+        seed: 0,
+    };
+    let page = |record: &Record| {
+        html(&Document {
+            name: "t01.rmpl",
+            snapshot: &planned.snapshot,
+            review: &planned.review,
+            record: Some(record),
+            seed: 0,
+            ground: None,
+        })
+    };
+    let hash = &planned.review.content_hash;
+    let mut record = Record { sign_offs: vec![sign_off("Ada <A>", "0")], ..Record::default() };
+    assert!(page(&record).contains("other content by Ada &lt;A&gt;, 2026-01-02 03:04 UTC"));
+    record.sign_offs.push(sign_off("Grace", hash));
+    record.comments.push(Comment {
+        author: "Grace".to_owned(),
+        time: "2026-01-02T03:00:00Z".to_owned(),
+        about: Some("Group-Wait#1".to_owned()),
+        text: "Long wait.\nIs that intended?".to_owned(),
+        content_hash: hash.clone(),
+    });
+    let page = page(&record);
+    assert!(page.contains("<dd>by Grace, 2026-01-02 03:04 UTC</dd>"));
+    assert!(page.contains("Long wait.<br>Is that intended?"));
+    assert_eq!(page.matches("> stale<").count(), 1);
+}
+
+#[test]
+fn a_moment_is_written_to_the_second_in_utc() {
+    assert_eq!(crate::calendar::utc_text(1_767_323_045_678), "2026-01-02T03:04:05Z");
+    assert_eq!(crate::calendar::utc_text(i64::MAX), "");
 }

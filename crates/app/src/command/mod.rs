@@ -12,7 +12,10 @@ use crate::dialog::Dialog;
 use crate::host::FileKind;
 use crate::panel::PanelKind;
 use crate::state::automaton::AutomatonCommand;
+use crate::state::compare::CompareCommand;
+use crate::state::documents::ScheduleForm;
 use crate::state::editor::Find;
+use crate::state::review::ReviewCommand;
 use crate::state::search::SearchCommand;
 use crate::state::{EditKind, Selection, TextCommand, ToastKind, Views};
 use crate::theme::ThemeChoice;
@@ -79,6 +82,20 @@ pub enum Command {
     Search(SearchCommand),
     /// Something that concerns the run of a control program.
     Automaton(AutomatonCommand),
+
+    /// Something that concerns the review.
+    Review(ReviewCommand),
+    /// Something that concerns what the mission is compared with.
+    Compare(CompareCommand),
+    /// Writes the review as a report.
+    WriteReport,
+    /// Writes the plan's schedule for another tool.
+    WriteSchedule {
+        /// The format.
+        form: ScheduleForm,
+        /// When the mission starts, where the format needs it.
+        epoch: String,
+    },
 
     /// What to plan.
     SetGoal(Goal),

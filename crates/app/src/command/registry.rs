@@ -39,6 +39,8 @@ pub enum Group {
     View,
     /// Planning.
     Plan,
+    /// Judging and comparing plans, and documents about them.
+    Review,
     /// Time.
     Play,
     /// Help.
@@ -47,8 +49,8 @@ pub enum Group {
 
 impl Group {
     /// All of them, as the menu bar lists them.
-    pub const ALL: [Self; 7] =
-        [Self::File, Self::Edit, Self::Go, Self::View, Self::Plan, Self::Play, Self::Help];
+    pub const ALL: [Self; 8] =
+        [Self::File, Self::Edit, Self::Go, Self::View, Self::Plan, Self::Review, Self::Play, Self::Help];
 
     /// Its name on screen.
     pub const fn title(self) -> &'static str {
@@ -58,6 +60,7 @@ impl Group {
             Self::Go => "Go",
             Self::View => "View",
             Self::Plan => "Plan",
+            Self::Review => "Report",
             Self::Play => "Play",
             Self::Help => "Help",
         }

@@ -9,6 +9,9 @@ use crate::dialog::Dialog;
 use crate::host::FileKind;
 use crate::mission_file;
 use crate::panel::PanelKind;
+use crate::state::compare::CompareCommand;
+use crate::state::documents::ScheduleForm;
+use crate::state::review::{ReviewCommand, may_sign};
 use crate::state::search::{SearchCommand, recorded};
 use crate::state::{AppState, Selection, TextCommand};
 use crate::theme::ThemeChoice;
@@ -78,6 +81,26 @@ fn with_earlier_draft(state: &AppState) -> Availability {
 fn with_problems(state: &AppState) -> Availability {
     let has_problems = state.snapshots.latest().is_some_and(|latest| !latest.problems.is_empty());
     if has_problems { Ok(()) } else { Err("there are no problems") }
+}
+
+/// Whether a mission is open that can be reviewed, planned or not.
+fn with_mission(state: &AppState) -> Availability {
+    let is_reviewed = state.automaton.program().is_none() && state.snapshots.latest().is_some();
+    if is_reviewed { Ok(()) } else { Err("there is no mission to review") }
+}
+
+fn with_sign_off(state: &AppState) -> Availability {
+    let is_signed = !state.review.record().sign_offs.is_empty();
+    if is_signed { Ok(()) } else { Err("nobody has signed this mission off yet") }
+}
+
+fn with_record(state: &AppState) -> Availability {
+    if state.review.record().is_empty() { Err("there are no comments and no sign-offs") } else { Ok(()) }
+}
+
+/// Asks when the mission starts, beginning with what was said last.
+fn ask_epoch(state: &AppState, form: ScheduleForm) -> Command {
+    Command::ShowDialog(Dialog::Epoch { form, epoch: state.settings.epoch.clone() })
 }
 
 /// A command that stands in menus and in the palette.
@@ -473,6 +496,88 @@ pub static COMMANDS: &[CommandSpec] = &[
     called("plan.scenario", "Choose what to plan", Group::Plan, |_, arguments| {
         let name = text_argument(arguments, "name")?;
         Ok(Command::SetGoal(mission::Goal::Scenario(name.into())))
+    }),
+    // Judging and comparing.
+    when(
+        plain("review.run", "Review this plan", Group::Review, &[], Scope::Everywhere, |_| {
+            Command::Review(ReviewCommand::Run)
+        }),
+        with_mission,
+    ),
+    when(
+        plain("file.report", "Write the report", Group::Review, &[], Scope::Everywhere, |_| {
+            Command::WriteReport
+        }),
+        with_mission,
+    ),
+    when(
+        plain("export.csv", "Export the schedule as CSV", Group::Review, &[], Scope::Everywhere, |_| {
+            Command::WriteSchedule { form: ScheduleForm::Csv, epoch: String::new() }
+        }),
+        with_plan,
+    ),
+    when(
+        plain("export.openMct", "Export to Open MCT…", Group::Review, &[], Scope::Everywhere, |state| {
+            ask_epoch(state, ScheduleForm::OpenMct)
+        }),
+        with_plan,
+    ),
+    when(
+        plain("export.icalendar", "Export to a calendar…", Group::Review, &[], Scope::Everywhere, |state| {
+            ask_epoch(state, ScheduleForm::Icalendar)
+        }),
+        with_plan,
+    ),
+    when(
+        plain("compare.pin", "Compare from now on", Group::Review, &[], Scope::Everywhere, |_| {
+            Command::Compare(CompareCommand::Pin)
+        }),
+        with_plan,
+    ),
+    when(
+        plain(
+            "compare.signedOff",
+            "Compare with the last sign-off",
+            Group::Review,
+            &[],
+            Scope::Everywhere,
+            |_| Command::Compare(CompareCommand::WithSignedOff),
+        ),
+        with_sign_off,
+    ),
+    plain("compare.file", "Compare with a file…", Group::Review, &[], Scope::Everywhere, |_| {
+        Command::Compare(CompareCommand::OpenFile)
+    }),
+    when(
+        plain("review.save", "Save comments and sign-offs", Group::Review, &[], Scope::Everywhere, |_| {
+            Command::Review(ReviewCommand::SaveRecord)
+        }),
+        with_record,
+    ),
+    plain("review.open", "Add comments and sign-offs…", Group::Review, &[], Scope::Everywhere, |_| {
+        Command::Review(ReviewCommand::OpenRecord)
+    }),
+    called("review.sign", "Sign off", Group::Review, |state, arguments| {
+        let name = text_argument(arguments, "name")?;
+        match state.current_review().map(|review| may_sign(review)) {
+            Some(Ok(())) => Ok(Command::Review(ReviewCommand::Sign { name: name.to_owned() })),
+            Some(Err(reason)) => Err(reason.to_owned()),
+            None => Err("the present text has not been reviewed".to_owned()),
+        }
+    }),
+    called("review.comment", "Comment", Group::Review, |_, arguments| {
+        Ok(Command::Review(ReviewCommand::Comment {
+            author: text_argument(arguments, "author")?.to_owned(),
+            about: arguments.get("about").and_then(Value::as_str).map(str::to_owned),
+            text: text_argument(arguments, "text")?.to_owned(),
+        }))
+    }),
+    called("export.schedule", "Export the schedule", Group::Review, |_, arguments| {
+        let name = text_argument(arguments, "as")?;
+        let form = ScheduleForm::by_name(name)
+            .ok_or_else(|| "\"as\" is \"csv\", \"open-mct\" or \"icalendar\"".to_owned())?;
+        let epoch = arguments.get("epoch").and_then(Value::as_str).unwrap_or_default().to_owned();
+        Ok(Command::WriteSchedule { form, epoch })
     }),
     // Time.
     when(

@@ -1,6 +1,7 @@
 //! Dialogs over the panels: the command palette, the key list, going to a line, explanations.
 
 mod about;
+mod epoch;
 mod explain;
 mod go_to_line;
 mod keys;
@@ -12,6 +13,7 @@ use smol_str::SmolStr;
 
 use crate::command::{Command, CommandSender};
 use crate::panel::Context;
+use crate::state::documents::ScheduleForm;
 use crate::theme::space;
 
 /// Which dialog is open, and what the user has entered in it.
@@ -36,6 +38,13 @@ pub enum Dialog {
         /// What was typed.
         name: String,
     },
+    /// Asks when the mission starts.
+    Epoch {
+        /// The schedule that is to be written.
+        form: ScheduleForm,
+        /// What was typed.
+        epoch: String,
+    },
     /// Explains a kind of problem.
     Explain(SmolStr),
     /// Lists all keys.
@@ -51,6 +60,7 @@ impl Dialog {
             Self::Palette { .. } => "palette",
             Self::GoToLine { .. } => "go-to-line",
             Self::Rename { .. } => "rename",
+            Self::Epoch { .. } => "epoch",
             Self::Explain(_) => "explain",
             Self::Keys => "keys",
             Self::About => "about",
@@ -84,6 +94,7 @@ pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandS
         Dialog::Palette { query, chosen } => palette::show(ui, context, query, *chosen, commands),
         Dialog::GoToLine { line } => go_to_line::show(ui, context, line, commands),
         Dialog::Rename { old, name } => rename::show(ui, context, old, name, commands),
+        Dialog::Epoch { form, epoch } => epoch::show(ui, context, *form, epoch, commands),
         Dialog::Explain(code) => explain::show(ui, context, code, commands),
         Dialog::Keys => keys::show(ui, context, commands),
         Dialog::About => about::show(ui, context, commands),

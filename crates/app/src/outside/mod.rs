@@ -5,12 +5,37 @@ mod draft;
 mod hca_json;
 mod state_json;
 
+use mission::review::Record;
+
 use crate::host::Host;
-use crate::state::Settings;
+use crate::state::review::ReviewState;
+use crate::state::{AppState, Settings};
 
 pub use address::{fragment, open_fragment};
 pub use draft::DraftKeeper;
 pub use state_json::state_json;
+
+/// What reviewers said of the open mission when it was last kept.
+pub fn recall_review(host: &dyn Host, state: &mut AppState) {
+    let kept = host.stored(&ReviewState::key(&state.mission));
+    state.recall_review(kept.as_deref());
+}
+
+/// Keeps what reviewers said of the open mission; `joins` adds what is kept already, perhaps by another tab. A full
+/// storage leaves what is kept as it was, and the app's own record too: the review then says that it is not kept.
+pub fn keep_review(host: &mut dyn Host, state: &mut AppState, joins: bool) {
+    let key = ReviewState::key(&state.mission);
+    if joins && let Some(Ok(kept)) = host.stored(&key).map(|text| Record::from_json(&text)) {
+        state.review.join(kept);
+    }
+    let outcome = if state.review.record().is_empty() {
+        host.forget(&key);
+        Ok(())
+    } else {
+        host.store(&key, &state.review.record().to_json())
+    };
+    state.review.kept(outcome.map_err(|reason| reason.to_string()));
+}
 
 const SETTINGS_KEY: &str = "enroute/settings-1";
 

@@ -1,12 +1,14 @@
 //! The state as plain JSON, for host pages and tests (DESIGN 4.3).
 
 use mission::paths_json::traverses_json;
+use mission::review::{Review, Section};
 use mission::{Problem, Snapshot};
 use serde_json::{Value, json};
 use tpn::Network;
 use tpn::plan_json::plan_to_json;
 
 use super::hca_json::hca_json;
+use crate::state::review::Signed;
 use crate::state::search::{Counts, Recording};
 use crate::state::selection::node_name;
 use crate::state::{AppState, Status};
@@ -44,6 +46,8 @@ pub fn state_json(state: &AppState) -> Value {
         "plan": plan.map(|(network, plan)| plan_to_json(network, plan)),
         "verdict": verdict.map(verdict_json),
         "failure": network.zip(failure).map(|(network, failure)| failure_json(network, failure)),
+        "review": review_json(state),
+        "compare": state.compare.reference().map(|side| json!({ "with": side.name, "planned": side.is_planned })),
         "search": search_json(state),
         "hca": hca_json(&state.automaton),
         "vehicles": shown.map(|shown| vehicles_json(state, shown)).unwrap_or_default(),
@@ -164,6 +168,56 @@ fn failure_json(network: &Network, failure: &kirk::Failure) -> Value {
         "conditions": conditions,
         "relaxations": failure.relaxations.iter().map(|it| it.label.as_str()).collect::<Vec<_>>(),
     })
+}
+
+/// The review: `null` before the first one of this mission. `hash` is that of what was reviewed, `currentHash` that of
+/// the present content; `stale` says that they differ.
+fn review_json(state: &AppState) -> Value {
+    let record = state.review.record();
+    let sign_off = |sign_off: &mission::review::record::SignOff, is_stale: bool| {
+        json!({
+            "name": sign_off.name,
+            "time": sign_off.time,
+            "hash": sign_off.content_hash,
+            "stale": is_stale,
+        })
+    };
+    let signed = match state.review.signed() {
+        Signed::Never => Value::Null,
+        Signed::Current(by) => sign_off(by, false),
+        Signed::Stale(by) => sign_off(by, true),
+    };
+    let shown = state.review.shown(state.settings.plan.search);
+    json!({
+        "hash": shown.map(|(review, _)| review.content_hash.as_str()),
+        "currentHash": state.review.hash(),
+        "stale": shown.is_some_and(|(_, is_stale)| is_stale),
+        "running": state.review.is_running(),
+        "status": shown.map(|(review, _)| review.status),
+        "counts": shown.map(|(review, _)| {
+            let [passed, attention, failed] = review.counts();
+            json!({ "passed": passed, "attention": attention, "failed": failed })
+        }),
+        "items": shown.map(|(review, _)| review_items(review)).unwrap_or_default(),
+        "signed": signed,
+        "comments": record.comments,
+        "unkept": state.review.unkept(),
+    })
+}
+
+fn review_items(review: &Review) -> Vec<Value> {
+    let items = Section::ALL.iter().flat_map(|&section| {
+        review.lines(section).into_iter().map(move |line| {
+            json!({
+                "section": section,
+                "status": line.status,
+                "text": line.text,
+                "line": line.line_number,
+                "names": line.names,
+            })
+        })
+    });
+    items.collect()
 }
 
 fn verdict_json(verdict: &verify::Verdict) -> Value {

@@ -1,6 +1,7 @@
 //! The panels: each reads the state and emits commands, and changes nothing else.
 
 pub mod automaton;
+pub mod compare;
 pub mod distances;
 pub mod editor;
 pub mod empty;
@@ -8,6 +9,7 @@ pub mod network;
 pub mod outline;
 pub mod plan;
 pub mod problems;
+pub mod review;
 pub mod search;
 pub mod terrain;
 pub mod timeline;
@@ -53,11 +55,15 @@ pub enum PanelKind {
     Distances,
     /// The run of a control program.
     Automaton,
+    /// The checklist of the review, comments and sign-off.
+    Review,
+    /// Two plans side by side.
+    Compare,
 }
 
 impl PanelKind {
     /// All of them, as the menu lists them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Editor,
         Self::Outline,
         Self::Problems,
@@ -68,6 +74,8 @@ impl PanelKind {
         Self::Search,
         Self::Distances,
         Self::Automaton,
+        Self::Review,
+        Self::Compare,
     ];
 
     /// Its name on screen.
@@ -83,6 +91,8 @@ impl PanelKind {
             Self::Search => "Search",
             Self::Distances => "Distances",
             Self::Automaton => "Automaton",
+            Self::Review => "Review",
+            Self::Compare => "Compare",
         }
     }
 
@@ -99,6 +109,8 @@ impl PanelKind {
             Self::Search => "search",
             Self::Distances => "distances",
             Self::Automaton => "automaton",
+            Self::Review => "review",
+            Self::Compare => "compare",
         }
     }
 
@@ -220,6 +232,8 @@ fn create(kind: PanelKind) -> Box<dyn Panel> {
         PanelKind::Search => Box::new(search::SearchPanel::default()),
         PanelKind::Distances => Box::new(distances::DistancesPanel::default()),
         PanelKind::Automaton => Box::new(automaton::AutomatonPanel::default()),
+        PanelKind::Review => Box::new(review::ReviewPanel::default()),
+        PanelKind::Compare => Box::new(compare::ComparePanel::default()),
         PanelKind::Editor => Box::new(editor::EditorPanel::default()),
         PanelKind::Plan => Box::new(plan::PlanPanel::default()),
         PanelKind::Timeline => Box::new(timeline::TimelinePanel::default()),

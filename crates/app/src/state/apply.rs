@@ -34,6 +34,13 @@ pub enum Effect {
     CopyLink,
     /// Send something to the planning core.
     Post(Request),
+    /// Keep what reviewers said of the open mission.
+    KeepReview {
+        /// Whether what is kept already, perhaps by another tab, is joined with it.
+        joins: bool,
+    },
+    /// Find what reviewers said of the open mission.
+    RecallReview,
     /// The appearance changed.
     Restyle,
     /// Take the keyboard from the widget that has it, so that plain keys go to the active panel.
@@ -48,6 +55,7 @@ impl AppState {
         self.editor.folding.follow(&mut self.document, self.language.parse());
         self.automaton.follow(&self.document, self.language.is_control());
         self.ask_for_comparison();
+        self.follow_review();
     }
 
     fn do_command(&mut self, command: Command) {
@@ -99,6 +107,17 @@ impl AppState {
             Command::TurnPanel(forwards) => self.turn_panel(forwards),
             Command::SetRate(rate) => self.playback.rate = rate.clamp(0.125, 64.0),
 
+            Command::Review(command) => self.apply_to_review(command),
+            Command::Compare(command) => {
+                self.wanted_panel = Some(PanelKind::Compare);
+                self.apply_to_compare(&command);
+            }
+            Command::WriteReport => self.write_report(),
+            Command::WriteSchedule { form, epoch } => {
+                self.dialog = None;
+                self.write_schedule(form, &epoch);
+            }
+
             Command::SetGoal(goal) => self.settings.plan.goal = goal,
             Command::SetSearch(search) => self.settings.plan.search = search,
             Command::SetSeed(seed) => self.settings.plan.seed = seed,
@@ -108,8 +127,10 @@ impl AppState {
                 self.workspace = workspace;
                 // A lecturer steps through the search; it must have been recorded.
                 self.settings.plan.trace |= workspace == Workspace::Teach;
-                if workspace == Workspace::Teach {
-                    self.focus_panel(PanelKind::Search);
+                match workspace {
+                    Workspace::Teach => self.focus_panel(PanelKind::Search),
+                    Workspace::Review => self.active_panel = PanelKind::Review,
+                    Workspace::Author | Workspace::Execute => {}
                 }
             }
             Command::ResetWorkspace => self.wants_default_layout = true,
@@ -164,14 +185,17 @@ impl AppState {
                 self.toasts.add(ToastKind::Failed, format!("The map {name} cannot be used: {reason}"));
             }
             HostEvent::Answer(
-                Response::Execution(_)
-                | Response::NotExecuted { .. }
-                | Response::Sampled { .. }
-                | Response::Review { .. }
-                | Response::WorkedOut { .. },
-            ) => {}
+                Response::Execution(_) | Response::NotExecuted { .. } | Response::Sampled { .. },
+            )
+            | HostEvent::FragmentChanged(_) => {}
+            HostEvent::Answer(Response::Review { revision, review }) => self.take_review(revision, review),
+            HostEvent::Answer(Response::WorkedOut { token, snapshot }) => {
+                self.take_worked_out(token, &snapshot);
+            }
             HostEvent::CoreFailed { message, revision } => {
                 self.search.give_comparison_up(revision);
+                self.give_up_review();
+                self.compare.give_up();
                 self.toasts.add(
                     ToastKind::Failed,
                     format!(
@@ -183,8 +207,8 @@ impl AppState {
             HostEvent::FileFailed { name, reason } => {
                 self.toasts.add(ToastKind::Failed, format!("{name}: {reason}"));
             }
-            HostEvent::FragmentChanged(_) => {}
         }
+        self.follow_review();
     }
 
     /// Whether the keys that step and play go to the search instead of time.
@@ -291,6 +315,7 @@ impl AppState {
         self.editor.popup = None;
         self.editor.folding.unfold_all();
         self.mission = name;
+        self.leave_review();
         self.snapshots.clear();
         self.automaton.forget();
         self.search.forget();
@@ -333,9 +358,14 @@ impl AppState {
                     format!("Imported {name}. A mission uses it by: terrain \"{name}\";"),
                 );
             }
-            FileKind::Json => {
-                self.toasts.add(ToastKind::Failed, format!("{name}: plans cannot be opened here yet"));
-            }
+            FileKind::Json => match String::from_utf8(bytes) {
+                Ok(text) => self.import_record(name, &text),
+                Err(_) => self.toasts.add(ToastKind::Failed, format!("{name} is not a text file")),
+            },
+            FileKind::Comparison => match String::from_utf8(bytes) {
+                Ok(text) => self.compare_with_file(name, &text),
+                Err(_) => self.toasts.add(ToastKind::Failed, format!("{name} is not a text file")),
+            },
         }
     }
 

@@ -2,13 +2,16 @@
 
 mod apply;
 pub mod automaton;
+pub mod compare;
 pub mod document;
+pub mod documents;
 mod draft;
 mod editing;
 pub mod editor;
 pub mod folding;
 pub mod language;
 pub mod playback;
+pub mod review;
 pub mod search;
 pub mod search_text;
 pub mod selection;
@@ -65,6 +68,10 @@ pub struct AppState {
     pub search: search::SearchState,
     /// The control program, if the text is one, and its run.
     pub automaton: automaton::AutomatonState,
+    /// The review of the mission, with what was said and signed.
+    pub review: review::ReviewState,
+    /// What the mission is compared with.
+    pub compare: compare::CompareState,
     /// The time shown, and whether it runs.
     pub playback: Playback,
     /// Which workspace is shown.
@@ -117,6 +124,8 @@ pub struct FrameInfo {
     pub layout_millis: f64,
     /// Seconds on the host's clock at the start of this frame.
     pub now_secs: f64,
+    /// The date and time at the start of this frame, in milliseconds since 1970, in UTC.
+    pub unix_millis: i64,
 }
 
 impl AppState {
@@ -135,6 +144,8 @@ impl AppState {
             hovered: Selection::None,
             search: search::SearchState::default(),
             automaton: automaton::AutomatonState::default(),
+            review: review::ReviewState::default(),
+            compare: compare::CompareState::default(),
             playback: Playback::default(),
             workspace: Workspace::default(),
             settings: Settings::default(),
@@ -148,7 +159,7 @@ impl AppState {
             unwanted_panel: None,
             wants_default_layout: false,
             frame: FrameInfo::default(),
-            effects: Vec::new(),
+            effects: vec![Effect::RecallReview],
         }
     }
 

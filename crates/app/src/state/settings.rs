@@ -17,6 +17,10 @@ pub struct Settings {
     pub plan: PlanSettings,
     /// What each panel shows.
     pub views: Views,
+    /// Who comments and signs.
+    pub reviewer: String,
+    /// When missions start, as it was last given for a schedule with dates.
+    pub epoch: String,
 }
 
 impl Default for Settings {
@@ -26,6 +30,8 @@ impl Default for Settings {
             text_scale: 1.0,
             plan: PlanSettings::default(),
             views: Views::default(),
+            reviewer: String::new(),
+            epoch: String::new(),
         }
     }
 }

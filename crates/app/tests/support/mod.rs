@@ -97,6 +97,11 @@ impl Host for TestHost {
         self.world.now_secs.get()
     }
 
+    fn unix_millis(&self) -> i64 {
+        // 2026-01-02T03:04:05Z, and on from there as the other clock goes.
+        1_767_323_045_000 + (self.world.now_secs.get() * 1000.0) as i64
+    }
+
     fn stored(&self, key: &str) -> Option<String> {
         self.world.storage.borrow().get(key).cloned()
     }

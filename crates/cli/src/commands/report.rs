@@ -4,10 +4,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context as _;
-use mission::review::{Line, Review, Section, Status, TimeRange, review};
+use mission::review::{Line, Record, Review, Section, Status, TimeRange, review};
 use serde_json::{Value, json};
 use tpn::number::{bound_to_json, time_to_json};
 
+use crate::input::read_text;
 use crate::load::Target;
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
 use crate::worked_out::{WorkedOut, work_out};
@@ -20,6 +21,9 @@ pub struct Args {
     /// Writes the report as one HTML file.
     #[arg(short, long, value_name = "OUT.html", required_if_eq("format", "text"))]
     output: Option<PathBuf>,
+    /// Comments and sign-offs, as the page saves them, to stand in the report.
+    #[arg(long, value_name = "REVIEW.json")]
+    record: Option<PathBuf>,
     /// Seeds path planning.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -33,11 +37,19 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let worked_out = work_out(&args.target, args.seed)?;
     let WorkedOut { name, snapshot, ground } = &worked_out;
     let review = review(snapshot, &args.target.goal()?, args.seed, &mut || false);
+    let record = match &args.record {
+        Some(path) => {
+            let text = read_text(path)?;
+            Some(Record::from_json(&text).with_context(|| format!("cannot read {}", path.display()))?)
+        }
+        None => None,
+    };
     if let Some(path) = &args.output {
         let page = report::html(&report::Document {
             name,
             snapshot,
             review: &review,
+            record: record.as_ref(),
             seed: args.seed,
             ground: ground.as_deref(),
         });

@@ -12,4 +12,5 @@ mod editing;
 mod failure;
 mod language;
 mod offline;
+mod report;
 mod same;

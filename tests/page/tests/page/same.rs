@@ -46,7 +46,9 @@ fn every_example_leads_to_the_same_network_plan_and_paths_in_the_page_and_native
         page.tab.evaluate(&format!("enroute.open('{}')", example.name))?;
         page.settle()?;
         let state = page.state()?;
-        for part in ["mission", "status", "diagnostics", "tpn", "plan", "verdict", "failure", "vehicles", "traverses"] {
+        for part in
+            ["mission", "status", "diagnostics", "tpn", "plan", "verdict", "failure", "vehicles", "traverses"]
+        {
             assert_eq!(state[part], as_javascript_writes(&expected[part]), "{part} of {}", example.name);
         }
     }

@@ -1,6 +1,6 @@
 //! The timeline: activities and conditions as bars with their flexible starts and ends, and time as it plays.
 
-mod bars;
+pub(crate) mod bars;
 mod controls;
 mod paint;
 mod view;

@@ -1,0 +1,52 @@
+//! Asks when the mission starts, for schedules with dates.
+
+use egui::{Button, Key, RichText, TextEdit, Ui};
+use report::calendar::Calendar;
+use rmpl::program::TimeUnit;
+
+use crate::command::{Command, CommandSender};
+use crate::dialog::Dialog;
+use crate::panel::Context;
+use crate::state::documents::ScheduleForm;
+use crate::theme::space;
+
+/// Shows the question.
+pub(super) fn show(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    form: ScheduleForm,
+    epoch: &str,
+    commands: &mut CommandSender,
+) {
+    ui.set_width(340.0);
+    ui.heading(form.title());
+    ui.label("When does the mission start?");
+    let mut text = epoch.to_owned();
+    let field =
+        TextEdit::singleline(&mut text).hint_text("2004-01-25T05:05:00Z").desired_width(f32::INFINITY);
+    let field = ui.add(field).accessible_name("Start of the mission");
+    let enter = ui.input(|input| input.key_pressed(Key::Enter));
+    if !enter {
+        field.request_focus();
+    }
+    let is_date = Calendar::new(text.trim(), TimeUnit::Second).is_some();
+    let (note, color) = if is_date || text.is_empty() {
+        ("A date or a date with time; without an offset it is in UTC.", context.tokens.text_muted)
+    } else {
+        ("Not a date such as 2004-01-25 or 2004-01-25T05:05:00Z", context.tokens.error)
+    };
+    ui.label(RichText::new(note).color(color));
+    ui.add_space(space::M);
+    let mut is_asked = enter;
+    ui.horizontal(|ui| {
+        is_asked |= ui.add_enabled(is_date, Button::new("Export")).clicked();
+        if ui.button("Cancel").clicked() {
+            commands.send(Command::CloseDialog);
+        }
+    });
+    if is_asked && is_date {
+        commands.send(Command::WriteSchedule { form, epoch: text.trim().to_owned() });
+    } else if text != epoch {
+        commands.send(Command::ShowDialog(Dialog::Epoch { form, epoch: text }));
+    }
+}

@@ -1,0 +1,125 @@
+//! The lines of the checklist, and where they lead.
+
+use egui::Ui;
+use mission::Snapshot;
+use mission::review::{Fate, Line, Section, Status};
+use tpn::{CausalLink, DecisionId, LabelId, Ordering};
+
+use super::{List, row};
+use crate::command::{Command, CommandSender};
+use crate::state::Selection;
+
+/// Shows a line of any section.
+pub(super) fn line(
+    ui: &mut Ui,
+    list: &List<'_>,
+    section: Section,
+    index: usize,
+    line: &Line,
+    commands: &mut CommandSender,
+) {
+    let is_selected = list.selected.contains(&key(section, line));
+    let place = line.line_number.map(|number| format!("line {number}")).unwrap_or_default();
+    let shown = row::Row {
+        status: Some(line.status),
+        text: &sentence(&line.text),
+        place: &place,
+        is_selected,
+        indent: 0.0,
+        is_quiet: false,
+    };
+    if row::show(ui, list.context, &shown).clicked() {
+        go_to(list, section, line, commands);
+        if let (Section::Encounters, Some(snapshot)) = (section, list.context.snapshot)
+            && let Some(encounter) = snapshot.encounters.get(index).filter(|_| !list.is_stale)
+        {
+            commands.send(Command::Seek(encounter.time));
+        }
+    }
+}
+
+/// Shows the choices with their alternatives and why they were not taken.
+pub(super) fn choices(ui: &mut Ui, list: &List<'_>, count: usize, commands: &mut CommandSender) {
+    for (index, choice) in list.review.choices.iter().enumerate().take(count) {
+        line(ui, list, Section::Choices, index, &choice.line, commands);
+        for alternative in &choice.alternatives {
+            let text = format!(
+                "{}: {}. {}",
+                alternative.number,
+                alternative.text,
+                sentence(&alternative.fate.sentence())
+            );
+            let name = format!("{}={}", choice.name, alternative.number);
+            let is_taken = alternative.fate == Fate::Taken;
+            let shown = row::Row {
+                status: is_taken.then_some(Status::Passed),
+                text: &text,
+                place: "",
+                is_selected: list.selected.contains(&name),
+                indent: 20.0,
+                is_quiet: !is_taken,
+            };
+            if row::show(ui, list.context, &shown).clicked()
+                && let Some(id) = decision(&choice.name)
+            {
+                commands.send(Command::SelectAndReveal(Selection::Alternative(id, alternative.number)));
+            }
+        }
+    }
+}
+
+/// Selects in all panels what a line is about, and shows its text.
+pub(super) fn go_to(list: &List<'_>, section: Section, line: &Line, commands: &mut CommandSender) {
+    let found = list.context.snapshot.and_then(|snapshot| selection(snapshot, section, line));
+    match (found, line.span) {
+        (Some(selection), _) => commands.send(Command::SelectAndReveal(selection)),
+        // Places in an older text are somewhere else now.
+        (None, Some(span)) if !list.is_stale => commands.send(Command::Reveal(span)),
+        _ => {}
+    }
+}
+
+/// What a line is about, in the present network.
+fn selection(snapshot: &Snapshot, section: Section, line: &Line) -> Option<Selection> {
+    let network = snapshot.network.as_deref();
+    let label = |name: &String| {
+        let network = network?;
+        (0..network.labels.len()).map(LabelId::from_index).find(|&id| network.label_name(id) == *name)
+    };
+    match (section, line.names.as_slice()) {
+        (Section::CausalLinks, [ask, tell]) => {
+            Some(Selection::Link(CausalLink { ask: label(ask)?, tell: label(tell)? }))
+        }
+        (Section::Conflicts, [first, then]) => {
+            Some(Selection::Ordering(Ordering { first: label(first)?, then: label(then)? }))
+        }
+        (_, [first, ..]) => Selection::by_name(snapshot, first),
+        (_, []) => None,
+    }
+}
+
+/// The name under which the selection of a line is known.
+fn key(section: Section, line: &Line) -> String {
+    match (section, line.names.as_slice()) {
+        (Section::CausalLinks, [ask, tell]) => format!("{ask} ← {tell}"),
+        (Section::Conflicts, [first, then]) => format!("{first} ≺ {then}"),
+        (_, [first, ..]) => first.clone(),
+        (_, []) => String::new(),
+    }
+}
+
+fn decision(name: &str) -> Option<DecisionId> {
+    let number: u32 = name.strip_prefix('D')?.parse().ok()?;
+    number.checked_sub(1).map(DecisionId)
+}
+
+/// A text with a capital at its start, unless it starts with a name.
+pub(super) fn sentence(text: &str) -> String {
+    let first_word = text.split(' ').next().unwrap_or_default();
+    let is_plain = first_word.chars().all(|c| c.is_ascii_lowercase() || c == ':');
+    let mut characters = text.chars();
+    match characters.next() {
+        Some(first) if is_plain => first.to_uppercase().chain(characters).collect(),
+        _ => text.to_owned(),
+    }
+}

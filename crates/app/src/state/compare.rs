@@ -1,0 +1,134 @@
+//! What the open mission is compared with: a pinned revision, the last signed-off text, another mission, a saved plan.
+
+use std::sync::Arc;
+
+use mission::compare::Side;
+use mission::review::Record;
+use mission::{Goal, Request, SearchKind, Snapshot, Update};
+use serde_json::Value;
+
+use crate::state::{AppState, Effect, ToastKind};
+
+/// Something that concerns the comparison.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CompareCommand {
+    /// Keeps the present plan, to compare later ones with.
+    Pin,
+    /// Compares with the text that was signed off last.
+    WithSignedOff,
+    /// Lets the user choose a mission, a plan or a review to compare with.
+    OpenFile,
+    /// Stops comparing.
+    Clear,
+}
+
+/// What the open mission is compared with.
+#[derive(Clone, Debug, Default)]
+pub struct CompareState {
+    reference: Option<Arc<Side>>,
+    /// The name of a text that is being worked out, under its token.
+    waiting: Option<(u64, String)>,
+    last_token: u64,
+}
+
+impl CompareState {
+    /// The plan to compare with.
+    pub fn reference(&self) -> Option<&Arc<Side>> {
+        self.reference.as_ref()
+    }
+
+    /// The name of the text that is being worked out to compare with.
+    pub fn waiting(&self) -> Option<&str> {
+        self.waiting.as_ref().map(|(_, name)| name.as_str())
+    }
+
+    pub(super) fn give_up(&mut self) {
+        self.waiting = None;
+    }
+}
+
+impl AppState {
+    pub(super) fn apply_to_compare(&mut self, command: &CompareCommand) {
+        match command {
+            CompareCommand::Pin => {
+                let Some(shown) = self.shown().filter(|shown| shown.plan().is_some()) else { return };
+                let name = format!("pinned revision {}", shown.revision);
+                self.compare.reference = Some(Arc::new(Side::of_snapshot(&name, shown)));
+                self.compare.waiting = None;
+            }
+            CompareCommand::WithSignedOff => match self.review.record().sign_offs.last().cloned() {
+                Some(signed) => {
+                    let name = format!("signed off by {} on {}", signed.name, day_of(&signed.time));
+                    self.work_out_reference(name, &signed.source, signed.goal, signed.seed);
+                }
+                None => self.toasts.add(ToastKind::Info, "Nobody has signed this mission off yet"),
+            },
+            CompareCommand::OpenFile => {
+                self.effects.push(Effect::OpenFile(crate::host::FileKind::Comparison));
+            }
+            CompareCommand::Clear => {
+                self.compare.reference = None;
+                self.compare.waiting = None;
+            }
+        }
+    }
+
+    /// Compares with a file that the user chose.
+    pub(super) fn compare_with_file(&mut self, name: &str, text: &str) {
+        let is_json = name.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("json"));
+        if !is_json {
+            let seed = self.settings.plan.seed;
+            self.work_out_reference(name.to_owned(), text, Goal::Default, seed);
+            return;
+        }
+        let failed = |reason: String| format!("{name} cannot be compared with: {reason}");
+        let document: Value = match serde_json::from_str(text) {
+            Ok(document) => document,
+            Err(reason) => return self.toasts.add(ToastKind::Failed, failed(reason.to_string())),
+        };
+        if document["format"] == mission::review::record::FORMAT {
+            match Record::from_json(text).map(|record| record.sign_offs.last().cloned()) {
+                Ok(Some(signed)) => {
+                    self.work_out_reference(name.to_owned(), &signed.source, signed.goal, signed.seed);
+                }
+                Ok(None) => self.toasts.add(ToastKind::Failed, failed("nobody has signed it".to_owned())),
+                Err(reason) => self.toasts.add(ToastKind::Failed, failed(reason.to_string())),
+            }
+            return;
+        }
+        match Side::of_json(name, &document) {
+            Ok(side) => {
+                self.compare.reference = Some(Arc::new(side));
+                self.compare.waiting = None;
+            }
+            Err(reason) => self.toasts.add(ToastKind::Failed, failed(reason.to_string())),
+        }
+    }
+
+    fn work_out_reference(&mut self, name: String, source: &str, goal: Goal, seed: u64) {
+        self.compare.last_token += 1;
+        let token = self.compare.last_token;
+        self.compare.waiting = Some((token, name));
+        let update = Update {
+            revision: 0,
+            source: source.into(),
+            goal,
+            search: SearchKind::default(),
+            seed,
+            trace: false,
+        };
+        self.effects.push(Effect::Post(Request::WorkOut { token, update }));
+    }
+
+    /// Takes a text that was worked out to compare with.
+    pub(super) fn take_worked_out(&mut self, token: u64, snapshot: &Snapshot) {
+        if let Some((_, name)) = self.compare.waiting.take_if(|(waiting, _)| *waiting == token) {
+            self.compare.reference = Some(Arc::new(Side::of_snapshot(&name, snapshot)));
+        }
+    }
+}
+
+/// The day of an ISO 8601 time.
+fn day_of(time: &str) -> &str {
+    time.split('T').next().unwrap_or(time)
+}
