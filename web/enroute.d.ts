@@ -47,6 +47,24 @@ export interface Vehicle {
   time: number;
 }
 
+/** What is done on the terrain. */
+export interface Terrain {
+  tool: "look" | "measure" | "location" | "circle" | "polygon" | "vehicle";
+  /** The places that the tool has so far, in metres east and north. */
+  points: [number, number][];
+  /** Whether the clearance map is shown. */
+  clearance: boolean;
+  /** The search for a path that is looked at sample by sample. `length` is that of the best path so far, in metres. */
+  growth: {
+    planner: string;
+    leg: number;
+    samples: number;
+    total: number;
+    vertices: number;
+    length: number | null;
+  } | null;
+}
+
 /** How a control program stands at the step that is looked at. */
 export interface ProgramRun {
   /** The steps taken before this moment, and all that were taken. */
@@ -141,6 +159,7 @@ export interface State {
   hca: ProgramRun | null;
   vehicles: Vehicle[];
   traverses: Traverse[] | null;
+  terrain: Terrain;
   time: Time;
   selection: unknown;
   /** What draws the canvas: WebGPU or WebGL2. */

@@ -55,6 +55,17 @@ window.addEventListener("error", ({ error }) => {
   }
 });
 
+// The browser may take the graphics away, as when the driver fails or the computer has slept. What was drawn is gone.
+canvas.addEventListener("webglcontextlost", (event) => {
+  event.preventDefault();
+  keepForNextLoad();
+  showFailure(
+    "The graphics were lost",
+    "The browser has taken the graphics card away. Your text is kept; loading the page again brings it back.",
+    new Error("the canvas lost its context"),
+  );
+});
+
 const loaded = load();
 const api = createApi(loaded);
 window.enroute = api.enroute;

@@ -43,6 +43,9 @@ pub trait Host {
     /// key press: browsers refuse otherwise.
     fn open_file(&mut self, kind: FileKind);
 
+    /// Reads a file that was dropped on the app; [`HostEvent::FileOpened`] brings it, for what its name says it is.
+    fn read_dropped(&mut self, file: egui::DroppedFileHandle);
+
     /// Lets the user save `bytes` as a file.
     fn save_file(&mut self, suggested_name: &str, bytes: Vec<u8>);
 
@@ -105,6 +108,13 @@ pub enum FileKind {
 }
 
 impl FileKind {
+    /// What a file of this name is opened for; a mission if its extension says nothing.
+    pub fn of_name(name: &str) -> Self {
+        let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
+        let is_one = |kind: &Self| kind.extensions().contains(&extension.as_str());
+        [Self::Map, Self::Json].into_iter().find(is_one).unwrap_or(Self::Mission)
+    }
+
     /// What the file dialog calls it.
     pub fn title(self) -> &'static str {
         match self {
@@ -119,7 +129,7 @@ impl FileKind {
     pub fn extensions(self) -> &'static [&'static str] {
         match self {
             Self::Mission => &["rmpl", "txt", "lisp"],
-            Self::Map => &["pgm", "png", "map", "tif", "tiff", "asc", "dem"],
+            Self::Map => &["pgm", "png", "map", "tif", "tiff", "asc", "dem", "img", "lbl"],
             Self::Json => &["json", "edn"],
             Self::Comparison => &["rmpl", "txt", "json"],
         }

@@ -172,6 +172,16 @@ impl Host for NativeHost {
         });
     }
 
+    fn read_dropped(&mut self, file: egui::DroppedFileHandle) {
+        self.in_background(move || {
+            let name = name_of(file.path());
+            Some(match file.bytes() {
+                Ok(bytes) => HostEvent::FileOpened { kind: FileKind::of_name(&name), name, bytes },
+                Err(reason) => HostEvent::FileFailed { name, reason },
+            })
+        });
+    }
+
     fn save_file(&mut self, suggested_name: &str, bytes: Vec<u8>) {
         let suggested_name = suggested_name.to_owned();
         self.in_background(move || {

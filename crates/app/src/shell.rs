@@ -119,6 +119,9 @@ impl Enroute {
             self.state.receive(event);
             self.version += 1;
         }
+        for file in self.egui.input(|input| input.raw.dropped_files.clone()) {
+            self.host.read_dropped(file);
+        }
         let shown = self.state.shown().cloned();
         if self.state.snapshots.lose_patience(now_secs) {
             self.egui.request_repaint_after_secs(0.1);
@@ -135,6 +138,11 @@ impl Enroute {
             } else {
                 0.05
             });
+        }
+        if self.state.terrain.growth.is_playing {
+            let rate = self.state.playback.rate;
+            self.version += u64::from(self.state.terrain.growth.advance(elapsed_secs, rate));
+            self.egui.request_repaint_after_secs(0.02);
         }
         if self.state.automaton.is_playing {
             let rate = self.state.playback.rate;

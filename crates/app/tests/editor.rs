@@ -269,13 +269,8 @@ fn a_block_folds_at_the_caret_and_its_lines_take_no_rows() {
 fn a_key_let_go_in_the_same_frame_does_not_take_the_list_away_from_enter() {
     let mut app = editing("primitive Drive(to);\nscenario S = { Driv$0(A) }");
     app.press(CTRL, Key::Period);
-    let released = Event::Key {
-        key: Key::Period,
-        physical_key: None,
-        pressed: false,
-        repeat: false,
-        modifiers: CTRL,
-    };
+    let released =
+        Event::Key { key: Key::Period, physical_key: None, pressed: false, repeat: false, modifiers: CTRL };
     app.harness.event(released);
     app.press(NONE, Key::Enter);
     assert!(app.harness.state().source().contains("Drive(A)"), "{}", app.harness.state().source());

@@ -64,9 +64,14 @@ impl Core {
     pub fn handle(&mut self, request: Request, surroundings: &mut dyn Surroundings) {
         match request {
             Request::ImportMap { name, bytes } => {
-                if let Err(reason) = self.grounds.import(&name, &bytes) {
-                    surroundings.answer(Response::MapRejected { name, reason });
-                }
+                surroundings.answer(match self.grounds.import(&name, &bytes) {
+                    Ok(map) => Response::MapAccepted {
+                        name,
+                        cells: [map.frame().width, map.frame().height],
+                        no_data_cells: map.no_data_count() as u64,
+                    },
+                    Err(reason) => Response::MapRejected { name, reason },
+                });
             }
             Request::Update(update) => self.update(&update, surroundings),
             Request::Execute { update, script } => self.execute(&update, script, surroundings),

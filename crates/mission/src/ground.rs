@@ -71,14 +71,15 @@ struct SpaceKey {
 }
 
 impl Grounds {
-    /// Reads a map file so that `terrain "name"` finds it; says why when it can't be read.
-    pub fn import(&mut self, name: &str, bytes: &[u8]) -> Result<(), String> {
+    /// Reads a map file so that `terrain "name"` finds it, and answers the map; says why when it can't be read.
+    pub fn import(&mut self, name: &str, bytes: &[u8]) -> Result<&Terrain, String> {
         let map = terrain::format::read_terrain(bytes, &ImportOptions::default())
             .map_err(|error| error.to_string())?;
         let version = version(bytes);
         self.maps.retain(|key, _| key.asset != name);
-        self.imported.insert(SmolStr::new(name), Imported { version, map });
-        Ok(())
+        let name = SmolStr::new(name);
+        self.imported.insert(name.clone(), Imported { version, map });
+        self.imported.get(&name).map(|imported| &imported.map).ok_or_else(String::new)
     }
 
     /// The map of a mission: the one that it names, or flat ground around its places. `None`, with a diagnostic, when

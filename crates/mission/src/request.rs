@@ -143,6 +143,15 @@ pub enum Response {
     },
     /// The two searches of a revision.
     Searches(Arc<BothSearches>),
+    /// A map file was read; texts that name it find it from now on.
+    MapAccepted {
+        /// The name it has.
+        name: SmolStr,
+        /// Columns and rows.
+        cells: [u32; 2],
+        /// How many cells have no data.
+        no_data_cells: u64,
+    },
     /// A map file could not be read.
     MapRejected {
         /// The name it was to have.

@@ -113,6 +113,17 @@ impl Host for PageHost {
         });
     }
 
+    fn read_dropped(&mut self, file: egui::DroppedFileHandle) {
+        let link = self.link.clone();
+        wasm_bindgen_futures::spawn_local(async move {
+            let name = file.path().to_string_lossy().into_owned();
+            link.happened(match file.bytes_async().await {
+                Ok(bytes) => HostEvent::FileOpened { kind: FileKind::of_name(&name), name, bytes },
+                Err(reason) => HostEvent::FileFailed { name, reason },
+            });
+        });
+    }
+
     fn save_file(&mut self, suggested_name: &str, bytes: Vec<u8>) {
         self.glue.save_file(suggested_name, Uint8Array::from(bytes.as_slice()));
     }

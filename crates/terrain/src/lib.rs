@@ -23,6 +23,7 @@ mod occupancy;
 mod random;
 mod recipe;
 mod rock;
+mod sight;
 mod walk;
 
 pub use configuration::{Collision, ConfigurationSpace};
@@ -35,3 +36,4 @@ pub use occupancy::{CellState, Occupancy, Traversability};
 pub use random::Random;
 pub use recipe::{Craters, Dunes, Fan, RECIPES, Recipe, Relief, asset, asset_names, generate};
 pub use rock::{Rock, cumulative_rock_area, scatter_rocks};
+pub use sight::{GroundProfile, LineOfSight};

@@ -17,6 +17,7 @@ use crate::state::documents::ScheduleForm;
 use crate::state::editor::Find;
 use crate::state::review::ReviewCommand;
 use crate::state::search::SearchCommand;
+use crate::state::terrain::TerrainCommand;
 use crate::state::{EditKind, Selection, TextCommand, ToastKind, Views};
 use crate::theme::ThemeChoice;
 use crate::workspace::Workspace;
@@ -68,6 +69,9 @@ pub enum Command {
     SelectAndReveal(Selection),
     /// The pointer is over something.
     Hover(Selection),
+
+    /// Something that concerns the terrain.
+    Terrain(TerrainCommand),
 
     /// Goes to a time, in mission units from the start.
     Seek(f64),
@@ -222,6 +226,10 @@ pub enum ViewAction {
     Fit,
     /// What is selected.
     FitSelection,
+    /// Straight down, north up; for the terrain.
+    TopView,
+    /// Keeps the selected vehicle in the middle, or the first one; lets it go if one is kept. For the terrain.
+    Follow,
 }
 
 /// Collects commands while a frame is shown.

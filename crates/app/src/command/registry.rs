@@ -37,6 +37,8 @@ pub enum Group {
     Go,
     /// Panels, zoom, appearance.
     View,
+    /// The ground, its camera and its tools.
+    Terrain,
     /// Planning.
     Plan,
     /// Judging and comparing plans, and documents about them.
@@ -49,8 +51,17 @@ pub enum Group {
 
 impl Group {
     /// All of them, as the menu bar lists them.
-    pub const ALL: [Self; 8] =
-        [Self::File, Self::Edit, Self::Go, Self::View, Self::Plan, Self::Review, Self::Play, Self::Help];
+    pub const ALL: [Self; 9] = [
+        Self::File,
+        Self::Edit,
+        Self::Go,
+        Self::View,
+        Self::Terrain,
+        Self::Plan,
+        Self::Review,
+        Self::Play,
+        Self::Help,
+    ];
 
     /// Its name on screen.
     pub const fn title(self) -> &'static str {
@@ -59,6 +70,7 @@ impl Group {
             Self::Edit => "Edit",
             Self::Go => "Go",
             Self::View => "View",
+            Self::Terrain => "Terrain",
             Self::Plan => "Plan",
             Self::Review => "Report",
             Self::Play => "Play",

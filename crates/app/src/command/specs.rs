@@ -11,8 +11,10 @@ use crate::mission_file;
 use crate::panel::PanelKind;
 use crate::state::compare::CompareCommand;
 use crate::state::documents::ScheduleForm;
+use crate::state::growth::GrowthCommand;
 use crate::state::review::{ReviewCommand, may_sign};
 use crate::state::search::{SearchCommand, recorded};
+use crate::state::terrain::{TerrainCommand, Tool};
 use crate::state::{AppState, Selection, TextCommand};
 use crate::theme::ThemeChoice;
 use crate::workspace::Workspace;
@@ -64,6 +66,21 @@ fn search(command: SearchCommand) -> Command {
 
 fn with_selection(state: &AppState) -> Availability {
     if state.selection.is_none() { Err("nothing is selected") } else { Ok(()) }
+}
+
+fn with_ground(state: &AppState) -> Availability {
+    let has_ground = state.shown().is_some_and(|shown| shown.map.is_some());
+    if has_ground { Ok(()) } else { Err("the mission has no places") }
+}
+
+fn with_paths(state: &AppState) -> Availability {
+    let has_paths = state.shown().is_some_and(|shown| !shown.traverses.is_empty());
+    if has_paths { Ok(()) } else { Err("the plan has no traverse with a path") }
+}
+
+fn with_vehicles(state: &AppState) -> Availability {
+    let has_vehicles = state.shown().is_some_and(|shown| !shown.program.world.vehicles.is_empty());
+    if has_vehicles { Ok(()) } else { Err("the mission has no vehicles") }
 }
 
 fn with_undo(state: &AppState) -> Availability {
@@ -472,6 +489,92 @@ pub static COMMANDS: &[CommandSpec] = &[
             .map(Command::ShowWorkspace)
             .ok_or_else(|| format!("there is no workspace \"{name}\""))
     }),
+    // The ground.
+    when(
+        plain("terrain.fly", "Fly to the selection", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::View(ViewAction::FitSelection))
+        }),
+        with_selection,
+    ),
+    when(
+        plain("terrain.follow", "Follow the vehicle", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::View(ViewAction::Follow))
+        }),
+        with_vehicles,
+    ),
+    when(
+        plain("terrain.top", "Look straight down", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::View(ViewAction::TopView))
+        }),
+        with_ground,
+    ),
+    when(
+        plain("terrain.reset", "Show the whole map", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::View(ViewAction::Fit))
+        }),
+        with_ground,
+    ),
+    when(
+        plain(
+            "terrain.clearance",
+            "Clearance map",
+            Group::Terrain,
+            &[keys(PLAIN, Key::C)],
+            Scope::NotTyping,
+            |_| Command::Terrain(TerrainCommand::ToggleClearance),
+        ),
+        with_ground,
+    ),
+    when(
+        plain(
+            "terrain.growth",
+            "Search tree of a path",
+            Group::Terrain,
+            &[keys(PLAIN, Key::T)],
+            Scope::NotTyping,
+            |_| Command::Terrain(TerrainCommand::Growth(GrowthCommand::Toggle)),
+        ),
+        with_paths,
+    ),
+    called("terrain.growTo", "Draw so many samples", Group::Terrain, |_, arguments| {
+        let samples = number_argument(arguments, "samples")?.max(0.0) as u32;
+        Ok(Command::Terrain(TerrainCommand::Growth(GrowthCommand::GoTo(samples))))
+    }),
+    when(
+        plain("terrain.measure", "Measure", Group::Terrain, &[keys(PLAIN, Key::M)], Scope::NotTyping, |_| {
+            Command::Terrain(TerrainCommand::Take(Tool::Measure))
+        }),
+        with_ground,
+    ),
+    when(
+        plain("terrain.location", "Place a location", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::Take(Tool::Location))
+        }),
+        with_ground,
+    ),
+    when(
+        plain("terrain.circle", "Place a round obstacle", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::Take(Tool::Circle))
+        }),
+        with_ground,
+    ),
+    when(
+        plain(
+            "terrain.polygon",
+            "Place an obstacle with corners",
+            Group::Terrain,
+            &[],
+            Scope::Everywhere,
+            |_| Command::Terrain(TerrainCommand::Take(Tool::Polygon)),
+        ),
+        with_ground,
+    ),
+    when(
+        plain("terrain.vehicle", "Place a vehicle", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::Take(Tool::Vehicle(motion::VEHICLE_MODELS[0].name.into())))
+        }),
+        with_ground,
+    ),
     // Planning.
     plain("plan.chronological", "Search chronologically", Group::Plan, &[], Scope::Everywhere, |_| {
         Command::SetSearch(mission::SearchKind::Chronological)

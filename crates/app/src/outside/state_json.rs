@@ -62,6 +62,7 @@ pub fn state_json(state: &AppState) -> Value {
         "canUndo": state.document.can_undo(),
         "canRedo": state.document.can_redo(),
         "dialog": state.dialog.as_ref().map(crate::dialog::Dialog::name),
+        "terrain": terrain_json(state),
         "toasts": state.toasts.shown().iter().map(|toast| toast.text.as_str()).collect::<Vec<_>>(),
         "renderer": state.frame.renderer,
         "timings": timings_json(state),
@@ -137,6 +138,27 @@ fn event_name(event: &kirk::Event) -> &'static str {
         Event::Solution { .. } => "solution",
         Event::Exhausted => "exhausted",
     }
+}
+
+/// What is done on the terrain.
+fn terrain_json(state: &AppState) -> Value {
+    let terrain = &state.terrain;
+    let growth = terrain.growth.shown().map(|shown| {
+        json!({
+            "planner": crate::state::growth::planner_title(terrain.growth.planner),
+            "leg": shown.leg,
+            "samples": shown.samples(),
+            "total": shown.total,
+            "vertices": shown.vertices(),
+            "length": shown.length_m(),
+        })
+    });
+    json!({
+        "tool": terrain.tool.name(),
+        "points": terrain.points_m,
+        "clearance": state.settings.views.terrain.clearance,
+        "growth": growth,
+    })
 }
 
 /// Why there is no plan.

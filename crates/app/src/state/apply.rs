@@ -12,7 +12,9 @@ use crate::mission_file;
 use crate::panel::PanelKind;
 use crate::state::automaton::AutomatonCommand;
 use crate::state::editor::Reveal;
+use crate::state::growth::GrowthCommand;
 use crate::state::search::{self, SearchCommand};
+use crate::state::terrain::{TerrainCommand, TerrainState};
 use crate::state::{AppState, Selection, ToastKind, ViewRequest, playback};
 use crate::workspace::Workspace;
 
@@ -87,7 +89,15 @@ impl AppState {
             }
             Command::Hover(selection) => self.hovered = selection,
 
+            Command::Terrain(command) => self.apply_to_terrain(command),
             Command::Seek(time) => self.playback.seek(time),
+            Command::TogglePlaying if self.steps_growth() => {
+                self.apply_to_terrain(TerrainCommand::Growth(GrowthCommand::TogglePlaying));
+            }
+            Command::StepTime(forwards) if self.steps_growth() => {
+                let step = GrowthCommand::Step(if forwards { 1 } else { -1 });
+                self.apply_to_terrain(TerrainCommand::Growth(step));
+            }
             Command::TogglePlaying if self.automaton.program().is_some() => {
                 self.automaton.apply(AutomatonCommand::TogglePlaying);
             }
@@ -180,6 +190,9 @@ impl AppState {
             HostEvent::Answer(Response::Searches(comparison)) => {
                 let shown = self.snapshots.shown().cloned();
                 self.search.take_comparison(comparison, shown.as_ref(), self.settings.plan.search);
+            }
+            HostEvent::Answer(Response::MapAccepted { name, cells: [width, height], no_data_cells }) => {
+                self.take_map(&name, [width, height], no_data_cells);
             }
             HostEvent::Answer(Response::MapRejected { name, reason }) => {
                 self.toasts.add(ToastKind::Failed, format!("The map {name} cannot be used: {reason}"));
@@ -302,6 +315,7 @@ impl AppState {
         if let Some(plan) = after.plan() {
             self.playback.fit(plan);
         }
+        self.follow_with_terrain();
     }
 
     fn open_example(&mut self, name: &str) {
@@ -322,6 +336,7 @@ impl AppState {
         self.turn_to_notation(source);
         self.selection = Selection::None;
         self.hovered = Selection::None;
+        self.terrain = TerrainState::default();
         self.playback = playback::Playback { rate: self.playback.rate, ..Default::default() };
         self.settings.plan.goal = mission::Goal::Default;
         self.editor.reveal = Some(Reveal { span: Span::new(0, 0), center: false });
@@ -351,12 +366,8 @@ impl AppState {
                 Err(_) => self.toasts.add(ToastKind::Failed, format!("{name} is not a text file")),
             },
             FileKind::Map => {
-                let name = SmolStr::new(name);
-                self.effects.push(Effect::Post(Request::ImportMap { name: name.clone(), bytes }));
-                self.toasts.add(
-                    ToastKind::Done,
-                    format!("Imported {name}. A mission uses it by: terrain \"{name}\";"),
-                );
+                // The core reads it, and says what it has found.
+                self.effects.push(Effect::Post(Request::ImportMap { name: SmolStr::new(name), bytes }));
             }
             FileKind::Json => match String::from_utf8(bytes) {
                 Ok(text) => self.import_record(name, &text),
@@ -391,7 +402,7 @@ impl AppState {
         }
     }
 
-    fn request_view(&mut self, panel: PanelKind, action: crate::command::ViewAction) {
+    pub(super) fn request_view(&mut self, panel: PanelKind, action: crate::command::ViewAction) {
         let sequence = self.view_request.map_or(1, |request| request.sequence + 1);
         self.view_request = Some(ViewRequest { sequence, panel, action });
     }
@@ -405,6 +416,8 @@ impl AppState {
         }
         if self.editor.find.take().is_some() {
             self.editor.wants_focus = true;
+        } else if self.escape_from_terrain() {
+            // The tool was put away, or what it had.
         } else if self.search.step().is_some() {
             self.search.close();
         } else {

@@ -9,7 +9,9 @@ mod draft;
 mod editing;
 pub mod editor;
 pub mod folding;
+pub mod growth;
 pub mod language;
+pub mod placing;
 pub mod playback;
 pub mod review;
 pub mod search;
@@ -18,6 +20,7 @@ pub mod selection;
 mod services;
 pub mod settings;
 mod snapshots;
+pub mod terrain;
 pub mod toast;
 pub mod typing;
 
@@ -59,7 +62,7 @@ pub struct AppState {
     /// What the planning core answered.
     pub snapshots: Snapshots,
     /// The ground of the missions opened so far.
-    pub maps: BTreeMap<MapKey, Arc<terrain::Terrain>>,
+    pub maps: BTreeMap<MapKey, Arc<::terrain::Terrain>>,
     /// What is selected, in all panels.
     pub selection: Selection,
     /// What the pointer is over in some panel, for the others to hint at.
@@ -72,6 +75,8 @@ pub struct AppState {
     pub review: review::ReviewState,
     /// What the mission is compared with.
     pub compare: compare::CompareState,
+    /// The tool in hand on the terrain, and what it has.
+    pub terrain: terrain::TerrainState,
     /// The time shown, and whether it runs.
     pub playback: Playback,
     /// Which workspace is shown.
@@ -146,6 +151,7 @@ impl AppState {
             automaton: automaton::AutomatonState::default(),
             review: review::ReviewState::default(),
             compare: compare::CompareState::default(),
+            terrain: terrain::TerrainState::default(),
             playback: Playback::default(),
             workspace: Workspace::default(),
             settings: Settings::default(),

@@ -59,6 +59,12 @@ impl Selection {
         }
     }
 
+    /// The selected traverse, if it has a path.
+    pub fn occurrence_of_path(&self, snapshot: &Snapshot) -> Option<OccurrenceId> {
+        let occurrence = self.occurrence(snapshot.network.as_deref()?)?;
+        snapshot.traverses.iter().any(|it| it.occurrence == occurrence).then_some(occurrence)
+    }
+
     /// Whether `occurrence` is to be drawn as selected: it is selected itself, or is an end of the selected link or
     /// ordering.
     pub fn involves(&self, network: &Network, occurrence: OccurrenceId) -> bool {

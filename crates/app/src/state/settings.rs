@@ -166,6 +166,8 @@ pub struct TerrainView {
     pub contours: bool,
     /// A grid in mission coordinates.
     pub grid: bool,
+    /// How much room the vehicle has to the nearest obstacle.
+    pub clearance: bool,
     /// What the colours of the ground mean.
     pub coloring: Coloring,
     /// How much heights are exaggerated; 1 is true to scale.
@@ -194,6 +196,7 @@ impl Default for TerrainView {
             obstacles: true,
             contours: true,
             grid: false,
+            clearance: false,
             coloring: Coloring::Natural,
             height_scale: 2.0,
         }

@@ -118,6 +118,15 @@ pub struct Syntax {
 }
 
 impl Tokens {
+    /// Light lines and posts on the ground of a map, which looks the same in both themes.
+    pub const ON_GROUND: Color32 = rgb(0xF7_F3_EC);
+    /// What sets light lines off from light ground.
+    pub const UNDER_LINES: Color32 = rgb(0x1C_14_10);
+    /// Ground that an obstacle covers.
+    pub const OBSTACLE: Color32 = rgb(0x16_12_14);
+    /// Ground where a vehicle has no room, on clearance maps.
+    pub const NO_ROOM: Color32 = rgb(0x12_0A_10);
+
     /// The colour of a category, starting over after the last.
     pub fn series(&self, index: usize) -> Color32 {
         self.series[index % self.series.len()]

@@ -122,6 +122,15 @@ impl Host for TestHost {
         self.world.asked.borrow_mut().push(kind);
     }
 
+    fn read_dropped(&mut self, file: egui::DroppedFileHandle) {
+        let name = file.path().to_string_lossy().into_owned();
+        let event = match file.bytes() {
+            Ok(bytes) => HostEvent::FileOpened { kind: FileKind::of_name(&name), name, bytes },
+            Err(reason) => HostEvent::FileFailed { name, reason },
+        };
+        self.world.news.borrow_mut().push_back(event);
+    }
+
     fn save_file(&mut self, suggested_name: &str, bytes: Vec<u8>) {
         self.world.saved.borrow_mut().push((suggested_name.to_owned(), bytes));
     }

@@ -14,3 +14,4 @@ mod language;
 mod offline;
 mod report;
 mod same;
+mod terrain;

@@ -223,7 +223,7 @@ impl NetworkPanel {
         network: &Network,
     ) {
         match action {
-            None => {}
+            None | Some(ViewAction::TopView | ViewAction::Follow) => {}
             Some(ViewAction::ZoomIn) => self.view.zoom_at(panel, panel.center(), KEY_ZOOM),
             Some(ViewAction::ZoomOut) => self.view.zoom_at(panel, panel.center(), 1.0 / KEY_ZOOM),
             Some(ViewAction::ZoomReset) => self.view.reset_zoom(),

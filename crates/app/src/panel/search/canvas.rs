@@ -82,6 +82,7 @@ impl View {
             ViewAction::ZoomOut => self.zoom_at(rect.center(), rect, 0.8),
             ViewAction::ZoomReset => (self.cell, self.fits, self.followed) = (CELL, false, None),
             ViewAction::Fit | ViewAction::FitSelection => self.fits = true,
+            ViewAction::TopView | ViewAction::Follow => {}
         }
     }
 

@@ -4,6 +4,8 @@ use glam::camera::rh::proj::directx;
 use glam::camera::rh::view;
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
+use super::ground::Ground;
+
 const FIELD_OF_VIEW_RAD: f32 = 0.8;
 const PITCH_MIN_RAD: f32 = 0.06;
 const PITCH_MAX_RAD: f32 = std::f32::consts::FRAC_PI_2 - 0.001;
@@ -32,6 +34,26 @@ impl Camera {
         }
     }
 
+    /// The same direction of view, near enough to `target_m` to see what is there.
+    pub fn close_up(self, target_m: Vec3, distance_m: f32) -> Self {
+        let pitch_rad = self.pitch_rad.clamp(0.45, 1.1);
+        Self { target_m, distance_m: distance_m.min(self.distance_m), pitch_rad, ..self }
+    }
+
+    /// The camera with its eye over the ground: raised around its target where a hill is in the way.
+    pub fn above(self, ground: &Ground) -> Self {
+        let margin_m = (self.distance_m * 0.04).max(1.0);
+        let is_clear = |pitch_rad: f32| {
+            let eye = Self { pitch_rad, ..self }.eye_m();
+            eye.z >= ground.height_at(eye.truncate()) + margin_m
+        };
+        let steps = 48_u16;
+        let step_rad = (PITCH_MAX_RAD - self.pitch_rad) / f32::from(steps);
+        let pitches = (0..=steps).map(|step| self.pitch_rad + step_rad * f32::from(step));
+        let pitch_rad = pitches.into_iter().find(|&pitch| is_clear(pitch)).unwrap_or(PITCH_MAX_RAD);
+        Self { pitch_rad, ..self }
+    }
+
     /// The same target from straight above, north up.
     pub fn top_view(self) -> Self {
         Self { yaw_rad: std::f32::consts::FRAC_PI_2, pitch_rad: PITCH_MAX_RAD, ..self }
@@ -56,9 +78,34 @@ impl Camera {
         self.right().cross(self.forward())
     }
 
+    /// Nothing nearer than this is drawn.
+    pub fn near_m(&self) -> f32 {
+        (self.distance_m * 0.02).max(0.1)
+    }
+
+    /// The whole of `ground` from the south, as large as an image of this width over height allows.
+    pub fn whole(ground: &Ground, aspect: f32) -> Self {
+        let size = ground.size_m();
+        let mut camera = Self::overview(ground.center_m(), size.max_element());
+        let low = ground.origin_m;
+        let corners = [low, low + Vec2::new(size.x, 0.0), low + size, low + Vec2::new(0.0, size.y)];
+        // Each round brings the middle to the middle and the farthest corner to the border; a few are enough.
+        for _ in 0..6 {
+            let projector = camera.projector(Vec2::new(aspect, 1.0));
+            let seen = corners.map(|corner| projector.project(ground.drape(corner, 0.0)).unwrap_or_default());
+            let first = seen.into_iter().reduce(Vec2::min).unwrap_or_default();
+            let last = seen.into_iter().reduce(Vec2::max).unwrap_or_default();
+            let center = (first + last) / 2.0 - Vec2::new(aspect, 1.0) / 2.0;
+            camera.pan(-center, 1.0);
+            let filled = ((last - first) / Vec2::new(aspect * 0.94, 0.86)).max_element();
+            camera.zoom(filled.clamp(0.5, 2.0));
+        }
+        camera
+    }
+
     /// From mission coordinates to clip space, for an image of this width over height.
     pub fn clip_from_world(&self, aspect: f32) -> Mat4 {
-        let near = (self.distance_m * 0.02).max(0.1);
+        let near = self.near_m();
         let far = self.distance_m * 4.0 + 4000.0;
         let eye = self.eye_m();
         let view = view::look_to_mat4(eye, self.forward(), self.up());
@@ -86,13 +133,21 @@ impl Camera {
         self.distance_m = (self.distance_m * factor).clamp(2.0, 20_000.0);
     }
 
+    /// Comes nearer or goes away while `point_m` stays where it is in the image.
+    pub fn zoom_at(&mut self, factor: f32, point_m: Vec3) {
+        let before = self.distance_m;
+        self.zoom(factor);
+        self.target_m = point_m + (self.target_m - point_m) * (self.distance_m / before);
+    }
+
+    /// What tells where points appear in an image of `size` points.
+    pub fn projector(&self, size: Vec2) -> Projector {
+        Projector { clip_from_world: self.clip_from_world(size.x / size.y.max(1.0)), size }
+    }
+
     /// Where `point_m` appears in an image of `size` points; `None` behind the eye.
     pub fn project(&self, point_m: Vec3, size: Vec2) -> Option<Vec2> {
-        let clip = self.clip_from_world(size.x / size.y.max(1.0)) * point_m.extend(1.0);
-        if clip.w <= 0.01 {
-            return None;
-        }
-        Some(Vec2::new((clip.x / clip.w + 1.0) * 0.5 * size.x, (1.0 - clip.y / clip.w) * 0.5 * size.y))
+        self.projector(size).project(point_m)
     }
 
     /// The ray of view through a point of an image of `size` points: its origin and its unit direction.
@@ -105,9 +160,79 @@ impl Camera {
     }
 }
 
+/// Tells where points appear in one image.
+#[derive(Clone, Copy, Debug)]
+pub struct Projector {
+    clip_from_world: Mat4,
+    size: Vec2,
+}
+
+impl Projector {
+    /// Where `point_m` appears, in points from the top left; `None` behind the eye.
+    pub fn project(&self, point_m: Vec3) -> Option<Vec2> {
+        let clip = self.clip_from_world * point_m.extend(1.0);
+        if clip.w <= 0.01 {
+            return None;
+        }
+        let (right, up) = (clip.x / clip.w, clip.y / clip.w);
+        Some(Vec2::new((right + 1.0) * 0.5 * self.size.x, (1.0 - up) * 0.5 * self.size.y))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_eye_is_over_the_ground_wherever_the_camera_turns() {
+        // A crest 40 m high along the middle of 200 m.
+        let height = |column: usize| 40.0 - (column as f32 - 100.0).abs() * 0.8;
+        let heights: Vec<f32> = (0..200 * 200).map(|cell| height(cell % 200).max(0.0)).collect();
+        let ground = Ground::new(200, 200, 1.0, Vec2::ZERO, &heights);
+        for yaw in 0..12_u8 {
+            for distance_m in [2.0, 20.0, 80.0, 400.0] {
+                let camera = Camera {
+                    target_m: ground.drape(Vec2::new(60.0, 100.0), 0.0),
+                    yaw_rad: f32::from(yaw) * 0.52,
+                    pitch_rad: PITCH_MIN_RAD,
+                    distance_m,
+                };
+                let eye = camera.above(&ground).eye_m();
+                assert!(eye.z > ground.height_at(eye.truncate()) + 0.9, "{yaw} {distance_m} {eye}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_whole_ground_fills_images_of_any_shape_and_is_not_cut() {
+        let ground = Ground::new(100, 100, 3.0, Vec2::new(40.0, -70.0), &vec![0.0; 100 * 100]);
+        let low = ground.origin_m;
+        for aspect in [0.5, 1.0, 1.7, 3.0] {
+            let size = Vec2::new(600.0 * aspect, 600.0);
+            let projector = Camera::whole(&ground, aspect).projector(size);
+            let mut extent = (size, Vec2::ZERO);
+            for corner in
+                [low, low + ground.size_m(), low + Vec2::new(297.0, 0.0), low + Vec2::new(0.0, 297.0)]
+            {
+                let at = projector.project(ground.drape(corner, 0.0)).expect("in front of the eye");
+                assert!(at.cmpge(Vec2::ZERO).all() && at.cmple(size).all(), "{aspect} {at}");
+                extent = (extent.0.min(at), extent.1.max(at));
+            }
+            let filled = ((extent.1 - extent.0) / size).max_element();
+            assert!(filled > 0.8, "{aspect} {filled}");
+        }
+    }
+
+    #[test]
+    fn zooming_keeps_the_ground_under_the_pointer() {
+        let mut camera = Camera::overview(Vec3::ZERO, 100.0);
+        let size = Vec2::new(800.0, 500.0);
+        let point = Vec3::new(20.0, 30.0, 0.0);
+        let before = camera.project(point, size).expect("in front of the eye");
+        camera.zoom_at(0.5, point);
+        let after = camera.project(point, size).expect("in front of the eye");
+        assert!((after - before).length() < 0.5, "{before} {after}");
+    }
 
     #[test]
     fn the_target_appears_in_the_middle_and_its_ray_leads_back_to_it() {

@@ -1,17 +1,16 @@
-//! Picking things on the ground, and dragging them: their declarations in the text follow the pointer.
+//! Dragging things on the ground: their declarations in the text follow the pointer.
 
-use egui::{PointerButton, Pos2, Rect};
+use egui::{PointerButton, Pos2};
 use glam::Vec2;
-use mission::Snapshot;
 use rmpl::Edit;
 use rmpl::program::{ObstacleShape, Program};
 use smol_str::SmolStr;
 
-use super::camera::Camera;
-use super::ground::Ground;
+use super::pick::Scene;
 use super::scene;
 use crate::command::{Command, CommandSender};
-use crate::panel::Context;
+use crate::state::placing::{VehicleStart, place};
+use crate::state::terrain::TerrainCommand;
 use crate::state::{EditKind, Selection};
 
 /// A drag under way.
@@ -20,80 +19,57 @@ pub struct Drag {
     what: Dragged,
     /// Known to the history, so that the whole drag is undone at once.
     number: u64,
+    /// The ground under the pointer when it was pressed.
+    begun_m: Vec2,
     /// The ground under the pointer in the last frame.
-    last_m: Vec2,
+    pub last_m: Vec2,
 }
 
-/// What can be dragged.
+/// What can be dragged, with where it was: steps that were rounded do not add up.
 #[derive(Clone, Debug, PartialEq)]
 enum Dragged {
-    Location(SmolStr),
-    Obstacle(SmolStr),
+    Location(SmolStr, [f64; 2]),
+    Obstacle(SmolStr, ObstacleShape),
+    /// A vehicle that has not left yet: it starts from where it is dropped.
+    Vehicle(SmolStr),
 }
 
-/// What picking looks at.
-#[derive(Clone, Copy)]
-pub struct Scene<'a> {
-    /// The image in the window.
-    pub rect: Rect,
-    /// The view.
-    pub camera: &'a Camera,
-    /// The ground.
-    pub ground: &'a Ground,
-    /// The mission.
-    pub snapshot: &'a Snapshot,
-    /// The state.
-    pub context: &'a Context<'a>,
+impl Dragged {
+    fn of(selection: &Selection, scene: &Scene<'_>) -> Option<Self> {
+        let world = &scene.snapshot.program.world;
+        match selection {
+            Selection::Location(name) => {
+                let location = world.locations.iter().find(|it| it.name.text == *name)?;
+                Some(Self::Location(name.clone(), location.position_m))
+            }
+            Selection::Obstacle(name) => {
+                let obstacle = world.obstacles.iter().find(|it| it.name.text == *name)?;
+                Some(Self::Obstacle(name.clone(), obstacle.shape.clone()))
+            }
+            Selection::Vehicle(name) if is_at_start(scene, name) => Some(Self::Vehicle(name.clone())),
+            _ => None,
+        }
+    }
+
+    fn selection(&self) -> Selection {
+        match self {
+            Self::Location(name, _) => Selection::Location(name.clone()),
+            Self::Obstacle(name, _) => Selection::Obstacle(name.clone()),
+            Self::Vehicle(name) => Selection::Vehicle(name.clone()),
+        }
+    }
 }
 
-/// Pointers this near to a post, in points, are on it.
-const REACH: f32 = 14.0;
-
-impl Scene<'_> {
-    /// The ground under a point of the window.
-    pub fn ground_at(&self, pointer: Pos2) -> Option<Vec2> {
-        let inside = pointer - self.rect.min;
-        let size = Vec2::new(self.rect.width(), self.rect.height());
-        let (origin, direction) = self.camera.ray(Vec2::new(inside.x, inside.y), size);
-        self.ground.hit(origin, direction).map(glam::Vec3::truncate)
+impl Drag {
+    /// Whether the place under the pointer is where a vehicle will start.
+    pub fn is_start(&self) -> bool {
+        matches!(self.what, Dragged::Vehicle(_))
     }
+}
 
-    /// What is under a point of the window: a vehicle, a location, an obstacle, a traverse's path, or nothing.
-    pub fn pick(&self, pointer: Pos2) -> Selection {
-        let size = Vec2::new(self.rect.width(), self.rect.height());
-        let inside = Vec2::new(pointer.x - self.rect.min.x, pointer.y - self.rect.min.y);
-        let away = |place: Vec2, lift: f32| {
-            let point = self.camera.project(self.ground.drape(place, lift), size);
-            point.map_or(f32::INFINITY, |point| point.distance(inside))
-        };
-        let world = &self.snapshot.program.world;
-        let time = self.context.state.playback.time;
-        for (index, vehicle) in world.vehicles.iter().enumerate() {
-            let pose = scene::vehicle_pose(self.snapshot, index, time);
-            if pose.is_some_and(|(place, _)| away(place, 1.0) < REACH) {
-                return Selection::Vehicle(vehicle.name.text.clone());
-            }
-        }
-        for location in &world.locations {
-            let place = scene::place(location.position_m);
-            if [0.0, 3.5, 7.0].into_iter().any(|lift| away(place, lift) < REACH) {
-                return Selection::Location(location.name.text.clone());
-            }
-        }
-        let Some(hit) = self.ground_at(pointer) else { return Selection::None };
-        if let Some(obstacle) = world.obstacles.iter().find(|it| contains(&it.shape, hit)) {
-            return Selection::Obstacle(obstacle.name.text.clone());
-        }
-        let near_m = 10.0 * self.camera.distance_m / size.y.max(1.0);
-        let on_path = |points: &[[f64; 2]]| {
-            points
-                .windows(2)
-                .any(|pair| segment_distance(hit, scene::place(pair[0]), scene::place(pair[1])) < near_m)
-        };
-        let traverse =
-            self.snapshot.traverses.iter().find(|it| it.legs.iter().any(|leg| on_path(&leg.points_m)));
-        traverse.map_or(Selection::None, |it| Selection::Occurrence(it.occurrence))
-    }
+/// Whether dragging at a point of the window would move something.
+pub fn is_draggable(selection: &Selection, scene: &Scene<'_>) -> bool {
+    Dragged::of(selection, scene).is_some()
 }
 
 /// Begins, continues or ends a drag. While it lasts, the dragged thing's numbers in the text follow the pointer.
@@ -107,50 +83,68 @@ pub fn update(
     let pointer = response.interact_pointer_pos()?;
     if response.drag_started_by(PointerButton::Primary) {
         let begun = response.ctx.input(|input| input.pointer.press_origin()).unwrap_or(pointer);
-        let what = match scene.pick(begun) {
-            Selection::Location(name) => Dragged::Location(name),
-            Selection::Obstacle(name) => Dragged::Obstacle(name),
-            _ => return None,
-        };
+        if response.ctx.input(|input| input.modifiers.shift) {
+            return None;
+        }
+        let what = Dragged::of(&scene.pick(begun), scene)?;
         *count += 1;
-        let selection = match &what {
-            Dragged::Location(name) => Selection::Location(name.clone()),
-            Dragged::Obstacle(name) => Selection::Obstacle(name.clone()),
-        };
-        commands.send(Command::SelectAndReveal(selection));
-        return Some(Drag { what, number: *count, last_m: scene.ground_at(begun)? });
+        commands.send(Command::Select(what.selection()));
+        let begun_m = scene.ground_at(begun)?;
+        return Some(Drag { what, number: *count, begun_m, last_m: begun_m });
     }
     let mut drag = drag?;
     if !response.dragged_by(PointerButton::Primary) {
+        if let Dragged::Vehicle(vehicle) = drag.what {
+            drop_vehicle(vehicle, pointer, scene, commands);
+        }
         return None;
     }
     let Some(now_m) = scene.ground_at(pointer).filter(|&now_m| now_m.distance(drag.last_m) > 0.05) else {
         return Some(drag);
     };
     // The text may be ahead of the snapshot that is drawn: its own declarations say where the numbers stand.
-    let parse = rmpl::parse(scene.context.state.document.text());
-    if let Some(edit) = moved(&drag.what, &parse.program(), now_m, now_m - drag.last_m) {
+    let parse = scene.context.state.language.parse()?;
+    if let Some(edit) = moved(&drag.what, &parse.program(), now_m - drag.begun_m) {
         commands.send(Command::Edit { edits: vec![edit], kind: EditKind::Drag(drag.number) });
-        drag.last_m = now_m;
     }
+    drag.last_m = now_m;
     Some(drag)
 }
 
-/// The edit that moves a thing: a location to `now_m`, an obstacle by `step_m`.
-fn moved(what: &Dragged, program: &Program, now_m: Vec2, step_m: Vec2) -> Option<Edit> {
+fn drop_vehicle(vehicle: SmolStr, pointer: Pos2, scene: &Scene<'_>, commands: &mut CommandSender) {
+    if let Some(start) = start_at(pointer, scene) {
+        commands.send(Command::Terrain(TerrainCommand::MoveStart { vehicle, start }));
+    }
+}
+
+/// Where a vehicle that is put down at a point of the window starts: at the location there, or on the ground.
+pub fn start_at(pointer: Pos2, scene: &Scene<'_>) -> Option<VehicleStart> {
+    if let Some(location) = scene.pick_location(pointer) {
+        return Some(VehicleStart::Location(location));
+    }
+    let at = scene.ground_at(pointer)?;
+    Some(VehicleStart::Ground([f64::from(at.x), f64::from(at.y)]))
+}
+
+/// Whether a vehicle has not left its start at the time shown.
+fn is_at_start(scene: &Scene<'_>, name: &str) -> bool {
+    let world = &scene.snapshot.program.world;
+    let Some(index) = world.vehicles.iter().position(|it| it.name.text == name) else { return false };
+    let pose = |time| scene::vehicle_pose(scene.snapshot, index, time).map(|(place, _)| place);
+    pose(scene.context.state.playback.time) == pose(0.0)
+}
+
+/// The edit that moves a thing `by_m` from where it was.
+fn moved(what: &Dragged, program: &Program, by_m: Vec2) -> Option<Edit> {
+    let shifted = |[east, north]: [f64; 2]| place([east + f64::from(by_m.x), north + f64::from(by_m.y)]);
     match what {
-        Dragged::Location(name) => {
+        Dragged::Location(name, position_m) => {
             let location = program.world.locations.iter().find(|it| it.name.text == *name)?;
-            let text = format!("{}, {}", decimetres(now_m.x), decimetres(now_m.y));
-            Some(Edit { span: location.numbers_span, text })
+            Some(Edit { span: location.numbers_span, text: shifted(*position_m) })
         }
-        Dragged::Obstacle(name) => {
+        Dragged::Obstacle(name, shape) => {
             let obstacle = program.world.obstacles.iter().find(|it| it.name.text == *name)?;
-            let shifted = |[east, north]: [f64; 2]| {
-                let (east, north) = (east as f32 + step_m.x, north as f32 + step_m.y);
-                format!("{}, {}", decimetres(east), decimetres(north))
-            };
-            let text = match &obstacle.shape {
+            let text = match shape {
                 ObstacleShape::Circle { center_m, radius_m } => format!("{}, {radius_m}", shifted(*center_m)),
                 ObstacleShape::Polygon { corners_m } => {
                     corners_m.iter().map(|&corner| shifted(corner)).collect::<Vec<_>>().join(", ")
@@ -158,65 +152,8 @@ fn moved(what: &Dragged, program: &Program, now_m: Vec2, step_m: Vec2) -> Option
             };
             Some(Edit { span: obstacle.numbers_span, text })
         }
+        Dragged::Vehicle(_) => None,
     }
-}
-
-/// Metres to a tenth, as an author would write them.
-fn decimetres(metres: f32) -> String {
-    let tenths = (f64::from(metres) * 10.0).round() / 10.0;
-    format!("{}", if tenths == 0.0 { 0.0 } else { tenths })
-}
-
-/// Where a selected thing is.
-pub fn place_of(snapshot: &Snapshot, selection: &Selection) -> Option<Vec2> {
-    let world = &snapshot.program.world;
-    match selection {
-        Selection::Location(name) => {
-            world.locations.iter().find(|it| it.name.text == *name).map(|it| scene::place(it.position_m))
-        }
-        Selection::Obstacle(name) => {
-            let obstacle = world.obstacles.iter().find(|it| it.name.text == *name)?;
-            let outline = scene::outline(&obstacle.shape);
-            Some(outline.iter().copied().sum::<Vec2>() / outline.len().max(1) as f32)
-        }
-        Selection::Vehicle(name) => {
-            let index = world.vehicles.iter().position(|it| it.name.text == *name)?;
-            scene::vehicle_pose(snapshot, index, 0.0).map(|(place, _)| place)
-        }
-        _ => {
-            let occurrence = selection.occurrence(snapshot.network.as_deref()?)?;
-            let traverse = snapshot.traverses.iter().find(|it| it.occurrence == occurrence)?;
-            let points = &traverse.legs.first()?.points_m;
-            points.get(points.len() / 2).map(|&point| scene::place(point))
-        }
-    }
-}
-
-fn contains(shape: &ObstacleShape, point: Vec2) -> bool {
-    match shape {
-        ObstacleShape::Circle { center_m, radius_m } => {
-            scene::place(*center_m).distance(point) <= *radius_m as f32
-        }
-        ObstacleShape::Polygon { corners_m } => {
-            let corners: Vec<Vec2> = corners_m.iter().map(|&corner| scene::place(corner)).collect();
-            let sides = corners.iter().zip(corners.iter().cycle().skip(1));
-            let crossings = sides.filter(|(a, b)| {
-                (a.y > point.y) != (b.y > point.y)
-                    && point.x < a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x)
-            });
-            crossings.count() % 2 == 1
-        }
-    }
-}
-
-fn segment_distance(point: Vec2, from: Vec2, to: Vec2) -> f32 {
-    let along = to - from;
-    let part = if along.length_squared() > 0.0 {
-        ((point - from).dot(along) / along.length_squared()).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    point.distance(from + along * part)
 }
 
 #[cfg(test)]
@@ -226,28 +163,32 @@ mod tests {
     const TEXT: &str =
         "location A (1, 2);\nobstacle O circle (10, 10, 3);\nobstacle P polygon (0, 0, 4, 0, 4, 4);\n";
 
-    fn after(what: &Dragged, now_m: Vec2, step_m: Vec2) -> String {
-        let parse = rmpl::parse(TEXT);
-        let edit = moved(what, &parse.program(), now_m, step_m).expect("it is declared");
+    fn after(what: &Dragged, steps_m: &[Vec2]) -> String {
         let mut text = TEXT.to_owned();
-        text.replace_range(edit.span.range(), &edit.text);
+        for &by_m in steps_m {
+            let edit = moved(what, &rmpl::parse(&text).program(), by_m).expect("it is declared");
+            text.replace_range(edit.span.range(), &edit.text);
+        }
         text
     }
 
     #[test]
     fn dragging_rewrites_only_the_numbers_of_the_declaration() {
-        let text = after(&Dragged::Location("A".into()), Vec2::new(5.04, -0.01), Vec2::ZERO);
+        let text = after(&Dragged::Location("A".into(), [1.0, 2.0]), &[Vec2::new(4.04, -2.01)]);
         assert_eq!(text, TEXT.replace("(1, 2)", "(5, 0)"));
-        let text = after(&Dragged::Obstacle("O".into()), Vec2::ZERO, Vec2::new(1.5, -2.0));
+        let circle = ObstacleShape::Circle { center_m: [10.0, 10.0], radius_m: 3.0 };
+        let text = after(&Dragged::Obstacle("O".into(), circle), &[Vec2::new(1.5, -2.0)]);
         assert_eq!(text, TEXT.replace("(10, 10, 3)", "(11.5, 8, 3)"));
-        let text = after(&Dragged::Obstacle("P".into()), Vec2::ZERO, Vec2::new(1.0, 1.0));
+        let polygon = ObstacleShape::Polygon { corners_m: vec![[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]] };
+        let text = after(&Dragged::Obstacle("P".into(), polygon), &[Vec2::new(1.0, 1.0)]);
         assert_eq!(text, TEXT.replace("(0, 0, 4, 0, 4, 4)", "(1, 1, 5, 1, 5, 5)"));
     }
 
     #[test]
-    fn a_point_is_inside_a_polygon_or_not() {
-        let shape = ObstacleShape::Polygon { corners_m: vec![[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]] };
-        assert!(contains(&shape, Vec2::new(3.0, 1.0)));
-        assert!(!contains(&shape, Vec2::new(1.0, 3.0)));
+    fn many_small_steps_lead_as_far_as_one_large_one() {
+        let circle = ObstacleShape::Circle { center_m: [10.0, 10.0], radius_m: 3.0 };
+        let steps: Vec<Vec2> = (1..=100).map(|step| Vec2::new(step as f32 * 0.04, 0.0)).collect();
+        let text = after(&Dragged::Obstacle("O".into(), circle), &steps);
+        assert_eq!(text, TEXT.replace("(10, 10, 3)", "(14, 10, 3)"));
     }
 }

@@ -6,6 +6,7 @@ use bytemuck::{Pod, Zeroable};
 use eframe::egui_wgpu::{RenderState, wgpu};
 use wgpu::util::DeviceExt as _;
 
+use super::decal::Decal;
 use super::detail::{PATCH_QUADS, Patch};
 use super::ground::Ground;
 use super::shapes::{LineSegment, ShapeCorner, Shapes};
@@ -29,7 +30,7 @@ pub struct ViewUniform {
     pub range: [f32; 4],
     /// Width and height in pixels, colouring (0 natural, 1 height, 2 slope), strength of the overlay.
     pub image: [f32; 4],
-    /// The colour of distance.
+    /// The colour of distance, and the distance of the near plane in metres.
     pub horizon: [f32; 4],
 }
 
@@ -54,9 +55,18 @@ pub struct TerrainImage {
     index_count: u32,
     view_buffer: wgpu::Buffer,
     view_group: wgpu::BindGroup,
+    ground: Option<GroundTextures>,
     ground_group: Option<wgpu::BindGroup>,
     targets: Option<Targets>,
     drawn: Option<Frame>,
+}
+
+/// The ground on the graphics card, and what lies on it.
+struct GroundTextures {
+    heights: wgpu::TextureView,
+    normals: wgpu::TextureView,
+    decal: wgpu::TextureView,
+    sampler: wgpu::Sampler,
 }
 
 struct Pipelines {
@@ -120,31 +130,15 @@ impl TerrainImage {
             index_count: indices.len() as u32,
             view_buffer,
             view_group,
+            ground: None,
             ground_group: None,
             targets: None,
             drawn: None,
         }
     }
 
-    /// Uploads the ground, and an overlay of the same size (premultiplied colours per cell), if there is one.
-    pub fn set_ground(&mut self, state: &RenderState, ground: &Ground, overlay: Option<&[[u8; 4]]>) {
-        let device = &state.device;
-        let texture = |format, data: &[u8], width, height| {
-            let descriptor = wgpu::TextureDescriptor {
-                label: Some("terrain ground"),
-                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            };
-            let order = wgpu::util::TextureDataOrder::LayerMajor;
-            device
-                .create_texture_with_data(&state.queue, &descriptor, order, data)
-                .create_view(&wgpu::TextureViewDescriptor::default())
-        };
+    /// Uploads the ground, with nothing lying on it.
+    pub fn set_ground(&mut self, state: &RenderState, ground: &Ground) {
         let normals: Vec<[u8; 4]> = (0..ground.height)
             .flat_map(|row| (0..ground.width).map(move |column| (column, row)))
             .map(|(column, row)| {
@@ -153,32 +147,46 @@ impl TerrainImage {
                 [byte(normal.x), byte(normal.y), byte(normal.z), 255]
             })
             .collect();
-        let (width, height) = (ground.width, ground.height);
-        let heights =
-            texture(wgpu::TextureFormat::R32Float, bytemuck::cast_slice(&ground.heights_m), width, height);
-        let normals = texture(wgpu::TextureFormat::Rgba8Unorm, bytemuck::cast_slice(&normals), width, height);
-        let cells = (width * height) as usize;
-        let covered = match overlay.filter(|overlay| overlay.len() == cells) {
-            Some(overlay) => {
-                texture(wgpu::TextureFormat::Rgba8Unorm, bytemuck::cast_slice(overlay), width, height)
-            }
-            None => texture(wgpu::TextureFormat::Rgba8Unorm, &[0; 4], 1, 1),
-        };
-        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("terrain ground"),
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            ..Default::default()
+        let size = [ground.width, ground.height];
+        let heights = bytemuck::cast_slice(&ground.heights_m);
+        self.ground = Some(GroundTextures {
+            heights: texture(state, wgpu::TextureFormat::R32Float, heights, size),
+            normals: texture(state, wgpu::TextureFormat::Rgba8Unorm, bytemuck::cast_slice(&normals), size),
+            decal: no_decal(state),
+            sampler: state.device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("terrain ground"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..Default::default()
+            }),
         });
+        self.bind_ground(state);
+    }
+
+    /// Lays an image on the ground, or takes it away.
+    pub fn set_decal(&mut self, state: &RenderState, decal: Option<&Decal>) {
+        let Some(ground) = &mut self.ground else { return };
+        ground.decal = match decal {
+            Some(decal) => {
+                let data = bytemuck::cast_slice(&decal.pixels);
+                texture(state, wgpu::TextureFormat::Rgba8Unorm, data, [decal.width, decal.height])
+            }
+            None => no_decal(state),
+        };
+        self.bind_ground(state);
+    }
+
+    fn bind_ground(&mut self, state: &RenderState) {
+        let Some(ground) = &self.ground else { return };
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-        self.ground_group = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
+        self.ground_group = Some(state.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("terrain ground"),
             layout: &self.pipelines.ground_layout,
             entries: &[
-                entry(0, wgpu::BindingResource::TextureView(&heights)),
-                entry(1, wgpu::BindingResource::TextureView(&normals)),
-                entry(2, wgpu::BindingResource::TextureView(&covered)),
-                entry(3, wgpu::BindingResource::Sampler(&sampler)),
+                entry(0, wgpu::BindingResource::TextureView(&ground.heights)),
+                entry(1, wgpu::BindingResource::TextureView(&ground.normals)),
+                entry(2, wgpu::BindingResource::TextureView(&ground.decal)),
+                entry(3, wgpu::BindingResource::Sampler(&ground.sampler)),
             ],
         }));
         self.drawn = None;
@@ -242,6 +250,31 @@ impl TerrainImage {
         }
         state.queue.submit([encoder.finish()]);
     }
+}
+
+fn texture(
+    state: &RenderState,
+    format: wgpu::TextureFormat,
+    data: &[u8],
+    [width, height]: [u32; 2],
+) -> wgpu::TextureView {
+    let descriptor = wgpu::TextureDescriptor {
+        label: Some("terrain ground"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    };
+    let order = wgpu::util::TextureDataOrder::LayerMajor;
+    let texture = state.device.create_texture_with_data(&state.queue, &descriptor, order, data);
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+fn no_decal(state: &RenderState) -> wgpu::TextureView {
+    texture(state, wgpu::TextureFormat::Rgba8Unorm, &[0; 4], [1, 1])
 }
 
 /// The corners of a patch (column, row, 1 on the skirt) and the triangles between them. The skirt hangs from the

@@ -92,6 +92,11 @@ impl Ground {
         Vec3::new(-east, -north, 2.0 * half).normalize()
     }
 
+    /// The place of the map that is nearest to a place.
+    pub fn nearest(&self, place_m: Vec2) -> Vec2 {
+        place_m.clamp(self.origin_m, self.origin_m + self.size_m())
+    }
+
     /// Whether a place is on the map.
     pub fn contains(&self, place_m: Vec2) -> bool {
         let cell = (place_m - self.origin_m) / self.cell_m;

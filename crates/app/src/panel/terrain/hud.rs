@@ -1,4 +1,4 @@
-//! What is written over the ground: names, scale bar, north arrow, coordinates, legend; and the row of switches.
+//! What is written over the ground: names, scale bar, north arrow, coordinates, legends, and what a tool waits for.
 
 use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, StrokeKind, pos2, vec2};
 use glam::{Vec2, Vec3};
@@ -6,7 +6,9 @@ use mission::Snapshot;
 
 use super::MARGIN;
 use super::camera::Camera;
+use super::decal::AMPLE_M;
 use super::ground::Ground;
+use super::labels::{self, Label, Rank};
 use super::scene;
 use crate::panel::Context;
 use crate::state::Selection;
@@ -53,86 +55,30 @@ fn round_step(value: f32) -> f32 {
     power * factor
 }
 
-/// A message in place of the image.
-pub fn message(ui: &mut egui::Ui, tokens: &Tokens, text: &str) {
-    ui.centered_and_justified(|ui| ui.label(egui::RichText::new(text).color(tokens.text_muted)));
-}
-
-/// The switches above the image.
-pub fn toolbar(
-    ui: &mut egui::Ui,
-    view: &mut TerrainView,
-    camera: Option<&mut Camera>,
-    follow: &mut Option<usize>,
-    snapshot: &Snapshot,
-) {
-    ui.horizontal_wrapped(|ui| {
-        egui::ComboBox::from_id_salt("terrain-coloring")
-            .selected_text(coloring_name(view.coloring))
-            .show_ui(ui, |ui| {
-                for coloring in [Coloring::Natural, Coloring::Height, Coloring::Slope] {
-                    ui.selectable_value(&mut view.coloring, coloring, coloring_name(coloring));
-                }
-            })
-            .response
-            .accessible_name("Colours of the ground")
-            .on_hover_text("What the colours of the ground mean");
-        ui.menu_button("Show", |ui| {
-            for (value, name, help) in [
-                (&mut view.paths, "Paths", "The paths of the plan's traverses"),
-                (&mut view.trees, "Search trees", "The trees that found the paths"),
-                (&mut view.names, "Names", "Names of places and vehicles"),
-                (&mut view.obstacles, "Obstacles", "Declared obstacles"),
-                (&mut view.contours, "Contours", "Lines of equal height"),
-                (&mut view.grid, "Grid", "A grid in mission coordinates"),
-            ] {
-                ui.checkbox(value, name).on_hover_text(help);
-            }
-        });
-        if let Some(camera) = camera
-            && ui.button("Top view").on_hover_text("Look straight down, north up").clicked()
-        {
-            *camera = camera.top_view();
-        }
-        let vehicles = &snapshot.program.world.vehicles;
-        if !vehicles.is_empty() {
-            let name = |index: usize| vehicles.get(index).map_or("", |vehicle| vehicle.name.text.as_str());
-            let shown =
-                follow.map_or_else(|| "Free camera".to_owned(), |index| format!("Follow {}", name(index)));
-            let picker =
-                egui::ComboBox::from_id_salt("terrain-follow").selected_text(shown).show_ui(ui, |ui| {
-                    ui.selectable_value(follow, None, "Free camera");
-                    for index in 0..vehicles.len() {
-                        ui.selectable_value(follow, Some(index), format!("Follow {}", name(index)));
-                    }
-                });
-            picker.response.accessible_name("Camera");
-        }
-    });
-}
-
-const fn coloring_name(coloring: Coloring) -> &'static str {
-    match coloring {
-        Coloring::Natural => "Natural",
-        Coloring::Height => "Height",
-        Coloring::Slope => "Slope",
-    }
-}
-
 impl Overlay<'_> {
-    /// Paints everything.
-    pub fn paint(&self, pointer: Option<Pos2>) {
-        if self.view.names {
-            self.names();
+    /// Paints everything; answers the plates of names with what they name. `clearance_of` is the vehicle model whose
+    /// clearance map is shown.
+    pub fn paint(
+        &self,
+        pointer: Option<Pos2>,
+        hint: Option<&str>,
+        clearance_of: Option<&str>,
+    ) -> Vec<(Rect, Selection)> {
+        let labels = if self.view.names { self.labels() } else { Vec::new() };
+        let corner = Rect::from_min_size(self.rect.right_top() - vec2(52.0, 0.0), vec2(52.0, 52.0));
+        let plates = labels::paint(self.painter, self.tokens(), self.rect.shrink(2.0), &labels, &[corner]);
+        if self.rect.width() > 160.0 && self.rect.height() > 120.0 {
+            self.scale_bar();
+            self.north_arrow();
+            self.legends(clearance_of);
         }
-        self.scale_bar();
-        self.north_arrow();
-        if self.view.coloring != Coloring::Natural {
-            self.legend();
+        if let Some(hint) = hint {
+            self.hint(hint);
         }
         if let Some(pointer) = pointer {
             self.coordinates(pointer);
         }
+        plates
     }
 
     fn tokens(&self) -> &'static Tokens {
@@ -146,58 +92,73 @@ impl Overlay<'_> {
         Some(self.rect.min + vec2(point.x, point.y))
     }
 
-    fn names(&self) {
+    /// The names that are to be written, in the window.
+    fn labels(&self) -> Vec<Label> {
         let world = &self.snapshot.program.world;
-        let selection = &self.context.state.selection;
-        let mut taken: Vec<Rect> = Vec::new();
-        let time = self.context.state.playback.time;
+        let state = self.context.state;
+        let mut labels = Vec::new();
+        let mut add = |at: Vec3, text: &str, color: Color32, rank: Rank, names: Selection| {
+            let Some(anchor) = self.at(at) else { return };
+            let is_selected = state.selection == names;
+            let is_chosen = is_selected || state.hovered == names;
+            labels.push(Label {
+                anchor,
+                text: text.to_owned(),
+                color: if is_selected { self.tokens().accent } else { color },
+                rank: if is_chosen { Rank::Chosen } else { rank },
+                names,
+            });
+        };
         for (index, vehicle) in world.vehicles.iter().enumerate() {
-            let Some((place, _)) = scene::vehicle_pose(self.snapshot, index, time) else { continue };
-            let lift = 2.0 * vehicle_scale(self.camera.distance_m);
-            let selected = *selection == Selection::Vehicle(vehicle.name.text.clone());
-            let color = if selected { self.tokens().accent } else { self.tokens().series(index) };
-            self.tag(self.ground.drape(place, lift), &vehicle.name.text, color, true, &mut taken);
+            let pose = scene::vehicle_pose(self.snapshot, index, state.playback.time);
+            let Some((place, _)) = pose else { continue };
+            let height = scene::flight_height_m(self.ground, vehicle, place).map(|height| height + 2.5);
+            let lift = height.unwrap_or(0.9 * vehicle_scale(self.camera.distance_m));
+            let name = &vehicle.name.text;
+            let color = self.tokens().series(index);
+            let names = Selection::Vehicle(name.clone());
+            add(self.ground.drape(place, lift), name, color, Rank::Vehicle, names);
         }
+        let driven: Vec<&str> = self
+            .snapshot
+            .traverses
+            .iter()
+            .flat_map(|traverse| &traverse.legs)
+            .map(|leg| leg.to.as_str())
+            .collect();
         for location in &world.locations {
-            let selected = *selection == Selection::Location(location.name.text.clone());
-            let color = if selected { self.tokens().accent } else { self.tokens().text };
-            let top = self.ground.drape(scene::place(location.position_m), 7.5);
-            self.tag(top, &location.name.text, color, selected, &mut taken);
+            let name = &location.name.text;
+            let rank = if driven.contains(&name.as_str()) { Rank::OnPath } else { Rank::Place };
+            let top = self.ground.drape(scene::place(location.position_m), scene::POST_M);
+            add(top, name, self.tokens().text, rank, Selection::Location(name.clone()));
         }
-        if !self.view.obstacles {
-            return;
-        }
-        for obstacle in &world.obstacles {
-            let selected = *selection == Selection::Obstacle(obstacle.name.text.clone());
+        let obstacles = world.obstacles.iter().filter(|_| self.view.obstacles);
+        for obstacle in obstacles {
+            let name = &obstacle.name.text;
             let outline = scene::outline(&obstacle.shape);
             let middle = outline.iter().copied().sum::<Vec2>() / outline.len().max(1) as f32;
-            let color = if selected { self.tokens().accent } else { self.tokens().text_muted };
-            self.tag(self.ground.drape(middle, 4.0), &obstacle.name.text, color, selected, &mut taken);
+            let color = self.tokens().text_muted;
+            add(
+                self.ground.drape(middle, 0.5),
+                name,
+                color,
+                Rank::Obstacle,
+                Selection::Obstacle(name.clone()),
+            );
         }
+        labels
     }
 
-    /// A name on a small plate above its place; names that would cover others are left out, unless they matter.
-    fn tag(&self, point_m: Vec3, text: &str, color: Color32, matters: bool, taken: &mut Vec<Rect>) {
-        let Some(at) = self.at(point_m).filter(|at| self.rect.contains(*at)) else { return };
-        let galley = self.painter.layout_no_wrap(text.to_owned(), FontId::proportional(size::SMALL), color);
-        let mut plate = Rect::from_center_size(at - vec2(0.0, 9.0), galley.size() + vec2(8.0, 3.0));
-        if !matters && taken.iter().any(|other| other.intersects(plate)) {
-            return;
-        }
-        // Names that matter are stacked instead.
-        while let Some(other) = taken.iter().find(|other| other.intersects(plate)) {
-            plate = plate.translate(vec2(0.0, other.top() - plate.bottom() - 2.0));
-        }
-        taken.push(plate);
+    /// What a tool waits for, on a plate at the top.
+    fn hint(&self, text: &str) {
+        let font = FontId::proportional(size::BODY);
+        let width = self.rect.width() - 4.0 * MARGIN;
+        let galley = self.painter.layout(text.to_owned(), font, self.tokens().text, width);
+        let top = self.rect.center_top() + vec2(-galley.size().x / 2.0, MARGIN * 1.5);
+        let plate = Rect::from_min_size(top, galley.size()).expand2(vec2(10.0, 5.0));
         let tokens = self.tokens();
-        self.painter.rect(
-            plate,
-            4.0,
-            tokens.surface.gamma_multiply(0.86),
-            Stroke::new(1.0, tokens.line),
-            StrokeKind::Outside,
-        );
-        self.painter.galley(plate.center() - galley.size() / 2.0, galley, color);
+        self.painter.rect(plate, 6.0, tokens.raised, Stroke::new(1.0, tokens.accent), StrokeKind::Inside);
+        self.painter.galley(top, galley, tokens.text);
     }
 
     fn plate(&self, rect: Rect) {
@@ -262,34 +223,65 @@ impl Overlay<'_> {
         self.painter.galley(corner, galley, self.tokens().text);
     }
 
-    fn legend(&self) {
-        let tokens = self.tokens();
-        let bar = Rect::from_min_size(self.rect.left_top() + vec2(MARGIN * 2.0, 26.0), vec2(12.0, 110.0));
-        let (title, low, high) = match self.view.coloring {
-            Coloring::Slope => ("Slope", "0°".to_owned(), "34°".to_owned()),
-            _ => {
-                let [low, high] = self.ground.range_m.map(|height| height / self.view.height_scale);
-                ("Height", format!("{low:.1} m"), format!("{high:.1} m"))
+    /// The legends of what the colours of the ground mean.
+    fn legends(&self, clearance_of: Option<&str>) {
+        let mut left = self.rect.left() + MARGIN;
+        let [low, high] = self.ground.range_m.map(|height| height / self.view.height_scale);
+        let own = match self.view.coloring {
+            Coloring::Natural => None,
+            Coloring::Slope => Some(("Slope".to_owned(), "0°".to_owned(), "34°".to_owned(), false)),
+            Coloring::Height => {
+                Some(("Height".to_owned(), format!("{low:.1} m"), format!("{high:.1} m"), false))
             }
         };
-        self.plate(Rect::from_min_max(bar.min - vec2(8.0, 20.0), bar.max + vec2(52.0, 10.0)));
-        let steps = 22;
+        let room = clearance_of.map(|model| {
+            (format!("Room of {model}"), "0 m".to_owned(), format!("{AMPLE_M:.0} m or more"), true)
+        });
+        for (title, low, high, has_none) in own.into_iter().chain(room) {
+            left += self.legend(left, &title, &low, &high, has_none) + MARGIN;
+        }
+    }
+
+    /// A colour ramp with its ends named; answers how wide it is. `has_none` adds the colour of places without room.
+    fn legend(&self, left: f32, title: &str, low: &str, high: &str, has_none: bool) -> f32 {
+        const NONE: &str = "no room";
+        let tokens = self.tokens();
+        let font = FontId::proportional(size::SMALL);
+        let galley = |text: &str| self.painter.layout_no_wrap(text.to_owned(), font.clone(), tokens.text);
+        let texts = [galley(title), galley(low), galley(high), galley(NONE)];
+        let [title_text, low_text, high_text, none_text] = texts;
+        let words =
+            low_text.size().x.max(high_text.size().x).max(if has_none { none_text.size().x } else { 0.0 });
+        let width = (title_text.size().x).max(18.0 + words) + 2.0 * MARGIN;
+        let tall = (self.rect.height() * 0.3).clamp(48.0, 110.0);
+        let top = self.rect.top() + MARGIN;
+        let bar = Rect::from_min_size(pos2(left + MARGIN, top + 22.0), vec2(12.0, tall));
+        let bottom = bar.bottom() + if has_none { 24.0 } else { 7.0 };
+        self.plate(Rect::from_min_max(pos2(left, top), pos2(left + width, bottom)));
+        let steps = 24;
         for step in 0..steps {
             let part = step as f32 / steps as f32;
-            let top = bar.bottom() - (part + 1.0 / steps as f32) * bar.height();
-            let cell = Rect::from_min_size(
-                pos2(bar.left(), top),
-                vec2(bar.width(), bar.height() / steps as f32 + 0.5),
-            );
+            let cell_top = bar.bottom() - (part + 1.0 / steps as f32) * bar.height();
+            let size = vec2(bar.width(), bar.height() / steps as f32 + 0.5);
+            let cell = Rect::from_min_size(pos2(bar.left(), cell_top), size);
             self.painter.rect_filled(cell, 0.0, Tokens::ramp(part));
         }
-        let font = FontId::proportional(size::SMALL);
-        let write = |at: Pos2, align, text: &str| {
-            self.painter.text(at, align, text, font.clone(), tokens.text);
-        };
-        write(bar.left_top() - vec2(2.0, 4.0), Align2::LEFT_BOTTOM, title);
-        write(bar.right_top() + vec2(6.0, 0.0), Align2::LEFT_TOP, &high);
-        write(bar.right_bottom() + vec2(6.0, 0.0), Align2::LEFT_BOTTOM, &low);
+        self.painter.galley(pos2(left + MARGIN, top + 4.0), title_text, tokens.text);
+        let beside = bar.right() + 6.0;
+        self.painter.galley(pos2(beside, bar.top() - 2.0), high_text, tokens.text);
+        self.painter.galley(pos2(beside, bar.bottom() - 13.0), low_text, tokens.text);
+        if has_none {
+            let swatch = Rect::from_min_size(pos2(bar.left(), bar.bottom() + 6.0), vec2(12.0, 12.0));
+            self.painter.rect(
+                swatch,
+                0.0,
+                Tokens::NO_ROOM,
+                Stroke::new(1.0, tokens.line_strong),
+                StrokeKind::Inside,
+            );
+            self.painter.galley(pos2(beside, swatch.top() - 1.0), none_text, tokens.text);
+        }
+        width
     }
 }
 

@@ -1,47 +1,80 @@
 //! The terrain: the ground in three dimensions with the mission's places, obstacles, paths and vehicles.
 //!
 //! Left drag turns, right drag or Shift moves, the wheel zooms. Dragging a place, an obstacle or a vehicle that has not
-//! moved yet rewrites its declaration in the text.
+//! moved yet rewrites its declaration in the text. A click on a path shows what is known of it.
 
 mod camera;
+mod card;
+mod clearance;
+mod decal;
 mod detail;
 mod drag;
+mod flight;
+mod frame;
 mod gpu;
 mod ground;
 mod hud;
+mod labels;
+mod measure;
+mod navigate;
+mod pick;
 mod scene;
 mod shapes;
+mod tool;
+mod toolbar;
+mod tree;
+mod vehicles;
 
 use std::sync::Arc;
 
-use egui::{PointerButton, Sense};
+use egui::{CursorIcon, Rect, Response, RichText, Sense};
 use glam::{Vec2, Vec3};
 use mission::{MapKey, Snapshot};
+use rmpl::program::ObstacleShape;
 use terrain::Terrain;
+use tpn::OccurrenceId;
 
 use crate::command::{Command, CommandSender, ViewAction};
-use crate::panel::{Context, Panel, PanelKind};
-use crate::state::Selection;
-use crate::state::settings::{Coloring, TerrainView};
+use crate::panel::{Context, Panel, PanelKind, show_empty};
+use crate::state::settings::TerrainView;
+use crate::state::terrain::{TerrainCommand, Tool};
+use crate::state::{EditKind, Selection};
 use crate::theme::space;
 use camera::Camera;
+use clearance::Clearance;
+use decal::{ClearanceMap, Decal};
 use drag::Drag;
-use gpu::{Frame, TerrainImage, ViewUniform};
+use flight::Flight;
+use gpu::TerrainImage;
 use ground::Ground;
-use scene::{SceneOptions, ScenePalette};
+use measure::Measurement;
+use pick::Scene;
 
 /// The panel, with what concerns only it: the camera and what is on the graphics card.
 #[derive(Default)]
 pub struct TerrainPanel {
     image: Option<TerrainImage>,
     ground: Option<Shown>,
+    decal: Option<DecalKey>,
+    clearance: Option<Clearance>,
+    /// Where the user wants to look from.
     camera: Option<Camera>,
+    /// Where the last frame looked from: over the ground.
+    drawn: Option<Camera>,
+    flight: Option<Flight>,
     /// The vehicle that the camera follows, as an index into the program's world.
     follow: Option<usize>,
     drag: Option<Drag>,
+    /// Where a tool's drag began.
+    pressed_m: Option<Vec2>,
     /// How many drags there were: each is one step of the history.
     drag_count: u64,
     followed_action: u64,
+    /// The path that was clicked last: its traverse, its leg and the place.
+    clicked: Option<(OccurrenceId, usize, Vec2)>,
+    /// The plates with names in the last frame.
+    plates: Vec<(Rect, Selection)>,
+    told_hover: Selection,
 }
 
 /// The ground that is on the graphics card.
@@ -51,39 +84,50 @@ struct Shown {
     ground: Ground,
 }
 
-/// Metres of height between contour lines, by the relief of the map.
-const CONTOUR_STEPS_M: [f32; 8] = [0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 50.0, 500.0];
-const WHEEL_ZOOM: f32 = 0.0018;
-/// Patches are split until they are this many side lengths away.
-const REFINEMENT: f32 = 1.3;
+/// What the image on the ground was painted from.
+#[derive(PartialEq)]
+struct DecalKey {
+    map: Option<MapKey>,
+    obstacles: Vec<ObstacleShape>,
+    clearance: Option<Clearance>,
+}
+
+/// The margin between the image's border and what is written on it.
+const MARGIN: f32 = space::M;
+/// How near the camera comes to a place that it flies to, in metres.
+const NEAR_M: f32 = 45.0;
 
 impl Panel for TerrainPanel {
     fn show(&mut self, ui: &mut egui::Ui, context: &Context<'_>, commands: &mut CommandSender) {
+        if context.state.automaton.program().is_some() {
+            show_empty(ui, context, "A control program has no ground. Open a mission to see one.");
+            return;
+        }
         let Some(snapshot) = context.snapshot else {
-            hud::message(ui, context.tokens, "The ground appears when the mission has been read.");
+            show_empty(ui, context, "The ground appears when the mission has been read.");
             return;
         };
         if snapshot.map.is_none() {
-            hud::message(
-                ui,
-                context.tokens,
-                "This mission has no places. Declare a terrain and a location to see its world here:\n\
-                 terrain \"tai-plain\";  location BASE (40, 40);",
-            );
+            show_without_world(ui, context, commands);
             return;
         }
         let views = &context.state.settings.views;
         let mut view = views.terrain.clone();
-        hud::toolbar(ui, &mut view, self.camera.as_mut(), &mut self.follow, snapshot);
+        let followed = self.follow;
+        toolbar::show(ui, context, snapshot, &mut view, &mut self.follow, commands);
         if view != views.terrain {
             commands.send(Command::SetViews(Box::new(crate::state::Views {
                 terrain: view.clone(),
                 ..views.clone()
             })));
         }
+        if self.follow != followed && self.follow.is_some() {
+            self.fly_to_followed(context, snapshot);
+        }
         let map = snapshot.map.as_ref().and_then(|key| context.state.maps.get(key));
-        self.show_ground(context, snapshot, map, &view);
-        self.show_image(ui, context, snapshot, &view, commands);
+        self.show_ground(context, map, snapshot, &view);
+        self.lay_decal(context, snapshot, map, &view);
+        self.show_image(ui, context, snapshot, map, &view, commands);
     }
 }
 
@@ -92,8 +136,8 @@ impl TerrainPanel {
     fn show_ground(
         &mut self,
         context: &Context<'_>,
-        snapshot: &Snapshot,
         map: Option<&Arc<Terrain>>,
+        snapshot: &Snapshot,
         view: &TerrainView,
     ) {
         let key = map.and(snapshot.map.clone());
@@ -103,18 +147,50 @@ impl TerrainPanel {
             let ground =
                 map.map_or_else(|| Ground::flat(Vec2::ZERO, 300.0), |map| from_map(map, view.height_scale));
             let is_new_place = self.ground.as_ref().is_none_or(|before| before.key != key);
-            if is_new_place || self.camera.is_none() {
-                self.camera = Some(Camera::overview(ground.center_m(), ground.size_m().max_element()));
+            if is_new_place {
+                (self.camera, self.flight, self.follow) = (None, None, None);
             }
             if let (Some(state), Some(image)) = (context.render_state, &mut self.image) {
-                image.set_ground(state, &ground, None);
+                image.set_ground(state, &ground);
             }
             self.ground = Some(Shown { key, height_scale: view.height_scale, ground });
+            self.decal = None;
         }
         if let (Some(state), None, Some(shown)) = (context.render_state, &self.image, &self.ground) {
             let mut image = TerrainImage::new(state);
-            image.set_ground(state, &shown.ground, None);
+            image.set_ground(state, &shown.ground);
             self.image = Some(image);
+            self.decal = None;
+        }
+    }
+
+    /// Lays obstacles and the clearance map on the ground, when they have changed.
+    fn lay_decal(
+        &mut self,
+        context: &Context<'_>,
+        snapshot: &Snapshot,
+        map: Option<&Arc<Terrain>>,
+        view: &TerrainView,
+    ) {
+        let wanted = map.zip(snapshot.map.as_ref()).filter(|_| view.clearance);
+        let before = self.clearance.take();
+        self.clearance = wanted
+            .and_then(|(map, key)| Clearance::updated(before, key, map, snapshot, &context.state.selection));
+        let (Some(state), Some(image), Some(shown)) = (context.render_state, &mut self.image, &self.ground)
+        else {
+            return;
+        };
+        let obstacles = snapshot.program.world.obstacles.iter().filter(|_| view.obstacles);
+        let key = DecalKey {
+            map: shown.key.clone(),
+            obstacles: obstacles.map(|it| it.shape.clone()).collect(),
+            clearance: self.clearance.clone(),
+        };
+        if self.decal.as_ref() != Some(&key) {
+            let clearance = key.clearance.as_ref().map(|it| ClearanceMap { clearance_m: &it.room_m });
+            let decal = Decal::paint(&shown.ground, &key.obstacles, clearance);
+            image.set_decal(state, decal.as_ref());
+            self.decal = Some(key);
         }
     }
 
@@ -123,90 +199,318 @@ impl TerrainPanel {
         ui: &mut egui::Ui,
         context: &Context<'_>,
         snapshot: &Snapshot,
+        map: Option<&Arc<Terrain>>,
         view: &TerrainView,
         commands: &mut CommandSender,
     ) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        let described = describe(snapshot, context.state.playback.time);
+        let measured = map.and_then(|map| measurement(context, map));
+        let described = describe(context, snapshot, measured.as_ref());
         response.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Terrain. {described}"))
         });
-        let (Some(camera), Some(shown)) = (self.camera, &self.ground) else { return };
-        let mut moved = camera;
-        let size = Vec2::new(rect.width(), rect.height());
-        self.drag = drag::update(
-            self.drag.take(),
-            &mut self.drag_count,
-            &response,
-            &drag::Scene { rect, camera: &camera, ground: &shown.ground, snapshot, context },
-            commands,
-        );
-        if self.drag.is_none() {
-            navigate(&response, &mut moved, size);
+        if rect.width() < 2.0 || rect.height() < 2.0 {
+            return;
         }
-        if let Some(action) = context.view_action(PanelKind::Terrain, &mut self.followed_action) {
-            follow_action(action, &mut moved, &shown.ground, snapshot, &context.state.selection);
+        if let (None, Some(shown)) = (self.camera, &self.ground) {
+            self.camera = Some(Camera::whole(&shown.ground, rect.aspect_ratio()));
         }
-        let time = context.state.playback.time;
-        if let Some((place, _)) = self.follow.and_then(|vehicle| scene::vehicle_pose(snapshot, vehicle, time))
-        {
-            moved.target_m = shown.ground.drape(place, 0.5);
-        } else {
-            moved.target_m.z = shown.ground.height_at(moved.target_m.truncate());
+        self.handle_input(&response, rect, context, snapshot, commands);
+        self.move_camera(&response, context, snapshot);
+        let (Some(camera), Some(shown)) = (self.drawn, &self.ground) else { return };
+        let ground = &shown.ground;
+        let scene = Scene { rect, camera: &camera, ground, snapshot, context, plates: &self.plates };
+        let mut sketch = tool::sketch(&response, &scene, self.pressed_m, measured.as_ref());
+        if let Some(drag) = self.drag.as_ref().filter(|drag| drag.is_start()) {
+            sketch.marks.push(drag.last_m);
         }
-        self.camera = Some(moved);
-        let pixels_per_point = ui.ctx().pixels_per_point();
-        let pixels = [rect.width() * pixels_per_point, rect.height() * pixels_per_point];
-        let frame = frame(context, snapshot, view, &moved, &shown.ground, pixels);
         let painter = ui.painter_at(rect);
-        if let (Some(state), Some(image)) = (context.render_state, &mut self.image) {
-            let texture = image.draw(state, pixels.map(|side| side.round() as u32), frame);
-            let uv = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
-            painter.image(texture, rect, uv, egui::Color32::WHITE);
+        let pixels_per_point = ui.ctx().pixels_per_point();
+        let input = frame::Input { context, snapshot, view, camera: &camera, ground, sketch: &sketch };
+        match (context.render_state, &mut self.image) {
+            (Some(state), Some(image)) => {
+                frame::paint(&painter, rect, pixels_per_point, state, image, &input);
+            }
+            _ => {
+                painter.rect_filled(rect, 0.0, context.tokens.sunken);
+            }
+        }
+        let overlay =
+            hud::Overlay { painter: &painter, rect, camera: &camera, ground, snapshot, context, view };
+        let terrain = &context.state.terrain;
+        let hint = tool::hint(&terrain.tool, terrain.points_m.len());
+        let clearance_of = self.clearance.as_ref().map(|it| it.model.as_str());
+        let plates = overlay.paint(response.hover_pos(), hint.as_deref(), clearance_of);
+        if let Some(hint) = &hint {
+            let top = Rect::from_min_size(rect.min, egui::vec2(rect.width(), space::BAR));
+            let node = ui.interact(top, response.id.with("hint"), Sense::hover());
+            node.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, hint));
+        }
+        for (plate, names) in &plates {
+            let name = format!("{} on the map", names.name(None));
+            let node = ui.interact(*plate, response.id.with(&name), Sense::hover());
+            node.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &name));
+        }
+        self.show_cards(ui, context, snapshot, &overlay, measured.as_ref(), commands);
+        self.plates = plates;
+    }
+
+    /// What clicks, drags and the pointer do.
+    fn handle_input(
+        &mut self,
+        response: &Response,
+        rect: Rect,
+        context: &Context<'_>,
+        snapshot: &Snapshot,
+        commands: &mut CommandSender,
+    ) {
+        let (Some(wanted), Some(shown)) = (self.camera, &self.ground) else { return };
+        let camera = self.drawn.unwrap_or(wanted);
+        let ground = &shown.ground;
+        let scene = Scene { rect, camera: &camera, ground, snapshot, context, plates: &self.plates };
+        let tool = &context.state.terrain.tool;
+        if response.clicked() || response.drag_started() {
+            response.request_focus();
+        }
+        if *tool == Tool::Look {
+            self.drag = drag::update(self.drag.take(), &mut self.drag_count, response, &scene, commands);
         } else {
-            painter.rect_filled(rect, 0.0, context.tokens.sunken);
+            self.drag = None;
+            tool::update(response, &scene, &mut self.pressed_m, commands);
         }
-        let overlay = hud::Overlay {
-            painter: &painter,
-            rect,
-            camera: &moved,
-            ground: &shown.ground,
-            snapshot,
-            context,
-            view,
-        };
-        overlay.paint(response.hover_pos());
-        if response.clicked()
-            && let Some(pointer) = response.interact_pointer_pos()
-        {
-            let hit =
-                drag::Scene { rect, camera: &moved, ground: &shown.ground, snapshot, context }.pick(pointer);
-            commands.send(Command::SelectAndReveal(hit));
-        }
-        if response.double_clicked()
-            && let Some(pointer) = response.interact_pointer_pos()
-        {
-            let (origin, direction) =
-                moved.ray(Vec2::new(pointer.x - rect.min.x, pointer.y - rect.min.y), size);
-            if let Some(hit) = shown.ground.hit(origin, direction) {
-                moved.target_m = hit;
-                moved.zoom(0.5);
+        let draws_disc = *tool == Tool::Circle && response.dragged_by(egui::PointerButton::Primary);
+        if self.drag.is_none() && !draws_disc {
+            let mut moved = wanted;
+            let under = response.hover_pos().and_then(|pointer| scene.hit(pointer));
+            navigate::update(response, &mut moved, scene.size(), under);
+            if moved != wanted {
+                self.flight = None;
+                if moved.target_m != wanted.target_m && !is_zoomed(&wanted, &moved) {
+                    self.follow = None;
+                }
                 self.camera = Some(moved);
+            }
+        }
+        if *tool != Tool::Look {
+            if response.hovered() {
+                response.ctx.set_cursor_icon(CursorIcon::Crosshair);
+            }
+            return;
+        }
+        let pointed = response.hover_pos().map(|pointer| scene.pick(pointer)).unwrap_or_default();
+        if response.hovered() && self.drag.is_none() {
+            let icon = match () {
+                () if drag::is_draggable(&pointed, &scene) => Some(CursorIcon::Grab),
+                () if !pointed.is_none() => Some(CursorIcon::PointingHand),
+                () => None,
+            };
+            if let Some(icon) = icon {
+                response.ctx.set_cursor_icon(icon);
+            }
+        }
+        let mut clicked = None;
+        let mut flies_to = None;
+        if let Some(pointer) = response.interact_pointer_pos() {
+            if response.clicked() {
+                let on_path = scene.pick_path(pointer);
+                let selection = scene.pick(pointer);
+                let occurrence = selection.occurrence_of_path(snapshot);
+                clicked = on_path.zip(occurrence).map(|(on, occurrence)| (occurrence, on.leg, on.place_m));
+                commands.send(Command::Select(selection));
+            }
+            if response.double_clicked() {
+                let selection = scene.pick(pointer);
+                flies_to = Some((selection, scene.hit(pointer)));
+            }
+        }
+        if response.clicked() {
+            self.clicked = clicked;
+        }
+        self.tell_hover(context, pointed, commands);
+        if let Some((selection, hit)) = flies_to {
+            self.fly_to(context, snapshot, &selection, hit);
+        }
+    }
+
+    /// Tells the other panels what the pointer is over, when that has changed.
+    fn tell_hover(&mut self, context: &Context<'_>, pointed: Selection, commands: &mut CommandSender) {
+        if pointed == self.told_hover {
+            return;
+        }
+        if !pointed.is_none() || context.state.hovered == self.told_hover {
+            commands.send(Command::Hover(pointed.clone()));
+        }
+        self.told_hover = pointed;
+    }
+
+    /// Follows view actions, flights and vehicles, and keeps the eye over the ground.
+    fn move_camera(&mut self, response: &Response, context: &Context<'_>, snapshot: &Snapshot) {
+        if let Some(action) = context.view_action(PanelKind::Terrain, &mut self.followed_action) {
+            self.follow_action(action, response.rect.aspect_ratio(), context, snapshot);
+        }
+        let (Some(mut camera), Some(shown)) = (self.camera, &self.ground) else { return };
+        let ground = &shown.ground;
+        let time = context.state.playback.time;
+        let followed = self.follow.and_then(|index| {
+            let vehicle = snapshot.program.world.vehicles.get(index)?;
+            let (place, _) = scene::vehicle_pose(snapshot, index, time)?;
+            Some(ground.drape(place, scene::flight_height_m(ground, vehicle, place).unwrap_or(0.5)))
+        });
+        if let Some(flight) = self.flight {
+            let flight = followed.map_or(flight, |target| flight.toward(target));
+            let (now, is_over) = flight.at(context.now_secs);
+            camera = now;
+            self.flight = (!is_over).then_some(flight);
+            response.ctx.request_repaint();
+        } else if let Some(target) = followed {
+            camera.target_m = target;
+        } else {
+            let inside = ground.nearest(camera.target_m.truncate());
+            camera.target_m = ground.drape(inside, 0.0);
+        }
+        self.camera = Some(camera);
+        self.drawn = Some(camera.above(ground));
+    }
+
+    fn follow_action(&mut self, action: ViewAction, aspect: f32, context: &Context<'_>, snapshot: &Snapshot) {
+        let (Some(camera), Some(shown)) = (self.camera, &self.ground) else { return };
+        let whole = Camera::whole(&shown.ground, aspect);
+        match action {
+            ViewAction::ZoomIn | ViewAction::ZoomOut => {
+                let mut nearer = camera;
+                nearer.zoom(if action == ViewAction::ZoomIn { 0.7 } else { 1.0 / 0.7 });
+                self.fly(camera, nearer, context);
+            }
+            ViewAction::ZoomReset | ViewAction::Fit => {
                 self.follow = None;
+                self.fly(camera, whole, context);
+            }
+            ViewAction::TopView => self.fly(camera, camera.top_view(), context),
+            ViewAction::FitSelection => {
+                self.follow = None;
+                self.fly_to(context, snapshot, &context.state.selection, None);
+            }
+            ViewAction::Follow if self.follow.is_some() => self.follow = None,
+            ViewAction::Follow => {
+                self.follow = clearance::vehicle(snapshot, &context.state.selection);
+                self.fly_to_followed(context, snapshot);
             }
         }
     }
+
+    /// Flies to what is selected, or nearer to a bare place.
+    fn fly_to(
+        &mut self,
+        context: &Context<'_>,
+        snapshot: &Snapshot,
+        selection: &Selection,
+        bare: Option<Vec3>,
+    ) {
+        let (Some(camera), Some(shown)) = (self.camera, &self.ground) else { return };
+        let place = pick::place_of(snapshot, selection, context.state.playback.time);
+        let target = match place {
+            Some(place) => {
+                let distance_m = NEAR_M.max(1.5 * pick::extent_of(snapshot, selection));
+                camera.close_up(shown.ground.drape(place, 0.0), distance_m)
+            }
+            None => match bare {
+                Some(hit) => camera.close_up(hit, camera.distance_m * 0.5),
+                None => return,
+            },
+        };
+        self.follow = None;
+        self.fly(camera, target, context);
+    }
+
+    fn fly_to_followed(&mut self, context: &Context<'_>, snapshot: &Snapshot) {
+        let (Some(camera), Some(shown)) = (self.camera, &self.ground) else { return };
+        let time = context.state.playback.time;
+        let pose = self.follow.and_then(|index| scene::vehicle_pose(snapshot, index, time));
+        if let Some((place, _)) = pose {
+            self.fly(camera, camera.close_up(shown.ground.drape(place, 0.5), NEAR_M * 0.6), context);
+        }
+    }
+
+    fn fly(&mut self, from: Camera, to: Camera, context: &Context<'_>) {
+        self.flight = Some(Flight::new(from, to, context.now_secs));
+    }
+
+    /// The card of the selected path, and the one of a measurement.
+    fn show_cards(
+        &self,
+        ui: &mut egui::Ui,
+        context: &Context<'_>,
+        snapshot: &Snapshot,
+        overlay: &hud::Overlay<'_>,
+        measured: Option<&Measurement>,
+        commands: &mut CommandSender,
+    ) {
+        let anchor = |place: Vec2| overlay.at(overlay.ground.drape(place, 0.0));
+        if let Some(measured) = measured {
+            let at = anchor(scene::place(measured.ends_m[1])).unwrap_or(overlay.rect.center());
+            if card::show_measurement(ui, context, overlay.rect, at, measured) {
+                commands.send(Command::Terrain(TerrainCommand::Take(Tool::Measure)));
+            }
+            return;
+        }
+        if context.state.terrain.tool != Tool::Look || !overlay.view.paths {
+            return;
+        }
+        let Some(traverse) = card::selected_traverse(snapshot, &context.state.selection) else { return };
+        let clicked = self.clicked.filter(|(occurrence, ..)| *occurrence == traverse.occurrence);
+        let place = card::path_anchor(traverse, clicked.map(|(.., place)| place));
+        let Some(at) = place.and_then(anchor) else { return };
+        let leg = clicked.map(|(_, leg, _)| leg);
+        card::show_path(ui, context, overlay.rect, at, (traverse, leg), commands);
+    }
+}
+
+/// Whether a camera has only come nearer or gone away, which following a vehicle survives.
+fn is_zoomed(before: &Camera, after: &Camera) -> bool {
+    before.distance_m != after.distance_m
+}
+
+/// What the measuring tool has measured, if it has two places.
+fn measurement(context: &Context<'_>, map: &Terrain) -> Option<Measurement> {
+    let terrain = &context.state.terrain;
+    let [from, to] = terrain.points_m.as_slice() else { return None };
+    (terrain.tool == Tool::Measure).then(|| Measurement::new(map, [*from, *to])).flatten()
 }
 
 /// What a screen reader says of the image.
-fn describe(snapshot: &Snapshot, time: f64) -> String {
+fn describe(context: &Context<'_>, snapshot: &Snapshot, measured: Option<&Measurement>) -> String {
+    let time = context.state.playback.time;
     let mut text = format!("Time {time:.0}.");
     for (index, vehicle) in snapshot.program.world.vehicles.iter().enumerate() {
         if let Some((place, _)) = scene::vehicle_pose(snapshot, index, time) {
             text.push_str(&format!(" {} at {:.0}, {:.0}.", vehicle.name.text, place.x, place.y));
         }
     }
+    if let Some(shown) = context.state.terrain.growth.shown() {
+        text.push_str(&format!(" Search tree: {}.", tree::words(shown)));
+    }
+    if let Some(measured) = measured {
+        let rows = measured.rows().into_iter().map(|(what, how_much)| format!("{what} {how_much}"));
+        text.push_str(&format!(" Measured: {}.", rows.collect::<Vec<_>>().join(", ")));
+    }
     text
+}
+
+/// A mission without places: what to write, and a button that writes it.
+fn show_without_world(ui: &mut egui::Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    const WORLD: &str = "terrain \"tai-plain\";\nlocation BASE (40, 40);\n\n";
+    ui.vertical_centered(|ui| {
+        ui.add_space((ui.available_height() * 0.3).max(space::L));
+        ui.set_max_width(ui.available_width().min(380.0));
+        let text = "This mission has no places. With a terrain and a location, its world appears here.";
+        ui.label(RichText::new(text).color(context.tokens.text_muted));
+        ui.add_space(space::M);
+        if ui.button("Add a terrain and a location").clicked() {
+            let offset = crate::state::placing::first_code(context.state.document.text()) as u32;
+            let edit = rmpl::Edit { span: rmpl::Span::new(offset, offset), text: WORLD.to_owned() };
+            commands.send(Command::Edit { edits: vec![edit], kind: EditKind::Single });
+        }
+    });
 }
 
 fn from_map(map: &Terrain, height_scale: f32) -> Ground {
@@ -216,134 +520,3 @@ fn from_map(map: &Terrain, height_scale: f32) -> Ground {
     let heights: Vec<f32> = map.heights_m().iter().map(|height| height * height_scale).collect();
     Ground::new(frame.width, frame.height, frame.cell_size_m as f32, origin, &heights)
 }
-
-fn navigate(response: &egui::Response, camera: &mut Camera, size: Vec2) {
-    let drag = Vec2::new(response.drag_delta().x, response.drag_delta().y);
-    let shift = response.ctx.input(|input| input.modifiers.shift);
-    if response.dragged_by(PointerButton::Secondary)
-        || response.dragged_by(PointerButton::Middle)
-        || (response.dragged_by(PointerButton::Primary) && shift)
-    {
-        camera.pan(drag, size.y);
-    } else if response.dragged_by(PointerButton::Primary) {
-        camera.orbit(drag);
-    }
-    if response.hovered() {
-        let (scroll, pinch) = response.ctx.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-        if scroll != 0.0 {
-            camera.zoom((-scroll * WHEEL_ZOOM).exp());
-        }
-        if pinch != 1.0 {
-            camera.zoom(1.0 / pinch);
-        }
-    }
-    if response.has_focus() {
-        let step = 24.0;
-        response.ctx.input(|input| {
-            let pressed = |key| f32::from(u8::from(input.key_pressed(key)));
-            let across = pressed(egui::Key::ArrowLeft) - pressed(egui::Key::ArrowRight);
-            let along = pressed(egui::Key::ArrowUp) - pressed(egui::Key::ArrowDown);
-            if input.modifiers.shift {
-                camera.orbit(Vec2::new(across, along) * step);
-            } else {
-                camera.pan(Vec2::new(across, along) * step, size.y);
-            }
-        });
-    }
-}
-
-fn follow_action(
-    action: ViewAction,
-    camera: &mut Camera,
-    ground: &Ground,
-    snapshot: &Snapshot,
-    selection: &Selection,
-) {
-    let overview = Camera::overview(ground.center_m(), ground.size_m().max_element());
-    match action {
-        ViewAction::ZoomIn => camera.zoom(0.75),
-        ViewAction::ZoomOut => camera.zoom(1.0 / 0.75),
-        ViewAction::ZoomReset | ViewAction::Fit => *camera = overview,
-        ViewAction::FitSelection => {
-            if let Some(place) = drag::place_of(snapshot, selection) {
-                camera.target_m = ground.drape(place, 0.0);
-                camera.distance_m = 60.0_f32.min(overview.distance_m);
-            }
-        }
-    }
-}
-
-fn frame(
-    context: &Context<'_>,
-    snapshot: &Snapshot,
-    view: &TerrainView,
-    camera: &Camera,
-    ground: &Ground,
-    pixels: [f32; 2],
-) -> Frame {
-    let tokens = context.tokens;
-    let clip_from_world = camera.clip_from_world(pixels[0] / pixels[1].max(1.0));
-    let eye = camera.eye_m();
-    let relief = (ground.range_m[1] - ground.range_m[0]) / view.height_scale;
-    let contour = CONTOUR_STEPS_M.into_iter().find(|step| relief / step < 24.0).unwrap_or(1000.0);
-    let sun = Vec3::new(-0.55, 0.45, 0.70).normalize();
-    let horizon = hud::rgba(tokens.sunken);
-    let scale = hud::vehicle_scale(camera.distance_m);
-    let options = SceneOptions {
-        trees: view.trees,
-        paths: view.paths,
-        obstacles: view.obstacles,
-        vehicle_scale: scale,
-    };
-    let selection = &context.state.selection;
-    let palette = palette(context);
-    let time = context.state.playback.time;
-    Frame {
-        view: ViewUniform {
-            clip_from_world: clip_from_world.to_cols_array_2d(),
-            eye: eye.extend(camera.distance_m * 2.5 + 600.0).to_array(),
-            sun: sun.extend(0.38).to_array(),
-            origin_cell: [ground.origin_m.x, ground.origin_m.y, ground.cell_m, view.height_scale],
-            range: [
-                ground.range_m[0],
-                ground.range_m[1],
-                if view.contours { contour } else { 0.0 },
-                if view.grid { hud::grid_spacing_m(camera.distance_m) } else { 0.0 },
-            ],
-            image: [
-                pixels[0],
-                pixels[1],
-                match view.coloring {
-                    Coloring::Natural => 0.0,
-                    Coloring::Height => 1.0,
-                    Coloring::Slope => 2.0,
-                },
-                0.0,
-            ],
-            horizon,
-        },
-        patches: detail::patches(ground, eye, &clip_from_world, REFINEMENT),
-        shapes: scene::build(snapshot, ground, time, selection, &palette, &options),
-        background: [horizon[0], horizon[1], horizon[2]],
-    }
-}
-
-fn palette(context: &Context<'_>) -> ScenePalette {
-    let tokens = context.tokens;
-    let color = |color, opacity| {
-        let [r, g, b, _] = hud::rgba(color);
-        [r, g, b, opacity]
-    };
-    ScenePalette {
-        obstacle: color(tokens.text_muted, 0.92),
-        location: color(tokens.text_on_accent, 1.0),
-        selected: color(tokens.accent, 1.0),
-        tree: color(tokens.text_on_accent, 0.35),
-        path: color(tokens.path, 0.95),
-        warning: color(tokens.warning, 1.0),
-        vehicles: std::array::from_fn(|index| color(tokens.series(index), 1.0)),
-    }
-}
-
-/// The margin between the image's border and what is written on it.
-const MARGIN: f32 = space::M;

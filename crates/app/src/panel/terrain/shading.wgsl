@@ -8,7 +8,7 @@ struct View {
     origin_cell: vec4<f32>,  // xy centre of cell 0, z metres per cell, w exaggeration of heights
     range: vec4<f32>,        // least and greatest height, contour interval, grid spacing
     image: vec4<f32>,        // width and height in pixels, colouring, overlay strength
-    horizon: vec4<f32>,      // colour of distance
+    horizon: vec4<f32>,      // colour of distance, distance of the near plane
 };
 
 @group(0) @binding(0) var<uniform> view: View;
@@ -76,9 +76,10 @@ fn ground_fragment(in: GroundVertex) -> @location(0) vec4<f32> {
     var color = mars(height, slope);
     if (mode == 1u) { color = ramp(height); }
     if (mode == 2u) { color = ramp(slope / 0.6); }
+    // What lies on the ground is shaded with it, so that the relief stays visible.
+    let covered = textureSample(overlay, smooth_sampler, in.uv) * view.image.w;
+    color = color * (1.0 - covered.a) + covered.rgb;
     color = color * (0.25 + 0.95 * light);
-    let covered = textureSample(overlay, smooth_sampler, in.uv);
-    color = mix(color, covered.rgb, covered.a * view.image.w);
     let contour = line_at(in.world.z / view.origin_cell.w, max(view.range.z, 1e-3));
     if (view.range.z > 0.0) { color = mix(color, color * 0.45, contour * 0.55); }
     let grid = max(line_at(in.world.x, max(view.range.w, 1e-3)), line_at(in.world.y, max(view.range.w, 1e-3)));
@@ -144,8 +145,9 @@ fn line_vertex(
     let across = vec2<f32>(-along.y, along.x) * side * from_width.w * 0.5;
     let cap = along * (at_end * 2.0 - 1.0) * from_width.w * 0.25;
     let end = mix(a, b, at_end);
-    // Towards the eye by a hair, so that draped lines do not drown in the ground between two samples.
-    out.clip = vec4<f32>(end.xy + (across + cap) / pixels * end.w, end.z - to_.w * end.w, end.w);
+    // Towards the eye by a small part of its distance, so that draped lines do not drown in the ground between two
+    // samples: as if the end were that much nearer.
+    out.clip = vec4<f32>(end.xy + (across + cap) / pixels * end.w, end.z - to_.w * view.horizon.w, end.w);
     return out;
 }
 

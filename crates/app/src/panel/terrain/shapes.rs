@@ -1,4 +1,4 @@
-//! Solid shapes as triangles in mission coordinates: vehicles, obstacles and location posts.
+//! Triangles and lines in mission coordinates, and the plain solids made of them.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec2, Vec3};
@@ -23,7 +23,7 @@ pub struct ShapeCorner {
 pub struct LineSegment {
     /// Where it starts, in metres, and its width in pixels.
     pub from_width: [f32; 4],
-    /// Where it ends, in metres, and how far it is moved towards the eye in depth.
+    /// Where it ends, in metres, and by which part of its distance it is drawn nearer to the eye.
     pub to_lift: [f32; 4],
     /// Red, green, blue, opacity.
     pub color: [f32; 4],
@@ -38,9 +38,18 @@ pub struct Shapes {
     pub lines: Vec<LineSegment>,
 }
 
-const DEPTH_LIFT: f32 = 0.0012;
+/// How much nearer to the eye lines are drawn than they are, as a part of their distance.
+const DEPTH_LIFT: f32 = 0.006;
 
 impl Shapes {
+    /// Makes all lines so many times wider.
+    pub fn scale_widths(&mut self, factor: f32) {
+        for line in &mut self.lines {
+            line.from_width[3] *= factor;
+        }
+    }
+
+    /// Three corners; its normal is up for a counter-clockwise order seen from above.
     fn triangle(&mut self, corners: [Vec3; 3], color: [f32; 4]) {
         let normal =
             (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or(Vec3::Z).to_array();
@@ -49,7 +58,8 @@ impl Shapes {
         }
     }
 
-    fn quad(&mut self, corners: [Vec3; 4], color: [f32; 4]) {
+    /// Four corners in a plane, in order.
+    pub fn quad(&mut self, corners: [Vec3; 4], color: [f32; 4]) {
         self.triangle([corners[0], corners[1], corners[2]], color);
         self.triangle([corners[0], corners[2], corners[3]], color);
     }
@@ -118,118 +128,27 @@ impl Shapes {
         }
     }
 
-    /// A wheeled rover of this length and width, its wheels on the ground at `place_m`, its nose towards
-    /// `heading_rad`, pitched and rolled with the slope.
-    pub fn rover(&mut self, ground: &Ground, rover: &RoverShape) {
-        let normal = ground.normal_at(rover.place_m, rover.length_m / 2.0);
-        let ahead = Vec3::new(rover.heading_rad.cos(), rover.heading_rad.sin(), 0.0);
-        let ahead = (ahead - normal * ahead.dot(normal)).normalize_or(Vec3::X);
-        let left = normal.cross(ahead);
-        let turn = Mat3::from_cols(ahead, left, normal);
-        let (length, width) = (rover.length_m, rover.width_m);
-        let wheel = length * 0.2;
-        let base = ground.drape(rover.place_m, 0.0);
-        let dark = [0.13, 0.13, 0.14, 1.0];
-        let body = base + normal * (wheel * 1.55);
-        self.cuboid(body, Vec3::new(length * 0.46, width * 0.34, wheel * 0.55), &turn, rover.color);
-        let deck = body + normal * wheel * 0.6;
-        self.cuboid(
-            deck,
-            Vec3::new(length * 0.40, width * 0.30, wheel * 0.06),
-            &turn,
-            [0.09, 0.14, 0.30, 1.0],
-        );
-        for (along, side) in [(0.33, 1.0), (0.33, -1.0), (-0.33, 1.0), (-0.33, -1.0)] {
-            let hub = base + ahead * (length * along) + left * (width * 0.42 * side) + normal * wheel;
-            self.cylinder(hub, left, wheel, width * 0.09, dark);
-        }
-        let mast = deck + ahead * (length * 0.28);
-        self.cylinder(
-            mast + normal * wheel * 0.9,
-            normal,
-            wheel * 0.12,
-            wheel * 0.9,
-            [0.75, 0.75, 0.75, 1.0],
-        );
-        let head = mast + normal * wheel * 1.95;
-        self.cuboid(
-            head,
-            Vec3::new(wheel * 0.25, wheel * 0.55, wheel * 0.28),
-            &turn,
-            [0.92, 0.92, 0.92, 1.0],
-        );
-    }
-
-    /// An airship of this length that floats above `place_m`.
-    pub fn blimp(&mut self, ground: &Ground, shape: &RoverShape, altitude_m: f32) {
-        let ahead = Vec3::new(shape.heading_rad.cos(), shape.heading_rad.sin(), 0.0);
-        let center = ground.drape(shape.place_m, altitude_m);
-        const RINGS: u32 = 8;
-        let turn = Mat3::from_cols(ahead, Vec3::Z.cross(ahead), Vec3::Z);
-        let point = |ring: u32, side: u32| {
-            let polar = ring as f32 / RINGS as f32 * std::f32::consts::PI;
-            let around = side as f32 / 12.0 * std::f32::consts::TAU;
-            let radius = shape.width_m / 2.0;
-            let local = Vec3::new(
-                polar.cos() * shape.length_m / 2.0,
-                polar.sin() * around.cos() * radius,
-                polar.sin() * around.sin() * radius,
-            );
-            center + turn * local
-        };
-        for ring in 0..RINGS {
-            for side in 0..12 {
-                let corners = [
-                    point(ring, side),
-                    point(ring + 1, side),
-                    point(ring + 1, side + 1),
-                    point(ring, side + 1),
-                ];
-                self.quad(corners, shape.color);
-            }
-        }
-        let gondola = center - Vec3::Z * shape.width_m * 0.6;
-        self.cuboid(gondola, Vec3::new(shape.length_m * 0.12, 0.2, 0.15), &turn, [0.2, 0.2, 0.22, 1.0]);
-    }
-
-    /// A wall around `outline_m` with a lid, its foot in the ground.
-    pub fn prism(&mut self, ground: &Ground, outline_m: &[Vec2], height_m: f32, color: [f32; 4]) {
-        let Some(&first) = outline_m.first() else { return };
-        let middle = outline_m.iter().copied().sum::<Vec2>() / outline_m.len() as f32;
-        let signed_area: f32 =
-            outline_m.iter().zip(outline_m.iter().cycle().skip(1)).map(|(a, b)| a.perp_dot(*b)).sum();
-        let mut before = first;
-        let next_corners = outline_m.iter().skip(1).chain(std::iter::once(&first));
-        for &next in next_corners {
-            let (a, b) = if signed_area >= 0.0 { (before, next) } else { (next, before) };
-            before = next;
-            let pieces = (a.distance(b) / (ground.cell_m * 4.0)).ceil().clamp(1.0, 64.0) as u32;
+    /// A low fence around `outline_m`, its foot in the ground, its top a line.
+    pub fn fence(
+        &mut self,
+        ground: &Ground,
+        outline_m: &[Vec2],
+        height_m: f32,
+        wall: [f32; 4],
+        rim: ([f32; 4], f32),
+    ) {
+        let sides = outline_m.iter().zip(outline_m.iter().cycle().skip(1));
+        for (&from, &to) in sides {
+            let pieces = (from.distance(to) / (ground.cell_m * 4.0)).ceil().clamp(1.0, 64.0) as u32;
+            let at = |index: u32| from.lerp(to, index as f32 / pieces as f32);
             for piece in 0..pieces {
-                let at = |index: u32| a.lerp(b, index as f32 / pieces as f32);
-                let (from, to) = (at(piece), at(piece + 1));
-                let (low_from, low_to) = (ground.drape(from, -0.5), ground.drape(to, -0.5));
-                let (top_from, top_to) = (ground.drape(from, height_m), ground.drape(to, height_m));
-                self.quad([low_from, low_to, top_to, top_from], color);
-                let peak = ground.drape(middle, height_m * 1.25);
-                self.triangle([top_from, top_to, peak], color);
+                let (a, b) = (at(piece), at(piece + 1));
+                let top = [ground.drape(a, height_m), ground.drape(b, height_m)];
+                self.quad([ground.drape(a, -0.3), ground.drape(b, -0.3), top[1], top[0]], wall);
+                self.line(top[0], top[1], rim.1, rim.0);
             }
         }
     }
-}
-
-/// A vehicle as it is drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RoverShape {
-    /// Where it is, in metres.
-    pub place_m: Vec2,
-    /// Direction of its nose, counter-clockwise from east.
-    pub heading_rad: f32,
-    /// Its length.
-    pub length_m: f32,
-    /// Its width.
-    pub width_m: f32,
-    /// Its colour.
-    pub color: [f32; 4],
 }
 
 /// The outline of a disc.

@@ -104,6 +104,7 @@ impl TimelinePanel {
         match action {
             ViewAction::ZoomIn => view.zoom(axis, axis.center().x, 1.4, horizon),
             ViewAction::ZoomOut => view.zoom(axis, axis.center().x, 1.0 / 1.4, horizon),
+            ViewAction::TopView | ViewAction::Follow => {}
             ViewAction::ZoomReset | ViewAction::Fit => {
                 self.fitted = Some(horizon);
                 *view = TimeView::fit(horizon, axis.width());

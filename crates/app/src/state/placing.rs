@@ -1,0 +1,291 @@
+//! New things of a mission's world as declarations in its text: where they go, and what they are called.
+
+use std::collections::BTreeSet;
+
+use rmpl::program::{Program, World};
+use rmpl::{Edit, Span};
+use smol_str::{SmolStr, format_smolstr};
+
+use crate::state::Selection;
+
+/// Something that is to be declared.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NewThing {
+    /// A named place, in metres east and north.
+    Location([f64; 2]),
+    /// A round obstacle.
+    Circle {
+        /// Its centre.
+        center_m: [f64; 2],
+        /// Its radius in metres.
+        radius_m: f64,
+    },
+    /// An obstacle with at least three corners.
+    Polygon(Vec<[f64; 2]>),
+    /// A vehicle.
+    Vehicle {
+        /// The name of its model.
+        model: SmolStr,
+        /// Where it starts.
+        start: VehicleStart,
+    },
+}
+
+/// Where a vehicle starts.
+#[derive(Clone, Debug, PartialEq)]
+pub enum VehicleStart {
+    /// At a location that is declared.
+    Location(SmolStr),
+    /// At a place that gets a location of its own.
+    Ground([f64; 2]),
+}
+
+/// The edits that declare something, in textual order, and what to select then.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Declared {
+    /// The edits.
+    pub edits: Vec<Edit>,
+    /// What was declared.
+    pub selection: Selection,
+    /// Its declaration as it stands in the new text.
+    pub text: String,
+}
+
+/// The kinds of declaration, in the order in which a file has them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    Terrain,
+    Location,
+    Obstacle,
+    Vehicle,
+}
+
+/// The edits that declare `thing` in `text`, whose meaning is `program`, under a name that the text does not use.
+pub fn declare(text: &str, program: &Program, thing: &NewThing) -> Declared {
+    let world = &program.world;
+    let mut names = Names::of(text);
+    let (kind, declaration, selection, start) = match thing {
+        NewThing::Location(at_m) => {
+            let name = names.fresh("P");
+            (Kind::Location, location(&name, *at_m), Selection::Location(name), None)
+        }
+        NewThing::Circle { center_m, radius_m } => {
+            let name = names.fresh("Rock");
+            let text =
+                format!("obstacle {name} circle ({}, {});", place(*center_m), metres(radius_m.max(0.1)));
+            (Kind::Obstacle, text, Selection::Obstacle(name), None)
+        }
+        NewThing::Polygon(corners_m) => {
+            let name = names.fresh("Area");
+            let corners: Vec<String> = corners_m.iter().map(|&corner| place(corner)).collect();
+            let text = format!("obstacle {name} polygon ({});", corners.join(", "));
+            (Kind::Obstacle, text, Selection::Obstacle(name), None)
+        }
+        NewThing::Vehicle { model, start } => {
+            let name = names.fresh(if model == "Blimp" { "Blimp" } else { "Rover" });
+            let (at, new) = names.start(start);
+            let text = format!("vehicle {name} : {model} at {at};");
+            (Kind::Vehicle, text, Selection::Vehicle(name), new)
+        }
+    };
+    let mut edits = Vec::new();
+    if let Some(start) = start {
+        insert(&mut edits, text, world, Kind::Location, &start);
+    }
+    insert(&mut edits, text, world, kind, &declaration);
+    Declared { edits, selection, text: declaration }
+}
+
+/// The edits that make a declared vehicle start elsewhere, in textual order.
+pub fn move_start(text: &str, program: &Program, vehicle: &str, start: &VehicleStart) -> Option<Vec<Edit>> {
+    let world = &program.world;
+    let declared = world.vehicles.iter().find(|it| it.name.text == vehicle)?;
+    let (at, new) = Names::of(text).start(start);
+    let mut edits = vec![Edit { span: declared.start.span, text: at.to_string() }];
+    if let Some(new) = new {
+        insert(&mut edits, text, world, Kind::Location, &new);
+    }
+    edits.sort_by_key(|edit| edit.span);
+    Some(edits)
+}
+
+/// Metres to a tenth, as an author would write them.
+pub fn metres(value: f64) -> String {
+    let tenths = (value * 10.0).round() / 10.0;
+    format!("{}", if tenths == 0.0 { 0.0 } else { tenths })
+}
+
+/// A place to a tenth of a metre, without parentheses.
+pub fn place([east, north]: [f64; 2]) -> String {
+    format!("{}, {}", metres(east), metres(north))
+}
+
+fn location(name: &str, at_m: [f64; 2]) -> String {
+    format!("location {name} ({});", place(at_m))
+}
+
+/// The words of a text, so that new names do not meet old ones.
+struct Names {
+    used: BTreeSet<SmolStr>,
+}
+
+impl Names {
+    fn of(text: &str) -> Self {
+        let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
+        Self { used: text.split(|c| !is_part(c)).map(SmolStr::new).collect() }
+    }
+
+    /// `stem` with the least number that makes it new.
+    fn fresh(&mut self, stem: &str) -> SmolStr {
+        let mut names = (1_u32..).map(|number| format_smolstr!("{stem}{number}"));
+        let name = names.find(|name| !self.used.contains(name)).unwrap_or_default();
+        self.used.insert(name.clone());
+        name
+    }
+
+    /// The name of the location where a vehicle starts, and its declaration if it needs one.
+    fn start(&mut self, start: &VehicleStart) -> (SmolStr, Option<String>) {
+        match start {
+            VehicleStart::Location(name) => (name.clone(), None),
+            VehicleStart::Ground(at_m) => {
+                let name = self.fresh("Start");
+                let text = location(&name, *at_m);
+                (name, Some(text))
+            }
+        }
+    }
+}
+
+/// Adds the edit that puts a declaration behind the last one of its kind, or behind the kinds that come before it, or
+/// in front of everything.
+fn insert(edits: &mut Vec<Edit>, text: &str, world: &World, kind: Kind, declaration: &str) {
+    let (offset, inserted) = if let Some((span, last)) = last_before(world, kind) {
+        let between = if last == kind { "\n" } else { "\n\n" };
+        (behind(text, span), format!("{between}{declaration}"))
+    } else {
+        let offset = first_code(text);
+        let after = if offset == text.len() { "\n" } else { "\n\n" };
+        (offset as u32, format!("{declaration}{after}"))
+    };
+    // Edits are disjoint: what goes to the same place goes there at once.
+    if let Some(same) = edits.iter_mut().find(|edit| edit.span == Span::new(offset, offset)) {
+        same.text = if same.text.ends_with('\n') {
+            format!("{}{inserted}", same.text)
+        } else {
+            format!("{}\n{}", same.text, inserted.trim_start_matches('\n'))
+        };
+    } else {
+        edits.push(Edit { span: Span::new(offset, offset), text: inserted });
+        edits.sort_by_key(|edit| edit.span);
+    }
+}
+
+/// The last declaration of the kind, or of the nearest kind before it that the world has.
+fn last_before(world: &World, kind: Kind) -> Option<(Span, Kind)> {
+    let last = |kind| match kind {
+        Kind::Terrain => world.terrain.as_ref().map(|it| it.span),
+        Kind::Location => world.locations.last().map(|it| it.span),
+        Kind::Obstacle => world.obstacles.last().map(|it| it.span),
+        Kind::Vehicle => world.vehicles.last().map(|it| it.span),
+    };
+    let kinds = [Kind::Vehicle, Kind::Obstacle, Kind::Location, Kind::Terrain];
+    kinds.into_iter().filter(|&other| other <= kind).find_map(|other| Some((last(other)?, other)))
+}
+
+/// Behind a declaration, and behind a comment that ends its line.
+fn behind(text: &str, span: Span) -> u32 {
+    let end = (span.end as usize).min(text.len());
+    let rest = text.get(end..).unwrap_or_default();
+    let line = rest.split('\n').next().unwrap_or_default();
+    let is_note = line.trim().is_empty() || line.trim_start().starts_with("//");
+    if is_note { (end + line.trim_end().len()) as u32 } else { end as u32 }
+}
+
+/// The start of the first line that is neither blank nor a comment, or the end of the text.
+pub fn first_code(text: &str) -> usize {
+    let mut offset = 0;
+    for line in text.split_inclusive('\n') {
+        let trimmed = line.trim();
+        if !trimmed.is_empty() && !trimmed.starts_with("//") {
+            return offset;
+        }
+        offset += line.len();
+    }
+    text.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn after(text: &str, thing: &NewThing) -> String {
+        let mut document = crate::state::Document::new(text);
+        let declared = declare(text, &rmpl::parse(text).program(), thing);
+        document.edit(&declared.edits, crate::state::EditKind::Single, None);
+        let declared_text = document.text().to_owned();
+        document.undo();
+        assert_eq!(document.text(), text, "one step back is the text as it was");
+        declared_text
+    }
+
+    const WORLD: &str = "// A mission.\nterrain \"flat\";\nlocation A (1, 2); // home\nlocation P1 (3, 4);\n\n\
+                         vehicle Rover1 : ATRV at A;\nscenario S = { }\n";
+
+    #[test]
+    fn a_location_comes_behind_the_last_one_under_a_name_that_is_new() {
+        let text = after(WORLD, &NewThing::Location([12.34, -0.02]));
+        assert_eq!(text, WORLD.replace("P1 (3, 4);", "P1 (3, 4);\nlocation P2 (12.3, 0);"));
+    }
+
+    #[test]
+    fn the_first_obstacle_comes_behind_the_locations() {
+        let text = after(WORLD, &NewThing::Circle { center_m: [5.0, 6.0], radius_m: 2.5 });
+        assert_eq!(text, WORLD.replace("P1 (3, 4);", "P1 (3, 4);\n\nobstacle Rock1 circle (5, 6, 2.5);"));
+        let corners = vec![[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]];
+        let text = after(WORLD, &NewThing::Polygon(corners));
+        assert!(text.contains("obstacle Area1 polygon (0, 0, 4, 0, 4, 4);"), "{text}");
+    }
+
+    #[test]
+    fn a_vehicle_on_free_ground_gets_a_location_in_the_same_step() {
+        let start = VehicleStart::Ground([7.0, 8.0]);
+        let text = after(WORLD, &NewThing::Vehicle { model: "ATRV".into(), start });
+        let expected = WORLD
+            .replace("P1 (3, 4);", "P1 (3, 4);\nlocation Start1 (7, 8);")
+            .replace("ATRV at A;", "ATRV at A;\nvehicle Rover2 : ATRV at Start1;");
+        assert_eq!(text, expected);
+        let start = VehicleStart::Ground([7.0, 8.0]);
+        let text = after("// Nothing.\n", &NewThing::Vehicle { model: "Blimp".into(), start });
+        assert_eq!(text, "// Nothing.\nlocation Start1 (7, 8);\nvehicle Blimp1 : Blimp at Start1;\n");
+    }
+
+    #[test]
+    fn a_comment_behind_the_last_declaration_stays_on_its_line() {
+        let text = after("location A (1, 2); // home\n", &NewThing::Location([3.0, 4.0]));
+        assert_eq!(text, "location A (1, 2); // home\nlocation P1 (3, 4);\n");
+        let text = after("location A (1, 2); scenario S = {}", &NewThing::Location([3.0, 4.0]));
+        assert_eq!(text, "location A (1, 2);\nlocation P1 (3, 4); scenario S = {}");
+    }
+
+    #[test]
+    fn a_text_without_a_world_gets_its_first_place_in_front_of_its_code() {
+        let text = after("// A title.\n\nscenario S = { }\n", &NewThing::Location([3.0, 4.0]));
+        assert_eq!(text, "// A title.\n\nlocation P1 (3, 4);\n\nscenario S = { }\n");
+    }
+
+    #[test]
+    fn a_vehicle_is_moved_to_a_location_or_to_a_new_one() {
+        let program = rmpl::parse(WORLD).program();
+        let moved = |start| {
+            let mut document = crate::state::Document::new(WORLD);
+            let edits = move_start(WORLD, &program, "Rover1", &start).expect("it is declared");
+            document.edit(&edits, crate::state::EditKind::Single, None);
+            document.text().to_owned()
+        };
+        assert_eq!(moved(VehicleStart::Location("P1".into())), WORLD.replace("ATRV at A", "ATRV at P1"));
+        let expected = WORLD
+            .replace("P1 (3, 4);", "P1 (3, 4);\nlocation Start1 (9, 9);")
+            .replace("ATRV at A", "ATRV at Start1");
+        assert_eq!(moved(VehicleStart::Ground([9.0, 9.0])), expected);
+    }
+}
