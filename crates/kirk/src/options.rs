@@ -7,14 +7,15 @@ use tpn::Plan;
 use crate::failure::Failure;
 use crate::trace::Trace;
 
-/// How to search. Both find the same first plan.
+/// How to search. Both find the same plans, and say of the same missions that they have none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Search {
-    /// The paper's: on failure undo the last choice (SPEC 5.1 to 5.4).
+    /// The paper's: on failure undo the last choice (SPEC 5.1 to 5.4). Its first plan is the canonical one.
     Chronological,
     /// Learns from each failure which choices caused it, jumps back to the last of them, and never repeats them
-    /// (SPEC 5.6).
+    /// (SPEC 5.6). Its first plan is the canonical one, too, except where that one rests on intervals that its choices
+    /// force to touch although there is no room for the gap: then it may be a later one.
     #[default]
     ConflictDirected,
 }

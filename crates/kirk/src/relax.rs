@@ -10,7 +10,7 @@ use crate::explain::Effort;
 use crate::failure::{Failure, Member, Relaxation};
 use crate::model::{INFINITE, Model};
 use crate::options::Stats;
-use crate::search::{Engine, Halt, Setup};
+use crate::search::{Engine, Gaps, Halt, Setup};
 use crate::trace::Constraint;
 use crate::wording;
 
@@ -132,7 +132,7 @@ impl Trial<'_> {
             self.model.set_bounds(self.network, arc.0, new_lower, new_upper);
         }
         self.model.refresh_structure(self.network)?;
-        let setup = Setup { jumps: true, by_structure: true, ..Setup::default() };
+        let setup = Setup { jumps: true, by_structure: true, gaps: Gaps::Trusted, ..Setup::default() };
         let limit = self.effort.expansions;
         let halt = Engine::new(&self.model, setup).run(&mut |stats: &Stats| stats.expanded >= limit)?;
         for arc in arcs {

@@ -31,6 +31,7 @@ pub(crate) const UNBOUNDED_BELOW: i64 = i64::MIN;
 pub(crate) struct Setup {
     /// Jump back over choices that have nothing to do with the failure, and learn.
     pub(crate) jumps: bool,
+    pub(crate) gaps: Gaps,
     /// Use the program's structure for phase 1 if there is one; otherwise arcs are propagated as they are selected.
     pub(crate) by_structure: bool,
     /// Keep what every dead end rests on.
@@ -42,6 +43,19 @@ pub(crate) struct Setup {
     pub(crate) active_labels: Option<Vec<bool>>,
     /// Decisions that have been made before: the alternative, or [`NONE`].
     pub(crate) assumed: Option<Vec<u32>>,
+}
+
+/// What a search makes of orders that fail only because of the gap they ask for, but would hold by touching if other
+/// choices forced the intervals to (SPEC 5.3).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Gaps {
+    /// Such a failure rests on every choice made, since none of them forces it.
+    #[default]
+    Exact,
+    /// No choice is expected to: the failure rests on what contradicts the gap. Finds only plans, but may miss some.
+    Trusted,
+    /// Orders ask for no more than touching: where this finds nothing, there is no plan.
+    Ignored,
 }
 
 /// How a search came to a halt.
@@ -86,6 +100,8 @@ pub(crate) struct Engine<'m> {
     at: TreeNodeId,
     pub(crate) stats: Stats,
     has_begun: bool,
+    /// Whether a failure has been put down to less than it may rest on; see [`Gaps::Trusted`].
+    pub(crate) has_doubts: bool,
 }
 
 impl<'m> Engine<'m> {
@@ -129,6 +145,7 @@ impl<'m> Engine<'m> {
             at: 0,
             stats,
             has_begun: false,
+            has_doubts: false,
             setup,
         }
     }
@@ -420,7 +437,11 @@ impl<'m> Engine<'m> {
                 });
                 let (_, first_end) = self.model.interval(first);
                 let (then_start, _) = self.model.interval(then);
-                if self.insert(then_start, first_end, -self.model.gap, tag, FailureKind::Threat)? {
+                let gap = match self.setup.gaps {
+                    Gaps::Ignored => self.model.gap_after[first as usize],
+                    Gaps::Exact | Gaps::Trusted => self.model.gap,
+                };
+                if self.insert(then_start, first_end, -gap, tag, FailureKind::Threat)? {
                     return Ok(true);
                 }
                 self.blame_touching(depth);
@@ -432,13 +453,20 @@ impl<'m> Engine<'m> {
     /// An order that fails only because of gaps could still hold by touching, if other choices forced it to: then the
     /// failure rests on all choices, because none of them does. Every order in the contradiction asks for its gap.
     fn blame_touching(&mut self, depth: usize) {
+        if self.setup.gaps == Gaps::Ignored {
+            return;
+        }
         let weights = self
             .stn
             .cycle()
             .iter()
             .map(|edge| i128::from(edge.weight) + i128::from(self.excess_gap(edge.tag)));
         if weights.sum::<i128>() >= 0 {
-            self.conflict.insert_all_below(depth as u32);
+            if self.setup.gaps == Gaps::Trusted {
+                self.has_doubts = true;
+            } else {
+                self.conflict.insert_all_below(depth as u32);
+            }
         }
     }
 

@@ -77,6 +77,8 @@ pub(crate) struct Edge {
     pub(crate) next_out: u32,
     pub(crate) next_in: u32,
     pub(crate) tag: Tag,
+    /// Whether it was taken back out of turn: then its place in the order of insertion is empty.
+    is_withdrawn: bool,
 }
 
 /// A simple temporal network that is consistent at all times, except between [`Stn::push`] and [`Stn::settle`].
@@ -132,12 +134,20 @@ impl Stn {
         self.edges.reserve(edges);
     }
 
+    /// Becomes a copy of another network and of its schedule, in which everything has one tag.
+    pub fn copy_as(&mut self, other: &Self, tag: Tag) {
+        self.clone_from(other);
+        for edge in &mut self.edges {
+            edge.tag = tag;
+        }
+    }
+
     /// How many time points there are.
     pub fn num_points(&self) -> usize {
         self.potential.len()
     }
 
-    /// How many edges there are.
+    /// How many edges there are, with those withdrawn.
     pub fn num_edges(&self) -> usize {
         self.edges.len()
     }
@@ -166,9 +176,9 @@ impl Stn {
         self.changed.len()
     }
 
-    /// The tag of an edge, by position.
+    /// An edge, by position; `None` if it has been withdrawn.
     pub fn edge(&self, position: usize) -> Option<CycleEdge> {
-        self.edges.get(position).map(Edge::describe)
+        self.edges.get(position).filter(|edge| !edge.is_withdrawn).map(Edge::describe)
     }
 
     /// The negative cycle of the last failed insertion, in order; each edge's `to` is the next one's `from`.
@@ -185,8 +195,37 @@ impl Stn {
     pub fn rollback(&mut self, checkpoint: Checkpoint) {
         while self.edges.len() > checkpoint.0 as usize {
             let Some(edge) = self.edges.pop() else { return };
+            if !edge.is_withdrawn {
+                self.first_out[edge.from as usize] = edge.next_out;
+                self.first_in[edge.to as usize] = edge.next_in;
+            }
+        }
+    }
+
+    /// Takes back one edge wherever it stands in the order of insertion, in time linear in the edges at its ends.
+    /// Positions are those of [`Stn::num_edges`] before the insertion; they stay what they are, also for rolling back.
+    pub fn withdraw(&mut self, position: usize) {
+        let Some(&edge) = self.edges.get(position).filter(|edge| !edge.is_withdrawn) else { return };
+        self.edges[position].is_withdrawn = true;
+        let position = position as u32;
+        let mut before = NONE;
+        let mut at = self.first_out[edge.from as usize];
+        while at != position {
+            (before, at) = (at, self.edges[at as usize].next_out);
+        }
+        if before == NONE {
             self.first_out[edge.from as usize] = edge.next_out;
+        } else {
+            self.edges[before as usize].next_out = edge.next_out;
+        }
+        (before, at) = (NONE, self.first_in[edge.to as usize]);
+        while at != position {
+            (before, at) = (at, self.edges[at as usize].next_in);
+        }
+        if before == NONE {
             self.first_in[edge.to as usize] = edge.next_in;
+        } else {
+            self.edges[before as usize].next_in = edge.next_in;
         }
     }
 
@@ -240,6 +279,7 @@ impl Stn {
             next_out: *first_out,
             next_in: *first_in,
             tag,
+            is_withdrawn: false,
         });
         *first_out = position;
         *first_in = position;

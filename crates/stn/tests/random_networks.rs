@@ -324,3 +324,52 @@ fn windows_after_execution_are_those_of_the_network_with_the_observations() {
     assert_eq!(tags, [2, 9, 9], "the upper bound of the second arc, and both observations");
     assert_eq!(stn.num_edges(), 4, "observations are taken back");
 }
+
+#[test]
+fn edges_withdrawn_out_of_turn_leave_the_others_as_they_are() {
+    for seed in 0..200 {
+        let mut random = Random(seed ^ 0x5717);
+        let points = 2 + random.below(7);
+        let mut stn = Stn::new(points);
+        // What stands, by position.
+        let mut standing: Vec<Option<(usize, usize, i64)>> = Vec::new();
+        for _ in 0..60 {
+            match random.below(6) {
+                0 if !standing.is_empty() => {
+                    let position = random.below(standing.len());
+                    stn.withdraw(position);
+                    standing[position] = None;
+                }
+                1 => {
+                    let checkpoint = stn.checkpoint();
+                    let length = standing.len();
+                    for _ in 0..random.below(4) {
+                        let (from, to) = (random.below(points), random.below(points));
+                        let weight = random.between(-2, 9);
+                        if stn.insert(point(from), point(to), weight, 0).is_ok() {
+                            standing.push(Some((from, to, weight)));
+                        }
+                    }
+                    // Withdrawing what stands below the checkpoint outlasts going back to it.
+                    if !standing.is_empty() {
+                        let position = random.below(standing.len());
+                        stn.withdraw(position);
+                        standing[position] = None;
+                    }
+                    stn.rollback(checkpoint);
+                    standing.truncate(length);
+                }
+                _ => {
+                    let (from, to) = (random.below(points), random.below(points));
+                    let weight = random.between(-2, 9);
+                    if stn.insert(point(from), point(to), weight, 0).is_ok() {
+                        standing.push(Some((from, to, weight)));
+                    }
+                }
+            }
+            assert_eq!(stn.num_edges(), standing.len(), "seed {seed}");
+            let edges: EdgeList = standing.iter().flatten().copied().collect();
+            assert_distances(&mut stn, points, &edges, seed);
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! Guessed links: a second network in which each requirement is carried by some assertion, as far as all can be at once.
+//!
+//! A requirement can be carried as long as its guess stands, so that it need not be looked at after every choice, and the
+//! schedule need not be moved to and fro for one requirement after the other. Guesses are no consequences of the
+//! choices: they give way to whatever contradicts them, and nothing is blamed on them.
+
+use stn::{Inconsistency, Overflow, PointId, Tag};
+
+use super::{GUESS, HULL, Lookahead, link_edges};
+use crate::model::{Model, NONE};
+
+impl Lookahead {
+    /// Guesses which assertion carries `ask`, in accord with all other guesses. `false` if none is found to.
+    pub(super) fn guess_carrier(&mut self, model: &Model, ask: u32) -> Result<bool, Overflow> {
+        let witness = self.witness[ask as usize];
+        if witness != NONE && self.is_active_label[witness as usize] && self.guess(model, ask, witness)? {
+            return Ok(true);
+        }
+        for tell in model.conditions.supporters(ask) {
+            if tell != witness
+                && self.is_active_label[tell as usize]
+                && !link_edges(model, ask, tell).iter().any(|&edge| self.is_refused(edge))
+                && self.guess(model, ask, tell)?
+            {
+                self.witness[ask as usize] = tell;
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    fn guess(&mut self, model: &Model, ask: u32, tell: u32) -> Result<bool, Overflow> {
+        let checkpoint = self.guide.checkpoint();
+        let position = self.guide.num_edges() as u32;
+        for (from, to, weight) in link_edges(model, ask, tell) {
+            match self.guide.insert(from, to, weight, GUESS + ask) {
+                Ok(()) => {}
+                Err(Inconsistency::NegativeCycle) => {
+                    self.guide.rollback(checkpoint);
+                    return Ok(false);
+                }
+                Err(Inconsistency::Overflow) => return Err(Overflow),
+            }
+        }
+        self.guessed[ask as usize] = Some(position);
+        self.guesses.push(ask);
+        Ok(true)
+    }
+
+    /// Adds an edge that follows from the choices; guesses that contradict it are given up.
+    pub(super) fn insert(
+        &mut self,
+        (from, to, weight): (PointId, PointId, i64),
+        tag: Tag,
+    ) -> Result<(), Inconsistency> {
+        self.stn.insert(from, to, weight, tag)?;
+        while self.guide.insert(from, to, weight, HULL) == Err(Inconsistency::NegativeCycle) {
+            if !self.give_up_contradicted() {
+                return Err(Inconsistency::Overflow);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds `lower ≤ to − from ≤ upper` like [`Lookahead::insert`].
+    pub(super) fn constrain(
+        &mut self,
+        from: PointId,
+        to: PointId,
+        (lower, upper): (i64, Option<i64>),
+        tag: Tag,
+    ) -> Result<(), Inconsistency> {
+        if let Some(upper) = upper {
+            self.insert((from, to, upper), tag)?;
+        }
+        self.insert((to, from, lower.checked_neg().ok_or(Inconsistency::Overflow)?), tag)
+    }
+
+    /// Takes back the guesses from the one at `first` on, whose edges are gone.
+    pub(super) fn forget_guesses(&mut self, first: usize) {
+        let num_edges = self.guide.num_edges() as u32;
+        for ask in self.guesses.drain(first..) {
+            let guess = &mut self.guessed[ask as usize];
+            *guess = guess.filter(|&position| position < num_edges);
+        }
+    }
+
+    /// Gives up the guesses in the contradiction found last. `false` if there are none.
+    fn give_up_contradicted(&mut self) -> bool {
+        let mut gave_up = false;
+        for position in 0..self.guide.cycle().len() {
+            let tag = self.guide.cycle()[position].tag;
+            if tag != HULL
+                && let Some(guess) = self.guessed[(tag - GUESS) as usize].take()
+            {
+                self.guide.withdraw(guess as usize);
+                self.guide.withdraw(guess as usize + 1);
+                gave_up = true;
+            }
+        }
+        gave_up
+    }
+}
