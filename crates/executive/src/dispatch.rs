@@ -87,6 +87,11 @@ impl Dispatcher {
         self.time[self.place[point.index()].0].is_some()
     }
 
+    /// Whether two points come at the same instant whenever that is.
+    pub fn are_simultaneous(&self, a: PointId, b: PointId) -> bool {
+        self.place[a.index()] == self.place[b.index()]
+    }
+
     /// Whether everything that must come before a point has been settled: no negative edge leads from its component to
     /// one that has not (SPEC 6.2).
     pub fn is_enabled(&self, point: PointId) -> bool {

@@ -95,6 +95,12 @@ fn set_duration(network: &mut Network, occurrence: OccurrenceId, duration: Ratio
         let arc = &mut network.arcs[arc.index()];
         (arc.lower, arc.upper) = (duration, Bound::Finite(duration));
     }
+    // How it divides among the segments of a path is not known.
+    for arc in network.arcs.iter_mut().filter(|arc| arc.kind == ArcKind::Path) {
+        if arc.occurrence == Some(occurrence) {
+            (arc.lower, arc.upper) = (Rational::default(), Bound::Infinite);
+        }
+    }
 }
 
 /// Lets the delay before a condition be as long as the world makes it.

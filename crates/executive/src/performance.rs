@@ -1,7 +1,7 @@
 //! Who carries an activity out: between its start, which the plan decides, and its end, which is reported.
 
 use rmpl::Rational;
-use tpn::{Network, OccurrenceId};
+use tpn::{EventRef, Network, OccurrenceId};
 
 use crate::log::Entry;
 
@@ -12,6 +12,8 @@ pub struct Performance {
     pub ends: Ends,
     /// What will be seen of it until then, in order of time. Of an activity that is stopped the rest is not seen.
     pub entries: Vec<Entry>,
+    /// After how long a traverse passes the vertices of its path, in order; one that is not listed is passed as planned.
+    pub passes: Vec<(EventRef, Rational)>,
 }
 
 /// When an activity will be over.
@@ -22,6 +24,8 @@ pub enum Ends {
     AsPlanned,
     /// After this long, in mission units.
     After(Rational),
+    /// As soon as the plan wants it after this long: a vehicle that is early waits.
+    NotBefore(Rational),
     /// Never; the reason, such as `the program did not reach its end in 40 steps`.
     Never(String),
 }

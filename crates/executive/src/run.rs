@@ -76,6 +76,7 @@ pub fn run_stage(
         log: Vec::new(),
         coming: VecDeque::new(),
         performed: BTreeMap::new(),
+        passes: Vec::new(),
         news: Facts::default(),
         plans: Vec::new(),
     };
@@ -96,6 +97,8 @@ struct Run<'a> {
     coming: VecDeque<(OccurrenceId, Entry)>,
     /// When the activities that were started will be over.
     performed: BTreeMap<OccurrenceId, Ends>,
+    /// After how long from their traverse's start path vertices are passed.
+    passes: Vec<(EventRef, Rational)>,
     /// What the world has made known against the plan, kept over all replans.
     news: Facts,
     /// The plans that were given up.
@@ -114,6 +117,8 @@ struct Violation {
     name: SmolStr,
     reason: String,
     news: News,
+    /// Whether no plan can mend it: an activity that was begun never ends.
+    is_final: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -153,8 +158,13 @@ impl Run<'_> {
                 None => self.happen(next.point).err(),
             };
             let Some(violation) = violation else { continue };
-            self.write(Happening::Violation { name: violation.name, reason: violation.reason });
-            self.learn(violation.news);
+            let Violation { name, reason, news, is_final } = violation;
+            self.write(Happening::Violation { name, reason: reason.clone() });
+            if is_final {
+                self.write(Happening::Stopped { reason });
+                return Ok(Ending::Stopped);
+            }
+            self.learn(news);
             if let Some(reason) = self.replan(replanner)? {
                 self.write(Happening::Stopped { reason });
                 return Ok(Ending::Stopped);
@@ -190,22 +200,29 @@ impl Run<'_> {
 
     /// The earliest thing that happens or goes wrong next; of several at one time the one that is first in the plan.
     fn next(&self) -> Option<Next> {
-        let mut best: Option<Next> = None;
+        let dispatcher = &self.stage.dispatcher;
+        let mut coming: Vec<Next> = Vec::new();
         for point in self.stage.made.all_points() {
             let node = self.stage.made.node(point);
-            if self.stage.times[node.index()].is_some() {
-                continue;
-            }
-            let is_settled = self.stage.dispatcher.is_settled(point);
-            if !is_settled && !self.stage.dispatcher.is_enabled(point) {
-                continue;
-            }
-            let Some(next) = self.candidate(point, node) else { continue };
-            if best.as_ref().is_none_or(|best| next.time < best.time) {
-                best = Some(next);
+            let has_happened = self.stage.times[node.index()].is_some();
+            if !has_happened && (dispatcher.is_settled(point) || dispatcher.is_enabled(point)) {
+                coming.extend(self.candidate(point, node));
             }
         }
-        best
+        // Events that come at one instant wait for the last of them: the end of a choice for that of its activity.
+        let times: Vec<Rational> = coming
+            .iter()
+            .map(|next| {
+                let others =
+                    coming.iter().filter(|other| dispatcher.are_simultaneous(next.point, other.point));
+                let is_sure = dispatcher.is_settled(next.point) || next.violation.is_some();
+                if is_sure { next.time } else { others.map(|it| it.time).fold(next.time, Rational::max) }
+            })
+            .collect();
+        for (next, time) in coming.iter_mut().zip(times) {
+            next.time = time;
+        }
+        coming.into_iter().reduce(|best, next| if next.time < best.time { next } else { best })
     }
 
     /// When a point would happen, by the plan and by the world.
@@ -215,7 +232,7 @@ impl Run<'_> {
         let mut known = News::None;
         let violation = |time: Rational, reason: String, news: News| {
             let name = self.stage.name(node).into();
-            Some(Next { point, time, violation: Some(Violation { name, reason, news }) })
+            Some(Next { point, time, violation: Some(Violation { name, reason, news, is_final: false }) })
         };
         for &event in &self.stage.network.nodes[node.index()].events {
             match self.by_world(event, time)? {
@@ -224,7 +241,11 @@ impl Run<'_> {
                 ByWorld::Gone(at, reason, news) => return violation(at.max(self.now), reason, news),
                 ByWorld::Never(reason) => {
                     let latest = latest?.max(self.now);
-                    return violation(latest, self.too_late(node, latest, Some(&reason)), News::None);
+                    let mut next = violation(latest, self.too_late(node, latest, Some(&reason)), News::None);
+                    if let Some(violation) = next.as_mut().and_then(|next| next.violation.as_mut()) {
+                        violation.is_final = true;
+                    }
+                    return next;
                 }
             }
         }
@@ -264,11 +285,22 @@ impl Run<'_> {
         let occurrence = self.stage.occurrence(event);
         let started = self.stage.times[occurrence.start.index()];
         match (occurrence.kind, event.end) {
+            (OccurrenceKind::Primitive, EventEnd::PathVertex { .. }) => {
+                let Some(&(_, after)) = self.passes.iter().find(|(vertex, _)| *vertex == event) else {
+                    return Some(ByWorld::Free);
+                };
+                let news = match self.performed.get(&event.occurrence) {
+                    Some(Ends::After(all) | Ends::NotBefore(all)) => News::Duration(event.occurrence, *all),
+                    _ => News::None,
+                };
+                Some(ByWorld::At((started? + after).max(planned), news))
+            }
             (OccurrenceKind::Primitive, EventEnd::End) => {
                 let given = self.world.duration(&self.stage.network, occurrence);
                 let duration = match (given, self.performed.get(&event.occurrence)) {
                     (Some(given), _) => given,
                     (None, Some(Ends::After(duration))) => *duration,
+                    (None, Some(Ends::NotBefore(duration))) => (planned - started?).max(*duration),
                     (None, Some(Ends::Never(reason))) => return Some(ByWorld::Never(reason.clone())),
                     (None, Some(Ends::AsPlanned) | None) => return Some(ByWorld::Free),
                 };
@@ -314,7 +346,12 @@ impl Run<'_> {
     fn happen(&mut self, point: PointId) -> Result<(), Violation> {
         let node = self.stage.made.node(point);
         let name = self.stage.name(node);
-        let none = |reason: String| Violation { name: name.as_str().into(), reason, news: News::None };
+        let none = |reason: String| Violation {
+            name: name.as_str().into(),
+            reason,
+            news: News::None,
+            is_final: false,
+        };
         let Some(ticks) = self.stage.made.ticks(self.now) else {
             return Err(none(format!("the plan's time is too coarse for {}", shown(self.now))));
         };
@@ -339,6 +376,7 @@ impl Run<'_> {
         }
         let performance = self.performer.start(&self.stage.network, event.occurrence, self.now);
         self.performed.insert(event.occurrence, performance.ends);
+        self.passes.extend(performance.passes);
         for entry in performance.entries {
             let at = self.coming.partition_point(|(_, before)| before.time <= entry.time);
             self.coming.insert(at, (event.occurrence, entry));

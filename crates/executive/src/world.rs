@@ -44,14 +44,49 @@ pub enum Disturbance {
         #[serde(with = "crate::exact")]
         at: Rational,
     },
+    /// Something stands in the world from a time on that is not on the map. Vehicles see it when it is in their range.
+    Obstacle {
+        /// Since when.
+        #[serde(with = "crate::exact")]
+        at: Rational,
+        /// Metres east.
+        x: f64,
+        /// Metres north.
+        y: f64,
+        /// Metres.
+        radius: f64,
+    },
+    /// A vehicle drives at most at a share of its traverse's greatest speed for a time; at a share of 0 it stands.
+    VehicleSlow {
+        /// Its name.
+        vehicle: SmolStr,
+        /// The share, from 0 to 1.
+        #[serde(with = "crate::exact")]
+        factor: Rational,
+        /// Since when.
+        #[serde(with = "crate::exact")]
+        from: Rational,
+        /// Until when.
+        #[serde(with = "crate::exact")]
+        until: Rational,
+    },
 }
 
 impl Disturbance {
-    /// The occurrence that it is about.
-    pub fn occurrence(&self) -> &SmolStr {
+    /// The occurrence that it is about, if it is about one.
+    pub const fn occurrence(&self) -> Option<&SmolStr> {
         match self {
-            Self::Duration { activity, .. } | Self::Slow { activity, .. } => activity,
-            Self::Withdrawn { condition, .. } | Self::Late { condition, .. } => condition,
+            Self::Duration { activity, .. } | Self::Slow { activity, .. } => Some(activity),
+            Self::Withdrawn { condition, .. } | Self::Late { condition, .. } => Some(condition),
+            Self::Obstacle { .. } | Self::VehicleSlow { .. } => None,
+        }
+    }
+
+    /// The vehicle that it is about, if it is about one.
+    pub const fn vehicle(&self) -> Option<&SmolStr> {
+        match self {
+            Self::VehicleSlow { vehicle, .. } => Some(vehicle),
+            _ => None,
         }
     }
 }
@@ -84,6 +119,8 @@ impl World {
                 Disturbance::Slow { activity, factor } => world.slow.insert(activity, factor),
                 Disturbance::Withdrawn { condition, at } => world.withdrawn.insert(condition, at),
                 Disturbance::Late { condition, at } => world.late.insert(condition, at),
+                // What vehicles meet is for whoever drives them.
+                Disturbance::Obstacle { .. } | Disturbance::VehicleSlow { .. } => None,
             };
         }
         world
@@ -122,7 +159,7 @@ impl World {
     pub fn unknown(network: &Network, disturbances: &[Disturbance]) -> Vec<SmolStr> {
         disturbances
             .iter()
-            .map(Disturbance::occurrence)
+            .filter_map(Disturbance::occurrence)
             .filter(|&name| !network.occurrences.iter().any(|occurrence| occurrence.name == *name))
             .cloned()
             .collect()

@@ -157,3 +157,19 @@ fn a_window_withdrawn_while_the_rovers_wait_sends_them_the_other_way() {
     });
     assert_eq!(changes, Some((Rational::from(30), vec!["D1: 0 → 1".to_owned()])));
 }
+
+#[test]
+fn an_activity_in_a_choice_that_ends_late_but_within_its_window_breaks_nothing() {
+    let network = compiled("scenario S[0,90] = { choose { Dig()[10,60], Rest()[70,80] }; Pack()[5,10] }");
+    let late = Disturbance::Duration { activity: "Dig#1".into(), duration: Rational::from(30) };
+    let (outcome, facts) = execute(&network, &[late]);
+    assert_eq!(outcome.ending, Ending::Finished);
+    assert!(facts.is_empty(), "{:?}", outcome.log);
+    let time = |name: &str| {
+        let is_it = |entry: &&executive::Entry| matches!(&entry.happening, Happening::Executed { name: it } if it == name);
+        outcome.log.iter().find(is_it).map(|entry| entry.time)
+    };
+    assert_eq!(time("Dig#1.end"), Some(Rational::from(30)));
+    assert_eq!(time("Pack#1.start"), Some(Rational::from(30)));
+    assert_eq!(time("scenario#1.end"), Some(Rational::from(35)));
+}

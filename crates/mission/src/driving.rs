@@ -71,6 +71,16 @@ struct Place {
     position_m: [f64; 2],
 }
 
+/// The ways of the vehicles of a drive by itself as paths, the leader's first.
+pub(crate) fn tracks_m(drive: &Drive) -> Vec<Path> {
+    let path = |track: Vec<Place>| {
+        let mut points: Vec<[f64; 2]> = track.iter().map(|place| place.position_m).collect();
+        points.dedup();
+        Path::new(points)
+    };
+    tracks(drive, &[]).into_iter().map(path).collect()
+}
+
 /// The ways of the vehicles of a drive, the leader's first.
 fn tracks(drive: &Drive, before: &[Drive]) -> Vec<Vec<Place>> {
     let (path, driven_m) = prolonged_back(drive, before);

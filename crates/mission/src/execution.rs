@@ -3,19 +3,23 @@
 //! A run follows from its mission, seed and disturbances alone. So whoever watches one with the clock in hand need not
 //! run it step by step: a disturbance at the present moment changes nothing before it, and the run is worked out anew.
 
+use std::cell::RefCell;
 use std::sync::Arc;
 
 use executive::{
-    Disturbance, Ending, Entry, Facts, PlanError, Replanner, RunOutcome, Script, Stage, World, run_stage,
+    AsPlanned, Disturbance, Ending, Entry, Facts, Performer, PlanError, Replanner, RunOutcome, Script, Stage,
+    World, run_stage,
 };
 use kirk::Status;
 use rmpl::program::Program;
 use rmpl::{Bound, Rational};
 use serde::{Deserialize, Serialize};
+use smol_str::SmolStr;
 use tpn::{Network, Plan, Window};
 
 use crate::ground::Grounds;
 use crate::planning::{self, Planned, Problem};
+use crate::simulation::{self, Courses, Driving, SimulatedDrive};
 use crate::snapshot::{Traverse, VehicleMotion};
 use crate::traverse::Paths;
 
@@ -34,6 +38,8 @@ pub struct Execution {
     pub ending: Ending,
     /// The plans that were executed, one after the other; there is at least one.
     pub plans: Vec<Executed>,
+    /// The traverses as they were driven, in order of departure.
+    pub drives: Vec<SimulatedDrive>,
 }
 
 /// A plan that was executed until the run ended or planned again.
@@ -59,9 +65,12 @@ pub struct Ran {
     pub outcome: RunOutcome,
     /// What each replan gave, in order.
     pub replanned: Vec<Planned>,
+    /// The traverses as they were driven, in order of departure; none where durations are only drawn.
+    pub drives: Vec<SimulatedDrive>,
 }
 
-/// Executes the plan of `planned`, which `problem` gave; `None` if it has no plan.
+/// Executes the plan of `planned`, which `problem` gave; `None` if it has no plan. Vehicles drive their traverses in
+/// simulation, as late as that makes them.
 pub fn execute(
     problem: &Problem<'_>,
     planned: &Planned,
@@ -71,11 +80,28 @@ pub fn execute(
 ) -> Option<Result<Ran, PlanError>> {
     let plan = planned.planning.outcome.plans.first()?.clone();
     let world = World::new(disturbances);
-    let stage = Stage::new(Arc::clone(&planned.network), plan, &world.times(&planned.network));
-    Some(stage.and_then(|stage| execute_stage(problem, stage, &world, grounds, paths)))
+    let courses = RefCell::new(Courses::default());
+    courses.borrow_mut().learn(problem, planned);
+    let mut driving = problem.ground.map(|(_, map)| Driving::new(problem, map, disturbances, &courses));
+    let mut as_planned = AsPlanned;
+    let performer: &mut dyn Performer = match &mut driving {
+        Some(driving) => driving,
+        None => &mut as_planned,
+    };
+    let mut grid = world.times(&planned.network);
+    grid.push(performer.granularity());
+    let ran = Stage::new(Arc::clone(&planned.network), plan, &grid).and_then(|stage| {
+        let mut replanner =
+            WithPaths { problem, grounds, paths, replanned: Vec::new(), courses: Some(&courses) };
+        let num_program_nodes = problem.network.nodes.len();
+        let outcome = run_stage(stage, num_program_nodes, &world, performer, &mut replanner)?;
+        Ok((outcome, replanner.replanned))
+    });
+    let drives = driving.map(Driving::into_drives).unwrap_or_default();
+    Some(ran.map(|(outcome, replanned)| Ran { outcome, replanned, drives }))
 }
 
-/// Executes a plan of `problem` that was made ready for `world`.
+/// Executes a plan of `problem` that was made ready for `world`, with activities that take as long as planned.
 pub fn execute_stage(
     problem: &Problem<'_>,
     stage: Stage,
@@ -83,10 +109,17 @@ pub fn execute_stage(
     grounds: &mut Grounds,
     paths: &mut Paths,
 ) -> Result<Ran, PlanError> {
-    let mut replanner = WithPaths { problem, grounds, paths, replanned: Vec::new() };
+    let mut replanner = WithPaths { problem, grounds, paths, replanned: Vec::new(), courses: None };
     let num_program_nodes = problem.network.nodes.len();
-    let outcome = run_stage(stage, num_program_nodes, world, &mut executive::AsPlanned, &mut replanner)?;
-    Ok(Ran { outcome, replanned: replanner.replanned })
+    let outcome = run_stage(stage, num_program_nodes, world, &mut AsPlanned, &mut replanner)?;
+    Ok(Ran { outcome, replanned: replanner.replanned, drives: Vec::new() })
+}
+
+/// What disturbances are about that the mission does not have: activities, conditions and vehicles.
+pub fn unknown(network: &Network, program: &Program, disturbances: &[Disturbance]) -> Vec<SmolStr> {
+    let is_unknown = |name: &&SmolStr| !program.world.vehicles.iter().any(|it| it.name.text == **name);
+    let vehicles = disturbances.iter().filter_map(Disturbance::vehicle).filter(is_unknown).cloned();
+    World::unknown(network, disturbances).into_iter().chain(vehicles).collect()
 }
 
 impl Execution {
@@ -110,11 +143,12 @@ impl Execution {
                 let (network, plan) = without_facts(&executed.network, executed.plan);
                 let as_run = with_times(&plan, &times);
                 let traverses = planned.traverses.clone();
-                let motions = planning::motions_of(program, &network, &as_run, planned);
+                let mut motions = planning::motions_of(program, &network, &as_run, planned);
+                simulation::put_into(&mut motions, &ran.drives);
                 Executed { from: executed.from, network, plan, times, traverses, motions }
             })
             .collect();
-        Self { revision, script, log: ran.outcome.log, ending: ran.outcome.ending, plans }
+        Self { revision, script, log: ran.outcome.log, ending: ran.outcome.ending, plans, drives: ran.drives }
     }
 
     /// The plan that was followed at `time`, and its number from 0.
@@ -166,6 +200,8 @@ struct WithPaths<'run, 'input> {
     grounds: &'run mut Grounds,
     paths: &'run mut Paths,
     replanned: Vec<Planned>,
+    /// Where those who drive look for their paths.
+    courses: Option<&'run RefCell<Courses>>,
 }
 
 impl Replanner for WithPaths<'_, '_> {
@@ -178,6 +214,9 @@ impl Replanner for WithPaths<'_, '_> {
         match outcome.plans.first() {
             Some(plan) => {
                 let found = (Arc::clone(&planned.network), plan.clone());
+                if let Some(courses) = self.courses {
+                    courses.borrow_mut().learn(self.problem, &planned);
+                }
                 self.replanned.push(planned);
                 Ok(found)
             }

@@ -20,6 +20,7 @@ pub mod request;
 pub mod review;
 pub mod robustness;
 mod sampling;
+pub mod simulation;
 pub mod snapshot;
 pub mod traverse;
 
@@ -32,6 +33,7 @@ pub use kirk::Search as SearchKind;
 pub use problem::{Problem, TextEdit, TextFix};
 pub use request::{Goal, Request, Response, Update};
 pub use robustness::{Robustness, RobustnessSettings, Tally, Uncertainty};
+pub use simulation::{DriveFrame, SimulatedDrive, SimulatedVehicle};
 pub use snapshot::{
     Encounter, Keyframe, Leg, MapKey, PathFigures, Planning, Snapshot, Stage, Timings, Traverse, Undrivable,
     VehicleMotion,

@@ -368,7 +368,7 @@ fn spacing_m(world: &World, vehicles: &[usize]) -> f64 {
     widest.iter().rev().take(2).sum::<f64>() + encounter::GAP_M
 }
 
-fn drive(
+pub(crate) fn drive(
     world: &World,
     network: &Network,
     plan: &Plan,

@@ -1,6 +1,6 @@
 //! A vehicle in simulation: it follows its path and avoids what it meets (SPEC 7.4).
 //!
-//! Every tenth of a second it sweeps its laser and aims at a point ahead on the path (pure pursuit, Coulter 1992), or, when
+//! Every tenth of a second, or every tenth of a metre when it creeps, it sweeps its laser and aims at a point ahead on the path (pure pursuit, Coulter 1992), or, when
 //! something stands between, along a detour around what it has seen (`detour`). It picks the speed and turning rate that
 //! serve this best among those it can reach and from which it can still stop in front of everything it has seen (dynamic
 //! window, Fox, Burgard and Thrun 1997).
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use terrain::{ConfigurationSpace, Random};
 
 use crate::detour::{SeenPoints, find_detour, nearest_along};
-use crate::geometry::{distance, squared_distance};
+use crate::geometry::{between, distance, squared_distance};
 use crate::laser::{FineWorld, LaserModel, LaserScan};
 use crate::path::Path;
 use crate::trajectory::{DriveLimits, MotionState, Trajectory, heading_difference};
@@ -33,6 +33,8 @@ pub struct DriverSettings {
     pub blocked_timeout_s: f64,
     /// Within this distance of the path's end it has arrived, in metres.
     pub arrival_m: f64,
+    /// The time between two decisions, in seconds.
+    pub step_s: f64,
     /// Its range finder.
     pub laser: LaserModel,
 }
@@ -49,12 +51,21 @@ impl DriverSettings {
             corridor_m: 5.0,
             blocked_timeout_s: 15.0,
             arrival_m: 0.2,
+            step_s: STEP_S,
             laser: LaserModel::SICK,
         }
     }
+
+    /// The same for a vehicle that drives at most this fast: a slow one decides less often, at every tenth of a metre,
+    /// and may take longer to make way.
+    pub fn at_most(self, speed_mps: f64) -> Self {
+        let step_s = (STEP_M / speed_mps).clamp(STEP_S, 20.0);
+        let blocked_timeout_s = self.blocked_timeout_s.max(BLOCKED_M / speed_mps);
+        Self { cruise_mps: speed_mps.min(self.limits.speed_mps), step_s, blocked_timeout_s, ..self }
+    }
 }
 
-/// What a tenth of a second of driving came to.
+/// What one step of driving came to.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum DriveEvent {
     /// Under way.
@@ -88,10 +99,22 @@ pub struct Driver {
     seen: SeenPoints,
     /// The way around what stands in front, while something does.
     detour: Option<Path>,
+    /// When a detour is looked for again after none was found.
+    no_detour_until_s: f64,
     random: Random,
 }
 
 const STEP_S: f64 = Trajectory::STEP_S;
+/// How far along a detour it looks for a place to aim at, in metres, farthest first.
+const DETOUR_SIGHTS_M: [f64; 6] = [1.1, 0.9, 0.7, 0.5, 0.4, 0.3];
+/// Steps for which no detour is looked for after none was found.
+const DETOUR_PAUSE_STEPS: f64 = 8.0;
+/// The way of a creeping vehicle between two decisions, in metres.
+const STEP_M: f64 = 0.08;
+/// A slow vehicle is blocked when it makes no way for as long as this many metres take it.
+const BLOCKED_M: f64 = 10.0;
+/// The greatest turn between two decisions, in radians.
+const STEP_TURN_RAD: f64 = 0.2;
 
 impl Driver {
     /// A vehicle at rest at the start of a path.
@@ -107,6 +130,7 @@ impl Driver {
             last_way: (0.0, 0.0),
             seen: SeenPoints::default(),
             detour: None,
+            no_detour_until_s: 0.0,
             random: Random::from_seed(seed),
         }
     }
@@ -126,6 +150,60 @@ impl Driver {
         self.progress_m
     }
 
+    /// The length of the path in metres.
+    pub const fn length_m(&self) -> f64 {
+        self.length_m
+    }
+
+    /// The path that it follows.
+    pub const fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// How it drives.
+    pub const fn settings(&self) -> &DriverSettings {
+        &self.settings
+    }
+
+    /// What it has seen around it and still remembers, in metres.
+    pub fn seen_m(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        self.seen.points_m()
+    }
+
+    /// Where it means to drive next, in metres: along a detour while something stands in the way, otherwise along its
+    /// path, for at most `length_m`.
+    pub fn plan_m(&self, length_m: f64) -> Vec<[f64; 2]> {
+        let (path, from_m) = match &self.detour {
+            Some(detour) => (detour, nearest_along(detour, self.state.position_m, 0.0, detour.length_m()).0),
+            None => (&self.path, self.progress_m),
+        };
+        let mut points = vec![self.state.position_m];
+        let Some((_, first)) = path.point_at(from_m) else { return points };
+        let mut along_m = 0.0;
+        for (index, (a, b)) in path.segments().enumerate() {
+            let start_m = along_m;
+            along_m += distance(a, b);
+            if index < first {
+                continue;
+            }
+            if along_m >= from_m + length_m {
+                let share = ((from_m + length_m - start_m) / (along_m - start_m)).clamp(0.0, 1.0);
+                points.push(between(a, b, share));
+                break;
+            }
+            points.push(b);
+        }
+        points
+    }
+
+    /// Changes the speed that it aims at, in metres per second. Standing on command is not being blocked.
+    pub const fn set_cruise(&mut self, speed_mps: f64) {
+        self.settings.cruise_mps = speed_mps;
+        if speed_mps <= 0.0 {
+            self.last_way.0 = self.time_s;
+        }
+    }
+
     /// Goes on along another path from where it is, at its speed: after a report.
     pub fn follow(&mut self, path: Path) {
         self.length_m = path.length_m();
@@ -135,7 +213,7 @@ impl Driver {
         self.detour = None;
     }
 
-    /// Drives for a tenth of a second, and returns what came of it with the sweep it was based on. Besides what the
+    /// Drives for one step, and returns what came of it with the sweep it was based on. Besides what the
     /// laser sees, `map` keeps the vehicle off steep ground; its radius should be the circumradius.
     pub fn step(&mut self, world: &FineWorld, map: Option<&ConfigurationSpace>) -> (DriveEvent, LaserScan) {
         let scan =
@@ -144,8 +222,12 @@ impl Driver {
         let remaining = (self.length_m - self.progress_m).max(0.0);
         let target = self.aim(map);
         let (speed, rate) = self.choose(target, remaining, map);
-        self.state = self.state.after(speed, rate, STEP_S, &self.settings.limits);
-        self.time_s += STEP_S;
+        // Speed and turning rate change within a moment, however long they are then kept.
+        let moments = (self.settings.step_s / STEP_S).round().max(1.0);
+        for _ in 0..moments as u32 {
+            self.state = self.state.after(speed, rate, self.settings.step_s / moments, &self.settings.limits);
+        }
+        self.time_s += self.settings.step_s;
         (self.judge(), scan)
     }
 
@@ -172,11 +254,23 @@ impl Driver {
             let ahead: Vec<[f64; 2]> = start.into_iter().chain(rest.iter().copied()).collect();
             away < 0.5 && detour.length_m() - along > 0.3 && Path::new(ahead).is_free(&surroundings)
         });
-        self.detour = kept.or_else(|| find_detour(&surroundings, here, &self.path, self.progress_m));
-        self.detour
-            .as_ref()
-            .and_then(|detour| ahead(detour, nearest_along(detour, here, 0.0, detour.length_m()).0 - 0.5))
-            .unwrap_or(target)
+        // Looking for a way where there was none a moment ago is of little use, and costs the most of all.
+        self.detour = kept;
+        if self.detour.is_none() && self.time_s >= self.no_detour_until_s {
+            self.detour = find_detour(&surroundings, here, &self.path, self.progress_m);
+            if self.detour.is_none() {
+                self.no_detour_until_s = self.time_s + DETOUR_PAUSE_STEPS * settings.step_s;
+            }
+        }
+        // As far along the detour as the way there is straight and open: cutting its corners would lead too near.
+        let Some(detour) = &self.detour else { return target };
+        let (along, _) = nearest_along(detour, here, 0.0, detour.length_m());
+        let place = |ahead_m: f64| detour.point_at(along + ahead_m).map(|(place, _)| place);
+        let in_sight = DETOUR_SIGHTS_M
+            .iter()
+            .filter_map(|&ahead_m| place(ahead_m))
+            .find(|&place| self.seen.is_open(here, place, reach + 0.25 * settings.margin_m));
+        in_sight.or_else(|| place(0.25)).unwrap_or(target)
     }
 
     /// The reachable speed and turning rate that bring it best toward the target and still let it stop.
@@ -184,7 +278,8 @@ impl Driver {
         const SPEEDS: u32 = 6;
         const RATES: u32 = 14;
         let limits = &self.settings.limits;
-        let (slowing, turning) = (limits.acceleration_mps2 * STEP_S, limits.turn_acceleration_rps2 * STEP_S);
+        let step_s = self.settings.step_s;
+        let (slowing, turning) = (limits.acceleration_mps2 * step_s, limits.turn_acceleration_rps2 * step_s);
         let brake_for_end = (2.0 * limits.acceleration_mps2 * remaining_m).sqrt().max(0.05);
         let slowest = (self.state.speed_mps - slowing).max(0.0);
         let fastest = (self.state.speed_mps + slowing)
@@ -192,11 +287,12 @@ impl Driver {
             .min(brake_for_end)
             .min(limits.speed_mps)
             .max(slowest);
+        let sharpest = limits.turn_rate_rps.min(STEP_TURN_RAD / step_s);
         let (rightmost, leftmost) = (
-            (self.state.turn_rate_rps - turning).max(-limits.turn_rate_rps),
-            (self.state.turn_rate_rps + turning).min(limits.turn_rate_rps),
+            (self.state.turn_rate_rps - turning).clamp(-sharpest, sharpest),
+            (self.state.turn_rate_rps + turning).clamp(-sharpest, sharpest),
         );
-        let needed_at = |speed: f64| speed * speed / (2.0 * limits.acceleration_mps2) + speed * STEP_S;
+        let needed_at = |speed: f64| speed * speed / (2.0 * limits.acceleration_mps2) + speed * step_s;
         let horizon = needed_at(fastest) + 1.0 + self.settings.radius_m + self.settings.margin_m;
         let here = self.state.position_m;
         let near: Vec<[f64; 2]> = self
@@ -209,7 +305,9 @@ impl Driver {
         };
         // Standing and turning to the target is always possible: the vehicle is a disc.
         let bearing = bearing_error(self.state, target);
-        let turn = (2.0 * bearing).clamp(rightmost, leftmost);
+        let turn = ((0.5 / step_s).min(2.0) * bearing).clamp(rightmost, leftmost);
+        let is_open = near.is_empty()
+            && map.is_none_or(|map| map.clearance_m(here).is_some_and(|clearance| clearance > horizon));
         let mut best = (self.score(slowest, turn, target, fastest, 0.0), slowest, turn);
         for speed_index in 0..=SPEEDS {
             let speed = share(slowest, fastest, speed_index, SPEEDS);
@@ -219,7 +317,8 @@ impl Driver {
                     continue;
                 }
                 let needed = needed_at(speed);
-                let free = self.free_way(speed, rate, needed + 1.0, &near, map);
+                let free =
+                    if is_open { needed + 1.0 } else { self.free_way(speed, rate, needed + 1.0, &near, map) };
                 if free <= needed {
                     continue;
                 }
@@ -235,17 +334,17 @@ impl Driver {
     /// How well a speed and rate serve: facing the target soon, the share of the way that the fastest speed within reach
     /// would make toward it, and a little for room ahead.
     fn score(&self, speed: f64, rate: f64, target: [f64; 2], fastest: f64, room_m: f64) -> f64 {
-        const LOOK_S: f64 = 1.0;
+        let look_s = (5.0 * self.settings.step_s).max(1.0);
         let mut state = self.state;
         state.speed_mps = speed;
         state.turn_rate_rps = rate;
         let steps = 5;
         for _ in 0..steps {
-            state = coast(state, LOOK_S / f64::from(steps));
+            state = coast(state, look_s / f64::from(steps));
         }
         let error = bearing_error(state, target).abs() / std::f64::consts::PI;
         let approach = (distance(self.state.position_m, target) - distance(state.position_m, target))
-            / (fastest.max(1e-3) * LOOK_S);
+            / (fastest.max(1e-3) * look_s);
         1.5 * (1.0 - error) + approach + 0.1 * room_m
     }
 

@@ -106,7 +106,7 @@ impl FineWorld {
         model: &LaserModel,
         random: &mut Random,
     ) -> LaserScan {
-        let near = self.within(origin_m, model.range_m);
+        let near = self.around(origin_m, model.range_m);
         let rays = (model.field_of_view_rad / model.resolution_rad).round().clamp(0.0, 1e5) as u32;
         let first_ray_rad = heading_rad - 0.5 * model.field_of_view_rad;
         let ranges_m = (0..=rays)
@@ -120,7 +120,8 @@ impl FineWorld {
         LaserScan { origin_m, first_ray_rad, resolution_rad: model.resolution_rad, ranges_m }
     }
 
-    fn within(&self, point_m: [f64; 2], range_m: f64) -> Self {
+    /// What of it comes within a range of a point.
+    pub fn around(&self, point_m: [f64; 2], range_m: f64) -> Self {
         let near = |disc: &&Disc| {
             let reach = range_m + disc.radius_m;
             squared_distance(disc.center_m, point_m) <= reach * reach

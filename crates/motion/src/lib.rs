@@ -11,6 +11,7 @@
 //! Nothing here reads a clock or draws unseeded numbers: the same call gives the same bits natively and in wasm.
 
 mod altitude;
+mod convoy;
 mod detour;
 mod driver;
 mod formation;
@@ -34,6 +35,7 @@ mod tree;
 mod vehicle;
 
 pub use altitude::path_in_space;
+pub use convoy::{Convoy, ConvoyMember, Surroundings};
 pub use driver::{DriveEvent, Driver, DriverSettings};
 pub use formation::Formation;
 pub use laser::{FineWorld, LaserModel, LaserScan};

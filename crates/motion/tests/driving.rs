@@ -1,7 +1,8 @@
 //! Vehicles that drive by themselves in a world finer than their map.
 
 use motion::{
-    DriveEvent, DriveLimits, Driver, DriverSettings, FineWorld, Path, Trajectory, VehicleModel, vehicle_model,
+    Convoy, ConvoyMember, DriveEvent, DriveLimits, Driver, DriverSettings, FineWorld, Path, Surroundings,
+    Trajectory, VehicleModel, vehicle_model,
 };
 use terrain::{Obstacle, Random};
 
@@ -107,4 +108,63 @@ fn the_same_seed_drives_the_same_way() {
     let end = |driver: &Driver| (driver.state(), driver.time_s());
     assert_eq!(end(&run(7)), end(&run(7)));
     assert_ne!(end(&run(7)), end(&run(8)));
+}
+
+#[test]
+fn a_creeping_vehicle_passes_rocks_too_and_takes_as_long_as_its_speed_says() {
+    let creeping = settings().at_most(0.025);
+    assert!((creeping.step_s - 3.2).abs() < 1e-9);
+    let mut arrived = 0;
+    for seed in 0..8 {
+        let mut random = Random::from_seed(seed);
+        let mut world = FineWorld::default();
+        for _ in 0..14 {
+            let center_m = [random.range(5.0, 35.0), random.range(-4.0, 4.0)];
+            world.add(&Obstacle::Circle { center_m, radius_m: random.range(0.2, 0.45) });
+        }
+        let mut driver = Driver::new(Path::new(vec![[0.0, 0.0], [40.0, 0.0]]), 0.0, creeping, seed);
+        for _ in 0..2000 {
+            let before = driver.state().position_m;
+            let (event, _) = driver.step(&world, None);
+            let place = driver.state().position_m;
+            assert!((place[0] - before[0]).hypot(place[1] - before[1]) <= 0.1 + 1e-9);
+            let clearance = world.distance_m(place);
+            assert!(clearance >= creeping.radius_m, "seed {seed}: {clearance} m at {place:?}");
+            if event == DriveEvent::Arrived {
+                arrived += 1;
+                // 40 m at 0.025 m/s are 1600 s; ways around rocks are longer.
+                assert!((1590.0..2100.0).contains(&driver.time_s()), "seed {seed}: {} s", driver.time_s());
+            }
+            if event != DriveEvent::Driving {
+                break;
+            }
+        }
+    }
+    assert!(arrived >= 7, "{arrived} of 8 arrived");
+}
+
+#[test]
+fn a_convoy_keeps_apart_waits_for_a_stopped_follower_and_arrives() {
+    let jr = rover();
+    let spacing_m = 2.2 * jr.circumradius_m + 1.0;
+    let settings = DriverSettings::new(DriveLimits::of(jr), jr.circumradius_m).at_most(0.5);
+    let leader = Path::new(vec![[0.0, 0.0], [30.0, 0.0], [30.0, 25.0]]);
+    let follower = Path::new(vec![[-spacing_m, 0.0], [30.0, 0.0], [30.0, 25.0 - spacing_m]]);
+    let members = [leader, follower].map(|path| ConvoyMember { path, heading_rad: 0.0, settings }).to_vec();
+    let mut convoy = Convoy::new(members, spacing_m, 3);
+    let world = FineWorld::default();
+    let around = Surroundings { world: &world, has_changed: false, maps: &[], others: &[] };
+    let mut farthest = 0.0_f64;
+    while !convoy.has_arrived() && convoy.time_s() < 600.0 {
+        let stopped = (20.0..60.0).contains(&convoy.time_s());
+        convoy.step(&around, 0.5, &[0.5, if stopped { 0.0 } else { 0.6 }]);
+        let [a, b] = [0, 1].map(|vehicle| convoy.state(vehicle).position_m);
+        let apart = (a[0] - b[0]).hypot(a[1] - b[1]);
+        assert!(apart > 2.0 * jr.circumradius_m, "{apart} m apart at {}", convoy.time_s());
+        farthest = farthest.max(apart);
+    }
+    assert!(convoy.has_arrived(), "{:?} {:?}", convoy.state(0), convoy.state(1));
+    assert!(farthest < 6.0 * spacing_m, "the leader waits: {farthest}");
+    // 55 m at 0.5 m/s are 110 s, and 40 s of standing, less the lead that the leader had.
+    assert!((130.0..190.0).contains(&convoy.time_s()), "{}", convoy.time_s());
 }

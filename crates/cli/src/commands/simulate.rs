@@ -5,11 +5,15 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use anyhow::Context as _;
-use executive::{Ending, Entry, Happening, Script, World};
+use executive::{Ending, Entry, Happening, Script};
+use mission::execution::{self, Ran};
 use mission::planning::{self, Problem};
-use mission::{Paths, execution};
+use mission::{DriveFrame, Paths, SimulatedDrive};
+use rmpl::program::Program;
 use rmpl::rational::display;
-use serde_json::json;
+use serde_json::{Value, json};
+use tpn::Network;
+use tpn::number::time_to_json;
 
 use crate::input::read_json;
 use crate::load::Target;
@@ -23,7 +27,8 @@ pub struct Args {
     /// Seeds path planning.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// What goes otherwise than planned: {"disturbances": [{"kind": "duration" | "slow" | "withdrawn" | "late", …}…]}.
+    /// What goes otherwise than planned: {"disturbances": [{"kind": "duration" | "slow" | "withdrawn" | "late" | "obstacle" |
+    /// "vehicle-slow", …}…]}; `docs/simulation.md` lists their members.
     #[arg(long, value_name = "D.json")]
     disturb: Option<PathBuf>,
     /// For whom the answer is.
@@ -43,8 +48,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
         return Ok(exit(WRONG));
     };
-    let unknown = World::unknown(&network, &disturbances);
-    anyhow::ensure!(unknown.is_empty(), "no activity or condition is called {}", unknown.join(", "));
+    let unknown = execution::unknown(&network, program, &disturbances);
+    anyhow::ensure!(unknown.is_empty(), "no activity, condition or vehicle is called {}", unknown.join(", "));
     let mut grounds = mission::Grounds::default();
     let mut paths = Paths::default();
     let (ground, _) = grounds.resolve(&program.world);
@@ -68,7 +73,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         }
         return Ok(exit(NO));
     };
-    let outcome = outcome?.outcome;
+    let Ran { outcome, drives, .. } = outcome?;
     match args.format {
         Format::Text => print_text(&outcome.log.iter().map(line).collect::<String>())?,
         Format::Json => {
@@ -77,11 +82,33 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
                 "seed": args.seed,
                 "disturbances": disturbances,
                 "log": outcome.log,
+                "drives": drives.iter().map(|drive| drive_json(drive, &network, program)).collect::<Vec<_>>(),
             });
             print_json(&document("simulate", &loaded.problems, body))?;
         }
     }
     Ok(exit(if outcome.ending == Ending::Finished { YES } else { NO }))
+}
+
+/// A traverse as it was driven: each vehicle's track as [time, east, north, heading, speed].
+fn drive_json(drive: &SimulatedDrive, network: &Network, program: &Program) -> Value {
+    let name = |vehicle: u32| program.world.vehicles.get(vehicle as usize).map(|it| it.name.text.as_str());
+    let track = |frames: &[DriveFrame]| -> Vec<[f64; 5]> {
+        let row =
+            |it: &DriveFrame| [it.time, it.position_m[0], it.position_m[1], it.heading_rad, it.speed_mps];
+        frames.iter().map(row).collect()
+    };
+    json!({
+        "activity": network.occurrences[drive.occurrence.index()].name,
+        "start": time_to_json(drive.start),
+        "duration": drive.duration.map(time_to_json),
+        "reroutes": drive.reroutes,
+        "least_clearance_m": drive.least_clearance_m.is_finite().then_some(drive.least_clearance_m),
+        "vehicles": drive.vehicles.iter().map(|vehicle| json!({
+            "vehicle": name(vehicle.vehicle),
+            "track": track(&vehicle.frames),
+        })).collect::<Vec<_>>(),
+    })
 }
 
 fn line(entry: &Entry) -> String {

@@ -51,7 +51,7 @@ impl Core {
         let revision = update.revision;
         let Some(worked) = self.work_out(update, surroundings) else { return };
         let executed = worked.and_then(|worked| {
-            let unknown = executive::World::unknown(&worked.network, &script.disturbances);
+            let unknown = execution::unknown(&worked.network, &worked.program, &script.disturbances);
             if !unknown.is_empty() {
                 return Err(format!("the mission has no {}", unknown.join(", ")));
             }

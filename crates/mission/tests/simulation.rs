@@ -1,0 +1,195 @@
+//! Vehicles that drive their traverses in simulation: past what the map does not show, late where that costs time, and
+//! with consequences for the plan.
+
+use std::sync::Arc;
+
+use executive::{Disturbance, Ending, Happening, Script};
+use mission::execution::{self, Execution};
+use mission::planning::{self, Problem};
+use mission::{Goal, Grounds, Paths, SimulatedDrive};
+use rmpl::Rational;
+
+const ENROUTE: &str = include_str!("../../../assets/missions/enroute.rmpl");
+const DETOUR: &str = include_str!("../../../assets/missions/detour.rmpl");
+
+/// Executes a mission's plan.
+fn run(source: &str, disturbances: &[Disturbance]) -> Execution {
+    let parse = rmpl::parse(source);
+    let program = parse.program();
+    let mut diagnostics = parse.diagnostics();
+    let network = mission::compile(&program, &Goal::Default, &mut diagnostics);
+    let network = Arc::new(network.unwrap_or_else(|| panic!("{diagnostics:?}")));
+    let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
+    let (ground, _) = grounds.resolve(&program.world);
+    let problem = Problem {
+        network: &network,
+        program: &program,
+        ground: ground.as_ref().map(|(key, map)| (key, map)),
+        options: kirk::Options::default(),
+        seed: 1,
+        facts: None,
+    };
+    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
+    let ran = execution::execute(&problem, &planned, disturbances, &mut grounds, &mut paths);
+    let ran = ran.expect("there is a plan").expect("its times fit");
+    let script = Script { disturbances: disturbances.to_vec() };
+    Execution::new(1, script, &program, &planned, ran)
+}
+
+fn minutes(time: Rational) -> f64 {
+    *time.numer() as f64 / *time.denom() as f64
+}
+
+fn duration(drive: &SimulatedDrive) -> f64 {
+    minutes(drive.duration.expect("it arrived"))
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+fn obstacle(at: i64, [x, y]: [f64; 2], radius: f64) -> Disturbance {
+    Disturbance::Obstacle { at: at.into(), x, y, radius }
+}
+
+fn stand(vehicle: &str, from: i64, until: i64) -> Disturbance {
+    Disturbance::VehicleSlow {
+        vehicle: vehicle.into(),
+        factor: Rational::default(),
+        from: from.into(),
+        until: until.into(),
+    }
+}
+
+fn violations(execution: &Execution) -> Vec<&str> {
+    execution
+        .log
+        .iter()
+        .filter_map(|entry| match &entry.happening {
+            Happening::Violation { reason, .. } => Some(reason.as_str()),
+            _ => None,
+        })
+        .collect()
+}
+
+fn progress(execution: &Execution) -> Vec<&str> {
+    execution
+        .log
+        .iter()
+        .filter_map(|entry| match &entry.happening {
+            Happening::Progress { text, .. } => Some(text.as_str()),
+            _ => None,
+        })
+        .collect()
+}
+
+/// The radius of an ATRV in metres.
+const ATRV_M: f64 = 0.661;
+
+#[test]
+fn an_undisturbed_rover_drives_its_path_in_about_the_planned_time_and_touches_nothing() {
+    let execution = run(DETOUR, &[]);
+    assert_eq!(execution.ending, Ending::Finished, "{:?}", execution.log.last());
+    assert!(violations(&execution).is_empty());
+    let [drive] = execution.drives.as_slice() else { panic!("one traverse is driven") };
+    assert!(drive.least_clearance_m > 0.0, "{}", drive.least_clearance_m);
+    let frames = &drive.vehicles[0].frames;
+    assert!(distance(frames[0].position_m, [116.0, 72.0]) < 0.01);
+    let last = frames.last().expect("there are frames");
+    assert!(distance(last.position_m, [288.0, 72.0]) <= 0.2 + 1e-9, "{last:?}");
+    // 173 m at 0.2 m/s are 14.4 minutes.
+    assert!((14.3..16.5).contains(&duration(drive)), "{}", duration(drive));
+    for pair in frames.windows(2) {
+        let seconds = (pair[1].time - pair[0].time) * 60.0;
+        let way = distance(pair[0].position_m, pair[1].position_m);
+        assert!(way <= 0.2 * seconds + 0.01, "{way} m in {seconds} s");
+    }
+    let motion = &execution.plans[0].motions[0];
+    let middle = &frames[frames.len() / 2];
+    assert!(distance(motion.at(middle.time).expect("it moves").0, middle.position_m) < 0.05);
+}
+
+#[test]
+fn a_rock_that_appears_on_the_path_is_seen_and_passed() {
+    let free = run(DETOUR, &[]);
+    let rock = [150.0, 70.4];
+    let execution = run(DETOUR, &[obstacle(1, rock, 0.8)]);
+    assert_eq!(execution.ending, Ending::Finished, "{:?}", execution.log.last());
+    let drive = &execution.drives[0];
+    let frames = &drive.vehicles[0].frames;
+    let nearest = frames.iter().map(|frame| distance(frame.position_m, rock)).fold(f64::INFINITY, f64::min);
+    assert!(nearest >= 0.8 + ATRV_M, "it touches the rock: {nearest}");
+    assert!(nearest < 4.0, "the rock is beside the way: {nearest}");
+    assert!(drive.least_clearance_m >= 0.0);
+    assert!(duration(drive) >= duration(&free.drives[0]) - 0.1);
+    let seen = frames.iter().flat_map(|frame| &frame.rays_m);
+    let on_rock =
+        seen.filter(|point| (distance([f64::from(point[0]), f64::from(point[1])], rock) - 0.8).abs() < 0.1);
+    assert!(on_rock.count() > 20, "the laser sees it");
+}
+
+#[test]
+fn a_closed_gap_is_reported_and_another_way_taken_which_takes_longer() {
+    let execution = run(DETOUR, &[obstacle(3, [200.0, 68.0], 5.5)]);
+    assert_eq!(execution.ending, Ending::Stopped, "GAP itself is covered: {:?}", execution.log.last());
+    assert!(violations(&execution)[0].contains("Scout finds no way on"), "{:?}", violations(&execution));
+    // Beside the waypoint the same rock leaves it reachable, but only from one side.
+    let behind = run(DETOUR, &[obstacle(3, [214.0, 68.0], 6.0)]);
+    assert_eq!(behind.ending, Ending::Finished, "{:?}", behind.log.last());
+    assert!(
+        progress(&behind).iter().any(|text| text.contains("takes another way")),
+        "{:?}",
+        behind.log.last()
+    );
+    assert!(behind.drives[0].reroutes >= 1 && behind.drives[0].least_clearance_m >= 0.0);
+}
+
+#[test]
+fn what_a_rover_loses_by_standing_reaches_the_plan() {
+    let free = run(DETOUR, &[]);
+    let late = run(DETOUR, &[stand("Scout", 5, 15)]);
+    let lost = duration(&late.drives[0]) - duration(&free.drives[0]);
+    assert!((9.5..11.0).contains(&lost), "{lost} minutes");
+    assert_eq!(late.ending, Ending::Finished);
+    let end = late.log.last().expect("it ends").time;
+    assert!(minutes(end) - minutes(free.log.last().expect("it ends").time) > 9.0);
+    let tight = DETOUR.replace("Carry(GAP, LANDER)[10,60]", "Carry(GAP, LANDER)[10,20]");
+    assert_ne!(tight, DETOUR);
+    let violated = run(&tight, &[stand("Scout", 5, 15)]);
+    assert!(violations(&violated)[0].contains("had to come by"), "{:?}", violations(&violated));
+    let is_replanned = |entry: &executive::Entry| matches!(entry.happening, Happening::Replanned { .. });
+    assert!(
+        violated.log.iter().any(is_replanned),
+        "the plan is made anew with the time that it really takes"
+    );
+    assert_eq!(violated.ending, Ending::Finished);
+    assert_eq!(duration(&violated.drives[0]), duration(&late.drives[0]));
+}
+
+#[test]
+fn a_convoy_makes_good_what_it_lost_where_the_plan_leaves_time_and_fails_where_it_does_not() {
+    let execution = run(ENROUTE, &[stand("Rover2", 100, 120)]);
+    assert_eq!(execution.ending, Ending::Finished, "{:?}", execution.log.last());
+    assert!(violations(&execution).is_empty());
+    let drive = &execution.drives[0];
+    assert!(drive.least_clearance_m >= 0.0, "{}", drive.least_clearance_m);
+    // The traverse takes 405 minutes at least by its bounds, and about 253 at full speed.
+    assert!(duration(drive) <= 406.0, "{}", duration(drive));
+    let motions = &execution.plans[0].motions;
+    for step in 0..4000 {
+        let time = 10.0 + f64::from(step) * 0.1;
+        let [leader, follower] = [0, 1].map(|index: usize| motions[index].at(time).expect("it moves").0);
+        let apart = distance(leader, follower);
+        assert!(apart > 0.661 + 0.515, "{apart} m apart at {time}");
+        assert!(apart < 15.0, "{apart} m apart at {time}");
+    }
+    let lost = run(ENROUTE, &[stand("Rover1", 100, 320)]);
+    assert_eq!(lost.ending, Ending::Stopped);
+    assert!(!violations(&lost).is_empty());
+}
+
+#[test]
+fn the_same_run_is_driven_the_same_way() {
+    let disturbances = [obstacle(2, [150.0, 70.4], 0.8), stand("Scout", 6, 7)];
+    assert_eq!(run(DETOUR, &disturbances), run(DETOUR, &disturbances));
+}

@@ -1,0 +1,182 @@
+//! Vehicles that drive one behind the other in simulation: each follows its own path and avoids what it meets, the
+//! leader keeps a pace, and the others keep up with it without touching each other (SPEC 7.4).
+
+use terrain::ConfigurationSpace;
+
+use crate::driver::{DriveEvent, Driver, DriverSettings};
+use crate::geometry::distance;
+use crate::laser::{FineWorld, LaserScan};
+use crate::path::Path;
+use crate::trajectory::MotionState;
+
+/// Vehicles under way together; the first leads.
+#[derive(Clone, Debug)]
+pub struct Convoy {
+    members: Vec<Member>,
+    spacing_m: f64,
+    step_s: f64,
+    time_s: f64,
+}
+
+#[derive(Clone, Debug)]
+struct Member {
+    driver: Driver,
+    has_arrived: bool,
+    /// What of the world is near, and where it was looked for.
+    near: Option<(FineWorld, [f64; 2])>,
+}
+
+/// What a vehicle sets out with.
+#[derive(Clone, Debug)]
+pub struct ConvoyMember {
+    /// Its path, from where it stands.
+    pub path: Path,
+    /// Its heading in radians.
+    pub heading_rad: f64,
+    /// How it drives.
+    pub settings: DriverSettings,
+}
+
+/// What the surroundings of a step are.
+#[derive(Clone, Copy, Debug)]
+pub struct Surroundings<'a> {
+    /// What lasers meet.
+    pub world: &'a FineWorld,
+    /// Whether the world has changed since the last step.
+    pub has_changed: bool,
+    /// For each vehicle, the map that keeps it off steep ground.
+    pub maps: &'a [ConfigurationSpace],
+    /// Other vehicles that move, as place and radius in metres: a vehicle stands rather than drive at one.
+    pub others: &'a [([f64; 2], f64)],
+}
+
+/// A part of the world this far around a vehicle is kept at hand, in metres.
+const AT_HAND_M: f64 = 14.0;
+/// It is looked for again after so many metres.
+const AT_HAND_STEP_M: f64 = 4.0;
+/// The leader waits when a follower is this many spacings behind its place.
+const WAITING_SPACINGS: f64 = 3.0;
+
+impl Convoy {
+    /// Vehicles at rest; all decide as often as the one that decides most often.
+    pub fn new(members: Vec<ConvoyMember>, spacing_m: f64, seed: u64) -> Self {
+        let step_s = members.iter().map(|member| member.settings.step_s).fold(f64::INFINITY, f64::min);
+        let members = members
+            .into_iter()
+            .enumerate()
+            .map(|(index, ConvoyMember { path, heading_rad, settings })| {
+                let settings = DriverSettings { step_s, ..settings };
+                let driver = Driver::new(path, heading_rad, settings, seed.wrapping_add(index as u64));
+                Member { driver, has_arrived: false, near: None }
+            })
+            .collect();
+        Self { members, spacing_m, step_s, time_s: 0.0 }
+    }
+
+    /// Seconds driven.
+    pub const fn time_s(&self) -> f64 {
+        self.time_s
+    }
+
+    /// Seconds between two decisions.
+    pub const fn step_s(&self) -> f64 {
+        self.step_s
+    }
+
+    /// A vehicle's driver; the leader is 0.
+    pub fn driver(&self, vehicle: usize) -> Option<&Driver> {
+        Some(&self.members.get(vehicle)?.driver)
+    }
+
+    /// Whether all have arrived.
+    pub fn has_arrived(&self) -> bool {
+        self.members.iter().all(|member| member.has_arrived)
+    }
+
+    /// Metres that the leader still has to go.
+    pub fn remaining_m(&self) -> f64 {
+        self.members.first().map_or(0.0, |leader| leader.driver.length_m() - leader.driver.progress_m())
+    }
+
+    /// Sends a vehicle along another path from where it is.
+    pub fn follow(&mut self, vehicle: usize, path: Path) {
+        if let Some(member) = self.members.get_mut(vehicle) {
+            member.driver.follow(path);
+            member.has_arrived = false;
+        }
+    }
+
+    /// Drives for one step. The leader aims at `pace_mps`; no vehicle drives faster than its entry in `most_mps`.
+    pub fn step(
+        &mut self,
+        around: &Surroundings<'_>,
+        pace_mps: f64,
+        most_mps: &[f64],
+    ) -> Vec<(DriveEvent, LaserScan)> {
+        self.time_s += self.step_s;
+        let share = self.leader_share();
+        let lag_m = |member: &Member| {
+            (share * member.driver.length_m() - member.driver.progress_m())
+                * f64::from(u8::from(!member.has_arrived))
+        };
+        let waits = self.members.iter().skip(1).any(|it| lag_m(it) > WAITING_SPACINGS * self.spacing_m);
+        let mut steps = Vec::with_capacity(self.members.len());
+        for index in 0..self.members.len() {
+            let most = most_mps.get(index).copied().unwrap_or(0.0);
+            let wanted = match index {
+                0 if waits => 0.0,
+                0 => pace_mps,
+                _ => (pace_mps * (1.0 + 0.5 * lag_m(&self.members[index]))).max(0.0),
+            };
+            let is_held = self.is_held(index, around.others);
+            let speed = if is_held || self.members[index].has_arrived { 0.0 } else { wanted.min(most) };
+            let member = &mut self.members[index];
+            member.driver.set_cruise(speed);
+            let here = member.driver.state().position_m;
+            let is_at_hand = |near: &(FineWorld, [f64; 2])| distance(near.1, here) <= AT_HAND_STEP_M;
+            if around.has_changed || !member.near.as_ref().is_some_and(is_at_hand) {
+                member.near = Some((around.world.around(here, AT_HAND_M), here));
+            }
+            let world = member.near.as_ref().map_or(around.world, |(near, _)| near);
+            let (event, scan) = member.driver.step(world, around.maps.get(index));
+            member.has_arrived |= event == DriveEvent::Arrived;
+            steps.push((event, scan));
+        }
+        steps
+    }
+
+    /// Where a vehicle is and how it moves.
+    pub fn state(&self, vehicle: usize) -> MotionState {
+        self.members.get(vehicle).map(|member| member.driver.state()).unwrap_or_default()
+    }
+
+    fn leader_share(&self) -> f64 {
+        let Some(leader) = self.members.first().filter(|leader| !leader.has_arrived) else { return 1.0 };
+        let length_m = leader.driver.length_m();
+        if length_m > 0.0 { leader.driver.progress_m() / length_m } else { 1.0 }
+    }
+
+    /// Whether a vehicle must not go on because another is close in front of it.
+    fn is_held(&self, vehicle: usize, others: &[([f64; 2], f64)]) -> bool {
+        let own = &self.members[vehicle].driver;
+        let state = own.state();
+        let ahead = [libm::cos(state.heading_rad), libm::sin(state.heading_rad)];
+        let is_near = |place: [f64; 2], reach_m: f64| {
+            let offset = [place[0] - state.position_m[0], place[1] - state.position_m[1]];
+            let toward = offset[0] * ahead[0] + offset[1] * ahead[1];
+            toward > 0.0 && distance(place, state.position_m) < reach_m
+        };
+        let radius_m = own.settings().radius_m;
+        let stopping_m = state.speed_mps * state.speed_mps / (2.0 * own.settings().limits.acceleration_mps2)
+            + state.speed_mps * self.step_s;
+        let within = self.members.iter().enumerate().any(|(index, other)| {
+            let reach_m = if index < vehicle {
+                0.85 * self.spacing_m
+            } else {
+                radius_m + other.driver.settings().radius_m + 0.2
+            };
+            index != vehicle && is_near(other.driver.state().position_m, reach_m + stopping_m)
+        });
+        within || others.iter().any(|&(place, other)| is_near(place, radius_m + other + 0.5 + stopping_m))
+    }
+}
