@@ -48,7 +48,7 @@ pub(crate) fn compare(quick: bool) -> Result<()> {
             row(name, &text, (&full, &key));
         }
     }
-    table.note("A keystroke types a digit into a number in the middle of the file, or deletes it. Ours then also has its diagnostics of syntax current; tree-sitter has none. Medians of 41 full parses and 400 keystrokes, and the best, which other work on the machine disturbs least.");
+    table.note("A keystroke types a digit into a number in the middle of the file, or deletes it. Ours also checks names, types and bounds, and has its diagnostics current; tree-sitter has the tree alone. Medians of 41 full parses and 400 keystrokes, and the best, which other work on the machine disturbs least.");
     table.print();
     Ok(())
 }

@@ -110,7 +110,8 @@ fn summary(maps: &[Map], shortest: &[f64], found: &[Vec<Run>]) -> Vec<String> {
             })
             .collect();
         let show = |value: f64| digits.map_or_else(|| figure(value), |digits| format!("{value:.digits$}"));
-        format!("{} – {}", show(quantile(&medians, 0.0)), show(quantile(&medians, 1.0)))
+        let (least, greatest) = (quantile(&medians, 0.0), quantile(&medians, 1.0));
+        if least.is_nan() { "–".to_owned() } else { format!("{} – {}", show(least), show(greatest)) }
     };
     let all: Vec<(&Run, &Map, f64)> = (found.iter().zip(maps).zip(shortest))
         .flat_map(|((runs, map), &shortest)| runs.iter().map(move |run| (run, map, shortest)))
@@ -161,7 +162,8 @@ fn ours(map: &Map, planner: PlannerKind, seed: u64) -> Run {
     Run { first_ms, path: path.points_m, simplify_ms: millis(start.elapsed()), simplified: short.points_m }
 }
 
-/// What a mission does for a leg of a traverse, with this comparison's step: all of it counts as the time of the path.
+/// What a mission does for a leg of a traverse, with this comparison's step: all of it, shortening too, counts as the
+/// time of the path.
 fn best_of_six(map: &Map, seed: u64) -> Run {
     let query = Query { start_m: ENDS[0], goal_m: ENDS[1] };
     let settings = Settings { step_m: 20.0, seed, ..Settings::of(PlannerKind::RrtConnect) };
@@ -170,5 +172,5 @@ fn best_of_six(map: &Map, seed: u64) -> Run {
     let found = find_shortest_path(&map.space, query, &settings, &shortcut, 6, &mut |_| false);
     let first_ms = millis(start.elapsed());
     let path = found.path.map(|path| path.points_m).unwrap_or_default();
-    Run { first_ms, simplified: path.clone(), path, simplify_ms: 0.0 }
+    Run { first_ms, simplified: path.clone(), path, simplify_ms: f64::NAN }
 }
