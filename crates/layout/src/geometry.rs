@@ -148,6 +148,19 @@ impl Piece {
         }
     }
 
+    /// The piece up to `fraction` of its parameter, when it begins at `start` (de Casteljau).
+    pub fn first_part(self, start: Point, fraction: f64) -> Self {
+        match self {
+            Self::Line(end) => Self::Line(start.lerp(end, fraction)),
+            Self::Cubic(first, second, end) => {
+                let (a, b, c) =
+                    (start.lerp(first, fraction), first.lerp(second, fraction), second.lerp(end, fraction));
+                let (d, e) = (a.lerp(b, fraction), b.lerp(c, fraction));
+                Self::Cubic(a, d, d.lerp(e, fraction))
+            }
+        }
+    }
+
     /// The point that the end of the piece is reached from; gives the direction of an arrow head.
     pub fn before_end(self, start: Point) -> Point {
         match self {
@@ -180,6 +193,24 @@ pub fn flatten(start: Point, pieces: &[Piece]) -> Vec<Point> {
         from = piece.end();
     }
     points
+}
+
+/// The first `fraction` of a curve, measured along it; all pieces count by the length of their chords.
+pub fn first_part(start: Point, pieces: &[Piece], fraction: f64) -> Vec<Piece> {
+    let starts = std::iter::once(start).chain(pieces.iter().map(|piece| piece.end()));
+    let lengths: Vec<f64> =
+        starts.clone().zip(pieces).map(|(from, piece)| from.distance(piece.end())).collect();
+    let mut left = lengths.iter().sum::<f64>() * fraction.clamp(0.0, 1.0);
+    let mut part = Vec::new();
+    for ((from, &piece), length) in starts.zip(pieces).zip(lengths) {
+        if length > left {
+            part.push(piece.first_part(from, left / length));
+            break;
+        }
+        left -= length;
+        part.push(piece);
+    }
+    part
 }
 
 /// A rectangle that holds the curve: that of its points and control points.
@@ -222,6 +253,19 @@ mod tests {
         let pieces = [Piece::Line(Point::new(10.0, 0.0)), Piece::Line(Point::new(10.0, 10.0))];
         assert_eq!(distance_point_curve(Point::new(13.0, 5.0), Point::default(), &pieces), 3.0);
         assert_eq!(distance_point_curve(Point::new(-4.0, 3.0), Point::default(), &pieces), 5.0);
+    }
+
+    #[test]
+    fn the_first_part_of_a_curve_ends_on_it() {
+        let (corner, end) = (Point::new(10.0, 0.0), Point::new(10.0, 30.0));
+        let pieces = [Piece::Line(corner), Piece::Line(end)];
+        assert_eq!(
+            first_part(Point::default(), &pieces, 0.5),
+            [pieces[0], Piece::Line(Point::new(10.0, 10.0))]
+        );
+        assert_eq!(first_part(Point::default(), &pieces, 1.0), pieces);
+        let cubic = Piece::Cubic(Point::new(0.0, 10.0), Point::new(20.0, 10.0), Point::new(20.0, 0.0));
+        assert_eq!(cubic.first_part(Point::default(), 0.25).end(), cubic.at(Point::default(), 0.25));
     }
 
     #[test]

@@ -11,8 +11,10 @@ pub mod metrics;
 pub mod options;
 pub mod overlay;
 pub mod palette;
+pub mod progress;
 pub mod svg;
 pub mod text;
+pub mod threads;
 
 mod across;
 mod emit;
@@ -29,10 +31,12 @@ pub use drawing::{
     TextShape,
 };
 pub use geometry::{Piece, Point, Rect};
+pub use look::Parts;
 pub use metrics::{TextRole, approximate_text_width};
 pub use options::Options;
 pub use overlay::{OverlayCurve, OverlayKind};
 pub use palette::Palette;
+pub use progress::Progress;
 pub use svg::{SvgOptions, svg};
 pub use tree::block_children;
 

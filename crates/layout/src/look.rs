@@ -47,6 +47,10 @@ pub enum Ink {
     Threat,
     /// Time windows.
     Slack,
+    /// The present.
+    Now,
+    /// Swim lanes.
+    Lane,
 }
 
 /// The pattern of a line.
@@ -97,6 +101,46 @@ impl Dash {
             Self::Dashed => Some((7.0, 4.0)),
             Self::Dotted => Some((2.0, 3.5)),
         }
+    }
+}
+
+/// Which parts of a drawing are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Parts {
+    /// Names of activities.
+    pub names: bool,
+    /// Bounds on the arcs.
+    pub bounds: bool,
+    /// Asked and told conditions.
+    pub conditions: bool,
+    /// What the plan does without.
+    pub unselected: bool,
+    /// Outlines of activities, lanes of branches.
+    pub structure: bool,
+    /// A named band for every parallel branch.
+    pub lanes: bool,
+}
+
+impl Default for Parts {
+    fn default() -> Self {
+        Self { names: true, bounds: true, conditions: true, unselected: true, structure: true, lanes: false }
+    }
+}
+
+impl Parts {
+    /// Whether texts of this role are shown.
+    pub const fn shows_text(self, role: TextRole) -> bool {
+        match role {
+            TextRole::Bounds | TextRole::ZeroBounds => self.bounds,
+            TextRole::Ask | TextRole::Tell => self.conditions,
+            TextRole::Name | TextRole::Quiet => self.names,
+            TextRole::Node | TextRole::Title | TextRole::Window => true,
+        }
+    }
+
+    /// Whether what the plan says this of is shown.
+    pub fn shows(self, standing: Standing) -> bool {
+        self.unselected || standing != Standing::Unselected
     }
 }
 
@@ -201,7 +245,23 @@ pub fn overlay_stroke(kind: OverlayKind) -> Stroke {
         OverlayKind::CausalLink => Stroke { ink: Ink::Link, width: 1.8, dash: Dash::Dashed },
         OverlayKind::Ordering => Stroke { ink: Ink::Ordering, width: 2.0, dash: Dash::Dotted },
         OverlayKind::NegativeCycle => Stroke::solid(Ink::Threat, 2.6),
+        OverlayKind::Threat => Stroke { ink: Ink::Threat, width: 2.2, dash: Dash::Dashed },
     }
+}
+
+/// The line over what time has passed of an arc.
+pub fn elapsed_stroke() -> Stroke {
+    Stroke::solid(Ink::Now, 4.0)
+}
+
+/// The radius of the dot in an event that has happened.
+pub fn done_radius(radius: f64) -> f64 {
+    if radius <= VERTEX_RADIUS { radius } else { radius * 0.42 }
+}
+
+/// The fill and the line of a swim lane. Neighbours alternate.
+pub fn lane_look(number: usize) -> (Option<Ink>, Stroke) {
+    (number.is_multiple_of(2).then_some(Ink::Lane), Stroke::solid(Ink::Line, 1.0))
 }
 
 /// The corners of an arrow head at `tip` for a line that comes from `before`.

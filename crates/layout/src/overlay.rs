@@ -32,6 +32,8 @@ pub enum OverlayKind {
     Ordering,
     /// A step of a negative cycle, from its event to the next.
     NegativeCycle,
+    /// Between two conditions that contradict each other and cannot be kept apart.
+    Threat,
 }
 
 /// How far above the line of a row its texts end.
@@ -60,6 +62,17 @@ pub fn orderings(drawing: &NetworkDrawing, network: &Network, plan: &Plan) -> Ve
         Some(between_nodes(drawing, OverlayKind::Ordering, number as u32, from, to))
     };
     plan.orderings_added.iter().enumerate().filter_map(curve).collect()
+}
+
+/// Pairs of conditions that contradict each other and cannot be kept apart.
+pub fn threats(drawing: &NetworkDrawing, network: &Network, pairs: &[[LabelId; 2]]) -> Vec<OverlayCurve> {
+    let places = label_places(drawing, network);
+    let curve = |(number, [one, other]): (usize, &[LabelId; 2])| {
+        let (from, to) = (places.get(one.index())?, places.get(other.index())?);
+        let curve = between_labels(number as u32, *from, *to);
+        Some(OverlayCurve { kind: OverlayKind::Threat, ..curve })
+    };
+    pairs.iter().enumerate().filter_map(curve).collect()
 }
 
 /// A negative cycle, given as the events it passes; the last is followed by the first. A step along an arc, in either

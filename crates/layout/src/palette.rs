@@ -49,6 +49,10 @@ pub struct Palette {
     pub threat: Rgb,
     /// Time windows.
     pub slack: Rgb,
+    /// The present.
+    pub now: Rgb,
+    /// Swim lanes.
+    pub lane: Rgb,
 }
 
 impl Palette {
@@ -73,6 +77,8 @@ impl Palette {
         ordering: rgb(0x9A6200),
         threat: rgb(0xB84300),
         slack: rgb(0x0068A8),
+        now: rgb(0xB84300),
+        lane: rgb(0xE9EFF6),
     };
 
     /// Light on dark.
@@ -96,6 +102,8 @@ impl Palette {
         ordering: rgb(0xF0B032),
         threat: rgb(0xFF8552),
         slack: rgb(0x56B4E9),
+        now: rgb(0xF0E442),
+        lane: rgb(0x19212B),
     };
 
     /// The colour of an ink.
@@ -119,6 +127,8 @@ impl Palette {
             Ink::Ordering => self.ordering,
             Ink::Threat => self.threat,
             Ink::Slack => self.slack,
+            Ink::Now => self.now,
+            Ink::Lane => self.lane,
         }
     }
 }

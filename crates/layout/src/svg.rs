@@ -1,15 +1,18 @@
 //! A drawing as a standalone SVG file: exactly what the page paints, from the same display list.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use tpn::{ArcKind, LabelId, Network, Plan, Role};
 
 use crate::drawing::{BlockForm, NetworkDrawing, Route, TextShape};
 use crate::geometry::{Piece, Point, Rect};
-use crate::look::{self, Ink, Standing, Stroke};
-use crate::metrics::DECISION_INSET;
+use crate::look::{self, Ink, Parts, Standing, Stroke};
+use crate::metrics::{DECISION_INSET, TextRole};
 use crate::overlay::OverlayCurve;
 use crate::palette::{Palette, Rgb};
+use crate::progress::{Progress, elapsed};
+use crate::threads::{thread_name, threads};
 
 /// What of a network's drawing goes into the picture.
 #[derive(Clone, Debug)]
@@ -22,8 +25,10 @@ pub struct SvgOptions<'a> {
     pub overlays: &'a [OverlayCurve],
     /// Texts over the drawing, such as windows.
     pub notes: &'a [TextShape],
-    /// Whether outlines of activities and lanes of branches are drawn.
-    pub structure: bool,
+    /// What of the drawing is shown.
+    pub parts: Parts,
+    /// What has happened at the moment that is shown, if one is.
+    pub progress: Option<&'a Progress>,
     /// The title of the picture, for screen readers.
     pub title: &'a str,
 }
@@ -37,14 +42,21 @@ pub(crate) struct Canvas<'a> {
 /// Writes a drawing of `network` as an SVG file.
 pub fn svg(drawing: &NetworkDrawing, network: &Network, options: &SvgOptions<'_>) -> String {
     let mut canvas = Canvas::new(drawing.bounds, options.palette, options.title);
+    let parts = options.parts;
+    if parts.lanes {
+        draw_lanes(&mut canvas, drawing, network);
+    }
     for block in &drawing.blocks {
-        if options.structure || block.form == BlockForm::Collapsed {
+        if parts.structure || block.form == BlockForm::Collapsed {
             let (fill, stroke) = look::block_look(block.form);
             canvas.rectangle(block.rect, 6.0, fill, stroke);
         }
     }
     for connector in &drawing.connectors {
         let standing = look::node_standing(options.plan, connector.node);
+        if !parts.shows(standing) {
+            continue;
+        }
         let stroke = look::arc_stroke(ArcKind::Glue, Route::Along, standing);
         canvas.curve(connector.start, &[connector.piece], stroke);
     }
@@ -52,7 +64,7 @@ pub fn svg(drawing: &NetworkDrawing, network: &Network, options: &SvgOptions<'_>
     for is_selected in [false, true] {
         for arc in &drawing.arcs {
             let standing = look::arc_standing(options.plan, arc.id);
-            if (standing == Standing::Selected) == is_selected {
+            if (standing == Standing::Selected) == is_selected && parts.shows(standing) {
                 let stroke = look::arc_stroke(arc.kind, arc.route, standing);
                 canvas.curve(arc.start, drawing.pieces(arc), stroke);
                 if let Some((tip, before)) = drawing.arrow(arc) {
@@ -60,6 +72,10 @@ pub fn svg(drawing: &NetworkDrawing, network: &Network, options: &SvgOptions<'_>
                 }
             }
         }
+    }
+    let passed = options.progress.into_iter().flat_map(|progress| &progress.under_way);
+    for (start, pieces) in passed.filter_map(|&(arc, fraction)| elapsed(drawing, arc, fraction)) {
+        canvas.curve(start, &pieces, look::elapsed_stroke());
     }
     for curve in options.overlays {
         let stroke = look::overlay_stroke(curve.kind);
@@ -71,6 +87,9 @@ pub fn svg(drawing: &NetworkDrawing, network: &Network, options: &SvgOptions<'_>
     }
     for node in &drawing.nodes {
         let standing = look::node_standing(options.plan, node.id);
+        if !parts.shows(standing) {
+            continue;
+        }
         let stroke = look::node_stroke(node.role, node.radius, standing);
         canvas.circle(node.center, node.radius, look::node_fill(node.role, node.radius, standing), stroke);
         if node.role == Role::Decision {
@@ -82,12 +101,39 @@ pub fn svg(drawing: &NetworkDrawing, network: &Network, options: &SvgOptions<'_>
             );
         }
     }
+    let done = options.progress.into_iter().flat_map(|progress| &progress.done);
+    for node in done.filter_map(|&node| drawing.node(node)) {
+        let radius = look::done_radius(node.radius);
+        canvas.circle(node.center, radius, Ink::Now, Stroke::solid(Ink::Now, 0.0));
+    }
     let arc_of_label = |label: LabelId| network.labels[label.index()].arc;
     for text in drawing.texts.iter().chain(options.notes) {
         let standing = look::item_standing(options.plan, text.owner, arc_of_label);
-        canvas.text(&text.text, text.size, text.rect, look::text_ink(text.role, standing));
+        if parts.shows_text(text.role) && parts.shows(standing) {
+            canvas.text(&text.text, text.size, text.rect, look::text_ink(text.role, standing));
+        }
     }
     canvas.finish()
+}
+
+/// A band for every parallel branch, with its name in its upper left corner.
+fn draw_lanes(canvas: &mut Canvas<'_>, drawing: &NetworkDrawing, network: &Network) {
+    let lanes = drawing.blocks.iter().filter(|it| it.form == BlockForm::Lane);
+    let lanes: BTreeMap<_, _> = lanes.filter_map(|lane| Some((lane.block?, lane))).collect();
+    let threads = threads(network);
+    for (at, thread) in threads.iter().enumerate() {
+        let Some(lane) = thread.block.and_then(|block| lanes.get(&block)) else { continue };
+        let number = thread.path.last().copied().unwrap_or(0) as usize;
+        let (fill, stroke) = look::lane_look(number);
+        canvas.rectangle(lane.rect, 0.0, fill.unwrap_or(Ink::Surface), stroke);
+        if let Some(name) = thread_name(network, &threads[at..]) {
+            let size = TextRole::Quiet.size();
+            let width = f64::from(crate::approximate_text_width(&name)) * size / crate::metrics::TEXT_SIZE;
+            let min = lane.rect.min.shifted(4.0, 2.0);
+            let rect = Rect { min, max: min.shifted(width, TextRole::Quiet.line_height()) };
+            canvas.text(&name, size, rect, Ink::TextMuted);
+        }
+    }
 }
 
 impl<'a> Canvas<'a> {

@@ -77,7 +77,8 @@ fn the_picture_of_enroute_has_not_changed() {
         plan: None,
         overlays: &[],
         notes: &[],
-        structure: true,
+        parts: layout::Parts::default(),
+        progress: None,
         title: "Enroute",
     };
     insta::assert_snapshot!(layout::svg(&drawing, &network, &options));

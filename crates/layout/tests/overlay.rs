@@ -126,8 +126,15 @@ fn the_exported_picture_shows_the_plan_and_the_theme() {
     let plan = plan(&network);
     let overlays = causal_links(&drawing, &network, &plan);
     let export = |palette: &Palette, plan: Option<&Plan>| {
-        let options =
-            SvgOptions { palette, plan, overlays: &overlays, notes: &[], structure: false, title: "A < B" };
+        let options = SvgOptions {
+            palette,
+            plan,
+            overlays: &overlays,
+            notes: &[],
+            parts: layout::Parts { structure: false, ..layout::Parts::default() },
+            progress: None,
+            title: "A < B",
+        };
         layout::svg(&drawing, &network, &options)
     };
     let light = export(&Palette::LIGHT, Some(&plan));

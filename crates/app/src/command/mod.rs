@@ -18,7 +18,7 @@ use crate::state::editor::Find;
 use crate::state::review::ReviewCommand;
 use crate::state::search::SearchCommand;
 use crate::state::terrain::TerrainCommand;
-use crate::state::{EditKind, Selection, TextCommand, ToastKind, Views};
+use crate::state::{EditKind, PinCommand, Selection, TextCommand, ToastKind, Views};
 use crate::theme::ThemeChoice;
 use crate::workspace::Workspace;
 
@@ -81,6 +81,11 @@ pub enum Command {
     StepTime(bool),
     /// Sets how fast time runs; 1 is normal.
     SetRate(f64),
+
+    /// Something that concerns events pinned to times.
+    Pins(PinCommand),
+    /// Selects a range of times, in mission units.
+    SelectTimes(Option<[f64; 2]>),
 
     /// Something that concerns the step of the search that is looked at.
     Search(SearchCommand),

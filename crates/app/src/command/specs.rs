@@ -12,10 +12,12 @@ use crate::panel::PanelKind;
 use crate::state::compare::CompareCommand;
 use crate::state::documents::ScheduleForm;
 use crate::state::growth::GrowthCommand;
+use crate::state::pins::event_by_name;
 use crate::state::review::{ReviewCommand, may_sign};
 use crate::state::search::{SearchCommand, recorded};
+use crate::state::settings::Grouping;
 use crate::state::terrain::{TerrainCommand, Tool};
-use crate::state::{AppState, Selection, TextCommand};
+use crate::state::{AppState, PinCommand, Selection, TextCommand};
 use crate::theme::ThemeChoice;
 use crate::workspace::Workspace;
 
@@ -81,6 +83,10 @@ fn with_paths(state: &AppState) -> Availability {
 fn with_vehicles(state: &AppState) -> Availability {
     let has_vehicles = state.shown().is_some_and(|shown| !shown.program.world.vehicles.is_empty());
     if has_vehicles { Ok(()) } else { Err("the mission has no vehicles") }
+}
+
+fn with_pins(state: &AppState) -> Availability {
+    if state.pins.is_empty() { Err("no event is pinned") } else { Ok(()) }
 }
 
 fn with_undo(state: &AppState) -> Availability {
@@ -476,6 +482,17 @@ pub static COMMANDS: &[CommandSpec] = &[
     called("view.closePanel", "Close a panel", Group::View, |_, arguments| {
         panel_argument(arguments).map(Command::ClosePanel)
     }),
+    called("view.grouping", "Choose the grouping of the timeline", Group::View, |state, arguments| {
+        let name = text_argument(arguments, "name")?;
+        let grouping = Grouping::ALL.into_iter().find(|grouping| grouping.name() == name);
+        let mut views = state.settings.views.clone();
+        views.timeline.grouping = grouping.ok_or("\"name\" is \"structure\", \"thread\" or \"vehicle\"")?;
+        Ok(Command::SetViews(Box::new(views)))
+    }),
+    called("view.selectTimes", "Select a range of times", Group::View, |_, arguments| {
+        let number = |name: &str| arguments.get(name).and_then(Value::as_f64);
+        Ok(Command::SelectTimes(number("from").zip(number("to")).map(|(from, to)| [from, to])))
+    }),
     called("view.setTheme", "Choose the theme", Group::View, |_, arguments| {
         match text_argument(arguments, "theme")? {
             "dark" => Ok(Command::SetTheme(ThemeChoice::Dark)),
@@ -682,6 +699,28 @@ pub static COMMANDS: &[CommandSpec] = &[
         let epoch = arguments.get("epoch").and_then(Value::as_str).unwrap_or_default().to_owned();
         Ok(Command::WriteSchedule { form, epoch })
     }),
+    when(
+        plain("plan.release", "Release pinned events", Group::Plan, &[], Scope::Everywhere, |_| {
+            Command::Pins(PinCommand::ReleaseAll)
+        }),
+        with_pins,
+    ),
+    when(
+        called("plan.pin", "Pin an event to a time", Group::Plan, |state, arguments| {
+            let name = arguments.get("event").and_then(Value::as_str);
+            let time = arguments.get("time").and_then(Value::as_f64);
+            let (Some(name), Some(time)) = (name, time.filter(|time| time.abs() < 1e12)) else {
+                return Err("it takes {\"event\": text, \"time\": number}".to_owned());
+            };
+            let network = state.shown().and_then(|shown| shown.network.as_deref());
+            let node = network.and_then(|network| event_by_name(network, name));
+            let node = node.ok_or_else(|| format!("there is no event \"{name}\""))?;
+            // Pins are resolved to a tenth of a unit at least; thousandths are finer than any drag.
+            let time = rmpl::Rational::new((time * 1000.0).round() as i64, 1000);
+            Ok(Command::Pins(PinCommand::Pin(node, time)))
+        }),
+        with_plan,
+    ),
     // Time.
     when(
         plain(

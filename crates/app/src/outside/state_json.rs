@@ -8,6 +8,7 @@ use tpn::Network;
 use tpn::plan_json::plan_to_json;
 
 use super::hca_json::hca_json;
+use crate::state::pins::event_name;
 use crate::state::review::Signed;
 use crate::state::search::{Counts, Recording};
 use crate::state::selection::node_name;
@@ -57,6 +58,8 @@ pub fn state_json(state: &AppState) -> Value {
         "time": state.playback.time,
         "endTime": state.playback.end,
         "isPlaying": state.playback.is_playing,
+        "timeRange": state.time_range,
+        "pinned": shown.and_then(|shown| pinned_json(state, shown)),
         "selection": state.selection.to_json(network),
         "caret": { "anchor": caret.anchor, "head": caret.head },
         "canUndo": state.document.can_undo(),
@@ -263,6 +266,18 @@ fn problem_json(problem: &Problem) -> Value {
         "hint": problem.hint,
         "fixes": problem.fixes.iter().map(|fix| fix.label.as_str()).collect::<Vec<_>>(),
     })
+}
+
+/// The events that are pinned, and the windows that they leave to all events; `null` without any.
+fn pinned_json(state: &AppState, snapshot: &Snapshot) -> Option<Value> {
+    let (network, plan) = (snapshot.network.as_deref()?, state.pins.plan(snapshot)?);
+    let pins = state.pins.all();
+    let events: serde_json::Map<String, Value> = pins
+        .iter()
+        .map(|&(node, time)| (event_name(network, node), json!(crate::state::playback::number(time))))
+        .collect();
+    let windows = plan_to_json(network, plan)["windows"].take();
+    Some(json!({ "events": events, "windows": windows }))
 }
 
 /// Where the vehicles are; `z` is the height of the ground under them, or their flight over it.

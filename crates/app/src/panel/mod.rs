@@ -151,11 +151,12 @@ pub struct Context<'a> {
 
 impl Context<'_> {
     /// The plan that is shown, if there is one, with its network: what the search had selected at the step that is
-    /// looked at, if one is.
+    /// looked at, if one is; with the windows that pinned events leave, if there are any.
     pub fn plan(&self) -> Option<(&tpn::Network, &tpn::Plan)> {
         let snapshot = self.snapshot?;
         let step = self.state.search.plan(snapshot).map(std::convert::AsRef::as_ref);
-        Some((snapshot.network.as_deref()?, step.or_else(|| snapshot.plan())?))
+        let plan = step.or_else(|| self.state.pins.plan(snapshot)).or_else(|| snapshot.plan())?;
+        Some((snapshot.network.as_deref()?, plan))
     }
 
     /// The step of the search that is looked at, if one is, with what the search knew there.

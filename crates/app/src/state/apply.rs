@@ -15,7 +15,7 @@ use crate::state::editor::Reveal;
 use crate::state::growth::GrowthCommand;
 use crate::state::search::{self, SearchCommand};
 use crate::state::terrain::{TerrainCommand, TerrainState};
-use crate::state::{AppState, Selection, ToastKind, ViewRequest, playback};
+use crate::state::{AppState, PinCommand, Pins, Selection, ToastKind, ViewRequest, playback};
 use crate::workspace::Workspace;
 
 /// Something that the host is to do.
@@ -126,6 +126,10 @@ impl AppState {
             Command::WriteSchedule { form, epoch } => {
                 self.dialog = None;
                 self.write_schedule(form, &epoch);
+            }
+            Command::Pins(command) => self.apply_to_pins(command),
+            Command::SelectTimes(range) => {
+                self.time_range = range.map(|[from, to]| [from.min(to), from.max(to)]);
             }
 
             Command::SetGoal(goal) => self.settings.plan.goal = goal,
@@ -308,6 +312,13 @@ impl AppState {
             return;
         }
         self.search.follow(before, &after);
+        let same_plan = |before: &Arc<Snapshot>| match (&before.planning, &after.planning) {
+            (Some(before), Some(after)) => Arc::ptr_eq(before, after),
+            _ => false,
+        };
+        if !before.is_some_and(same_plan) {
+            self.pins.follow(before.map(Arc::as_ref), &after);
+        }
         if let Some(before) = before {
             self.selection = self.selection.carried(before, &after);
             self.hovered = Selection::None;
@@ -316,6 +327,18 @@ impl AppState {
             self.playback.fit(plan);
         }
         self.follow_with_terrain();
+    }
+
+    fn apply_to_pins(&mut self, command: PinCommand) {
+        let Some(shown) = self.snapshots.shown().cloned() else { return };
+        if let Err(reason) = self.pins.apply(command, &shown) {
+            self.toasts.add(ToastKind::Failed, reason);
+        }
+    }
+
+    fn step_pins_back(&mut self) -> bool {
+        let shown = self.snapshots.shown().cloned();
+        self.pins.step_back(shown.as_ref())
     }
 
     fn open_example(&mut self, name: &str) {
@@ -337,6 +360,8 @@ impl AppState {
         self.selection = Selection::None;
         self.hovered = Selection::None;
         self.terrain = TerrainState::default();
+        self.pins = Pins::default();
+        self.time_range = None;
         self.playback = playback::Playback { rate: self.playback.rate, ..Default::default() };
         self.settings.plan.goal = mission::Goal::Default;
         self.editor.reveal = Some(Reveal { span: Span::new(0, 0), center: false });
@@ -420,7 +445,9 @@ impl AppState {
             // The tool was put away, or what it had.
         } else if self.search.step().is_some() {
             self.search.close();
-        } else {
+        } else if self.pins.held().is_some() {
+            self.step_pins_back();
+        } else if self.time_range.take().is_none() && !self.step_pins_back() {
             self.selection = Selection::None;
         }
     }

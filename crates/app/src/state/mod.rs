@@ -11,6 +11,7 @@ pub mod editor;
 pub mod folding;
 pub mod growth;
 pub mod language;
+pub mod pins;
 pub mod placing;
 pub mod playback;
 pub mod review;
@@ -35,6 +36,7 @@ pub use document::{Caret, Document, EditKind};
 pub use draft::Draft;
 pub use editor::EditorState;
 pub use language::Language;
+pub use pins::{PinCommand, Pins};
 pub use playback::Playback;
 pub use selection::Selection;
 pub use settings::{PlanSettings, Settings, Views};
@@ -79,6 +81,10 @@ pub struct AppState {
     pub terrain: terrain::TerrainState,
     /// The time shown, and whether it runs.
     pub playback: Playback,
+    /// Events that are pinned to times, to see what that leaves of the plan.
+    pub pins: Pins,
+    /// The range of times that is selected, in mission units.
+    pub time_range: Option<[f64; 2]>,
     /// Which workspace is shown.
     pub workspace: Workspace,
     /// What is remembered between runs.
@@ -153,6 +159,8 @@ impl AppState {
             compare: compare::CompareState::default(),
             terrain: terrain::TerrainState::default(),
             playback: Playback::default(),
+            pins: Pins::default(),
+            time_range: None,
             workspace: Workspace::default(),
             settings: Settings::default(),
             editor: EditorState::default(),

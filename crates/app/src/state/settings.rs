@@ -111,15 +111,53 @@ impl Default for NetworkView {
 pub struct TimelineView {
     /// Causal links and orderings between bars.
     pub links: bool,
-    /// Conditions as bars of their own.
+    /// Conditions as tracks, one for each state variable.
     pub conditions: bool,
     /// Delays as bars of their own.
     pub delays: bool,
+    /// By what the bars are grouped.
+    pub grouping: Grouping,
 }
 
 impl Default for TimelineView {
     fn default() -> Self {
-        Self { links: true, conditions: true, delays: false }
+        Self { links: true, conditions: true, delays: false, grouping: Grouping::default() }
+    }
+}
+
+/// By what the bars of the timeline are grouped.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Grouping {
+    /// By the activities that they are part of.
+    #[default]
+    Structure,
+    /// By the parallel branches of the program.
+    Thread,
+    /// By the vehicles that they occupy.
+    Vehicle,
+}
+
+impl Grouping {
+    /// All of them, as the timeline lists them.
+    pub const ALL: [Self; 3] = [Self::Structure, Self::Thread, Self::Vehicle];
+
+    /// Its name on screen.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Structure => "By activity",
+            Self::Thread => "By thread",
+            Self::Vehicle => "By vehicle",
+        }
+    }
+
+    /// Its name in commands.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Structure => "structure",
+            Self::Thread => "thread",
+            Self::Vehicle => "vehicle",
+        }
     }
 }
 

@@ -89,7 +89,8 @@ fn drawing(network: &Network) -> String {
         plan: None,
         overlays: &[],
         notes: &[],
-        structure: true,
+        parts: layout::Parts::default(),
+        progress: None,
         title: "Temporal plan network",
     };
     layout::svg(&drawing, network, &options)

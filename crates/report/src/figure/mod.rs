@@ -26,7 +26,8 @@ pub(crate) fn network(snapshot: &Snapshot) -> Option<String> {
         plan,
         overlays: &overlays,
         notes: &notes,
-        structure: true,
+        parts: layout::Parts::default(),
+        progress: None,
         title: "Temporal plan network",
     };
     Some(layout::svg(&drawing, network, &svg))

@@ -1,33 +1,94 @@
 //! The row of buttons above the timeline: playing, the time, what is shown, zoom.
 
-use egui::{Align, Button, ComboBox, Frame, Layout, Margin, RichText, Ui};
+use egui::{Button, ComboBox, Frame, Margin, RichText, Ui};
 
 use rmpl::program::TimeUnit;
+use tpn::{Network, OccurrenceKind};
 
+use super::handle;
 use crate::command::{Command, CommandSender, ViewAction};
 use crate::icon::{self, Icon};
 use crate::panel::{Context, PanelKind};
+use crate::state::PinCommand;
+use crate::state::settings::Grouping;
 use crate::theme::space;
 use crate::time_text;
 
 /// Shows the row.
-pub(crate) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+pub(crate) fn show(ui: &mut Ui, context: &Context<'_>, network: &Network, commands: &mut CommandSender) {
     let frame = Frame::new().inner_margin(Margin::symmetric(8, 3));
     frame.show(ui, |ui| {
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = space::XS;
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = egui::vec2(space::XS, space::XS);
             playing(ui, context, commands);
             ui.add_space(space::M);
             clock(ui, context);
             ui.add_space(space::M);
             rate(ui, context, commands);
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                zoom(ui, context, commands);
-                ui.add_space(space::M);
-                switches(ui, context, commands);
-            });
+            ui.add_space(space::M);
+            grouping(ui, context, commands);
+            switches(ui, context, commands);
+            ui.add_space(space::M);
+            zoom(ui, context, commands);
+            ui.add_space(space::M);
+            pins(ui, context, commands);
+            range(ui, context, network, commands);
         });
     });
+}
+
+/// How many events are pinned, and the way back.
+fn pins(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let Some(text) = handle::summary(context) else { return };
+    ui.label(RichText::new(text).small().color(context.tokens.accent));
+    let button = ui.button(RichText::new("Release").small());
+    if button.on_hover_text("Give all pinned events their windows back (Escape)").clicked() {
+        commands.send(Command::Pins(PinCommand::ReleaseAll));
+    }
+}
+
+/// The range of times that is selected, and what lies in it.
+fn range(ui: &mut Ui, context: &Context<'_>, network: &Network, commands: &mut CommandSender) {
+    let (Some([from, to]), Some((_, plan))) = (context.state.time_range, context.plan()) else { return };
+    let mut counts = [0_usize; 2];
+    for occurrence in network.occurrences.iter().filter(|it| it.kind == OccurrenceKind::Primitive) {
+        let Some([start, end]) = super::chart::times(plan, [occurrence.start, occurrence.end]) else {
+            continue;
+        };
+        counts[0] += usize::from(start[0] <= to && end[1] >= from);
+        counts[1] += usize::from(start[1] <= to && end[0] >= from);
+    }
+    let text = format!(
+        "{from} to {to} ({}): {} activities for certain, {} at most",
+        ((to - from) * 1000.0).round() / 1000.0,
+        counts[1],
+        counts[0]
+    );
+    ui.label(RichText::new(text).small().color(context.tokens.accent));
+    if ui.button(RichText::new("Zoom").small()).on_hover_text("Show just this range").clicked() {
+        commands.send(Command::ViewOf(PanelKind::Timeline, ViewAction::FitSelection));
+    }
+    if ui.button(RichText::new("Clear").small()).on_hover_text("Select no range (Escape)").clicked() {
+        commands.send(Command::SelectTimes(None));
+    }
+}
+
+fn grouping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let chosen = context.state.settings.views.timeline.grouping;
+    ComboBox::from_id_salt("grouping")
+        .selected_text(chosen.title())
+        .width(96.0)
+        .show_ui(ui, |ui| {
+            for choice in Grouping::ALL {
+                if ui.selectable_label(chosen == choice, choice.title()).clicked() {
+                    let mut views = context.state.settings.views.clone();
+                    views.timeline.grouping = choice;
+                    commands.send(Command::SetViews(Box::new(views)));
+                }
+            }
+        })
+        .response
+        .accessible_name("Grouping of the timeline");
 }
 
 fn playing(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {

@@ -1,265 +1,310 @@
-//! Draws the timeline.
+//! Draws the axis, the names and the bars. Links are drawn in [`super::link`].
 
-use egui::{Align2, Color32, Pos2, Rect, Shape, Stroke, StrokeKind, TextStyle, Ui};
-use tpn::{LabelId, Network, Plan};
+use egui::text::LayoutJob;
+use egui::{
+    Align2, Color32, FontId, Galley, Mesh, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, pos2, vec2,
+};
+use std::sync::Arc;
+use tpn::Network;
 
+use super::chart::{Bar, BarKind, Chart, Row, RowKind};
+use super::hatch;
+use super::ticks::Ticks;
+use super::view::TimeView;
+use crate::icon::{self, Icon};
 use crate::panel::Context;
-use crate::panel::timeline::ROW_HEIGHT;
-use crate::panel::timeline::bars::{Bar, BarKind, ticks};
-use crate::panel::timeline::view::TimeView;
-use crate::state::Selection;
-use crate::theme::space;
+use crate::theme::{size, space};
 
-/// Points per labelled mark of the axis.
-const TICK_POINTS: f32 = 84.0;
+/// The height of a bar's row.
+pub(super) const ROW_HEIGHT: f32 = 24.0;
+/// Indentation per level.
+const INDENT: f32 = 12.0;
+/// A bar narrower than this is only a stroke.
+const LEAST_WIDTH: f32 = 3.0;
 
-/// The axis with its numbers and the time's handle.
-pub(crate) fn axis(ui: &Ui, context: &Context<'_>, rect: Rect, view: &TimeView) {
+/// What all parts of one frame need.
+pub(super) struct Painting<'a> {
+    /// The state.
+    pub(super) context: &'a Context<'a>,
+    /// The network.
+    pub(super) network: &'a Network,
+    /// The rows and bars.
+    pub(super) chart: &'a Chart,
+    /// Where times are.
+    pub(super) view: &'a TimeView,
+    /// Where the bars are, all rows.
+    pub(super) track: Rect,
+    /// The part of it that is seen.
+    pub(super) visible: Rect,
+    /// The left edge of the names.
+    pub(super) names_left: f32,
+}
+
+/// The axis with its numbers, the selected range and the time's handle.
+pub(super) fn axis(ui: &Ui, context: &Context<'_>, rect: Rect, view: &TimeView, unit: &str) {
     let tokens = context.tokens;
-    let painter = ui.painter().with_clip_rect(rect.expand2(egui::vec2(12.0, 0.0)));
-    let font = TextStyle::Small.resolve(ui.style());
-    let (from, to) = (view.time(rect, rect.left()), view.time(rect, rect.right()));
-    let (marks, minor) = ticks(from, to, rect.width(), TICK_POINTS);
-    let step = match marks.as_slice() {
-        [first, second, ..] => second - first,
-        _ => to - from,
-    };
-    for mark in marks.iter().copied().chain(marks.first().map(|first| first - step)) {
-        for part in 1..minor {
-            let x = view.x(rect, mark + step * f64::from(part) / f64::from(minor));
+    let painter = ui.painter().with_clip_rect(rect.expand2(vec2(14.0, 0.0)));
+    let font = FontId::proportional(size::SMALL);
+    let ticks = Ticks::new(view.time(rect, rect.left()), view.time(rect, rect.right()), rect.width());
+    let before = ticks.marks.first().map(|first| first - ticks.step);
+    for &mark in before.iter().chain(&ticks.marks) {
+        for part in 1..ticks.parts {
+            let x = view.x(rect, mark + ticks.step * f64::from(part) / f64::from(ticks.parts));
             if rect.x_range().contains(x) {
-                painter.vline(x, rect.bottom() - 3.0..=rect.bottom(), Stroke::new(1.0, tokens.line));
+                painter.vline(x, rect.bottom() - 3.0..=rect.bottom(), Stroke::new(1.0, tokens.line_strong));
             }
         }
         let x = view.x(rect, mark);
-        if mark >= 0.0 && rect.x_range().contains(x) {
-            painter.vline(x, rect.bottom() - 6.0..=rect.bottom(), Stroke::new(1.0, tokens.line_strong));
-            let text = round_number(mark, step);
-            painter.text(
-                Pos2::new(x, rect.top() + 3.0),
-                Align2::CENTER_TOP,
-                text,
-                font.clone(),
-                tokens.text_muted,
-            );
+        if rect.x_range().contains(x) && mark >= -ticks.step * 0.5 {
+            painter.vline(x, rect.bottom() - 6.0..=rect.bottom(), Stroke::new(1.0, tokens.text_faint));
+            let at = pos2(x, rect.top() + 3.0);
+            painter.text(at, Align2::CENTER_TOP, ticks.label(mark), font.clone(), tokens.text_muted);
         }
     }
+    let at = pos2(rect.left() - 10.0, rect.top() + 3.0);
+    ui.painter().text(at, Align2::RIGHT_TOP, unit, font, tokens.text_faint);
     ui.painter().hline(rect.x_range(), rect.bottom(), Stroke::new(1.0, tokens.line));
     let x = view.x(rect, context.state.playback.time);
     if rect.x_range().contains(x) {
         let bottom = rect.bottom();
+        let corner = |dx: f32, dy: f32| pos2(x + dx, bottom + dy);
         let points = vec![
-            Pos2::new(x - 5.0, bottom - 9.0),
-            Pos2::new(x + 5.0, bottom - 9.0),
-            Pos2::new(x + 5.0, bottom - 5.0),
-            Pos2::new(x, bottom),
-            Pos2::new(x - 5.0, bottom - 5.0),
+            corner(-5.0, -9.0),
+            corner(5.0, -9.0),
+            corner(5.0, -5.0),
+            corner(0.0, 0.0),
+            corner(-5.0, -5.0),
         ];
         painter.add(Shape::convex_polygon(points, tokens.now, Stroke::NONE));
     }
 }
 
-/// A mark's number with as many decimals as its step needs.
-fn round_number(value: f64, step: f64) -> String {
-    let decimals = (-step.log10().floor()).clamp(0.0, 6.0) as usize;
-    format!("{value:.decimals$}")
-}
-
-/// What all parts of one frame need.
-pub(crate) struct Painting<'a> {
-    pub(crate) context: &'a Context<'a>,
-    pub(crate) network: &'a Network,
-    pub(crate) view: &'a TimeView,
-    /// Where the bars are.
-    pub(crate) track: Rect,
-    /// The left edge of the names.
-    pub(crate) names_left: f32,
-}
-
 impl Painting<'_> {
-    /// The row of a bar, name included.
-    pub(crate) fn row(&self, index: usize) -> Rect {
+    /// The row of this number, name included.
+    pub(super) fn row(&self, index: usize) -> Rect {
         let top = self.track.top() + 3.0 + index as f32 * ROW_HEIGHT;
-        Rect::from_min_max(Pos2::new(self.names_left, top), Pos2::new(self.track.right(), top + ROW_HEIGHT))
+        Rect::from_min_max(pos2(self.names_left, top), pos2(self.track.right(), top + ROW_HEIGHT))
     }
 
-    fn x(&self, time: f64) -> f32 {
-        self.view.x(self.track, time)
+    /// Where a time is.
+    pub(super) fn x(&self, time: f64) -> f32 {
+        if time.is_finite() { self.view.x(self.track, time) } else { self.track.right() + 8.0 }
     }
 
-    /// Lines down from the marks of the axis.
-    pub(crate) fn grid(&self, ui: &Ui) {
-        let clip = self.track.intersect(ui.clip_rect());
-        let painter = ui.painter().with_clip_rect(clip);
-        let (from, to) = (self.view.time(self.track, clip.left()), self.view.time(self.track, clip.right()));
-        let line = Stroke::new(1.0, self.context.tokens.raised);
-        for mark in ticks(from, to, self.track.width(), TICK_POINTS).0 {
-            painter.vline(self.x(mark), clip.y_range(), line);
-        }
-        let left = Pos2::new(self.track.left(), clip.top());
-        ui.painter().vline(left.x, clip.y_range(), Stroke::new(1.0, self.context.tokens.line));
+    /// A painter for what lies along time.
+    pub(super) fn on_track(&self, ui: &Ui) -> Painter {
+        ui.painter().with_clip_rect(self.visible)
     }
 
-    /// A bar with its name: solid where it goes on for certain, hatched where it may.
-    pub(crate) fn bar(&self, ui: &Ui, bar: &Bar, row: Rect, is_selected: bool, is_hovered: bool) {
-        let tokens = self.context.tokens;
-        if is_selected || is_hovered {
-            let fill = if is_selected { tokens.accent_soft } else { tokens.raised };
-            ui.painter().rect_filled(row, 3.0, fill);
-        }
-        self.name(ui, bar, row, is_selected);
-        let painter = ui.painter().with_clip_rect(self.track.intersect(ui.clip_rect()));
-        let color = self.color(bar);
-        let height = if bar.kind == BarKind::Composite { 5.0 } else { 14.0 };
-        let middle = row.center().y;
-        let slot = |from: f64, to: f64| {
-            let to = if to.is_finite() { self.x(to) } else { self.track.right() };
-            Rect::from_min_max(
-                Pos2::new(self.x(from), middle - height / 2.0),
-                Pos2::new(to, middle + height / 2.0),
-            )
+    /// The rectangle of a bar: from its earliest start to its latest end.
+    pub(super) fn bar_rect(&self, bar: &Bar, row: Rect) -> Rect {
+        self.slot(bar, row, bar.start[0], bar.end[1])
+    }
+
+    fn slot(&self, bar: &Bar, row: Rect, from: f64, to: f64) -> Rect {
+        let (height, lift) = match bar.kind {
+            BarKind::Composite => (6.0, 0.0),
+            BarKind::Ask => (8.0, 0.0),
+            _ => (14.0, 1.0),
         };
-        let whole = slot(bar.start[0], bar.end[1]);
-        painter.rect_filled(whole, 3.0, tokens.mixed(color, 0.16));
-        match bar.certain() {
-            Some([from, to]) => {
-                self.hatch(&painter, slot(bar.start[0], from), color);
-                self.hatch(&painter, slot(to, bar.end[1]), color);
-                painter.rect_filled(slot(from, to), 2.0, tokens.mixed(color, 0.85));
+        let middle = row.center().y - lift;
+        let (from, to) = (self.x(from), self.x(to));
+        Rect::from_min_max(pos2(from, middle - height / 2.0), pos2(to.max(from), middle + height / 2.0))
+    }
+
+    /// Lines down from the marks of the axis, and the selected range.
+    pub(super) fn grid(&self, ui: &Ui) {
+        let tokens = self.context.tokens;
+        let painter = self.on_track(ui);
+        let (left, right) = (self.visible.left(), self.visible.right());
+        let ticks =
+            Ticks::new(self.view.time(self.track, left), self.view.time(self.track, right), right - left);
+        for mark in ticks.marks {
+            painter.vline(self.x(mark), self.visible.y_range(), Stroke::new(1.0, tokens.raised));
+        }
+        if let Some([from, to]) = self.context.state.time_range {
+            let band = Rect::from_x_y_ranges(self.x(from)..=self.x(to), self.visible.y_range());
+            painter.rect_filled(band, 0.0, tokens.accent.gamma_multiply(0.10));
+            for x in [band.left(), band.right()] {
+                painter.vline(x, band.y_range(), Stroke::new(1.0, tokens.accent.gamma_multiply(0.7)));
             }
-            None => self.hatch(&painter, whole, color),
         }
-        let outline = if is_selected {
-            Stroke::new(1.5, tokens.accent)
-        } else {
-            Stroke::new(1.0, tokens.mixed(color, 0.6))
+        ui.painter().vline(left, self.visible.y_range(), Stroke::new(1.0, tokens.line));
+    }
+
+    /// The background of a row that is selected, pointed at, or a heading.
+    pub(super) fn row_ground(&self, ui: &Ui, shown: &Row, row: Rect, is_selected: bool, is_hovered: bool) {
+        let tokens = self.context.tokens;
+        let fill = match (is_selected, is_hovered, shown.kind) {
+            (true, ..) => tokens.accent_soft,
+            (_, true, _) => tokens.raised,
+            (.., RowKind::Heading) => tokens.raised.gamma_multiply(0.6),
+            _ => return,
         };
-        painter.rect_stroke(whole, 3.0, outline, StrokeKind::Inside);
-        // The earliest schedule, which playing follows.
-        let earliest = slot(bar.start[0], bar.end[0].max(bar.start[0]));
-        let y = earliest.bottom() + 2.0;
-        painter.hline(earliest.x_range(), y, Stroke::new(2.0, color));
-        for time in [bar.start[0], bar.end[0]] {
-            painter.vline(self.x(time), y - 2.0..=y + 2.0, Stroke::new(1.0, color));
+        ui.painter().rect_filled(row, 3.0, fill);
+    }
+
+    /// The name of a row, shortened to the room there is, and the sign that opens and closes it.
+    pub(super) fn name(&self, ui: &Ui, shown: &Row, row: Rect, is_selected: bool) {
+        let tokens = self.context.tokens;
+        let arrow = self.arrow_rect(shown, row);
+        if shown.key.is_some() {
+            let sign = if shown.is_closed { Icon::ChevronRight } else { Icon::ChevronDown };
+            icon::paint(ui.painter(), sign, arrow, 10.0, tokens.text_muted);
+        } else if let Some(bar) = self.chart.bars.get(shown.bars.clone()).and_then(<[Bar]>::first)
+            && shown.kind == RowKind::Single
+        {
+            let mark = Rect::from_center_size(arrow.center(), vec2(6.0, 10.0));
+            ui.painter().rect_filled(mark, 1.0, self.color(bar.kind));
         }
-        self.conditions(&painter, bar, whole);
+        let at = pos2(arrow.right() + 2.0, row.center().y);
+        let width = self.track.left() - space::S - at.x;
+        let color = match (is_selected, shown.kind) {
+            (true, _) => tokens.accent,
+            (_, RowKind::Track) => tokens.tell,
+            _ => tokens.text,
+        };
+        let family = if shown.kind == RowKind::Heading {
+            crate::theme::strong_family()
+        } else {
+            egui::FontFamily::Proportional
+        };
+        let galley = elided(ui.painter(), &shown.name, FontId::new(size::BODY, family), color, width);
+        ui.painter().galley(at - vec2(0.0, galley.size().y / 2.0), galley, color);
     }
 
-    fn name(&self, ui: &Ui, bar: &Bar, row: Rect, is_selected: bool) {
-        let tokens = self.context.tokens;
-        let names = Rect::from_min_max(row.min, Pos2::new(self.track.left() - space::S, row.bottom()));
-        let painter = ui.painter().with_clip_rect(names.intersect(ui.clip_rect()));
-        let indent = space::M + bar.depth as f32 * 12.0;
-        let color = if is_selected { tokens.accent } else { tokens.text };
-        let font = TextStyle::Body.resolve(ui.style());
-        let mark = Rect::from_center_size(
-            Pos2::new(names.left() + indent + 3.0, names.center().y),
-            egui::vec2(6.0, if bar.kind == BarKind::Condition { 6.0 } else { 10.0 }),
-        );
-        painter.rect_filled(mark, if bar.kind == BarKind::Condition { 3.0 } else { 1.0 }, self.color(bar));
-        let at = Pos2::new(names.left() + indent + 12.0, names.center().y);
-        painter.text(at, Align2::LEFT_CENTER, &bar.name, font, color);
+    /// Where the sign is that opens and closes a row.
+    pub(super) fn arrow_rect(&self, shown: &Row, row: Rect) -> Rect {
+        let left = row.left() + space::S + shown.depth as f32 * INDENT;
+        Rect::from_min_size(pos2(left, row.top()), vec2(14.0, row.height()))
     }
 
-    /// Required conditions as a line above the bar, named where there is room.
-    fn conditions(&self, painter: &egui::Painter, bar: &Bar, whole: Rect) {
+    /// A bar: solid where it goes on for certain, hatched where it may, with the earliest schedule under it.
+    pub(super) fn bar(&self, painter: &Painter, bar: &Bar, row: Rect, is_selected: bool, is_hovered: bool) {
         let tokens = self.context.tokens;
-        if bar.kind == BarKind::Condition {
+        let color = self.color(bar.kind);
+        let whole = self.bar_rect(bar, row);
+        let rounding = if bar.kind == BarKind::Ask { 4.0 } else { 3.0 };
+        if bar.is_narrowed() {
+            let ghost = self.slot(bar, row, bar.free[0][0], bar.free[1][1]);
+            painter.rect_filled(ghost, rounding, tokens.mixed(color, 0.07));
+            let line = Stroke::new(1.0, tokens.mixed(color, 0.35));
+            painter.rect_stroke(ghost, rounding, line, StrokeKind::Inside);
+        }
+        if whole.width() < LEAST_WIDTH {
+            let stroke = Rect::from_center_size(whole.center(), vec2(LEAST_WIDTH, whole.height()));
+            painter.rect_filled(stroke, 1.0, tokens.mixed(color, 0.75));
             return;
         }
-        let font = egui::FontId::proportional(crate::theme::size::SMALL - 1.0);
-        let mut x = whole.left() + 6.0;
-        for &label in bar.asks.iter().chain(&bar.tells) {
-            let Some(label) = self.network.labels.get(label.index()) else { continue };
-            let (verb, color) = match label.mode {
-                rmpl::program::LabelMode::Ask => ("needs", tokens.ask),
-                rmpl::program::LabelMode::Tell => ("sets", tokens.tell),
-            };
-            let text = painter.layout_no_wrap(format!("{verb} {}", label.text), font.clone(), color);
-            let width = text.size().x;
-            if x + width + 8.0 < whole.right() && whole.height() > 10.0 {
-                let at = Pos2::new(x, whole.center().y - text.size().y / 2.0);
-                let back = Rect::from_min_size(at, text.size()).expand2(egui::vec2(4.0, 0.0));
-                painter.rect_filled(back, 3.0, tokens.surface);
-                painter.galley(at, text, color);
-                x += width + 14.0;
+        painter.rect_filled(whole, rounding, tokens.mixed(color, 0.16));
+        let mut mesh = Mesh::default();
+        let ink = tokens.mixed(color, 0.5);
+        match bar.certain() {
+            Some([from, to]) => {
+                hatch::add(&mut mesh, self.slot(bar, row, bar.start[0], from), self.visible, ink);
+                hatch::add(&mut mesh, self.slot(bar, row, to, bar.end[1]), self.visible, ink);
+                painter.add(Shape::mesh(mesh));
+                painter.rect_filled(self.slot(bar, row, from, to), 2.0, tokens.mixed(color, 0.85));
             }
+            None => {
+                hatch::add(&mut mesh, whole, self.visible, ink);
+                painter.add(Shape::mesh(mesh));
+            }
+        }
+        let outline = match (is_selected, is_hovered) {
+            (true, _) => Stroke::new(1.5, tokens.accent),
+            (_, true) => Stroke::new(1.0, tokens.text_muted),
+            _ => Stroke::new(1.0, tokens.mixed(color, 0.6)),
+        };
+        painter.rect_stroke(whole, rounding, outline, StrokeKind::Inside);
+        if !matches!(bar.kind, BarKind::Ask) {
+            self.earliest(painter, bar, row, color);
+        }
+        self.words(painter, bar, whole);
+    }
+
+    /// The earliest schedule, which playing follows.
+    fn earliest(&self, painter: &Painter, bar: &Bar, row: Rect, color: Color32) {
+        let earliest = self.slot(bar, row, bar.start[0], bar.end[0].max(bar.start[0]));
+        let y = earliest.bottom() + 2.0;
+        painter.hline(earliest.x_range(), y, Stroke::new(2.0, color));
+        for x in [earliest.left(), earliest.right()] {
+            painter.vline(x, y - 2.0..=y + 2.0, Stroke::new(1.0, color));
         }
     }
 
-    fn color(&self, bar: &Bar) -> Color32 {
+    /// What a bar requires and asserts, or which condition it is, where there is room.
+    fn words(&self, painter: &Painter, bar: &Bar, whole: Rect) {
         let tokens = self.context.tokens;
-        match bar.kind {
+        let visible = whole.intersect(self.visible);
+        if visible.width() < 44.0 || bar.kind == BarKind::Composite {
+            return;
+        }
+        let font = FontId::proportional(size::SMALL - 1.0);
+        let mut x = visible.left() + 6.0;
+        let own = bar.label.map(|_| {
+            if bar.kind == BarKind::Ask {
+                (format!("needs {}", bar.name), tokens.ask)
+            } else {
+                (bar.name.to_string(), tokens.tell)
+            }
+        });
+        let labels = bar.labels.iter().filter_map(|label| self.network.labels.get(label.index()));
+        let labels = labels.map(|label| match label.mode {
+            rmpl::program::LabelMode::Ask => (format!("needs {}", label.text), tokens.ask),
+            rmpl::program::LabelMode::Tell => (format!("sets {}", label.text), tokens.tell),
+        });
+        for (text, color) in own.into_iter().chain(labels) {
+            let galley = painter.layout_no_wrap(text, font.clone(), color);
+            let width = galley.size().x;
+            if x + width + 8.0 > visible.right() {
+                return;
+            }
+            let at = pos2(x, whole.center().y - galley.size().y / 2.0);
+            let back = Rect::from_min_size(at, galley.size()).expand2(vec2(4.0, -0.5));
+            painter.rect_filled(back, 3.0, tokens.surface);
+            painter.galley(at, galley, color);
+            x += width + 14.0;
+        }
+    }
+
+    /// The colour of a kind of bar.
+    pub(super) fn color(&self, kind: BarKind) -> Color32 {
+        let tokens = self.context.tokens;
+        match kind {
             BarKind::Composite => tokens.text_muted,
             BarKind::Activity => tokens.slack,
-            BarKind::Condition => tokens.tell,
+            BarKind::Tell => tokens.tell,
+            BarKind::Ask => tokens.ask,
             BarKind::Delay => tokens.text_faint,
         }
     }
 
-    /// Slanted lines: time that may or may not be used.
-    fn hatch(&self, painter: &egui::Painter, rect: Rect, color: Color32) {
-        let visible = rect.intersect(painter.clip_rect());
-        if !visible.is_positive() {
-            return;
-        }
-        let painter = painter.with_clip_rect(visible);
-        let stroke = Stroke::new(1.0, self.context.tokens.mixed(color, 0.45));
-        let (step, height) = (6.0, rect.height());
-        let first = ((visible.left() - rect.left() - height) / step).floor().max(0.0) as usize;
-        let count = ((visible.width() + 2.0 * height) / step).ceil() as usize + 1;
-        for index in first..first + count {
-            let x = rect.left() + index as f32 * step - height / 2.0;
-            painter.line_segment([Pos2::new(x, rect.bottom()), Pos2::new(x + height, rect.top())], stroke);
-        }
-    }
-
-    /// Causal links and added orderings between the bars.
-    pub(crate) fn links(&self, ui: &Ui, plan: &Plan, bars: &[Bar]) {
-        let painter = ui.painter().with_clip_rect(self.track.intersect(ui.clip_rect()));
-        let row_of = |label: LabelId| {
-            let owner = self.network.labels.get(label.index())?.owner?;
-            let index = bars.iter().position(|bar| bar.occurrence == owner)?;
-            Some((self.row(index).center().y, bars.get(index)?))
-        };
-        let tokens = self.context.tokens;
-        for &link in &plan.causal_links {
-            let Some(((from_y, _), (to_y, to))) = row_of(link.tell).zip(row_of(link.ask)) else { continue };
-            let x = self.x(to.start[0]) + 3.0;
-            let is_selected = self.context.state.selection == Selection::Link(link);
-            let stroke = Stroke::new(if is_selected { 2.5 } else { 1.4 }, tokens.link);
-            curve(&painter, Pos2::new(x, from_y), Pos2::new(x, to_y), stroke, [5.0, 3.0]);
-        }
-        for &ordering in &plan.orderings_added {
-            let ends = row_of(ordering.first).zip(row_of(ordering.then));
-            let Some(((from_y, from), (to_y, to))) = ends else { continue };
-            let is_selected = self.context.state.selection == Selection::Ordering(ordering);
-            let stroke = Stroke::new(if is_selected { 2.5 } else { 1.4 }, tokens.ordering);
-            let start = Pos2::new(self.x(from.end[0]), from_y);
-            curve(&painter, start, Pos2::new(self.x(to.start[0]), to_y), stroke, [2.0, 3.0]);
-        }
-    }
-
     /// The present moment.
-    pub(crate) fn now(&self, ui: &Ui) {
-        let clip = self.track.intersect(ui.clip_rect());
+    pub(super) fn now(&self, ui: &Ui) {
         let x = self.x(self.context.state.playback.time);
-        ui.painter().with_clip_rect(clip).vline(x, clip.y_range(), Stroke::new(1.5, self.context.tokens.now));
+        self.on_track(ui).vline(x, self.visible.y_range(), Stroke::new(1.5, self.context.tokens.now));
     }
 }
 
-/// A dashed curve that leaves and arrives sideways, with a head.
-fn curve(painter: &egui::Painter, from: Pos2, to: Pos2, stroke: Stroke, [dash, gap]: [f32; 2]) {
-    let bow = egui::vec2(((to.y - from.y).abs() * 0.3).clamp(14.0, 46.0), 0.0);
-    let control = if (to.x - from.x).abs() < 40.0 { [from - bow, to - bow] } else { [from + bow, to - bow] };
-    let curve = egui::epaint::CubicBezierShape::from_points_stroke(
-        [from, control[0], control[1], to],
-        false,
-        Color32::TRANSPARENT,
-        stroke,
-    );
-    let points = curve.flatten(Some(0.3));
-    painter.extend(Shape::dashed_line(&points, stroke, dash, gap));
-    let head = vec![to, to + egui::vec2(-6.0, -3.5), to + egui::vec2(-6.0, 3.5)];
-    painter.add(Shape::convex_polygon(head, stroke.color, Stroke::NONE));
+/// A text on one line, shortened to `width`.
+pub(super) fn elided(painter: &Painter, text: &str, font: FontId, color: Color32, width: f32) -> Arc<Galley> {
+    let mut job = LayoutJob::simple_singleline(text.to_owned(), font, color);
+    job.wrap.max_width = width.max(12.0);
+    job.wrap.max_rows = 1;
+    job.wrap.break_anywhere = true;
+    painter.layout_job(job)
+}
+
+/// A note at a place of the track, kept inside it.
+pub(super) fn note(painter: &Painter, context: &Context<'_>, at: Pos2, text: &str, color: Color32) {
+    let galley =
+        painter.layout_no_wrap(text.to_owned(), FontId::proportional(size::SMALL), context.tokens.text);
+    let clip = painter.clip_rect();
+    let size = galley.size() + vec2(12.0, 6.0);
+    let left = at.x.min(clip.right() - size.x - 2.0).max(clip.left() + 2.0);
+    let top = at.y.min(clip.bottom() - size.y - 2.0).max(clip.top() + 2.0);
+    let rect = Rect::from_min_size(pos2(left, top), size);
+    painter.rect(rect, 4.0, context.tokens.raised, Stroke::new(1.0, color), StrokeKind::Inside);
+    painter.galley(rect.min + vec2(6.0, 3.0), galley, color);
 }

@@ -1,0 +1,274 @@
+//! The timeline as data: its rows, the bars in them, and when they can be. Prepared once for a plan and its grouping;
+//! when only windows change, [`Chart::retime`] is enough. Nothing is drawn here.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use mission::Snapshot;
+use smol_str::SmolStr;
+use tpn::{CausalLink, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind, Ordering, Plan, Window};
+
+use super::group;
+use crate::state::Selection;
+use crate::state::playback::{bound, number};
+use crate::state::settings::TimelineView;
+use crate::time_text;
+
+/// Rows of bars, and the links between them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Chart {
+    /// From top to bottom.
+    pub(super) rows: Vec<Row>,
+    /// Row by row.
+    pub(super) bars: Vec<Bar>,
+    /// Causal links and orderings between bars.
+    pub(super) links: Vec<Link>,
+    /// The last time that is certain to matter: every finite bound of every bar.
+    pub(super) horizon: f64,
+}
+
+/// A row.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Row {
+    /// What it is.
+    pub(super) kind: RowKind,
+    /// What is written on its left.
+    pub(super) name: SmolStr,
+    /// How far that is indented.
+    pub(super) depth: u32,
+    /// Under which name it can be closed, if it has rows below it.
+    pub(super) key: Option<SmolStr>,
+    /// Whether the rows below it are hidden; their bars are then in this row.
+    pub(super) is_closed: bool,
+    /// Its bars.
+    pub(super) bars: Range<usize>,
+}
+
+/// What a row is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum RowKind {
+    /// The heading of a thread, of a vehicle, or of the conditions.
+    Heading,
+    /// One activity or delay.
+    Single,
+    /// The values of a state variable.
+    Track,
+}
+
+/// An activity, condition or delay over time.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Bar {
+    /// What it is.
+    pub(super) kind: BarKind,
+    /// Whose bar it is.
+    pub(super) occurrence: Option<OccurrenceId>,
+    /// The condition that it is, on a track.
+    pub(super) label: Option<LabelId>,
+    /// Its first and its last event.
+    pub(super) events: [NodeId; 2],
+    /// Its name: of the occurrence, or of the condition.
+    pub(super) name: SmolStr,
+    /// When it can start, earliest and latest, in mission units.
+    pub(super) start: [f64; 2],
+    /// When it can end; the latest may be infinite.
+    pub(super) end: [f64; 2],
+    /// The same without pinned events.
+    pub(super) free: [[f64; 2]; 2],
+    /// What it requires and asserts.
+    pub(super) labels: Vec<LabelId>,
+}
+
+/// What a bar is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum BarKind {
+    /// Has others inside.
+    Composite,
+    /// A primitive activity.
+    Activity,
+    /// A delay.
+    Delay,
+    /// An asserted condition.
+    Tell,
+    /// A required condition.
+    Ask,
+}
+
+/// A line between two bars.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Link {
+    /// What it stands for.
+    pub(super) kind: LinkKind,
+    /// The row and the bar that it comes from.
+    pub(super) from: (usize, usize),
+    /// The row and the bar that it leads to.
+    pub(super) to: (usize, usize),
+}
+
+/// What a line between bars stands for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum LinkKind {
+    /// An assertion carries a requirement.
+    Causal(CausalLink),
+    /// One interval was put before another.
+    Ordering(Ordering),
+}
+
+/// A row before it is known which rows are closed.
+#[derive(Clone, Debug)]
+pub(super) struct Item {
+    /// What the row is.
+    pub(super) kind: RowKind,
+    /// What is written on its left.
+    pub(super) name: SmolStr,
+    /// Its name among the closed ones, if there are rows below it.
+    pub(super) key: Option<SmolStr>,
+    /// How deep it lies.
+    pub(super) depth: u32,
+    /// What is in it.
+    pub(super) bars: Vec<Bar>,
+}
+
+impl Bar {
+    /// The part in which it is going on for certain, if there is one.
+    pub(super) fn certain(&self) -> Option<[f64; 2]> {
+        (self.start[1] < self.end[0]).then_some([self.start[1], self.end[0]])
+    }
+
+    /// Whether pinned events have narrowed its windows.
+    pub(super) fn is_narrowed(&self) -> bool {
+        self.free != [self.start, self.end]
+    }
+
+    /// What a click on it selects.
+    pub(super) fn selection(&self, network: &Network) -> Selection {
+        match (self.occurrence, self.label) {
+            (Some(occurrence), _) if self.is_whole(network) => Selection::Occurrence(occurrence),
+            (_, Some(label)) => Selection::Label(label),
+            (_, None) => Selection::None,
+        }
+    }
+
+    /// Whether it stands for all of its occurrence, and not for a condition of an activity that has its own bar.
+    pub(super) fn is_whole(&self, network: &Network) -> bool {
+        let occurrence = self.occurrence.and_then(|id| network.occurrences.get(id.index()));
+        self.label.is_none() || occurrence.is_some_and(|it| it.kind == OccurrenceKind::Assertion)
+    }
+
+    /// Its windows in words.
+    pub(super) fn words(&self, plan: &Plan) -> String {
+        let interval = |node: NodeId| {
+            plan.windows
+                .get(node.index())
+                .copied()
+                .flatten()
+                .map_or_else(String::new, |window| time_text::interval(window.earliest, window.latest))
+        };
+        format!("starts {}, ends {}", interval(self.events[0]), interval(self.events[1]))
+    }
+
+    /// Puts its windows to those of `plan`.
+    fn retime(&mut self, plan: &Plan) {
+        if let Some([start, end]) = times(plan, self.events) {
+            (self.start, self.end) = (start, end);
+        }
+    }
+}
+
+impl Chart {
+    /// The chart of the plan of `snapshot` or of a step of its search, without pinned events.
+    pub(super) fn new(
+        snapshot: &Snapshot,
+        network: &Network,
+        plan: &Plan,
+        view: &TimelineView,
+        closed: &BTreeSet<SmolStr>,
+    ) -> Self {
+        let mut chart = Self::default();
+        let mut hidden_from: Option<(u32, usize)> = None;
+        let mut gathered: Vec<Vec<Bar>> = Vec::new();
+        for item in group::items(snapshot, network, plan, view) {
+            if let Some((_, row)) = hidden_from.filter(|&(depth, _)| item.depth > depth) {
+                gathered[row].extend(item.bars.into_iter().filter(|bar| bar.kind != BarKind::Composite));
+                continue;
+            }
+            let is_closed = item.key.as_ref().is_some_and(|key| closed.contains(key));
+            hidden_from = is_closed.then_some((item.depth, chart.rows.len()));
+            let Item { kind, name, key, depth, bars } = item;
+            chart.rows.push(Row { kind, name, depth, key, is_closed, bars: 0..0 });
+            gathered.push(bars);
+        }
+        for (row, mut bars) in chart.rows.iter_mut().zip(gathered) {
+            bars.sort_by(|left, right| left.start[0].total_cmp(&right.start[0]));
+            let first = chart.bars.len();
+            chart.bars.append(&mut bars);
+            row.bars = first..chart.bars.len();
+        }
+        chart.horizon = horizon(&chart.bars);
+        chart.links = chart.links_of(network, plan);
+        chart
+    }
+
+    /// Puts all windows to those of `plan`, which selects the same; in time linear in the bars.
+    pub(super) fn retime(&mut self, plan: &Plan) {
+        for bar in &mut self.bars {
+            bar.retime(plan);
+        }
+    }
+
+    fn links_of(&self, network: &Network, plan: &Plan) -> Vec<Link> {
+        // Where the bar of a condition is, and, failing that, the bar of its owner.
+        let mut of_label = vec![None; network.labels.len()];
+        let mut of_owner = vec![None; network.occurrences.len()];
+        for (row, shown) in self.rows.iter().enumerate() {
+            for at in shown.bars.clone() {
+                match (self.bars[at].label, self.bars[at].occurrence) {
+                    (Some(label), _) => of_label[label.index()] = Some((row, at)),
+                    (None, Some(owner)) if of_owner[owner.index()].is_none() => {
+                        of_owner[owner.index()] = Some((row, at));
+                    }
+                    _ => {}
+                }
+            }
+        }
+        let place_of_owner = |label: LabelId| {
+            let owner = network.labels.get(label.index())?.owner?;
+            of_owner.get(owner.index()).copied().flatten()
+        };
+        let on_track = |label: LabelId| of_label.get(label.index()).copied().flatten();
+        let from_track = |label: LabelId| on_track(label).or_else(|| place_of_owner(label));
+        let to_owner = |label: LabelId| place_of_owner(label).or_else(|| on_track(label));
+        let causal = plan.causal_links.iter().filter_map(|&link| {
+            let (from, to) = (from_track(link.tell)?, to_owner(link.ask)?);
+            Some(Link { kind: LinkKind::Causal(link), from, to })
+        });
+        let orderings = plan.orderings_added.iter().filter_map(|&ordering| {
+            let (from, to) = (from_track(ordering.first)?, from_track(ordering.then)?);
+            Some(Link { kind: LinkKind::Ordering(ordering), from, to })
+        });
+        causal.chain(orderings).filter(|link| link.from != link.to).collect()
+    }
+}
+
+impl LinkKind {
+    /// What a click on it selects.
+    pub(super) fn selection(self) -> Selection {
+        match self {
+            Self::Causal(link) => Selection::Link(link),
+            Self::Ordering(ordering) => Selection::Ordering(ordering),
+        }
+    }
+}
+
+/// The windows of two events, in mission units; `None` if the plan lacks one.
+pub(super) fn times(plan: &Plan, events: [NodeId; 2]) -> Option<[[f64; 2]; 2]> {
+    let window = |node: NodeId| plan.windows.get(node.index()).copied().flatten();
+    let pair = |window: Window| [number(window.earliest), bound(window.latest)];
+    Some([pair(window(events[0])?), pair(window(events[1])?)])
+}
+
+fn horizon(bars: &[Bar]) -> f64 {
+    bars.iter()
+        .flat_map(|bar| [bar.start[1], bar.end[0], bar.end[1]])
+        .filter(|time| time.is_finite())
+        .fold(1.0, f64::max)
+}
