@@ -161,6 +161,10 @@ export interface State {
   traverses: Traverse[] | null;
   terrain: Terrain;
   time: Time;
+  /** The range of times that is selected on the timeline. */
+  timeRange: [number, number] | null;
+  /** Events pinned to times on the timeline, and the windows that they leave to all events. */
+  pinned: { events: Record<string, number>; windows: Record<string, [Time, Time]> } | null;
   selection: unknown;
   /** What draws the canvas: WebGPU or WebGL2. */
   renderer: string;

@@ -29,3 +29,20 @@ export function saveFile(name, bytes) {
   // The download has begun by then and holds the bytes itself.
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
+
+/** Lets the user save an SVG as a PNG of this size in pixels. The browser draws it: no renderer has to be downloaded. */
+export async function savePicture(name, svg, width, height) {
+  const image = new Image(width, height);
+  image.src = URL.createObjectURL(new Blob([svg], { type: "image/svg+xml" }));
+  try {
+    await image.decode();
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [width, height];
+    canvas.getContext("2d").drawImage(image, 0, 0, width, height);
+    const picture = await new Promise((resolve) => canvas.toBlob(resolve, "image/png"));
+    if (!picture) throw new Error("the picture is too large for this browser");
+    saveFile(name, picture);
+  } finally {
+    URL.revokeObjectURL(image.src);
+  }
+}

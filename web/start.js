@@ -3,7 +3,7 @@
 import init, { start, usesKey } from "../wasm/page.js";
 import { createApi } from "./api.js";
 import { startCore } from "./core.js";
-import { chooseFile, saveFile } from "./files.js";
+import { chooseFile, saveFile, savePicture } from "./files.js";
 import { fetchWithProgress, hideLoading, showFailure, showStep } from "./loading.js";
 import { createMirror } from "./mirror.js";
 import { keepForNextLoad, remember, takeRescued } from "./rescue.js";
@@ -22,6 +22,7 @@ async function load() {
     startCore,
     chooseFile,
     saveFile,
+    savePicture,
     // Called while a frame is being drawn. What it leads to must wait until the frame is done.
     frameDrawn: () => queueMicrotask(settle),
   };

@@ -49,6 +49,10 @@ pub trait Host {
     /// Lets the user save `bytes` as a file.
     fn save_file(&mut self, suggested_name: &str, bytes: Vec<u8>);
 
+    /// Lets the user save an SVG as a PNG of this width and height in pixels. A browser can draw SVGs; hosts that
+    /// cannot answer with [`HostEvent::FileFailed`].
+    fn save_picture(&mut self, suggested_name: &str, svg: String, size: [u32; 2]);
+
     /// What stands after `#` in the page's address; empty outside a page.
     fn fragment(&self) -> String;
 

@@ -191,6 +191,15 @@ impl Host for NativeHost {
         });
     }
 
+    fn save_picture(&mut self, suggested_name: &str, _svg: String, _size: [u32; 2]) {
+        // A renderer of SVGs would be most of this program, where every browser and office program is one.
+        let reason = "a window saves drawings as SVG; the page makes PNGs of them, too".to_owned();
+        self.in_background({
+            let name = suggested_name.to_owned();
+            move || Some(HostEvent::FileFailed { name, reason })
+        });
+    }
+
     fn fragment(&self) -> String {
         String::new()
     }

@@ -223,6 +223,7 @@ impl Enroute {
                 Effect::Copy(text) => self.egui.copy_text(text),
                 Effect::OpenFile(kind) => self.host.open_file(kind),
                 Effect::SaveFile { name, bytes } => self.host.save_file(&name, bytes),
+                Effect::SavePicture { name, svg, size } => self.host.save_picture(&name, svg, size),
                 Effect::CopyLink => self.copy_link(),
                 Effect::Post(request) => self.host.post(request),
                 Effect::DropFocus => self.egui.memory_mut(|memory| {

@@ -96,3 +96,110 @@ fn a_double_click_closes_an_activity_and_another_opens_it() {
     double_click(&mut app, "Group-Enroute#1 in the network");
     assert!(has(&app, "Group-Transmit#1 in the network"), "and comes back");
 }
+
+/// The text of the file of this name that was saved.
+fn saved(app: &support::App, name: &str) -> String {
+    let saved = app.world.saved.borrow();
+    let (_, bytes) = saved.iter().find(|(saved, _)| saved == name).expect("it was saved");
+    String::from_utf8(bytes.clone()).expect("it is text")
+}
+
+#[test]
+fn the_saved_picture_shows_what_is_switched_on_of_all_that_is_drawn() {
+    let mut app = started();
+    app.harness.state_mut().dispatch("file.networkSvg", &json!(null)).expect("there is a network");
+    app.settle();
+    app.settle();
+    let svg = saved(&app, "enroute-network.svg");
+    let nodes = app.json()["tpn"]["nodes"].as_u64().expect("a count");
+    // Every event is a circle, and a decision is two.
+    let decisions = app.json()["tpn"]["decisions"].as_u64().expect("a count");
+    assert_eq!(svg.matches("<circle").count() as u64, nodes + decisions);
+    for text in ["Group-Traverse-Path(PATH1_1", "Group-Wait(TAI_HOLD1", ">D1<", "[450,540]", "PROCEED=OK"] {
+        assert!(svg.contains(text), "{text}");
+    }
+    app.world.saved.borrow_mut().clear();
+    let mut views = app.harness.state().app_state().settings.views.clone();
+    (views.network.bounds, views.network.unselected) = (false, false);
+    app.harness.state_mut().run(app::command::Command::SetViews(Box::new(views)));
+    app.harness.state_mut().dispatch("file.networkSvg", &json!(null)).expect("there is a network");
+    app.settle();
+    app.settle();
+    let svg = saved(&app, "enroute-network.svg");
+    assert!(!svg.contains("[450,540]") && !svg.contains("PATH2_1"), "what is switched off is left out");
+}
+
+#[test]
+fn a_picture_is_saved_as_often_as_it_is_asked_for() {
+    let mut app = started();
+    for _ in 0..2 {
+        app.harness.state_mut().dispatch("file.networkPng", &json!(null)).expect("there is a network");
+        for _ in 0..3 {
+            app.settle();
+        }
+    }
+    assert_eq!(app.world.saved.borrow().len(), 2);
+    let [width, height] = app.world.picture_size.get();
+    assert!(width > 1000 && height > 300, "{width} × {height}");
+    assert!(saved(&app, "enroute-network.png").starts_with("<svg"), "hosts make the PNG");
+}
+
+#[test]
+fn an_error_is_marked_at_the_activity_that_it_is_in() {
+    let mut app = started();
+    let source = app.harness.state().source();
+    app.harness.state_mut().set_source(
+        &source.replace("Group-Transmit(MCC,ARRIVED_TAI)[0,2]", "Group-Transmit(MCC,ARRIVED_TAI)[3,2]"),
+    );
+    app.settle();
+    assert_eq!(app.json()["status"], "broken");
+    let marks = app.harness.query_all_by_role(egui::Role::Button).filter_map(|node| {
+        let label = node.accesskit_node().label()?;
+        label.starts_with("Error on the network").then(|| (label, node.rect().center()))
+    });
+    let marks: Vec<_> = marks.collect();
+    let [(label, at)] = marks.as_slice() else { panic!("{marks:?}") };
+    let activity =
+        app.harness.get_by_role_and_label(egui::Role::Button, "Group-Transmit#1 in the network").rect();
+    assert!((*at - activity.center()).length() < 120.0, "{label} at {at}, the activity is at {activity}");
+    app.harness.get_by_label(label).click();
+    app.settle();
+    let start = app.json()["caret"]["anchor"].as_u64().expect("an offset") as usize;
+    assert!(app.harness.state().source()[start..].starts_with("[3,2]"), "the caret is at {start}");
+}
+
+#[test]
+fn time_shows_on_the_network_while_it_is_not_at_the_start() {
+    let mut app = started();
+    let now = app::theme::ThemeChoice::Dark.tokens().now;
+    let dots = |app: &support::App| {
+        let is_dot = |shape: &&egui::epaint::ClippedShape| match &shape.shape {
+            egui::Shape::Circle(circle) => circle.fill == now,
+            _ => false,
+        };
+        app.harness.output().shapes.iter().filter(is_dot).count()
+    };
+    assert_eq!(dots(&app), 0);
+    app.harness.state_mut().dispatch("play.seek", &json!(430)).expect("a time");
+    app.settle();
+    let under_way = dots(&app);
+    app.harness.state_mut().dispatch("play.seek", &json!(660)).expect("a time");
+    app.settle();
+    assert!(0 < under_way && under_way < dots(&app), "{under_way}, then {}", dots(&app));
+}
+
+#[test]
+fn lanes_carry_the_names_of_the_threads() {
+    let mut app = started();
+    let mut views = app.harness.state().app_state().settings.views.clone();
+    views.network.lanes = true;
+    app.harness.state_mut().run(app::command::Command::SetViews(Box::new(views)));
+    app.settle();
+    let is_written = |name: &str| {
+        app.harness.output().shapes.iter().any(|shape| match &shape.shape {
+            egui::Shape::Text(text) => text.galley.text() == name,
+            _ => false,
+        })
+    };
+    assert!(is_written("Thread 1 · delay") || is_written("Thread 1 · Group-Enroute"));
+}

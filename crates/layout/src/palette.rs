@@ -78,7 +78,7 @@ impl Palette {
         threat: rgb(0xB84300),
         slack: rgb(0x0068A8),
         now: rgb(0xB84300),
-        lane: rgb(0xE9EFF6),
+        lane: rgb(0xE4EAF0),
     };
 
     /// Light on dark.
@@ -103,7 +103,7 @@ impl Palette {
         threat: rgb(0xFF8552),
         slack: rgb(0x56B4E9),
         now: rgb(0xF0E442),
-        lane: rgb(0x19212B),
+        lane: rgb(0x222A34),
     };
 
     /// The colour of an ink.

@@ -146,7 +146,7 @@ impl<'a> Canvas<'a> {
             out,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
              viewBox=\"{left} {top} {width} {height}\" role=\"img\" fill=\"none\" \
-             font-family=\"'Ubuntu Light', Ubuntu, Inter, 'Segoe UI', 'Helvetica Neue', Arial, sans-serif\">\n\
+             font-family=\"Inter, 'Segoe UI', 'Helvetica Neue', Arial, sans-serif\">\n\
              <title>{}</title>\n\
              <rect x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\" fill=\"{background}\"/>",
             escaped(title)

@@ -21,6 +21,10 @@ extern "C" {
     #[wasm_bindgen(method, js_name = saveFile)]
     pub(crate) fn save_file(this: &Glue, name: &str, bytes: Uint8Array);
 
+    /// Lets the user save an SVG as a PNG of this size; the promise fails if the browser cannot draw it.
+    #[wasm_bindgen(method, js_name = savePicture)]
+    pub(crate) fn save_picture(this: &Glue, name: &str, svg: &str, width: u32, height: u32) -> Promise;
+
     /// Says that a frame is being drawn.
     #[wasm_bindgen(method, js_name = frameDrawn)]
     pub(crate) fn frame_drawn(this: &Glue);

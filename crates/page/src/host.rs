@@ -128,6 +128,16 @@ impl Host for PageHost {
         self.glue.save_file(suggested_name, Uint8Array::from(bytes.as_slice()));
     }
 
+    fn save_picture(&mut self, suggested_name: &str, svg: String, [width, height]: [u32; 2]) {
+        let saved = self.glue.save_picture(suggested_name, &svg, width, height);
+        let (link, name) = (self.link.clone(), suggested_name.to_owned());
+        wasm_bindgen_futures::spawn_local(async move {
+            if let Err(thrown) = wasm_bindgen_futures::JsFuture::from(saved).await {
+                link.happened(HostEvent::FileFailed { name, reason: words(&thrown) });
+            }
+        });
+    }
+
     fn fragment(&self) -> String {
         fragment_of(&self.window.location())
     }

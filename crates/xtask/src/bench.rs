@@ -19,6 +19,9 @@ pub(crate) struct Options {
     /// With `--peers`, fewer and smaller problems, to see that everything runs.
     #[arg(long, requires = "peers")]
     quick: bool,
+    /// Measures the page as it is built for development, which is ready sooner.
+    #[arg(long)]
+    development: bool,
     /// Only the tables of these crates, or only these tables.
     tables: Vec<String>,
 }
@@ -47,7 +50,12 @@ pub(crate) fn run_all(options: &Options) -> Result<()> {
     }
     for Table { package, name } in tables {
         println!("\n{package}: {name}");
-        run(cargo().args(["bench", "--quiet", "--package", &package, "--bench", &name]))?;
+        let mut command = cargo();
+        command.args(["bench", "--quiet", "--package", &package, "--bench", &name]);
+        if options.development {
+            command.args(["--", "--development"]);
+        }
+        run(&mut command)?;
     }
     Ok(())
 }

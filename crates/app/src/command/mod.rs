@@ -150,6 +150,43 @@ pub enum Command {
     DismissToast(usize),
     /// Puts text on the clipboard.
     Copy(String),
+    /// Saves the drawing of the network.
+    SaveNetwork(PictureFormat),
+    /// Lets the user save a file.
+    SaveFile {
+        /// The name to suggest.
+        name: String,
+        /// The content.
+        bytes: Vec<u8>,
+    },
+    /// Lets the user save a picture as a PNG.
+    SavePicture {
+        /// The name to suggest.
+        name: String,
+        /// The picture as an SVG.
+        svg: String,
+        /// Width and height in pixels.
+        size: [u32; 2],
+    },
+}
+
+/// The formats that drawings are saved in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureFormat {
+    /// Lines and texts, sharp at any size.
+    Svg,
+    /// Pixels.
+    Png,
+}
+
+impl PictureFormat {
+    /// What files of this format end in.
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Self::Svg => "svg",
+            Self::Png => "png",
+        }
+    }
 }
 
 /// What only the editor does.

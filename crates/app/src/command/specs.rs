@@ -4,7 +4,7 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 use serde_json::Value;
 
 use crate::command::registry::{Availability, Build, CommandSpec, Group, Scope};
-use crate::command::{Command, EditorCommand, ViewAction};
+use crate::command::{Command, EditorCommand, PictureFormat, ViewAction};
 use crate::dialog::Dialog;
 use crate::host::FileKind;
 use crate::mission_file;
@@ -35,6 +35,11 @@ const CTRL_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
 #[expect(clippy::unnecessary_wraps, reason = "it stands beside conditions that can fail")]
 fn always(_: &AppState) -> Availability {
     Ok(())
+}
+
+fn with_network(state: &AppState) -> Availability {
+    let has_network = state.shown().is_some_and(|shown| shown.network.is_some());
+    if has_network { Ok(()) } else { Err("there is no network") }
 }
 
 fn with_plan(state: &AppState) -> Availability {
@@ -182,6 +187,18 @@ pub static COMMANDS: &[CommandSpec] = &[
     plain("file.share", "Copy a link to this mission", Group::File, &[], Scope::Everywhere, |_| {
         Command::CopyLink
     }),
+    when(
+        plain("file.networkSvg", "Save the network as SVG…", Group::File, &[], Scope::Everywhere, |_| {
+            Command::SaveNetwork(PictureFormat::Svg)
+        }),
+        with_network,
+    ),
+    when(
+        plain("file.networkPng", "Save the network as PNG…", Group::File, &[], Scope::Everywhere, |_| {
+            Command::SaveNetwork(PictureFormat::Png)
+        }),
+        with_network,
+    ),
     called("file.example", "Open an example", Group::File, |_, arguments| {
         let name = text_argument(arguments, "name")?;
         mission_file::example(name)

@@ -32,6 +32,15 @@ pub enum Effect {
         /// The content.
         bytes: Vec<u8>,
     },
+    /// Let the user save a picture as a PNG.
+    SavePicture {
+        /// The name to suggest.
+        name: String,
+        /// The picture as an SVG.
+        svg: String,
+        /// Width and height in pixels.
+        size: [u32; 2],
+    },
     /// Put a link to the present view on the clipboard.
     CopyLink,
     /// Send something to the planning core.
@@ -176,6 +185,15 @@ impl AppState {
             Command::Notify(kind, text) => self.toasts.add(kind, text),
             Command::DismissToast(index) => self.toasts.dismiss(index),
             Command::Copy(text) => self.effects.push(Effect::Copy(text)),
+            Command::SaveNetwork(format) => {
+                let count = self.picture_request.map_or(1, |(count, _)| count + 1);
+                self.picture_request = Some((count, format));
+                self.wanted_panel = Some(PanelKind::Network);
+            }
+            Command::SaveFile { name, bytes } => self.effects.push(Effect::SaveFile { name, bytes }),
+            Command::SavePicture { name, svg, size } => {
+                self.effects.push(Effect::SavePicture { name, svg, size });
+            }
         }
     }
 

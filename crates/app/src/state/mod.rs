@@ -101,6 +101,8 @@ pub struct AppState {
     pub panels_on_screen: Vec<PanelKind>,
     /// The last view action, for its panel to follow once.
     pub view_request: Option<ViewRequest>,
+    /// The network's drawing is to be saved: how often that was asked for, and in which format last.
+    pub picture_request: Option<(u64, crate::command::PictureFormat)>,
     /// A panel that is to be brought back or to the front of its tabs.
     pub wanted_panel: Option<PanelKind>,
     /// A panel that is to be closed.
@@ -169,6 +171,7 @@ impl AppState {
             active_panel: PanelKind::Editor,
             panels_on_screen: Vec::new(),
             view_request: None,
+            picture_request: None,
             wanted_panel: None,
             unwanted_panel: None,
             wants_default_layout: false,

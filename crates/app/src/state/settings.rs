@@ -85,8 +85,28 @@ pub struct NetworkView {
     pub unselected: bool,
     /// Boxes around activities and blocks.
     pub structure: bool,
+    /// A named band for every parallel branch.
+    pub lanes: bool,
+    /// What has happened at the time shown, and what is under way.
+    pub now: bool,
+    /// Problems of the text at their places.
+    pub problems: bool,
     /// The small overview.
     pub minimap: bool,
+}
+
+impl NetworkView {
+    /// The parts of a drawing that it shows.
+    pub const fn parts(&self) -> layout::Parts {
+        layout::Parts {
+            names: self.names,
+            bounds: self.bounds,
+            conditions: self.labels,
+            unselected: self.unselected,
+            structure: self.structure,
+            lanes: self.lanes,
+        }
+    }
 }
 
 impl Default for NetworkView {
@@ -100,6 +120,9 @@ impl Default for NetworkView {
             orderings: true,
             unselected: true,
             structure: false,
+            lanes: false,
+            now: true,
+            problems: true,
             minimap: true,
         }
     }

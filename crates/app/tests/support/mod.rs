@@ -21,6 +21,8 @@ pub struct World {
     pub is_full: Cell<bool>,
     /// Files that were saved.
     pub saved: RefCell<Vec<(String, Vec<u8>)>>,
+    /// Width and height of the last picture that was saved, in pixels.
+    pub picture_size: Cell<[u32; 2]>,
     /// What files the app asked for.
     pub asked: RefCell<Vec<FileKind>>,
     /// What stands after `#`.
@@ -133,6 +135,11 @@ impl Host for TestHost {
 
     fn save_file(&mut self, suggested_name: &str, bytes: Vec<u8>) {
         self.world.saved.borrow_mut().push((suggested_name.to_owned(), bytes));
+    }
+
+    fn save_picture(&mut self, suggested_name: &str, svg: String, size: [u32; 2]) {
+        self.world.saved.borrow_mut().push((suggested_name.to_owned(), svg.into_bytes()));
+        self.world.picture_size.set(size);
     }
 
     fn fragment(&self) -> String {

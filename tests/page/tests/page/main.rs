@@ -15,3 +15,4 @@ mod offline;
 mod report;
 mod same;
 mod terrain;
+mod timeline;

@@ -3,13 +3,27 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use layout::overlay::{causal_links, negative_cycle, orderings, windows};
+use layout::overlay::{causal_links, negative_cycle, orderings, threats, windows};
+use layout::threads;
 use layout::{NetworkDrawing, Options, OverlayCurve, Piece, Point, TextShape, approximate_text_width};
 use mission::{Planning, Snapshot};
+use smol_str::SmolStr;
 use tpn::{BlockId, BlockKind, Network, NodeId, Plan};
 
+use super::marks::{Mark, marks};
 use crate::state::search::View;
 use crate::state::selection::node_name;
+
+/// The band of a parallel branch.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Lane {
+    /// Where it is.
+    pub(super) rect: layout::Rect,
+    /// Its name.
+    pub(super) name: SmolStr,
+    /// Which of its fork's branches it is, from 1.
+    pub(super) number: usize,
+}
 
 /// A drawing with what lies over it.
 #[derive(Default)]
@@ -27,6 +41,16 @@ pub(super) struct Drawn {
     pub(super) orderings: Vec<OverlayCurve>,
     /// A contradiction among the bounds, if there is no plan.
     pub(super) cycle: Vec<OverlayCurve>,
+    /// Pairs of conditions that leave no plan because they cannot be kept apart.
+    pub(super) threats: Vec<OverlayCurve>,
+    /// The bands of the parallel branches.
+    pub(super) lanes: Vec<Lane>,
+    /// Problems at their places.
+    pub(super) marks: Vec<Mark>,
+    /// The revision and stage of the problems.
+    marked: Option<(u64, mission::Stage)>,
+    /// The pins whose windows are shown.
+    pins: u64,
     /// The windows of the plan.
     pub(super) windows: Vec<TextShape>,
     /// The texts that slide along each arch, by the arch's place in the drawing.
@@ -45,6 +69,8 @@ impl Drawn {
         network: &Arc<Network>,
         step: Option<&View>,
         collapsed: &BTreeSet<String>,
+        latest: Option<&Snapshot>,
+        (pins, pinned): (u64, Option<&Plan>),
     ) -> bool {
         let same = |one: &Option<Arc<Network>>| one.as_ref().is_some_and(|one| Arc::ptr_eq(one, network));
         let is_new = !same(&self.network) || self.collapsed != *collapsed;
@@ -53,6 +79,7 @@ impl Drawn {
             self.drawing = layout::network(network, &options, &approximate_text_width);
             self.sliding = sliding_texts(&self.drawing);
             self.outline = outline(&self.drawing, network);
+            self.lanes = lanes(&self.drawing, network);
             self.network = Some(Arc::clone(network));
             self.collapsed.clone_from(collapsed);
             self.version += 1;
@@ -72,25 +99,41 @@ impl Drawn {
             self.step = step.map(|view| Arc::clone(&view.plan));
             self.lay_over(network, snapshot, step);
         }
+        if is_new || !same_planning || !same_step || self.pins != pins {
+            self.pins = pins;
+            let plan = step.map(|view| view.plan.as_ref()).or(pinned).or_else(|| snapshot.plan());
+            let plan = plan.filter(|plan| fits(plan, network));
+            let width = Options::default().window_width;
+            self.windows = plan
+                .map(|plan| windows(&self.drawing, plan, width, &approximate_text_width))
+                .unwrap_or_default();
+        }
+        let problems = latest.map(|latest| (latest.revision, latest.stage));
+        if is_new || self.marked != problems {
+            self.marked = problems;
+            self.marks = latest
+                .map(|latest| marks(&self.drawing, network, &snapshot.source, latest))
+                .unwrap_or_default();
+        }
         is_new
     }
 
     fn lay_over(&mut self, network: &Network, snapshot: &Snapshot, step: Option<&View>) {
         self.links.clear();
         self.orderings.clear();
-        self.windows.clear();
+        self.threats.clear();
         self.cycle.clear();
         let plan = step.map(|view| view.plan.as_ref()).or_else(|| snapshot.plan());
         if let Some(plan) = plan.filter(|plan| fits(plan, network)) {
             self.links = causal_links(&self.drawing, network, plan);
             self.orderings = orderings(&self.drawing, network, plan);
-            let width = Options::default().window_width;
-            self.windows = windows(&self.drawing, plan, width, &approximate_text_width);
             let cycle: Vec<NodeId> =
                 step.iter().flat_map(|view| &view.step.cycle).map(|member| member.from).collect();
             self.cycle = negative_cycle(&self.drawing, network, &cycle);
         } else if let Some(events) = cycle_events(snapshot) {
             self.cycle = negative_cycle(&self.drawing, network, &events);
+        } else {
+            self.threats = threats(&self.drawing, network, &unresolved_threats(snapshot));
         }
     }
 }
@@ -105,6 +148,54 @@ fn cycle_events(snapshot: &Snapshot) -> Option<Vec<NodeId>> {
     let failure = snapshot.planning.as_ref()?.outcome.failure.as_ref()?;
     let reason = failure.reasons.iter().find(|reason| !reason.cycle.is_empty())?;
     Some(reason.cycle.iter().map(|member| member.from).collect())
+}
+
+/// The pairs of conditions that, by the planner's reasons, cannot be kept apart.
+fn unresolved_threats(snapshot: &Snapshot) -> Vec<[tpn::LabelId; 2]> {
+    let failure = snapshot.planning.as_ref().and_then(|planning| planning.outcome.failure.as_ref());
+    let reasons = failure.into_iter().flat_map(|failure| &failure.reasons);
+    reasons
+        .filter(|reason| reason.kind == kirk::FailureKind::Threat)
+        .filter_map(|reason| {
+            let mut conditions = reason.conflict.iter().filter_map(|member| match member {
+                kirk::Member::Condition(label) => Some(*label),
+                kirk::Member::Bound(_) => None,
+            });
+            Some([conditions.next()?, conditions.next()?])
+        })
+        .collect()
+}
+
+fn lanes(drawing: &NetworkDrawing, network: &Network) -> Vec<Lane> {
+    let shapes = drawing.blocks.iter().filter(|it| it.form == layout::BlockForm::Lane);
+    let shapes: BTreeMap<_, _> = shapes.filter_map(|lane| Some((lane.block?, lane.rect))).collect();
+    let threads = threads::threads(network);
+    let named = threads.iter().enumerate().filter_map(|(at, thread)| {
+        let rect = *shapes.get(&thread.block?)?;
+        let name = threads::thread_name(network, &threads[at..]).unwrap_or_default();
+        Some(Lane { rect, name, number: thread.path.last().copied().unwrap_or(0) as usize })
+    });
+    named.collect()
+}
+
+/// The names of the outermost activities inside the mission.
+pub(super) fn outermost_activities(network: &Network) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    let mut pending: Vec<BlockId> = network.root.into_iter().collect();
+    while let Some(id) = pending.pop() {
+        let Some(block) = network.blocks.get(id.index()) else { continue };
+        let occurrence = match block.kind {
+            BlockKind::Scope { occurrence, .. } => occurrence,
+            _ => None,
+        };
+        let kind = occurrence.and_then(|it| network.occurrences.get(it.index())).map(|it| it.kind);
+        if kind == Some(tpn::OccurrenceKind::Activity) && is_collapsible(network, id) {
+            found.extend(block_key(network, id));
+        } else {
+            pending.extend(layout::block_children(&block.kind));
+        }
+    }
+    found
 }
 
 /// Names a block so that it is found again after an edit.

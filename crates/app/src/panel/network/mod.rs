@@ -5,8 +5,10 @@
 
 mod data;
 mod describe;
+mod export;
 mod highlight;
 mod landmarks;
+mod marks;
 mod minimap;
 mod paint;
 mod search;
@@ -17,7 +19,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::{CursorIcon, Key, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo, vec2};
-use layout::{Item, OverlayCurve, OverlayKind, Point};
+use layout::{Item, OverlayCurve, OverlayKind, Point, Progress};
 use mission::Snapshot;
 use tpn::{BlockId, Network, Plan};
 
@@ -41,6 +43,7 @@ pub struct NetworkPanel {
     collapsed: BTreeSet<String>,
     search: Search,
     followed_action: u64,
+    followed_picture: u64,
     /// The selection that was last brought into view.
     followed_selection: Selection,
     /// The step of the search that was last brought into view.
@@ -66,7 +69,9 @@ impl Panel for NetworkPanel {
             return;
         };
         let begun_secs = (context.clock)();
-        if self.drawn.follow(snapshot, network, context.step(), &self.collapsed) {
+        let latest = context.state.snapshots.latest().map(std::convert::AsRef::as_ref);
+        let pins = (context.state.pins.version(), context.state.pins.plan(snapshot));
+        if self.drawn.follow(snapshot, network, context.step(), &self.collapsed, latest, pins) {
             context.layout_millis.set(Some(((context.clock)() - begun_secs) * 1000.0));
         }
         self.search.follow(network, self.drawn.version);
@@ -88,6 +93,10 @@ impl NetworkPanel {
             Asked::Nothing => return,
             Asked::OpenAll => {
                 self.collapsed.clear();
+                return;
+            }
+            Asked::CloseAll => {
+                self.collapsed = data::outermost_activities(network);
                 return;
             }
             Asked::NextMatch => self.search.step(true),
@@ -117,6 +126,10 @@ impl NetworkPanel {
         commands: &mut CommandSender,
     ) {
         let plan = context.plan().map(|(_, plan)| plan).filter(|plan| fits(plan, network));
+        let now = context.state.playback.time;
+        let is_timed = options.now && now > 0.0 && context.step().is_none();
+        let progress = plan.filter(|_| is_timed).map(|plan| Progress::at(network, plan, now));
+        self.save_picture(context, network, plan, progress.as_ref(), options, commands);
         let (panel, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let summary = describe::summary(network, plan);
         response
@@ -154,8 +167,12 @@ impl NetworkPanel {
             selected: &selected,
             hovered: &hovered,
             focus: focus.as_ref(),
+            progress: progress.as_ref(),
         };
         scene.paint();
+        if options.problems {
+            marks::show(ui, panel, &self.view, &self.drawn.marks, context.tokens, commands);
+        }
         if let Some(place) = overview {
             minimap::paint(&painter, place, panel, &self.view, &self.drawn, context.tokens);
         }
@@ -166,6 +183,23 @@ impl NetworkPanel {
         }
         if let Some(pointed) = pointed.filter(|_| !response.dragged()) {
             show_tooltip(&response, context, &pointed, network, plan);
+        }
+    }
+
+    /// Saves the drawing once for every time that was asked for.
+    fn save_picture(
+        &mut self,
+        context: &Context<'_>,
+        network: &Network,
+        plan: Option<&Plan>,
+        progress: Option<&Progress>,
+        options: &NetworkView,
+        commands: &mut CommandSender,
+    ) {
+        let Some((count, format)) = context.state.picture_request else { return };
+        if count != self.followed_picture {
+            self.followed_picture = count;
+            commands.send(export::save(format, context, &self.drawn, network, plan, progress, options));
         }
     }
 
@@ -373,7 +407,7 @@ fn overlay_selection(curve: &OverlayCurve, plan: &Plan) -> Option<Selection> {
         OverlayKind::Ordering => {
             plan.orderings_added.get(number).map(|&ordering| Selection::Ordering(ordering))
         }
-        OverlayKind::NegativeCycle => None,
+        OverlayKind::NegativeCycle | OverlayKind::Threat => None,
     }
 }
 

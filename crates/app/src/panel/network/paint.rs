@@ -3,7 +3,10 @@
 use egui::{Align2, Color32, CornerRadius, FontId, Rect, Shape, Stroke, StrokeKind, vec2};
 use layout::look::{self, Dash, Ink, Standing};
 use layout::metrics::{ARROW_LENGTH, DECISION_INSET};
-use layout::{BlockForm, Item, OverlayCurve, OverlayKind, Piece, Point, Route, TextRole, TextShape};
+use layout::progress::elapsed;
+use layout::{
+    BlockForm, Item, OverlayCurve, OverlayKind, Piece, Point, Progress, Route, TextRole, TextShape,
+};
 use tpn::{ArcKind, LabelId, Network, Plan, Role};
 
 use super::data::Drawn;
@@ -50,6 +53,8 @@ pub(super) struct Scene<'a> {
     pub(super) hovered: &'a Highlight,
     /// What the step of the search that is looked at is about.
     pub(super) focus: Option<&'a Focus>,
+    /// What has happened at the time shown, if that is shown.
+    pub(super) progress: Option<&'a Progress>,
 }
 
 /// The shapes in view, by their places in the drawing.
@@ -66,9 +71,11 @@ impl Scene<'_> {
     /// Paints everything.
     pub(super) fn paint(&self) {
         let shapes = self.in_view();
+        self.lanes();
         self.blocks(&shapes.blocks);
         self.highlights();
         self.arcs(&shapes);
+        self.elapsed();
         self.overlays();
         self.nodes(&shapes.nodes);
         if self.is_far() {
@@ -76,6 +83,7 @@ impl Scene<'_> {
         } else {
             self.texts(&shapes);
         }
+        self.lane_names();
     }
 
     /// Whether the view is so far out that only structure can be named.
@@ -133,6 +141,56 @@ impl Scene<'_> {
                 self.painter.rect_stroke(rect, corner, line, StrokeKind::Middle);
             } else {
                 self.painter.rect(rect, corner, self.color(fill), line, StrokeKind::Middle);
+            }
+        }
+    }
+
+    /// The bands of the parallel branches.
+    fn lanes(&self) {
+        for lane in self.lanes_in_view() {
+            let (fill, stroke) = look::lane_look(lane.number);
+            let rect = self.view.screen_rect(self.panel, lane.rect);
+            let fill = fill.map_or(self.tokens.surface, |ink| self.color(ink));
+            self.painter.rect(rect, 0.0, fill, Stroke::new(1.0, self.color(stroke.ink)), StrokeKind::Middle);
+        }
+    }
+
+    /// Their names, which stay in view as long as their bands do.
+    fn lane_names(&self) {
+        let font = FontId::proportional(crate::theme::size::SMALL);
+        let color = self.color(Ink::TextMuted);
+        let mut taken: Vec<Rect> = Vec::new();
+        for lane in self.lanes_in_view() {
+            let rect = self.view.screen_rect(self.panel, lane.rect).intersect(self.panel);
+            let galley = self.painter.layout_no_wrap(lane.name.to_string(), font.clone(), color);
+            let place = Rect::from_min_size(rect.min + vec2(4.0, 1.0), galley.size());
+            let has_room =
+                rect.expand(1.0).contains_rect(place) && taken.iter().all(|it| !it.intersects(place));
+            if has_room {
+                self.painter.rect_filled(place.expand2(vec2(3.0, 0.0)), 3.0, self.tokens.surface);
+                self.painter.galley(place.min, galley, color);
+                taken.push(place);
+            }
+        }
+    }
+
+    fn lanes_in_view(&self) -> impl Iterator<Item = &super::data::Lane> {
+        let area = self.view.visible(self.panel);
+        let least = 2.0 * LEAST_SHAPE / self.view.zoom();
+        let lanes = if self.options.lanes { self.drawn.lanes.as_slice() } else { &[] };
+        lanes.iter().filter(move |lane| lane.rect.touches(area) && lane.rect.height() > least)
+    }
+
+    /// What time has passed of the arcs that are under way.
+    fn elapsed(&self) {
+        let area = self.view.visible(self.panel);
+        let look = look::elapsed_stroke();
+        let stroke = Stroke::new(self.width(look.width).max(2.0), self.color(look.ink));
+        let under_way = self.progress.into_iter().flat_map(|progress| &progress.under_way);
+        for &(arc, fraction) in under_way {
+            let is_seen = self.drawn.drawing.arc(arc).is_some_and(|shape| shape.bounds.touches(area));
+            if let Some((start, pieces)) = elapsed(&self.drawn.drawing, arc, fraction).filter(|_| is_seen) {
+                self.curve(start, &pieces, stroke, Dash::Solid);
             }
         }
     }
@@ -244,6 +302,7 @@ impl Scene<'_> {
         self.drawn
             .cycle
             .iter()
+            .chain(&self.drawn.threats)
             .filter(|curve| curve.bounds.touches(area))
             .for_each(|curve| self.overlay(curve));
     }
@@ -265,7 +324,7 @@ impl Scene<'_> {
         let labels = match curve.kind {
             OverlayKind::CausalLink => plan.causal_links.get(number).map(|link| [link.ask, link.tell]),
             OverlayKind::Ordering => plan.orderings_added.get(number).map(|order| [order.first, order.then]),
-            OverlayKind::NegativeCycle => None,
+            OverlayKind::NegativeCycle | OverlayKind::Threat => None,
         };
         let arc = |label: LabelId| self.network.labels.get(label.index()).map(|label| label.arc);
         let mut arcs = labels.into_iter().flatten().filter_map(arc);
@@ -285,6 +344,11 @@ impl Scene<'_> {
             let fill = self.color(look::node_fill(node.role, node.radius, standing));
             let line = Stroke::new(self.width(stroke.width), self.color(stroke.ink));
             self.painter.circle(center, radius, fill, line);
+            let is_done = self.progress.is_some_and(|it| it.done.binary_search(&node.id).is_ok());
+            let dot = (look::done_radius(node.radius) * self.view.zoom()) as f32;
+            if is_done && dot >= 0.8 {
+                self.painter.circle_filled(center, dot, self.color(Ink::Now));
+            }
             let inset = (DECISION_INSET * self.view.zoom()) as f32;
             if node.role == Role::Decision && inset >= 1.2 {
                 self.painter.circle_stroke(center, radius - inset, Stroke::new(self.width(1.0), line.color));
@@ -319,12 +383,7 @@ impl Scene<'_> {
     }
 
     fn text(&self, text: &TextShape, rect: layout::Rect) {
-        let wanted = match text.role {
-            TextRole::Bounds | TextRole::ZeroBounds => self.options.bounds,
-            TextRole::Ask | TextRole::Tell => self.options.labels,
-            TextRole::Name | TextRole::Quiet => self.options.names,
-            TextRole::Node | TextRole::Title | TextRole::Window => true,
-        };
+        let wanted = self.options.parts().shows_text(text.role);
         let arc_of_label = |label: LabelId| self.network.labels[label.index()].arc;
         let standing = look::item_standing(self.plan, text.owner, arc_of_label);
         let size = text.size * self.view.zoom();
@@ -449,6 +508,8 @@ pub(super) fn ink_color(tokens: &Tokens, ink: Ink) -> Color32 {
         Ink::Ordering => tokens.ordering,
         Ink::Threat => tokens.threat,
         Ink::Slack => tokens.accent,
+        Ink::Now => tokens.now,
+        Ink::Lane => tokens.hover,
     }
 }
 

@@ -3,7 +3,7 @@
 use egui::{RichText, TextEdit, Ui};
 
 use super::search::Search;
-use crate::command::{Command, CommandSender, ViewAction};
+use crate::command::{Command, CommandSender, PictureFormat, ViewAction};
 use crate::panel::{Context, PanelKind};
 use crate::state::settings::NetworkView;
 use crate::theme::space;
@@ -19,6 +19,8 @@ pub(super) enum Asked {
     PreviousMatch,
     /// Everything that is collapsed is opened.
     OpenAll,
+    /// The outermost activities are collapsed.
+    CloseAll,
 }
 
 /// Shows the switches and answers what was asked for besides.
@@ -52,21 +54,32 @@ pub(super) fn show(
             ui.label(RichText::new(text).small().color(context.tokens.text_muted));
         }
         ui.add_space(space::S);
-        for (value, name, help) in [
-            (&mut view.names, "Names", "Names of activities"),
-            (&mut view.bounds, "Bounds", "Bounds of every constraint"),
-            (&mut view.labels, "Conditions", "Asked and told conditions"),
-            (&mut view.windows, "Windows", "When each event may happen"),
-            (&mut view.links, "Links", "Causal links: which assertion carries which requirement"),
-            (&mut view.orderings, "Orderings", "What planning put in order to resolve threats"),
-            (&mut view.unselected, "Unselected", "What the plan does without"),
-            (&mut view.structure, "Structure", "Outlines of activities, lanes of branches"),
-            (&mut view.minimap, "Overview", "The small map of the whole drawing"),
-        ] {
-            ui.toggle_value(value, RichText::new(name).small()).on_hover_text(help);
+        if ui.available_width() < ROOM_FOR_SWITCHES {
+            ui.menu_button(RichText::new("Show").small(), |ui| {
+                for (value, name, help) in switches(view) {
+                    ui.checkbox(value, name).on_hover_text(help);
+                }
+            });
+        } else {
+            for (value, name, help) in switches(view) {
+                ui.toggle_value(value, RichText::new(name).small()).on_hover_text(help);
+            }
         }
         if ui.small_button("Fit").on_hover_text("Show everything (F)").clicked() {
             commands.send(Command::ViewOf(PanelKind::Network, ViewAction::Fit));
+        }
+        ui.menu_button(RichText::new("Save").small(), |ui| {
+            for (format, name) in [(PictureFormat::Svg, "As SVG"), (PictureFormat::Png, "As PNG")] {
+                if ui.button(name).clicked() {
+                    commands.send(Command::SaveNetwork(format));
+                    ui.close();
+                }
+            }
+        });
+        if !has_collapsed
+            && ui.small_button("Close all").on_hover_text("Collapse the outermost activities").clicked()
+        {
+            asked = Asked::CloseAll;
         }
         if has_collapsed
             && ui.small_button("Open all").on_hover_text("Open everything that is collapsed").clicked()
@@ -75,4 +88,25 @@ pub(super) fn show(
         }
     });
     asked
+}
+
+/// Narrower toolbars have their switches in a menu.
+const ROOM_FOR_SWITCHES: f32 = 640.0;
+
+/// What can be switched on and off, with its name and what it means.
+fn switches(view: &mut NetworkView) -> [(&mut bool, &'static str, &'static str); 12] {
+    [
+        (&mut view.names, "Names", "Names of activities"),
+        (&mut view.bounds, "Bounds", "Bounds of every constraint"),
+        (&mut view.labels, "Conditions", "Asked and told conditions"),
+        (&mut view.windows, "Windows", "When each event may happen"),
+        (&mut view.links, "Links", "Causal links: which assertion carries which requirement"),
+        (&mut view.orderings, "Orderings", "What planning put in order to resolve threats"),
+        (&mut view.unselected, "Unselected", "What the plan does without"),
+        (&mut view.structure, "Structure", "Outlines of activities, lanes of branches"),
+        (&mut view.lanes, "Lanes", "A named band for every parallel branch"),
+        (&mut view.now, "Time", "What has happened at the time shown, and what is under way"),
+        (&mut view.problems, "Problems", "Errors and warnings at their places"),
+        (&mut view.minimap, "Overview", "The small map of the whole drawing"),
+    ]
 }

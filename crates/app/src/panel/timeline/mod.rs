@@ -58,7 +58,8 @@ pub struct TimelinePanel {
 /// A chart and what it was made of.
 struct Prepared {
     snapshot: Arc<Snapshot>,
-    step: Option<usize>,
+    /// What the search had selected at the step that was looked at.
+    step: Option<Arc<Plan>>,
     view: TimelineView,
     closed: BTreeSet<SmolStr>,
     pins: u64,
@@ -107,13 +108,16 @@ impl TimelinePanel {
     /// Makes the chart anew where something that it is made of has changed.
     fn prepare(&mut self, context: &Context<'_>, snapshot: &Arc<Snapshot>, network: &Network, plan: &Plan) {
         let state = context.state;
-        let (view, step) = (&state.settings.views.timeline, state.search.step().map(|step| step.step));
+        let (view, step) =
+            (&state.settings.views.timeline, context.step().map(|step| Arc::clone(&step.plan)));
         let pins = state.pins.version();
         let is_current = self.prepared.as_ref().is_some_and(|it| {
-            Arc::ptr_eq(&it.snapshot, snapshot)
-                && it.step == step
-                && it.view == *view
-                && it.closed == self.closed
+            let same_step = match (&it.step, &step) {
+                (Some(one), Some(other)) => Arc::ptr_eq(one, other),
+                (None, None) => true,
+                _ => false,
+            };
+            Arc::ptr_eq(&it.snapshot, snapshot) && same_step && it.view == *view && it.closed == self.closed
         });
         if !is_current {
             // Pinned events only narrow windows: rows are those of the plan without them.

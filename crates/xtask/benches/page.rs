@@ -1,0 +1,151 @@
+//! How long the page's own code takes for a frame while drawings move, and how long a keystroke takes until what it
+//! changes is drawn: measured in headless Chromium, at about 1,000 and 10,000 nodes.
+//!
+//! `cargo xtask bench page` prints the tables; `--development` takes the page built for development. Times of frames
+//! are `enroute.state().timings.frame`: they leave out drawing, which this browser computes on the processor. The time
+//! of a keystroke runs on the page's clock from the key to the state that says its answer is drawn.
+
+use anyhow::{Context as _, Result, ensure};
+use serde_json::{Value, json};
+use tpn::generate::{Recipe, Tightness, mission};
+use xtask::{
+    browser::{Browser, Graphics, Key, Modifiers, Tab},
+    server::SiteServer,
+    site::{self, Flavour},
+};
+
+const SIZES: [usize; 2] = [1_000, 10_000];
+/// Steps of a drag, each a frame.
+const STEPS: usize = 60;
+/// Keys that are typed, each followed by its deletion.
+const KEYS: usize = 30;
+
+#[expect(clippy::print_stdout, reason = "printing its tables is what a benchmark is for")]
+fn main() -> Result<()> {
+    let is_development = std::env::args().any(|argument| argument == "--development");
+    let flavour = if is_development { Flavour::Development } else { Flavour::Release };
+    let site = site::build(flavour)?;
+    let server = SiteServer::start(&site, 0, false)?;
+    let browser = Browser::start(Graphics::WebGl2)?;
+    println!("milliseconds on the page, p50 / p90 / p99, {flavour:?} build");
+    println!(
+        "| nodes | pan network | pan network, near | pan timeline | key to drawing | of it worked out |"
+    );
+    println!("|---|---|---|---|---|---|");
+    for nodes in SIZES {
+        let tab = browser.open_tab(1440, 900)?;
+        tab.go_to(&format!("{}#mission=enroute&workspace=review", server.url()))?;
+        tab.wait_until_ready()?;
+        open(&tab, nodes)?;
+        let far = pan(&tab, ("img", "Network"), 0)?;
+        let near = pan(&tab, ("img", "Network"), 12)?;
+        let timeline = pan(&tab, ("slider", "Time axis"), 0)?;
+        let (keys, worked_out) = type_keys(&tab)?;
+        let counted = tab.evaluate("enroute.state().tpn.nodes")?;
+        println!("| {counted} | {far} | {near} | {timeline} | {keys} | {worked_out} |");
+    }
+    Ok(())
+}
+
+fn open(tab: &Tab, nodes: usize) -> Result<()> {
+    let text = mission(Recipe { nodes, tightness: Tightness::Feasible, seed: 1 });
+    tab.evaluate(&format!("enroute.setSource({})", json!(text)))?;
+    settle(tab)?;
+    let status = tab.evaluate("enroute.state().status")?;
+    ensure!(status == "plan", "the mission of {nodes} nodes is {status}");
+    Ok(())
+}
+
+fn settle(tab: &Tab) -> Result<()> {
+    tab.wait_until(
+        "((state) => state.status !== 'working' && state.shownRevision === state.revision)(enroute.state())",
+    )?;
+    tab.next_frame()
+}
+
+/// The times of frames while a drawing is dragged to and fro, after turning the wheel so often to come nearer.
+fn pan(tab: &Tab, (role, label): (&str, &str), turns: usize) -> Result<Spread> {
+    let widget = tab.widget(role, label)?;
+    // Below the axis lies the track; of the network, the middle.
+    let (x, y) =
+        if role == "slider" { (widget.centre().0, widget.y + widget.height + 60.0) } else { widget.centre() };
+    for _ in 0..turns {
+        tab.wheel(x, y, -120.0)?;
+    }
+    let mut times = Vec::new();
+    let button = |kind: &str, x: f64| {
+        let event = json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": 1, "clickCount": 1 });
+        tab.call("Input.dispatchMouseEvent", &event)
+    };
+    tab.hover(x, y)?;
+    button("mousePressed", x)?;
+    for step in 0..STEPS {
+        let away = 40.0 * (step as f64 / STEPS as f64 * std::f64::consts::TAU).sin();
+        button("mouseMoved", x + 8.0 + away)?;
+        tab.next_frame()?;
+        times.push(number(&tab.evaluate("enroute.state().timings.frame")?)?);
+    }
+    button("mouseReleased", x)?;
+    tab.next_frame()?;
+    Ok(Spread::of(times))
+}
+
+/// The times from keys to their drawings, and what the stages and the layout take of it.
+fn type_keys(tab: &Tab) -> Result<(Spread, Spread)> {
+    let source = tab.evaluate("enroute.source()")?;
+    let source = source.as_str().context("the source is a text")?;
+    // The greatest duration of an activity in the middle of the text: a digit more leaves it plannable.
+    let middle = source.len() / 2;
+    let digit = |at: &usize| source.as_bytes()[at - 1].is_ascii_digit();
+    let close = source[middle..].match_indices(']').map(|(at, _)| middle + at).find(digit);
+    let caret = close.context("there are bounds")?;
+    tab.click_widget("textbox", "Mission text")?;
+    tab.evaluate(&format!("enroute.dispatch('edit.select', {{ start: {caret} }})"))?;
+    tab.wait_until(&format!("enroute.state().caret.head === {caret}"))?;
+    tab.evaluate("addEventListener('keydown', () => { window.pressed = performance.now(); }, true)")?;
+    let (mut times, mut worked_out) = (Vec::new(), Vec::new());
+    for index in 0..2 * KEYS {
+        let revision = number(&tab.evaluate("enroute.state().revision")?)?;
+        tab.evaluate(&format!(
+            "window.answered = new Promise((resolve) => {{
+                const end = enroute.subscribe((state) => {{
+                    if (state.revision > {revision} && state.shownRevision === state.revision) {{
+                        const { timings } = state;
+                        end();
+                        resolve([performance.now() - window.pressed, timings.total + timings.frame]);
+                    }}
+                }});
+            }}); 0",
+            timings = "{ timings }"
+        ))?;
+        let key = if index % 2 == 0 { Key::Character('9') } else { Key::Backspace };
+        tab.press(key, Modifiers::NONE)?;
+        let answer = tab.evaluate("window.answered")?;
+        times.push(number(&answer[0])?);
+        worked_out.push(number(&answer[1])?);
+        settle(tab)?;
+    }
+    Ok((Spread::of(times), Spread::of(worked_out)))
+}
+
+fn number(value: &Value) -> Result<f64> {
+    value.as_f64().with_context(|| format!("a number, not {value}"))
+}
+
+/// How measured times are spread.
+struct Spread([f64; 3]);
+
+impl Spread {
+    fn of(mut times: Vec<f64>) -> Self {
+        times.sort_by(f64::total_cmp);
+        let at = |part: usize| times[((times.len() - 1) * part + 50) / 100];
+        Self([50, 90, 99].map(at))
+    }
+}
+
+impl std::fmt::Display for Spread {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [half, most, nearly_all] = self.0;
+        write!(f, "{half:.1} / {most:.1} / {nearly_all:.1}")
+    }
+}
