@@ -57,9 +57,10 @@ pub fn thread_name(network: &Network, following: &[Thread]) -> Option<SmolStr> {
     let own = following.iter().take_while(|it| it.path.starts_with(&thread.path));
     let first = own.flat_map(|it| &it.occurrences).next()?;
     let activity = &network.occurrences.get(first.index())?.activity;
-    Some(match thread.path.as_slice() {
-        [] => format_smolstr!("Outside threads · {activity}"),
-        _ => format_smolstr!("Thread {} · {activity}", thread.number()),
+    Some(if thread.path.is_empty() {
+        format_smolstr!("Outside threads · {activity}")
+    } else {
+        format_smolstr!("Thread {} · {activity}", thread.number())
     })
 }
 

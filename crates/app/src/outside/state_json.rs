@@ -8,7 +8,7 @@ use tpn::Network;
 use tpn::plan_json::plan_to_json;
 
 use super::hca_json::hca_json;
-use crate::state::pins::event_name;
+use crate::state::pins;
 use crate::state::review::Signed;
 use crate::state::search::{Counts, Recording};
 use crate::state::selection::node_name;
@@ -271,10 +271,10 @@ fn problem_json(problem: &Problem) -> Value {
 /// The events that are pinned, and the windows that they leave to all events; `null` without any.
 fn pinned_json(state: &AppState, snapshot: &Snapshot) -> Option<Value> {
     let (network, plan) = (snapshot.network.as_deref()?, state.pins.plan(snapshot)?);
-    let pins = state.pins.all();
-    let events: serde_json::Map<String, Value> = pins
+    let pinned = state.pins.all();
+    let events: serde_json::Map<String, Value> = pinned
         .iter()
-        .map(|&(node, time)| (event_name(network, node), json!(crate::state::playback::number(time))))
+        .map(|&(node, time)| (pins::event_name(network, node), json!(crate::state::playback::number(time))))
         .collect();
     let windows = plan_to_json(network, plan)["windows"].take();
     Some(json!({ "events": events, "windows": windows }))

@@ -10,7 +10,7 @@ use super::{change_look, select};
 use crate::command::CommandSender;
 use crate::icon;
 use crate::panel::Context;
-use crate::panel::timeline::bars::ticks;
+use crate::panel::timeline::ticks::Ticks;
 use crate::state::playback::{bound, number};
 use crate::theme::space;
 
@@ -22,8 +22,6 @@ const ROW_HEIGHT: f32 = 28.0;
 const AXIS_HEIGHT: f32 = 20.0;
 /// The height of a bar.
 const BAR_HEIGHT: f32 = 9.0;
-/// Points per mark of the axis.
-const TICK_POINTS: f32 = 84.0;
 
 /// Shows the rows of a comparison.
 pub(super) fn show(
@@ -91,11 +89,12 @@ fn axis(ui: &Ui, context: &Context<'_>, scale: &Scale) {
     let tokens = context.tokens;
     let painter = ui.painter();
     let font = TextStyle::Small.resolve(ui.style());
-    for mark in ticks(0.0, scale.horizon, scale.track.width(), TICK_POINTS).0 {
+    let ticks = Ticks::new(0.0, scale.horizon, scale.track.width());
+    for &mark in &ticks.marks {
         let x = scale.x(mark);
         painter.vline(x, scale.track.y_range(), Stroke::new(1.0, tokens.line));
         let at = Pos2::new(x, scale.track.top() - 4.0);
-        painter.text(at, Align2::CENTER_BOTTOM, format!("{mark}"), font.clone(), tokens.text_muted);
+        painter.text(at, Align2::CENTER_BOTTOM, ticks.label(mark), font.clone(), tokens.text_muted);
     }
 }
 

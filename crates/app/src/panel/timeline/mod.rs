@@ -11,7 +11,7 @@ mod handle;
 mod hatch;
 mod link;
 mod paint;
-mod ticks;
+pub(in crate::panel) mod ticks;
 mod view;
 
 use std::collections::BTreeSet;

@@ -2,13 +2,13 @@
 
 /// The marks of an axis.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Ticks {
+pub(in crate::panel) struct Ticks {
     /// The times of the labelled marks, ascending.
-    pub(super) marks: Vec<f64>,
+    pub(in crate::panel) marks: Vec<f64>,
     /// From one labelled mark to the next.
-    pub(super) step: f64,
+    pub(in crate::panel) step: f64,
     /// Into how many parts small marks divide a step.
-    pub(super) parts: u32,
+    pub(in crate::panel) parts: u32,
 }
 
 /// Least distance of two labelled marks, in points, for short numbers.
@@ -22,7 +22,7 @@ const MOST_MARKS: i64 = 400;
 
 impl Ticks {
     /// Marks at round numbers from `from` to `to` on `width` points, so far apart that their labels cannot touch.
-    pub(super) fn new(from: f64, to: f64, width: f32) -> Self {
+    pub(in crate::panel) fn new(from: f64, to: f64, width: f32) -> Self {
         let span = (to - from).max(f64::MIN_POSITIVE);
         let mut distance = LEAST_DISTANCE;
         // Finer steps need more decimals, which need more room.
@@ -43,7 +43,7 @@ impl Ticks {
     }
 
     /// What is written at a mark: as many decimals as the step needs, thousands apart.
-    pub(super) fn label(&self, mark: f64) -> String {
+    pub(in crate::panel) fn label(&self, mark: f64) -> String {
         label(mark, self.step)
     }
 }
