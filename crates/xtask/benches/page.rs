@@ -110,13 +110,12 @@ fn type_keys(tab: &Tab) -> Result<(Spread, Spread)> {
             "window.answered = new Promise((resolve) => {{
                 const end = enroute.subscribe((state) => {{
                     if (state.revision > {revision} && state.shownRevision === state.revision) {{
-                        const { timings } = state;
+                        const timings = state.timings;
                         end();
                         resolve([performance.now() - window.pressed, timings.total + timings.frame]);
                     }}
                 }});
-            }}); 0",
-            timings = "{ timings }"
+            }}); 0"
         ))?;
         let key = if index % 2 == 0 { Key::Character('9') } else { Key::Backspace };
         tab.press(key, Modifiers::NONE)?;

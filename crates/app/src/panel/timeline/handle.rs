@@ -41,7 +41,7 @@ pub(super) fn show(
     let row = painting.row(row_index);
     let windows = [bar.start, bar.end];
     let [start_x, end_x] = windows.map(|window| painting.x(window[0]));
-    let between = (start_x + end_x) / 2.0;
+    let between = f32::midpoint(start_x, end_x);
     for (side, &node) in bar.events.iter().enumerate() {
         let is_pinned = pinned.contains_key(&node);
         let is_free = bar.free[side][1] > bar.free[side][0];

@@ -266,7 +266,7 @@ impl TimelinePanel {
         }
         let Some(key) = &shown.key else { return is_hovered };
         let area = match shown.kind {
-            RowKind::Single => painting.arrow_rect(shown, row),
+            RowKind::Single => paint::arrow_rect(shown, row),
             _ => Rect::from_min_max(row.min, pos2(painting.track.left(), row.bottom())),
         };
         let response = ui.interact(area, ui.scope_id().with(("open", key)), Sense::click());
@@ -422,7 +422,7 @@ impl TimelinePanel {
         let is_seen = |&at: &usize| {
             painting.visible.expand(1.0).contains(pos2(painting.visible.left(), painting.row(at).center().y))
         };
-        if let Some(&first) = all.first().filter(|_| !all.iter().any(|at| is_seen(at))) {
+        if let Some(&first) = all.first().filter(|_| !all.iter().any(is_seen)) {
             ui.scroll_to_rect(painting.row(first), Some(egui::Align::Center));
         }
     }
@@ -505,12 +505,12 @@ fn respond(
 
 /// Whether a selection is about a bar: its occurrence, its condition, or a link or an ordering that ends at it.
 fn is_chosen(bar: &Bar, selection: &Selection, network: &Network) -> bool {
-    let is_of = |label: LabelId| match bar.label {
-        Some(own) => own == label,
-        None => {
-            let owner = network.labels.get(label.index()).and_then(|label| label.owner);
-            owner.is_some() && owner == bar.occurrence
+    let is_of = |label: LabelId| {
+        if let Some(own) = bar.label {
+            return own == label;
         }
+        let owner = network.labels.get(label.index()).and_then(|label| label.owner);
+        owner.is_some() && owner == bar.occurrence
     };
     match selection {
         Selection::None => false,

@@ -147,7 +147,7 @@ impl Painting<'_> {
     /// The name of a row, shortened to the room there is, and the sign that opens and closes it.
     pub(super) fn name(&self, ui: &Ui, shown: &Row, row: Rect, is_selected: bool) {
         let tokens = self.context.tokens;
-        let arrow = self.arrow_rect(shown, row);
+        let arrow = arrow_rect(shown, row);
         if shown.key.is_some() {
             let sign = if shown.is_closed { Icon::ChevronRight } else { Icon::ChevronDown };
             icon::paint(ui.painter(), sign, arrow, 10.0, tokens.text_muted);
@@ -173,12 +173,6 @@ impl Painting<'_> {
         ui.painter().galley(at - vec2(0.0, galley.size().y / 2.0), galley, color);
     }
 
-    /// Where the sign is that opens and closes a row.
-    pub(super) fn arrow_rect(&self, shown: &Row, row: Rect) -> Rect {
-        let left = row.left() + space::S + shown.depth as f32 * INDENT;
-        Rect::from_min_size(pos2(left, row.top()), vec2(14.0, row.height()))
-    }
-
     /// A bar: solid where it goes on for certain, hatched where it may, with the earliest schedule under it.
     pub(super) fn bar(&self, painter: &Painter, bar: &Bar, row: Rect, is_selected: bool, is_hovered: bool) {
         let tokens = self.context.tokens;
@@ -199,17 +193,14 @@ impl Painting<'_> {
         painter.rect_filled(whole, rounding, tokens.mixed(color, 0.16));
         let mut mesh = Mesh::default();
         let ink = tokens.mixed(color, 0.5);
-        match bar.certain() {
-            Some([from, to]) => {
-                hatch::add(&mut mesh, self.slot(bar, row, bar.start[0], from), self.visible, ink);
-                hatch::add(&mut mesh, self.slot(bar, row, to, bar.end[1]), self.visible, ink);
-                painter.add(Shape::mesh(mesh));
-                painter.rect_filled(self.slot(bar, row, from, to), 2.0, tokens.mixed(color, 0.85));
-            }
-            None => {
-                hatch::add(&mut mesh, whole, self.visible, ink);
-                painter.add(Shape::mesh(mesh));
-            }
+        if let Some([from, to]) = bar.certain() {
+            hatch::add(&mut mesh, self.slot(bar, row, bar.start[0], from), self.visible, ink);
+            hatch::add(&mut mesh, self.slot(bar, row, to, bar.end[1]), self.visible, ink);
+            painter.add(Shape::mesh(mesh));
+            painter.rect_filled(self.slot(bar, row, from, to), 2.0, tokens.mixed(color, 0.85));
+        } else {
+            hatch::add(&mut mesh, whole, self.visible, ink);
+            painter.add(Shape::mesh(mesh));
         }
         let outline = match (is_selected, is_hovered) {
             (true, _) => Stroke::new(1.5, tokens.accent),
@@ -285,6 +276,12 @@ impl Painting<'_> {
         let x = self.x(self.context.state.playback.time);
         self.on_track(ui).vline(x, self.visible.y_range(), Stroke::new(1.5, self.context.tokens.now));
     }
+}
+
+/// Where the sign is that opens and closes a row.
+pub(super) fn arrow_rect(shown: &Row, row: Rect) -> Rect {
+    let left = row.left() + space::S + shown.depth as f32 * INDENT;
+    Rect::from_min_size(pos2(left, row.top()), vec2(14.0, row.height()))
 }
 
 /// A text on one line, shortened to `width`.
