@@ -24,7 +24,7 @@ pub struct Alternative {
 
 /// What became of an alternative.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "fate", rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case")]
 pub enum Fate {
     /// The plan takes it.
     Taken,

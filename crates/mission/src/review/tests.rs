@@ -55,6 +55,15 @@ fn the_enroute_plan_exists_and_is_verified() {
 }
 
 #[test]
+fn a_review_crosses_to_the_page_unharmed() {
+    for source in [SCENARIO, MISSION, "scenario S[0,10] = { Nothing-Here( }"] {
+        let review = reviewed(source);
+        let bytes = postcard::to_allocvec(&review).expect("an answer can be written");
+        assert_eq!(postcard::from_bytes::<Review>(&bytes).as_ref(), Ok(&review));
+    }
+}
+
+#[test]
 fn path_2_is_impossible_because_nothing_asserts_its_condition() {
     let review = reviewed(SCENARIO);
     let [choice] = review.choices.as_slice() else { panic!("one choice: {:?}", review.choices) };
