@@ -36,6 +36,35 @@ export interface Plan {
   windows: Record<string, [Time, Time]>;
 }
 
+/** The recorded search and the step that is looked at. While one is, all panels show that step instead of the plan. */
+export interface Search {
+  /** The step that is shown, from 1; 0 while the plan is shown. */
+  step: number;
+  /** How many steps are recorded; 0 if none are. */
+  steps: number;
+  isPlaying: boolean;
+  stepsPerSecond: number;
+  /** Where running and playing stop. */
+  breakpoints: Record<"decision" | "failure" | "threat" | "solution", boolean>;
+  /** What the search knew at the step: its choices, links, orderings and windows in the form of a plan. */
+  known: (Plan & { event: string; text: string; state: number; cycle: string[] }) | null;
+  /** Both searches side by side, if they are compared; `side` is the one that the panels show. */
+  compare: { side: number; isLinked: boolean; searches: SearchFigures[] } | null;
+}
+
+/** How much work a search was, and where it is looked at. */
+export interface SearchFigures {
+  search: "chronological" | "conflict-directed";
+  status: string;
+  step: number;
+  steps: number;
+  states: number;
+  propagations: number;
+  backtracks: number;
+  deadEnds: number;
+  millis: number;
+}
+
 /** Where a vehicle is: metres, and radians counter-clockwise from east. */
 export interface Vehicle {
   name: string;

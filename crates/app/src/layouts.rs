@@ -7,12 +7,13 @@ use egui_tiles::Tree;
 use crate::host::Host;
 use crate::panel::PanelKind;
 use crate::state::AppState;
-use crate::workspace::{self, Workspace};
+use crate::workspace::{self, Room, Workspace};
 
 /// One layout per workspace.
 pub struct Layouts {
     trees: BTreeMap<Workspace, Tree<PanelKind>>,
     stored: BTreeMap<Workspace, String>,
+    room: Room,
 }
 
 fn key(workspace: Workspace) -> String {
@@ -27,22 +28,37 @@ impl Layouts {
         for workspace in Workspace::ALL {
             let text = host.stored(&key(workspace));
             let tree = text.as_deref().and_then(workspace::from_text);
-            let tree = tree.unwrap_or_else(|| workspace.default_layout());
+            let tree = tree.unwrap_or_else(|| workspace.default_layout(Room::default()));
             stored.insert(workspace, workspace::to_text(&tree).unwrap_or_default());
             trees.insert(workspace, tree);
         }
-        Self { trees, stored }
+        Self { trees, stored, room: Room::default() }
+    }
+
+    /// Adapts to the room there is: layouts that the user has not changed become those that fit it.
+    pub fn fit(&mut self, room: Room) {
+        if self.room == room {
+            return;
+        }
+        for (&workspace, tree) in &mut self.trees {
+            if *tree == workspace.default_layout(self.room) {
+                *tree = workspace.default_layout(room);
+                self.stored.insert(workspace, workspace::to_text(tree).unwrap_or_default());
+            }
+        }
+        self.room = room;
     }
 
     /// The layout of a workspace.
     pub fn tree_mut(&mut self, workspace: Workspace) -> &mut Tree<PanelKind> {
-        self.trees.entry(workspace).or_insert_with(|| workspace.default_layout())
+        let room = self.room;
+        self.trees.entry(workspace).or_insert_with(|| workspace.default_layout(room))
     }
 
     /// Does what the state wants done to the present layout.
     pub fn follow(&mut self, state: &mut AppState) {
         if std::mem::take(&mut state.wants_default_layout) {
-            self.trees.insert(state.workspace, state.workspace.default_layout());
+            self.trees.insert(state.workspace, state.workspace.default_layout(self.room));
         }
         let tree = self.tree_mut(state.workspace);
         if let Some(panel) = state.unwanted_panel.take() {

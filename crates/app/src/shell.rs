@@ -19,6 +19,7 @@ use crate::panel::{self, Context, PanelKind, Panels};
 use crate::state::{AppState, Effect, PlanSettings, Settings, ToastKind};
 use crate::theme;
 use crate::toasts;
+use crate::workspace::Room;
 
 /// The app.
 pub struct Enroute {
@@ -181,12 +182,14 @@ impl Enroute {
         };
         bar::top::show(ui, &context, commands);
         bar::bottom::show(ui, &context, commands);
+        self.layouts.fit(Room::of(ui.ctx().content_rect().size()));
         let tree = self.layouts.tree_mut(self.state.workspace);
         let mut shown = Vec::new();
         CentralPanel::default().frame(Frame::new().fill(context.tokens.background)).show(ui, |ui| {
             let mut tiles =
                 PanelTiles { panels: &mut self.panels, context: &context, commands, shown: Vec::new() };
             tree.ui(&mut tiles, ui);
+            panel::walk::follow(ui, tiles.context, tiles.commands);
             shown = tiles.shown;
         });
         dialog::show(ui.ctx(), &context, commands);

@@ -50,58 +50,117 @@ impl Workspace {
     }
 
     /// Where its panels stand before the user moves them.
-    pub fn default_layout(self) -> Tree<PanelKind> {
-        use PanelKind::{
-            Automaton, Compare, Editor, Network, Outline, Plan, Problems, Review, Search, Terrain, Timeline,
-        };
+    pub fn default_layout(self, room: Room) -> Tree<PanelKind> {
         let mut tiles = Tiles::default();
-        let root = match self {
-            Self::Author => {
-                let text = tabs(&mut tiles, &[Editor, Outline]);
-                let problems = tabs(&mut tiles, &[Problems]);
-                let left = split(&mut tiles, LinearDir::Vertical, &[(text, 0.78), (problems, 0.22)]);
-                let network = tabs(&mut tiles, &[Network]);
-                let plan = tabs(&mut tiles, &[Plan]);
-                let terrain = tabs(&mut tiles, &[Terrain]);
-                let lower = split(&mut tiles, LinearDir::Horizontal, &[(plan, 0.5), (terrain, 0.5)]);
-                let timeline = tabs(&mut tiles, &[Timeline]);
-                let right = split(
-                    &mut tiles,
-                    LinearDir::Vertical,
-                    &[(network, 0.40), (lower, 0.32), (timeline, 0.28)],
-                );
-                split(&mut tiles, LinearDir::Horizontal, &[(left, 0.36), (right, 0.64)])
-            }
-            Self::Teach => {
-                let text = tabs(&mut tiles, &[Editor, Outline]);
-                let network = tabs(&mut tiles, &[Network, Terrain]);
-                let timeline = tabs(&mut tiles, &[Timeline]);
-                let middle = split(&mut tiles, LinearDir::Vertical, &[(network, 0.7), (timeline, 0.3)]);
-                let search = tabs(&mut tiles, &[Search]);
-                let plan = tabs(&mut tiles, &[Plan, Problems]);
-                let right = split(&mut tiles, LinearDir::Vertical, &[(search, 0.6), (plan, 0.4)]);
-                split(&mut tiles, LinearDir::Horizontal, &[(text, 0.24), (middle, 0.42), (right, 0.34)])
-            }
-            Self::Review => {
-                let review = tabs(&mut tiles, &[Review, Plan]);
-                let timeline = tabs(&mut tiles, &[Timeline, Compare]);
-                let network = tabs(&mut tiles, &[Network]);
-                let terrain = tabs(&mut tiles, &[Terrain]);
-                let text = tabs(&mut tiles, &[Editor, Problems, Outline]);
-                let middle = split(&mut tiles, LinearDir::Horizontal, &[(network, 0.5), (terrain, 0.5)]);
-                let right =
-                    split(&mut tiles, LinearDir::Vertical, &[(timeline, 0.36), (middle, 0.34), (text, 0.30)]);
-                split(&mut tiles, LinearDir::Horizontal, &[(review, 0.38), (right, 0.62)])
-            }
-            Self::Execute => {
-                let text = tabs(&mut tiles, &[Editor]);
-                let problems = tabs(&mut tiles, &[Problems]);
-                let left = split(&mut tiles, LinearDir::Vertical, &[(text, 0.8), (problems, 0.2)]);
-                let automaton = tabs(&mut tiles, &[Automaton]);
-                split(&mut tiles, LinearDir::Horizontal, &[(left, 0.3), (automaton, 0.7)])
-            }
+        let root = match room {
+            Room::Wide => self.wide_layout(&mut tiles),
+            Room::Narrow => self.narrow_layout(&mut tiles),
         };
         Tree::new(egui::Id::unique(("workspace", self.name())), root, tiles)
+    }
+
+    fn wide_layout(self, tiles: &mut Tiles<PanelKind>) -> TileId {
+        use LinearDir::{Horizontal, Vertical};
+        use PanelKind::{
+            Automaton, Compare, Distances, Editor, Network, Outline, Plan, Problems, Review, Search, Terrain,
+            Timeline,
+        };
+        match self {
+            Self::Author => {
+                let text = tabs(tiles, &[Editor, Outline]);
+                let problems = tabs(tiles, &[Problems]);
+                let left = split(tiles, Vertical, &[(text, 0.78), (problems, 0.22)]);
+                let network = tabs(tiles, &[Network]);
+                let plan = tabs(tiles, &[Plan]);
+                let terrain = tabs(tiles, &[Terrain]);
+                let lower = split(tiles, Horizontal, &[(plan, 0.5), (terrain, 0.5)]);
+                let timeline = tabs(tiles, &[Timeline]);
+                let right = split(tiles, Vertical, &[(network, 0.40), (lower, 0.32), (timeline, 0.28)]);
+                split(tiles, Horizontal, &[(left, 0.36), (right, 0.64)])
+            }
+            Self::Teach => {
+                let text = tabs(tiles, &[Editor, Outline]);
+                let plan = tabs(tiles, &[Plan, Problems]);
+                let left = split(tiles, Vertical, &[(text, 0.58), (plan, 0.42)]);
+                let network = tabs(tiles, &[Network, Distances, Terrain]);
+                let timeline = tabs(tiles, &[Timeline]);
+                let middle = split(tiles, Vertical, &[(network, 0.68), (timeline, 0.32)]);
+                let search = tabs(tiles, &[Search]);
+                split(tiles, Horizontal, &[(left, 0.25), (middle, 0.40), (search, 0.35)])
+            }
+            Self::Review => {
+                let review = tabs(tiles, &[Review, Plan]);
+                let timeline = tabs(tiles, &[Timeline, Compare]);
+                let network = tabs(tiles, &[Network]);
+                let terrain = tabs(tiles, &[Terrain]);
+                let text = tabs(tiles, &[Editor, Problems, Outline]);
+                let middle = split(tiles, Horizontal, &[(network, 0.5), (terrain, 0.5)]);
+                let right = split(tiles, Vertical, &[(timeline, 0.36), (middle, 0.34), (text, 0.30)]);
+                split(tiles, Horizontal, &[(review, 0.38), (right, 0.62)])
+            }
+            Self::Execute => {
+                let text = tabs(tiles, &[Editor]);
+                let problems = tabs(tiles, &[Problems]);
+                let left = split(tiles, Vertical, &[(text, 0.8), (problems, 0.2)]);
+                let automaton = tabs(tiles, &[Automaton]);
+                split(tiles, Horizontal, &[(left, 0.3), (automaton, 0.7)])
+            }
+        }
+    }
+
+    /// Fewer panels at a time, the others behind tabs.
+    fn narrow_layout(self, tiles: &mut Tiles<PanelKind>) -> TileId {
+        use LinearDir::{Horizontal, Vertical};
+        use PanelKind::{
+            Automaton, Compare, Distances, Editor, Network, Outline, Plan, Problems, Review, Search, Terrain,
+            Timeline,
+        };
+        let (left, right, share) = match self {
+            Self::Author => {
+                let text = tabs(tiles, &[Editor, Outline, Problems]);
+                let network = tabs(tiles, &[Network, Terrain]);
+                let plan = tabs(tiles, &[Timeline, Plan]);
+                let right = split(tiles, Vertical, &[(network, 0.52), (plan, 0.48)]);
+                (text, right, 0.42)
+            }
+            Self::Teach => {
+                let network = tabs(tiles, &[Network, Distances, Timeline, Terrain]);
+                let text = tabs(tiles, &[Editor, Plan, Problems]);
+                let left = split(tiles, Vertical, &[(network, 0.58), (text, 0.42)]);
+                let search = tabs(tiles, &[Search]);
+                (left, search, 0.52)
+            }
+            Self::Review => {
+                let review = tabs(tiles, &[Review, Plan]);
+                let timeline = tabs(tiles, &[Timeline, Compare, Network, Terrain]);
+                let text = tabs(tiles, &[Editor, Problems]);
+                let right = split(tiles, Vertical, &[(timeline, 0.6), (text, 0.4)]);
+                (review, right, 0.48)
+            }
+            Self::Execute => {
+                let text = tabs(tiles, &[Editor, Problems]);
+                let automaton = tabs(tiles, &[Automaton]);
+                (text, automaton, 0.36)
+            }
+        };
+        split(tiles, Horizontal, &[(left, share), (right, 1.0 - share)])
+    }
+}
+
+/// How much room there is for panels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Room {
+    /// Enough for five or six at a time.
+    #[default]
+    Wide,
+    /// Enough for two or three.
+    Narrow,
+}
+
+impl Room {
+    /// That of a window of this size in points.
+    pub fn of(size: egui::Vec2) -> Self {
+        if size.x < 1_160.0 || size.y < 640.0 { Self::Narrow } else { Self::Wide }
     }
 }
 

@@ -35,28 +35,47 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     });
 }
 
+/// A bar narrower than this has its menus in one.
+const ROOM_FOR_MENUS: f32 = 1_080.0;
+
 fn menus(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     ui.spacing_mut().item_spacing.x = 0.0;
-    for group in Group::ALL {
-        let title = Button::new(RichText::new(group.title()).color(context.tokens.text_muted))
-            .frame_when_inactive(false);
-        egui::containers::menu::MenuButton::from_button(title).ui(ui, |ui| {
-            ui.set_min_width(220.0);
-            for spec in COMMANDS.iter().filter(|spec| spec.group == group && spec.is_plain()) {
-                menu_item(ui, context, spec, commands);
-            }
-            if group == Group::View {
-                ui.separator();
-                for panel in PanelKind::ALL {
-                    if ui.button(panel.title()).clicked() {
-                        commands.send(Command::ShowPanel(panel));
-                        ui.close();
-                    }
-                }
+    let color = context.tokens.text_muted;
+    let button = |title: &str| Button::new(RichText::new(title).color(color)).frame_when_inactive(false);
+    if is_narrow(ui) {
+        egui::containers::menu::MenuButton::from_button(button("Menu")).ui(ui, |ui| {
+            for group in Group::ALL {
+                ui.menu_button(group.title(), |ui| menu(ui, context, group, commands));
             }
         });
+    } else {
+        for group in Group::ALL {
+            egui::containers::menu::MenuButton::from_button(button(group.title()))
+                .ui(ui, |ui| menu(ui, context, group, commands));
+        }
     }
     ui.spacing_mut().item_spacing.x = space::M;
+}
+
+fn is_narrow(ui: &Ui) -> bool {
+    ui.ctx().content_rect().width() < ROOM_FOR_MENUS
+}
+
+fn menu(ui: &mut Ui, context: &Context<'_>, group: Group, commands: &mut CommandSender) {
+    ui.set_min_width(220.0);
+    for spec in COMMANDS.iter().filter(|spec| spec.group == group && spec.is_plain()) {
+        menu_item(ui, context, spec, commands);
+    }
+    if group == Group::View {
+        ui.separator();
+        for panel in PanelKind::ALL {
+            let is_on_screen = context.state.panels_on_screen.contains(&panel);
+            if ui.selectable_label(is_on_screen, panel.title()).clicked() {
+                commands.send(Command::ShowPanel(panel));
+                ui.close();
+            }
+        }
+    }
 }
 
 fn menu_item(ui: &mut Ui, context: &Context<'_>, spec: &CommandSpec, commands: &mut CommandSender) {
@@ -77,8 +96,9 @@ fn mission_picker(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSend
     let open = EXAMPLES.iter().find(|example| context.state.mission == example.name);
     let title = open.map_or(context.state.mission.as_str(), |example| example.title);
     ComboBox::from_id_salt("mission")
+        .truncate()
         .selected_text(title)
-        .width(170.0)
+        .width(if is_narrow(ui) { 120.0 } else { 170.0 })
         .show_ui(ui, |ui| {
             for example in EXAMPLES {
                 let is_open = context.state.mission == example.name;

@@ -13,6 +13,7 @@ pub mod review;
 pub mod search;
 pub mod terrain;
 pub mod timeline;
+pub mod walk;
 
 use std::cell::Cell;
 use std::collections::BTreeMap;

@@ -5,7 +5,8 @@ use rmpl::Span;
 use rmpl::program::Program;
 
 use crate::command::{Command, CommandSender, EditorCommand};
-use crate::panel::{Context, Panel, show_empty};
+use crate::panel::{Context, Panel, PanelKind, show_empty, walk};
+use crate::state::TextCommand;
 use crate::theme::{Tokens, space};
 
 /// The outline.
@@ -32,6 +33,13 @@ impl Panel for OutlinePanel {
             return;
         }
         let caret = context.state.document.caret().head as u32;
+        if let Some(steps) = walk::arrows(ui, context, PanelKind::Outline) {
+            let here = items.iter().position(|item| item.whole.touches(caret));
+            let next = here.map_or(0, |here| here.saturating_add_signed(steps).min(items.len() - 1));
+            let span = items[next].span;
+            let (anchor, head) = (span.start as usize, span.end as usize);
+            commands.send(Command::Text(TextCommand::Select { anchor, head }));
+        }
         ScrollArea::vertical().auto_shrink(false).show_rows(
             ui,
             space::ROW - ui.spacing().item_spacing.y,

@@ -2,13 +2,13 @@
 
 use egui::{RichText, Role, ScrollArea, Sense, Ui, WidgetInfo};
 use mission::Problem;
-use rmpl::Severity;
+use rmpl::{Severity, Span};
 
 use crate::command::{Command, CommandSender, EditorCommand};
 use crate::dialog::Dialog;
 use crate::icon::{self, Icon};
-use crate::panel::{Context, Panel, show_empty};
-use crate::state::EditKind;
+use crate::panel::{Context, Panel, PanelKind, show_empty, walk};
+use crate::state::{EditKind, TextCommand};
 use crate::theme::{Tokens, space};
 
 /// The list of problems.
@@ -29,11 +29,24 @@ impl Panel for ProblemsPanel {
         }
         // Answers belong to the text they were given for; fixes of an older one would land in the wrong place.
         let is_current = latest.is_some_and(|it| it.revision == context.state.document.revision());
+        let selected = selected_span(context);
+        if let Some(steps) = walk::arrows(ui, context, PanelKind::Problems) {
+            let last = problems.len() - 1;
+            let next = self.open.map_or(0, |open| open.saturating_add_signed(steps).min(last));
+            self.open = Some(next);
+            let span = problems[next].span;
+            let (anchor, head) = (span.start as usize, span.end as usize);
+            commands.send(Command::Text(TextCommand::Select { anchor, head }));
+        }
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.add_space(space::S);
             for (index, problem) in problems.iter().enumerate() {
                 ui.push_id(index, |ui| {
-                    let row = show_row(ui, context, problem);
+                    let concerns =
+                        |span: Span| span.start <= problem.span.end && problem.span.start <= span.end;
+                    let is_selected =
+                        self.open == Some(index) || is_current && selected.is_some_and(concerns);
+                    let row = show_row(ui, context, problem, is_selected);
                     if row.clicked() {
                         commands.send(Command::Reveal(problem.span));
                         commands.send(Command::Editor(EditorCommand::Focus));
@@ -57,7 +70,15 @@ pub fn severity_sign(tokens: &Tokens, severity: Severity) -> (Icon, egui::Color3
     }
 }
 
-fn show_row(ui: &mut Ui, context: &Context<'_>, problem: &Problem) -> egui::Response {
+/// Where what is selected is written. A whole scenario or activity would be about every problem in it.
+fn selected_span(context: &Context<'_>) -> Option<Span> {
+    let snapshot = context.snapshot.filter(|_| !context.is_stale)?;
+    let span = context.state.selection.span(snapshot)?;
+    let is_short = snapshot.source.get(span.range()).is_some_and(|text| text.lines().count() <= 3);
+    is_short.then_some(span)
+}
+
+fn show_row(ui: &mut Ui, context: &Context<'_>, problem: &Problem, is_selected: bool) -> egui::Response {
     let tokens = context.tokens;
     let (sign, color) = severity_sign(tokens, problem.severity);
     let body = egui::TextStyle::Body.resolve(ui.style());
@@ -68,8 +89,10 @@ fn show_row(ui: &mut Ui, context: &Context<'_>, problem: &Problem) -> egui::Resp
     let height = (message.size().y + 6.0).max(space::ROW);
     let (rect, response) = ui.allocate_exact_size(egui::vec2(width, height), Sense::click());
     let name = format!("Line {}: {} {}", problem.line, problem.code, problem.message);
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
-    if response.hovered() || response.has_focus() {
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_selected, &name));
+    if is_selected {
+        ui.painter().rect_filled(rect, 0.0, tokens.selection);
+    } else if response.hovered() || response.has_focus() {
         ui.painter().rect_filled(rect, 0.0, tokens.hover);
     }
     let painter = ui.painter();

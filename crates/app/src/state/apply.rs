@@ -85,7 +85,10 @@ impl AppState {
             Command::SetSource(text) => self.document.replace_all(&text),
             Command::Text(command) => self.type_text(&command),
             Command::Edit { edits, kind } => self.document.edit(&edits, kind, None),
-            Command::Reveal(span) => self.reveal(span),
+            Command::Reveal(span) => {
+                self.reveal(span);
+                self.select_at(span.start);
+            }
             Command::Editor(command) => self.apply_to_editor(command),
 
             Command::Select(selection) => self.select(selection),

@@ -42,11 +42,16 @@ impl AppState {
 
     /// Selects in all panels what stands at the caret, as long as the drawings belong to this text.
     fn select_at_caret(&mut self) {
+        self.select_at(self.document.caret().head as u32);
+    }
+
+    /// Selects in all panels what stands at a byte of the text, as long as the drawings belong to this text.
+    pub(super) fn select_at(&mut self, offset: u32) {
         if self.snapshots.is_stale(self.document.revision()) {
             return;
         }
         let Some(shown) = self.shown() else { return };
-        let found = Selection::at_offset(shown, self.document.caret().head as u32, &self.selection);
+        let found = Selection::at_offset(shown, offset, &self.selection);
         self.selection = found;
     }
 
@@ -176,6 +181,7 @@ impl AppState {
         };
         if let Some(&span) = next {
             self.reveal(span);
+            self.select_at(span.start);
             self.editor.wants_focus = true;
         }
     }

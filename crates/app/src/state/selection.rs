@@ -74,8 +74,27 @@ impl Selection {
         match self {
             Self::Link(link) => owns(link.ask) || owns(link.tell),
             Self::Ordering(ordering) => owns(ordering.first) || owns(ordering.then),
+            Self::Location(name) | Self::Vehicle(name) => {
+                let occurrence = network.occurrences.get(occurrence.index());
+                occurrence.is_some_and(|occurrence| occurrence.arguments.contains(name))
+            }
+            Self::Decision(_) | Self::Alternative(..) => self.is_around(network, occurrence),
             _ => self.occurrence(network) == Some(occurrence),
         }
+    }
+
+    /// Whether an activity is written inside the selected decision or alternative.
+    fn is_around(&self, network: &Network, occurrence: OccurrenceId) -> bool {
+        let outer = match self {
+            Self::Decision(id) => network.decisions.get(id.index()).and_then(|decision| decision.span),
+            Self::Alternative(id, alternative) => network
+                .decisions
+                .get(id.index())
+                .and_then(|decision| decision.alternative_spans.get(*alternative as usize).copied()),
+            _ => None,
+        };
+        let inner = network.occurrences.get(occurrence.index()).and_then(|occurrence| occurrence.span);
+        outer.zip(inner).is_some_and(|(outer, inner)| outer.start <= inner.start && inner.end <= outer.end)
     }
 
     /// Where the selection is written, for the editor to show.

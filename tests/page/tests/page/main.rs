@@ -14,5 +14,6 @@ mod language;
 mod offline;
 mod report;
 mod same;
+mod search;
 mod terrain;
 mod timeline;

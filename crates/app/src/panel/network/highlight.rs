@@ -40,7 +40,15 @@ impl Highlight {
             Selection::Label(id) => shapes.add_label(network, *id),
             Selection::Link(link) => shapes.add_labels(network, [link.tell, link.ask]),
             Selection::Ordering(ordering) => shapes.add_labels(network, [ordering.first, ordering.then]),
-            _ => {}
+            Selection::Location(_) | Selection::Vehicle(_) => {
+                for (index, occurrence) in network.occurrences.iter().enumerate() {
+                    if selection.involves(network, OccurrenceId::from_index(index)) {
+                        shapes.nodes.extend([occurrence.start, occurrence.end]);
+                        shapes.arcs.extend(occurrence.arc);
+                    }
+                }
+            }
+            Selection::None | Selection::Obstacle(_) | Selection::SearchStep(_) => {}
         }
         shapes
     }

@@ -237,7 +237,8 @@ impl NetworkPanel {
             }
             self.view.pan(vec2(scroll.x, 0.0));
         }
-        if response.has_focus() {
+        // With something selected, arrows go from it to its neighbours.
+        if response.has_focus() && context.state.selection.is_none() {
             self.view.pan(arrow_keys(ui) * 48.0);
         }
         let action = context.view_action(PanelKind::Network, &mut self.followed_action);

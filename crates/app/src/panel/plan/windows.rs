@@ -5,8 +5,8 @@ use rmpl::{Bound, Rational};
 use tpn::{EventEnd, EventRef, Network, NodeId, Plan};
 
 use crate::command::{Command, CommandSender};
-use crate::panel::Context;
 use crate::panel::plan::section;
+use crate::panel::{Context, PanelKind, walk};
 use crate::state::Selection;
 use crate::state::settings::WindowSort;
 use crate::theme::space;
@@ -39,6 +39,19 @@ impl WindowTable {
         commands: &mut CommandSender,
     ) {
         let rows = self.rows(context, network, plan);
+        if let Some(steps) = walk::arrows(ui, context, PanelKind::Plan).filter(|_| !rows.is_empty()) {
+            let is_here = |row: &&Row| is_selected(context, network, row);
+            let here = rows.iter().position(|row| is_here(&row));
+            // One event can have several names, and rows.
+            let next = match here {
+                None => rows.first(),
+                Some(here) if steps > 0 => rows[here..].iter().find(|row| !is_here(row)),
+                Some(here) => rows[..here].iter().rev().find(|row| !is_here(row)),
+            };
+            if let Some(next) = next {
+                commands.send(Command::Select(Selection::Node(next.node)));
+            }
+        }
         section(ui, context, "Windows", "when each event can happen, from the start of the mission");
         let field = TextEdit::singleline(&mut self.filter).hint_text("Filter events").desired_width(180.0);
         ui.horizontal(|ui| {
