@@ -125,5 +125,8 @@ fn resting_on_a_call_shows_its_signature() -> Result<()> {
         }
     }
     recording.keep("nowhere")?;
-    bail!("no place of the column shows the signature: {}", recording.page.tab.evaluate("enroute.widgets('text').map((it) => it.label)")?)
+    bail!(
+        "no place of the column shows the signature: {}",
+        recording.page.tab.evaluate("enroute.widgets('text').map((it) => it.label)")?
+    )
 }
