@@ -252,6 +252,8 @@ const ROOMY_EXTRA_M: f64 = 2.0;
 /// Searches for each leg: obstacles leave several ways around, and one search takes any of them.
 const TRIES: u32 = 6;
 const TRIES_FOR_SHORTEST: u32 = 40;
+/// Edges of a search tree that reach across a map at most.
+const STEPS_ACROSS: f64 = 60.0;
 /// Samples of a search that can be shown one by one.
 const MOST_TRACED_STEPS: usize = 4000;
 
@@ -268,7 +270,12 @@ fn find_leg(
         Preference::Roomy => (TRIES, free.roomy.as_slice()),
         Preference::Shortest => (TRIES_FOR_SHORTEST, &[][..]),
     };
-    let settings = motion::Settings { seed, ..motion::Settings::of(PlannerKind::RrtConnect) };
+    let defaults = motion::Settings::of(PlannerKind::RrtConnect);
+    let frame = free.exact.frame();
+    let longer_side_m = f64::from(frame.width.max(frame.height)) * frame.cell_size_m;
+    // On a large map, short edges would not get anywhere.
+    let step_m = defaults.step_m.max(longer_side_m / STEPS_ACROSS);
+    let settings = motion::Settings { seed, step_m, ..defaults };
     let shortcut = ShortcutSettings { seed, ..ShortcutSettings::default() };
     let search = |space: &ConfigurationSpace| {
         motion::find_shortest_path(space, query, &settings, &shortcut, tries, &mut |_| false)

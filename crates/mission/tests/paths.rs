@@ -400,3 +400,66 @@ fn the_clearance_overlay_is_negative_exactly_where_the_vehicle_cannot_be() {
         assert!((free - clearance).abs() < 0.01 || (free < 0.0 && clearance < 0.0), "{free} {clearance}");
     }
 }
+
+/// A file of the data that stands beside the repository, or `None` with a message.
+#[expect(clippy::print_stderr, reason = "a test that could not look at its data says so")]
+fn shared(name: &str) -> Option<Vec<u8>> {
+    let path =
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/terrain").join(name);
+    let bytes = std::fs::read(&path).ok();
+    if bytes.is_none() {
+        eprintln!("NOT TESTED: there is no {}", path.display());
+    }
+    bytes
+}
+
+#[test]
+fn a_mission_on_an_imported_map_of_phobos_keeps_to_ground_that_can_be_driven() {
+    let Some(bytes) = shared("Phobos_ME_HRSC_DEM_Global_2ppd.tiff") else { return };
+    let mut planner = Planner::default();
+    planner.grounds.import("phobos", &bytes).expect("it can be read");
+    // Two places kilometres apart; much of Phobos between them is too steep.
+    let source = "terrain \"phobos\" cell 100 origin (0, 0);
+        location LANDING (31050, 15050);
+        location MONOLITH (36050, 19050);
+        vehicle Rover : ATRV at LANDING;
+        primitive Drive(to) moves Rover speed (0, 0.8);
+        scenario S[0,inf] = { Drive(MONOLITH)[0,inf] }";
+    let model = motion::vehicle_model("ATRV").expect("known");
+    let map = {
+        let world = rmpl::parse(source).program().world;
+        let (ground, found) = planner.grounds.resolve(&world);
+        assert!(found.is_empty(), "{found:?}");
+        ground.expect("it was imported").1
+    };
+    let space = model.configuration_space(&map, &[]);
+    // The free places nearest to those of the text.
+    let near = |wanted: [f64; 2]| {
+        let frame = *space.frame();
+        (0..frame.cell_count())
+            .map(|index| frame.center_m(frame.cell(index)))
+            .filter(|&center| space.is_free(center) && !space.are_separated(center, [33_050.0, 17_050.0]))
+            .min_by(|a, b| distance(*a, wanted).total_cmp(&distance(*b, wanted)))
+    };
+    let (Some(from), Some(to)) = (near([31_050.0, 15_050.0]), near([36_050.0, 19_050.0])) else {
+        panic!("nothing of Phobos can be driven");
+    };
+    let source = source
+        .replace("(31050, 15050)", &format!("({}, {})", from[0], from[1]))
+        .replace("(36050, 19050)", &format!("({}, {})", to[0], to[1]));
+    let answer = planner.plan(&source, 1);
+    let failure = answer.planned.planning.outcome.failure.as_ref().map(|failure| failure.reasons.first());
+    assert_eq!(answer.planned.traverses.len(), 1, "{failure:?}");
+    let leg = &answer.planned.traverses[0].legs[0];
+    let (squares, half) = answer.occupied("ATRV");
+    assert!(!squares.is_empty(), "some of it is steep");
+    for pair in leg.points_m.windows(2) {
+        let pieces = (distance(pair[0], pair[1]) / 25.0).ceil().max(1.0) as u32;
+        for piece in 0..=pieces {
+            let part = f64::from(piece) / f64::from(pieces);
+            let point = [0, 1].map(|axis| pair[0][axis] + part * (pair[1][axis] - pair[0][axis]));
+            assert!(to_nearest(point, &squares, half) >= model.radius_m() - 1e-6, "{point:?}");
+        }
+    }
+    assert!(answer.planned.traverses[0].leg_figures[0].length_m >= distance(from, to));
+}

@@ -1,0 +1,75 @@
+//! Traverses from the command line: paths in plans, alternatives that can't be driven, and vehicles under way.
+
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+use serde_json::{Value, json};
+
+fn enroute(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_enroute"));
+    command.current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).args(arguments);
+    command.output().expect("the command runs")
+}
+
+fn answer(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {output:?}"))
+}
+
+/// A file with this text, for the command to read.
+fn file(name: &str, text: &str) -> String {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::write(&path, text).expect("the folder can be written to");
+    path.to_str().expect("a path in UTF-8").to_owned()
+}
+
+const DETOUR: &str = "assets/missions/detour.rmpl";
+
+fn detour() -> String {
+    std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/missions/detour.rmpl"))
+        .expect("the mission is there")
+}
+
+#[test]
+fn a_plan_lists_the_vertices_and_figures_of_its_paths() {
+    let output = enroute(&["plan", DETOUR, "--format", "json"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let plan = answer(&output);
+    let traverse = &plan["traverses"][0];
+    assert_eq!((&traverse["activity"], &traverse["vehicles"]), (&json!("Carry#1"), &json!(["Scout"])));
+    assert_eq!(traverse["legs"][0]["path"][0], json!([116.0, 72.0]));
+    assert_eq!(traverse["legs"][0]["to"], "GAP");
+    assert!(traverse["legs"][1]["length_m"].as_f64().is_some_and(|length| length > 88.0));
+    assert!(traverse["legs"][1]["min_clearance_m"].as_f64().is_some_and(|clearance| clearance > 0.0));
+}
+
+#[test]
+fn an_alternative_that_no_path_fits_is_left_for_another_and_the_reason_told() {
+    let tight =
+        file("tight.rmpl", &detour().replace("Carry(GAP, LANDER)[10,60]", "Carry(GAP, LANDER)[10,12]"));
+    let output = enroute(&["plan", &tight, "--format", "json"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let plan = answer(&output);
+    assert_eq!(plan["plans"][0]["choices"]["D1"], 1);
+    let reason = plan["undrivable"][0]["reason"].as_str().unwrap_or_default();
+    assert!(reason.contains("takes at least 14.4, and at most 12.0 is allowed"), "{reason}");
+}
+
+#[test]
+fn vehicles_drive_in_simulation_and_scripts_get_in_their_way() {
+    let script = r#"{"disturbances": [{"kind": "obstacle", "at": 1, "x": 150, "y": 70.4, "radius": 0.8}]}"#;
+    let script = file("rock.json", script);
+    let output = enroute(&["simulate", DETOUR, "--seed", "1", "--disturb", &script, "--format", "json"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let run = answer(&output);
+    let drive = &run["drives"][0];
+    assert_eq!((&run["status"], &drive["activity"]), (&json!("finished"), &json!("Carry#1")));
+    assert!(drive["least_clearance_m"].as_f64().is_some_and(|clearance| clearance >= 0.0));
+    let track = drive["vehicles"][0]["track"].as_array().expect("a track");
+    let last = track.last().expect("it drives");
+    assert!((last[1].as_f64().unwrap_or(0.0) - 288.0).abs() <= 0.2, "{last}");
+    let nobody = r#"{"disturbances": [{"kind": "vehicle-slow", "vehicle": "Nobody", "factor": 0, "from": 1, "until": 2}]}"#;
+    let nobody = file("nobody.json", nobody);
+    let refused = enroute(&["simulate", DETOUR, "--disturb", &nobody]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("Nobody"));
+}
