@@ -11,17 +11,17 @@ use crate::search::{Engine, Gaps, Halt, Setup};
 use crate::trace::Event;
 use crate::{explain, relax, solution};
 
-/// Plans, or explains why there is no plan.
+/// Plans, or explains why there is no plan; also, whether gaps alone made something fail on the way.
 pub(crate) fn answer(
     network: &Network,
     model: &Model,
     options: &Options,
     termination: &mut dyn Termination,
-) -> Result<Outcome, Overflow> {
-    let mut outcome = if options.search == Search::ConflictDirected && !options.all {
+) -> Result<(Outcome, bool), Overflow> {
+    let (mut outcome, has_doubts) = if options.search == Search::ConflictDirected && !options.all {
         first_plan(model, options, termination)?
     } else {
-        run(model, options, (Gaps::Exact, Stats::default()), termination)?.0
+        run(model, options, (Gaps::Exact, Stats::default()), termination)?
     };
     if outcome.status == Status::NoPlan && options.explain {
         let mut failure = explain::explain(network, model)?;
@@ -30,7 +30,26 @@ pub(crate) fn answer(
         }
         outcome.failure = Some(failure);
     }
-    Ok(outcome)
+    Ok((outcome, has_doubts))
+}
+
+/// The first plan with these choices, if there is one, and if a search that trusts gaps would find it, too.
+pub(crate) fn with_choices(
+    model: &Model,
+    chosen: &[u32],
+    termination: &mut dyn Termination,
+) -> Result<Option<Outcome>, Overflow> {
+    if !model.has_contexts {
+        return Ok(None);
+    }
+    let setup = Setup { jumps: true, is_checking: true, assumed: Some(chosen.to_vec()), ..Setup::default() };
+    let mut engine = Engine::new(model, setup);
+    if engine.run(termination)? != Halt::Solution || engine.has_doubts || !engine.has_room_for_gaps()? {
+        return Ok(None);
+    }
+    let plan = solution::plan_at(&mut engine)?;
+    let stats = engine.stats;
+    Ok(Some(Outcome { status: Status::Plan, plans: vec![plan], failure: None, stats, trace: None }))
 }
 
 /// The first plan that a search finds which expects no choice to force intervals to touch. Where it finds none and has
@@ -39,20 +58,20 @@ fn first_plan(
     model: &Model,
     options: &Options,
     termination: &mut dyn Termination,
-) -> Result<Outcome, Overflow> {
+) -> Result<(Outcome, bool), Overflow> {
     let (mut outcome, has_doubts) = run(model, options, (Gaps::Trusted, Stats::default()), termination)?;
     if outcome.status != Status::NoPlan || !has_doubts {
-        return Ok(outcome);
+        return Ok((outcome, has_doubts));
     }
     // The search without gaps is no part of a trace, which is of one search with the rules as they are.
     if options.trace_events.is_none() {
         let (without_gaps, _) = run(model, options, (Gaps::Ignored, outcome.stats), termination)?;
         if without_gaps.status != Status::Plan {
-            return Ok(without_gaps);
+            return Ok((without_gaps, true));
         }
         outcome = without_gaps;
     }
-    Ok(run(model, options, (Gaps::Exact, outcome.stats), termination)?.0)
+    run(model, options, (Gaps::Exact, outcome.stats), termination)
 }
 
 /// One search, after others with `stats`, and whether it has doubts that there is nothing where it found nothing.

@@ -33,7 +33,7 @@ impl Engine<'_> {
         self.conflict.clear();
         self.leaf.has_pairs = false;
         self.leaf.has_windows = false;
-        if self.has_structure() {
+        if self.has_structure() || self.setup.is_checking {
             self.select_chosen();
             if !self.settle_selected()? {
                 self.meet_dead_end(FailureKind::Temporal);
@@ -78,6 +78,31 @@ impl Engine<'_> {
             }
         }
         Ok(None)
+    }
+
+    /// Whether the plan that the search stands at leaves room for the gap between all pairs that nesting does not order:
+    /// then none of them rests on being forced to touch.
+    pub(crate) fn has_room_for_gaps(&mut self) -> Result<bool, Overflow> {
+        let checkpoint = self.stn.checkpoint();
+        let mut inserted = Ok(());
+        for position in 0..self.leaf.pairs.len() {
+            let (left, right) = self.leaf.pairs[position];
+            let (first, then) = if self.leaf.is_swapped[position] { (right, left) } else { (left, right) };
+            let arc = |label: u32| self.model.conditions.labels[label as usize].arc;
+            let is_nested = |structure: &crate::structure::Structure| {
+                structure.relation(arc(first), arc(then)) != Relation::Open
+            };
+            if inserted.is_ok() && !self.model.structure.as_ref().is_some_and(is_nested) {
+                let (first_end, then_start) = (self.model.interval(first).1, self.model.interval(then).0);
+                inserted = self.stn.insert(then_start, first_end, -self.model.gap, LEVEL_TAG);
+            }
+        }
+        self.stn.rollback(checkpoint);
+        match inserted {
+            Ok(()) => Ok(true),
+            Err(Inconsistency::NegativeCycle) => Ok(false),
+            Err(Inconsistency::Overflow) => Err(Overflow),
+        }
     }
 
     /// Every conflicting pair, with the one that comes first in front. A pair that is in both orders at once, as

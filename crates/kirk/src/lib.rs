@@ -46,5 +46,5 @@ use model::Model;
 pub fn plan(network: &Network, options: &Options, termination: &mut dyn Termination) -> Outcome {
     let model = Model::new(network, options.threat_gap);
     let outcome = model.and_then(|model| answer(network, &model, options, termination));
-    outcome.unwrap_or_else(|Overflow| Outcome::overflow())
+    outcome.map_or_else(|Overflow| Outcome::overflow(), |(outcome, _)| outcome)
 }

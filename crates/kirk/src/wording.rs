@@ -48,16 +48,24 @@ impl Told<'_> {
         let Some(&ask) = asks.first() else { return "a requirement cannot be carried".to_owned() };
         let label = &self.network.labels[ask.index()];
         let owner = interval_name(self.network, ask);
+        let requires = if owner == label.text.as_str() {
+            format!("{} is required here", label.text)
+        } else {
+            format!("{owner} requires {}", label.text)
+        };
         if let Some(bounds) = self.bounds() {
-            return format!("{owner} requires {}: {bounds}", label.text);
+            return format!("{requires}: {bounds}");
         }
         let is_asserted = self
             .network
             .labels
             .iter()
             .any(|other| other.mode == LabelMode::Tell && other.literal.supports(&label.literal));
-        let elsewhere = if is_asserted { " here" } else { "" };
-        format!("{owner} requires {}, but nothing asserts it{elsewhere}", label.text)
+        if is_asserted {
+            format!("{requires}, but nothing asserts it with these choices")
+        } else {
+            format!("{requires}, but nothing asserts it")
+        }
     }
 
     fn threat(&self) -> String {
@@ -90,6 +98,8 @@ impl Told<'_> {
         // In textual order, whatever way round the cycle goes.
         let mut needs: Vec<(u32, String)> = Vec::new();
         let mut allows: Vec<(String, &'static str)> = Vec::new();
+        // What would have to wait.
+        let mut waiting: Option<LabelId> = None;
         let (mut needed, mut allowed) = (Rational::from_integer(0), Rational::from_integer(0));
         for member in self.cycle {
             match member.constraint {
@@ -109,13 +119,17 @@ impl Told<'_> {
                         }
                     }
                 }
-                Constraint::Order(_) => {
+                Constraint::Order(order) => {
+                    waiting = Some(order.then);
                     needed -= member.weight;
                     if member.weight != Rational::from_integer(0) {
                         push_new(&mut needs, u32::MAX, format!("a gap of {}", display(-member.weight)));
                     }
                 }
-                Constraint::Link(_) => allowed += member.weight,
+                Constraint::Link(link) => {
+                    waiting = waiting.or(Some(link.ask));
+                    allowed += member.weight;
+                }
             }
         }
         if self.cycle.is_empty() {
@@ -127,7 +141,13 @@ impl Told<'_> {
         let needs = if needs.is_empty() { "keeping them apart".to_owned() } else { joined(&needs) };
         let (needed, allowed) = (display(needed), display(allowed));
         Some(match allows.as_slice() {
-            [] => format!("{needs} {verb} at least {needed}, but the program leaves no time for it"),
+            [] => match waiting {
+                Some(label) => {
+                    let name = interval_name(self.network, label);
+                    format!("{needs} {verb} at least {needed}, but {name} cannot wait that long")
+                }
+                None => format!("{needs} {verb} at least {needed}, but the program leaves no time for it"),
+            },
             [(name, allows)] => format!("{needs} {verb} at least {needed}, but {name} {allows} {allowed}"),
             _ => {
                 let names: Vec<String> = allows.into_iter().map(|(name, _)| name).collect();

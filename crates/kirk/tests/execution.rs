@@ -4,7 +4,7 @@ mod support;
 
 use std::path::Path;
 
-use kirk::{PlanNetwork, Planner, Remaining, Search, Unlimited};
+use kirk::{ExpansionLimit, PlanNetwork, Planner, Remaining, Search, Status, Unlimited};
 use rmpl::{Bound, Rational};
 use serde_json::Value;
 use support::{network, options, plan};
@@ -84,6 +84,36 @@ fn observations_between_the_units_of_the_mission_are_exact() {
     };
     let end = windows[node(&network, "B#1.end").index()].expect("selected");
     assert_eq!((end.earliest, end.latest), (Rational::new(9, 2), Bound::Finite(6.into())));
+}
+
+#[test]
+fn planning_again_gives_the_plan_of_a_search_from_scratch_whatever_was_asked_before() {
+    for seed in 0..40 {
+        for tightness in [Tightness::Feasible, Tightness::Boundary] {
+            let network = support::network(&mission(Recipe { nodes: 80, tightness, seed }));
+            for search in [Search::Chronological, Search::ConflictDirected] {
+                let mut planner = Planner::new(network.clone(), None);
+                let mut random = Rng::new(seed);
+                for step in 0..30 {
+                    let arc = ArcId::from_index(random.below(network.arcs.len() as u64) as usize);
+                    let bounds = &network.arcs[arc.index()];
+                    let Some(upper) = bounds.upper.finite().filter(|_| bounds.kind == tpn::ArcKind::Activity)
+                    else {
+                        continue;
+                    };
+                    let more = Rational::from_integer(random.between(-2, 2));
+                    planner.set_bounds(arc, bounds.lower, Bound::Finite((upper + more).max(bounds.lower)));
+                    let options = support::options(search, false);
+                    let fresh = kirk::plan(planner.network(), &options, &mut ExpansionLimit(2_000));
+                    let again = planner.plan(&options, &mut ExpansionLimit(2_000));
+                    if fresh.status != Status::Limit {
+                        let (fresh, again) = ((fresh.status, fresh.plans), (again.status, again.plans));
+                        assert_eq!(again, fresh, "{tightness:?} {seed} {search:?} {step}");
+                    }
+                }
+            }
+        }
+    }
 }
 
 #[test]

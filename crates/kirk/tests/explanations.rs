@@ -106,7 +106,7 @@ fn every_alternative_has_its_own_reason() {
             "with D1=0: A needs at least 30, but the scenario allows only 15",
             "with D1=1: B needs at least 20, but the scenario allows only 15",
             "with D1=2: MODE=X and MODE=Y cannot be kept apart: MODE=X and a gap of 1 need at least 4, \
-             but the program leaves no time for it",
+             but MODE=Y cannot wait that long",
         ]
     );
 }

@@ -359,14 +359,7 @@ fn failure_text(failure: &Failure, loaded: &Loaded) -> String {
     let lines = LineIndex::new(&loaded.source);
     let mut text = String::new();
     for reason in &failure.reasons {
-        let choices: Vec<String> = reason
-            .choices
-            .iter()
-            .map(|choice| format!("{} = {}", Network::decision_name(choice.decision), choice.alternative))
-            .collect();
-        let context =
-            if choices.is_empty() { String::new() } else { format!("with {}: ", choices.join(", ")) };
-        text.push_str(&format!("{context}{} ({})\n", reason.message, reason.kind.name()));
+        text.push_str(&format!("{} ({})\n", reason.message, reason.kind.name()));
         for span in &reason.spans {
             let place = lines.line_column(&loaded.source, span.start);
             let snippet = loaded.source.get(span.range()).unwrap_or("").lines().next().unwrap_or("");

@@ -6,10 +6,14 @@
 //! that no completion of the choices made so far is consistent; this is exact once all are made, and finds most dead
 //! ends long before. One choice costs time proportional to the depth of its block.
 
+mod blocks;
+mod decide;
+mod duration;
+
 use stn::Overflow;
 use tpn::{BlockKind, Network};
 
-use crate::enclosed::{Durations, Enclosed};
+use crate::enclosed::Enclosed;
 use crate::model::{INFINITE, Model, NONE};
 
 /// The tree, with the duration of each block before any choice.
@@ -124,9 +128,6 @@ pub(crate) enum Relation {
     /// The structure does not say.
     Open,
 }
-
-/// Parts of more blocks are not looked at for enclosed conditions.
-const MAX_ENCLOSED_BLOCKS: usize = 64;
 
 impl Structure {
     /// `None` if the blocks do not account for their own arcs, as in networks changed by other tools.
@@ -345,91 +346,6 @@ impl Structure {
         }
     }
 
-    /// Finds, for each variable, the smallest block with all its labels, and keeps those that are enclosed.
-    fn find_enclosed(&mut self, model: &Model) {
-        let conditions = &model.conditions;
-        for variable in &conditions.variables {
-            let mut blocks = variable
-                .labels
-                .iter()
-                .map(|&label| self.arc_blocks[conditions.labels[label as usize].arc as usize]);
-            let Some(first) = blocks.next() else { continue };
-            let common = blocks.fold(first, |common, block| self.common_ancestor(common, block));
-            if common == NONE {
-                continue;
-            }
-            let block = &self.blocks[common as usize];
-            if block.has_choices || block.enclosed != NONE || block.is_inside_enclosed {
-                continue;
-            }
-            let Some(inside) = self.blocks_inside(common) else { continue };
-            let mut arcs = block.own_arcs.clone();
-            for &id in &inside {
-                let block = &self.blocks[id as usize];
-                let (enter, leave) = block.around_arcs;
-                arcs.extend([enter, leave].into_iter().filter(|&arc| arc != NONE));
-                arcs.extend_from_slice(&block.own_arcs);
-            }
-            let Some(enclosed) = Enclosed::new(model, block.ends, arcs) else { continue };
-            self.blocks[common as usize].enclosed = self.enclosed.len() as u32;
-            self.enclosed.push(enclosed);
-            for id in inside {
-                self.blocks[id as usize].is_inside_enclosed = true;
-            }
-        }
-    }
-
-    /// The blocks inside another; `None` if there are many.
-    fn blocks_inside(&self, id: u32) -> Option<Vec<u32>> {
-        let mut inside = self.blocks[id as usize].children.clone();
-        let mut next = 0;
-        while let Some(&id) = inside.get(next) {
-            inside.extend_from_slice(&self.blocks[id as usize].children);
-            next += 1;
-            if inside.len() > MAX_ENCLOSED_BLOCKS {
-                return None;
-            }
-        }
-        Some(inside)
-    }
-
-    /// The smallest block that holds two others, or [`NONE`].
-    fn common_ancestor(&self, mut left: u32, mut right: u32) -> u32 {
-        while left != right && left != NONE && right != NONE {
-            if self.blocks[left as usize].depth >= self.blocks[right as usize].depth {
-                left = self.blocks[left as usize].parent;
-            } else {
-                right = self.blocks[right as usize].parent;
-            }
-        }
-        if left == right { left } else { NONE }
-    }
-
-    fn find_around_arcs(&mut self, model: &Model, id: usize) {
-        let block = &self.blocks[id];
-        let (start, end) = block.ends;
-        let children = block.children.clone();
-        for (position, &child) in children.iter().enumerate() {
-            let (child_start, child_end) = self.blocks[child as usize].ends;
-            let from = match self.blocks[id].shape {
-                Shape::Guard => {
-                    self.blocks[id].own_arcs.first().map_or(start, |&arc| model.arcs[arc as usize].to)
-                }
-                Shape::Sequence if position > 0 => child_start,
-                _ => start,
-            };
-            let to = match self.blocks[id].shape {
-                Shape::Sequence => {
-                    children.get(position + 1).map_or(end, |&next| self.blocks[next as usize].ends.0)
-                }
-                _ => end,
-            };
-            let enter = arc_between(model, from, child_start).unwrap_or(NONE);
-            let leave = arc_between(model, child_end, to).unwrap_or(NONE);
-            self.blocks[child as usize].around_arcs = (enter, leave);
-        }
-    }
-
     /// What the nesting alone says about two arcs.
     pub(crate) fn relation(&self, left_arc: u32, right_arc: u32) -> Relation {
         let (mut left, mut right) = (self.arc_blocks[left_arc as usize], self.arc_blocks[right_arc as usize]);
@@ -461,249 +377,9 @@ impl Structure {
         }
     }
 
-    /// Takes an alternative; `Err` names the block that has become impossible.
-    pub(crate) fn decide(
-        &self,
-        state: &mut TreeState,
-        chosen: &[u32],
-        decision: u32,
-        alternative: u32,
-    ) -> Result<Result<(), u32>, Overflow> {
-        let mut id = self.decision_blocks[decision as usize];
-        let child = self.blocks[id as usize].children[alternative as usize];
-        if state.durations[child as usize].is_empty() {
-            return Ok(Err(self.innermost_empty(state, child)));
-        }
-        let mut new = self.contribution(state, child)?;
-        loop {
-            let old = state.durations[id as usize];
-            if new == old {
-                return Ok(Ok(()));
-            }
-            let before = self.contribution(state, id)?;
-            state.trail.push((id, old));
-            state.durations[id as usize] = new;
-            if new.is_empty() {
-                return Ok(Err(id));
-            }
-            let after = self.contribution(state, id)?;
-            let parent = self.blocks[id as usize].parent;
-            if parent == NONE {
-                return Ok(Ok(()));
-            }
-            let held = state.durations[parent as usize];
-            new = match self.blocks[parent as usize].shape {
-                Shape::Leaf => held,
-                Shape::Sequence | Shape::Guard => Duration {
-                    lower: held.lower.checked_add(after.lower - before.lower).ok_or(Overflow)?,
-                    upper: held.upper.checked_add(after.upper).ok_or(Overflow)? - before.upper,
-                    unbounded: held.unbounded + after.unbounded - before.unbounded,
-                },
-                Shape::Intersection => {
-                    Duration::new(held.lower.max(after.lower), held.upper().min(after.upper()))
-                }
-                Shape::Choice(outer) => {
-                    debug_assert_eq!(
-                        chosen[outer as usize], self.blocks[id as usize].position,
-                        "a chosen branch"
-                    );
-                    after
-                }
-            };
-            id = parent;
-        }
-    }
-
-    /// A place for [`Structure::undo`].
-    pub(crate) fn mark(state: &TreeState) -> usize {
-        state.trail.len()
-    }
-
-    /// Takes back all decisions since `mark`.
-    pub(crate) fn undo(state: &mut TreeState, mark: usize) {
-        while state.trail.len() > mark {
-            if let Some((id, duration)) = state.trail.pop() {
-                state.durations[id as usize] = duration;
-            }
-        }
-    }
-
-    /// Calls `blame` with every decision that the emptiness of `block` rests on, and with the block's own context.
-    pub(crate) fn explain(&self, state: &TreeState, chosen: &[u32], block: u32, blame: &mut impl FnMut(u32)) {
-        let mut above = block;
-        while above != NONE {
-            let parent = self.blocks[above as usize].parent;
-            if parent != NONE
-                && let Shape::Choice(decision) = self.blocks[parent as usize].shape
-            {
-                blame(decision);
-                break;
-            }
-            above = parent;
-        }
-        let mut stack = vec![(block, true), (block, false)];
-        while let Some((id, is_lower)) = stack.pop() {
-            let block = &self.blocks[id as usize];
-            if !block.has_choices {
-                continue;
-            }
-            match block.shape {
-                Shape::Leaf => {}
-                Shape::Sequence | Shape::Guard => {
-                    stack.extend(block.children.iter().map(|&child| (child, is_lower)));
-                }
-                Shape::Choice(decision) => {
-                    let alternative = chosen[decision as usize];
-                    if alternative != NONE {
-                        blame(decision);
-                        stack.push((block.children[alternative as usize], is_lower));
-                    }
-                }
-                Shape::Intersection => {
-                    let held = state.durations[id as usize];
-                    let is_tight = |&&child: &&u32| {
-                        self.contribution(state, child).is_ok_and(|part| {
-                            if is_lower { part.lower == held.lower } else { part.upper() == held.upper() }
-                        })
-                    };
-                    let own_is_tight =
-                        if is_lower { block.own.0 == held.lower } else { block.own.1 == held.upper() };
-                    if !own_is_tight && let Some(&child) = block.children.iter().find(is_tight) {
-                        stack.push((child, is_lower));
-                    }
-                }
-            }
-        }
-    }
-
-    fn innermost_empty(&self, state: &TreeState, block: u32) -> u32 {
-        let mut id = block;
-        loop {
-            let children = &self.blocks[id as usize].children;
-            if matches!(self.blocks[id as usize].shape, Shape::Choice(_)) {
-                return id;
-            }
-            match children.iter().find(|&&child| state.durations[child as usize].is_empty()) {
-                Some(&child) => id = child,
-                None => return id,
-            }
-        }
-    }
-
     /// What a block's duration and the arcs around it come to.
     fn contribution(&self, state: &TreeState, id: u32) -> Result<Duration, Overflow> {
         add(state.durations[id as usize], self.blocks[id as usize].around)
-    }
-
-    fn initial_duration(&self, model: &Model, id: usize) -> Result<Duration, Overflow> {
-        let duration = self.nested_duration(id)?;
-        let enclosed = self.blocks[id].enclosed;
-        if enclosed == NONE || duration.is_empty() {
-            return Ok(duration);
-        }
-        Ok(match self.enclosed[enclosed as usize].durations(model) {
-            Durations::Never => Duration::NEVER,
-            Durations::Unknown => duration,
-            Durations::Between(lower, upper) => {
-                let (lower, upper) = intersect((duration.lower, duration.upper()), (lower, upper));
-                Duration::new(lower, upper)
-            }
-        })
-    }
-
-    fn nested_duration(&self, id: usize) -> Result<Duration, Overflow> {
-        let block = &self.blocks[id];
-        let parts = block.children.iter().map(|&child| {
-            let inside = self.initial[child as usize];
-            if inside.is_empty() {
-                Ok(None)
-            } else {
-                add(inside, self.blocks[child as usize].around).map(Some)
-            }
-        });
-        Ok(match block.shape {
-            Shape::Leaf => Duration::new(block.own.0, block.own.1),
-            Shape::Sequence => {
-                let mut sum = Duration::new(0, 0);
-                for part in parts {
-                    let Some(part) = part? else { return Ok(Duration::NEVER) };
-                    sum = sum_of(sum, part)?;
-                }
-                sum
-            }
-            Shape::Guard => {
-                let mut sum = Duration::new(block.own.0, block.own.1);
-                for part in parts {
-                    let Some(part) = part? else { return Ok(Duration::NEVER) };
-                    sum = sum_of(sum, part)?;
-                }
-                sum
-            }
-            Shape::Intersection => {
-                let mut common = block.own;
-                for part in parts {
-                    let Some(part) = part? else { return Ok(Duration::NEVER) };
-                    common = intersect(common, (part.lower, part.upper()));
-                }
-                Duration::new(common.0, common.1)
-            }
-            Shape::Choice(_) => {
-                let mut hull: Option<(i64, i64)> = None;
-                for part in parts {
-                    let Some(part) = part? else { continue };
-                    let (lower, upper) = hull.unwrap_or((part.lower, part.upper()));
-                    hull = Some((lower.min(part.lower), upper.max(part.upper())));
-                }
-                hull.map_or(Duration::NEVER, |(lower, upper)| Duration::new(lower, upper))
-            }
-        })
-    }
-
-    /// What the structural arcs around a child add; `None` if there are none where there must be.
-    fn around(
-        &self,
-        network: &Network,
-        model: &Model,
-        id: usize,
-        position: usize,
-    ) -> Result<Option<(i64, i64)>, Overflow> {
-        let block = &network.blocks[id];
-        let children = &self.blocks[id].children;
-        let child = &network.blocks[children[position] as usize];
-        let (enter, leave) = match self.blocks[id].shape {
-            Shape::Leaf => return Ok(Some((0, 0))),
-            Shape::Sequence => {
-                let next =
-                    children.get(position + 1).map_or(block.end, |&next| network.blocks[next as usize].start);
-                let enter =
-                    if position == 0 { between(model, block.start.0, child.start.0) } else { Some((0, 0)) };
-                (enter, between(model, child.end.0, next.0))
-            }
-            Shape::Guard => {
-                let BlockKind::Guard { arc, .. } = &block.kind else { return Ok(None) };
-                let inside = network.arcs[arc.index()].to.0;
-                (between(model, inside, child.start.0), between(model, child.end.0, block.end.0))
-            }
-            Shape::Choice(decision) => {
-                let arc = model.decisions[decision as usize].alternatives.get(position).copied();
-                let enter = arc.and_then(|arc| {
-                    let after = between(model, model.arcs[arc as usize].to, child.start.0)?;
-                    let choice = bounds(model, arc);
-                    Some((choice.0.checked_add(after.0)?, saturating_upper(choice.1, after.1)))
-                });
-                (enter, between(model, child.end.0, block.end.0))
-            }
-            Shape::Intersection => {
-                (between(model, block.start.0, child.start.0), between(model, child.end.0, block.end.0))
-            }
-        };
-        let (Some(enter), Some(leave)) = (enter, leave) else { return Ok(None) };
-        let lower = enter.0.checked_add(leave.0).ok_or(Overflow)?;
-        let upper = match (enter.1, leave.1) {
-            (INFINITE, _) | (_, INFINITE) => INFINITE,
-            (enter, leave) => enter.checked_add(leave).ok_or(Overflow)?,
-        };
-        Ok(Some((lower, upper)))
     }
 }
 

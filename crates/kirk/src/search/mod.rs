@@ -5,9 +5,12 @@
 //! order with assertions in textual order, and conflicting pairs in textual order with the textual order of the pair
 //! first; jumping back skips only what cannot hold a plan. So both find the same first plan, the canonical one.
 
+mod apply;
+mod retreat;
+
 use std::collections::BTreeSet;
 
-use stn::{Inconsistency, Overflow, PointId, Stn, Tag};
+use stn::{Overflow, PointId, Stn, Tag};
 use tpn::{CausalLink, DecisionId, LabelId, Ordering};
 
 use crate::failure::FailureKind;
@@ -32,6 +35,8 @@ pub(crate) struct Setup {
     /// Jump back over choices that have nothing to do with the failure, and learn.
     pub(crate) jumps: bool,
     pub(crate) gaps: Gaps,
+    /// Take the choices made before as they are, and look for a contradiction once all are made.
+    pub(crate) is_checking: bool,
     /// Use the program's structure for phase 1 if there is one; otherwise arcs are propagated as they are selected.
     pub(crate) by_structure: bool,
     /// Keep what every dead end rests on.
@@ -100,7 +105,8 @@ pub(crate) struct Engine<'m> {
     at: TreeNodeId,
     pub(crate) stats: Stats,
     has_begun: bool,
-    /// Whether a failure has been put down to less than it may rest on; see [`Gaps::Trusted`].
+    /// Whether an order has failed only because of gaps: then the failure may be put down to less than it rests on
+    /// ([`Gaps::Trusted`]), and need not last when bounds become tighter.
     pub(crate) has_doubts: bool,
 }
 
@@ -108,6 +114,7 @@ impl<'m> Engine<'m> {
     pub(crate) fn new(model: &'m Model, setup: Setup) -> Self {
         let structure =
             model.structure.as_ref().filter(|_| setup.by_structure && setup.trace_events.is_none());
+
         let mut stn = Stn::new(model.num_nodes);
         stn.reserve(model.arcs.len() * 2 + 64);
         stn.set_origin(PointId(model.start));
@@ -291,6 +298,9 @@ impl<'m> Engine<'m> {
     /// What every plan has. `false` if that alone is inconsistent.
     fn begin(&mut self) -> Result<bool, Overflow> {
         self.conflict.clear();
+        if self.setup.is_checking {
+            return Ok(true);
+        }
         if let Some(structure) = self.structure {
             if structure.is_empty() {
                 return Ok(false);
@@ -340,7 +350,7 @@ impl<'m> Engine<'m> {
 
     /// The first decision in textual order that is reached and open. Of a nested program it is `from` or later.
     fn next_decision(&self, from: u32) -> Option<u32> {
-        if self.structure.is_none() {
+        if self.structure.is_none() && !self.setup.is_checking {
             return self.frontier.first().copied();
         }
         (from..self.chosen.len() as u32).find(|&decision| {
@@ -412,158 +422,6 @@ impl<'m> Engine<'m> {
         Ok(false)
     }
 
-    /// Takes an alternative at a level. `false` if it fails at once; then `conflict` says why.
-    fn apply(&mut self, depth: usize, alternative: u32) -> Result<bool, Overflow> {
-        let tag = LEVEL_TAG + depth as Tag;
-        match self.levels[depth].kind {
-            Kind::Decision { decision } => self.choose(depth, decision, alternative),
-            Kind::Link { ask, ref tells, .. } => {
-                let tell = tells[alternative as usize];
-                self.stats.links_tried += 1;
-                // Windows that hold with one link do not hold with another.
-                self.leaf.has_windows = false;
-                self.log(|_| Event::TryLink { link: CausalLink { ask: LabelId(ask), tell: LabelId(tell) } });
-                let (ask_start, ask_end) = self.model.interval(ask);
-                let (tell_start, tell_end) = self.model.interval(tell);
-                Ok(self.insert(ask_start, tell_start, 0, tag, FailureKind::OpenCondition)?
-                    && self.insert(tell_end, ask_end, 0, tag, FailureKind::OpenCondition)?)
-            }
-            Kind::Threat { position, left, right } => {
-                let (first, then) = if alternative == 0 { (left, right) } else { (right, left) };
-                self.leaf.is_swapped[position as usize] = alternative == 1;
-                self.stats.orderings_tried += 1;
-                self.log(|_| Event::TryOrder {
-                    order: Ordering { first: LabelId(first), then: LabelId(then) },
-                });
-                let (_, first_end) = self.model.interval(first);
-                let (then_start, _) = self.model.interval(then);
-                let gap = match self.setup.gaps {
-                    Gaps::Ignored => self.model.gap_after[first as usize],
-                    Gaps::Exact | Gaps::Trusted => self.model.gap,
-                };
-                if self.insert(then_start, first_end, -gap, tag, FailureKind::Threat)? {
-                    return Ok(true);
-                }
-                self.blame_touching(depth);
-                Ok(false)
-            }
-        }
-    }
-
-    /// An order that fails only because of gaps could still hold by touching, if other choices forced it to: then the
-    /// failure rests on all choices, because none of them does. Every order in the contradiction asks for its gap.
-    fn blame_touching(&mut self, depth: usize) {
-        if self.setup.gaps == Gaps::Ignored {
-            return;
-        }
-        let weights = self
-            .stn
-            .cycle()
-            .iter()
-            .map(|edge| i128::from(edge.weight) + i128::from(self.excess_gap(edge.tag)));
-        if weights.sum::<i128>() >= 0 {
-            if self.setup.gaps == Gaps::Trusted {
-                self.has_doubts = true;
-            } else {
-                self.conflict.insert_all_below(depth as u32);
-            }
-        }
-    }
-
-    /// By how much the order added at a level asks for more than what counts as ordered once it is entailed.
-    fn excess_gap(&self, tag: Tag) -> i64 {
-        let Some(level) = tag.checked_sub(LEVEL_TAG).and_then(|depth| self.levels.get(depth as usize)) else {
-            return 0;
-        };
-        let Kind::Threat { left, right, .. } = level.kind else { return 0 };
-        let first = if level.next == 1 { left } else { right };
-        self.model.gap - self.model.gap_after[first as usize]
-    }
-
-    fn choose(&mut self, depth: usize, decision: u32, alternative: u32) -> Result<bool, Overflow> {
-        self.leaf.is_ready = false;
-        self.chosen[decision as usize] = alternative;
-        self.log(|_| Event::Decide { decision: DecisionId(decision), alternative });
-        if self.setup.jumps
-            && let Some(others) = self.nogoods.find(&self.chosen, decision, alternative)
-        {
-            let others: Vec<u32> = others.iter().map(|&(other, _)| other).collect();
-            self.conflict.insert(depth as u32);
-            for other in others {
-                self.blame_decision(other);
-            }
-            self.log(|_| Event::Known);
-            return Ok(false);
-        }
-        if let (Some(structure), Some(tree)) = (self.structure, &mut self.tree) {
-            let Err(block) = structure.decide(tree, &self.chosen, decision, alternative)? else {
-                return self.look_ahead(depth, structure, decision, alternative);
-            };
-            let Self { tree: Some(tree), chosen, level_of, conflict, .. } = self else { return Ok(false) };
-            structure.explain(tree, chosen, block, &mut |blamed| {
-                let level = level_of[blamed as usize];
-                if level != NONE {
-                    conflict.insert(level);
-                }
-            });
-            self.conflict.insert(depth as u32);
-            self.meet_dead_end(FailureKind::Temporal);
-            return Ok(false);
-        }
-        let is_consistent = self.select_alternative(decision, alternative)?;
-        if !is_consistent {
-            self.conflict.insert(depth as u32);
-            self.meet_dead_end(FailureKind::Temporal);
-        }
-        Ok(is_consistent)
-    }
-
-    /// Whether what an alternative brings leaves something for phase 2.
-    fn look_ahead(
-        &mut self,
-        depth: usize,
-        structure: &Structure,
-        decision: u32,
-        alternative: u32,
-    ) -> Result<bool, Overflow> {
-        let (Some(lookahead), Some(tree)) = (&mut self.lookahead, &self.tree) else { return Ok(true) };
-        if lookahead.decide(self.model, structure, tree, &self.chosen, (decision, alternative), depth)? {
-            return Ok(true);
-        }
-        for position in 0..lookahead.blamed.len() {
-            let blamed = self.lookahead.as_ref().map_or(NONE, |lookahead| lookahead.blamed[position]);
-            self.blame_decision(blamed);
-        }
-        self.conflict.insert(depth as u32);
-        self.meet_dead_end(FailureKind::OpenCondition);
-        Ok(false)
-    }
-
-    /// Adds `to − from ≤ weight` for a link or an order.
-    fn insert(
-        &mut self,
-        from: PointId,
-        to: PointId,
-        weight: i64,
-        tag: Tag,
-        kind: FailureKind,
-    ) -> Result<bool, Overflow> {
-        match self.stn.insert(from, to, weight, tag) {
-            Ok(()) => {
-                let moved = self.stn.num_changed() as u32;
-                self.log(|_| Event::Propagate { moved });
-                Ok(true)
-            }
-            Err(Inconsistency::Overflow) => Err(Overflow),
-            Err(Inconsistency::NegativeCycle) => {
-                self.log(|engine| Event::Inconsistent { cycle: crate::record::cycle_of(engine) });
-                self.blame_cycle();
-                self.meet_dead_end(kind);
-                Ok(false)
-            }
-        }
-    }
-
     /// Takes back what the present alternative of a level did.
     fn undo_alternative(&mut self, depth: usize) {
         let level = &self.levels[depth];
@@ -584,142 +442,6 @@ impl<'m> Engine<'m> {
         self.stn.rollback(checkpoint);
     }
 
-    /// Removes the topmost level, whose alternatives have all failed.
-    fn exhaust_level(&mut self) {
-        let Some(level) = self.levels.pop() else { return };
-        self.at = level.tree_node;
-        self.set_status(self.at, TreeStatus::Failed);
-        self.conflict.clone_from(&level.conflict);
-        match level.kind {
-            Kind::Decision { decision } => {
-                self.level_of[decision as usize] = NONE;
-                if self.structure.is_none() {
-                    self.frontier.insert(decision);
-                }
-                self.blame_context(self.decision_context(decision));
-            }
-            Kind::Link { ask, tells, .. } => {
-                self.log(|_| Event::Unclosable { ask: LabelId(ask) });
-                if tells.is_empty() {
-                    self.meet_dead_end(FailureKind::OpenCondition);
-                }
-                self.dead_ends.add_label(ask);
-                self.blame_link(ask);
-            }
-            Kind::Threat { left, right, .. } => {
-                self.log(|_| Event::Unresolvable { left: LabelId(left), right: LabelId(right) });
-                self.dead_ends.add_label(left);
-                self.dead_ends.add_label(right);
-                for label in [left, right] {
-                    self.blame_context(self.context(self.model.conditions.labels[label as usize].arc));
-                }
-            }
-        }
-    }
-
-    /// A requirement fails because it is selected, and because other assertions are not.
-    fn blame_link(&mut self, ask: u32) {
-        let model = self.model;
-        self.blame_context(self.context(model.conditions.labels[ask as usize].arc));
-        for tell in model.conditions.supporters(ask) {
-            if self.is_selected_label(tell) {
-                continue;
-            }
-            if !model.has_contexts {
-                self.conflict.insert_all_below(self.levels.len() as u32);
-                return;
-            }
-            let mut context = model.arcs[model.conditions.labels[tell as usize].arc as usize].context;
-            while context.decision != NONE {
-                let chosen = self.chosen[context.decision as usize];
-                if chosen != NONE && chosen != context.alternative {
-                    self.blame_decision(context.decision);
-                    break;
-                }
-                context = model.decisions[context.decision as usize].context;
-            }
-        }
-    }
-
-    /// Goes back from a failure that rests on `conflict` to a level with an alternative that may avoid it.
-    /// `false` if there is none.
-    fn retreat(&mut self) -> Result<bool, Overflow> {
-        loop {
-            let last = (self.levels.len() as u32).checked_sub(1);
-            let target = if self.setup.jumps { self.conflict.highest() } else { last };
-            self.learn(target);
-            let Some(target) = target else { return Ok(false) };
-            self.stats.backtracks += 1;
-            self.stats.jumped_over += u64::from(last.unwrap_or(0) - target);
-            self.log_retreat(target);
-            while self.levels.len() as u32 > target + 1 {
-                let depth = self.levels.len() - 1;
-                self.undo_alternative(depth);
-                self.drop_level();
-            }
-            self.undo_alternative(target as usize);
-            self.conflict.remove(target);
-            let Self { levels, conflict, .. } = self;
-            levels[target as usize].conflict.union(conflict);
-            if self.try_alternatives()? {
-                return Ok(true);
-            }
-        }
-    }
-
-    /// Removes a level that is jumped over.
-    fn drop_level(&mut self) {
-        let Some(level) = self.levels.pop() else { return };
-        self.at = level.tree_node;
-        if let Kind::Decision { decision } = level.kind {
-            self.level_of[decision as usize] = NONE;
-            if self.structure.is_none() {
-                self.frontier.insert(decision);
-            }
-        }
-    }
-
-    /// Keeps the failure at hand, if it rests on decisions alone.
-    fn learn(&mut self, target: Option<u32>) {
-        let is_about_decisions = target.is_none_or(|target| {
-            self.levels.get(target as usize).is_some_and(|level| matches!(level.kind, Kind::Decision { .. }))
-        });
-        if !is_about_decisions {
-            return;
-        }
-        if self.setup.records_dead_ends {
-            self.flush_dead_end();
-        }
-        if self.setup.jumps && target.is_some() && !self.setup.is_enumerating {
-            let choices: Vec<(u32, u32)> = self.blamed_choices().collect();
-            self.stats.nogoods += u64::from(self.nogoods.learn(&choices));
-        }
-    }
-
-    /// The decisions that the failure at hand rests on, with their alternatives, in the order they were taken.
-    pub(crate) fn blamed_choices(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
-        self.conflict.iter().filter_map(|level| match self.levels.get(level as usize)?.kind {
-            Kind::Decision { decision } => Some((decision, self.chosen[decision as usize])),
-            _ => None,
-        })
-    }
-
-    fn flush_dead_end(&mut self) {
-        let mut choices: Vec<(u32, u32)> = self.blamed_choices().collect();
-        let mut next = 0;
-        while let Some(&(decision, _)) = choices.get(next) {
-            let context = self.decision_context(decision);
-            if context.decision != NONE && !choices.contains(&(context.decision, context.alternative)) {
-                choices.push((context.decision, context.alternative));
-            }
-            next += 1;
-        }
-        choices.sort_unstable();
-        if let Some(dead_end) = self.dead_ends.flush(choices) {
-            self.dead_ends.found.push(dead_end);
-        }
-    }
-
     /// The innermost choice that reaches a decision.
     fn decision_context(&self, decision: u32) -> Context {
         if self.model.has_contexts {
@@ -727,24 +449,6 @@ impl<'m> Engine<'m> {
         } else {
             self.found_decision_contexts[decision as usize]
         }
-    }
-
-    fn log_retreat(&mut self, target: u32) {
-        let jumps = self.setup.jumps;
-        let depth = self.levels.len() as u32;
-        self.log(|engine| {
-            let to = engine.levels[target as usize].tree_node;
-            if jumps && target + 1 < depth {
-                let states = engine.conflict.iter().filter_map(|level| {
-                    let level = engine.levels.get(level as usize)?;
-                    Some(level.first_child + level.next.saturating_sub(1))
-                });
-                Event::Backjump { to, because: states.collect() }
-            } else {
-                Event::Backtrack { to }
-            }
-        });
-        self.at = self.levels[target as usize].tree_node;
     }
 
     /// Inserts a decision that has been reached, or an arc's context, in networks of unknown structure.
