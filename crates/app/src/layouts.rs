@@ -64,7 +64,8 @@ impl Layouts {
         if let Some(panel) = state.unwanted_panel.take() {
             workspace::close_panel(tree, panel);
         }
-        if let Some(panel) = state.wanted_panel.take() {
+        let wanted = state.wanted_panel.take().into_iter().chain(state.also_wanted_panel.take());
+        for panel in wanted {
             workspace::show_panel(tree, panel);
         }
     }

@@ -49,6 +49,11 @@ pub const EXAMPLES: &[Example] = &[
         source: include_str!("../../../assets/missions/backjump.rmpl"),
     },
     Example {
+        name: "orbit",
+        title: "Into orbit",
+        source: include_str!("../../../assets/missions/orbit.rmpl"),
+    },
+    Example {
         name: "orbit-insertion",
         title: "Orbit insertion",
         source: include_str!("../../../assets/programs/orbit-insertion.rmpl"),

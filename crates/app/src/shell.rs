@@ -152,6 +152,7 @@ impl Enroute {
         }
         if self.state.playback.is_playing {
             self.state.playback.advance(elapsed_secs);
+            self.state.follow_run();
             self.version += 1;
             self.egui.request_repaint();
         }
@@ -172,7 +173,7 @@ impl Enroute {
         let clock = || host.monotonic_secs();
         let context = Context {
             state: &self.state,
-            snapshot: self.state.shown(),
+            snapshot: self.state.looked_at(),
             is_stale: self.state.snapshots.is_stale(self.state.document.revision()),
             tokens: self.state.settings.theme.tokens(),
             render_state,
@@ -245,6 +246,7 @@ impl Enroute {
             }
         }
         self.post_text();
+        self.post_run();
     }
 
     /// Asks for the present text to be worked out, unless that was asked for already.
@@ -263,6 +265,13 @@ impl Enroute {
         let source = self.state.document.shared_text();
         self.host.post(Request::Update(Update { revision, source, goal, search, seed, trace }));
         self.posted = Some(Posted { revision, ..wanted });
+    }
+
+    /// Asks for the run that is watched to be worked out, unless that was asked for already.
+    fn post_run(&mut self) {
+        if let Some(request) = self.state.run_to_ask_for() {
+            self.host.post(request);
+        }
     }
 
     fn copy_link(&mut self) {

@@ -16,7 +16,7 @@ pub enum Workspace {
     Teach,
     /// Judge a plan.
     Review,
-    /// Run a control program.
+    /// Run a mission or a control program.
     Execute,
 }
 
@@ -62,8 +62,8 @@ impl Workspace {
     fn wide_layout(self, tiles: &mut Tiles<PanelKind>) -> TileId {
         use LinearDir::{Horizontal, Vertical};
         use PanelKind::{
-            Automaton, Compare, Distances, Editor, Network, Outline, Plan, Problems, Review, Search, Terrain,
-            Timeline,
+            Automaton, Compare, Distances, Editor, Execution, Network, Outline, Plan, Problems, Review,
+            Robustness, Search, Terrain, Timeline,
         };
         match self {
             Self::Author => {
@@ -99,11 +99,13 @@ impl Workspace {
                 split(tiles, Horizontal, &[(review, 0.38), (right, 0.62)])
             }
             Self::Execute => {
-                let text = tabs(tiles, &[Editor]);
-                let problems = tabs(tiles, &[Problems]);
-                let left = split(tiles, Vertical, &[(text, 0.8), (problems, 0.2)]);
-                let automaton = tabs(tiles, &[Automaton]);
-                split(tiles, Horizontal, &[(left, 0.3), (automaton, 0.7)])
+                let left = tabs(tiles, &[Editor, Execution, Robustness, Problems]);
+                let network = tabs(tiles, &[Network, Automaton]);
+                let timeline = tabs(tiles, &[Timeline]);
+                let terrain = tabs(tiles, &[Terrain, Plan]);
+                let lower = split(tiles, Horizontal, &[(timeline, 0.55), (terrain, 0.45)]);
+                let right = split(tiles, Vertical, &[(network, 0.5), (lower, 0.5)]);
+                split(tiles, Horizontal, &[(left, 0.3), (right, 0.7)])
             }
         }
     }
@@ -112,8 +114,8 @@ impl Workspace {
     fn narrow_layout(self, tiles: &mut Tiles<PanelKind>) -> TileId {
         use LinearDir::{Horizontal, Vertical};
         use PanelKind::{
-            Automaton, Compare, Distances, Editor, Network, Outline, Plan, Problems, Review, Search, Terrain,
-            Timeline,
+            Automaton, Compare, Distances, Editor, Execution, Network, Outline, Plan, Problems, Review,
+            Robustness, Search, Terrain, Timeline,
         };
         let (left, right, share) = match self {
             Self::Author => {
@@ -138,9 +140,11 @@ impl Workspace {
                 (review, right, 0.48)
             }
             Self::Execute => {
-                let text = tabs(tiles, &[Editor, Problems]);
-                let automaton = tabs(tiles, &[Automaton]);
-                (text, automaton, 0.36)
+                let left = tabs(tiles, &[Editor, Execution, Robustness, Problems]);
+                let network = tabs(tiles, &[Network, Automaton, Terrain]);
+                let timeline = tabs(tiles, &[Timeline, Plan]);
+                let right = split(tiles, Vertical, &[(network, 0.55), (timeline, 0.45)]);
+                (left, right, 0.4)
             }
         };
         split(tiles, Horizontal, &[(left, share), (right, 1.0 - share)])

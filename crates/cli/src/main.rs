@@ -12,7 +12,7 @@ use clap::{Parser, Subcommand};
 
 use commands::{
     check, compare, estimate, execute, explain, export, fmt, hca, import, path, plan, reconfigure, report,
-    run, simulate, step, stn, tpn, verify,
+    robustness, run, simulate, step, stn, tpn, verify,
 };
 
 /// Plans, checks and explains missions written in RMPL.
@@ -33,6 +33,7 @@ enum Command {
     Verify(verify::Args),
     Execute(execute::Args),
     Simulate(simulate::Args),
+    Robustness(robustness::Args),
     Path(path::Args),
     Stn(stn::Args),
     Hca(hca::Args),
@@ -56,6 +57,7 @@ fn main() -> ExitCode {
         Command::Verify(args) => verify::run(args),
         Command::Execute(args) => execute::run(args),
         Command::Simulate(args) => simulate::run(args),
+        Command::Robustness(args) => robustness::run(args),
         Command::Path(args) => path::run(args),
         Command::Stn(args) => stn::run(args),
         Command::Hca(args) => hca::run(args),

@@ -82,6 +82,11 @@ impl Dispatcher {
         }
     }
 
+    /// The rigid component of a point, and its time after the component's leader in ticks.
+    pub fn component(&self, point: PointId) -> (usize, i64) {
+        self.place[point.index()]
+    }
+
     /// Whether the time of a point is settled.
     pub fn is_settled(&self, point: PointId) -> bool {
         self.time[self.place[point.index()].0].is_some()

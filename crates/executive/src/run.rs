@@ -200,29 +200,57 @@ impl Run<'_> {
 
     /// The earliest thing that happens or goes wrong next; of several at one time the one that is first in the plan.
     fn next(&self) -> Option<Next> {
-        let dispatcher = &self.stage.dispatcher;
-        let mut coming: Vec<Next> = Vec::new();
+        let mut best: Option<Next> = None;
+        let driven = self.driven();
         for point in self.stage.made.all_points() {
             let node = self.stage.made.node(point);
-            let has_happened = self.stage.times[node.index()].is_some();
-            if !has_happened && (dispatcher.is_settled(point) || dispatcher.is_enabled(point)) {
-                coming.extend(self.candidate(point, node));
+            if self.stage.times[node.index()].is_some() {
+                continue;
+            }
+            let is_settled = self.stage.dispatcher.is_settled(point);
+            if !is_settled && !self.stage.dispatcher.is_enabled(point) {
+                continue;
+            }
+            // What the world reports comes whether it is its turn or not.
+            let is_driven = self.is_driven(point);
+            if !is_driven && !self.stage.is_next(node) {
+                continue;
+            }
+            let (component, offset) = self.stage.dispatcher.component(point);
+            let waits = driven.get(&component).is_some_and(|&first| first <= offset);
+            if !is_settled && waits && !is_driven {
+                continue;
+            }
+            let Some(next) = self.candidate(point, node) else { continue };
+            if best.as_ref().is_none_or(|best| next.time < best.time) {
+                best = Some(next);
             }
         }
-        // Events that come at one instant wait for the last of them: the end of a choice for that of its activity.
-        let times: Vec<Rational> = coming
-            .iter()
-            .map(|next| {
-                let others =
-                    coming.iter().filter(|other| dispatcher.are_simultaneous(next.point, other.point));
-                let is_sure = dispatcher.is_settled(next.point) || next.violation.is_some();
-                if is_sure { next.time } else { others.map(|it| it.time).fold(next.time, Rational::max) }
-            })
-            .collect();
-        for (next, time) in coming.iter_mut().zip(times) {
-            next.time = time;
+        best
+    }
+
+    /// The components of which some member's time is not for the executive to choose, with the earliest such member's
+    /// place in it: members that come with it or after it wait for its report.
+    fn driven(&self) -> BTreeMap<usize, i64> {
+        let mut driven = BTreeMap::new();
+        for point in self.stage.made.all_points() {
+            if !self.stage.dispatcher.is_settled(point) && self.is_driven(point) {
+                let (component, offset) = self.stage.dispatcher.component(point);
+                let first = driven.entry(component).or_insert(offset);
+                *first = offset.min(*first);
+            }
         }
-        coming.into_iter().reduce(|best, next| if next.time < best.time { next } else { best })
+        driven
+    }
+
+    /// Whether the world has decided when a point happens, or that it does not.
+    fn is_driven(&self, point: PointId) -> bool {
+        let planned = self.stage.window(point).0.max(self.now);
+        let events = &self.stage.network.nodes[self.stage.made.node(point).index()].events;
+        events.iter().any(|&event| {
+            let decided = self.by_world(event, planned);
+            decided.is_some_and(|decided| !matches!(decided, ByWorld::Free))
+        })
     }
 
     /// When a point would happen, by the plan and by the world.

@@ -22,6 +22,8 @@ pub struct Stage {
     pub(crate) times: Vec<Option<Rational>>,
     /// When this plan was made.
     pub(crate) from: Rational,
+    /// The nodes that each selected node follows along the plan's arcs and links.
+    before: Vec<Vec<NodeId>>,
 }
 
 impl Stage {
@@ -31,13 +33,20 @@ impl Stage {
         made.refine_for(&network, &plan, grid)?;
         let dispatcher = Dispatcher::new(&mut made)?;
         let times = vec![None; network.nodes.len()];
-        Ok(Self { network, plan, made, dispatcher, times, from: Rational::default() })
+        let before = before(&network, &plan);
+        Ok(Self { network, plan, made, dispatcher, times, from: Rational::default(), before })
     }
 
     /// The window of a point in mission units; no latest time if it is not bounded.
     pub(crate) fn window(&self, point: PointId) -> (Rational, Option<Rational>) {
         let (earliest, latest) = self.dispatcher.window(point);
         (self.made.time(earliest), (latest != NEVER).then(|| self.made.time(latest)))
+    }
+
+    /// Whether everything that a node follows has happened. Where durations may be zero, the dispatchable form alone
+    /// would let an end come before its start.
+    pub(crate) fn is_next(&self, node: NodeId) -> bool {
+        self.before[node.index()].iter().all(|before| self.times[before.index()].is_some())
     }
 
     pub(crate) fn occurrence(&self, event: EventRef) -> &Occurrence {
@@ -66,6 +75,45 @@ impl Stage {
     pub(crate) fn close(self) -> ExecutedPlan {
         ExecutedPlan { from: self.from, network: self.network, plan: self.plan, times: self.times }
     }
+}
+
+/// Arcs lead forwards in time; only those by which facts hold the past lead back to the start.
+fn before(network: &Network, plan: &Plan) -> Vec<Vec<NodeId>> {
+    let mut before = vec![Vec::new(); network.nodes.len()];
+    for (arc, _) in network.arcs.iter().zip(&plan.selected_arcs).filter(|(_, is_selected)| **is_selected) {
+        if arc.to != network.start && arc.from != arc.to {
+            before[arc.to.index()].push(arc.from);
+        }
+    }
+    let ends = |label: tpn::LabelId| {
+        let arc = &network.arcs[network.labels[label.index()].arc.index()];
+        (arc.from, arc.to)
+    };
+    for link in &plan.causal_links {
+        let ((tell_start, tell_end), (ask_start, ask_end)) = (ends(link.tell), ends(link.ask));
+        for (first, then) in [(tell_start, ask_start), (ask_end, tell_end)] {
+            // Of two that come at one instant the structure says which is first.
+            if first != then && !leads_to(&before, then, first) {
+                before[then.index()].push(first);
+            }
+        }
+    }
+    before
+}
+
+/// Whether `to` follows `from`.
+fn leads_to(before: &[Vec<NodeId>], from: NodeId, to: NodeId) -> bool {
+    let mut seen = vec![false; before.len()];
+    let mut pending = vec![to];
+    while let Some(node) = pending.pop() {
+        if node == from {
+            return true;
+        }
+        if !std::mem::replace(&mut seen[node.index()], true) {
+            pending.extend(&before[node.index()]);
+        }
+    }
+    false
 }
 
 /// A plan that was executed, as far as it was.

@@ -36,6 +36,17 @@ pub enum Disturbance {
         #[serde(with = "crate::exact")]
         at: Rational,
     },
+    /// A component of the plant fails, or comes into another mode, while an activity's control program runs.
+    Fault {
+        /// The activity, such as `Insert#1`.
+        activity: SmolStr,
+        /// At the end of this step, from 1.
+        step: u32,
+        /// The component.
+        component: SmolStr,
+        /// The mode it is in from then on.
+        mode: SmolStr,
+    },
     /// A condition begins no earlier than this.
     Late {
         /// The assertion.
@@ -76,7 +87,9 @@ impl Disturbance {
     /// The occurrence that it is about, if it is about one.
     pub const fn occurrence(&self) -> Option<&SmolStr> {
         match self {
-            Self::Duration { activity, .. } | Self::Slow { activity, .. } => Some(activity),
+            Self::Duration { activity, .. } | Self::Slow { activity, .. } | Self::Fault { activity, .. } => {
+                Some(activity)
+            }
             Self::Withdrawn { condition, .. } | Self::Late { condition, .. } => Some(condition),
             Self::Obstacle { .. } | Self::VehicleSlow { .. } => None,
         }
@@ -121,6 +134,8 @@ impl World {
                 Disturbance::Late { condition, at } => world.late.insert(condition, at),
                 // What vehicles meet is for whoever drives them.
                 Disturbance::Obstacle { .. } | Disturbance::VehicleSlow { .. } => None,
+                // What components do is for whoever runs their programs.
+                Disturbance::Fault { .. } => None,
             };
         }
         world

@@ -173,3 +173,17 @@ fn an_activity_in_a_choice_that_ends_late_but_within_its_window_breaks_nothing()
     assert_eq!(time("Pack#1.start"), Some(Rational::from(30)));
     assert_eq!(time("scenario#1.end"), Some(Rational::from(35)));
 }
+
+/// SPEC 6.2: the rovers may arrive later than at the earliest moment, and everything behind waits for their report.
+#[test]
+fn what_follows_an_activity_at_once_waits_for_the_report_of_its_end() {
+    let source = include_str!("../../../tests/conformance/t01_enroute_scenario.rmpl");
+    let network = compiled(source);
+    let duration = Rational::from(430);
+    let longer = Disturbance::Duration { activity: "Group-Traverse-Path#1".into(), duration };
+    let (outcome, facts) = execute(&network, &[longer]);
+    assert_eq!(outcome.ending, Ending::Finished, "{:?}", outcome.log);
+    assert!(facts.is_empty(), "the plan holds: it allows for arrivals from 415 to 460");
+    let verdict = verify::check_schedule(&network, &outcome.last().plan, &outcome.last().times);
+    assert!(verdict.valid, "{:?}", verdict.violations);
+}

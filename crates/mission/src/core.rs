@@ -18,6 +18,7 @@ use crate::control::read_control;
 use crate::ground::Grounds;
 use crate::planning::{self, Planned};
 use crate::problem::Problem;
+use crate::programs::Programs;
 use crate::request::{Goal, Request, Response, Update};
 use crate::review;
 use crate::snapshot::{MapKey, Snapshot, Stage, Timings};
@@ -290,5 +291,6 @@ pub fn compile(program: &Program, goal: &Goal, diagnostics: &mut Vec<Diagnostic>
     };
     let (network, found) = tpn::compile(program, &top);
     tpn::merge_diagnostics(diagnostics, found);
+    diagnostics.extend(Programs::compile(program).1);
     network.filter(|_| diagnostics.iter().all(|found| found.severity != Severity::Error))
 }

@@ -19,6 +19,7 @@ use tpn::{Network, Plan, Window};
 
 use crate::ground::Grounds;
 use crate::planning::{self, Planned, Problem};
+use crate::programs::{ProgramPerformer, Programs};
 use crate::simulation::{self, Courses, Driving, SimulatedDrive};
 use crate::snapshot::{Traverse, VehicleMotion};
 use crate::traverse::Paths;
@@ -83,35 +84,38 @@ pub fn execute(
     let courses = RefCell::new(Courses::default());
     courses.borrow_mut().learn(problem, planned);
     let mut driving = problem.ground.map(|(_, map)| Driving::new(problem, map, disturbances, &courses));
+    let (programs, _) = Programs::compile(problem.program);
     let mut as_planned = AsPlanned;
-    let performer: &mut dyn Performer = match &mut driving {
+    let others: &mut dyn Performer = match &mut driving {
         Some(driving) => driving,
         None => &mut as_planned,
     };
+    let mut performer = ProgramPerformer::new(&programs, disturbances, None, others);
     let mut grid = world.times(&planned.network);
     grid.push(performer.granularity());
     let ran = Stage::new(Arc::clone(&planned.network), plan, &grid).and_then(|stage| {
         let mut replanner =
             WithPaths { problem, grounds, paths, replanned: Vec::new(), courses: Some(&courses) };
         let num_program_nodes = problem.network.nodes.len();
-        let outcome = run_stage(stage, num_program_nodes, &world, performer, &mut replanner)?;
+        let outcome = run_stage(stage, num_program_nodes, &world, &mut performer, &mut replanner)?;
         Ok((outcome, replanner.replanned))
     });
     let drives = driving.map(Driving::into_drives).unwrap_or_default();
     Some(ran.map(|(outcome, replanned)| Ran { outcome, replanned, drives }))
 }
 
-/// Executes a plan of `problem` that was made ready for `world`, with activities that take as long as planned.
+/// Executes a plan of `problem` that was made ready for `world` and `performer`; no vehicle drives.
 pub fn execute_stage(
     problem: &Problem<'_>,
     stage: Stage,
     world: &World,
+    performer: &mut dyn Performer,
     grounds: &mut Grounds,
     paths: &mut Paths,
 ) -> Result<Ran, PlanError> {
     let mut replanner = WithPaths { problem, grounds, paths, replanned: Vec::new(), courses: None };
     let num_program_nodes = problem.network.nodes.len();
-    let outcome = run_stage(stage, num_program_nodes, world, &mut AsPlanned, &mut replanner)?;
+    let outcome = run_stage(stage, num_program_nodes, world, performer, &mut replanner)?;
     Ok(Ran { outcome, replanned: replanner.replanned, drives: Vec::new() })
 }
 

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use executive::{Disturbance, Ending, Entry, Happening, PlanError, RunOutcome, Stage, World};
+use executive::{AsPlanned, Disturbance, Ending, Entry, Happening, PlanError, RunOutcome, Stage, World};
 use plant::Random;
-use rmpl::program::LabelMode;
+use rmpl::program::{LabelMode, Program};
 use rmpl::{Bound, Rational};
 use smol_str::SmolStr;
 use tpn::{Network, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Plan};
@@ -12,8 +12,9 @@ use tpn::{Network, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Plan};
 use crate::execution::{self, Ran};
 use crate::ground::Grounds;
 use crate::planning::{Planned, Problem};
+use crate::programs::{ProgramPerformer, Programs};
 use crate::robustness::{
-    Breaks, Distribution, Incident, Others, RobustnessSettings, Tally, Time, Uncertainty,
+    Breaks, Distribution, Faults, Incident, Others, RobustnessSettings, Tally, Time, Uncertainty,
 };
 use crate::traverse::Paths;
 
@@ -27,22 +28,37 @@ pub struct Sampler {
     durations: Vec<(SmolStr, Distribution)>,
     late: Vec<(SmolStr, Incident)>,
     withdrawn: Vec<(SmolStr, Incident)>,
+    programs: Programs,
+    faults: Faults,
 }
 
 impl Sampler {
     /// Makes the plan of `planned` ready; `None` if there is none.
-    pub fn new(planned: &Planned, uncertainty: &Uncertainty) -> Option<Result<Self, PlanError>> {
+    pub fn new(
+        program: &Program,
+        planned: &Planned,
+        uncertainty: &Uncertainty,
+    ) -> Option<Result<Self, PlanError>> {
         let plan = planned.planning.outcome.plans.first()?;
         let network = &planned.network;
-        let durations = durations(network, uncertainty);
+        let (programs, _) = Programs::compile(program);
+        let durations = durations(network, uncertainty, &programs);
         let late = incidents(network, &uncertainty.late);
         let withdrawn = incidents(network, &uncertainty.withdrawn);
-        let mut grid = vec![Rational::new(1, PER_UNIT)];
+        let mut grid = vec![Rational::new(1, PER_UNIT), programs.step()];
         let incidents = late.iter().chain(&withdrawn).map(|(_, incident)| incident.at);
         grid.extend(durations.iter().map(|&(_, it)| it).chain(incidents).map(least));
         let stage = Stage::new(Arc::clone(network), plan.clone(), &grid);
         let windows = windows(network, plan);
-        Some(stage.map(|stage| Self { stage, windows, durations, late, withdrawn }))
+        Some(stage.map(|stage| Self {
+            stage,
+            windows,
+            durations,
+            late,
+            withdrawn,
+            programs,
+            faults: uncertainty.faults,
+        }))
     }
 
     /// Makes run `number` and adds it to `tally`.
@@ -56,15 +72,20 @@ impl Sampler {
         tally: &mut Tally,
     ) -> Result<(), PlanError> {
         let world = World::new(&self.draw(settings.seed, number));
-        let ran = execution::execute_stage(problem, self.stage.clone(), &world, grounds, paths)?;
+        // Faults are drawn apart from the rest, so that they do not change it.
+        let seed = Random::new(run_seed(settings.seed, number) ^ FAULTS).next_bits();
+        let seed = (self.faults == Faults::ByChance).then_some(seed);
+        let mut others = AsPlanned;
+        let mut performer = ProgramPerformer::new(&self.programs, &[], seed, &mut others);
+        let ran =
+            execution::execute_stage(problem, self.stage.clone(), &world, &mut performer, grounds, paths)?;
         self.count(&ran, number, tally);
         Ok(())
     }
 
     /// What goes otherwise than planned in run `number`.
     pub fn draw(&self, seed: u64, number: u64) -> Vec<Disturbance> {
-        let mut seeds = Random::new(seed);
-        let mut random = Random::new(seeds.next_bits() ^ Random::new(number).next_bits());
+        let mut random = Random::new(run_seed(seed, number));
         let mut drawn = Vec::new();
         for (activity, distribution) in &self.durations {
             let duration = distribution.draw(&mut random);
@@ -106,6 +127,14 @@ impl Sampler {
             slack.most_permille = slack.most_permille.max(used);
         }
     }
+}
+
+/// Told from the seed of everything else by this.
+const FAULTS: u64 = 0x6661_756c_7473;
+
+/// The seed of one run.
+const fn run_seed(seed: u64, number: u64) -> u64 {
+    Random::new(seed).next_bits() ^ Random::new(number).next_bits()
 }
 
 fn count_breaks(outcome: &RunOutcome, number: u64, tally: &mut Tally) {
@@ -154,10 +183,15 @@ fn windows(network: &Network, plan: &Plan) -> Vec<(SmolStr, NodeId, Rational, Ra
 }
 
 /// How long each activity takes that is left to chance.
-fn durations(network: &Network, uncertainty: &Uncertainty) -> Vec<(SmolStr, Distribution)> {
+fn durations(
+    network: &Network,
+    uncertainty: &Uncertainty,
+    programs: &Programs,
+) -> Vec<(SmolStr, Distribution)> {
     let primitives = network.occurrences.iter().enumerate();
     primitives
         .filter(|(_, occurrence)| occurrence.kind == OccurrenceKind::Primitive)
+        .filter(|(_, occurrence)| programs.system(&occurrence.activity).is_none())
         .filter_map(|(index, occurrence)| {
             let named = uncertainty.durations.get(&occurrence.name);
             let named = named.or_else(|| uncertainty.durations.get(&occurrence.activity));
@@ -229,6 +263,13 @@ fn base(name: &str) -> &str {
 }
 
 impl Uncertainty {
+    /// A name of whose times it says something that is no distribution.
+    pub fn unsound(&self) -> Option<&SmolStr> {
+        let durations = self.durations.iter().map(|(name, distribution)| (name, distribution));
+        let incidents = self.late.iter().chain(&self.withdrawn).map(|(name, incident)| (name, &incident.at));
+        durations.chain(incidents).find(|(_, distribution)| !distribution.is_sound()).map(|(name, _)| name)
+    }
+
     /// The names in it that nothing in `network` has.
     pub fn unknown_names(&self, network: &Network) -> Vec<SmolStr> {
         let is_known = |name: &SmolStr, kind: OccurrenceKind| {

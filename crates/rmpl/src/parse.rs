@@ -270,6 +270,9 @@ fn add(program: &mut Program, item: Item) {
         Item::Scenario(decl) => program.scenarios.push(decl),
         Item::Option(decl) => match (decl.name.text.as_str(), decl.value) {
             ("threat_gap", OptionValue::Number(gap)) => program.options.threat_gap = gap,
+            ("control_step", OptionValue::Number(step)) if step > Rational::ZERO => {
+                program.options.control_step = step;
+            }
             ("strict", OptionValue::Number(value)) => program.options.strict = value == Rational::ONE,
             ("time_unit", OptionValue::Name(unit)) if unit == "second" => {
                 program.options.time_unit = TimeUnit::Second;
@@ -279,6 +282,7 @@ fn add(program: &mut Program, item: Item) {
             }
             _ => {}
         },
+        Item::Control(decl) => program.control.push(decl),
         Item::Terrain(decl) => program.world.terrain = program.world.terrain.take().or(Some(decl)),
         Item::Location(decl) => program.world.locations.push(decl),
         Item::Obstacle(decl) => program.world.obstacles.push(decl),
@@ -316,7 +320,7 @@ fn floor_boundary(text: &str, offset: u32) -> usize {
 
 impl Diagnostic {
     /// The same, `offset` further on.
-    fn moved(mut self, offset: u32) -> Self {
+    pub(crate) fn moved(mut self, offset: u32) -> Self {
         let shift = |span: Span| Span::new(span.start + offset, span.end + offset);
         self.span = shift(self.span);
         for edit in self.fixes.iter_mut().flat_map(|fix| &mut fix.edits) {

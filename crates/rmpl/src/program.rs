@@ -31,8 +31,21 @@ pub struct Program {
     pub scenarios: Vec<ScenarioDecl>,
     /// Options, as declared or by default.
     pub options: Options,
+    /// The control programs and the plant that activities run, if the mission has any; the first counts.
+    pub control: Vec<ControlDecl>,
     /// The world of the mission (SPEC 1.8).
     pub world: World,
+}
+
+/// `control { … }`: control programs and their plant, in prefix notation (SPEC 2).
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ControlDecl {
+    /// What stands between the braces.
+    pub text: String,
+    /// Where it stands.
+    pub text_span: Span,
+    /// The whole block.
+    pub span: Span,
 }
 
 /// `var X : {V1, V2};`
@@ -262,11 +275,18 @@ pub struct Options {
     pub strict: bool,
     /// The unit of time of the mission's bounds.
     pub time_unit: TimeUnit,
+    /// How long one step of a control program takes, in mission units; above 0.
+    pub control_step: Rational,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { threat_gap: Rational::ONE, strict: false, time_unit: TimeUnit::Minute }
+        Self {
+            threat_gap: Rational::ONE,
+            strict: false,
+            time_unit: TimeUnit::Minute,
+            control_step: Rational::ONE,
+        }
     }
 }
 

@@ -12,9 +12,11 @@ use crate::dialog::Dialog;
 use crate::host::FileKind;
 use crate::panel::PanelKind;
 use crate::state::automaton::AutomatonCommand;
+use crate::state::chance::ChanceCommand;
 use crate::state::compare::CompareCommand;
 use crate::state::documents::ScheduleForm;
 use crate::state::editor::Find;
+use crate::state::execution::ExecutionCommand;
 use crate::state::review::ReviewCommand;
 use crate::state::search::SearchCommand;
 use crate::state::terrain::TerrainCommand;
@@ -91,6 +93,10 @@ pub enum Command {
     Search(SearchCommand),
     /// Something that concerns the run of a control program.
     Automaton(AutomatonCommand),
+    /// Something that concerns the run of a mission.
+    Execution(ExecutionCommand),
+    /// Something that concerns many runs of a mission with chance.
+    Chance(ChanceCommand),
 
     /// Something that concerns the review.
     Review(ReviewCommand),

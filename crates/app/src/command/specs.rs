@@ -9,8 +9,10 @@ use crate::dialog::Dialog;
 use crate::host::FileKind;
 use crate::mission_file;
 use crate::panel::PanelKind;
+use crate::state::chance::ChanceCommand;
 use crate::state::compare::CompareCommand;
 use crate::state::documents::ScheduleForm;
+use crate::state::execution::ExecutionCommand;
 use crate::state::growth::GrowthCommand;
 use crate::state::pins::event_by_name;
 use crate::state::review::{ReviewCommand, may_sign};
@@ -69,6 +71,10 @@ fn with_comparison(state: &AppState) -> Availability {
 
 fn search(command: SearchCommand) -> Command {
     Command::Search(command)
+}
+
+fn with_run(state: &AppState) -> Availability {
+    if state.is_executing() { Ok(()) } else { Err("no mission is executed") }
 }
 
 fn with_selection(state: &AppState) -> Availability {
@@ -888,6 +894,45 @@ pub static COMMANDS: &[CommandSpec] = &[
     }),
     called("play.seek", "Go to a time", Group::Play, |_, arguments| {
         number_argument(arguments, "time").map(Command::Seek)
+    }),
+    // The run of a mission.
+    when(
+        plain("execute.reset", "Start the run over", Group::Play, &[], Scope::Everywhere, |_| {
+            Command::Execution(ExecutionCommand::Reset)
+        }),
+        with_run,
+    ),
+    when(
+        plain("execute.save", "Save the run…", Group::Play, &[], Scope::Everywhere, |_| {
+            Command::Execution(ExecutionCommand::Save)
+        }),
+        with_run,
+    ),
+    plain("execute.replay", "Replay a run…", Group::Play, &[], Scope::Everywhere, |_| {
+        Command::Execution(ExecutionCommand::Open)
+    }),
+    when(
+        called("execute.withdraw", "Withdraw a condition now", Group::Play, |_, arguments| {
+            let condition = text_argument(arguments, "condition")?;
+            Ok(Command::Execution(ExecutionCommand::Withdraw(condition.into())))
+        }),
+        with_run,
+    ),
+    when(
+        called("execute.disturb", "Disturb the run", Group::Play, |_, arguments| {
+            let disturbance = serde_json::from_value(arguments.clone()).map_err(|error| error.to_string())?;
+            Ok(Command::Execution(ExecutionCommand::Disturb(disturbance)))
+        }),
+        with_run,
+    ),
+    when(
+        plain("execute.sample", "Run many times with chance", Group::Play, &[], Scope::Everywhere, |_| {
+            Command::Chance(ChanceCommand::Start)
+        }),
+        with_plan,
+    ),
+    plain("execute.stopSampling", "Stop the runs with chance", Group::Play, &[], Scope::Everywhere, |_| {
+        Command::Chance(ChanceCommand::Stop)
     }),
     // Help.
     plain(

@@ -1,5 +1,6 @@
 //! The state as plain JSON, for host pages and tests (DESIGN 4.3).
 
+use executive::Happening;
 use mission::paths_json::traverses_json;
 use mission::review::{Review, Section};
 use mission::{Problem, Snapshot};
@@ -8,6 +9,7 @@ use tpn::Network;
 use tpn::plan_json::plan_to_json;
 
 use super::hca_json::hca_json;
+use crate::state::execution::{Pending, has_come};
 use crate::state::pins;
 use crate::state::review::Signed;
 use crate::state::search::{Counts, Recording};
@@ -18,7 +20,7 @@ use crate::state::{AppState, Status};
 /// the same once `status` is not `working`.
 pub fn state_json(state: &AppState) -> Value {
     let latest = state.snapshots.latest();
-    let shown = state.shown();
+    let shown = state.looked_at();
     let network = shown.and_then(|shown| shown.network.as_deref());
     let planning = shown.and_then(|shown| shown.planning.as_deref());
     let plan = network.zip(shown.and_then(|shown| shown.plan()));
@@ -60,6 +62,8 @@ pub fn state_json(state: &AppState) -> Value {
         "isPlaying": state.playback.is_playing,
         "timeRange": state.time_range,
         "pinned": shown.and_then(|shown| pinned_json(state, shown)),
+        "execution": execution_json(state),
+        "robustness": robustness_json(state),
         "selection": state.selection.to_json(network),
         "caret": { "anchor": caret.anchor, "head": caret.head },
         "canUndo": state.document.can_undo(),
@@ -161,6 +165,57 @@ fn terrain_json(state: &AppState) -> Value {
         "points": terrain.points_m,
         "clearance": state.settings.views.terrain.clearance,
         "growth": growth,
+    })
+}
+
+/// The run of the mission at the time shown; null unless one is watched.
+fn execution_json(state: &AppState) -> Value {
+    let run = state.execution.run().filter(|_| state.is_executing());
+    let network = state.looked_at().and_then(|shown| shown.network.as_deref());
+    let Some(((run, moment), network)) = run.zip(state.execution.moment()).zip(network) else {
+        return Value::Null;
+    };
+    let time = state.playback.time;
+    let log: Vec<&executive::Entry> = run.log.iter().filter(|entry| has_come(entry.time, time)).collect();
+    let replans = log.iter().filter(|entry| matches!(entry.happening, Happening::Replanned { .. })).count();
+    let status = match log.last().map(|entry| &entry.happening) {
+        Some(Happening::Finished) => "finished",
+        Some(Happening::Stopped { .. }) => "stopped",
+        _ => "under-way",
+    };
+    let names = |pending: &[Pending]| -> Vec<String> {
+        pending.iter().map(|it| network.occurrences[it.occurrence.index()].name.to_string()).collect()
+    };
+    json!({
+        "status": status,
+        "ending": run.ending,
+        "isWorking": state.execution.is_working(),
+        "time": time,
+        "replans": replans,
+        "underWay": names(&moment.under_way),
+        "holding": names(&moment.holding),
+        "waitedFor": names(&moment.to_come),
+        "deadline": moment.deadline.map(|(event, latest)| json!({
+            "event": network.event_name(event),
+            "time": tpn::number::time_to_json(latest),
+        })),
+        "disturbances": state.execution.disturbances(),
+        "log": log,
+    })
+}
+
+/// What is known of the plan's robustness; null until runs were made.
+fn robustness_json(state: &AppState) -> Value {
+    let Some(robustness) = state.shown().and_then(|shown| shown.robustness.as_deref()) else {
+        return Value::Null;
+    };
+    let (low, high) = robustness.tally.interval();
+    json!({
+        "runs": robustness.tally.runs,
+        "isRunning": state.chance.is_running(),
+        "probability": robustness.tally.probability(),
+        "interval": [low, high],
+        "worst": robustness.tally.worst_events().into_iter().map(|(name, _)| name).collect::<Vec<_>>(),
     })
 }
 

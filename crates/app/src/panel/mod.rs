@@ -5,11 +5,13 @@ pub mod compare;
 pub mod distances;
 pub mod editor;
 pub mod empty;
+pub mod execution;
 pub mod network;
 pub mod outline;
 pub mod plan;
 pub mod problems;
 pub mod review;
+pub mod robustness;
 pub mod search;
 pub mod terrain;
 pub mod timeline;
@@ -60,11 +62,15 @@ pub enum PanelKind {
     Review,
     /// Two plans side by side.
     Compare,
+    /// The run of a mission.
+    Execution,
+    /// Many runs of it with chance.
+    Robustness,
 }
 
 impl PanelKind {
     /// All of them, as the menu lists them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::Editor,
         Self::Outline,
         Self::Problems,
@@ -77,6 +83,8 @@ impl PanelKind {
         Self::Automaton,
         Self::Review,
         Self::Compare,
+        Self::Execution,
+        Self::Robustness,
     ];
 
     /// Its name on screen.
@@ -94,6 +102,8 @@ impl PanelKind {
             Self::Automaton => "Automaton",
             Self::Review => "Review",
             Self::Compare => "Compare",
+            Self::Execution => "Execution",
+            Self::Robustness => "Robustness",
         }
     }
 
@@ -112,6 +122,8 @@ impl PanelKind {
             Self::Automaton => "automaton",
             Self::Review => "review",
             Self::Compare => "compare",
+            Self::Execution => "execution",
+            Self::Robustness => "robustness",
         }
     }
 
@@ -236,6 +248,8 @@ fn create(kind: PanelKind) -> Box<dyn Panel> {
         PanelKind::Automaton => Box::new(automaton::AutomatonPanel::default()),
         PanelKind::Review => Box::new(review::ReviewPanel::default()),
         PanelKind::Compare => Box::new(compare::ComparePanel::default()),
+        PanelKind::Execution => Box::new(execution::ExecutionPanel::default()),
+        PanelKind::Robustness => Box::new(robustness::RobustnessPanel),
         PanelKind::Editor => Box::new(editor::EditorPanel::default()),
         PanelKind::Plan => Box::new(plan::PlanPanel::default()),
         PanelKind::Timeline => Box::new(timeline::TimelinePanel::default()),

@@ -67,6 +67,7 @@ impl AppState {
         self.automaton.follow(&self.document, self.language.is_control());
         self.ask_for_comparison();
         self.follow_review();
+        self.follow_run();
     }
 
     fn do_command(&mut self, command: Command) {
@@ -117,6 +118,8 @@ impl AppState {
                 self.automaton.apply(AutomatonCommand::Step(if forwards { 1 } else { -1 }));
             }
             Command::Automaton(command) => self.automaton.apply(command),
+            Command::Execution(command) => self.apply_to_run(command),
+            Command::Chance(command) => self.apply_to_chance(command),
             Command::TogglePlaying if self.steps_search() => {
                 self.apply_to_search(SearchCommand::TogglePlaying);
             }
@@ -158,6 +161,11 @@ impl AppState {
                     Workspace::Review => self.active_panel = PanelKind::Review,
                     Workspace::Author | Workspace::Execute => {}
                 }
+                if workspace == Workspace::Execute && !self.language.is_control() {
+                    self.wanted_panel = Some(PanelKind::Execution);
+                    self.active_panel = PanelKind::Timeline;
+                }
+                self.fit_time();
             }
             Command::ResetWorkspace => self.wants_default_layout = true,
             Command::ShowPanel(panel) => {
@@ -222,14 +230,15 @@ impl AppState {
             HostEvent::Answer(Response::MapRejected { name, reason }) => {
                 self.toasts.add(ToastKind::Failed, format!("The map {name} cannot be used: {reason}"));
             }
-            HostEvent::Answer(
-                Response::Execution(_) | Response::NotExecuted { .. } | Response::Sampled { .. },
-            )
-            | HostEvent::FragmentChanged(_) => {}
+            HostEvent::FragmentChanged(_) => {}
             HostEvent::Answer(Response::Review { revision, review }) => self.take_review(revision, review),
             HostEvent::Answer(Response::WorkedOut { token, snapshot }) => {
                 self.take_worked_out(token, &snapshot);
             }
+            HostEvent::Answer(answer @ (Response::Execution(_) | Response::NotExecuted { .. })) => {
+                self.take_run(answer);
+            }
+            HostEvent::Answer(answer @ Response::Sampled { .. }) => self.take_sample(answer),
             HostEvent::CoreFailed { message, revision } => {
                 self.search.give_comparison_up(revision);
                 self.give_up_review();
@@ -344,9 +353,7 @@ impl AppState {
             self.selection = self.selection.carried(before, &after);
             self.hovered = Selection::None;
         }
-        if let Some(plan) = after.plan() {
-            self.playback.fit(plan);
-        }
+        self.fit_time();
         self.follow_with_terrain();
     }
 
@@ -377,6 +384,7 @@ impl AppState {
         self.snapshots.clear();
         self.automaton.forget();
         self.search.forget();
+        self.execution.forget();
         self.turn_to_notation(source);
         self.selection = Selection::None;
         self.hovered = Selection::None;
@@ -395,7 +403,10 @@ impl AppState {
         if is_control {
             self.workspace = Workspace::Execute;
             self.wanted_panel = Some(PanelKind::Automaton);
+            self.also_wanted_panel = Some(PanelKind::Editor);
             self.active_panel = PanelKind::Automaton;
+        } else if self.workspace == Workspace::Execute && !self.language.is_control() {
+            self.wanted_panel = Some(PanelKind::Execution);
         } else if self.workspace == Workspace::Execute {
             self.workspace = Workspace::Author;
             self.active_panel = PanelKind::Editor;
@@ -416,7 +427,12 @@ impl AppState {
                 self.effects.push(Effect::Post(Request::ImportMap { name: SmolStr::new(name), bytes }));
             }
             FileKind::Json => match String::from_utf8(bytes) {
-                Ok(text) => self.import_record(name, &text),
+                Ok(text) => {
+                    let document = serde_json::from_str(&text).unwrap_or_default();
+                    if !self.open_run(&document) {
+                        self.import_record(name, &text);
+                    }
+                }
                 Err(_) => self.toasts.add(ToastKind::Failed, format!("{name} is not a text file")),
             },
             FileKind::Comparison => match String::from_utf8(bytes) {
@@ -435,9 +451,17 @@ impl AppState {
     }
 
     fn step_time(&mut self, forwards: bool) {
-        let Some(plan) = self.shown().and_then(|shown| shown.plan()) else { return };
         let now = self.playback.time;
-        let times = plan.windows.iter().flatten().map(|window| playback::number(window.earliest));
+        let times: Vec<f64> = match self.execution.run() {
+            Some(run) if self.is_executing() => {
+                run.log.iter().map(|entry| playback::number(entry.time)).collect()
+            }
+            _ => {
+                let Some(plan) = self.shown().and_then(|shown| shown.plan()) else { return };
+                plan.windows.iter().flatten().map(|window| playback::number(window.earliest)).collect()
+            }
+        };
+        let times = times.into_iter();
         let next = if forwards {
             times.filter(|&time| time > now).reduce(f64::min)
         } else {

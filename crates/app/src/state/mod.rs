@@ -2,12 +2,14 @@
 
 mod apply;
 pub mod automaton;
+pub mod chance;
 pub mod compare;
 pub mod document;
 pub mod documents;
 mod draft;
 mod editing;
 pub mod editor;
+pub mod execution;
 pub mod folding;
 pub mod growth;
 pub mod language;
@@ -79,6 +81,10 @@ pub struct AppState {
     pub compare: compare::CompareState,
     /// The tool in hand on the terrain, and what it has.
     pub terrain: terrain::TerrainState,
+    /// The mission as it is executed.
+    pub execution: execution::ExecutionState,
+    /// Many runs of it with chance.
+    pub chance: chance::ChanceState,
     /// The time shown, and whether it runs.
     pub playback: Playback,
     /// Events that are pinned to times, to see what that leaves of the plan.
@@ -105,6 +111,8 @@ pub struct AppState {
     pub picture_request: Option<(u64, crate::command::PictureFormat)>,
     /// A panel that is to be brought back or to the front of its tabs.
     pub wanted_panel: Option<PanelKind>,
+    /// Another one, beside it.
+    pub also_wanted_panel: Option<PanelKind>,
     /// A panel that is to be closed.
     pub unwanted_panel: Option<PanelKind>,
     /// Whether the layout of the present workspace is to go back to its default.
@@ -160,6 +168,8 @@ impl AppState {
             review: review::ReviewState::default(),
             compare: compare::CompareState::default(),
             terrain: terrain::TerrainState::default(),
+            execution: execution::ExecutionState::default(),
+            chance: chance::ChanceState::default(),
             playback: Playback::default(),
             pins: Pins::default(),
             time_range: None,
@@ -173,6 +183,7 @@ impl AppState {
             view_request: None,
             picture_request: None,
             wanted_panel: None,
+            also_wanted_panel: None,
             unwanted_panel: None,
             wants_default_layout: false,
             frame: FrameInfo::default(),

@@ -110,6 +110,20 @@ impl<'system> Run<'system> {
         }
     }
 
+    /// Starts with the plant as an earlier run left it, and with what was believed then.
+    pub fn resumed(
+        system: &'system System,
+        options: Options,
+        mind: Mind<'system>,
+        state: State,
+        belief: Belief,
+    ) -> Self {
+        let mut run = Self::with_mind(system, options, mind);
+        run.plant = SimulatedPlant::new(&system.model, Some(state));
+        run.belief = belief;
+        run
+    }
+
     /// Runs again what was logged.
     pub fn replay(
         system: &'system System,

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use hca::{Automaton, Estimate, VariableId as ProgramVariableId, Vocabulary};
 use plant::{ComponentId, Model, Observation, State, VariableId};
 use rmpl::control::{
-    Argument, Constraint, ConstraintKind, Expression, ExpressionKind, Name, expand_main, nearest,
+    Argument, Constraint, ConstraintKind, ControlFile, Expression, ExpressionKind, Name, expand_main, nearest,
 };
 use rmpl::{Code, Diagnostic, Severity};
 use smol_str::SmolStr;
@@ -98,6 +98,22 @@ impl System {
         }
         program_diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
         SystemCompilation { system, program_diagnostics, model_diagnostics }
+    }
+
+    /// Compiles the definition called `main` of a file that holds its plant, too. Spans are those of the file.
+    pub fn compile_definition(file: &ControlFile, main: &str) -> (Option<Self>, Vec<Diagnostic>) {
+        let mut file = file.clone();
+        let Some(at) = file.definitions.iter().position(|definition| definition.name.text == main) else {
+            return (None, Vec::new());
+        };
+        // The last definition is the one that runs.
+        let definition = file.definitions.remove(at);
+        file.definitions.push(definition);
+        let (plant, found) = plant::compile(&file);
+        match plant {
+            Some(plant) if found.iter().all(|found| found.severity != Severity::Error) => bind(&file, plant),
+            _ => (None, found),
+        }
     }
 
     /// What the program knows when the plant is in `state` and shows `observation`.

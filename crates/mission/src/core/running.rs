@@ -55,6 +55,11 @@ impl Core {
             if !unknown.is_empty() {
                 return Err(format!("the mission has no {}", unknown.join(", ")));
             }
+            let programs = crate::programs::Programs::compile(&worked.program).0;
+            let unknown = programs.unknown_faults(&worked.network, &script.disturbances);
+            if !unknown.is_empty() {
+                return Err(format!("the mission has no {}", unknown.join(", ")));
+            }
             let problem = worked.problem(update);
             let disturbances = &script.disturbances;
             execution::execute(&problem, &worked.planned, disturbances, &mut self.grounds, &mut self.paths)
@@ -98,7 +103,7 @@ impl Core {
             known.revision == update.revision && known.uncertainty == settings.uncertainty
         });
         if !is_known {
-            let sampler = Sampler::new(&worked.planned, &settings.uncertainty)
+            let sampler = Sampler::new(&worked.program, &worked.planned, &settings.uncertainty)
                 .ok_or_else(|| NO_PLAN.to_owned())?
                 .map_err(|error| error.to_string())?;
             let uncertainty = settings.uncertainty.clone();

@@ -78,6 +78,11 @@ impl Local {
                     self.found.push(value::model(&decl.model, &VEHICLE_MODELS));
                 }
             }
+            Item::Control(decl) => {
+                let parsed = crate::control::parse(&decl.text);
+                let found = parsed.diagnostics.into_iter();
+                self.found.extend(found.map(|diagnostic| diagnostic.moved(decl.text_span.start)));
+            }
             Item::Location(_) => {}
         }
     }
@@ -95,8 +100,9 @@ impl Local {
         let is_fine = match (name, &decl.value) {
             ("threat_gap", OptionValue::Number(_)) => true,
             ("strict", OptionValue::Number(flag)) => *flag == Rational::ZERO || *flag == Rational::ONE,
+            ("control_step", OptionValue::Number(step)) => step.is_positive(),
             ("time_unit", OptionValue::Name(unit)) => unit == "minute" || unit == "second",
-            ("threat_gap" | "strict" | "time_unit", _) => false,
+            ("threat_gap" | "strict" | "time_unit" | "control_step", _) => false,
             _ => {
                 self.found.push(option::unknown(&decl.name));
                 return;
@@ -105,6 +111,7 @@ impl Local {
         if !is_fine {
             let wanted = match name {
                 "threat_gap" => "a number of time units",
+                "control_step" => "a number of time units above 0",
                 "strict" => "0 or 1",
                 _ => "`minute` or `second`",
             };

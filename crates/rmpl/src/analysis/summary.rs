@@ -162,6 +162,7 @@ impl Collector<'_> {
                 let name = Name { text: SmolStr::new_static("terrain"), span: decl.asset_span };
                 self.define(Namespace::Terrain, &name, 0, None, Vec::new());
             }
+            Item::Control(_) => {}
             Item::Location(decl) => self.define(Namespace::Location, &decl.name, 0, None, Vec::new()),
             Item::Obstacle(decl) => self.define(Namespace::Obstacle, &decl.name, 0, None, Vec::new()),
             Item::Vehicle(decl) => {

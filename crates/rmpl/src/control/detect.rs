@@ -8,6 +8,9 @@ use super::lexer::{Token, TokenKind, is_hyphen, lex};
 /// Broken texts are judged by what they show: forms of the one notation against marks of the other. Comments of
 /// either notation (`; …`, `// …`, `/* … */`) do not count.
 pub fn is_control_text(text: &str) -> bool {
+    if has_control_block(text) {
+        return false;
+    }
     let bare = without_mission_comments(text);
     let tokens: Vec<Token> = lex(&bare).into_iter().filter(|token| !token.kind.is_trivia()).collect();
     let word = |at: usize| {
@@ -46,6 +49,14 @@ pub fn is_control_text(text: &str) -> bool {
     }
     mission += 2 * statement_ends(text);
     control > mission || (control == mission && kind(0) == Some(TokenKind::Open))
+}
+
+/// Whether a line begins with `control {`, which only missions have.
+fn has_control_block(text: &str) -> bool {
+    text.lines().any(|line| {
+        let behind = line.strip_prefix("control");
+        behind.is_some_and(|behind| behind.trim_start().starts_with('{'))
+    })
 }
 
 fn is_form_head(word: &str) -> bool {

@@ -36,6 +36,10 @@ pub(crate) fn diagnostic(problem: LexProblem, text: &str) -> Diagnostic {
             Diagnostic::error(CODE, span, "this text in quotes is not closed on its line")
                 .with_fix(crate::parser::insertion("Insert `\"`", span.end, "\""))
         }
+        LexProblemKind::UnclosedControl => {
+            Diagnostic::error(CODE, span, "this control block is never closed")
+                .with_hint("write `}` where it ends; from here on everything is taken for a part of it")
+        }
         LexProblemKind::HugeNumber => {
             Diagnostic::error(CODE, span, "this number has more digits than can be kept exactly")
                 .with_hint("numbers have at most 14 digits")

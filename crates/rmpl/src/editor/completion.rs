@@ -321,6 +321,7 @@ fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<CompletionItem> {
                 ("threat_gap", "threat_gap = 1;"),
                 ("strict", "strict = 1;"),
                 ("time_unit", "time_unit = second;"),
+                ("control_step", "control_step = 1;"),
             ];
             items.extend(options.map(|(label, insert)| CompletionItem {
                 kind: CompletionKind::Option,

@@ -29,6 +29,9 @@ pub fn folds(parse: &Parse) -> Vec<Fold> {
     let mut found = Vec::new();
     for root in parse.declarations() {
         for node in root.descendants() {
+            if let Some(token) = node.own_tokens().find(|token| token.kind == SyntaxKind::ControlText) {
+                push(parse, &mut found, token.span, FoldKind::Braces);
+            }
             if matches!(node.kind(), SyntaxKind::Block | SyntaxKind::Choose | SyntaxKind::Domain)
                 && let (Some(open), Some(close)) =
                     (node.token(SyntaxKind::LeftBrace), node.token(SyntaxKind::RightBrace))

@@ -1,5 +1,6 @@
 //! Semantic highlighting.
 
+use crate::control;
 use crate::parse::Parse;
 use crate::span::Span;
 use crate::syntax::SyntaxKind;
@@ -67,6 +68,10 @@ pub fn highlight(parse: &Parse, range: Span) -> Vec<Highlight> {
             if token.span.end < range.start || token.span.start > range.end {
                 continue;
             }
+            if token.kind == SyntaxKind::ControlText {
+                found.extend(control_block(token.text, token.span.start));
+                continue;
+            }
             while next_name.next_if(|name| name.span.end <= token.span.start).is_some() {}
             let mut is_name = false;
             while let Some(name) = next_name.next_if(|name| name.span.end <= token.span.end) {
@@ -80,6 +85,40 @@ pub fn highlight(parse: &Parse, range: Span) -> Vec<Highlight> {
         }
     }
     found
+}
+
+/// A control block: the word, the braces, and between them what prefix notation shows.
+fn control_block(text: &str, start: u32) -> Vec<Highlight> {
+    let piece = |from: usize, to: usize, kind: HighlightKind| {
+        let span = Span::new(start + from as u32, start + to as u32);
+        Highlight { span, kind, is_definition: false }
+    };
+    let open = text.find('{').unwrap_or(text.len());
+    let word = text.len() - text.trim_start_matches(|letter: char| letter.is_ascii_lowercase()).len();
+    let mut found = vec![piece(0, word, HighlightKind::Keyword)];
+    let Some(inner) = text.get(open + 1..) else { return found };
+    found.push(piece(open, open + 1, HighlightKind::Punctuation));
+    let inner = inner.strip_suffix('}').unwrap_or(inner);
+    for highlight in control::highlight(inner, &control::parse(inner)) {
+        let (from, to) = (highlight.span.start as usize, highlight.span.end as usize);
+        found.push(piece(open + 1 + from, open + 1 + to, of_control(highlight.kind)));
+    }
+    if open + 1 + inner.len() < text.len() {
+        found.push(piece(text.len() - 1, text.len(), HighlightKind::Punctuation));
+    }
+    found
+}
+
+const fn of_control(kind: control::HighlightKind) -> HighlightKind {
+    match kind {
+        control::HighlightKind::Keyword => HighlightKind::Keyword,
+        control::HighlightKind::Definition => HighlightKind::Activity,
+        control::HighlightKind::Variable => HighlightKind::Variable,
+        control::HighlightKind::Value => HighlightKind::Value,
+        control::HighlightKind::Bar => HighlightKind::Operator,
+        control::HighlightKind::Punctuation => HighlightKind::Punctuation,
+        control::HighlightKind::Comment => HighlightKind::Comment,
+    }
 }
 
 const fn of_name(kind: &NameKind) -> HighlightKind {

@@ -251,7 +251,7 @@ fn word(token: SyntaxToken<'_>) -> Option<&'static str> {
         }
         SyntaxKind::ScenarioKeyword => "`scenario S[l,u] = { … }`: what is planned, and its horizon.",
         SyntaxKind::OptionKeyword => {
-            "`option name = value;` The options are `threat_gap`, `strict` and `time_unit`."
+            "`option name = value;` The options are `threat_gap`, `strict`, `time_unit` and `control_step`."
         }
         SyntaxKind::Infinity => "`inf`: no upper bound.",
         SyntaxKind::Name => match token.text {

@@ -3,8 +3,8 @@
 use smol_str::SmolStr;
 
 use crate::program::{
-    ActivityDecl, LocationDecl, Moves, Name, ObstacleDecl, ObstacleShape, PrimitiveDecl, ScenarioDecl,
-    TerrainDecl, VariableDecl, VehicleDecl,
+    ActivityDecl, ControlDecl, LocationDecl, Moves, Name, ObstacleDecl, ObstacleShape, PrimitiveDecl,
+    ScenarioDecl, TerrainDecl, VariableDecl, VehicleDecl,
 };
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode};
@@ -57,6 +57,17 @@ pub(super) fn primitive(node: SyntaxNode<'_>) -> Option<PrimitiveDecl> {
         runs: node.child(SyntaxKind::Runs).and_then(|runs| names(runs).nth(1)),
         span: node.span(),
     })
+}
+
+/// The text between the braces of a control block.
+pub(super) fn control(node: SyntaxNode<'_>) -> Option<ControlDecl> {
+    let token = node.token(SyntaxKind::ControlText)?;
+    let open = token.text.find('{')? + 1;
+    let inner = &token.text[open..];
+    let inner = inner.strip_suffix('}').unwrap_or(inner);
+    let start = token.span.start + open as u32;
+    let span = Span::new(start, start + inner.len() as u32);
+    Some(ControlDecl { text: inner.into(), text_span: span, span: token.span })
 }
 
 fn moves(node: SyntaxNode<'_>) -> Option<Moves> {

@@ -7,8 +7,8 @@ mod statement;
 use smol_str::SmolStr;
 
 use crate::program::{
-    ActivityDecl, LocationDecl, Name, ObstacleDecl, PrimitiveDecl, ScenarioDecl, TerrainDecl, VariableDecl,
-    VehicleDecl,
+    ActivityDecl, ControlDecl, LocationDecl, Name, ObstacleDecl, PrimitiveDecl, ScenarioDecl, TerrainDecl,
+    VariableDecl, VehicleDecl,
 };
 use crate::rational::Rational;
 use crate::span::Span;
@@ -22,6 +22,7 @@ pub(crate) enum Item {
     Activity(ActivityDecl),
     Scenario(ScenarioDecl),
     Option(OptionDecl),
+    Control(ControlDecl),
     Terrain(TerrainDecl),
     Location(LocationDecl),
     Obstacle(ObstacleDecl),
@@ -61,6 +62,7 @@ impl Lowering<'_> {
             SyntaxKind::OptionDecl => declaration::option(node).map(Item::Option),
             SyntaxKind::ActivityDecl => self.activity(node).map(Item::Activity),
             SyntaxKind::ScenarioDecl => self.scenario(node).map(Item::Scenario),
+            SyntaxKind::ControlDecl => declaration::control(node).map(Item::Control),
             SyntaxKind::TerrainDecl => declaration::terrain(node).map(Item::Terrain),
             SyntaxKind::LocationDecl => declaration::location(node).map(Item::Location),
             SyntaxKind::ObstacleDecl => declaration::obstacle(node).map(Item::Obstacle),

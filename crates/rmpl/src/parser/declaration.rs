@@ -15,6 +15,7 @@ impl Parser<'_> {
             SyntaxKind::PrimitiveKeyword => self.primitive(),
             SyntaxKind::OptionKeyword => self.option(),
             SyntaxKind::ScenarioKeyword => self.scenario(),
+            SyntaxKind::ControlText => self.control(),
             _ if self.at_world_declaration() => self.world_declaration(),
             _ if self.at_definition(false) => self.activity(),
             _ => self.garbage(),
@@ -38,6 +39,12 @@ impl Parser<'_> {
             self.bump();
         }
         self.close(node, SyntaxKind::Garbage);
+    }
+
+    fn control(&mut self) {
+        let node = self.open();
+        self.bump();
+        self.close(node, SyntaxKind::ControlDecl);
     }
 
     fn variable(&mut self) {

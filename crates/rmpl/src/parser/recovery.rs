@@ -158,6 +158,7 @@ impl Parser<'_> {
                 | SyntaxKind::PrimitiveKeyword
                 | SyntaxKind::ScenarioKeyword
                 | SyntaxKind::OptionKeyword
+                | SyntaxKind::ControlText
         ) || self.at_world_declaration()
             || self.at_definition(false)
     }

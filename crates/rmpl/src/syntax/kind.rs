@@ -21,6 +21,8 @@ pub enum SyntaxKind {
     Number,
     /// `"…"`
     String,
+    /// `control { … }` with all that is in it, which is in prefix notation.
+    ControlText,
     /// `inf` or `∞`
     Infinity,
     /// `{`
@@ -98,6 +100,8 @@ pub enum SyntaxKind {
     ActivityDecl,
     /// `scenario Name … = { … }`
     ScenarioDecl,
+    /// `control { … }`
+    ControlDecl,
     /// `terrain "…" … ;`
     TerrainDecl,
     /// `location NAME (…);`
@@ -221,6 +225,7 @@ impl SyntaxKind {
             Self::Name => "a name",
             Self::Number => "a number",
             Self::String => "a text in quotes",
+            Self::ControlText => "a control block",
             Self::Infinity => "`inf`",
             Self::LeftBrace => "`{`",
             Self::RightBrace => "`}`",

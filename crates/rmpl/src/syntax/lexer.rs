@@ -24,6 +24,8 @@ pub(crate) enum LexProblemKind {
     UnclosedComment,
     /// A `"` without its partner on the line.
     UnclosedString,
+    /// A `control {` without its `}`.
+    UnclosedControl,
     /// A number too long to be exact.
     HugeNumber,
 }
@@ -132,10 +134,40 @@ impl<'t> Lexer<'t> {
             return SyntaxKind::Name;
         }
         let length = at - start;
+        if &self.text[start..at] == "control" && self.bracket_depth == 0 {
+            let brace = self.scan_while(at, SPACE);
+            if self.byte(brace) == b'{' {
+                return self.control(start, brace);
+            }
+        }
         if (2..=11).contains(&length) && self.byte(start).is_ascii_lowercase() {
             return SyntaxKind::keyword(&self.text[start..at]).unwrap_or(SyntaxKind::Name);
         }
         SyntaxKind::Name
+    }
+
+    /// Everything up to the brace that closes the one at `brace`. What is inside is in prefix notation, where comments
+    /// run from `;` to the end of the line.
+    fn control(&mut self, start: usize, brace: usize) -> SyntaxKind {
+        let bytes = self.text.as_bytes();
+        let (mut depth, mut at) = (0_u32, brace);
+        while let Some(&byte) = bytes.get(at) {
+            at += 1;
+            match byte {
+                b'{' => depth += 1,
+                b'}' => depth -= 1,
+                b';' => at += bytes[at..].iter().position(|&byte| byte == b'\n').unwrap_or(bytes.len() - at),
+                _ => {}
+            }
+            if depth == 0 {
+                self.position = at;
+                return SyntaxKind::ControlText;
+            }
+        }
+        self.position = bytes.len();
+        let kind = LexProblemKind::UnclosedControl;
+        self.problems.push(LexProblem { kind, start: start as u32, end: brace as u32 + 1 });
+        SyntaxKind::ControlText
     }
 
     fn number(&mut self, start: usize) -> SyntaxKind {

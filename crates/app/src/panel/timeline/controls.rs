@@ -91,7 +91,8 @@ fn grouping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         .accessible_name("Grouping of the timeline");
 }
 
-fn playing(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+/// The buttons that move time.
+pub(crate) fn playing(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let playback = context.state.playback;
     let (sign, name) = if playback.is_playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
     let buttons = [
@@ -109,7 +110,8 @@ fn playing(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     }
 }
 
-fn clock(ui: &mut Ui, context: &Context<'_>) {
+/// The time.
+pub(crate) fn clock(ui: &mut Ui, context: &Context<'_>) {
     let unit = context.snapshot.map_or(TimeUnit::Minute, |snapshot| snapshot.program.options.time_unit);
     let time = context.state.playback.time;
     let text = format!("{time:.1} {}", time_text::unit(unit));
@@ -118,7 +120,8 @@ fn clock(ui: &mut Ui, context: &Context<'_>) {
     ui.label(RichText::new(time_text::clock(time, unit)).small().color(context.tokens.text_muted));
 }
 
-fn rate(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+/// How fast time runs.
+pub(crate) fn rate(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let rate = context.state.playback.rate;
     ComboBox::from_id_salt("rate")
         .selected_text(format!("×{rate}"))

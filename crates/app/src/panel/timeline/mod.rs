@@ -5,7 +5,7 @@
 
 mod bounds;
 mod chart;
-mod controls;
+pub(crate) mod controls;
 mod group;
 mod handle;
 mod hatch;

@@ -1,0 +1,118 @@
+//! Disturbances by hand: what can still go otherwise than planned, and what was made to.
+
+use egui::{DragValue, Grid, RichText, Ui};
+use executive::Disturbance;
+use rmpl::Rational;
+use tpn::{OccurrenceId, OccurrenceKind};
+
+use super::{Shown, now};
+use crate::command::{Command, CommandSender};
+use crate::icon::{self, Icon};
+use crate::panel::Context;
+use crate::panel::plan::section;
+use crate::state::execution::{ExecutionCommand, Pending, disturbance_text, exact_time};
+use crate::time_text;
+
+/// How much longer or later, in mission units.
+pub(super) struct Disturb {
+    amount: f64,
+}
+
+impl Default for Disturb {
+    fn default() -> Self {
+        Self { amount: 30.0 }
+    }
+}
+
+impl Disturb {
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        context: &Context<'_>,
+        shown: Shown<'_>,
+        commands: &mut CommandSender,
+    ) {
+        let moment = shown.moment;
+        let all: Vec<&Pending> =
+            moment.under_way.iter().chain(&moment.holding).chain(&moment.to_come).collect();
+        let unit = context.snapshot.map(|snapshot| time_text::unit(snapshot.program.options.time_unit));
+        if !all.is_empty() {
+            section(ui, context, "Let something go wrong", "from now on");
+            ui.horizontal(|ui| {
+                let name = ui.label(RichText::new("longer or later by").color(context.tokens.text_muted)).id;
+                let field = DragValue::new(&mut self.amount).range(0.0..=1e6).speed(0.5).max_decimals(1);
+                ui.add(field.suffix(format!(" {}", unit.unwrap_or_default()))).labelled_by(name);
+            });
+            Grid::new("disturb").num_columns(2).striped(true).show(ui, |ui| {
+                for pending in all {
+                    self.row(ui, shown, pending, commands);
+                    ui.end_row();
+                }
+            });
+        }
+        made(ui, context, commands);
+    }
+
+    fn row(&self, ui: &mut Ui, shown: Shown<'_>, pending: &Pending, commands: &mut CommandSender) {
+        let id = pending.occurrence;
+        let name = now::name(shown, id);
+        let Some(occurrence) = shown.network.occurrences.get(id.index()) else { return };
+        ui.add(egui::Label::new(&name).truncate());
+        ui.horizontal(|ui| {
+            let mut button = |ui: &mut Ui, text: &str, make: &dyn Fn() -> ExecutionCommand| {
+                let response = ui.small_button(text);
+                response.widget_info(|| {
+                    egui::WidgetInfo::labeled(egui::Role::Button, true, format!("{text} {name}"))
+                });
+                if response.clicked() {
+                    commands.send(Command::Execution(make()));
+                }
+            };
+            let amount = exact_time(self.amount.max(0.0));
+            if occurrence.kind == OccurrenceKind::Assertion {
+                button(ui, "Withdraw", &|| ExecutionCommand::Withdraw(occurrence.name.clone()));
+                if pending.since.is_none() {
+                    button(ui, "Later", &|| {
+                        let at = pending.window.earliest + amount;
+                        let condition = occurrence.name.clone();
+                        ExecutionCommand::Disturb(Disturbance::Late { condition, at })
+                    });
+                }
+            } else {
+                button(ui, "Longer", &|| {
+                    let duration = usual_duration(shown, id) + amount;
+                    let activity = occurrence.name.clone();
+                    ExecutionCommand::Disturb(Disturbance::Duration { activity, duration })
+                });
+            }
+        });
+    }
+}
+
+/// How long an activity takes as things stand: in this run if it comes to its end, otherwise at least.
+fn usual_duration(shown: Shown<'_>, id: OccurrenceId) -> Rational {
+    let Some(occurrence) = shown.network.occurrences.get(id.index()) else { return Rational::default() };
+    let took = shown.run.plans.last().and_then(|last| {
+        let at = |node: tpn::NodeId| last.times.get(node.index()).copied().flatten();
+        Some(at(occurrence.end)? - at(occurrence.start)?)
+    });
+    took.or_else(|| Some(shown.network.arcs.get(occurrence.arc?.index())?.lower)).unwrap_or_default()
+}
+
+/// What was made to go wrong so far.
+fn made(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let disturbances = context.state.execution.disturbances();
+    if disturbances.is_empty() {
+        return;
+    }
+    section(ui, context, "Made to go wrong", "");
+    for (index, disturbance) in disturbances.iter().enumerate() {
+        ui.horizontal(|ui| {
+            let text = disturbance_text(disturbance);
+            if icon::button(ui, context.tokens, Icon::Close, &format!("Take back: {text}")).clicked() {
+                commands.send(Command::Execution(ExecutionCommand::TakeBack(index)));
+            }
+            ui.add(egui::Label::new(text).truncate());
+        });
+    }
+}

@@ -1,0 +1,245 @@
+//! `enroute robustness`: executes a mission's plan many times with chance, or adds up what several machines found.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::str::FromStr;
+use std::sync::Arc;
+
+use anyhow::{Context as _, bail, ensure};
+use mission::planning::{self, Problem};
+use mission::sampling::Sampler;
+use mission::{Paths, RobustnessSettings, Tally, Uncertainty};
+use serde::{Deserialize, Serialize};
+
+use crate::input::{read_json, read_text};
+use crate::load::Target;
+use crate::output::{Format, NO, WRONG, YES, exit, print_problems, print_text};
+
+/// Executes a mission's plan many times with chance: how often it reaches its end, and what breaks it.
+///
+/// With --shard i/n it makes only every n-th run; the lines of all shards, given to --merge, add up to exactly what one
+/// call without --shard gives.
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    target: Option<Target>,
+    /// Adds up the JSON lines in these files (`-` is standard input) instead of making runs.
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with = "file")]
+    merge: Vec<PathBuf>,
+    /// How many runs, over all shards.
+    #[arg(long, default_value_t = 1000)]
+    runs: u64,
+    /// Seeds chance; run number i of a seed is the same run in every shard.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Seeds path planning.
+    #[arg(long, default_value_t = 0)]
+    path_seed: u64,
+    /// Makes only the runs of part i of n, from 1.
+    #[arg(long, value_name = "i/n", default_value = "1/1")]
+    shard: Shard,
+    /// What is left to chance; docs/robustness.md describes it.
+    #[arg(long, value_name = "U.json")]
+    uncertainty: Option<PathBuf>,
+    /// For whom the answer is; json is one line.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// Which part of the runs is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Shard {
+    part: u64,
+    of: u64,
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("\"{text}\" is no part such as 2/8");
+        let (part, of) = text.split_once('/').ok_or_else(wrong)?;
+        let (part, of) = (part.parse().map_err(|_| wrong())?, of.parse().map_err(|_| wrong())?);
+        if (1..=of).contains(&part) { Ok(Self { part, of }) } else { Err(wrong()) }
+    }
+}
+
+/// One line of the answer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Line {
+    format: String,
+    /// What was executed: text, plan and seed of its paths.
+    mission: String,
+    settings: Settings,
+    /// The parts of the runs that are in it, as `i/n`.
+    shards: Vec<String>,
+    is_complete: bool,
+    probability: f64,
+    /// The 95 % confidence interval.
+    interval: [f64; 2],
+    tally: Tally,
+}
+
+/// [`RobustnessSettings`] as JSON.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Settings {
+    runs: u64,
+    seed: u64,
+    uncertainty: Uncertainty,
+}
+
+const FORMAT: &str = "enroute-robustness/1";
+
+impl Line {
+    fn new(mission: String, settings: Settings, shards: Vec<String>, tally: Tally) -> Self {
+        let (low, high) = tally.interval();
+        Self {
+            format: FORMAT.to_owned(),
+            mission,
+            is_complete: tally.runs >= settings.runs,
+            settings,
+            shards,
+            probability: tally.probability(),
+            interval: [low, high],
+            tally,
+        }
+    }
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let line = if args.merge.is_empty() {
+        let target =
+            args.target.as_ref().context("it takes a mission, or --merge and the files to add up")?;
+        match sample(args, target)? {
+            Ok(line) => line,
+            Err(exit) => return Ok(exit),
+        }
+    } else {
+        merge(&args.merge)?
+    };
+    match args.format {
+        Format::Json => print_text(&format!("{}\n", serde_json::to_string(&line)?))?,
+        Format::Text => print_text(&describe(&line))?,
+    }
+    Ok(exit(YES))
+}
+
+fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>> {
+    let loaded = target.load()?;
+    let program = loaded.program.as_ref().context("only a mission text can be executed, not a network")?;
+    let Some(network) = loaded.network.clone().map(Arc::new) else {
+        print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
+        return Ok(Err(exit(WRONG)));
+    };
+    let uncertainty = match &args.uncertainty {
+        Some(file) => read_json::<Uncertainty>(file)?,
+        None => Uncertainty::default(),
+    };
+    let unknown = uncertainty.unknown_names(&network);
+    ensure!(unknown.is_empty(), "no activity or condition is called {}", unknown.join(", "));
+    if let Some(name) = uncertainty.unsound() {
+        bail!("what is said of {name} is no distribution: its numbers must not fall, and not be below 0");
+    }
+    let mut grounds = mission::Grounds::default();
+    let mut paths = Paths::default();
+    let (ground, _) = grounds.resolve(&program.world);
+    let problem = Problem {
+        network: &network,
+        program,
+        ground: ground.as_ref().map(|(key, map)| (key, map)),
+        options: kirk::Options::default(),
+        seed: args.path_seed,
+        facts: None,
+    };
+    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
+    let Some(sampler) = Sampler::new(program, &planned, &uncertainty) else {
+        print_text("the mission has no plan to execute; `enroute plan` says why\n")?;
+        return Ok(Err(exit(NO)));
+    };
+    let sampler = sampler?;
+    let settings = RobustnessSettings { runs: args.runs, seed: args.seed, uncertainty: uncertainty.clone() };
+    let mut tally = Tally::default();
+    let mut number = args.shard.part - 1;
+    while number < args.runs {
+        sampler.run(&problem, &settings, number, &mut grounds, &mut paths, &mut tally)?;
+        number += args.shard.of;
+    }
+    let map = ground.as_ref().map(|(key, _)| key);
+    let mission = mission::review::content_hash(&loaded.source, map, &target.goal()?, args.path_seed);
+    let shards = vec![format!("{}/{}", args.shard.part, args.shard.of)];
+    let settings = Settings { runs: args.runs, seed: args.seed, uncertainty };
+    Ok(Ok(Line::new(mission, settings, shards, tally)))
+}
+
+/// Adds up lines that belong together.
+fn merge(files: &[PathBuf]) -> anyhow::Result<Line> {
+    let mut sum: Option<Line> = None;
+    for file in files {
+        let text = read_text(file)?;
+        for (index, text) in text.lines().enumerate().filter(|(_, text)| !text.trim().is_empty()) {
+            let line: Line = serde_json::from_str(text)
+                .with_context(|| format!("{}, line {}", file.display(), index + 1))?;
+            sum = Some(match sum {
+                None => line,
+                Some(sum) => added(sum, &line, file)?,
+            });
+        }
+    }
+    sum.context("the files hold no lines to add up")
+}
+
+fn added(sum: Line, line: &Line, file: &Path) -> anyhow::Result<Line> {
+    let file = file.display();
+    ensure!(line.format == FORMAT, "{file}: this is no {FORMAT}");
+    ensure!(line.mission == sum.mission, "{file}: these runs are of another mission");
+    ensure!(line.settings == sum.settings, "{file}: these runs were made with other settings");
+    if let Some(shard) = line.shards.iter().find(|shard| sum.shards.contains(shard)) {
+        bail!("{file}: part {shard} is there twice");
+    }
+    let same_cut = |shard: &String| shard.split_once('/').map(|(_, of)| of.to_owned());
+    ensure!(
+        line.shards.first().and_then(same_cut) == sum.shards.first().and_then(same_cut),
+        "{file}: the runs were cut into another number of parts"
+    );
+    let mut tally = sum.tally;
+    tally.merge(&line.tally);
+    let mut shards: Vec<String> = sum.shards.into_iter().chain(line.shards.iter().cloned()).collect();
+    shards.sort_by_key(|shard| shard.split_once('/').and_then(|(part, _)| part.parse::<u64>().ok()));
+    Ok(Line::new(sum.mission, sum.settings, shards, tally))
+}
+
+fn describe(line: &Line) -> String {
+    use std::fmt::Write as _;
+    let tally = &line.tally;
+    let percent = |share: f64| format!("{:.2} %", share * 100.0);
+    let mut text = format!(
+        "{} of {} runs reach the end: {} (95 % confidence: {} to {})\n",
+        tally.succeeded,
+        tally.runs,
+        percent(line.probability),
+        percent(line.interval[0]),
+        percent(line.interval[1])
+    );
+    if tally.succeeded_by_replanning > 0 {
+        let _ = writeln!(text, "{} of them only by planning again", tally.succeeded_by_replanning);
+    }
+    if !line.is_complete {
+        let _ = writeln!(text, "parts {} only", line.shards.join(", "));
+    }
+    if !tally.breaks.is_empty() {
+        text.push_str("\nwhat breaks the plan           broken  stopped  example\n");
+        for (name, breaks) in tally.worst_events() {
+            let _ = writeln!(
+                text,
+                "{name:30} {:>6}  {:>7}  run {}: {}",
+                breaks.violations, breaks.stops, breaks.example_run, breaks.example
+            );
+        }
+    }
+    text.push_str("\nslack used                       mean     most\n");
+    for (name, mean, most) in tally.tightest_events() {
+        let _ = writeln!(text, "{name:30} {:>6.1} % {:>6.1} %", mean * 100.0, most * 100.0);
+    }
+    text
+}

@@ -1,0 +1,275 @@
+//! The control programs of a mission: compiled against their plant, and run when an activity that names one is started.
+//!
+//! All programs of a mission control one plant. It stays as a program leaves it, and so does what is believed of it, so
+//! that a later program goes on from there. A plant takes commands of one program at a time.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::sync::Arc;
+
+use executive::model_based::{Estimation, Mind, Options, Run, StepInput, StepRecord, System};
+use executive::{Disturbance, Ends, Entry, Happening, Performance, Performer};
+use plant::{Belief, Model, Random, State};
+use rmpl::program::{Name, Program};
+use rmpl::{Bound, Code, Diagnostic, Rational};
+use smol_str::SmolStr;
+use tpn::{Network, OccurrenceId};
+
+/// The programs of a mission, by the activity that runs each.
+#[derive(Clone, Debug, Default)]
+pub struct Programs {
+    systems: BTreeMap<SmolStr, Arc<System>>,
+    /// How long a step takes, in mission units.
+    step: Rational,
+}
+
+/// A program is given up after this many steps, even if its activity may last forever.
+const MOST_STEPS: i64 = 1000;
+
+impl Programs {
+    /// Compiles the programs that the primitives of `program` run, and says what is wrong with them.
+    ///
+    /// A control block with mistakes of its own has been reported by the language, and gives no programs here.
+    pub fn compile(program: &Program) -> (Self, Vec<Diagnostic>) {
+        let mut programs = Self { systems: BTreeMap::new(), step: program.options.control_step };
+        let mut found = Vec::new();
+        for extra in program.control.iter().skip(1) {
+            let message = "a mission has one control block; this one is not read";
+            found.push(Diagnostic::error(Code("E-DUP"), extra.span, message));
+        }
+        let runners =
+            program.primitives.iter().filter_map(|primitive| Some((primitive, primitive.runs.as_ref()?)));
+        let mut runners = runners.peekable();
+        if runners.peek().is_none() {
+            return (programs, found);
+        }
+        let block = program.control.first();
+        let parsed = rmpl::control::parse(block.map_or("", |block| block.text.as_str()));
+        if parsed.has_errors() {
+            return (programs, found);
+        }
+        let offset = block.map_or(0, |block| block.text_span.start);
+        for (primitive, name) in runners {
+            let Some(definition) = parsed.file.definitions.iter().find(|it| it.name.text == name.text) else {
+                let known = parsed.file.definitions.iter().map(|it| it.name.text.as_str());
+                found.push(unknown(name, block.is_some(), rmpl::control::nearest(&name.text, known)));
+                continue;
+            };
+            if !definition.parameters.is_empty() {
+                let message = format!("`{}` has parameters and cannot be run by itself", name.text);
+                found.push(Diagnostic::error(Code("E-ARITY"), name.span, message));
+                continue;
+            }
+            if parsed.file.instances.is_empty() {
+                found.push(no_plant(name));
+                continue;
+            }
+            let (system, diagnostics) = System::compile_definition(&parsed.file, &name.text);
+            for diagnostic in diagnostics {
+                let diagnostic = moved(diagnostic, offset);
+                if !found.contains(&diagnostic) {
+                    found.push(diagnostic);
+                }
+            }
+            if let Some(system) = system {
+                programs.systems.insert(primitive.name.text.clone(), Arc::new(system));
+            }
+        }
+        (programs, found)
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.systems.is_empty()
+    }
+
+    /// The program that an activity runs, with its plant.
+    pub fn system(&self, activity: &str) -> Option<&Arc<System>> {
+        self.systems.get(activity)
+    }
+
+    /// How long a step takes, in mission units.
+    pub const fn step(&self) -> Rational {
+        self.step
+    }
+
+    /// What is wrong with the faults among `disturbances`, such as a component that the plant does not have.
+    pub fn unknown_faults(&self, network: &Network, disturbances: &[Disturbance]) -> Vec<String> {
+        let mut unknown = Vec::new();
+        for disturbance in disturbances {
+            let Disturbance::Fault { activity, component, mode, .. } = disturbance else { continue };
+            let occurrence = network.occurrences.iter().find(|occurrence| occurrence.name == *activity);
+            let Some(occurrence) = occurrence else { continue };
+            match self.system(&occurrence.activity) {
+                None => unknown.push(format!("control program of {activity}")),
+                Some(system) if named(&system.model, component, mode).is_none() => {
+                    unknown.push(format!("{component}={mode}"));
+                }
+                Some(_) => {}
+            }
+        }
+        unknown
+    }
+}
+
+fn named(model: &Model, component: &str, mode: &str) -> Option<(plant::ComponentId, u8)> {
+    let id = model.component_named(component)?;
+    Some((id, model.mode_named(id, mode)?))
+}
+
+fn unknown(name: &Name, has_block: bool, nearest: Option<&str>) -> Diagnostic {
+    let message = format!("no control program `{}` is defined", name.text);
+    let hint = match (nearest, has_block) {
+        (Some(nearest), _) => format!("did you mean `{nearest}`?"),
+        (None, true) => format!("define it in the control block: `{} ():: …`", name.text),
+        (None, false) => format!("define it in a control block: `control {{ {} ():: … }}`", name.text),
+    };
+    Diagnostic::error(Code("E-UNDEF"), name.span, message).with_hint(hint)
+}
+
+fn no_plant(name: &Name) -> Diagnostic {
+    let message = format!("there is no plant for `{}` to control", name.text);
+    Diagnostic::error(Code("E-UNDEF"), name.span, message)
+        .with_hint("declare its components by DEFCLASS and DEFINSTANCE in the control block")
+}
+
+fn moved(mut diagnostic: Diagnostic, offset: u32) -> Diagnostic {
+    let shift = |span: rmpl::Span| rmpl::Span::new(span.start + offset, span.end + offset);
+    diagnostic.span = shift(diagnostic.span);
+    for edit in diagnostic.fixes.iter_mut().flat_map(|fix| &mut fix.edits) {
+        edit.span = shift(edit.span);
+    }
+    diagnostic
+}
+
+/// Runs control programs when the executive starts their activities; leaves all other activities to another performer.
+pub struct ProgramPerformer<'run> {
+    programs: &'run Programs,
+    disturbances: &'run [Disturbance],
+    /// Lets components fail by chance.
+    chance: Option<Random>,
+    others: &'run mut dyn Performer,
+    /// The plant as the last program left it, and what was believed of it.
+    plant: Option<(State, Belief)>,
+    /// Which activity controls the plant, and until when; no time if it never stops.
+    control: Option<(SmolStr, Option<Rational>)>,
+}
+
+impl<'run> ProgramPerformer<'run> {
+    /// With a seed, components fail by chance; without, only those fail that `disturbances` name.
+    pub fn new(
+        programs: &'run Programs,
+        disturbances: &'run [Disturbance],
+        seed: Option<u64>,
+        others: &'run mut dyn Performer,
+    ) -> Self {
+        Self { programs, disturbances, chance: seed.map(Random::new), others, plant: None, control: None }
+    }
+
+    fn run(&mut self, system: &System, network: &Network, id: OccurrenceId, start: Rational) -> Performance {
+        let occurrence = &network.occurrences[id.index()];
+        let name = occurrence.name.clone();
+        if let Some((other, until)) = &self.control
+            && until.is_none_or(|until| until > start)
+        {
+            let reason = format!("the plant is controlled by {other}");
+            return Performance { ends: Ends::Never(reason), ..Performance::default() };
+        }
+        let step = self.programs.step;
+        let upper = occurrence.arc.and_then(|arc| network.arcs.get(arc.index()));
+        let most_steps = match upper.map(|arc| arc.upper) {
+            // One step more than there is time for shows whether it would have ended later.
+            Some(Bound::Finite(upper)) => ((upper / step).floor().to_integer() + 1).clamp(1, MOST_STEPS),
+            _ => MOST_STEPS,
+        };
+        let options = Options { seed: self.chance.as_mut().map(Random::next_bits), ..Options::default() };
+        let mind = Mind::new(&system.model, Estimation::for_model(&system.model));
+        let mut run = match self.plant.take() {
+            Some((state, belief)) => Run::resumed(system, options, mind, state, belief),
+            None => Run::with_mind(system, options, mind),
+        };
+        let mut entries = Vec::new();
+        let mut trouble = None;
+        let mut steps = 0;
+        while !run.is_done() && steps < most_steps {
+            steps += 1;
+            let input = self.faults(&system.model, &name, steps);
+            match run.step(&input) {
+                Ok(record) => {
+                    let happening = Happening::Progress { name: name.clone(), text: text(system, record) };
+                    entries.push(Entry { time: start + step * steps, happening });
+                }
+                Err(error) => {
+                    trouble = Some(format!("step {steps} of the program cannot be taken: {error}"));
+                    break;
+                }
+            }
+        }
+        let ends = match trouble {
+            Some(trouble) => Ends::Never(trouble),
+            None if run.is_done() => Ends::After(step * steps),
+            None => Ends::Never(format!("its program did not reach its end in {steps} steps")),
+        };
+        self.plant = Some((run.true_state().clone(), run.belief().clone()));
+        let until = if let Ends::After(duration) = &ends { Some(start + *duration) } else { None };
+        self.control = Some((name, until));
+        Performance { ends, entries, ..Performance::default() }
+    }
+
+    /// The faults of one step.
+    fn faults(&self, model: &Model, activity: &SmolStr, step: i64) -> StepInput {
+        let mut input = StepInput::default();
+        for disturbance in self.disturbances {
+            if let Disturbance::Fault { activity: at, step: when, component, mode } = disturbance
+                && at == activity
+                && i64::from(*when) == step
+                && let Some((component, mode)) = named(model, component, mode)
+            {
+                input.injected.insert(component, mode);
+            }
+        }
+        input
+    }
+}
+
+impl Performer for ProgramPerformer<'_> {
+    fn start(&mut self, network: &Network, occurrence: OccurrenceId, start: Rational) -> Performance {
+        let activity = network.occurrences.get(occurrence.index()).map_or("", |it| it.activity.as_str());
+        match self.programs.system(activity).cloned() {
+            Some(system) => self.run(&system, network, occurrence, start),
+            None => self.others.start(network, occurrence, start),
+        }
+    }
+
+    fn granularity(&self) -> Rational {
+        let others = self.others.granularity();
+        if self.programs.is_empty() { others } else { common_part(self.programs.step, others) }
+    }
+}
+
+/// The greatest time of which both are multiples.
+fn common_part(one: Rational, other: Rational) -> Rational {
+    let (mut a, mut b) = (one, other);
+    while b > Rational::default() {
+        (a, b) = (b, a - b * (a / b).floor());
+    }
+    a
+}
+
+/// What a step did, in words: commands, then what is estimated to have changed.
+fn text(system: &System, record: &StepRecord) -> String {
+    let model = &system.model;
+    let commands: Vec<String> =
+        model.command_names(&record.commands).iter().map(|(name, value)| format!("{name}.{value}")).collect();
+    let commands = if commands.is_empty() { "no command".to_owned() } else { commands.join(", ") };
+    let mut text = format!("step {}: {commands}", record.trace.step);
+    for (&component, &mode) in &record.input.injected {
+        let name = model.component(component).map_or("?", |component| component.name.as_str());
+        let _ = write!(text, "; {name} comes into {}", model.mode_name(component, mode));
+    }
+    let found: Vec<String> = record.conflicts.iter().map(|conflict| conflict.describe(model)).collect();
+    if !found.is_empty() {
+        let _ = write!(text, "; {}", found.join("; "));
+    }
+    text
+}

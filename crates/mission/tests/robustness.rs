@@ -1,0 +1,167 @@
+//! Many runs with chance: shards add up, known probabilities come out, and runs can be repeated.
+
+use std::sync::Arc;
+
+use mission::planning::{self, Planned, Problem};
+use mission::robustness::{Distribution, Faults, Incident, Others, Time};
+use mission::sampling::Sampler;
+use mission::{Goal, Grounds, Paths, RobustnessSettings, Tally, Uncertainty};
+use rmpl::Rational;
+use rmpl::program::Program;
+use tpn::Network;
+
+struct Mission {
+    program: Program,
+    network: Arc<Network>,
+}
+
+impl Mission {
+    fn read(source: &str) -> Self {
+        let parse = rmpl::parse(source);
+        let program = parse.program();
+        let mut found = parse.diagnostics();
+        let network = mission::compile(&program, &Goal::Default, &mut found);
+        Self { network: Arc::new(network.unwrap_or_else(|| panic!("{found:?}"))), program }
+    }
+
+    fn problem(&self) -> Problem<'_> {
+        Problem {
+            network: &self.network,
+            program: &self.program,
+            ground: None,
+            options: kirk::Options::default(),
+            seed: 0,
+            facts: None,
+        }
+    }
+
+    fn planned(&self) -> Planned {
+        let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
+        planning::plan(&self.problem(), &mut grounds, &mut paths, &mut || false)
+    }
+
+    fn sample(&self, settings: &RobustnessSettings, numbers: impl Iterator<Item = u64>) -> Tally {
+        let sampler = Sampler::new(&self.program, &self.planned(), &settings.uncertainty);
+        let sampler = sampler.expect("there is a plan").expect("its times fit");
+        let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
+        let mut tally = Tally::default();
+        for number in numbers {
+            sampler
+                .run(&self.problem(), settings, number, &mut grounds, &mut paths, &mut tally)
+                .expect("its times fit");
+        }
+        tally
+    }
+}
+
+fn settings(runs: u64, uncertainty: Uncertainty) -> RobustnessSettings {
+    RobustnessSettings { runs, seed: 7, uncertainty }
+}
+
+/// Anything from 10 to 20 is drawn, and 13 is the latest that the light allows.
+const WORK: &str = "
+primitive Work()[10,20];
+scenario Day[0,40] = { do { Work() } maintaining LIGHT, LIGHT [13,13] }";
+
+#[test]
+fn a_uniform_duration_gives_the_share_of_it_that_fits() {
+    let tally = Mission::read(WORK).sample(&settings(4000, Uncertainty::default()), 0..4000);
+    let (low, high) = tally.interval();
+    assert!(low < 0.3 && 0.3 < high, "{low} to {high}: 3 of 10 minutes fit");
+    assert_eq!(tally.worst_events()[0].0, "Work#1.end");
+    assert_eq!(tally.breaks["Work#1.end"].stops + tally.succeeded, tally.runs);
+}
+
+#[test]
+fn shards_add_up_to_what_one_machine_finds() {
+    let source = include_str!("../../../tests/conformance/t03_enroute_both_paths.rmpl");
+    let mission = Mission::read(source);
+    let uncertainty = Uncertainty {
+        withdrawn: [(
+            "Tell(PATH1=OK)".into(),
+            Incident { probability: 0.5, at: Distribution::Uniform(time(0), time(20)) },
+        )]
+        .into(),
+        ..Uncertainty::default()
+    };
+    let settings = settings(60, uncertainty);
+    let whole = mission.sample(&settings, 0..60);
+    assert!(whole.succeeded_by_replanning > 0 && whole.succeeded < whole.runs, "{whole:?}");
+    for of in [2_u64, 3, 7] {
+        let mut sum = Tally::default();
+        // In an order that no cluster would keep to.
+        for part in (0..of).rev() {
+            sum.merge(&mission.sample(&settings, (part..60).step_by(of as usize)));
+        }
+        assert_eq!(sum, whole, "{of} parts");
+    }
+}
+
+#[test]
+fn runs_are_repeated_by_their_seed_and_others_differ() {
+    let mission = Mission::read(WORK);
+    let settings = settings(50, Uncertainty::default());
+    assert_eq!(mission.sample(&settings, 0..50), mission.sample(&settings, 0..50));
+    let other = RobustnessSettings { seed: 8, ..settings.clone() };
+    assert_ne!(mission.sample(&settings, 0..50), mission.sample(&other, 0..50));
+}
+
+#[test]
+fn without_chance_every_run_succeeds() {
+    let uncertainty = Uncertainty { others: Others::Planned, ..Uncertainty::default() };
+    let tally = Mission::read(WORK).sample(&settings(10, uncertainty), 0..10);
+    assert_eq!((tally.succeeded, tally.breaks.len()), (10, 0));
+}
+
+/// With a fault in a fifth of all steps from Standby on, one engine often takes over from the other, and often not.
+#[test]
+fn components_fail_by_chance_while_programs_run() {
+    let source = include_str!("../../../assets/missions/orbit.rmpl").replace("Failed 0.01", "Failed 0.2");
+    let mission = Mission::read(&source);
+    let chance = Uncertainty { others: Others::Planned, ..Uncertainty::default() };
+    let tally = mission.sample(&settings(400, chance.clone()), 0..400);
+    assert!(tally.succeeded > 200 && tally.succeeded < 400, "{tally:?}");
+    assert!(tally.slack["Insert#1.end"].most_permille > 0, "the backup engine takes longer");
+    let never = Uncertainty { faults: Faults::Never, ..chance };
+    let tally = mission.sample(&settings(20, never), 0..20);
+    let slack = tally.slack["Insert#1.end"];
+    assert_eq!((tally.succeeded, slack.sum_permille), (20, 20 * slack.most_permille), "always the same");
+}
+
+#[test]
+fn draws_keep_to_their_distribution() {
+    let mut random = plant::Random::new(3);
+    let mut mean = |distribution: Distribution| {
+        let draws: Vec<f64> = (0..4000)
+            .map(|_| {
+                let time = distribution.draw(&mut random);
+                *time.numer() as f64 / *time.denom() as f64
+            })
+            .collect();
+        assert!(draws.iter().all(|&draw| draw >= 0.0));
+        draws.iter().sum::<f64>() / draws.len() as f64
+    };
+    assert!((mean(Distribution::Uniform(time(10), time(20))) - 15.0).abs() < 0.2);
+    assert!((mean(Distribution::Triangular(time(0), time(3), time(12))) - 5.0).abs() < 0.2);
+    assert!((mean(Distribution::Normal(time(30), time(4))) - 30.0).abs() < 0.3);
+    assert!((mean(Distribution::Fixed(time(9))) - 9.0).abs() < 1e-9);
+}
+
+#[test]
+fn uncertainty_is_read_from_json() {
+    let text = r#"{
+        "durations": { "Work": { "triangular": [10, 11.5, "40/3"] } },
+        "late": { "LIGHT": { "probability": 0.25, "at": { "uniform": [0, 5] } } },
+        "others": "planned"
+    }"#;
+    let uncertainty: Uncertainty = serde_json::from_str(text).expect("it is well formed");
+    let expected = Distribution::Triangular(time(10), Time(Rational::new(23, 2)), Time(Rational::new(40, 3)));
+    assert_eq!(uncertainty.durations["Work"], expected);
+    assert_eq!(uncertainty.others, Others::Planned);
+    let mission = Mission::read(WORK);
+    assert_eq!(uncertainty.unknown_names(&mission.network), ["LIGHT"], "an assertion is called Tell(LIGHT)");
+}
+
+const fn time(units: i64) -> Time {
+    Time(Rational::new_raw(units, 1))
+}
