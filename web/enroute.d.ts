@@ -76,6 +76,35 @@ export interface Vehicle {
   time: number;
 }
 
+/** A run of the mission at the time shown. */
+export interface Execution {
+  status: "under-way" | "finished" | "stopped";
+  /** How the whole run ends. */
+  ending: "finished" | "stopped";
+  /** Whether a newer run is being worked out. */
+  isWorking: boolean;
+  time: number;
+  replans: number;
+  underWay: string[];
+  holding: string[];
+  waitedFor: string[];
+  deadline: { event: string; time: Time } | null;
+  disturbances: Record<string, unknown>[];
+  /** What has happened up to the time shown. */
+  log: ({ time: Time; event: string } & Record<string, unknown>)[];
+}
+
+/** What many runs with chance came to. */
+export interface Robustness {
+  runs: number;
+  isRunning: boolean;
+  probability: number;
+  /** The 95 % confidence interval. */
+  interval: [number, number];
+  /** The events that broke plans, the worst first. */
+  worst: string[];
+}
+
 /** What is done on the terrain. */
 export interface Terrain {
   tool: "look" | "measure" | "location" | "circle" | "polygon" | "vehicle";
@@ -187,6 +216,9 @@ export interface State {
   /** The run of a control program; `null` for a mission. */
   hca: ProgramRun | null;
   vehicles: Vehicle[];
+  /** The run that is watched in the Execute workspace. */
+  execution: Execution | null;
+  robustness: Robustness | null;
   traverses: Traverse[] | null;
   terrain: Terrain;
   time: Time;

@@ -50,6 +50,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     };
     let unknown = execution::unknown(&network, program, &disturbances);
     anyhow::ensure!(unknown.is_empty(), "no activity, condition or vehicle is called {}", unknown.join(", "));
+    let (programs, _) = mission::programs::Programs::compile(program);
+    let unknown = programs.unknown_faults(&network, &disturbances);
+    anyhow::ensure!(unknown.is_empty(), "the mission has no {}", unknown.join(", "));
     let mut grounds = mission::Grounds::default();
     let mut paths = Paths::default();
     let (ground, _) = grounds.resolve(&program.world);

@@ -1,0 +1,66 @@
+//! Missions executed from the command line: once with disturbances, and many times with chance, whole and in parts.
+
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+use serde_json::{Value, json};
+
+fn orbit() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../assets/missions/orbit.rmpl")
+}
+
+fn enroute(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_enroute")).args(arguments).output().expect("the command starts")
+}
+
+fn file(name: &str, text: &str) -> String {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::write(&path, text).expect("the file can be written");
+    path.to_string_lossy().into_owned()
+}
+
+fn text(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+#[test]
+fn a_fault_in_a_script_brings_the_backup_engine_and_the_log_replays() {
+    let fault = json!({ "disturbances": [
+        { "kind": "fault", "activity": "Insert#1", "step": 3, "component": "EngineA", "mode": "Failed" }
+    ]});
+    let script = file("fault.json", &fault.to_string());
+    let mission = orbit().to_string_lossy().into_owned();
+    let first = enroute(&["simulate", &mission, "--disturb", &script, "--format", "json"]);
+    assert_eq!(first.status.code(), Some(0), "{first:?}");
+    let document: Value = serde_json::from_str(&text(&first)).expect("JSON");
+    assert_eq!(document["status"], "finished");
+    let log = document["log"].as_array().expect("a log");
+    assert!(log.iter().any(|entry| entry["text"].as_str().is_some_and(|text| text.contains("EngineB.fire"))));
+    let saved = file("run.json", &text(&first));
+    let second = enroute(&["simulate", &mission, "--disturb", &saved, "--format", "json"]);
+    assert_eq!(text(&first), text(&second), "the written log is a script that gives the same log");
+}
+
+#[test]
+fn parts_of_many_runs_add_up_to_the_whole() {
+    let mission = orbit().to_string_lossy().into_owned();
+    let common = ["robustness", &mission, "--runs", "40", "--seed", "5", "--format", "json"];
+    let whole: Value = serde_json::from_str(&text(&enroute(&common))).expect("JSON");
+    assert_eq!(whole["tally"]["runs"], 40);
+    let mut files = Vec::new();
+    for part in 1..=3 {
+        let shard = format!("{part}/3");
+        let output = enroute(&[&common[..], &["--shard", &shard]].concat());
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        assert_eq!(text(&output).lines().count(), 1, "one line for each part");
+        files.push(file(&format!("part-{part}.jsonl"), &text(&output)));
+    }
+    let names: Vec<&str> = files.iter().map(String::as_str).collect();
+    let merged = enroute(&[&["robustness", "--format", "json", "--merge"][..], &names].concat());
+    let merged: Value = serde_json::from_str(&text(&merged)).expect("JSON");
+    for member in ["tally", "probability", "interval", "settings", "mission", "is_complete"] {
+        assert_eq!(merged[member], whole[member], "{member}");
+    }
+    let twice = enroute(&["robustness", "--merge", names[0], names[0]]);
+    assert_eq!(twice.status.code(), Some(2), "a part that is there twice is refused");
+}
