@@ -17,7 +17,7 @@ pub struct Arranged {
 }
 
 /// From column to column, without the names.
-const COLUMN_GAP: f64 = 86.0;
+const COLUMN_GAP: f64 = 96.0;
 /// From row to row.
 const ROW_GAP: f64 = 56.0;
 /// How far the two directions between vertices are apart.
@@ -64,6 +64,14 @@ pub fn arrange(graph: &DistanceGraph, widths: &[f64]) -> Arranged {
         let mut way: Vec<Point> =
             at.map_or_else(Vec::new, |at| chains[at].iter().map(|&slot| place(slot)).collect());
         let is_forward = ordered(&slots.column, edge) == (edge.from, edge.to);
+        // From side to side of the names, not from middle to middle.
+        if let [first, .., last] = way.as_mut_slice()
+            && last.x > first.x
+        {
+            let (left, right) = ordered(&slots.column, edge);
+            first.x += widths.get(left).copied().unwrap_or_default() / 2.0;
+            last.x -= widths.get(right).copied().unwrap_or_default() / 2.0;
+        }
         if !is_forward {
             way.reverse();
         }
@@ -331,8 +339,8 @@ mod tests {
             }
         }
         for (edge, way) in graph.edges.iter().zip(&arranged.ways) {
-            assert!(way.first().is_some_and(|start| start.distance(arranged.places[edge.from]) < 10.0));
-            assert!(way.last().is_some_and(|end| end.distance(arranged.places[edge.to]) < 10.0));
+            assert!(way.first().is_some_and(|start| start.distance(arranged.places[edge.from]) < 50.0));
+            assert!(way.last().is_some_and(|end| end.distance(arranged.places[edge.to]) < 50.0));
         }
     }
 

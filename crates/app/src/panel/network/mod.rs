@@ -293,6 +293,10 @@ impl NetworkPanel {
             return;
         }
         self.followed_step = step;
+        // All of a fitted drawing is in view.
+        if self.view.is_fitted() {
+            return;
+        }
         let Some(focus) = context.focus() else { return };
         let area = Highlight::of_focus(&focus, network).bounds(&self.drawn.drawing);
         if let Some(area) = area.filter(|area| !self.view.visible(panel).overlaps(area.expanded(1.0))) {

@@ -54,7 +54,12 @@ fn show_steps(ui: &mut Ui, context: &Context<'_>, recordings: &[Recording], comm
         _ => longest,
     };
     let mut step = search.step().map_or(steps, |step| step.step + 1);
-    ui.spacing_mut().slider_width = (ui.available_width() - 70.0).clamp(60.0, 180.0);
+    let rest = ui.available_size_before_wrap().x;
+    if rest < 140.0 {
+        ui.end_row();
+    }
+    let room = if rest < 140.0 { ui.available_width() } else { rest };
+    ui.spacing_mut().slider_width = (room - 80.0).clamp(60.0, 180.0);
     let slider = ui.add(Slider::new(&mut step, 1..=steps)).accessible_name("Step of the search");
     if slider.changed() {
         commands.send(Command::Search(SearchCommand::GoTo(step - 1)));

@@ -70,6 +70,7 @@ const SIDE_BY_SIDE: f32 = 420.0;
 
 impl Panel for SearchPanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+        let panel = ui.max_rect();
         let search = &context.state.search;
         let recordings = search.recordings(context.snapshot);
         let side = search.side().min(recordings.len().saturating_sub(1));
@@ -89,7 +90,7 @@ impl Panel for SearchPanel {
             keys::follow(ui, context, drawn.recording.trace(), &drawn.index, commands);
         }
         let action = context.view_action(PanelKind::Search, &mut self.followed_action);
-        let room = ui.available_rect_before_wrap();
+        let room = ui.available_rect_before_wrap().intersect(panel);
         let details = DETAILS.min((room.height() - LEAST_TREE).max(room.height() * 0.3));
         let (upper, lower) = room.split_top_bottom_at_y(room.bottom() - details);
         if let Some(action) = action {
