@@ -44,7 +44,7 @@ pub(super) fn choices(ui: &mut Ui, list: &List<'_>, count: usize, commands: &mut
         line(ui, list, Section::Choices, index, &choice.line, commands);
         for alternative in &choice.alternatives {
             let text = format!(
-                "{}: {}. {}",
+                "{}: {}\n{}",
                 alternative.number,
                 alternative.text,
                 sentence(&alternative.fate.sentence())
