@@ -10,7 +10,8 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::{Value, json};
 
 fn reviewing() -> support::App {
-    let mut app = support::start();
+    // High enough for all rows, whatever else the workspace shows.
+    let mut app = support::start_in(std::rc::Rc::default(), |builder| builder.with_size([1440.0, 1500.0]));
     app.settle();
     app.harness.state_mut().dispatch("view.workspace", &json!("review")).expect("a workspace");
     app.settle();
