@@ -26,6 +26,14 @@ struct Member {
     near: Option<(FineWorld, [f64; 2])>,
 }
 
+impl Member {
+    /// Whether it is this near to the end of its path.
+    fn is_within(&self, reach_m: f64) -> bool {
+        let place = self.driver.state().position_m;
+        self.driver.path().points_m.last().is_some_and(|&end| distance(end, place) <= reach_m)
+    }
+}
+
 /// What a vehicle sets out with.
 #[derive(Clone, Debug)]
 pub struct ConvoyMember {
@@ -129,6 +137,8 @@ impl Convoy {
                 _ => (pace_mps * (1.0 + 0.5 * lag_m(&self.members[index]))).max(0.0),
             };
             let is_held = self.is_held(index, around.others);
+            let mut others = self.members.iter().enumerate().filter(|(other, _)| *other != index);
+            let others_are_there = others.all(|(_, other)| other.has_arrived) && self.members.len() > 1;
             let speed = if is_held || self.members[index].has_arrived { 0.0 } else { wanted.min(most) };
             let member = &mut self.members[index];
             member.driver.set_cruise(speed);
@@ -140,6 +150,8 @@ impl Convoy {
             let world = member.near.as_ref().map_or(around.world, |(near, _)| near);
             let (event, scan) = member.driver.step(world, around.maps.get(index));
             member.has_arrived |= event == DriveEvent::Arrived;
+            // One that came another way than planned has its place wherever the others leave it room.
+            member.has_arrived |= is_held && others_are_there && member.is_within(2.0 * self.spacing_m);
             steps.push((event, scan));
         }
         steps
