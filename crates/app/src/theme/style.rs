@@ -33,7 +33,7 @@ pub fn install_fonts(context: &Context) {
     {
         fonts.font_data.insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
     }
-    // egui's own fonts fill in for missing characters.
+    // What none of them has is drawn as a box: egui's own fonts would be a quarter of the page's download.
     let fallback = fonts.families.get(&FontFamily::Proportional).cloned().unwrap_or_default();
     let family = |first: [&str; 2]| -> Vec<String> {
         first.into_iter().map(str::to_owned).chain(fallback.iter().cloned()).collect()

@@ -121,7 +121,7 @@ fn transitions(ui: &mut Ui, context: &Context<'_>, model: &Model, id: ComponentI
         ui.label(RichText::new(text).color(tokens.text_muted));
     }
     for fault in &data.faults {
-        let text = format!("⇢ {} with probability {} per step", model.mode_name(id, fault.to), fault.label);
+        let text = format!("→ {} with probability {} per step", model.mode_name(id, fault.to), fault.label);
         ui.label(RichText::new(text).color(tokens.warning));
     }
 }

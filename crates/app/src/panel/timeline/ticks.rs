@@ -67,7 +67,7 @@ fn label(value: f64, step: f64) -> String {
     for (at, digit) in digits.chars().enumerate() {
         // Four digits are read at a glance; more need a gap.
         if at > 0 && (digits.len() - at).is_multiple_of(3) && digits.len() > 4 {
-            grouped.push('\u{202F}');
+            grouped.push('\u{2009}');
         }
         grouped.push(digit);
     }
@@ -84,7 +84,7 @@ mod tests {
         let ticks = Ticks::new(0.0, 660.0, 660.0);
         assert_eq!((ticks.marks, ticks.step), (vec![0.0, 100.0, 200.0, 300.0, 400.0, 500.0, 600.0], 100.0));
         assert_eq!(Ticks::new(12.0, 31.0, 400.0).marks, vec![15.0, 20.0, 25.0, 30.0]);
-        assert_eq!(Ticks::new(0.0, 1_234_567.0, 500.0).label(1_000_000.0), "1\u{202F}000\u{202F}000");
+        assert_eq!(Ticks::new(0.0, 1_234_567.0, 500.0).label(1_000_000.0), "1\u{2009}000\u{2009}000");
         assert_eq!(Ticks::new(0.0, 0.5, 300.0).label(0.2), "0.2");
     }
 
