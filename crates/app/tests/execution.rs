@@ -23,8 +23,8 @@ fn press(app: &mut support::App, name: &str) {
     app.settle();
 }
 
-fn dispatch(app: &mut support::App, command: &str, arguments: Value) {
-    app.harness.state_mut().dispatch(command, &arguments).expect("the command can be used");
+fn dispatch(app: &mut support::App, command: &str, arguments: &Value) {
+    app.harness.state_mut().dispatch(command, arguments).expect("the command can be used");
     app.settle();
 }
 
@@ -48,9 +48,9 @@ fn withdrawing_the_window_of_path_1_while_the_rovers_wait_takes_two_presses_and_
     assert_eq!(after["execution"]["status"], "under-way");
     let tells_why = app.harness.query_all_by_label_contains("Tell(PATH1=OK)#1 was withdrawn at 0").next();
     assert!(tells_why.is_some(), "the panel says why");
-    dispatch(&mut app, "play.end", Value::Null);
+    dispatch(&mut app, "play.end", &Value::Null);
     assert_eq!(app.json()["execution"]["status"], "finished");
-    dispatch(&mut app, "play.seek", json!({ "time": 0 }));
+    dispatch(&mut app, "play.seek", &json!({ "time": 0 }));
     press(&mut app, "Take back: Tell(PATH1=OK)#1 is withdrawn at 0");
     assert_eq!(app.json()["plan"]["choices"], json!({ "D1": 0 }), "what is taken back did not happen");
 }
@@ -59,7 +59,7 @@ fn withdrawing_the_window_of_path_1_while_the_rovers_wait_takes_two_presses_and_
 #[test]
 fn the_state_says_what_is_under_way_and_what_is_due() {
     let mut app = executing("enroute");
-    dispatch(&mut app, "play.seek", json!({ "time": 100 }));
+    dispatch(&mut app, "play.seek", &json!({ "time": 100 }));
     let execution = app.json()["execution"].clone();
     assert_eq!(execution["underWay"], json!(["Group-Traverse-Path#1"]));
     assert_eq!(execution["holding"], json!(["Tell(PATH1=OK)#1"]));
@@ -76,7 +76,7 @@ fn the_state_says_what_is_under_way_and_what_is_due() {
 #[test]
 fn a_condition_withdrawn_on_the_way_stops_the_mission_safely_and_says_why() {
     let mut app = executing("enroute");
-    dispatch(&mut app, "play.seek", json!({ "time": 100 }));
+    dispatch(&mut app, "play.seek", &json!({ "time": 100 }));
     let before = app.json()["execution"]["log"].clone();
     press(&mut app, "Withdraw Tell(PATH1=OK)#1");
     let execution = app.json()["execution"].clone();
@@ -118,16 +118,16 @@ fn a_saved_run_replays_exactly_and_a_changed_log_is_told() {
 #[test]
 fn stepping_goes_from_event_to_event_of_the_run() {
     let mut app = executing("both-paths");
-    dispatch(&mut app, "play.forward", Value::Null);
+    dispatch(&mut app, "play.forward", &Value::Null);
     assert_eq!(app.json()["time"], 10.0);
-    dispatch(&mut app, "play.back", Value::Null);
+    dispatch(&mut app, "play.back", &Value::Null);
     assert_eq!(app.json()["time"], 0.0);
 }
 
 #[test]
 fn runs_with_chance_are_made_in_the_background_and_end_in_a_probability() {
     let mut app = executing("threats");
-    dispatch(&mut app, "view.panel", json!({ "name": "robustness" }));
+    dispatch(&mut app, "view.panel", &json!({ "name": "robustness" }));
     press(&mut app, "Run with chance");
     for _ in 0..40 {
         app.settle();

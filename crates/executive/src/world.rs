@@ -132,10 +132,10 @@ impl World {
                 Disturbance::Slow { activity, factor } => world.slow.insert(activity, factor),
                 Disturbance::Withdrawn { condition, at } => world.withdrawn.insert(condition, at),
                 Disturbance::Late { condition, at } => world.late.insert(condition, at),
-                // What vehicles meet is for whoever drives them.
-                Disturbance::Obstacle { .. } | Disturbance::VehicleSlow { .. } => None,
-                // What components do is for whoever runs their programs.
-                Disturbance::Fault { .. } => None,
+                // What vehicles meet is for whoever drives them, what components do for whoever runs their programs.
+                Disturbance::Obstacle { .. }
+                | Disturbance::VehicleSlow { .. }
+                | Disturbance::Fault { .. } => None,
             };
         }
         world

@@ -265,7 +265,7 @@ fn base(name: &str) -> &str {
 impl Uncertainty {
     /// A name of whose times it says something that is no distribution.
     pub fn unsound(&self) -> Option<&SmolStr> {
-        let durations = self.durations.iter().map(|(name, distribution)| (name, distribution));
+        let durations = self.durations.iter();
         let incidents = self.late.iter().chain(&self.withdrawn).map(|(name, incident)| (name, &incident.at));
         durations.chain(incidents).find(|(_, distribution)| !distribution.is_sound()).map(|(name, _)| name)
     }

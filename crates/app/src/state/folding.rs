@@ -238,7 +238,7 @@ mod tests {
         let (document, parse) = opened();
         let mut folding = Folding::default();
         assert!(folding.toggle(0, &document, &parse));
-        assert_eq!(folding.rows().hidden, [1..6]);
+        assert_eq!(folding.rows().hidden, Rows::new(vec![Range { start: 1, end: 6 }]).hidden);
         assert!(folding.toggle(0, &document, &parse));
         assert_eq!(folding.rows().hidden, [] as [Range<usize>; 0]);
         assert!(!folding.toggle(1, &document, &parse));
@@ -249,10 +249,10 @@ mod tests {
         let (mut document, parse) = opened();
         let mut folding = Folding::default();
         folding.toggle(2, &document, &parse);
-        assert_eq!(folding.rows().hidden, [3..5]);
+        assert_eq!(folding.rows().hidden, Rows::new(vec![Range { start: 3, end: 5 }]).hidden);
         document.replace_all(&format!("// first\n{TEXT}"));
         folding.follow(&mut document, Some(&rmpl::parse(&format!("// first\n{TEXT}"))));
-        assert_eq!(folding.rows().hidden, [4..6]);
+        assert_eq!(folding.rows().hidden, Rows::new(vec![Range { start: 4, end: 6 }]).hidden);
         let changed = TEXT.replace("choose {", "choose  {");
         document.replace_all(&changed);
         folding.follow(&mut document, Some(&rmpl::parse(&changed)));
@@ -288,11 +288,11 @@ mod tests {
         let (document, parse) = opened();
         let mut folding = Folding::default();
         folding.fold_around(3, &document, &parse);
-        assert_eq!(folding.rows().hidden, [3..5]);
+        assert_eq!(folding.rows().hidden, Rows::new(vec![Range { start: 3, end: 5 }]).hidden);
         folding.fold_around(2, &document, &parse);
-        assert_eq!(folding.rows().hidden, [1..6]);
+        assert_eq!(folding.rows().hidden, Rows::new(vec![Range { start: 1, end: 6 }]).hidden);
         folding.unfold_all();
         folding.fold_all(&document, &parse);
-        assert_eq!(folding.rows().hidden, [1..6]);
+        assert_eq!(folding.rows().hidden, Rows::new(vec![Range { start: 1, end: 6 }]).hidden);
     }
 }

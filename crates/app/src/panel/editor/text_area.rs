@@ -221,7 +221,6 @@ impl TextArea {
         (x >= 0.0 && x <= layout.galley().size().x).then(|| layout.offset_at(context, x))
     }
 
-    #[expect(clippy::too_many_arguments, reason = "all of it describes one frame")]
     fn follow_pointer(
         &mut self,
         ui: &Ui,

@@ -17,14 +17,9 @@ use crate::state::execution::{ExecutionCommand, Moment};
 use crate::theme::space;
 
 /// The panel, with how much longer or later a disturbance makes things.
+#[derive(Default)]
 pub struct ExecutionPanel {
     disturb: disturb::Disturb,
-}
-
-impl Default for ExecutionPanel {
-    fn default() -> Self {
-        Self { disturb: disturb::Disturb::default() }
-    }
 }
 
 /// What the parts of the panel show.

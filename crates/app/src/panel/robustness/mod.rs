@@ -27,14 +27,13 @@ impl Panel for RobustnessPanel {
             egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 4)).show(ui, |ui| {
                 ask(ui, context, commands);
                 let robustness = context.state.shown().and_then(|shown| shown.robustness.as_deref());
-                match robustness {
-                    Some(robustness) => show_result(ui, context, robustness),
-                    None => {
-                        let text = "Runs the plan many times with chance, in the background, and says how often \
-                                    it reaches its end and what breaks it.";
-                        ui.add_space(space::M);
-                        ui.label(RichText::new(text).color(context.tokens.text_muted));
-                    }
+                if let Some(robustness) = robustness {
+                    show_result(ui, context, robustness);
+                } else {
+                    let text = "Runs the plan many times with chance, in the background, and says how often it \
+                                reaches its end and what breaks it.";
+                    ui.add_space(space::M);
+                    ui.label(RichText::new(text).color(context.tokens.text_muted));
                 }
             });
         });

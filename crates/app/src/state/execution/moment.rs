@@ -114,9 +114,9 @@ fn moment(network: &Network, executed: &Executed, windows: &[Option<Window>], ti
             (true, false) => {
                 let pending = Pending { occurrence: id, since, window: end };
                 if is_activity {
-                    moment.under_way.push(pending)
+                    moment.under_way.push(pending);
                 } else {
-                    moment.holding.push(pending)
+                    moment.holding.push(pending);
                 }
                 events.push((EventRef { occurrence: id, end: EventEnd::End }, end));
             }
