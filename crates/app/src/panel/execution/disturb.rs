@@ -1,6 +1,6 @@
 //! Disturbances by hand: what can still go otherwise than planned, and what was made to.
 
-use egui::{DragValue, Grid, RichText, Ui};
+use egui::{Align, DragValue, Layout, RichText, Ui};
 use executive::Disturbance;
 use rmpl::Rational;
 use tpn::{OccurrenceId, OccurrenceKind};
@@ -12,6 +12,9 @@ use crate::panel::Context;
 use crate::panel::plan::section;
 use crate::state::execution::{ExecutionCommand, Pending, disturbance_text, exact_time};
 use crate::time_text;
+
+/// What the buttons beside a name take, in points.
+const BUTTONS_WIDTH: f32 = 150.0;
 
 /// How much longer or later, in mission units.
 pub(super) struct Disturb {
@@ -43,12 +46,9 @@ impl Disturb {
                 let field = DragValue::new(&mut self.amount).range(0.0..=1e6).speed(0.5).max_decimals(1);
                 ui.add(field.suffix(format!(" {}", unit.unwrap_or_default()))).labelled_by(name);
             });
-            Grid::new("disturb").num_columns(2).striped(true).show(ui, |ui| {
-                for pending in all {
-                    self.row(ui, shown, pending, commands);
-                    ui.end_row();
-                }
-            });
+            for pending in all {
+                ui.horizontal(|ui| self.row(ui, shown, pending, commands));
+            }
         }
         made(ui, context, commands);
     }
@@ -57,7 +57,12 @@ impl Disturb {
         let id = pending.occurrence;
         let name = now::name(shown, id);
         let Some(occurrence) = shown.network.occurrences.get(id.index()) else { return };
-        ui.add(egui::Label::new(&name).truncate());
+        let name_size =
+            egui::vec2((ui.available_width() - BUTTONS_WIDTH).max(60.0), ui.spacing().interact_size.y);
+        ui.allocate_ui_with_layout(name_size, Layout::left_to_right(Align::Center), |ui| {
+            ui.set_min_width(name_size.x);
+            ui.add(egui::Label::new(&name).truncate());
+        });
         ui.horizontal(|ui| {
             let mut button = |ui: &mut Ui, text: &str, make: &dyn Fn() -> ExecutionCommand| {
                 let response = ui.small_button(text);
