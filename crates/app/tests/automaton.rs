@@ -77,7 +77,6 @@ fn the_keys_that_step_through_plans_step_the_program() {
 }
 
 #[test]
-#[ignore = "to be settled: it fails since the panels were brought together"]
 fn a_fault_is_injected_by_pressing_a_component() {
     let mut app = orbit_insertion();
     press(&mut app, "Step");

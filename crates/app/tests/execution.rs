@@ -37,7 +37,6 @@ fn kinds(execution: &Value) -> Vec<&str> {
 
 /// Both paths open at different times: the rovers wait for the first one until 10, and the second opens at 300.
 #[test]
-#[ignore = "to be settled: it fails since the panels were brought together"]
 fn withdrawing_the_window_of_path_1_while_the_rovers_wait_takes_two_presses_and_switches_to_path_2() {
     let mut app = executing("both-paths");
     let before = app.json();

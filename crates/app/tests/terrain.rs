@@ -276,7 +276,6 @@ fn an_imported_map_is_found_by_the_text_that_names_it_and_a_broken_one_is_explai
 }
 
 #[test]
-#[ignore = "to be settled: it fails since the panels were brought together"]
 fn the_panel_is_usable_at_a_width_of_300_points() {
     let mut app = support::start_in(std::rc::Rc::default(), |builder| builder.with_size([300.0, 420.0]));
     app.settle();

@@ -270,7 +270,6 @@ fn painted_names(app: &support::App) -> usize {
 }
 
 #[test]
-#[ignore = "to be settled: it fails since the panels were brought together"]
 fn a_large_mission_draws_all_and_only_the_rows_in_view() {
     let app = generated(1_000);
     assert_eq!(app.json()["status"], "plan");

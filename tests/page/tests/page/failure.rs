@@ -59,7 +59,6 @@ fn a_core_that_never_ends_is_given_up_for_a_newer_text() -> Result<()> {
 }
 
 #[test]
-#[ignore = "to be settled: it fails since the panels were brought together"]
 fn a_front_end_that_stops_gives_the_text_back_when_the_page_is_loaded_again() -> Result<()> {
     let page = Opened::planned()?;
     page.tab.evaluate("enroute.setSource('A()[l,u] = { Work()[1,2] }')")?;

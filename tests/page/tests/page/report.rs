@@ -64,7 +64,6 @@ fn count(tab: &Tab, selector: &str) -> Result<u64> {
 }
 
 #[test]
-#[ignore = "to be settled: it fails since the panels were brought together"]
 fn the_report_is_a_page_that_stands_alone_and_prints_on_both_papers() -> Result<()> {
     let page = Opened::planned()?;
     watch_saving(&page)?;

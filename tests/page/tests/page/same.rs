@@ -38,7 +38,6 @@ impl Native {
 }
 
 #[test]
-#[ignore = "to be settled: it fails since the panels were brought together"]
 fn every_example_leads_to_the_same_network_plan_and_paths_in_the_page_and_natively() -> Result<()> {
     let page = Opened::planned()?;
     let mut native = Native::new();

@@ -46,7 +46,6 @@ fn a_search_is_stepped_back_and_forth_with_the_keyboard() -> Result<()> {
 }
 
 #[test]
-#[ignore = "to be settled: it fails since the panels were brought together"]
 fn arrows_walk_the_search_tree_and_select_in_all_panels() -> Result<()> {
     let page = lesson("")?;
     stepped(&page, Key::Character('r'), Modifiers::NONE)?;

@@ -33,7 +33,6 @@ fn place(page: &Opened, name: &str) -> Result<(f64, f64)> {
 }
 
 #[test]
-#[ignore = "not yet run to an end in a browser"]
 fn an_obstacle_dragged_onto_the_first_path_makes_the_plan_take_the_second() -> Result<()> {
     let page = from_above("detour")?;
     let choice =
@@ -59,7 +58,6 @@ fn an_obstacle_dragged_onto_the_first_path_makes_the_plan_take_the_second() -> R
 }
 
 #[test]
-#[ignore = "not yet run to an end in a browser"]
 fn two_clicks_of_the_mouse_measure_the_ground_between_them() -> Result<()> {
     let page = from_above("detour")?;
     page.tab.click_widget("button", "Measure")?;
@@ -79,7 +77,6 @@ fn two_clicks_of_the_mouse_measure_the_ground_between_them() -> Result<()> {
 }
 
 #[test]
-#[ignore = "not yet run to an end in a browser"]
 fn the_wheel_brings_the_ground_nearer() -> Result<()> {
     let page = from_above("detour")?;
     let terrain = page.tab.widget("img", "Terrain")?;
@@ -94,7 +91,6 @@ fn the_wheel_brings_the_ground_nearer() -> Result<()> {
 }
 
 #[test]
-#[ignore = "not yet run to an end in a browser"]
 fn the_search_tree_grows_and_the_clearance_map_covers_the_ground() -> Result<()> {
     let page = from_above("detour")?;
     let terrain = page.tab.widget("img", "Terrain")?;
@@ -113,7 +109,6 @@ fn the_search_tree_grows_and_the_clearance_map_covers_the_ground() -> Result<()>
 }
 
 #[test]
-#[ignore = "not yet run to an end in a browser"]
 fn a_map_file_dropped_on_the_page_is_read_and_a_broken_one_is_explained() -> Result<()> {
     let page = Opened::planned()?;
     let drop_file = |name: &str, content: &str| {
@@ -136,7 +131,6 @@ fn a_map_file_dropped_on_the_page_is_read_and_a_broken_one_is_explained() -> Res
 }
 
 #[test]
-#[ignore = "not yet run to an end in a browser"]
 fn a_page_whose_graphics_are_lost_says_so_and_keeps_the_text() -> Result<()> {
     let page = Opened::planned()?;
     page.tab.evaluate("document.getElementById('canvas').dispatchEvent(new Event('webglcontextlost', { cancelable: true }))")?;

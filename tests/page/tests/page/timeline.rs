@@ -7,7 +7,6 @@ use xtask::browser::{Key, Modifiers};
 use crate::opened::Opened;
 
 #[test]
-#[ignore = "not yet run to an end in a browser"]
 fn dragging_an_event_inside_its_window_moves_the_others_and_escape_gives_them_back() -> Result<()> {
     let page = Opened::with_fragment("mission=enroute&workspace=review")?;
     page.settle()?;
@@ -33,7 +32,6 @@ fn dragging_an_event_inside_its_window_moves_the_others_and_escape_gives_them_ba
 }
 
 #[test]
-#[ignore = "not yet run to an end in a browser"]
 fn dragging_a_bound_changes_the_text_and_undo_takes_the_whole_drag_back() -> Result<()> {
     let page = Opened::with_fragment("mission=enroute&workspace=review")?;
     page.settle()?;
