@@ -15,6 +15,12 @@ use super::{
 /// How long [`Tab::wait_until`] waits, in milliseconds, unless told otherwise.
 const WAIT_LIMIT_MILLIS: u32 = 90_000;
 
+/// How many frames [`Tab::click_widget`] looks at before it gives up on a widget that moves.
+const FRAMES_TO_KEEP_STILL: u32 = 100;
+
+/// What the browser says of a question that the page did not live to answer.
+const PAGE_WAS_LEFT: &str = "Inspected target navigated or closed";
+
 /// A tab of a running browser.
 pub struct Tab {
     connection: Rc<RefCell<Connection>>,
@@ -97,10 +103,10 @@ impl Tab {
         Ok(answer["result"]["value"].take())
     }
 
-    /// Waits until a JavaScript expression is true (one that throws is not), and answers its value. Fails with the
-    /// page's state and messages when that takes too long.
+    /// Waits until a JavaScript expression is true (one that throws is not), and answers its value. Goes on in the next
+    /// page when this one is left meanwhile. Fails with the page's state and messages when that takes too long.
     pub fn wait_until(&self, expression: &str) -> Result<Value> {
-        self.evaluate(&format!(
+        let waiting = format!(
             "new Promise((resolve, reject) => {{
                 const end = performance.now() + {WAIT_LIMIT_MILLIS};
                 const look = async () => {{
@@ -112,8 +118,12 @@ impl Tab {
                 }};
                 look();
             }})"
-        ))
-        .map_err(|reason| {
+        );
+        let mut outcome = self.evaluate(&waiting);
+        while outcome.as_ref().is_err_and(|reason| reason.to_string().contains(PAGE_WAS_LEFT)) {
+            outcome = self.evaluate(&waiting);
+        }
+        outcome.map_err(|reason| {
             let state = self
                 .evaluate("JSON.stringify(window.enroute?.state?.())?.slice(0, 2000)")
                 .unwrap_or_default();
@@ -219,9 +229,15 @@ impl Tab {
         Ok(())
     }
 
-    /// Clicks with the main button.
+    /// Clicks with the main button. No frame is waited for between press and release: where frames are slow, that
+    /// would be a long press.
     pub fn click(&self, x: f64, y: f64) -> Result<()> {
-        self.drag(&[(x, y)])
+        self.mouse("mouseMoved", (x, y), &json!({}))?;
+        // The page learns what lies under the pointer from the frame it draws.
+        self.next_frame()?;
+        self.mouse("mousePressed", (x, y), &json!({ "button": "left", "buttons": 1, "clickCount": 1 }))?;
+        self.mouse("mouseReleased", (x, y), &json!({ "button": "left", "clickCount": 1 }))?;
+        self.next_frame()
     }
 
     /// Presses the main button at the first point, moves through the others and releases it at the last.
@@ -230,7 +246,6 @@ impl Tab {
             bail!("a drag needs a point");
         };
         self.mouse("mouseMoved", first, &json!({}))?;
-        // The page learns what lies under the pointer from the frame it draws.
         self.next_frame()?;
         let button = json!({ "button": "left", "buttons": 1, "clickCount": 1 });
         self.mouse("mousePressed", first, &button)?;
@@ -295,10 +310,18 @@ impl Tab {
         Ok(found.swap_remove(exact.unwrap_or(0)))
     }
 
-    /// Clicks the middle of a widget.
+    /// Clicks the middle of a widget, once it keeps still: what has just appeared may make room for something else.
     pub fn click_widget(&self, role: &str, label: &str) -> Result<()> {
-        let (x, y) = self.widget(role, label)?.centre();
-        self.click(x, y)
+        let mut centre = self.widget(role, label)?.centre();
+        for _ in 0..FRAMES_TO_KEEP_STILL {
+            self.next_frame()?;
+            let now = self.widget(role, label)?.centre();
+            if now == centre {
+                return self.click(now.0, now.1);
+            }
+            centre = now;
+        }
+        bail!("the {role} \"{label}\" does not keep still")
     }
 
     /// The page as a PNG.

@@ -59,7 +59,6 @@ fn every_key_press_is_a_revision_and_undo_takes_it_back() -> Result<()> {
     assert!(page.state()?["revision"].as_u64() > revision.as_u64());
 
     page.tab.press(Key::Character('z'), Modifiers::CONTROL)?;
-    page.wait_for("!state.isStale")?;
-    assert_eq!(page.tab.evaluate("enroute.source()")?, before);
-    Ok(())
+    page.tab.wait_until(&format!("enroute.source() === {before}"))?;
+    page.wait_for("!state.isStale")
 }

@@ -64,7 +64,7 @@ fn arrows_walk_the_search_tree_and_select_in_all_panels() -> Result<()> {
     let source = page.tab.evaluate("enroute.source()")?;
     let at = source.as_str().and_then(|source| source.find("MODE=B [80,80]")).expect("an assertion") + 2;
     page.tab.evaluate(&format!("enroute.dispatch('edit.select', {{ start: {at} }})"))?;
-    page.wait_for("state.selection?.name === 'Tell(MODE=B)#2'")
+    page.wait_for("state.selection?.name === 'Tell(MODE=B)@Tell(MODE=B)#2'")
 }
 
 #[test]
