@@ -76,6 +76,22 @@ fn typed_characters_go_where_the_caret_is_even_several_in_one_frame() {
 }
 
 #[test]
+fn a_press_and_release_within_one_frame_places_the_caret_and_takes_the_keys() {
+    let mut app = editing("$0first\nsecond\nthird");
+    let area = app.harness.get_by_role_and_label(TEXT, "Mission text").rect();
+    app.harness.ctx.memory_mut(|memory| memory.stop_text_input());
+    app.settle();
+    let pos = egui::pos2(area.center().x, area.top() + 30.0);
+    for pressed in [true, false] {
+        let button = egui::PointerButton::Primary;
+        app.harness.event(Event::PointerButton { pos, button, pressed, modifiers: NONE });
+    }
+    app.settle();
+    app.type_text("!");
+    assert_eq!(app.text(), "first\nsecond!$0\nthird");
+}
+
+#[test]
 fn undo_takes_back_a_word_and_redo_brings_it_again() {
     let mut app = editing("$0");
     app.type_text("one two");
