@@ -8,19 +8,18 @@ use crate::opened::Opened;
 fn from_above(mission: &str) -> Result<Opened> {
     let page = Opened::with_fragment(&format!("mission={mission}&workspace=review"))?;
     page.settle()?;
-    for panel in ["timeline", "network", "plan", "editor", "problems", "outline"] {
+    for panel in ["review", "compare", "timeline", "network", "plan", "editor", "problems", "outline"] {
         page.tab.evaluate(&format!("enroute.dispatch('view.closePanel', {{ name: '{panel}' }})"))?;
     }
     page.tab.widget("img", "Terrain")?;
     page.tab.evaluate("enroute.dispatch('terrain.top')")?;
     page.tab.next_frame()?;
-    // The camera has arrived when names stand still from one frame to the next.
+    // The camera has arrived when names stand still over several frames; while it flies, each frame moves them.
     page.tab.wait_until(
-        "(() => {
-            const places = JSON.stringify(enroute.widgets('text', 'on the map'));
-            const isStill = places.length > 2 && places === window.placesBefore;
-            window.placesBefore = places;
-            return isStill;
+        "(async () => {
+            const before = JSON.stringify(enroute.widgets('text', 'on the map'));
+            for (let frame = 0; frame < 6; frame += 1) await new Promise(requestAnimationFrame);
+            return before.length > 2 && before === JSON.stringify(enroute.widgets('text', 'on the map'));
         })()",
     )?;
     Ok(page)
@@ -125,7 +124,7 @@ fn a_map_file_dropped_on_the_page_is_read_and_a_broken_one_is_explained() -> Res
     page.wait_for("state.toasts.some((toast) => toast.includes('broken.pgm cannot be used'))")?;
     drop_file("level.pgm", "'P5 30 30 255 ' + 'x'.repeat(900)")?;
     page.wait_for("state.toasts.some((toast) => toast.includes('30 × 30 cells'))")?;
-    let text = "terrain \"level.pgm\" cell 10;\\nlocation A (20, 20);\\nscenario S = { Wait()[0,5] }";
+    let text = "terrain \"level.pgm\" cell 10;\\nprimitive Wait()[0,5];\\nscenario S = { Wait() }";
     page.tab.evaluate(&format!("enroute.setSource('{text}')"))?;
     page.wait_for("state.status === 'plan' && state.diagnostics.length === 0")
 }
