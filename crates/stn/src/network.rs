@@ -100,6 +100,8 @@ pub struct Stn {
     done: Vec<u32>,
     now: u32,
     changed: Vec<(u32, i64)>,
+    /// Room for what several insertions moved.
+    moved: Vec<(u32, i64)>,
     origin: Option<u32>,
     walk: Vec<u32>,
     visit: Vec<u32>,
@@ -266,6 +268,30 @@ impl Stn {
         self.repair(from.0, to.0, weight, tag)?;
         self.restore();
         Ok(())
+    }
+
+    /// Whether `to − from ≤ weight` could be added for all `edges` at once. If so, the schedule is one that keeps them;
+    /// if not, it stays as it is, and [`Stn::cycle`] says why.
+    pub fn admits_all(&mut self, edges: &[(PointId, PointId, i64)], tag: Tag) -> Result<(), Inconsistency> {
+        let checkpoint = self.checkpoint();
+        let mut moved = std::mem::take(&mut self.moved);
+        let mut result = Ok(());
+        for &(from, to, weight) in edges {
+            result = self.insert(from, to, weight, tag);
+            if result.is_err() {
+                break;
+            }
+            moved.append(&mut self.changed);
+        }
+        self.rollback(checkpoint);
+        if result.is_err() {
+            while let Some((point, time)) = moved.pop() {
+                self.potential[point as usize] = time;
+            }
+        }
+        moved.clear();
+        self.moved = moved;
+        result
     }
 
     /// Adds an edge without restoring consistency: [`Stn::settle`] must follow before anything else is asked.

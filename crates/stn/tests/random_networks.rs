@@ -148,6 +148,38 @@ fn insertions_and_undos_agree_with_floyd_warshall() {
 }
 
 #[test]
+fn several_edges_are_admitted_only_together_and_move_nothing_where_they_are_not() {
+    let mut outcomes = [0, 0];
+    for seed in 0..400 {
+        let (mut stn, points) = consistent_network(seed);
+        let mut random = Random(seed ^ 0xadd);
+        let mut edges: EdgeList = (0..stn.num_edges())
+            .filter_map(|position| stn.edge(position))
+            .map(|edge| (edge.from.index(), edge.to.index(), edge.weight))
+            .collect();
+        let before = stn.schedule().to_vec();
+        let new: EdgeList =
+            (0..3).map(|_| (random.below(points), random.below(points), random.between(-6, 12))).collect();
+        let links: Vec<_> = new.iter().map(|&(from, to, weight)| (point(from), point(to), weight)).collect();
+        let admitted = stn.admits_all(&links, 0).is_ok();
+        let num_before = edges.len();
+        edges.extend(&new);
+        assert_eq!(admitted, floyd_warshall(points, &edges).is_some(), "seed {seed}");
+        outcomes[usize::from(admitted)] += 1;
+        assert_eq!(stn.num_edges(), num_before, "seed {seed}");
+        let keeps = |schedule: &[i64], edges: &EdgeList| {
+            edges.iter().all(|&(from, to, weight)| schedule[to] - schedule[from] <= weight)
+        };
+        if admitted {
+            assert!(keeps(stn.schedule(), &edges), "seed {seed}: the schedule breaks an edge");
+        } else {
+            assert_eq!(stn.schedule(), before, "seed {seed}");
+        }
+    }
+    assert!(outcomes.iter().all(|&count| count > 40), "{outcomes:?}");
+}
+
+#[test]
 fn settling_many_edges_at_once_agrees_with_floyd_warshall() {
     let mut num_inconsistent = 0;
     for seed in 1000..1600 {

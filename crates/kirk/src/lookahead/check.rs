@@ -106,6 +106,35 @@ impl Lookahead {
         Ok(true)
     }
 
+    /// Links each requirement that every plan has to the assertion that carries it, where windows leave one only; the
+    /// network is to be settled then. `false` if they leave none.
+    pub(super) fn link_what_windows_leave(&mut self, model: &Model) -> bool {
+        for position in 0..self.labels.len() {
+            let ask = self.labels[position];
+            if !model.conditions.labels[ask as usize].is_ask || self.witness[ask as usize] != NONE {
+                continue;
+            }
+            let is_left = |lookahead: &Self, tell: u32| {
+                !lookahead.is_active_label[tell as usize]
+                    || !link_edges(model, ask, tell).iter().any(|&edge| lookahead.is_refused(edge))
+            };
+            let mut left = model.conditions.supporters(ask).filter(|&tell| is_left(self, tell));
+            match (left.next(), left.next()) {
+                (None, _) => return false,
+                (Some(only), None) if self.is_active_label[only as usize] => {
+                    let tag = CONSEQUENCE + self.reasons.len() as Tag;
+                    self.reasons.push(Vec::new());
+                    for (from, to, weight) in link_edges(model, ask, only) {
+                        self.stn.push(from, to, weight, tag);
+                    }
+                    self.witness[ask as usize] = only;
+                }
+                _ => {}
+            }
+        }
+        true
+    }
+
     /// Whether two conflicting intervals fit in some order.
     fn check_pair(
         &mut self,
@@ -213,14 +242,9 @@ impl Lookahead {
             self.blame_label(model, tell);
             return Ok(Candidate::Impossible);
         }
-        let checkpoint = self.stn.checkpoint();
-        let mut result = Ok(());
-        for (from, to, weight) in edges {
-            // A contradiction with the first edge rests on the label's own choices.
-            result = result.and_then(|()| self.stn.insert(from, to, weight, HULL));
-        }
-        self.stn.rollback(checkpoint);
-        if self.is_ok(model, result)? {
+        // A contradiction with an edge of the link rests on the labels' own choices.
+        let admitted = self.stn.admits_all(&edges, HULL);
+        if self.is_ok(model, admitted)? {
             return Ok(Candidate::Possible);
         }
         self.blame_label(model, tell);

@@ -160,10 +160,39 @@ impl Lookahead {
         if !self.is_ok(model, settled)? {
             return Ok(false);
         }
+        if !self.link_by_windows(model, &order)? {
+            return Ok(false);
+        }
         self.guide.copy_as(&self.stn, HULL);
+        if !self.check_labels(model, structure, chosen, 0)? {
+            return Ok(false);
+        }
+        self.find_windows(model, &order)?;
+        Ok(true)
+    }
+
+    /// Links, as far as windows alone tell, what every plan has; each link narrows the windows of others.
+    fn link_by_windows(&mut self, model: &Model, order: &[PointId]) -> Result<bool, Overflow> {
+        loop {
+            self.find_windows(model, order)?;
+            let num_edges = self.stn.num_edges();
+            if !self.link_what_windows_leave(model) {
+                return Ok(false);
+            }
+            if self.stn.num_edges() == num_edges {
+                return Ok(true);
+            }
+            let settled = self.stn.settle(order);
+            if !self.is_ok(model, settled)? {
+                return Ok(false);
+            }
+        }
+    }
+
+    /// Bounds the times of all active nodes by what is known to hold.
+    fn find_windows(&mut self, model: &Model, order: &[PointId]) -> Result<(), Overflow> {
         let start = PointId(model.twin[model.start as usize]);
-        self.stn.sweep_distances(start, &order, &mut self.from_start, &mut self.to_start)?;
-        self.check_labels(model, structure, chosen, 0)
+        self.stn.sweep_distances(start, order, &mut self.from_start, &mut self.to_start)
     }
 
     /// Activates what an alternative brings. `false` if it has no plan; then `blamed` says why.
