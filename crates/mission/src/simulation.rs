@@ -5,21 +5,22 @@
 //! disturbances alone. The world that lasers see holds all rocks, declared obstacles exactly, and what disturbances
 //! put into it; planning knows only the map.
 
+mod trip;
+mod way;
+
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use executive::{Disturbance, Ends, Entry, Happening, Performance, Performer};
-use motion::{
-    Convoy, ConvoyMember, DriveEvent, DriveLimits, DriverSettings, FineWorld, LaserScan, Path, PlannerKind,
-    Query, ShortcutSettings, Surroundings, VehicleModel,
-};
+use motion::FineWorld;
 use num_traits::ToPrimitive as _;
 use rmpl::Rational;
 use serde::{Deserialize, Serialize};
-use terrain::{CellState, ConfigurationSpace, Obstacle, Terrain};
-use tpn::{ArcKind, EventEnd, EventRef, Network, OccurrenceId};
+use terrain::{Obstacle, Terrain};
+use tpn::{Network, OccurrenceId};
 
-use crate::driving::{self, Drive};
+use self::trip::Trip;
+use crate::driving::Drive;
 use crate::ground;
 use crate::planning::{self, Planned, Problem};
 use crate::snapshot::{Keyframe, VehicleMotion};
@@ -131,18 +132,6 @@ pub(crate) struct Driving<'run> {
 const LEAST_ROCK_M: f64 = 0.4;
 /// Durations are whole multiples of this fraction of a second.
 const TICKS_PER_SECOND: i64 = 10;
-/// Frames are kept this far apart, in metres and radians, and at least every so many steps.
-const FRAME_M: f64 = 1.0;
-const FRAME_RAD: f64 = 0.4;
-const FRAME_STEPS: u32 = 40;
-/// How far ahead a frame shows the way, in metres.
-const SHOWN_PLAN_M: f64 = 6.0;
-/// The leader aims to be there this share of its time early: what it meets costs time.
-const EARLY: f64 = 0.985;
-/// Vehicles give up after so many other ways, and after so many times the time that they were to take.
-const MOST_REROUTES: u32 = 12;
-const MOST_TIMES: f64 = 4.0;
-
 impl<'run> Driving<'run> {
     /// For one run of `problem` on `map`.
     pub(crate) fn new(
@@ -207,335 +196,6 @@ impl Performer for Driving<'_> {
     }
 }
 
-/// One traverse under way.
-struct Trip<'a> {
-    course: &'a Course,
-    map: &'a Terrain,
-    names: Vec<&'a str>,
-    models: Vec<&'static VehicleModel>,
-    maps: Vec<ConfigurationSpace>,
-    convoy: Convoy,
-    world: FineWorld,
-    /// What is still to happen to the world, with seconds from the start of the traverse; the earliest last.
-    coming: Vec<(f64, Obstacle)>,
-    /// Slow spells: the vehicle, the share of its speed, and from when to when in seconds.
-    slow: Vec<(usize, f64, [f64; 2])>,
-    /// Other vehicles under way: where they are over time, in mission units, and their radii.
-    others: Vec<(&'a SimulatedVehicle, f64)>,
-    start: f64,
-    unit_s: f64,
-    /// Least and greatest speed of the traverse.
-    speeds_mps: [f64; 2],
-    /// When it is to be there, in seconds from its start.
-    wanted_s: f64,
-    /// How far from the path's end its vertices are, in metres, with their events; the next first.
-    vertices: Vec<(f64, EventRef)>,
-    frames: Vec<Vec<DriveFrame>>,
-    steps_since_frame: Vec<u32>,
-    entries: Vec<(f64, String)>,
-    passes: Vec<(EventRef, f64)>,
-    reroutes: u32,
-    least_clearance_m: f64,
-}
-
-impl<'a> Trip<'a> {
-    fn new(driving: &'a Driving<'_>, course: &'a Course, network: &Network, start: Rational) -> Self {
-        let world = &driving.problem.program.world;
-        let unit_s = driving.problem.program.options.time_unit.seconds() as f64;
-        let start = number(start);
-        let drive = &course.drive;
-        let declared = |vehicle: u32| world.vehicles.get(vehicle as usize);
-        let model = |vehicle: &u32| {
-            let named = declared(*vehicle).and_then(|it| motion::vehicle_model(&it.model.text));
-            named.unwrap_or(course.route.model)
-        };
-        let models: Vec<&'static VehicleModel> = drive.vehicles.iter().map(model).collect();
-        let speeds_mps = [course.route.speed_mps.0, course.route.speed_mps.1].map(number);
-        let members: Vec<ConvoyMember> = drive
-            .vehicles
-            .iter()
-            .zip(driving::tracks_m(drive))
-            .zip(&models)
-            .map(|((vehicle, track), model)| {
-                let mut points = track.points_m;
-                let stand = driving.stand.get(vehicle).filter(|(place, _)| {
-                    points.first().is_some_and(|&first| traverse::segment_length_m(*place, first) < 20.0)
-                });
-                if let (Some(&(place, _)), Some(first)) = (stand, points.first_mut()) {
-                    *first = place;
-                }
-                let ahead = points
-                    .get(1)
-                    .zip(points.first())
-                    .map_or(0.0, |(to, from)| libm::atan2(to[1] - from[1], to[0] - from[0]));
-                let limits = DriveLimits::of(model);
-                ConvoyMember {
-                    path: Path::new(points),
-                    heading_rad: stand.map_or(ahead, |&(_, heading_rad)| heading_rad),
-                    settings: DriverSettings::new(limits, model.circumradius_m).at_most(speeds_mps[1]),
-                }
-            })
-            .collect();
-        let seconds = |time: Rational| (number(time) - start) * unit_s;
-        let mut coming: Vec<(f64, Obstacle)> = Vec::new();
-        let mut slow = Vec::new();
-        for disturbance in driving.disturbances {
-            match disturbance {
-                Disturbance::Obstacle { at, x, y, radius } => {
-                    coming.push((seconds(*at), Obstacle::Circle { center_m: [*x, *y], radius_m: *radius }));
-                }
-                Disturbance::VehicleSlow { vehicle, factor, from, until } => {
-                    let is_named = |it: &u32| declared(*it).is_some_and(|it| it.name.text == *vehicle);
-                    if let Some(index) = drive.vehicles.iter().position(is_named) {
-                        slow.push((
-                            index,
-                            number(*factor).clamp(0.0, 1.0),
-                            [seconds(*from), seconds(*until)],
-                        ));
-                    }
-                }
-                _ => {}
-            }
-        }
-        coming.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut fine = driving.world.clone();
-        let mut others = Vec::new();
-        for (&vehicle, &(place, _)) in &driving.stand {
-            if drive.vehicles.contains(&vehicle) {
-                continue;
-            }
-            let radius_m = crate::encounter::radius_m(world, vehicle);
-            let moving =
-                driving.drives.iter().rev().flat_map(|it| &it.vehicles).find(|it| it.vehicle == vehicle);
-            match moving.filter(|it| it.frames.last().is_some_and(|last| last.time > start)) {
-                Some(moving) => others.push((moving, radius_m)),
-                None => fine.add(&Obstacle::Circle { center_m: place, radius_m }),
-            }
-        }
-        let length_m = drive.path.length_m();
-        let mut along_m = 0.0;
-        let mut passed_m: Vec<f64> = Vec::new();
-        for (from, to) in drive.path.segments() {
-            along_m += traverse::segment_length_m(from, to);
-            passed_m.push(length_m - along_m);
-        }
-        let events = network.nodes.iter().flat_map(|node| &node.events).filter(|event| {
-            event.occurrence == drive.occurrence && matches!(event.end, EventEnd::PathVertex { .. })
-        });
-        let count = drive.vehicles.len();
-        Self {
-            names: drive
-                .vehicles
-                .iter()
-                .map(|&it| declared(it).map_or("?", |it| it.name.text.as_str()))
-                .collect(),
-            maps: models.iter().map(|model| drive.space.with_radius_m(model.circumradius_m)).collect(),
-            convoy: Convoy::new(members, drive.spacing_m, driving.problem.seed),
-            map: driving.map,
-            vertices: passed_m.into_iter().zip(events.copied()).collect(),
-            wanted_s: wanted_units(network, drive.occurrence) * unit_s,
-            frames: vec![Vec::new(); count],
-            steps_since_frame: vec![0; count],
-            world: fine,
-            course,
-            models,
-            coming,
-            slow,
-            others,
-            start,
-            unit_s,
-            speeds_mps,
-            entries: Vec::new(),
-            passes: Vec::new(),
-            reroutes: 0,
-            least_clearance_m: f64::INFINITY,
-        }
-    }
-
-    /// Drives until all vehicles are there; an error says who got stuck where.
-    fn drive(&mut self) -> Result<(), String> {
-        let most_s = MOST_TIMES * self.wanted_s + 600.0 * self.convoy.step_s();
-        self.record_all(&[]);
-        while !self.convoy.has_arrived() {
-            let time_s = self.convoy.time_s();
-            if time_s > most_s {
-                return Err(format!("{} after {:.0} times the time planned", self.stuck(0), MOST_TIMES));
-            }
-            let mut has_changed = false;
-            while let Some((_, obstacle)) = self.coming.pop_if(|(at_s, _)| *at_s <= time_s) {
-                self.world.add(&obstacle);
-                has_changed = true;
-            }
-            let now = self.start + time_s / self.unit_s;
-            let others: Vec<([f64; 2], f64)> = (self.others.iter())
-                .filter_map(|(vehicle, radius_m)| Some((vehicle.at(now)?.position_m, *radius_m)))
-                .collect();
-            let most: Vec<f64> = (0..self.models.len()).map(|index| self.greatest_speed_mps(index)).collect();
-            let around = Surroundings { world: &self.world, has_changed, maps: &self.maps, others: &others };
-            let steps = self.convoy.step(&around, self.pace_mps(), &most);
-            self.note_passes();
-            self.note_clearance();
-            for (vehicle, (event, _)) in steps.iter().enumerate() {
-                if matches!(event, DriveEvent::Blocked { .. } | DriveEvent::OffCorridor { .. }) {
-                    self.reroute(vehicle)?;
-                }
-            }
-            self.record_all(&steps);
-        }
-        Ok(())
-    }
-
-    /// The speed at which the leader is there when the traverse is to end, within the traverse's speeds.
-    fn pace_mps(&self) -> f64 {
-        let left_s = EARLY * self.wanted_s - self.convoy.time_s();
-        let [least, greatest] = self.speeds_mps;
-        if left_s <= self.convoy.step_s() {
-            return greatest;
-        }
-        (self.convoy.remaining_m() / left_s).clamp(least, greatest)
-    }
-
-    /// How fast a vehicle can be where it is: by the traverse, its slope, and what slows it down.
-    fn greatest_speed_mps(&self, index: usize) -> f64 {
-        let state = self.convoy.state(index);
-        let gradient = self.map.gradient_at(state.position_m).unwrap_or_default();
-        let grade = gradient[0] * libm::cos(state.heading_rad) + gradient[1] * libm::sin(state.heading_rad);
-        let model = self.models[index];
-        // Followers may catch up.
-        let share = if index == 0 { 1.0 } else { 1.25 };
-        let time_s = self.convoy.time_s();
-        let factor = (self.slow.iter())
-            .filter(|(vehicle, _, [from, until])| *vehicle == index && (*from..*until).contains(&time_s))
-            .map(|&(_, factor, _)| factor)
-            .fold(1.0, f64::min);
-        (share * self.speeds_mps[1]).min(model.speed_on_grade_mps(grade)) * factor
-    }
-
-    /// Looks for another way for a vehicle that can't go on: around what it has seen, to the end of its leg.
-    fn reroute(&mut self, vehicle: usize) -> Result<(), String> {
-        self.reroutes += 1;
-        let stuck = self.stuck(vehicle);
-        let Some(driver) = self.convoy.driver(vehicle).filter(|_| self.reroutes <= MOST_REROUTES) else {
-            return Err(stuck);
-        };
-        let here = driver.state().position_m;
-        let model = self.models[vehicle];
-        let mut occupancy = self.course.drive.space.occupancy().clone();
-        for point in driver.seen_m() {
-            occupancy.mark(&Obstacle::Circle { center_m: point, radius_m: 0.0 }, CellState::Obstacle);
-        }
-        let remaining_m = driver.length_m() - driver.progress_m();
-        let (path, ends_m) = (driver.path().clone(), &self.course.leg_ends_m);
-        let total_m = ends_m.last().copied().unwrap_or(0.0);
-        // The end of the leg under way, or for a follower of its whole way.
-        let rest_m = match vehicle {
-            0 => ends_m.iter().map(|end_m| total_m - end_m).find(|rest_m| *rest_m < remaining_m - 1.0),
-            _ => None,
-        };
-        let rest_m = rest_m.unwrap_or(0.0);
-        let after = rest_of(&path, path.length_m() - rest_m);
-        let Some(&goal_m) = after.first() else { return Err(stuck) };
-        let space = ConfigurationSpace::new(occupancy, model.circumradius_m);
-        let found = [0.3, model.margin_m, 0.0].iter().find_map(|room_m| {
-            let space = space.with_radius_m(model.circumradius_m + room_m);
-            let settings = motion::Settings {
-                seed: u64::from(self.reroutes),
-                greatest_samples: 20_000,
-                ..motion::Settings::of(PlannerKind::RrtConnect)
-            };
-            let start_m = nearest_free(&space, here)?;
-            let query = Query { start_m, goal_m };
-            let shortcut = ShortcutSettings::default();
-            let found = motion::find_shortest_path(&space, query, &settings, &shortcut, 3, &mut |_| false);
-            let mut way = found.path.ok()?;
-            if start_m != here {
-                way.points_m.insert(0, here);
-            }
-            Some(way)
-        });
-        let Some(mut way) = found else { return Err(stuck) };
-        let length_m = way.length_m();
-        way.points_m.extend(after.into_iter().skip(1));
-        let name = self.names[vehicle];
-        self.entries.push((
-            self.convoy.time_s(),
-            format!(
-                "{name} can't go on near ({:.0}, {:.0}) and takes another way of {length_m:.0} m",
-                here[0], here[1]
-            ),
-        ));
-        if vehicle == 0 {
-            // The others come after the leader.
-            for follower in 1..self.models.len() {
-                let own = self.convoy.state(follower).position_m;
-                let short_m = self.course.drive.spacing_m * follower as f64;
-                let mut points = vec![own];
-                points.extend(until(&way, way.length_m() - short_m));
-                self.convoy.follow(follower, Path::new(points));
-            }
-        }
-        self.convoy.follow(vehicle, way);
-        Ok(())
-    }
-
-    fn stuck(&self, vehicle: usize) -> String {
-        let [east, north] = self.convoy.state(vehicle).position_m;
-        format!("{} finds no way on near ({east:.0}, {north:.0})", self.names[vehicle])
-    }
-
-    fn note_passes(&mut self) {
-        let remaining_m = self.convoy.remaining_m();
-        while let Some(&(rest_m, event)) = self.vertices.first().filter(|(rest_m, _)| remaining_m <= *rest_m)
-        {
-            let _ = rest_m;
-            self.passes.push((event, self.convoy.time_s()));
-            self.vertices.remove(0);
-        }
-    }
-
-    fn note_clearance(&mut self) {
-        for (index, model) in self.models.iter().enumerate() {
-            let place = self.convoy.state(index).position_m;
-            let away_m = self.world.around(place, 12.0).distance_m(place) - model.circumradius_m;
-            self.least_clearance_m = self.least_clearance_m.min(away_m);
-        }
-    }
-
-    /// Keeps a frame of each vehicle that has moved or turned since its last one.
-    fn record_all(&mut self, steps: &[(DriveEvent, LaserScan)]) {
-        let is_over = self.convoy.has_arrived();
-        for index in 0..self.models.len() {
-            let Some(driver) = self.convoy.driver(index) else { continue };
-            let state = driver.state();
-            self.steps_since_frame[index] += 1;
-            let last = self.frames[index].last();
-            let is_due = last.is_none_or(|last| {
-                let turned = motion::heading_difference(last.heading_rad, state.heading_rad).abs();
-                traverse::segment_length_m(last.position_m, state.position_m) >= FRAME_M
-                    || turned >= FRAME_RAD
-                    || self.steps_since_frame[index] >= FRAME_STEPS
-            });
-            if !is_due && !is_over {
-                continue;
-            }
-            let single = |[east, north]: [f64; 2]| [east as f32, north as f32];
-            self.steps_since_frame[index] = 0;
-            let frame = DriveFrame {
-                time: self.start + self.convoy.time_s() / self.unit_s,
-                position_m: state.position_m,
-                heading_rad: state.heading_rad,
-                speed_mps: state.speed_mps,
-                rays_m: steps
-                    .get(index)
-                    .map(|(_, scan)| scan.points_m().map(single).collect())
-                    .unwrap_or_default(),
-                plan_m: driver.plan_m(SHOWN_PLAN_M).into_iter().map(single).collect(),
-            };
-            self.frames[index].push(frame);
-        }
-    }
-}
-
 /// Puts what was driven in place of even drives between the planned times.
 pub(crate) fn put_into(motions: &mut [VehicleMotion], drives: &[SimulatedDrive]) {
     const TICKS_PER_UNIT: f64 = 60_000.0;
@@ -560,51 +220,6 @@ pub(crate) fn put_into(motions: &mut [VehicleMotion], drives: &[SimulatedDrive])
             motion.keyframes.sort_by_key(|frame| frame.time);
         }
     }
-}
-
-/// The time that a traverse is to take in its plan's earliest schedule, in mission units, as far as its own bounds say.
-fn wanted_units(network: &Network, occurrence: OccurrenceId) -> f64 {
-    let own = network.occurrences[occurrence.index()].arc.map(|arc| network.arcs[arc.index()].lower);
-    let path: Rational = network
-        .arcs
-        .iter()
-        .filter(|arc| arc.kind == ArcKind::Path && arc.occurrence == Some(occurrence))
-        .map(|arc| arc.lower)
-        .sum();
-    number(own.unwrap_or_default().max(path))
-}
-
-/// The place itself, or the nearest free one around it: what a vehicle has come close to fills whole cells.
-fn nearest_free(space: &ConfigurationSpace, here: [f64; 2]) -> Option<[f64; 2]> {
-    const DIRECTIONS: u32 = 24;
-    const RING_M: f64 = 0.2;
-    if space.is_free(here) {
-        return Some(here);
-    }
-    (1..=20).flat_map(|ring| (0..DIRECTIONS).map(move |direction| (ring, direction))).find_map(
-        |(ring, direction)| {
-            let angle = std::f64::consts::TAU * f64::from(direction) / f64::from(DIRECTIONS);
-            let radius = RING_M * f64::from(ring);
-            let place = [here[0] + radius * libm::cos(angle), here[1] + radius * libm::sin(angle)];
-            space.is_free(place).then_some(place)
-        },
-    )
-}
-
-/// The corners of a path from a distance along it on, with the place at that distance.
-fn rest_of(path: &Path, from_m: f64) -> Vec<[f64; 2]> {
-    let Some((place, segment)) = path.point_at(from_m) else { return Vec::new() };
-    let mut points = vec![place];
-    points.extend(path.points_m.iter().skip(segment + 1).filter(|&&point| point != place));
-    points
-}
-
-/// The corners of a path up to a distance along it, with the place at that distance.
-fn until(path: &Path, to_m: f64) -> Vec<[f64; 2]> {
-    let Some((place, segment)) = path.point_at(to_m) else { return Vec::new() };
-    let mut points: Vec<[f64; 2]> = path.points_m.iter().take(segment + 1).copied().collect();
-    points.push(place);
-    points
 }
 
 fn number(value: Rational) -> f64 {

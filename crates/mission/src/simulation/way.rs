@@ -1,0 +1,37 @@
+//! Parts of ways that vehicles take when theirs is blocked.
+
+use motion::Path;
+use terrain::ConfigurationSpace;
+
+/// The place itself, or the nearest free one around it: what a vehicle has come close to fills whole cells.
+pub(super) fn nearest_free(space: &ConfigurationSpace, here: [f64; 2]) -> Option<[f64; 2]> {
+    const DIRECTIONS: u32 = 24;
+    const RING_M: f64 = 0.2;
+    if space.is_free(here) {
+        return Some(here);
+    }
+    (1..=20).flat_map(|ring| (0..DIRECTIONS).map(move |direction| (ring, direction))).find_map(
+        |(ring, direction)| {
+            let angle = std::f64::consts::TAU * f64::from(direction) / f64::from(DIRECTIONS);
+            let radius = RING_M * f64::from(ring);
+            let place = [here[0] + radius * libm::cos(angle), here[1] + radius * libm::sin(angle)];
+            space.is_free(place).then_some(place)
+        },
+    )
+}
+
+/// The corners of a path from a distance along it on, with the place at that distance.
+pub(super) fn rest_of(path: &Path, from_m: f64) -> Vec<[f64; 2]> {
+    let Some((place, segment)) = path.point_at(from_m) else { return Vec::new() };
+    let mut points = vec![place];
+    points.extend(path.points_m.iter().skip(segment + 1).filter(|&&point| point != place));
+    points
+}
+
+/// The corners of a path up to a distance along it, with the place at that distance.
+pub(super) fn until(path: &Path, to_m: f64) -> Vec<[f64; 2]> {
+    let Some((place, segment)) = path.point_at(to_m) else { return Vec::new() };
+    let mut points: Vec<[f64; 2]> = path.points_m.iter().take(segment + 1).copied().collect();
+    points.push(place);
+    points
+}
