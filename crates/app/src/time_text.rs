@@ -30,9 +30,9 @@ pub fn short_bound(value: Bound) -> String {
 /// Characters of an exact number that a table has room for.
 const LONGEST_EXACT: usize = 8;
 
-/// `earliest` to `latest`, as intervals are written.
+/// `earliest` to `latest`, as intervals are written; each short enough for a table.
 pub fn interval(earliest: Rational, latest: Bound) -> String {
-    format!("[{}, {}]", time(earliest), bound(latest))
+    format!("[{}, {}]", short(earliest), short_bound(latest))
 }
 
 /// What is between the two, short enough for a table; `∞` if the latest is.

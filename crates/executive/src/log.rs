@@ -40,7 +40,7 @@ pub enum Happening {
     },
     /// A new plan was made from here.
     Replanned {
-        /// The choices that changed, such as `D1: 0 → 1`.
+        /// The choices that changed, such as `D1 takes Carry(WEST) instead of Carry(EAST)`.
         changes: Vec<String>,
     },
     /// There is no plan from here: everything is stopped.

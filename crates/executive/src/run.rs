@@ -429,7 +429,7 @@ impl Run<'_> {
             Ok(found) => found,
             Err(reason) => return Ok(Some(reason)),
         };
-        let changes = changed_choices(&self.stage.plan, &plan);
+        let changes = changed_choices(&network, &self.stage.plan, &plan);
         self.write(Happening::Replanned { changes });
         let mut grid = self.world.times(&network);
         grid.push(self.performer.granularity());
@@ -454,19 +454,23 @@ impl Run<'_> {
 }
 
 fn shown(time: Rational) -> String {
-    rmpl::rational::display(time)
+    rmpl::rational::readable(time)
 }
 
-fn changed_choices(old: &Plan, new: &Plan) -> Vec<String> {
+fn changed_choices(network: &Network, old: &Plan, new: &Plan) -> Vec<String> {
     new.choices
         .iter()
         .filter_map(|choice| {
             let before = old.choices.iter().find(|before| before.decision == choice.decision);
             let decision = Network::decision_name(choice.decision);
+            let name = |alternative: u32| network.alternative_name(choice.decision, alternative);
+            let taken = name(choice.alternative);
             match before {
                 Some(before) if before.alternative == choice.alternative => None,
-                Some(before) => Some(format!("{decision}: {} → {}", before.alternative, choice.alternative)),
-                None => Some(format!("{decision}: {}", choice.alternative)),
+                Some(before) => {
+                    Some(format!("{decision} takes {taken} instead of {}", name(before.alternative)))
+                }
+                None => Some(format!("{decision} takes {taken}")),
             }
         })
         .collect()

@@ -82,8 +82,9 @@ pub fn execute(
     let plan = planned.planning.outcome.plans.first()?.clone();
     let world = World::new(disturbances);
     let courses = RefCell::new(Courses::default());
-    courses.borrow_mut().learn(problem, planned);
-    let mut driving = problem.ground.map(|(_, map)| Driving::new(problem, map, disturbances, &courses));
+    courses.borrow_mut().learn(problem.program, planned);
+    let mut driving =
+        problem.ground.map(|(_, map)| Driving::new(problem, map, disturbances, &courses, problem.seed));
     let (programs, _) = Programs::compile(problem.program);
     let mut as_planned = AsPlanned;
     let others: &mut dyn Performer = match &mut driving {
@@ -104,16 +105,18 @@ pub fn execute(
     Some(ran.map(|(outcome, replanned)| Ran { outcome, replanned, drives }))
 }
 
-/// Executes a plan of `problem` that was made ready for `world` and `performer`; no vehicle drives.
-pub fn execute_stage(
+/// Executes a plan of `problem` that was made ready for `world` and `performer`, which looks for its traverses in
+/// `courses` if vehicles drive.
+pub(crate) fn execute_stage(
     problem: &Problem<'_>,
     stage: Stage,
     world: &World,
     performer: &mut dyn Performer,
-    grounds: &mut Grounds,
-    paths: &mut Paths,
+    planner: (&mut Grounds, &mut Paths),
+    courses: Option<&RefCell<Courses>>,
 ) -> Result<Ran, PlanError> {
-    let mut replanner = WithPaths { problem, grounds, paths, replanned: Vec::new(), courses: None };
+    let (grounds, paths) = planner;
+    let mut replanner = WithPaths { problem, grounds, paths, replanned: Vec::new(), courses };
     let num_program_nodes = problem.network.nodes.len();
     let outcome = run_stage(stage, num_program_nodes, world, performer, &mut replanner)?;
     Ok(Ran { outcome, replanned: replanner.replanned, drives: Vec::new() })
@@ -219,7 +222,7 @@ impl Replanner for WithPaths<'_, '_> {
             Some(plan) => {
                 let found = (Arc::clone(&planned.network), plan.clone());
                 if let Some(courses) = self.courses {
-                    courses.borrow_mut().learn(self.problem, &planned);
+                    courses.borrow_mut().learn(self.problem.program, &planned);
                 }
                 self.replanned.push(planned);
                 Ok(found)

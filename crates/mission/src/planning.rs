@@ -19,6 +19,7 @@ use tpn::{ArcId, ArcKind, Network, OccurrenceId, Plan};
 use crate::driving::{self, Drive};
 use crate::encounter;
 use crate::ground::{FreeSpace, Grounds};
+use crate::programs;
 use crate::snapshot::{Encounter, Leg, MapKey, PathFigures, Planning, Traverse, Undrivable, VehicleMotion};
 use crate::traverse::{self, Paths, Preference, Route, Waypoint};
 
@@ -328,6 +329,9 @@ fn conclude(
     let motions = driving::motions(&drives);
     let encounters = encounter::encounters(&drives, &motions, world);
     warnings.extend(encounter::warnings(&encounters, &drives, &network, world));
+    if let Some(plan) = outcome.plans.first() {
+        warnings.extend(programs::overlaps(problem.program, &network, plan));
+    }
     let undrivable: Vec<Undrivable> = inserted
         .into_values()
         .filter_map(|traverse| match traverse.legs {

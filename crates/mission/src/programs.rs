@@ -11,9 +11,13 @@ use executive::model_based::{Estimation, Mind, Options, Run, StepInput, StepReco
 use executive::{Disturbance, Ends, Entry, Happening, Performance, Performer};
 use plant::{Belief, Model, Random, State};
 use rmpl::program::{Name, Program};
+use rmpl::rational::readable;
 use rmpl::{Bound, Code, Diagnostic, Rational};
 use smol_str::SmolStr;
-use tpn::{Network, OccurrenceId};
+use tpn::{Network, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Plan};
+
+use crate::review::TimeRange;
+use crate::review::distances::Distances;
 
 /// The programs of a mission, by the activity that runs each.
 #[derive(Clone, Debug, Default)]
@@ -112,6 +116,47 @@ impl Programs {
     }
 }
 
+/// The warning of two programs that may want the plant at once.
+pub const BUSY: Code = Code("W-PLANT");
+
+/// Warns of activities of `plan` whose control programs may run at the same time: all programs of a mission command one
+/// plant, one at a time.
+pub fn overlaps(program: &Program, network: &Network, plan: &Plan) -> Vec<Diagnostic> {
+    let runs = |activity: &SmolStr| {
+        program.primitives.iter().any(|it| it.name.text == *activity && it.runs.is_some())
+    };
+    let is_selected =
+        |occurrence: &Occurrence| plan.windows.get(occurrence.start.index()).is_some_and(Option::is_some);
+    let running: Vec<&Occurrence> = (network.occurrences.iter())
+        .filter(|it| it.kind == OccurrenceKind::Primitive && runs(&it.activity) && is_selected(it))
+        .collect();
+    let pairs: Vec<[&Occurrence; 2]> = (running.iter().enumerate())
+        .flat_map(|(index, &second)| running[..index].iter().map(move |&first| [first, second]))
+        .collect();
+    if pairs.is_empty() {
+        return Vec::new();
+    }
+    let Some(mut distances) = Distances::new(network, plan) else { return Vec::new() };
+    let gaps: Vec<(NodeId, NodeId)> =
+        pairs.iter().flat_map(|[a, b]| [(a.end, b.start), (b.end, a.start)]).collect();
+    let gaps = distances.between(&gaps);
+    let may_overlap = |gaps: &[Option<TimeRange>]| {
+        gaps.iter().all(|gap| gap.is_none_or(|gap| gap.least < Rational::default()))
+    };
+    (pairs.iter().zip(gaps.chunks(2)))
+        .filter(|(_, gaps)| may_overlap(gaps))
+        .filter_map(|([first, second], _)| {
+            let message = format!(
+                "{} and {} may run at the same time, but their programs command one plant: the one that starts second \
+                 would find it taken, and the mission would be stopped",
+                first.name, second.name
+            );
+            let hint = "put one after the other, or run one program that does both";
+            Some(Diagnostic::warning(BUSY, second.span?, message).with_hint(hint))
+        })
+        .collect()
+}
+
 fn named(model: &Model, component: &str, mode: &str) -> Option<(plant::ComponentId, u8)> {
     let id = model.component_named(component)?;
     Some((id, model.mode_named(id, mode)?))
@@ -172,7 +217,8 @@ impl<'run> ProgramPerformer<'run> {
         if let Some((other, until)) = &self.control
             && until.is_none_or(|until| until > start)
         {
-            let reason = format!("the plant is controlled by {other}");
+            let until = until.map_or_else(String::new, |until| format!(" until {}", readable(until)));
+            let reason = format!("the program of {other} commands the plant{until}");
             return Performance { ends: Ends::Never(reason), ..Performance::default() };
         }
         let step = self.programs.step;

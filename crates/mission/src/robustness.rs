@@ -25,6 +25,48 @@ pub struct Uncertainty {
     pub others: Others,
     /// Whether components fail by chance while control programs run.
     pub faults: Faults,
+    /// Whether vehicles drive.
+    pub traverses: Traverses,
+    /// What vehicles that drive meet and the map does not show.
+    pub rocks: Rocks,
+}
+
+/// Where the durations of traverses come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Traverses {
+    /// They are drawn as those of other activities are, between the path at full speed and the upper bound.
+    #[default]
+    Drawn,
+    /// Vehicles drive in simulation, past rocks and with noise in what they see; that takes far longer.
+    Driven,
+}
+
+/// Rocks that lie about a path.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Rocks {
+    /// At most so many for each traverse; any number up to it is equally likely.
+    pub most: u32,
+    /// The least and the greatest radius in metres, all between them equally likely.
+    pub radius: [f64; 2],
+    /// At most so far from the path to its sides, in metres.
+    pub aside: f64,
+}
+
+impl Default for Rocks {
+    fn default() -> Self {
+        Self { most: 0, radius: [0.3, 1.0], aside: 2.0 }
+    }
+}
+
+impl Rocks {
+    /// Whether they can be drawn.
+    pub fn is_sound(&self) -> bool {
+        let [least, greatest] = self.radius;
+        let is_length = |length: f64| (0.0..1e6).contains(&length);
+        is_length(least) && is_length(greatest) && least <= greatest && is_length(self.aside)
+    }
 }
 
 /// How long the activities take that nothing is said about.

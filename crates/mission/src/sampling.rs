@@ -1,8 +1,12 @@
 //! One run with chance: what is drawn, and what it adds to the tally.
 
+use std::cell::RefCell;
 use std::sync::Arc;
 
-use executive::{AsPlanned, Disturbance, Ending, Entry, Happening, PlanError, RunOutcome, Stage, World};
+use executive::{
+    AsPlanned, Disturbance, Ending, Entry, Happening, Performer, PlanError, RunOutcome, Stage, World,
+};
+use motion::Path;
 use plant::Random;
 use rmpl::program::{LabelMode, Program};
 use rmpl::{Bound, Rational};
@@ -14,8 +18,10 @@ use crate::ground::Grounds;
 use crate::planning::{Planned, Problem};
 use crate::programs::{ProgramPerformer, Programs};
 use crate::robustness::{
-    Breaks, Distribution, Faults, Incident, Others, RobustnessSettings, Tally, Time, Uncertainty,
+    Breaks, Distribution, Faults, Incident, Others, RobustnessSettings, Rocks, Tally, Time, Traverses,
+    Uncertainty,
 };
+use crate::simulation::{self, Courses, Driving};
 use crate::traverse::Paths;
 
 /// Draws are multiples of this part of a unit.
@@ -30,6 +36,9 @@ pub struct Sampler {
     withdrawn: Vec<(SmolStr, Incident)>,
     programs: Programs,
     faults: Faults,
+    /// The traverses that are driven; none if their durations are drawn.
+    courses: Option<Courses>,
+    rocks: Rocks,
 }
 
 impl Sampler {
@@ -42,10 +51,16 @@ impl Sampler {
         let plan = planned.planning.outcome.plans.first()?;
         let network = &planned.network;
         let (programs, _) = Programs::compile(program);
-        let durations = durations(network, uncertainty, &programs);
+        let courses = (uncertainty.traverses == Traverses::Driven).then(|| {
+            let mut courses = Courses::default();
+            courses.learn(program, planned);
+            courses
+        });
+        let durations = durations(network, uncertainty, &programs, courses.as_ref());
         let late = incidents(network, &uncertainty.late);
         let withdrawn = incidents(network, &uncertainty.withdrawn);
         let mut grid = vec![Rational::new(1, PER_UNIT), programs.step()];
+        grid.extend(courses.as_ref().map(|_| simulation::granularity(program)));
         let incidents = late.iter().chain(&withdrawn).map(|(_, incident)| incident.at);
         grid.extend(durations.iter().map(|&(_, it)| it).chain(incidents).map(least));
         let stage = Stage::new(Arc::clone(network), plan.clone(), &grid);
@@ -58,6 +73,8 @@ impl Sampler {
             withdrawn,
             programs,
             faults: uncertainty.faults,
+            courses,
+            rocks: uncertainty.rocks,
         }))
     }
 
@@ -71,14 +88,29 @@ impl Sampler {
         paths: &mut Paths,
         tally: &mut Tally,
     ) -> Result<(), PlanError> {
-        let world = World::new(&self.draw(settings.seed, number));
+        let disturbances = self.draw(settings.seed, number);
+        let world = World::new(&disturbances);
         // Faults are drawn apart from the rest, so that they do not change it.
         let seed = Random::new(run_seed(settings.seed, number) ^ FAULTS).next_bits();
-        let seed = (self.faults == Faults::ByChance).then_some(seed);
-        let mut others = AsPlanned;
-        let mut performer = ProgramPerformer::new(&self.programs, &[], seed, &mut others);
-        let ran =
-            execution::execute_stage(problem, self.stage.clone(), &world, &mut performer, grounds, paths)?;
+        let fault_seed = (self.faults == Faults::ByChance).then_some(seed);
+        let courses = self.courses.clone().map(RefCell::new);
+        let mut driving = courses.as_ref().zip(problem.ground).map(|(courses, (_, map))| {
+            Driving::new(problem, map, &disturbances, courses, run_seed(settings.seed, number))
+        });
+        let mut as_planned = AsPlanned;
+        let others: &mut dyn Performer = match &mut driving {
+            Some(driving) => driving,
+            None => &mut as_planned,
+        };
+        let mut performer = ProgramPerformer::new(&self.programs, &[], fault_seed, others);
+        let ran = execution::execute_stage(
+            problem,
+            self.stage.clone(),
+            &world,
+            &mut performer,
+            (grounds, paths),
+            courses.as_ref(),
+        )?;
         self.count(&ran, number, tally);
         Ok(())
     }
@@ -100,6 +132,10 @@ impl Sampler {
             if let Some(at) = incident.draw(&mut random) {
                 drawn.push(Disturbance::Withdrawn { condition: condition.clone(), at });
             }
+        }
+        let ways = self.courses.iter().flat_map(Courses::ways);
+        for (path, place_ends_m) in ways {
+            drawn.extend(self.rocks.draw(path, place_ends_m, &mut random));
         }
         drawn
     }
@@ -187,6 +223,7 @@ fn durations(
     network: &Network,
     uncertainty: &Uncertainty,
     programs: &Programs,
+    driven: Option<&Courses>,
 ) -> Vec<(SmolStr, Distribution)> {
     let primitives = network.occurrences.iter().enumerate();
     primitives
@@ -198,6 +235,7 @@ fn durations(
             let distribution = match (named, uncertainty.others) {
                 (Some(named), _) => *named,
                 (None, Others::Planned) => return None,
+                (None, _) if driven.is_some_and(|it| it.has(OccurrenceId::from_index(index))) => return None,
                 (None, Others::Uniform) => by_bounds(network, OccurrenceId::from_index(index))?,
             };
             Some((occurrence.name.clone(), distribution))
@@ -296,6 +334,34 @@ impl Incident {
         let chance = unit(random);
         let at = self.at.draw(random);
         (chance < self.probability).then_some(at)
+    }
+}
+
+impl Rocks {
+    /// Rocks about a path, none of them on a place that the path leads to. As much is drawn for each that might lie there as
+    /// for one that does.
+    fn draw(&self, path: &Path, place_ends_m: &[f64], random: &mut Random) -> Vec<Disturbance> {
+        const ROOM_M: f64 = 3.0;
+        let count = random.below(u64::from(self.most) + 1);
+        let length_m = path.length_m();
+        let mut rocks = Vec::new();
+        for number in 0..u64::from(self.most) {
+            let along_m = unit(random) * length_m;
+            let aside_m = (2.0 * unit(random) - 1.0) * self.aside;
+            let [least, greatest] = self.radius;
+            let radius = least + (greatest - least) * unit(random);
+            let mut places_m = place_ends_m.iter().copied().chain([0.0]);
+            if number >= count || places_m.any(|end_m| (end_m - along_m).abs() < radius + ROOM_M) {
+                continue;
+            }
+            let Some((place, segment)) = path.point_at(along_m) else { continue };
+            let Some((from, to)) = path.segments().nth(segment) else { continue };
+            let (east, north) = (to[0] - from[0], to[1] - from[1]);
+            let length = (east * east + north * north).sqrt().max(1e-9);
+            let (x, y) = (place[0] - north / length * aside_m, place[1] + east / length * aside_m);
+            rocks.push(Disturbance::Obstacle { at: Rational::default(), x, y, radius });
+        }
+        rocks
     }
 }
 

@@ -10,11 +10,13 @@ mod way;
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use executive::{Disturbance, Ends, Entry, Happening, Performance, Performer};
 use motion::FineWorld;
 use num_traits::ToPrimitive as _;
 use rmpl::Rational;
+use rmpl::program::Program;
 use serde::{Deserialize, Serialize};
 use terrain::{Obstacle, Terrain};
 use tpn::{Network, OccurrenceId};
@@ -86,17 +88,17 @@ struct Course {
 }
 
 /// The traverses of the plans of a run, as they are known so far.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Courses {
-    known: BTreeMap<OccurrenceId, Course>,
+    known: BTreeMap<OccurrenceId, Arc<Course>>,
 }
 
 impl Courses {
     /// Takes in the paths of a plan.
-    pub(crate) fn learn(&mut self, problem: &Problem<'_>, planned: &Planned) {
+    pub(crate) fn learn(&mut self, program: &Program, planned: &Planned) {
         let Some(plan) = planned.planning.outcome.plans.first() else { return };
-        let world = &problem.program.world;
-        for route in traverse::routes(&planned.network, problem.program, plan) {
+        let world = &program.world;
+        for route in traverse::routes(&planned.network, program, plan) {
             let is_its = |traverse: &&crate::Traverse| traverse.occurrence == route.occurrence;
             let traverse = planned.traverses.iter().find(is_its);
             let space = planned.spaces.iter().find(|(occurrence, _)| *occurrence == route.occurrence);
@@ -109,10 +111,25 @@ impl Courses {
                 leg_ends_m.push(along_m);
             }
             if let Some(drive) = planning::drive(world, &planned.network, plan, &route, path, space) {
-                self.known.insert(route.occurrence, Course { drive, route, leg_ends_m });
+                self.known.insert(route.occurrence, Arc::new(Course { drive, route, leg_ends_m }));
             }
         }
     }
+
+    /// Whether this traverse is known.
+    pub(crate) fn has(&self, occurrence: OccurrenceId) -> bool {
+        self.known.contains_key(&occurrence)
+    }
+
+    /// The ways that are driven, each with how far along it the places that it leads to are, in metres.
+    pub(crate) fn ways(&self) -> impl Iterator<Item = (&motion::Path, &[f64])> {
+        self.known.values().map(|course| (&course.drive.path, course.leg_ends_m.as_slice()))
+    }
+}
+
+/// What all durations of drives are multiples of, in mission units.
+pub(crate) fn granularity(program: &Program) -> Rational {
+    Rational::new(1, program.options.time_unit.seconds() * TICKS_PER_SECOND)
 }
 
 /// Drives traverses when the executive starts them.
@@ -121,6 +138,8 @@ pub(crate) struct Driving<'run> {
     map: &'run Terrain,
     disturbances: &'run [Disturbance],
     courses: &'run RefCell<Courses>,
+    /// Seeds the noise of lasers.
+    seed: u64,
     /// What is there from the beginning.
     world: FineWorld,
     /// Where vehicles are that have driven, with their headings.
@@ -139,11 +158,13 @@ impl<'run> Driving<'run> {
         map: &'run Terrain,
         disturbances: &'run [Disturbance],
         courses: &'run RefCell<Courses>,
+        seed: u64,
     ) -> Self {
         let declared = &problem.program.world.obstacles;
         let obstacles: Vec<Obstacle> = declared.iter().map(|it| ground::obstacle(&it.shape)).collect();
         let world = FineWorld::new(map, &obstacles, LEAST_ROCK_M);
-        Self { problem, map, disturbances, courses, world, stand: BTreeMap::new(), drives: Vec::new() }
+        let (stand, drives) = (BTreeMap::new(), Vec::new());
+        Self { problem, map, disturbances, courses, seed, world, stand, drives }
     }
 
     /// What was driven, in order of departure.
@@ -155,9 +176,9 @@ impl<'run> Driving<'run> {
 impl Performer for Driving<'_> {
     fn start(&mut self, network: &Network, occurrence: OccurrenceId, start: Rational) -> Performance {
         let courses = self.courses.borrow();
-        let Some(course) = courses.known.get(&occurrence) else { return Performance::default() };
+        let Some(course) = courses.known.get(&occurrence).cloned() else { return Performance::default() };
         let name = network.occurrences[occurrence.index()].name.clone();
-        let mut trip = Trip::new(self, course, network, start);
+        let mut trip = Trip::new(self, &course, network, start);
         let reached = trip.drive();
         if let Err(reason) = &reached {
             trip.entries.push((trip.convoy.time_s(), format!("{reason}, and gives up")));
@@ -192,7 +213,7 @@ impl Performer for Driving<'_> {
     }
 
     fn granularity(&self) -> Rational {
-        Rational::new(1, self.problem.program.options.time_unit.seconds() * TICKS_PER_SECOND)
+        granularity(self.problem.program)
     }
 }
 

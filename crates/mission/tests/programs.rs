@@ -169,3 +169,54 @@ fn what_is_wrong_in_a_control_block_is_told_in_its_place() {
     let found = rmpl::parse(&broken).diagnostics();
     assert!(found.iter().any(|found| broken.get(found.span.range()) == Some("PARALELL")), "{found:?}");
 }
+
+/// A second primitive that runs the same program, beside the first one or after it.
+fn two_programs(arrive: &str) -> String {
+    let source = ORBIT.replacen(
+        "primitive Insert()[6,16] runs OrbitInsert;",
+        "primitive Insert()[6,16] runs OrbitInsert;\nprimitive Survey()[4,30] runs OrbitInsert;",
+        1,
+    );
+    let (before, rest) = source.split_once("Arrive() = {").expect("it arrives");
+    let (_, after) = rest.split_once("scenario Encounter").expect("it has a scenario");
+    format!("{before}Arrive() = {{ {arrive} }}\nscenario Encounter{after}")
+}
+
+fn plan_warnings(source: &str) -> Vec<String> {
+    let program = rmpl::parse(source).program();
+    let network = mission::compile(&program, &Goal::Default, &mut Vec::new()).expect("it compiles");
+    let problem = Problem {
+        network: &Arc::new(network),
+        program: &program,
+        ground: None,
+        options: kirk::Options::default(),
+        seed: 0,
+        facts: None,
+    };
+    let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
+    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
+    planned.warnings.iter().map(|it| format!("{} {}", it.code.0, it.message)).collect()
+}
+
+#[test]
+fn programs_that_may_run_at_once_are_warned_of_and_the_second_one_stops_the_mission() {
+    let beside = two_programs("{ Insert(), Survey() }");
+    let [warning] = &plan_warnings(&beside)[..] else { panic!("{:?}", plan_warnings(&beside)) };
+    assert!(warning.starts_with("W-PLANT Insert#1 and Survey#1 may run at the same time"), "{warning}");
+    let (_, ran) = execute(&beside, &[]);
+    assert_eq!(ran.outcome.ending, Ending::Stopped);
+    let reason = ran.outcome.log.iter().find_map(|entry| match &entry.happening {
+        Happening::Violation { reason, .. } => Some(reason.as_str()),
+        _ => None,
+    });
+    assert!(
+        reason.is_some_and(|it| it.contains("the program of Insert#1 commands the plant until 8")),
+        "{reason:?}"
+    );
+}
+
+#[test]
+fn programs_one_after_the_other_are_not_warned_of() {
+    assert_eq!(plan_warnings(&two_programs("Insert(); Survey()")), Vec::<String>::new());
+    assert_eq!(plan_warnings(ORBIT), Vec::<String>::new());
+}

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use mission::planning::{self, Planned, Problem};
-use mission::robustness::{Distribution, Faults, Incident, Others, Time};
+use mission::robustness::{Distribution, Faults, Incident, Others, Rocks, Time, Traverses};
 use mission::sampling::Sampler;
 use mission::{Goal, Grounds, Paths, RobustnessSettings, Tally, Uncertainty};
 use rmpl::Rational;
@@ -164,4 +164,46 @@ fn uncertainty_is_read_from_json() {
 
 const fn time(units: i64) -> Time {
     Time(Rational::new_raw(units, 1))
+}
+
+const DETOUR: &str = include_str!("../../../assets/missions/detour.rmpl");
+
+/// Runs of the detour mission in which the rover drives.
+fn driven(rocks: Rocks, numbers: std::ops::Range<u64>) -> Tally {
+    let mission = Mission::read(DETOUR);
+    let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
+    let (ground, _) = grounds.resolve(&mission.program.world);
+    let problem = Problem { ground: ground.as_ref().map(|(key, map)| (key, map)), ..mission.problem() };
+    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
+    let uncertainty = Uncertainty {
+        others: Others::Planned,
+        traverses: Traverses::Driven,
+        rocks,
+        ..Uncertainty::default()
+    };
+    let settings = settings(numbers.end, uncertainty);
+    let sampler = Sampler::new(&mission.program, &planned, &settings.uncertainty);
+    let sampler = sampler.expect("there is a plan").expect("its times fit");
+    let mut tally = Tally::default();
+    for number in numbers {
+        sampler
+            .run(&problem, &settings, number, &mut grounds, &mut paths, &mut tally)
+            .expect("its times fit");
+    }
+    tally
+}
+
+/// The path at full speed and the hand-over take 19.4385 minutes; a vehicle that really drives may take longer.
+#[test]
+fn vehicles_that_drive_take_as_long_as_the_way_and_its_rocks_make_them() {
+    let free = driven(Rocks::default(), 0..2);
+    assert_eq!(free.succeeded, 2);
+    let (least, most) = free.end_least.zip(free.end_most).expect("they end");
+    assert!(19_438 <= least && most < 21_500, "{least} to {most}");
+    let rocks = Rocks { most: 12, radius: [0.5, 1.0], aside: 1.0 };
+    let among = driven(rocks, 0..2);
+    assert!(among.end_most > free.end_most, "{:?} after {:?}", among.end_most, free.end_most);
+    let mut shards = driven(rocks, 1..2);
+    shards.merge(&driven(rocks, 0..1));
+    assert_eq!(shards, among);
 }

@@ -1,7 +1,7 @@
 //! The tables of a report: one for each section of the review.
 
 use mission::Robustness;
-use mission::review::{EventReview, Line, Record, Review, Section, Status, short_time};
+use mission::review::{Alternative, EventReview, Line, Record, Review, Section, Status, short_time};
 use rmpl::Bound;
 
 use crate::escape::escaped;
@@ -134,14 +134,23 @@ fn choices(review: &Review) -> String {
             vec![
                 if is_first { status(choice.line.status) } else { String::new() },
                 if is_first { escaped(&choice.name) } else { String::new() },
-                alternative.number.to_string(),
-                format!("<code>{}</code>", escaped(&alternative.text)),
+                alternative_cell(alternative),
                 escaped(&alternative.fate.sentence()),
                 if is_first { place(&choice.line) } else { String::new() },
             ]
         })
     });
-    table(&["", "Choice", "#No.", "Alternative", "Taken, or why not", "Where"], rows)
+    table(&["", "Choice", "Alternative", "Taken, or why not", "Where"], rows)
+}
+
+/// Its name, and its text where that says more.
+fn alternative_cell(alternative: &Alternative) -> String {
+    let (name, text) = (escaped(&alternative.name), escaped(&alternative.text));
+    if text.starts_with(name.trim_end_matches(')')) {
+        format!("<code>{text}</code>")
+    } else {
+        format!("{name}<br><code class=\"muted\">{text}</code>")
+    }
 }
 
 fn links(review: &Review) -> String {

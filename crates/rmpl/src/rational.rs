@@ -52,6 +52,22 @@ pub fn display(time: Rational) -> String {
     decimal(time).unwrap_or_else(|| format!("{}/{}", time.numer(), time.denom()))
 }
 
+/// `time` for people: exact where three decimals are enough, otherwise rounded to the thousandth and marked by `≈`.
+pub fn readable(time: Rational) -> String {
+    if let Some(exact) =
+        decimal(time).filter(|exact| exact.split('.').nth(1).is_none_or(|part| part.len() <= 3))
+    {
+        return exact;
+    }
+    let (numerator, denominator) = (i128::from(*time.numer()), i128::from(*time.denom()));
+    // To the nearest: half a thousandth is added before rounding down.
+    let thousandths = (2000 * numerator + denominator).div_euclid(2 * denominator);
+    let sign = if thousandths < 0 { "-" } else { "" };
+    let magnitude = thousandths.unsigned_abs();
+    let digits = format!("{sign}{}.{:03}", magnitude / 1000, magnitude % 1000);
+    format!("≈ {}", digits.trim_end_matches('0').trim_end_matches('.'))
+}
+
 /// `time` as an exact decimal, when its denominator has no prime factors but 2 and 5.
 pub fn decimal(time: Rational) -> Option<String> {
     let (numerator, denominator) = (i128::from(*time.numer()), i128::from(*time.denom()));
@@ -74,6 +90,16 @@ pub fn decimal(time: Rational) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn people_read_at_most_three_decimals() {
+        assert_eq!(readable(Rational::new(819, 2)), "409.5");
+        assert_eq!(readable(Rational::new(108_289, 7500)), "≈ 14.439");
+        assert_eq!(readable(Rational::new(-1, 3)), "≈ -0.333");
+        assert_eq!(readable(Rational::new(13_895_905, 100_000)), "≈ 138.959");
+        assert_eq!(readable(Rational::new(29_999_999, 10_000_000)), "≈ 3");
+        assert_eq!(readable(Rational::from(7)), "7");
+    }
 
     #[test]
     fn a_time_is_shown_as_an_exact_decimal_or_as_a_fraction() {

@@ -2,6 +2,7 @@
 //!
 //! Nothing here decides what a plan is; planning is `kirk`, checking is `verify`.
 
+mod alternative;
 pub mod compile;
 pub mod generate;
 pub mod interchange;

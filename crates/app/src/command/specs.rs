@@ -600,6 +600,17 @@ pub static COMMANDS: &[CommandSpec] = &[
     ),
     when(
         plain(
+            "terrain.appear",
+            "Let an obstacle appear in the run",
+            Group::Terrain,
+            &[],
+            Scope::Everywhere,
+            |_| Command::Terrain(TerrainCommand::Take(Tool::Appear)),
+        ),
+        with_run,
+    ),
+    when(
+        plain(
             "terrain.polygon",
             "Place an obstacle with corners",
             Group::Terrain,

@@ -28,6 +28,8 @@ pub enum Tool {
     Location,
     /// They declare a round obstacle; a drag gives its radius.
     Circle,
+    /// They make a round obstacle appear in the run that is watched; a drag gives its radius.
+    Appear,
     /// They add a corner of an obstacle.
     Polygon,
     /// They declare a vehicle of this model.
@@ -42,6 +44,7 @@ impl Tool {
             Self::Measure => "measure",
             Self::Location => "location",
             Self::Circle => "circle",
+            Self::Appear => "appear",
             Self::Polygon => "polygon",
             Self::Vehicle(_) => "vehicle",
         }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use anyhow::{Context as _, bail, ensure};
 use mission::planning::{self, Problem};
+use mission::robustness::Traverses;
 use mission::sampling::Sampler;
 use mission::{Paths, RobustnessSettings, Tally, Uncertainty};
 use serde::{Deserialize, Serialize};
@@ -41,6 +42,9 @@ pub struct Args {
     /// What is left to chance; docs/robustness.md describes it.
     #[arg(long, value_name = "U.json")]
     uncertainty: Option<PathBuf>,
+    /// Lets vehicles drive their traverses in simulation instead of drawing how long they take: far slower.
+    #[arg(long)]
+    drive: bool,
     /// For whom the answer is; json is one line.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -132,15 +136,19 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
         print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
         return Ok(Err(exit(WRONG)));
     };
-    let uncertainty = match &args.uncertainty {
+    let mut uncertainty = match &args.uncertainty {
         Some(file) => read_json::<Uncertainty>(file)?,
         None => Uncertainty::default(),
     };
+    if args.drive {
+        uncertainty.traverses = Traverses::Driven;
+    }
     let unknown = uncertainty.unknown_names(&network);
     ensure!(unknown.is_empty(), "no activity or condition is called {}", unknown.join(", "));
     if let Some(name) = uncertainty.unsound() {
         bail!("what is said of {name} is no distribution: its numbers must not fall, and not be below 0");
     }
+    ensure!(uncertainty.rocks.is_sound(), "rocks have lengths from 0 on, and the least radius comes first");
     let mut grounds = mission::Grounds::default();
     let mut paths = Paths::default();
     let (ground, _) = grounds.resolve(&program.world);

@@ -14,6 +14,8 @@ use crate::snapshot::Undrivable;
 pub struct Alternative {
     /// Its number, from 0.
     pub number: u32,
+    /// What it does, by name: see [`Network::alternative_name`].
+    pub name: String,
     /// How its text begins.
     pub text: String,
     /// Where it is written.
@@ -48,7 +50,7 @@ impl Fate {
             Self::Taken => "taken".to_owned(),
             Self::Impossible { reason, .. } => format!("impossible: {reason}"),
             Self::AlsoPossible => {
-                "also possible; the alternative that comes first in the text is preferred".to_owned()
+                "not needed: also possible, but the plan takes the first in the text that works".to_owned()
             }
             Self::NotExamined => "not examined: too large a search for a review".to_owned(),
         }
@@ -98,7 +100,8 @@ impl<'input> Examiner<'input> {
                 } else {
                     self.fate(Choice { alternative: number, ..choice }, stop)
                 };
-                Alternative { number, text: self.beginning(span), span, fate }
+                let name = self.network.alternative_name(choice.decision, number);
+                Alternative { number, name, text: self.beginning(span), span, fate }
             })
             .collect()
     }
@@ -161,7 +164,12 @@ fn impossible(outcome: &Outcome, other: Choice) -> Fate {
         takes(&reason.choices, other.decision).is_none_or(|alternative| alternative == other.alternative)
     });
     match reason {
-        Some(reason) => Fate::Impossible { reason: reason.message.clone(), spans: reason.spans.clone() },
+        Some(reason) => {
+            // That it is about this alternative goes without saying.
+            let itself = format!("with {}={}: ", Network::decision_name(other.decision), other.alternative);
+            let message = reason.message.strip_prefix(&itself).unwrap_or(&reason.message);
+            Fate::Impossible { reason: message.to_owned(), spans: reason.spans.clone() }
+        }
         None => Fate::Impossible { reason: "there is no plan with it".to_owned(), spans: Vec::new() },
     }
 }

@@ -10,20 +10,20 @@ use tpn::{Network, NodeId, Plan};
 use super::TimeRange;
 
 /// The distances of one plan.
-pub(super) struct Distances {
+pub(crate) struct Distances {
     network: PlanNetwork,
 }
 
 impl Distances {
     /// `None` where times do not fit, which planning would already have said.
-    pub(super) fn new(network: &Network, plan: &Plan) -> Option<Self> {
+    pub(crate) fn new(network: &Network, plan: &Plan) -> Option<Self> {
         PlanNetwork::new(network, plan, None).ok().map(|network| Self { network })
     }
 
     /// For each pair, how much later the second event is than the first; `None` if nothing bounds it from below.
     ///
     /// Takes one search of the plan's constraints for each different event, however many pairs share it.
-    pub(super) fn between(&mut self, pairs: &[(NodeId, NodeId)]) -> Vec<Option<TimeRange>> {
+    pub(crate) fn between(&mut self, pairs: &[(NodeId, NodeId)]) -> Vec<Option<TimeRange>> {
         let mut wanted: BTreeMap<NodeId, Vec<(NodeId, usize, bool)>> = BTreeMap::new();
         for (index, &(from, to)) in pairs.iter().enumerate() {
             wanted.entry(from).or_default().push((to, index, true));

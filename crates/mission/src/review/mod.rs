@@ -4,7 +4,7 @@
 //! seed, and [`content_hash`] names them: a review with another hash is stale.
 
 mod alternatives;
-mod distances;
+pub(crate) mod distances;
 mod hash;
 mod lines;
 mod plan_lines;
@@ -177,14 +177,11 @@ impl std::fmt::Display for TimeRange {
     }
 }
 
-/// A time for people: exact where that is short, otherwise to the thousandth and marked as such.
+/// A time for people: exact where three decimals are enough, otherwise rounded to the thousandth and marked by `~`.
 pub fn short_time(time: Bound) -> String {
-    let exact = time.to_string();
     match time {
-        Bound::Finite(time) if exact.contains('/') || exact.len() > 9 => {
-            format!("~{:.3}", *time.numer() as f64 / *time.denom() as f64)
-        }
-        _ => exact,
+        Bound::Finite(time) => rmpl::rational::readable(time).replace("≈ ", "~"),
+        Bound::Infinite => time.to_string(),
     }
 }
 

@@ -1,9 +1,10 @@
 //! The lines about a plan: its choices, links, conflicts, events and traverses.
 
+use rmpl::program::TimeUnit;
 use rmpl::{Bound, Span};
 use tpn::{EventEnd, LabelId, Network, NodeId, Plan};
 
-use super::alternatives::Examiner;
+use super::alternatives::{Alternative, Examiner};
 use super::distances::Distances;
 use super::lines::Places;
 use super::schedule::slack;
@@ -45,11 +46,7 @@ impl<'input> PlanLines<'input> {
             let alternatives = examiner.alternatives(choice, stop);
             let is_open = alternatives.iter().any(|it| it.fate == Fate::NotExamined);
             let status = if is_open { Status::Attention } else { Status::Passed };
-            let text = format!(
-                "{name} takes alternative {} of {}",
-                choice.alternative,
-                alternatives.len().saturating_sub(1)
-            );
+            let text = choice_text(&name, &alternatives);
             let nodes = vec![decision.node];
             let line = self.places.line(status, text, decision.span, vec![name.clone()], nodes);
             ChoiceReview { line, name, alternatives }
@@ -76,9 +73,10 @@ impl<'input> PlanLines<'input> {
             let is_rigid = margin.greatest == Bound::ZERO;
             let status = if is_rigid { Status::Attention } else { Status::Passed };
             let text = format!(
-                "{tell} carries {ask}, and outlasts it by {} to {}",
-                short_time(Bound::Finite(margin.least)),
-                short_time(margin.greatest)
+                "{} provides {} and outlasts it by {}",
+                interval_text(&tell),
+                interval_text(&ask),
+                self.range_text(margin)
             );
             let (start, end) = self.interval(link.ask);
             let names = vec![ask.clone(), tell.clone()];
@@ -100,14 +98,15 @@ impl<'input> PlanLines<'input> {
                     (self.network.label_name(order.first), self.network.label_name(order.then));
                 let is_added = self.plan.orderings_added.contains(order);
                 let by = if is_added {
-                    "put in order by planning"
+                    "the planner has put them in this order"
                 } else {
-                    "in order by the program's own bounds"
+                    "the program's own bounds keep them in this order"
                 };
                 let text = format!(
-                    "{first} is over {} to {} before {then} begins; {by}",
-                    short_time(Bound::Finite(gap.least)),
-                    short_time(gap.greatest)
+                    "{} is over {} before {} begins; {by}",
+                    interval_text(&first),
+                    self.range_text(gap),
+                    interval_text(&then)
                 );
                 let names = vec![first.clone(), then.clone()];
                 let span = self.label_span(order.first);
@@ -123,11 +122,14 @@ impl<'input> PlanLines<'input> {
             let Some(window) = self.plan.windows.get(index).copied().flatten() else { continue };
             for &event in &node.events {
                 let name = self.network.event_name(event);
-                let text = format!(
-                    "{name} may happen from {} to {}",
-                    short_time(Bound::Finite(window.earliest)),
-                    short_time(window.latest)
-                );
+                let earliest = short_time(Bound::Finite(window.earliest));
+                let text = match window.latest {
+                    Bound::Infinite => format!("{name} may happen at any time from {earliest} on"),
+                    latest if latest == Bound::Finite(window.earliest) => {
+                        format!("{name} happens at {earliest}, without slack")
+                    }
+                    latest => format!("{name} may happen from {earliest} to {}", short_time(latest)),
+                };
                 let span = self.network.occurrences[event.occurrence.index()].span;
                 let nodes = vec![NodeId::from_index(index)];
                 let line = self.places.line(Status::Passed, text, span, vec![name.clone()], nodes);
@@ -180,8 +182,9 @@ impl<'input> PlanLines<'input> {
             None => "no obstacle near".to_owned(),
         };
         let text = format!(
-            "{name}: {:.1} m in {duration}, {clearance}, slope up to {:.1}°",
+            "{name}: {:.1} m in {}, {clearance}, slope up to {:.1}°",
             traverse.length_m,
+            self.range_text(duration),
             traverse.slope_max_rad.to_degrees()
         );
         let mut names = vec![name.clone()];
@@ -200,6 +203,20 @@ impl<'input> PlanLines<'input> {
         }
     }
 
+    /// How long something takes, with its unit.
+    fn range_text(&self, range: TimeRange) -> String {
+        let unit = match self.snapshot.program.options.time_unit {
+            TimeUnit::Minute => "min",
+            TimeUnit::Second => "s",
+        };
+        let least = short_time(Bound::Finite(range.least));
+        match range.greatest {
+            Bound::Infinite => format!("at least {least} {unit}"),
+            greatest if greatest == Bound::Finite(range.least) => format!("{least} {unit}"),
+            greatest => format!("{least} to {} {unit}", short_time(greatest)),
+        }
+    }
+
     fn interval(&self, label: LabelId) -> (NodeId, NodeId) {
         let arc = &self.network.arcs[self.network.labels[label.index()].arc.index()];
         (arc.from, arc.to)
@@ -208,4 +225,27 @@ impl<'input> PlanLines<'input> {
     fn label_span(&self, label: LabelId) -> Option<Span> {
         self.network.labels[label.index()].span
     }
+}
+
+/// What was taken, and rather than what.
+fn choice_text(name: &str, alternatives: &[Alternative]) -> String {
+    const MOST_NAMED: usize = 3;
+    let taken = alternatives.iter().find(|it| it.fate == Fate::Taken).map_or("nothing", |it| &it.name);
+    let others: Vec<&str> =
+        alternatives.iter().filter(|it| it.fate != Fate::Taken).map(|it| it.name.as_str()).collect();
+    match others.len() {
+        0 => format!("{name} takes {taken}, its only alternative"),
+        1..=MOST_NAMED => format!("{name} takes {taken} rather than {}", others.join(" or ")),
+        count => format!("{name} takes {taken} rather than one of {count} others"),
+    }
+}
+
+/// An interval as people call it: `Tell(PATH1=OK)#1`, or the condition and the activity it belongs to.
+fn interval_text(name: &str) -> String {
+    let Some((condition, owner)) = name.split_once('@') else { return name.to_owned() };
+    if owner.starts_with("Tell(") || owner.starts_with("Ask(") {
+        return owner.to_owned();
+    }
+    let inside = condition.split_once('(').and_then(|(_, rest)| rest.strip_suffix(')'));
+    format!("{} during {owner}", inside.unwrap_or(condition))
 }

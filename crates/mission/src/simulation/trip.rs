@@ -154,7 +154,7 @@ impl<'a> Trip<'a> {
                 .map(|&it| declared(it).map_or("?", |it| it.name.text.as_str()))
                 .collect(),
             maps: models.iter().map(|model| drive.space.with_radius_m(model.circumradius_m)).collect(),
-            convoy: Convoy::new(members, drive.spacing_m, driving.problem.seed),
+            convoy: Convoy::new(members, drive.spacing_m, driving.seed),
             map: driving.map,
             vertices: passed_m.into_iter().zip(events.copied()).collect(),
             wanted_s: wanted_units(network, drive.occurrence) * unit_s,

@@ -5,6 +5,8 @@ use executive::Disturbance;
 use rmpl::Rational;
 use tpn::{OccurrenceId, OccurrenceKind};
 
+use super::components::Components;
+use super::vehicles::Vehicles;
 use super::{Shown, now};
 use crate::command::{Command, CommandSender};
 use crate::icon::{self, Icon};
@@ -16,14 +18,16 @@ use crate::time_text;
 /// What the buttons beside a name take, in points.
 const BUTTONS_WIDTH: f32 = 150.0;
 
-/// How much longer or later, in mission units.
+/// How much longer or later, in mission units, and what is meant to happen to vehicles and components.
 pub(super) struct Disturb {
     amount: f64,
+    vehicles: Vehicles,
+    components: Components,
 }
 
 impl Default for Disturb {
     fn default() -> Self {
-        Self { amount: 30.0 }
+        Self { amount: 30.0, vehicles: Vehicles::default(), components: Components::default() }
     }
 }
 
@@ -44,11 +48,13 @@ impl Disturb {
             ui.horizontal(|ui| {
                 let name = ui.label(RichText::new("longer or later by").color(context.tokens.text_muted)).id;
                 let field = DragValue::new(&mut self.amount).range(0.0..=1e6).speed(0.5).max_decimals(1);
-                ui.add(field.suffix(format!(" {}", unit.unwrap_or_default()))).labelled_by(name);
+                ui.add(field.suffix(suffix(unit))).labelled_by(name);
             });
-            for pending in all {
+            for &pending in &all {
                 ui.horizontal(|ui| self.row(ui, shown, pending, commands));
             }
+            self.vehicles.show(ui, context, commands);
+            self.components.show(ui, context, shown, &all, commands);
         }
         made(ui, context, commands);
     }
@@ -117,7 +123,12 @@ fn made(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
             if icon::button(ui, context.tokens, Icon::Close, &format!("Take back: {text}")).clicked() {
                 commands.send(Command::Execution(ExecutionCommand::TakeBack(index)));
             }
-            ui.add(egui::Label::new(text).truncate());
+            ui.add(egui::Label::new(&text).truncate()).on_hover_text(&text);
         });
     }
+}
+
+/// What stands behind a number in a unit.
+pub(super) fn suffix(unit: Option<&str>) -> String {
+    unit.map_or_else(String::new, |unit| format!(" {unit}"))
 }

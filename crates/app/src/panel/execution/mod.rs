@@ -2,9 +2,11 @@
 //!
 //! Network, timeline and terrain show the same run at the same time.
 
+mod components;
 mod disturb;
 mod log;
 mod now;
+mod vehicles;
 
 use egui::{Frame, Margin, RichText, ScrollArea, Ui};
 use mission::Execution;

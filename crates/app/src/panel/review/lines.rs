@@ -43,12 +43,13 @@ pub(super) fn choices(ui: &mut Ui, list: &List<'_>, count: usize, commands: &mut
     for (index, choice) in list.review.choices.iter().enumerate().take(count) {
         line(ui, list, Section::Choices, index, &choice.line, commands);
         for alternative in &choice.alternatives {
-            let text = format!(
-                "{}: {}\n{}",
-                alternative.number,
-                alternative.text,
-                sentence(&alternative.fate.sentence())
-            );
+            let is_said = alternative.text.starts_with(alternative.name.trim_end_matches(')'));
+            let what = if is_said {
+                alternative.text.clone()
+            } else {
+                format!("{}: {}", alternative.name, alternative.text)
+            };
+            let text = format!("{what}\n{}", sentence(&alternative.fate.sentence()));
             let name = format!("{}={}", choice.name, alternative.number);
             let is_taken = alternative.fate == Fate::Taken;
             let shown = row::Row {

@@ -2,7 +2,7 @@
 
 use egui::{DragValue, Grid, ProgressBar, RichText, ScrollArea, Ui};
 use mission::Robustness;
-use mission::robustness::Others;
+use mission::robustness::{Others, Traverses};
 
 use crate::command::{Command, CommandSender};
 use crate::panel::plan::section;
@@ -61,6 +61,7 @@ fn ask(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     if ui.checkbox(&mut is_uniform, text).changed() {
         settings.uncertainty.others = if is_uniform { Others::Uniform } else { Others::Planned };
     }
+    driving(ui, context, &mut settings.uncertainty);
     conditions(ui, context, &mut settings.uncertainty);
     if settings != chance.settings {
         commands.send(Command::Chance(ChanceCommand::Set(Box::new(settings))));
@@ -69,6 +70,26 @@ fn ask(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let share = chance.runs_made() as f32 / chance.settings.runs.max(1) as f32;
         let text = format!("{} of {} runs", chance.runs_made(), chance.settings.runs);
         ui.add(ProgressBar::new(share).desired_height(16.0).text(text));
+    }
+}
+
+/// Whether vehicles drive, and past how many rocks.
+fn driving(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut mission::Uncertainty) {
+    if context.state.shown().is_none_or(|shown| shown.traverses.is_empty()) {
+        return;
+    }
+    let mut drives = uncertainty.traverses == Traverses::Driven;
+    let text = "Vehicles drive their traverses (seconds for each run)";
+    let hint = "Otherwise the duration of a traverse is drawn as that of any other activity is";
+    if ui.checkbox(&mut drives, text).on_hover_text(hint).changed() {
+        uncertainty.traverses = if drives { Traverses::Driven } else { Traverses::Drawn };
+    }
+    if drives {
+        ui.horizontal(|ui| {
+            ui.add_space(space::L);
+            let label = ui.label("Rocks about each path that the map does not show, at most").id;
+            ui.add(DragValue::new(&mut uncertainty.rocks.most).range(0..=50)).labelled_by(label);
+        });
     }
 }
 

@@ -67,6 +67,12 @@ fn frame(input: &Input<'_>, pixels: [f32; 2], pixels_per_point: f32) -> Frame {
         obstacles: view.obstacles,
         vehicle_scale: hud::vehicle_scale(camera.distance_m),
     };
+    let state = context.state;
+    let appeared: Vec<_> = if state.is_executing() {
+        state.execution.appeared(state.playback.time).collect()
+    } else {
+        Vec::new()
+    };
     let mut shapes = scene::build(&SceneInput {
         snapshot,
         ground,
@@ -77,6 +83,7 @@ fn frame(input: &Input<'_>, pixels: [f32; 2], pixels_per_point: f32) -> Frame {
         palette: &palette(),
         options: &options,
         sketch,
+        appeared: &appeared,
     });
     shapes.scale_widths(pixels_per_point);
     Frame {

@@ -278,7 +278,8 @@ impl TerrainPanel {
             self.drag = None;
             tool::update(response, &scene, &mut self.pressed_m, commands);
         }
-        let draws_disc = *tool == Tool::Circle && response.dragged_by(egui::PointerButton::Primary);
+        let draws_disc =
+            matches!(tool, Tool::Circle | Tool::Appear) && response.dragged_by(egui::PointerButton::Primary);
         if self.drag.is_none() && !draws_disc {
             let mut moved = wanted;
             let under = response.hover_pos().and_then(|pointer| scene.hit(pointer));

@@ -64,6 +64,8 @@ pub struct SceneInput<'a> {
     pub options: &'a SceneOptions,
     /// What a tool in hand has and would do.
     pub sketch: &'a Sketch,
+    /// Obstacles that have appeared in the run that is watched, with centres and radii in metres.
+    pub appeared: &'a [([f64; 2], f64)],
 }
 
 /// What a tool has so far, to be drawn on the ground.
@@ -91,6 +93,11 @@ pub fn build(input: &SceneInput<'_>) -> Shapes {
     let world = &input.snapshot.program.world;
     if input.options.obstacles {
         obstacles(&mut shapes, world, input);
+    }
+    for &(center_m, radius_m) in input.appeared {
+        let outline = circle_outline(place(center_m), radius_m as f32);
+        let rim = (input.palette.warning, 3.0);
+        shapes.fence(input.ground, &outline, FENCE_M, faded(input.palette.warning, 0.5), rim);
     }
     locations(&mut shapes, world, input);
     if input.growth.shown().is_none() {

@@ -8,6 +8,7 @@ use super::measure::Measurement;
 use super::pick::Scene;
 use super::scene::{Sketch, place};
 use crate::command::{Command, CommandSender};
+use crate::state::execution::ExecutionCommand;
 use crate::state::placing::{NewThing, VehicleStart};
 use crate::state::terrain::{TerrainCommand, Tool};
 
@@ -51,15 +52,18 @@ pub fn update(
                 send(TerrainCommand::Place { thing, again });
             }
         }
-        Tool::Circle => {
+        Tool::Circle | Tool::Appear => {
             let is_drawn = response.drag_stopped_by(PointerButton::Primary);
-            let disc = drawn_disc(response, scene, *pressed_m).filter(|_| is_drawn);
-            if let Some(disc) = disc {
-                let thing = NewThing::Circle { center_m: metres(disc.0), radius_m: f64::from(disc.1) };
-                send(TerrainCommand::Place { thing, again });
-            } else if let Some(center_m) = clicked.and_then(at) {
-                let thing = NewThing::Circle { center_m, radius_m: CLICKED_RADIUS_M };
-                send(TerrainCommand::Place { thing, again });
+            let drawn = drawn_disc(response, scene, *pressed_m).filter(|_| is_drawn);
+            let drawn = drawn.map(|(center, radius_m)| (metres(center), f64::from(radius_m)));
+            let disc = drawn.or_else(|| Some((clicked.and_then(at)?, CLICKED_RADIUS_M)));
+            if let Some((center_m, radius_m)) = disc {
+                commands.send(if state.tool == Tool::Appear {
+                    Command::Execution(ExecutionCommand::Appear { center_m, radius_m, again })
+                } else {
+                    let thing = NewThing::Circle { center_m, radius_m };
+                    Command::Terrain(TerrainCommand::Place { thing, again })
+                });
             }
         }
         Tool::Polygon => {
@@ -130,7 +134,7 @@ pub fn sketch(
             });
             Sketch { marks: at.into_iter().collect(), ..Sketch::default() }
         }
-        Tool::Circle => {
+        Tool::Circle | Tool::Appear => {
             let is_drawing = response.dragged_by(PointerButton::Primary);
             let drawn = drawn_disc(response, scene, pressed_m).filter(|_| is_drawing);
             let hovering = hit.map(|center| (center, CLICKED_RADIUS_M as f32));
@@ -156,6 +160,9 @@ pub fn hint(tool: &Tool, points: usize) -> Option<String> {
         },
         Tool::Location => "Click where the location is · Shift for several".to_owned(),
         Tool::Circle => "Drag from the centre outwards · Shift for several".to_owned(),
+        Tool::Appear => {
+            "Drag from the centre of the obstacle that appears now · Shift for several".to_owned()
+        }
         Tool::Polygon => match points {
             0 => "Click the first corner".to_owned(),
             1 | 2 => "Click the next corner".to_owned(),

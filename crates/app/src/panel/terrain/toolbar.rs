@@ -120,6 +120,10 @@ fn tools(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         };
         item(ui, "Location".into(), "A click declares a place", Tool::Location);
         item(ui, "Round obstacle".into(), "Drag from the centre outwards, or click", Tool::Circle);
+        if context.state.is_executing() {
+            let help = "Drag from the centre outwards, or click: it stands there from the time shown on";
+            item(ui, "Obstacle in this run".into(), help, Tool::Appear);
+        }
         let help = "Click its corners; double-click or Enter closes it";
         item(ui, "Obstacle with corners".into(), help, Tool::Polygon);
         for model in &motion::VEHICLE_MODELS {

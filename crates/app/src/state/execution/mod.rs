@@ -13,6 +13,7 @@ use mission::{Execution, Request, Response, Snapshot, Update};
 use rmpl::Rational;
 use serde_json::{Value, json};
 
+use super::terrain::Tool;
 use super::{AppState, Effect, PlanSettings, ToastKind, playback};
 use crate::host::FileKind;
 use crate::workspace::Workspace;
@@ -49,6 +50,24 @@ pub enum ExecutionCommand {
     Disturb(Disturbance),
     /// A condition is withdrawn at the time shown.
     Withdraw(smol_str::SmolStr),
+    /// A round obstacle appears at the time shown.
+    Appear {
+        /// Its centre.
+        center_m: [f64; 2],
+        /// Its radius in metres.
+        radius_m: f64,
+        /// Whether the tool that places it stays in hand.
+        again: bool,
+    },
+    /// A vehicle drives more slowly from the time shown on; at a share of 0 it stands.
+    SlowDown {
+        /// Its name.
+        vehicle: smol_str::SmolStr,
+        /// The share of its traverse's greatest speed that is left, from 0 to 1.
+        factor: Rational,
+        /// For how long, in mission units.
+        duration: Rational,
+    },
     /// A disturbance, by its place in the script, did not happen.
     TakeBack(usize),
     /// Everything goes as planned, from the start.
@@ -78,6 +97,14 @@ impl ExecutionState {
     /// What has happened at the time shown.
     pub fn moment(&self) -> Option<&Moment> {
         self.view.as_ref().map(|view| &view.moment)
+    }
+
+    /// The obstacles that have appeared by `time`, with centres and radii in metres.
+    pub fn appeared(&self, time: f64) -> impl Iterator<Item = ([f64; 2], f64)> + '_ {
+        self.disturbances().iter().filter_map(move |disturbance| match *disturbance {
+            Disturbance::Obstacle { at, x, y, radius } if has_come(at, time) => Some(([x, y], radius)),
+            _ => None,
+        })
     }
 
     /// Whether a newer run than the one shown is being worked out.
@@ -221,6 +248,23 @@ impl AppState {
                 let at = self.settle_time();
                 self.disturb(Disturbance::Withdrawn { condition, at });
             }
+            ExecutionCommand::Appear { center_m: [x, y], radius_m, again } => {
+                if !again {
+                    self.terrain.tool = Tool::Look;
+                }
+                if !self.is_executing() {
+                    self.toasts.add(ToastKind::Failed, "Obstacles appear only in a mission that is executed");
+                    return;
+                }
+                let at = self.settle_time();
+                let to_tenth = |metres: f64| (metres * 10.0).round() / 10.0;
+                let (x, y, radius) = (to_tenth(x), to_tenth(y), to_tenth(radius_m).max(0.1));
+                self.disturb(Disturbance::Obstacle { at, x, y, radius });
+            }
+            ExecutionCommand::SlowDown { vehicle, factor, duration } => {
+                let from = self.settle_time();
+                self.disturb(Disturbance::VehicleSlow { vehicle, factor, from, until: from + duration });
+            }
             ExecutionCommand::TakeBack(index) => {
                 if index < self.execution.script.disturbances.len() {
                     self.execution.script.disturbances.remove(index);
@@ -247,8 +291,11 @@ impl AppState {
     fn disturb(&mut self, disturbance: Disturbance) {
         let is_replaced = |known: &Disturbance| {
             known.occurrence() == disturbance.occurrence()
-                && known.vehicle() == disturbance.vehicle()
-                && !matches!(known, Disturbance::Obstacle { .. } | Disturbance::Fault { .. })
+                // There can be any number of these, and the earlier ones are the past.
+                && !matches!(
+                    known,
+                    Disturbance::Obstacle { .. } | Disturbance::VehicleSlow { .. } | Disturbance::Fault { .. }
+                )
                 && std::mem::discriminant(known) == std::mem::discriminant(&disturbance)
         };
         self.execution.script.disturbances.retain(|known| !is_replaced(known));
@@ -299,7 +346,7 @@ pub fn has_come(at: Rational, time: f64) -> bool {
 
 /// A disturbance in words.
 pub fn disturbance_text(disturbance: &Disturbance) -> String {
-    let time = crate::time_text::time;
+    let time = crate::time_text::short;
     match disturbance {
         Disturbance::Duration { activity, duration } => format!("{activity} takes {}", time(*duration)),
         Disturbance::Slow { activity, factor } => {
@@ -309,7 +356,10 @@ pub fn disturbance_text(disturbance: &Disturbance) -> String {
             format!("{component} comes into {mode} in step {step} of {activity}")
         }
         Disturbance::Obstacle { at, x, y, radius } => {
-            format!("an obstacle of {radius:.1} m stands at ({x:.1}, {y:.1}) from {}", time(*at))
+            format!(
+                "an obstacle with a radius of {radius:.1} m stands at ({x:.1}, {y:.1}) from {}",
+                time(*at)
+            )
         }
         Disturbance::VehicleSlow { vehicle, factor, from, until } if *factor == Rational::default() => {
             format!("{vehicle} stands from {} to {}", time(*from), time(*until))

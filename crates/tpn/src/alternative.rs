@@ -1,0 +1,114 @@
+//! What the alternatives of a choice are called when people are told about it.
+
+use smol_str::SmolStr;
+
+use crate::network::{ArcId, DecisionId, Network, NodeId, Occurrence, OccurrenceKind};
+
+/// The longest call that stands for an alternative; longer ones are named by their occurrence.
+const LONGEST_CALL: usize = 40;
+/// So many parts of an alternative are named.
+const MOST_NAMED: usize = 2;
+
+impl Network {
+    /// What an alternative of a decision does, for people: `Carry(GAP, LANDER)`, or `Group-Traverse-Path#1` where the call is
+    /// long, or `Dig#1, Analyse#1 and 2 more`. `nothing` where it does nothing.
+    ///
+    /// Takes time linear in the network for each alternative of the decision.
+    pub fn alternative_name(&self, decision: DecisionId, alternative: u32) -> String {
+        let Some(choice_arcs) = self.decisions.get(decision.index()).map(|it| &it.alternatives) else {
+            return format!("alternative {alternative}");
+        };
+        let Some(&own_arc) = choice_arcs.get(alternative as usize) else {
+            return format!("alternative {alternative}");
+        };
+        let own = self.followers(own_arc);
+        let mut others = vec![false; self.nodes.len()];
+        for &arc in choice_arcs.iter().filter(|&&arc| arc != own_arc) {
+            for (all, is_followed) in others.iter_mut().zip(self.followers(arc)) {
+                *all |= is_followed;
+            }
+        }
+        let is_alone = choice_arcs.len() == 1;
+        let is_own = |node: NodeId| own[node.index()] && (is_alone || !others[node.index()]);
+        let is_in = |occurrence: &Occurrence| is_own(occurrence.start);
+        let named = |is_wanted: &dyn Fn(OccurrenceKind) -> bool| -> Vec<&Occurrence> {
+            let is_part = |occurrence: &&Occurrence| {
+                // What an activity consists of goes without saying.
+                let parent = occurrence.parent.and_then(|parent| self.occurrences.get(parent.index()));
+                is_wanted(occurrence.kind) && is_in(occurrence) && !parent.is_some_and(is_in)
+            };
+            self.occurrences.iter().filter(is_part).collect()
+        };
+        let calls = named(&|kind| matches!(kind, OccurrenceKind::Primitive | OccurrenceKind::Activity));
+        let parts = if calls.is_empty() {
+            named(&|kind| matches!(kind, OccurrenceKind::Assertion | OccurrenceKind::Delay))
+        } else {
+            calls
+        };
+        match parts.as_slice() {
+            [] => "nothing".to_owned(),
+            [single] => call(single),
+            several => {
+                let names: Vec<&str> = several.iter().take(MOST_NAMED).map(|it| it.name.as_str()).collect();
+                match several.len().saturating_sub(MOST_NAMED) {
+                    0 => names.join(" and "),
+                    rest => format!("{} and {rest} more", names.join(", ")),
+                }
+            }
+        }
+    }
+
+    /// The nodes that an arc leads to, directly or not.
+    fn followers(&self, arc: ArcId) -> Vec<bool> {
+        let mut found = vec![false; self.nodes.len()];
+        let mut open = vec![self.arcs[arc.index()].to];
+        while let Some(node) = open.pop() {
+            // Arcs back to the start hold facts of a run.
+            if node != self.start && !std::mem::replace(&mut found[node.index()], true) {
+                open.extend(self.nodes[node.index()].out_arcs.iter().map(|arc| self.arcs[arc.index()].to));
+            }
+        }
+        found
+    }
+}
+
+fn call(occurrence: &Occurrence) -> String {
+    if occurrence.arguments.is_empty() {
+        return occurrence.name.to_string();
+    }
+    let arguments: Vec<&str> = occurrence.arguments.iter().map(SmolStr::as_str).collect();
+    let call = format!("{}({})", occurrence.activity, arguments.join(", "));
+    if call.chars().count() <= LONGEST_CALL { call } else { occurrence.name.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{DecisionId, Top, compile};
+
+    fn names(alternatives: &str) -> Vec<String> {
+        let source = format!(
+            "primitive Dig(place); primitive Rest();\n\
+             Both() = {{ Dig(A)[1,2]; Dig(B)[1,2] }}\n\
+             Work() = {{ choose {{ {alternatives} }}; Rest()[1,1] }}\n\
+             scenario S[0,100] = {{ Work() }}"
+        );
+        let parse = rmpl::parse(&source);
+        let (network, diagnostics) = compile(&parse.program(), &Top::Scenario(None));
+        let network = network.unwrap_or_else(|| panic!("{:?} {diagnostics:?}", parse.diagnostics()));
+        let count = network.decisions[0].alternatives.len() as u32;
+        (0..count).map(|index| network.alternative_name(DecisionId(0), index)).collect()
+    }
+
+    #[test]
+    fn alternatives_are_named_by_what_they_alone_do() {
+        assert_eq!(names("Dig(EAST)[1,2], Dig(WEST)[1,2]"), ["Dig(EAST)", "Dig(WEST)"]);
+        assert_eq!(
+            names("Both(), { Dig(A)[1,2]; Rest()[1,1]; Dig(B)[1,2] }"),
+            ["Both#1", "Dig#3, Rest#1 and 1 more"]
+        );
+        assert_eq!(
+            names("Dig(A-PLACE-WITH-A-NAME-THAT-NOBODY-READS)[1,2], delay[1,2]"),
+            ["Dig#1", "delay#1"]
+        );
+    }
+}
