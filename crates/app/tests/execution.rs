@@ -16,6 +16,18 @@ fn executing(mission: &str) -> support::App {
     app
 }
 
+/// A mission without a world, in which nobody drives: its runs are worked out at once.
+fn executing_text(source: &str) -> support::App {
+    let mut app = support::start();
+    app.settle();
+    dispatch(&mut app, "edit.setSource", &json!({ "text": source }));
+    press(&mut app, "Execute");
+    app
+}
+
+const SCENARIO: &str = include_str!("../../../tests/conformance/t01_enroute_scenario.rmpl");
+const BOTH_PATHS: &str = include_str!("../../../tests/conformance/t03_enroute_both_paths.rmpl");
+
 fn press(app: &mut support::App, name: &str) {
     let role =
         if app.harness.query_by_role_and_label(Role::Tab, name).is_some() { Role::Tab } else { Role::Button };
@@ -77,7 +89,7 @@ fn the_state_says_what_is_under_way_and_what_is_due() {
 
 #[test]
 fn a_condition_withdrawn_on_the_way_stops_the_mission_safely_and_says_why() {
-    let mut app = executing("enroute");
+    let mut app = executing_text(SCENARIO);
     dispatch(&mut app, "play.seek", &json!({ "time": 100 }));
     let before = app.json()["execution"]["log"].clone();
     press(&mut app, "Withdraw Tell(PATH1=OK)#1");
@@ -92,11 +104,11 @@ fn a_condition_withdrawn_on_the_way_stops_the_mission_safely_and_says_why() {
 
 #[test]
 fn a_saved_run_replays_exactly_and_a_changed_log_is_told() {
-    let mut app = executing("both-paths");
+    let mut app = executing_text(BOTH_PATHS);
     press(&mut app, "Withdraw Tell(PATH1=OK)#1");
     press(&mut app, "Save run…");
     let (name, bytes) = app.world.saved.borrow().last().cloned().expect("a file was saved");
-    assert_eq!(name, "both-paths-run.json");
+    assert!(name.ends_with("-run.json"), "{name}");
     let last_toast = |app: &support::App| {
         let toasts = app.json()["toasts"].as_array().cloned().unwrap_or_default();
         toasts.last().and_then(|toast| toast.as_str().map(str::to_owned)).unwrap_or_default()
@@ -117,9 +129,49 @@ fn a_saved_run_replays_exactly_and_a_changed_log_is_told() {
     assert!(last_toast(&app).contains("differs"), "{}", last_toast(&app));
 }
 
+/// The disturbances made by hand are those that a script holds.
+#[test]
+fn a_rover_is_stopped_and_an_obstacle_appears_from_the_time_shown_on() {
+    let mut app = executing("detour");
+    dispatch(&mut app, "play.seek", &json!({ "time": 5 }));
+    press(&mut app, "Stop Scout");
+    let stopped = app.json()["execution"].clone();
+    let stop = json!({ "kind": "vehicle-slow", "vehicle": "Scout", "factor": 0, "from": 5, "until": 25 });
+    assert_eq!(stopped["disturbances"], json!([stop]));
+    let rock = json!({ "kind": "obstacle", "at": 5, "x": 150.0, "y": 70.4, "radius": 0.8 });
+    dispatch(&mut app, "execute.disturb", &rock);
+    let both = app.json()["execution"].clone();
+    assert_eq!(both["disturbances"], json!([stop, rock]), "an obstacle replaces nothing");
+    dispatch(&mut app, "play.end", &Value::Null);
+    let end = app.json();
+    assert_eq!(end["execution"]["status"], "finished");
+    // The drive and the hand-over take 19.4 minutes at least, and 20 more stood still.
+    assert!(end["time"].as_f64().is_some_and(|time| time > 39.0), "{}", end["time"]);
+}
+
+/// SPEC 9.3: an engine that fails in the third step is diagnosed in the fourth, and the other one takes over.
+#[test]
+fn a_component_fails_while_its_activity_runs_its_program() {
+    let mut app = executing("orbit");
+    let end = |app: &mut support::App| {
+        dispatch(app, "play.end", &Value::Null);
+        app.json()["time"].as_f64().expect("a time")
+    };
+    let nominal = end(&mut app);
+    dispatch(&mut app, "play.seek", &json!({ "time": 0 }));
+    let fault = json!({ "kind": "fault", "activity": "Insert#1", "step": 3, "component": "EngineA", "mode": "Failed" });
+    assert!(app.harness.query_by_label_contains("of the plant that Insert#1 commands").is_some());
+    dispatch(&mut app, "execute.disturb", &fault);
+    assert_eq!(app.json()["execution"]["disturbances"], json!([fault]));
+    let seen = end(&mut app);
+    let log = app.json()["execution"]["log"].to_string();
+    assert!(log.contains("EngineA comes into Failed"), "{log}");
+    assert!(seen >= nominal, "{seen} after {nominal}");
+}
+
 #[test]
 fn stepping_goes_from_event_to_event_of_the_run() {
-    let mut app = executing("both-paths");
+    let mut app = executing_text(BOTH_PATHS);
     dispatch(&mut app, "play.forward", &Value::Null);
     assert_eq!(app.json()["time"], 10.0);
     dispatch(&mut app, "play.back", &Value::Null);

@@ -72,7 +72,7 @@ fn the_checklist_is_computed_when_the_reviewer_comes() {
     // SPEC 3.6: the drive is over 0 to 45 minutes before path 1 closes.
     assert!(has(
         &app,
-        "passed: Tell(PATH1=OK)@Tell(PATH1=OK)#1 carries Ask(PATH1=OK)@Group-Traverse-Path#1, and outlasts it by 0 to 45"
+        "passed: Tell(PATH1=OK)#1 provides PATH1=OK during Group-Traverse-Path#1 and outlasts it by 0 to 45 min"
     ));
     assert!(has(&app, "Causal links, passed, 1 passed"));
     assert!(has(&app, "Robustness, not run yet"));
@@ -84,7 +84,9 @@ fn why_the_other_path_was_not_taken_is_said() {
     let app = reviewing();
     let found = app.harness.query_all_by_role(Role::Button).any(|node| {
         node.accesskit_node().label().is_some_and(|label| {
-            label.starts_with("1: ") && label.contains("Impossible") && label.contains("PATH2")
+            label.starts_with("Group-Traverse-Path#2: ")
+                && label.contains("Impossible")
+                && label.contains("PATH2")
         })
     });
     assert!(found);
@@ -151,19 +153,21 @@ fn a_mission_without_a_plan_cannot_be_signed() {
 #[test]
 fn a_line_leads_to_its_place_in_every_panel() {
     let mut app = reviewing();
-    click(&mut app, "passed: Tell(PATH1=OK)@Tell(PATH1=OK)#1 carries");
+    click(&mut app, "passed: Tell(PATH1=OK)#1 provides");
     let state = app.json();
     assert_eq!(state["selection"]["kind"], "link");
     let source = app.harness.state().source();
     let range = state["caret"]["anchor"].as_u64().zip(state["caret"]["head"].as_u64());
     let (from, to) = range.expect("a caret");
     assert!(source[from as usize..to as usize].contains("PATH1"), "the caret is at the requirement");
-    click(&mut app, "passed: Tell(not(PROCEED=OK))@Group-Wait#1 is over");
+    click(&mut app, "passed: not(PROCEED=OK) during Group-Wait#1 is over");
     assert_eq!(app.json()["selection"]["kind"], "ordering");
     click(&mut app, "Group-Wait#1.end [415, 514], slack 99");
     assert_eq!(app.json()["selection"]["name"], "Group-Wait#1.end");
     let label = app.harness.query_all_by_role(Role::Button).find_map(|node| {
-        node.accesskit_node().label().filter(|label| label.contains(": Group-Traverse-Path#1: "))
+        node.accesskit_node()
+            .label()
+            .filter(|label| label.contains(": Group-Traverse-Path#1: ") && label.contains(" m in "))
     });
     click(&mut app, &label.expect("the traverse"));
     assert_eq!(app.json()["selection"]["name"], "Group-Traverse-Path#1");

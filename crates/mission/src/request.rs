@@ -135,7 +135,7 @@ pub enum Response {
         /// The revision of its text.
         revision: u64,
         /// What was left to chance.
-        settings: RobustnessSettings,
+        settings: Box<RobustnessSettings>,
         /// The first of these runs.
         from: u64,
         /// How they went; as many as there was time for, at least one.

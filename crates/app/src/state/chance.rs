@@ -85,13 +85,13 @@ impl AppState {
     pub(super) fn take_sample(&mut self, answer: Response) {
         let Response::Sampled { revision, settings, from, tally } = answer else { return };
         let is_wanted = self.chance.running == Some(revision)
-            && settings == self.chance.settings
+            && *settings == self.chance.settings
             && from == self.chance.tally.runs;
         if !is_wanted {
             return;
         }
         self.chance.tally.merge(&tally);
-        let robustness = Robustness { settings, tally: self.chance.tally.clone() };
+        let robustness = Robustness { settings: *settings, tally: self.chance.tally.clone() };
         self.snapshots.set_robustness(revision, &Arc::new(robustness));
         self.follow_run();
         self.sample_on();

@@ -85,7 +85,7 @@ impl Core {
         let sampled =
             worked.and_then(|worked| self.sample_worked(&worked, update, &settings, from, surroundings));
         surroundings.answer(match sampled {
-            Ok(tally) => Response::Sampled { revision, settings, from, tally },
+            Ok(tally) => Response::Sampled { revision, settings: Box::new(settings), from, tally },
             Err(reason) => Response::NotExecuted { revision, reason },
         });
     }

@@ -125,10 +125,12 @@ impl<'input> PlanLines<'input> {
                 let earliest = short_time(Bound::Finite(window.earliest));
                 let text = match window.latest {
                     Bound::Infinite => format!("{name} may happen at any time from {earliest} on"),
-                    latest if latest == Bound::Finite(window.earliest) => {
+                    Bound::Finite(latest) if latest == window.earliest => {
                         format!("{name} happens at {earliest}, without slack")
                     }
-                    latest => format!("{name} may happen from {earliest} to {}", short_time(latest)),
+                    latest @ Bound::Finite(_) => {
+                        format!("{name} may happen from {earliest} to {}", short_time(latest))
+                    }
                 };
                 let span = self.network.occurrences[event.occurrence.index()].span;
                 let nodes = vec![NodeId::from_index(index)];
@@ -212,8 +214,8 @@ impl<'input> PlanLines<'input> {
         let least = short_time(Bound::Finite(range.least));
         match range.greatest {
             Bound::Infinite => format!("at least {least} {unit}"),
-            greatest if greatest == Bound::Finite(range.least) => format!("{least} {unit}"),
-            greatest => format!("{least} to {} {unit}", short_time(greatest)),
+            Bound::Finite(greatest) if greatest == range.least => format!("{least} {unit}"),
+            greatest @ Bound::Finite(_) => format!("{least} to {} {unit}", short_time(greatest)),
         }
     }
 

@@ -9,6 +9,7 @@ mod accessibility;
 mod api;
 mod drawing;
 mod editing;
+mod execution;
 mod failure;
 mod language;
 mod offline;

@@ -102,7 +102,8 @@ fn the_report_is_a_page_that_stands_alone_and_prints_on_both_papers() -> Result<
     }
     for (drawing, name) in [
         ("Timeline of the plan", "Group-Traverse-Path#1"),
-        ("Temporal plan network", "Group-Wait#1"),
+        // The network writes calls with their arguments.
+        ("Temporal plan network", "Group-Wait(TAI_HOLD1, TAI_HOLD2)"),
         ("Map with the paths of the plan", "TAI_POS"),
     ] {
         let shown = tab.evaluate(&format!(

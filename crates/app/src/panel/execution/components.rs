@@ -22,7 +22,7 @@ pub(super) struct Components {
     step: u32,
 }
 
-/// A component with its modes, those that faults lead to first.
+/// A component with its modes, those that faults lead to first. Components that can fail come first as well.
 struct Choice {
     name: SmolStr,
     modes: Vec<String>,

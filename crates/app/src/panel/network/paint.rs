@@ -7,7 +7,7 @@ use layout::progress::elapsed;
 use layout::{
     BlockForm, Item, OverlayCurve, OverlayKind, Piece, Point, Progress, Route, TextRole, TextShape,
 };
-use tpn::{ArcKind, LabelId, Network, Plan, Role};
+use tpn::{ArcKind, LabelId, Network, NodeId, Plan, Role};
 
 use super::data::Drawn;
 use super::highlight::Highlight;
@@ -345,7 +345,8 @@ impl Scene<'_> {
             let line = Stroke::new(self.width(stroke.width), self.color(stroke.ink));
             self.painter.circle(center, radius, fill, line);
             let is_done = self.progress.is_some_and(|it| it.done.binary_search(&node.id).is_ok());
-            let dot = (look::done_radius(node.radius) * self.view.zoom()) as f32;
+            // The numbers of events that have happened stand on the mark.
+            let dot = ((look::done_radius(node.radius) * self.view.zoom()) as f32).max(0.8 * radius);
             if is_done && dot >= 0.8 {
                 self.painter.circle_filled(center, dot, self.color(Ink::Now));
             }
@@ -392,7 +393,12 @@ impl Scene<'_> {
             return;
         }
         let strength = ((size - least) / 1.5).clamp(0.35, 1.0) as f32;
-        let color = self.color(look::text_ink(text.role, standing)).gamma_multiply(strength);
+        let is_done = |node: &NodeId| self.progress.is_some_and(|it| it.done.binary_search(node).is_ok());
+        let ink = match (&text.owner, text.role) {
+            (Item::Node(node), TextRole::Node) if is_done(node) => self.color(Ink::NodeFill),
+            _ => self.color(look::text_ink(text.role, standing)),
+        };
+        let color = ink.gamma_multiply(strength);
         let place = self.view.screen_rect(self.panel, rect);
         if let Item::Label(label) = text.owner {
             self.mark_label(label, place);

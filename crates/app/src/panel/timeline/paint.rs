@@ -202,7 +202,14 @@ impl Painting<'_> {
             hatch::add(&mut mesh, whole, self.visible, ink);
             painter.add(Shape::mesh(mesh));
         }
+        let now = self.context.state.playback.time;
+        // What runs at the time shown: its start has happened, its end has not.
+        let is_running = self.context.state.is_executing()
+            && bar.kind != BarKind::Ask
+            && bar.start[0] >= bar.start[1]
+            && (bar.start[0]..bar.end[1]).contains(&now);
         let outline = match (is_selected, is_hovered) {
+            _ if is_running && !is_selected => Stroke::new(1.5, tokens.now),
             (true, _) => Stroke::new(1.5, tokens.accent),
             (_, true) => Stroke::new(1.0, tokens.text_muted),
             _ => Stroke::new(1.0, tokens.mixed(color, 0.6)),

@@ -103,6 +103,12 @@ fn moment(network: &Network, executed: &Executed, windows: &[Option<Window>], ti
         if !is_activity && occurrence.kind != OccurrenceKind::Assertion {
             continue;
         }
+        // A condition that was withdrawn before it came is over as soon as it would have begun: nobody waits for it.
+        let is_gone = |arc: &tpn::Arc| arc.upper == Bound::Finite(Rational::default());
+        let arc = occurrence.arc.and_then(|arc| network.arcs.get(arc.index()));
+        if !is_activity && arc.is_some_and(is_gone) {
+            continue;
+        }
         let id = OccurrenceId::from_index(index);
         let (Some(start), Some(end)) = (window(occurrence.start), window(occurrence.end)) else { continue };
         let since = executed.times.get(occurrence.start.index()).copied().flatten();
