@@ -11,7 +11,7 @@ use crate::failure::{Failure, Member, Reason};
 use crate::model::{INFINITE, Model, NONE};
 use crate::options::Stats;
 use crate::record::DeadEnd;
-use crate::search::{Engine, Halt, Setup, UNBOUNDED_BELOW};
+use crate::search::{Choices, Engine, Halt, Setup, UNBOUNDED_BELOW};
 use crate::trace::{Constraint, CycleMember};
 use crate::wording;
 
@@ -205,7 +205,7 @@ impl Part {
             jumps: true,
             records_dead_ends,
             active_labels: Some(self.active_labels.clone()),
-            assumed: Some(self.assumed.clone()),
+            assumed: Some(Choices { alternatives: self.assumed.clone(), carriers: Vec::new() }),
             ..Setup::default()
         }
     }

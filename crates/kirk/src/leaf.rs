@@ -23,6 +23,8 @@ pub(crate) struct Leaf {
     from_start: Vec<i64>,
     to_start: Vec<i64>,
     pub(crate) has_windows: bool,
+    /// Times that fit all links and no order yet: orders that they break are seen at once not to follow.
+    pub(crate) schedule: Vec<i64>,
 }
 
 impl Engine<'_> {
@@ -127,6 +129,7 @@ impl Engine<'_> {
         let model = self.model;
         self.deselect(0, 0);
         self.stn.clear();
+        self.stn.propose(&self.setup.proposed);
         let mut stack = vec![model.start];
         self.select_node(model.start, Context::ALWAYS);
         while let Some(node) = stack.pop() {
@@ -151,6 +154,8 @@ impl Engine<'_> {
 
     fn find_pairs(&mut self) {
         self.leaf.has_pairs = true;
+        self.leaf.schedule.clear();
+        self.leaf.schedule.extend_from_slice(self.stn.schedule());
         self.leaf.pairs.clear();
         let conditions = &self.model.conditions;
         for left in 0..conditions.labels.len() as u32 {

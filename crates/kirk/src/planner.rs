@@ -9,6 +9,7 @@ use tpn::{ArcId, Network};
 use crate::answer;
 use crate::model::{Model, NONE};
 use crate::options::{Options, Outcome, Search, Termination};
+use crate::search::Choices;
 
 /// Plans one network repeatedly. Plans are those of [`crate::plan`] on the changed network, whatever was asked before;
 /// only the statistics tell how little was left to do.
@@ -29,8 +30,10 @@ pub struct Planner {
 #[derive(Clone, Debug)]
 struct Searched {
     search: Search,
-    /// The alternative of each decision in the first plan.
-    chosen: Vec<u32>,
+    /// What the first plan chose.
+    choices: Choices,
+    /// Times that fitted the plan found last, by node; empty before.
+    schedule: Vec<i64>,
     /// The bounds it was searched with, where they are others now.
     changed: BTreeMap<u32, (i64, i64)>,
 }
@@ -75,10 +78,11 @@ impl Planner {
         let Some(model) = &self.model else { return Outcome::overflow() };
         let is_repeatable = !options.all && options.trace_events.is_none();
         if is_repeatable
-            && let Some(last) = &self.last
+            && let Some(last) = &mut self.last
             && last.search == options.search
             && last.covers(model)
-            && let Ok(Some(outcome)) = answer::with_choices(model, &last.chosen, termination)
+            && let Ok(Some(outcome)) =
+                answer::with_choices(model, &last.choices, &mut last.schedule, termination)
         {
             return outcome;
         }
@@ -87,11 +91,17 @@ impl Planner {
             return Outcome::overflow();
         };
         self.last = outcome.plans.first().filter(|_| is_repeatable && !has_doubts).map(|plan| {
-            let mut chosen = vec![NONE; model.decisions.len()];
+            let mut choices = Choices {
+                alternatives: vec![NONE; model.decisions.len()],
+                carriers: vec![NONE; model.conditions.labels.len()],
+            };
             for choice in &plan.choices {
-                chosen[choice.decision.index()] = choice.alternative;
+                choices.alternatives[choice.decision.index()] = choice.alternative;
             }
-            Searched { search: options.search, chosen, changed: BTreeMap::new() }
+            for link in &plan.causal_links {
+                choices.carriers[link.ask.index()] = link.tell.0;
+            }
+            Searched { search: options.search, choices, schedule: Vec::new(), changed: BTreeMap::new() }
         });
         outcome
     }

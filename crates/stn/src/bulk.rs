@@ -51,6 +51,13 @@ impl Stn {
         self.potential.fill(0);
     }
 
+    /// Proposes a time for each point, so that [`Stn::settle`] moves little. Answers do not depend on it.
+    pub fn propose(&mut self, schedule: &[i64]) {
+        for (time, &proposed) in self.potential.iter_mut().zip(schedule) {
+            *time = proposed;
+        }
+    }
+
     /// Whether any point is left to relax.
     fn sweep<'a>(&mut self, order: impl Iterator<Item = &'a PointId>) -> Result<bool, Inconsistency> {
         let mut moved = false;

@@ -173,7 +173,7 @@ impl Stn {
         }
     }
 
-    /// How many points moved in the last insertion.
+    /// How many points moved in the last insertion; twice what two of its edges moved.
     pub fn num_changed(&self) -> usize {
         self.changed.len()
     }
@@ -270,28 +270,30 @@ impl Stn {
         Ok(())
     }
 
-    /// Whether `to − from ≤ weight` could be added for all `edges` at once. If so, the schedule is one that keeps them;
-    /// if not, it stays as it is, and [`Stn::cycle`] says why.
-    pub fn admits_all(&mut self, edges: &[(PointId, PointId, i64)], tag: Tag) -> Result<(), Inconsistency> {
+    /// Adds `to − from ≤ weight` for all `edges` or, if they contradict, for none; then the schedule stays as it is, too.
+    pub fn insert_all(&mut self, edges: &[(PointId, PointId, i64)], tag: Tag) -> Result<(), Inconsistency> {
         let checkpoint = self.checkpoint();
         let mut moved = std::mem::take(&mut self.moved);
-        let mut result = Ok(());
+        moved.clear();
         for &(from, to, weight) in edges {
-            result = self.insert(from, to, weight, tag);
-            if result.is_err() {
-                break;
+            if let Err(reason) = self.insert(from, to, weight, tag) {
+                self.rollback(checkpoint);
+                self.moved = std::mem::replace(&mut self.changed, moved);
+                self.restore();
+                return Err(reason);
             }
             moved.append(&mut self.changed);
         }
+        self.moved = std::mem::replace(&mut self.changed, moved);
+        Ok(())
+    }
+
+    /// Whether [`Stn::insert_all`] could add `edges`. If so, the schedule is one that keeps them.
+    pub fn admits_all(&mut self, edges: &[(PointId, PointId, i64)], tag: Tag) -> Result<(), Inconsistency> {
+        let checkpoint = self.checkpoint();
+        self.insert_all(edges, tag)?;
         self.rollback(checkpoint);
-        if result.is_err() {
-            while let Some((point, time)) = moved.pop() {
-                self.potential[point as usize] = time;
-            }
-        }
-        moved.clear();
-        self.moved = moved;
-        result
+        Ok(())
     }
 
     /// Adds an edge without restoring consistency: [`Stn::settle`] must follow before anything else is asked.

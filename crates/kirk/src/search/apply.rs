@@ -24,8 +24,8 @@ impl Engine<'_> {
                 self.log(|_| Event::TryLink { link: CausalLink { ask: LabelId(ask), tell: LabelId(tell) } });
                 let (ask_start, ask_end) = self.model.interval(ask);
                 let (tell_start, tell_end) = self.model.interval(tell);
-                Ok(self.insert(ask_start, tell_start, 0, tag, FailureKind::OpenCondition)?
-                    && self.insert(tell_end, ask_end, 0, tag, FailureKind::OpenCondition)?)
+                let edges = [(ask_start, tell_start, 0), (tell_end, ask_end, 0)];
+                self.insert(&edges, tag, FailureKind::OpenCondition)
             }
             Kind::Threat { position, left, right } => {
                 let (first, then) = if alternative == 0 { (left, right) } else { (right, left) };
@@ -40,7 +40,7 @@ impl Engine<'_> {
                     Gaps::Ignored => self.model.gap_after[first as usize],
                     Gaps::Exact | Gaps::Trusted => self.model.gap,
                 };
-                if self.insert(then_start, first_end, -gap, tag, FailureKind::Threat)? {
+                if self.insert(&[(then_start, first_end, -gap)], tag, FailureKind::Threat)? {
                     return Ok(true);
                 }
                 self.blame_touching(depth);
@@ -140,16 +140,14 @@ impl Engine<'_> {
         Ok(false)
     }
 
-    /// Adds `to − from ≤ weight` for a link or an order.
+    /// Adds what a link or an order asks for.
     fn insert(
         &mut self,
-        from: PointId,
-        to: PointId,
-        weight: i64,
+        edges: &[(PointId, PointId, i64)],
         tag: Tag,
         kind: FailureKind,
     ) -> Result<bool, Overflow> {
-        match self.stn.insert(from, to, weight, tag) {
+        match self.stn.insert_all(edges, tag) {
             Ok(()) => {
                 let moved = self.stn.num_changed() as u32;
                 self.log(|_| Event::Propagate { moved });

@@ -46,8 +46,19 @@ pub(crate) struct Setup {
     pub(crate) trace_events: Option<usize>,
     /// Labels that count; all if `None`. Assertions that do not count still support.
     pub(crate) active_labels: Option<Vec<bool>>,
-    /// Decisions that have been made before: the alternative, or [`NONE`].
-    pub(crate) assumed: Option<Vec<u32>>,
+    /// What has been chosen before.
+    pub(crate) assumed: Option<Choices>,
+    /// Times that are likely to fit, by node; it only saves work. None if empty.
+    pub(crate) proposed: Vec<i64>,
+}
+
+/// What a plan chose.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Choices {
+    /// The alternative of each decision, or [`NONE`].
+    pub(crate) alternatives: Vec<u32>,
+    /// The assertion that carries each requirement, by label, or [`NONE`]; empty if that is open.
+    pub(crate) carriers: Vec<u32>,
 }
 
 /// What a search makes of orders that fail only because of the gap they ask for, but would hold by touching if other
@@ -336,7 +347,13 @@ impl<'m> Engine<'m> {
         }
         if let Some(&ask) = self.leaf.asks.get(first_ask as usize) {
             let conditions = &self.model.conditions;
-            let tells = conditions.supporters(ask).filter(|&tell| self.is_selected_label(tell)).collect();
+            let assumed = self.setup.assumed.as_ref();
+            let assumed =
+                assumed.and_then(|assumed| assumed.carriers.get(ask as usize)).copied().unwrap_or(NONE);
+            let tells = conditions
+                .supporters(ask)
+                .filter(|&tell| self.is_selected_label(tell) && (assumed == NONE || assumed == tell))
+                .collect();
             return Ok(Next::Choice(Kind::Link { position: first_ask, ask, tells }));
         }
         match self.next_threat(first_pair)? {
@@ -362,7 +379,8 @@ impl<'m> Engine<'m> {
     fn push_level(&mut self, kind: Kind) {
         let (next, end) = match &kind {
             Kind::Decision { decision } => {
-                let assumed = self.setup.assumed.as_ref().map_or(NONE, |assumed| assumed[*decision as usize]);
+                let assumed = self.setup.assumed.as_ref();
+                let assumed = assumed.map_or(NONE, |assumed| assumed.alternatives[*decision as usize]);
                 let count = self.model.decisions[*decision as usize].alternatives.len() as u32;
                 if assumed == NONE { (0, count) } else { (assumed, assumed + 1) }
             }
