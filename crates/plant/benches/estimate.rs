@@ -5,7 +5,8 @@
 use std::{fmt::Write as _, time::Instant};
 
 use plant::{
-    Belief, Commands, Model, Observation, SimulatedPlant, State, compile, update_best, update_exact,
+    Belief, Commands, Model, Observation, SearchStatistics, SimulatedPlant, State, compile, update_best,
+    update_exact,
 };
 
 const ENGINE: &str = "(DEFCLASS Engine ()
@@ -92,7 +93,15 @@ fn micros(mut work: impl FnMut()) -> f64 {
     best
 }
 
+/// With the argument `circuit`, only the circuit is measured.
 fn main() {
+    if !std::env::args().any(|argument| argument == "circuit") {
+        engines();
+    }
+    breakers_and_lamps();
+}
+
+fn engines() {
     println!("{:<28} {:>14} {:>14} {:>14}", "one update, engines", "exact, µs", "1 best, µs", "10 best, µs");
     for count in [1, 2, 4, 8, 16, 50, 100] {
         let mut instances = String::new();
@@ -120,9 +129,20 @@ fn main() {
         let exact = exact.map_or_else(|| "–".to_owned(), |micros| format!("{micros:.1}"));
         println!("{count:<28} {exact:>14} {:>14.1} {:>14.1}", best(1), best(10));
     }
+}
+
+fn breakers_and_lamps() {
     let model = circuit();
     let steps = scenario(&model);
     let mut last: Option<Belief> = None;
+    let mut belief = Belief::certain(model.initial_state());
+    for (step, (commands, observation)) in (1..).zip(&steps) {
+        let (next, statistics) =
+            update_best(&model, &belief, commands, observation, 5, 1_000_000).expect("update");
+        let SearchStatistics { expanded, checked, conflicts, .. } = statistics;
+        println!("step {step}: {expanded} nodes expanded, {checked} states checked, {conflicts} conflicts");
+        belief = next;
+    }
     let micros = micros(|| {
         let mut belief = Belief::certain(model.initial_state());
         for (commands, observation) in &steps {

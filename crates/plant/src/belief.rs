@@ -43,11 +43,18 @@ impl Belief {
     }
 
     /// The belief with these relative weights; `None` when all are zero. States must not repeat.
-    pub fn from_weights(mut entries: Vec<(State, BigUint)>) -> Option<Self> {
+    pub fn from_weights(entries: Vec<(State, BigUint)>) -> Option<Self> {
+        Self::heaviest(entries, usize::MAX)
+    }
+
+    /// The same with only the `most` most likely states, at least one.
+    pub(crate) fn heaviest(mut entries: Vec<(State, BigUint)>, most: usize) -> Option<Self> {
         entries.retain(|(_, weight)| !weight.is_zero());
         entries.sort_by(|left, right| right.1.cmp(&left.1).then_with(|| left.0.cmp(&right.0)));
-        let divisor = entries.iter().fold(BigUint::zero(), |divisor, (_, weight)| {
-            if divisor.is_one() { divisor } else { divisor.gcd(weight) }
+        entries.truncate(most.max(1));
+        // From the lightest up: the divisor is small at once, and long divisions are few.
+        let divisor = entries.iter().rev().fold(BigUint::zero(), |divisor, (_, weight)| {
+            if divisor.is_one() { divisor } else { common_divisor(divisor, weight) }
         });
         if !divisor.is_one() && !divisor.is_zero() {
             for (_, weight) in &mut entries {
@@ -110,9 +117,11 @@ impl Belief {
     }
 
     /// The same with only the `most` most likely states.
-    pub fn truncated(mut self, most: usize) -> Self {
-        self.entries.truncate(most.max(1));
-        Self::from_weights(self.entries.clone()).unwrap_or(self)
+    pub fn truncated(self, most: usize) -> Self {
+        if self.entries.len() <= most {
+            return self;
+        }
+        Self::heaviest(self.entries.clone(), most).unwrap_or(self)
     }
 
     pub(crate) fn entries(&self) -> &[(State, BigUint)] {
@@ -128,5 +137,18 @@ impl Belief {
 
     fn fraction(&self, weight: &BigUint) -> Probability {
         BigRational::new(BigInt::from(weight.clone()), BigInt::from(self.total.clone()))
+    }
+}
+
+/// The greatest common divisor. Divides first where one number is much longer than the other.
+fn common_divisor(divisor: BigUint, weight: &BigUint) -> BigUint {
+    if divisor.is_zero() {
+        return weight.clone();
+    }
+    let rest = weight % &divisor;
+    match (divisor.to_u64(), rest.to_u64()) {
+        _ if rest.is_zero() => divisor,
+        (Some(divisor), Some(rest)) => BigUint::from(divisor.gcd(&rest)),
+        _ => divisor.gcd(&rest),
     }
 }

@@ -8,15 +8,15 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use num_bigint::BigUint;
+use num_integer::Integer as _;
 use num_traits::{ToPrimitive as _, Zero as _};
 
 use crate::belief::{Belief, State};
-use crate::consistency::Assumed;
-use crate::diagnosis::shrink;
 use crate::exact::weigh;
-use crate::likelihood::{Likelihoods, admits};
+use crate::likelihood::Likelihoods;
 use crate::model::{Commands, Model, Observation};
-use crate::successor::{EstimateError, distributions};
+use crate::observe::values;
+use crate::successor::{Choices, EstimateError, distributions};
 
 /// How many states as likely as the last one wanted are looked at, to list the first of them in the order of modes.
 const MOST_TIES: usize = 16;
@@ -47,51 +47,68 @@ pub fn update_best(
     limit: u32,
 ) -> Result<(Belief, SearchStatistics), EstimateError> {
     let prior: Vec<&State> = belief.entries().iter().map(|(state, _)| state).collect();
-    let weights = distributions(model, &prior, commands)?;
+    let choices = distributions(model, &prior, commands)?;
     let mut likelihoods = Likelihoods::new(model, observation);
-    let mut search = Search::new(model, belief, &weights, &mut likelihoods);
+    let mut search = Search::new(model, belief, &choices, &mut likelihoods);
     let found = search.run(most.max(1), limit, &mut likelihoods);
     let statistics = search.statistics;
-    let states: Vec<(State, BigUint)> = found
-        .into_iter()
-        .map(|state| {
-            let weight = exact_weight(belief, &weights, &state);
-            (state, weight)
-        })
-        .collect();
-    let updated = weigh(model, states, &mut likelihoods)?;
-    let updated = if updated.len() > most { updated.truncated(most) } else { updated };
-    Ok((updated, statistics))
+    let weights = exact_weights(belief, &choices, &found);
+    let states = found.into_iter().zip(weights).collect();
+    Ok((weigh(model, states, &mut likelihoods, most)?, statistics))
 }
 
-fn exact_weight(belief: &Belief, weights: &[Vec<Vec<(u8, u64)>>], state: &State) -> BigUint {
-    let mut sum = BigUint::zero();
-    'prior: for ((_, weight), components) in belief.entries().iter().zip(weights) {
-        // Small factors are gathered in a machine word before they meet the long number.
-        let mut product = weight.clone();
-        let mut gathered = 1_u64;
-        for (choices, &mode) in components.iter().zip(&state.0) {
-            let Some((_, numerator)) = choices.iter().find(|(known, _)| *known == mode) else {
-                continue 'prior;
-            };
-            gathered = gathered.checked_mul(*numerator).unwrap_or_else(|| {
-                product *= gathered;
-                *numerator
-            });
+/// How likely each state is before it is observed, as long numbers in proportion.
+///
+/// What all weights of a component have in common is left out: most components do the same in all likely states, so
+/// that the numbers stay short.
+fn exact_weights(belief: &Belief, choices: &Choices, states: &[State]) -> Vec<BigUint> {
+    let rows = belief.len();
+    let mut common = vec![1_u64; choices.components()];
+    let mut relevant: Vec<usize> = Vec::new();
+    for (component, common) in common.iter_mut().enumerate() {
+        let modes = states.iter().fold(0_u64, |modes, state| modes | 1 << state.0[component]);
+        let mut divisor = 0;
+        let mut is_same = true;
+        for row in 0..rows {
+            let mut missing = modes;
+            for &(mode, weight) in choices.of(row, component) {
+                if modes >> mode & 1 == 1 && weight != divisor {
+                    is_same &= divisor == 0;
+                    divisor = divisor.gcd(&weight);
+                }
+                missing &= !(1 << mode);
+            }
+            is_same &= missing == 0;
         }
-        sum += product * gathered;
+        *common = divisor.max(1);
+        if !is_same {
+            relevant.push(component);
+        }
     }
-    sum
-}
-
-/// A node whose most promising state has been looked at.
-struct Expanded {
-    /// Per component, the options it may have.
-    sets: Vec<u64>,
-    /// Per component, the option of the state looked at.
-    chosen: Vec<u8>,
-    /// The components around which the node is split, in order.
-    split: Vec<u32>,
+    let weight = |state: &State| {
+        let mut sum = BigUint::zero();
+        'prior: for (row, (_, weight)) in belief.entries().iter().enumerate() {
+            // Small factors are gathered in a machine word before they meet the long number.
+            let mut product = weight.clone();
+            let mut gathered = 1_u64;
+            for &component in &relevant {
+                let mode = state.0[component];
+                let found = choices.of(row, component).iter().find(|(known, _)| *known == mode);
+                let Some((_, weight)) = found else { continue 'prior };
+                let factor = weight / common[component];
+                gathered = gathered.checked_mul(factor).unwrap_or_else(|| {
+                    product *= gathered;
+                    factor
+                });
+            }
+            if gathered != 1 {
+                product *= gathered;
+            }
+            sum += product;
+        }
+        sum
+    };
+    states.iter().map(weight).collect()
 }
 
 /// A part of an expanded node not looked at yet.
@@ -123,84 +140,131 @@ impl Ord for Waiting {
     }
 }
 
+/// Only components that may enter several modes are searched over; they are counted by `free` below.
 struct Search<'model> {
     model: &'model Model,
-    /// Per component, the modes it may enter.
+    /// The free components.
+    free: Vec<usize>,
+    /// Per free component, the modes it may enter.
     options: Vec<Vec<u8>>,
-    /// Per component, where its options start in a row of `table`.
+    /// Per free component, where its options start in a row of `table`.
     starts: Vec<usize>,
+    /// How long a row of `table` is.
+    width: usize,
     /// Per prior state and option, its probability and, for components that share nothing, its likelihood.
-    table: Vec<Vec<f64>>,
+    table: Vec<f64>,
+    /// Per prior state, its probability and that of what its other components do.
     prior: Vec<f64>,
+    /// The modes of the components that are not free.
+    template: State,
     /// Islands of several components, whose modes have to be checked together.
     joint: Vec<usize>,
-    /// Components and options that cannot be together.
+    /// Free components and options that cannot be together.
     known: Vec<Vec<(u32, u8)>>,
-    expanded: Vec<Expanded>,
+    nodes: Nodes,
+    trial: Trial,
     queue: BinaryHeap<Waiting>,
     age: u32,
     statistics: SearchStatistics,
+}
+
+/// Nodes whose most promising state has been looked at.
+#[derive(Default)]
+struct Nodes {
+    /// Per node and free component, the options that it may have.
+    sets: Vec<u64>,
+    /// Per node and free component, the option of the state looked at.
+    chosen: Vec<u8>,
+    /// Per node, where its split starts and ends.
+    ends: Vec<(u32, u32)>,
+    /// The free components around which nodes are split, in order.
+    split: Vec<u32>,
+}
+
+/// What is worked out of the node under expansion.
+#[derive(Default)]
+struct Trial {
+    /// Per prior state and free component, the best entry of the table and its option.
+    best: Vec<(f64, u8)>,
+    /// Per prior state, the product of the best entries; zero where one is zero.
+    products: Vec<f64>,
+    is_split: Vec<bool>,
+    suffix: Vec<f64>,
+    bounds: Vec<f64>,
+}
+
+const fn full_set(options: &[u8]) -> u64 {
+    if options.len() >= 64 { u64::MAX } else { (1 << options.len()) - 1 }
 }
 
 impl<'model> Search<'model> {
     fn new(
         model: &'model Model,
         belief: &Belief,
-        weights: &[Vec<Vec<(u8, u64)>>],
+        choices: &Choices,
         likelihoods: &mut Likelihoods<'_>,
     ) -> Self {
-        let count = model.components.len();
-        let mut options: Vec<Vec<u8>> = vec![Vec::new(); count];
-        for components in weights {
-            for (options, choices) in options.iter_mut().zip(components) {
-                options.extend(choices.iter().map(|(mode, _)| *mode));
+        let (count, rows) = (model.components.len(), belief.len());
+        let mut template = State(vec![0; count]);
+        let mut is_alone = vec![None; count];
+        for (at, island) in model.islands.iter().enumerate() {
+            if let [component] = island.components.as_slice() {
+                is_alone[component.0 as usize] = Some(at);
             }
         }
-        let mut starts = Vec::with_capacity(count);
+        let (mut free, mut options, mut starts) = (Vec::new(), Vec::new(), Vec::new());
         let mut width = 0;
-        for options in &mut options {
-            options.sort_unstable();
-            options.dedup();
-            starts.push(width);
-            width += options.len();
+        let mut prior = belief.approximate();
+        let mut factors: Vec<f64> = Vec::new();
+        for (component, island) in is_alone.into_iter().enumerate() {
+            let entered = (0..rows).flat_map(|row| choices.of(row, component));
+            let modes = entered.fold(0_u64, |modes, (mode, _)| modes | 1 << mode);
+            let first = factors.len();
+            for mode in values(modes) {
+                template.0[component] = mode;
+                let factor = island.map_or(1.0, |island| {
+                    let divisor = likelihoods.divisor(island, &template.0).to_f64().unwrap_or(f64::MAX);
+                    if divisor > 0.0 { 1.0 / divisor } else { 0.0 }
+                });
+                factors.push(factor);
+            }
+            if modes.count_ones() > 1 {
+                free.push(component);
+                options.push(values(modes).collect::<Vec<u8>>());
+                starts.push(width);
+                width += modes.count_ones() as usize;
+            } else {
+                let factor = factors.get(first).copied().unwrap_or(0.0);
+                for prior in &mut prior {
+                    *prior *= factor;
+                }
+                factors.truncate(first);
+            }
         }
-        let mut factors = vec![1.0; width];
-        for (at, island) in
-            model.islands.iter().enumerate().filter(|(_, island)| island.components.len() == 1)
-        {
-            for component in &island.components {
-                let place = component.0 as usize;
-                let mut state = vec![0; count];
-                for (option, mode) in options[place].iter().enumerate() {
-                    state[place] = *mode;
-                    let divisor = likelihoods.divisor(at, &state).to_f64().unwrap_or(f64::MAX);
-                    factors[starts[place] + option] = if divisor > 0.0 { 1.0 / divisor } else { 0.0 };
+        let mut table = vec![0.0; rows * width];
+        for row in 0..rows {
+            for ((&component, options), &start) in free.iter().zip(&options).zip(&starts) {
+                let entered = choices.of(row, component);
+                let total: u64 = entered.iter().map(|(_, weight)| weight).sum();
+                for (mode, weight) in entered {
+                    let option = start + options.binary_search(mode).unwrap_or(0);
+                    table[row * width + option] = *weight as f64 / total as f64 * factors[option];
                 }
             }
         }
-        let mut table = Vec::with_capacity(weights.len());
-        for components in weights {
-            let mut row = vec![0.0; width];
-            for (place, choices) in components.iter().enumerate() {
-                let total: u64 = choices.iter().map(|(_, weight)| weight).sum();
-                for (mode, weight) in choices {
-                    let option = options[place].binary_search(mode).unwrap_or(0);
-                    row[starts[place] + option] =
-                        *weight as f64 / total as f64 * factors[starts[place] + option];
-                }
-            }
-            table.push(row);
-        }
-        let joint = (0..model.islands.len()).filter(|&at| model.islands[at].components.len() > 1).collect();
         Self {
             model,
+            free,
             options,
             starts,
+            width,
             table,
-            prior: belief.approximate(),
-            joint,
+            prior,
+            template,
+            joint: (0..model.islands.len()).filter(|&at| model.islands[at].components.len() > 1).collect(),
             known: Vec::new(),
-            expanded: Vec::new(),
+            nodes: Nodes::default(),
+            trial: Trial::default(),
             queue: BinaryHeap::new(),
             age: 0,
             statistics: SearchStatistics::default(),
@@ -208,10 +272,7 @@ impl<'model> Search<'model> {
     }
 
     fn run(&mut self, most: usize, limit: u32, likelihoods: &mut Likelihoods<'_>) -> Vec<State> {
-        let all: Vec<u64> =
-            self.options.iter().map(|options| u64::MAX >> (64 - options.len().clamp(1, 64))).collect();
-        let bound = (0..self.prior.len()).map(|row| self.prior[row] * self.product(row, &all)).sum();
-        self.push(bound, None);
+        self.push(f64::INFINITY, None);
         let mut found: Vec<(f64, State)> = Vec::new();
         while let Some(waiting) = self.queue.pop() {
             // Machine numbers order the search; a margin keeps rounding from dropping a state that the exact
@@ -240,23 +301,22 @@ impl<'model> Search<'model> {
         }
     }
 
-    fn sets_of(&self, part: Option<(u32, u32)>) -> Vec<u64> {
+    /// Adds the options of a new node: those of its parent, without what the parts before it hold.
+    fn add_sets(&mut self, part: Option<(u32, u32)>) {
         let Some((parent, place)) = part else {
-            return self
-                .options
-                .iter()
-                .map(|options| u64::MAX >> (64 - options.len().clamp(1, 64)))
-                .collect();
+            self.nodes.sets.extend(self.options.iter().map(|options| full_set(options)));
+            return;
         };
-        let Some(parent) = self.expanded.get(parent as usize) else { return Vec::new() };
-        let mut sets = parent.sets.clone();
-        for &component in parent.split.iter().take(place as usize) {
-            sets[component as usize] = 1 << parent.chosen[component as usize];
+        let count = self.free.len();
+        let (start, _) = self.nodes.ends[parent as usize];
+        let (parent, new) = (parent as usize * count, self.nodes.sets.len());
+        self.nodes.sets.extend_from_within(parent..parent + count);
+        for at in start..=start + place {
+            let component = self.nodes.split[at as usize] as usize;
+            let option = 1_u64 << self.nodes.chosen[parent + component];
+            let set = &mut self.nodes.sets[new + component];
+            *set = if at == start + place { *set & !option } else { option };
         }
-        if let Some(&component) = parent.split.get(place as usize) {
-            sets[component as usize] &= !(1 << parent.chosen[component as usize]);
-        }
-        sets
     }
 
     fn expand(
@@ -265,126 +325,156 @@ impl<'model> Search<'model> {
         found: &mut Vec<(f64, State)>,
         likelihoods: &mut Likelihoods<'_>,
     ) {
-        let sets = self.sets_of(part);
-        let row = (0..self.prior.len())
-            .map(|row| (self.prior[row] * self.product(row, &sets), row))
-            .reduce(|best, next| if next.0 > best.0 { next } else { best })
-            .map_or(0, |(_, row)| row);
-        let chosen: Vec<u8> =
-            (0..sets.len()).map(|component| self.best(row, component, sets[component]).1).collect();
-        let state = State((0..sets.len()).map(|at| self.options[at][chosen[at] as usize]).collect());
-        let split = if let Some(conflict) = self.conflict(&chosen, &state, likelihoods) {
-            conflict.into_iter().map(|(component, _)| component).collect()
+        let new = self.nodes.sets.len();
+        self.add_sets(part);
+        let (product, row) = self.find_best(new);
+        if product == 0.0 && part.is_some() {
+            // Too unlikely for machine numbers.
+            self.nodes.sets.truncate(new);
+            return;
+        }
+        let count = self.free.len();
+        let chosen = self.trial.best[row * count..(row + 1) * count].iter().map(|(_, option)| *option);
+        self.nodes.chosen.extend(chosen);
+        let mut state = self.template.clone();
+        for (at, &component) in self.free.iter().enumerate() {
+            state.0[component] = self.options[at][self.nodes.chosen[new + at] as usize];
+        }
+        let start = self.nodes.split.len();
+        if let Some(conflict) = self.conflict(new, &state, likelihoods) {
+            let components = self.known[conflict].iter().map(|(component, _)| *component);
+            self.nodes
+                .split
+                .extend(components.filter(|&at| self.nodes.sets[new + at as usize].count_ones() > 1));
         } else {
             let mut value: f64 = (0..self.prior.len())
                 .map(|row| {
-                    let table = &self.table[row];
+                    let table = &self.table[row * self.width..(row + 1) * self.width];
+                    let chosen = &self.nodes.chosen[new..new + count];
                     chosen.iter().zip(&self.starts).fold(self.prior[row], |product, (option, start)| {
                         product * table[start + *option as usize]
                     })
                 })
                 .sum();
             for &at in &self.joint {
-                value /= likelihoods.divisor(at, &state.0).to_f64().unwrap_or(f64::MAX).max(1.0);
+                let divisor = likelihoods.divisor(at, &state.0);
+                value /= divisor.to_f64().unwrap_or(f64::MAX).max(1.0);
             }
             if value > 0.0 {
                 found.push((value, state));
             }
-            (0..sets.len() as u32).collect::<Vec<u32>>()
-        };
-        let split: Vec<u32> = split.into_iter().filter(|&at| sets[at as usize].count_ones() > 1).collect();
-        self.divide(sets, chosen, split);
+            let several = |at: &u32| self.nodes.sets[new + *at as usize].count_ones() > 1;
+            self.nodes.split.extend((0..count as u32).filter(several));
+        }
+        let end = self.nodes.split.len();
+        self.nodes.ends.push((start as u32, end as u32));
+        self.divide(new, start..end);
     }
 
-    /// Queues the parts of a node that are left when the chosen state, or the conflict in it, is taken out.
-    fn divide(&mut self, sets: Vec<u64>, chosen: Vec<u8>, split: Vec<u32>) {
-        let mut bounds = vec![0.0; split.len()];
-        let mut suffix = vec![1.0; split.len() + 1];
+    /// Works out the best entries of the node whose sets start at `new`; answers the largest product and its prior state.
+    fn find_best(&mut self, new: usize) -> (f64, usize) {
+        let sets = &self.nodes.sets[new..];
+        self.trial.best.clear();
+        self.trial.best.resize(self.prior.len() * sets.len(), (0.0, 0));
+        self.trial.products.clear();
+        let mut best = (0.0, 0);
         for row in 0..self.prior.len() {
-            let mut fixed = self.prior[row];
-            let mut inside = vec![false; sets.len()];
-            for &at in &split {
-                inside[at as usize] = true;
-            }
-            for (at, &set) in sets.iter().enumerate() {
-                if !inside[at] {
-                    fixed *= self.best(row, at, set).0;
+            let table = &self.table[row * self.width..(row + 1) * self.width];
+            let mut product = self.prior[row];
+            let entries = self.trial.best[row * sets.len()..].iter_mut();
+            for ((entry, &set), &start) in entries.zip(sets).zip(&self.starts) {
+                *entry = best_of(&table[start..], set);
+                product *= entry.0;
+                if product == 0.0 {
+                    break;
                 }
             }
-            if fixed == 0.0 {
-                continue;
-            }
-            for (place, &at) in split.iter().enumerate().rev() {
-                suffix[place] = suffix[place + 1] * self.best(row, at as usize, sets[at as usize]).0;
-            }
-            for (place, &at) in split.iter().enumerate() {
-                let at = at as usize;
-                let others = sets[at] & !(1 << chosen[at]);
-                bounds[place] += fixed * self.best(row, at, others).0 * suffix[place + 1];
-                fixed *= self.table[row][self.starts[at] + chosen[at] as usize];
-            }
-        }
-        let parent = self.expanded.len() as u32;
-        self.expanded.push(Expanded { sets, chosen, split });
-        for (place, bound) in bounds.into_iter().enumerate() {
-            self.push(bound, Some((parent, place as u32)));
-        }
-    }
-
-    /// The largest entry of a row among a component's options in `set`, and which it is; zero for an empty set.
-    fn best(&self, row: usize, component: usize, mut set: u64) -> (f64, u8) {
-        let start = self.starts[component];
-        let mut best = (0.0, set.trailing_zeros().min(63) as u8);
-        while set != 0 {
-            let option = set.trailing_zeros() as u8;
-            set &= set - 1;
-            let value = self.table[row][start + option as usize];
-            if value > best.0 {
-                best = (value, option);
+            self.trial.products.push(product);
+            if product > best.0 {
+                best = (product, row);
             }
         }
         best
     }
 
-    fn product(&self, row: usize, sets: &[u64]) -> f64 {
-        sets.iter()
-            .enumerate()
-            .fold(1.0, |product, (component, &set)| product * self.best(row, component, set).0)
+    /// Queues the parts of a node that are left when the chosen state, or the conflict in it, is taken out.
+    fn divide(&mut self, new: usize, split: std::ops::Range<usize>) {
+        let count = self.free.len();
+        let Trial { best, products, is_split, suffix, bounds } = &mut self.trial;
+        let split = &self.nodes.split[split];
+        is_split.clear();
+        is_split.resize(count, false);
+        for &at in split {
+            is_split[at as usize] = true;
+        }
+        bounds.clear();
+        bounds.resize(split.len(), 0.0);
+        suffix.clear();
+        suffix.resize(split.len() + 1, 1.0);
+        for (row, &product) in products.iter().enumerate() {
+            if product == 0.0 {
+                continue;
+            }
+            let table = &self.table[row * self.width..(row + 1) * self.width];
+            let best = &best[row * count..(row + 1) * count];
+            let mut fixed = self.prior[row];
+            for ((value, _), _) in best.iter().zip(&*is_split).filter(|(_, is_split)| !**is_split) {
+                fixed *= value;
+            }
+            for (place, &at) in split.iter().enumerate().rev() {
+                suffix[place] = suffix[place + 1] * best[at as usize].0;
+            }
+            for (place, &at) in split.iter().enumerate() {
+                let at = at as usize;
+                let chosen = self.nodes.chosen[new + at];
+                let others = self.nodes.sets[new + at] & !(1 << chosen);
+                bounds[place] += fixed * best_of(&table[self.starts[at]..], others).0 * suffix[place + 1];
+                fixed *= table[self.starts[at] + chosen as usize];
+            }
+        }
+        let parent = self.nodes.ends.len() as u32 - 1;
+        for place in 0..self.trial.bounds.len() {
+            self.push(self.trial.bounds[place], Some((parent, place as u32)));
+        }
     }
 
-    /// Why the state is impossible, if it is: some of its modes that cannot be together under the observation.
-    fn conflict(
-        &mut self,
-        chosen: &[u8],
-        state: &State,
-        likelihoods: &Likelihoods<'_>,
-    ) -> Option<Vec<(u32, u8)>> {
-        let holds = |conflict: &&Vec<(u32, u8)>| {
-            conflict.iter().all(|&(component, option)| chosen.get(component as usize) == Some(&option))
+    /// Why the state is impossible, if it is: which of the known sets of modes that cannot be together it holds.
+    fn conflict(&mut self, new: usize, state: &State, likelihoods: &mut Likelihoods<'_>) -> Option<usize> {
+        let chosen = &self.nodes.chosen[new..];
+        let holds = |conflict: &Vec<(u32, u8)>| {
+            conflict.iter().all(|&(component, option)| chosen[component as usize] == option)
         };
-        if let Some(known) = self.known.iter().find(holds) {
-            return Some(known.clone());
-        }
-        if self.joint.is_empty() {
-            return None;
+        let known = self.known.iter().position(holds);
+        if known.is_some() || self.joint.is_empty() {
+            return known;
         }
         self.statistics.checked += 1;
         for &at in &self.joint {
             let island = &self.model.islands[at];
-            let Err(places) = admits(self.model, island, &state.0, likelihoods.observed()) else { continue };
-            let mut assumed = Assumed::all(self.model, island, &state.0);
-            shrink(&mut assumed, likelihoods.observed(), places);
-            let conflict: Vec<(u32, u8)> = island
-                .components
-                .iter()
-                .zip(&assumed.modes)
-                .filter(|(_, mode)| mode.is_some())
-                .map(|(component, _)| (component.0, chosen[component.0 as usize]))
-                .collect();
+            let Some(assumed) = likelihoods.conflict(at, &state.0) else { continue };
+            let involved = island.components.iter().zip(&assumed.modes).filter(|(_, mode)| mode.is_some());
+            let conflict = involved.filter_map(|(component, _)| {
+                let at = self.free.binary_search(&(component.0 as usize)).ok()?;
+                Some((at as u32, chosen[at]))
+            });
             self.statistics.conflicts += 1;
-            self.known.push(conflict.clone());
-            return Some(conflict);
+            self.known.push(conflict.collect());
+            return Some(self.known.len() - 1);
         }
         None
     }
+}
+
+/// The largest of a component's entries among the options in `set`, and which it is; zero for an empty set.
+fn best_of(entries: &[f64], mut set: u64) -> (f64, u8) {
+    let mut best = (0.0, set.trailing_zeros().min(63) as u8);
+    while set != 0 {
+        let option = set.trailing_zeros();
+        set &= set - 1;
+        let value = entries[option as usize];
+        if value > best.0 {
+            best = (value, option as u8);
+        }
+    }
+    best
 }

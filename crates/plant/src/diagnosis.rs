@@ -97,9 +97,9 @@ fn minimal(
             assumed.modes[place] = None;
         }
     }
-    let observed = Domains::observed(model, observation);
-    let places = assumed.satisfy(&mut observed.clone()).err()?;
-    shrink(&mut assumed, &observed, places);
+    let mut observed = Domains::observed(model, observation);
+    let places = assumed.check(&mut observed).err()?;
+    shrink(&mut assumed, &mut observed, places);
     let mut needed = observation.clone();
     for variable in observation.0.keys() {
         let mut fewer = needed.clone();
@@ -117,7 +117,7 @@ fn minimal(
 }
 
 /// Drops assumptions until every one that is left is needed for the contradiction.
-pub(crate) fn shrink(assumed: &mut Assumed<'_>, observed: &Domains, mut places: Places) {
+pub(crate) fn shrink(assumed: &mut Assumed<'_>, observed: &mut Domains, mut places: Places) {
     let keep = |assumed: &mut Assumed<'_>, places: Places| {
         for (place, mode) in assumed.modes.iter_mut().enumerate() {
             if places & place_bit(place) == 0 {
@@ -127,13 +127,13 @@ pub(crate) fn shrink(assumed: &mut Assumed<'_>, observed: &Domains, mut places: 
     };
     let before = assumed.modes.clone();
     keep(assumed, places);
-    if assumed.satisfy(&mut observed.clone()).is_ok() {
+    if assumed.check(observed).is_ok() {
         // Blame is kept conservatively everywhere, so this is a safeguard: start from all assumptions instead.
         assumed.modes = before;
     }
     for place in 0..assumed.modes.len() {
         let Some(mode) = assumed.modes[place].take() else { continue };
-        match assumed.satisfy(&mut observed.clone()) {
+        match assumed.check(observed) {
             Ok(()) => assumed.modes[place] = Some(mode),
             Err(fewer) => {
                 places &= fewer;

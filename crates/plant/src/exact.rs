@@ -23,10 +23,11 @@ pub fn update_exact(
     let prior: Vec<&State> = belief.entries().iter().map(|(state, _)| state).collect();
     let distributions = distributions(model, &prior, commands)?;
     let mut predicted: BTreeMap<State, BigUint> = BTreeMap::new();
-    for ((_, weight), distribution) in belief.entries().iter().zip(&distributions) {
+    for (row, (_, weight)) in belief.entries().iter().enumerate() {
         let mut reached: Vec<(Vec<u8>, BigUint)> =
-            vec![(Vec::with_capacity(distribution.len()), weight.clone())];
-        for choices in distribution {
+            vec![(Vec::with_capacity(distributions.components()), weight.clone())];
+        for component in 0..distributions.components() {
+            let choices = distributions.of(row, component);
             reached = reached
                 .iter()
                 .flat_map(|(modes, weight)| {
@@ -42,31 +43,41 @@ pub fn update_exact(
             *predicted.entry(State(modes)).or_insert_with(BigUint::zero) += weight;
         }
     }
-    weigh(model, predicted.into_iter().collect(), &mut Likelihoods::new(model, observation))
+    weigh(model, predicted.into_iter().collect(), &mut Likelihoods::new(model, observation), usize::MAX)
 }
 
-/// Divides each predicted weight by the number of observations that its state admits.
+/// Divides each predicted weight by the number of observations that its state admits, and keeps the `most` heaviest.
 pub(crate) fn weigh(
     model: &Model,
     predicted: Vec<(State, BigUint)>,
     likelihoods: &mut Likelihoods<'_>,
+    most: usize,
 ) -> Result<Belief, EstimateError> {
     let mut found: Vec<(State, BigUint, BigUint)> = Vec::with_capacity(predicted.len());
     let mut common = BigUint::one();
     for (state, weight) in predicted {
         let mut divisor = BigUint::one();
         for at in 0..model.islands.len() {
-            divisor *= likelihoods.divisor(at, &state.0);
-            if divisor.is_zero() {
+            let one = likelihoods.divisor(at, &state.0);
+            if one.is_zero() {
+                divisor = one;
                 break;
+            }
+            if !one.is_one() {
+                divisor *= one;
             }
         }
         if !divisor.is_zero() {
-            common = common.lcm(&divisor);
+            if divisor != common {
+                common = common.lcm(&divisor);
+            }
             found.push((state, weight, divisor));
         }
     }
+    let scaled = |weight: BigUint, divisor: BigUint| {
+        if divisor == common { weight } else { weight * (&common / divisor) }
+    };
     let weights =
-        found.into_iter().map(|(state, weight, divisor)| (state, weight * (&common / divisor))).collect();
-    Belief::from_weights(weights).ok_or(EstimateError::Unexplained)
+        found.into_iter().map(|(state, weight, divisor)| (state, scaled(weight, divisor))).collect();
+    Belief::heaviest(weights, most).ok_or(EstimateError::Unexplained)
 }

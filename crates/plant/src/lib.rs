@@ -20,6 +20,7 @@ pub mod probability;
 pub mod reconfigure;
 pub mod simulate;
 pub mod successor;
+mod table;
 
 pub use belief::{Belief, State};
 pub use best_first::{SearchStatistics, update_best};

@@ -146,7 +146,7 @@ impl Planner<'_> {
 
     /// Goals whose modes' constraints cannot hold together.
     fn drop_incompatible(&self, goals: &mut Vec<Goal>, unreachable: &mut Vec<Unreachable>) {
-        let free = Domains::observed(self.model, &Observation::default());
+        let mut free = Domains::observed(self.model, &Observation::default());
         for island in &self.model.islands {
             let wanted = |component: &ComponentId| {
                 let goal = goals.iter().find(|goal| goal.component == *component)?;
@@ -154,8 +154,8 @@ impl Planner<'_> {
             };
             let mut assumed =
                 Assumed { model: self.model, island, modes: island.components.iter().map(wanted).collect() };
-            let Err(places) = assumed.satisfy(&mut free.clone()) else { continue };
-            shrink(&mut assumed, &free, places);
+            let Err(places) = assumed.check(&mut free) else { continue };
+            shrink(&mut assumed, &mut free, places);
             let culprits: Vec<ComponentId> = island
                 .components
                 .iter()

@@ -82,49 +82,98 @@ pub(crate) fn distribution(
     state: &State,
     commands: &Commands,
 ) -> Result<(Vec<(u8, u64)>, u64), EstimateError> {
-    let target = successor(model, component, state, commands)?;
-    let mode = model.component(component).and_then(|data| data.modes.get(state.mode(component) as usize));
-    let Some(mode) = mode.filter(|mode| !mode.faults.is_empty()) else { return Ok((vec![(target, 1)], 1)) };
-    let faulty: u64 = mode.faults.iter().map(|fault| fault.numerator).sum();
-    let mut weights = vec![(target, mode.denominator - faulty)];
-    for fault in &mode.faults {
-        match weights.iter_mut().find(|(to, _)| *to == fault.to) {
-            Some((_, weight)) => *weight += fault.numerator,
-            None => weights.push((fault.to, fault.numerator)),
-        }
-    }
-    weights.retain(|(_, weight)| *weight > 0);
-    Ok((weights, mode.denominator))
+    let mut weights = Vec::new();
+    let denominator = distribute(model, component, state, commands, &mut weights)?;
+    Ok((weights, denominator))
 }
 
-/// The modes that a component may be in next, each with its weight.
-pub(crate) type ModeWeights = Vec<(u8, u64)>;
+/// The same, with the modes added to `into`.
+fn distribute(
+    model: &Model,
+    component: ComponentId,
+    state: &State,
+    commands: &Commands,
+    into: &mut Vec<(u8, u64)>,
+) -> Result<u64, EstimateError> {
+    let target = successor(model, component, state, commands)?;
+    let mode = model.component(component).and_then(|data| data.modes.get(state.mode(component) as usize));
+    let Some(mode) = mode.filter(|mode| !mode.faults.is_empty()) else {
+        into.push((target, 1));
+        return Ok(1);
+    };
+    let start = into.len();
+    let faulty: u64 = mode.faults.iter().map(|fault| fault.numerator).sum();
+    into.push((target, mode.denominator - faulty));
+    for fault in &mode.faults {
+        match into[start..].iter_mut().find(|(to, _)| *to == fault.to) {
+            Some((_, weight)) => *weight += fault.numerator,
+            None => into.push((fault.to, fault.numerator)),
+        }
+    }
+    let mut kept = start;
+    for at in start..into.len() {
+        if into[at].1 > 0 {
+            into.swap(kept, at);
+            kept += 1;
+        }
+    }
+    into.truncate(kept);
+    Ok(mode.denominator)
+}
 
-/// The distributions of all components over denominators that are common to all `states` (by state, then component).
+/// Where components may go next from each of some states, over denominators that the states have in common.
+pub(crate) struct Choices {
+    components: usize,
+    /// By state, then component, where its choices start; one more at the end.
+    starts: Vec<u32>,
+    /// Modes with their weights.
+    weights: Vec<(u8, u64)>,
+}
+
+impl Choices {
+    /// The modes that a component may enter from a state, each with its weight.
+    pub(crate) fn of(&self, state: usize, component: usize) -> &[(u8, u64)] {
+        let at = state * self.components + component;
+        let ends = self.starts.get(at).zip(self.starts.get(at + 1));
+        ends.map_or(&[], |(start, end)| &self.weights[*start as usize..*end as usize])
+    }
+
+    /// How many components there are.
+    pub(crate) const fn components(&self) -> usize {
+        self.components
+    }
+}
+
+/// The distributions of all components over denominators that are common to all `states`.
 pub(crate) fn distributions(
     model: &Model,
     states: &[&State],
     commands: &Commands,
-) -> Result<Vec<Vec<ModeWeights>>, EstimateError> {
-    let mut all: Vec<Vec<(ModeWeights, u64)>> = Vec::with_capacity(states.len());
+) -> Result<Choices, EstimateError> {
+    let components = model.components.len();
+    let mut starts = Vec::with_capacity(states.len() * components + 1);
+    let mut choices = Vec::with_capacity(2 * states.len() * components);
+    let mut denominators = Vec::with_capacity(states.len() * components);
+    let mut common = vec![1_u64; components];
     for state in states {
-        let each = model.component_ids().map(|component| distribution(model, component, state, commands));
-        all.push(each.collect::<Result<_, _>>()?);
+        for (component, common) in model.component_ids().zip(&mut common) {
+            starts.push(choices.len() as u32);
+            let denominator = distribute(model, component, state, commands, &mut choices)?;
+            denominators.push(denominator);
+            if *common != denominator {
+                *common = lcm(*common, denominator);
+            }
+        }
     }
-    let common: Vec<u64> = (0..model.components.len())
-        .map(|at| {
-            all.iter()
-                .filter_map(|each| each.get(at))
-                .fold(1, |common, (_, denominator)| lcm(common, *denominator))
-        })
-        .collect();
-    let scaled = |(weights, denominator): (ModeWeights, u64), common: u64| -> ModeWeights {
-        weights.into_iter().map(|(mode, weight)| (mode, weight * (common / denominator))).collect()
-    };
-    Ok(all
-        .into_iter()
-        .map(|each| each.into_iter().zip(&common).map(|(one, common)| scaled(one, *common)).collect())
-        .collect())
+    starts.push(choices.len() as u32);
+    for (at, denominator) in denominators.into_iter().enumerate() {
+        let scale = common[at % components] / denominator;
+        if scale > 1 {
+            let range = starts[at] as usize..starts[at + 1] as usize;
+            choices[range].iter_mut().for_each(|(_, weight)| *weight *= scale);
+        }
+    }
+    Ok(Choices { components, starts, weights: choices })
 }
 
 /// Whether a guard is true whatever the state and the commands leave open.
