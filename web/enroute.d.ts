@@ -137,6 +137,16 @@ export interface ProgramRun {
   canStep: boolean;
   isPlaying: boolean;
   trouble: string | null;
+  /** How likely the program is to reach its end; `null` until many runs were made of the present text. */
+  chance: {
+    runs: number;
+    isRunning: boolean;
+    reached: number;
+    probability: number;
+    /** The 95 % confidence interval of the probability. */
+    interval: [number, number];
+    meanSteps: number;
+  } | null;
   plant: PlantState | null;
 }
 

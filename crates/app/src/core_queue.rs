@@ -72,7 +72,7 @@ pub fn revision(request: &Request) -> Option<u64> {
         | Request::Review(update)
         | Request::Execute { update, .. }
         | Request::Sample { update, .. } => Some(update.revision),
-        Request::CompareSearches { revision } => Some(*revision),
+        Request::CompareSearches { revision } | Request::SampleProgram { revision, .. } => Some(*revision),
         Request::ImportMap { .. } | Request::WorkOut { .. } => None,
     }
 }
@@ -87,13 +87,15 @@ fn replaces(newer: &Request, earlier: &Request) -> bool {
             | Request::Review(_)
             | Request::Execute { .. }
             | Request::Sample { .. }
+            | Request::SampleProgram { .. }
             | Request::CompareSearches { .. },
         )
         | (Request::CompareSearches { .. }, Request::CompareSearches { .. })
         | (Request::Review(_), Request::Review(_))
         | (Request::WorkOut { .. }, Request::WorkOut { .. })
         | (Request::Execute { .. }, Request::Execute { .. })
-        | (Request::Sample { .. }, Request::Sample { .. }) => true,
+        | (Request::Sample { .. }, Request::Sample { .. })
+        | (Request::SampleProgram { .. }, Request::SampleProgram { .. }) => true,
         (Request::ImportMap { name: newer, .. }, Request::ImportMap { name: earlier, .. }) => {
             newer == earlier
         }

@@ -7,17 +7,17 @@ use egui_tiles::Tree;
 use crate::host::Host;
 use crate::panel::PanelKind;
 use crate::state::AppState;
-use crate::workspace::{self, Room, Workspace};
+use crate::workspace::{self, Arrangement, Room};
 
-/// One layout per workspace.
+/// One layout per workspace, and one for control programs.
 pub struct Layouts {
-    trees: BTreeMap<Workspace, Tree<PanelKind>>,
-    stored: BTreeMap<Workspace, String>,
+    trees: BTreeMap<Arrangement, Tree<PanelKind>>,
+    stored: BTreeMap<Arrangement, String>,
     room: Room,
 }
 
-fn key(workspace: Workspace) -> String {
-    format!("enroute/layout-2/{}", workspace.name())
+fn key(arrangement: Arrangement) -> String {
+    format!("enroute/layout-2/{}", arrangement.name())
 }
 
 impl Layouts {
@@ -25,12 +25,12 @@ impl Layouts {
     pub fn remembered(host: &dyn Host) -> Self {
         let mut trees = BTreeMap::new();
         let mut stored = BTreeMap::new();
-        for workspace in Workspace::ALL {
-            let text = host.stored(&key(workspace));
+        for arrangement in Arrangement::ALL {
+            let text = host.stored(&key(arrangement));
             let tree = text.as_deref().and_then(workspace::from_text);
-            let tree = tree.unwrap_or_else(|| workspace.default_layout(Room::default()));
-            stored.insert(workspace, workspace::to_text(&tree).unwrap_or_default());
-            trees.insert(workspace, tree);
+            let tree = tree.unwrap_or_else(|| arrangement.default_layout(Room::default()));
+            stored.insert(arrangement, workspace::to_text(&tree).unwrap_or_default());
+            trees.insert(arrangement, tree);
         }
         Self { trees, stored, room: Room::default() }
     }
@@ -40,31 +40,32 @@ impl Layouts {
         if self.room == room {
             return;
         }
-        for (&workspace, tree) in &mut self.trees {
-            if *tree == workspace.default_layout(self.room) {
-                *tree = workspace.default_layout(room);
-                self.stored.insert(workspace, workspace::to_text(tree).unwrap_or_default());
+        for (&arrangement, tree) in &mut self.trees {
+            if *tree == arrangement.default_layout(self.room) {
+                *tree = arrangement.default_layout(room);
+                self.stored.insert(arrangement, workspace::to_text(tree).unwrap_or_default());
             }
         }
         self.room = room;
     }
 
     /// The layout of a workspace.
-    pub fn tree_mut(&mut self, workspace: Workspace) -> &mut Tree<PanelKind> {
+    pub fn tree_mut(&mut self, arrangement: Arrangement) -> &mut Tree<PanelKind> {
         let room = self.room;
-        self.trees.entry(workspace).or_insert_with(|| workspace.default_layout(room))
+        self.trees.entry(arrangement).or_insert_with(|| arrangement.default_layout(room))
     }
 
     /// Does what the state wants done to the present layout.
     pub fn follow(&mut self, state: &mut AppState) {
+        let arrangement = state.arrangement();
         if std::mem::take(&mut state.wants_default_layout) {
-            self.trees.insert(state.workspace, state.workspace.default_layout(self.room));
+            self.trees.insert(arrangement, arrangement.default_layout(self.room));
         }
-        let tree = self.tree_mut(state.workspace);
+        let tree = self.tree_mut(arrangement);
         if let Some(panel) = state.unwanted_panel.take() {
             workspace::close_panel(tree, panel);
         }
-        let wanted = state.wanted_panel.take().into_iter().chain(state.also_wanted_panel.take());
+        let wanted = state.also_wanted_panel.take().into_iter().chain(state.wanted_panel.take());
         for panel in wanted {
             workspace::show_panel(tree, panel);
         }
@@ -72,12 +73,12 @@ impl Layouts {
 
     /// Lets the host keep what has changed.
     pub fn remember(&mut self, host: &mut dyn Host) {
-        for (&workspace, tree) in &self.trees {
+        for (&arrangement, tree) in &self.trees {
             let Some(text) = workspace::to_text(tree) else { continue };
-            if self.stored.get(&workspace) != Some(&text) {
+            if self.stored.get(&arrangement) != Some(&text) {
                 // A full storage only means that the layout is not remembered.
-                let _ = host.store(&key(workspace), &text);
-                self.stored.insert(workspace, text);
+                let _ = host.store(&key(arrangement), &text);
+                self.stored.insert(arrangement, text);
             }
         }
     }

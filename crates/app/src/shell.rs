@@ -184,7 +184,7 @@ impl Enroute {
         bar::top::show(ui, &context, commands);
         bar::bottom::show(ui, &context, commands);
         self.layouts.fit(Room::of(ui.ctx().content_rect().size()));
-        let tree = self.layouts.tree_mut(self.state.workspace);
+        let tree = self.layouts.tree_mut(self.state.arrangement());
         let mut shown = Vec::new();
         CentralPanel::default().frame(Frame::new().fill(context.tokens.background)).show(ui, |ui| {
             let mut tiles =

@@ -20,6 +20,61 @@ pub enum Workspace {
     Execute,
 }
 
+/// What has a layout of its own: a workspace, where missions and control programs need other panels also by notation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Arrangement {
+    /// A workspace with a mission, or where both are worked on alike.
+    Of(Workspace),
+    /// A control program as it runs: there is nothing to show over time or on the ground.
+    Program,
+}
+
+impl Arrangement {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Of(Workspace::Author),
+        Self::Of(Workspace::Teach),
+        Self::Of(Workspace::Review),
+        Self::Of(Workspace::Execute),
+        Self::Program,
+    ];
+
+    /// That of a workspace with a mission or a control program in it.
+    pub const fn new(workspace: Workspace, is_control: bool) -> Self {
+        match (workspace, is_control) {
+            (Workspace::Execute, true) => Self::Program,
+            (workspace, _) => Self::Of(workspace),
+        }
+    }
+
+    /// Its name in storage.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Of(workspace) => workspace.name(),
+            Self::Program => "program",
+        }
+    }
+
+    /// Where its panels stand before the user moves them.
+    pub fn default_layout(self, room: Room) -> Tree<PanelKind> {
+        let mut tiles = Tiles::default();
+        let root = match (self, room) {
+            (Self::Of(workspace), Room::Wide) => workspace.wide_layout(&mut tiles),
+            (Self::Of(workspace), Room::Narrow) => workspace.narrow_layout(&mut tiles),
+            (Self::Program, Room::Narrow) => {
+                use PanelKind::{Automaton, Editor, Outline, Problems};
+                tabs(&mut tiles, &[Automaton, Editor, Outline, Problems])
+            }
+            (Self::Program, Room::Wide) => {
+                let text = tabs(&mut tiles, &[PanelKind::Editor, PanelKind::Outline, PanelKind::Problems]);
+                let automaton = tabs(&mut tiles, &[PanelKind::Automaton]);
+                split(&mut tiles, LinearDir::Horizontal, &[(text, 0.29), (automaton, 0.71)])
+            }
+        };
+        Tree::new(egui::Id::unique(("workspace", self.name())), root, tiles)
+    }
+}
+
 impl Workspace {
     /// All of them, as the tabs stand.
     pub const ALL: [Self; 4] = [Self::Author, Self::Teach, Self::Review, Self::Execute];
@@ -47,16 +102,6 @@ impl Workspace {
     /// The workspace of this name.
     pub fn by_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|workspace| workspace.name() == name)
-    }
-
-    /// Where its panels stand before the user moves them.
-    pub fn default_layout(self, room: Room) -> Tree<PanelKind> {
-        let mut tiles = Tiles::default();
-        let root = match room {
-            Room::Wide => self.wide_layout(&mut tiles),
-            Room::Narrow => self.narrow_layout(&mut tiles),
-        };
-        Tree::new(egui::Id::unique(("workspace", self.name())), root, tiles)
     }
 
     fn wide_layout(self, tiles: &mut Tiles<PanelKind>) -> TileId {

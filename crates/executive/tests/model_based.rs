@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use executive::model_based::{
-    Knowledge, Options, Run, StepInput, StepRecord, System, monte_carlo, wilson_interval,
+    Knowledge, Options, ProgramTally, Run, StepInput, StepRecord, System, Trials, run_seed, sample,
+    wilson_interval,
 };
 use serde_json::Value;
 
@@ -238,11 +239,49 @@ fn what_is_known_in_several_states_is_less_than_in_the_most_likely_one() {
 #[test]
 fn chance_ends_orbit_insertion_as_often_as_the_engines_allow() {
     let system = orbit();
-    let result = monte_carlo(&system, Options::default(), 400, 30, 11).expect("runs");
+    let result = tally(&system, &BTreeMap::new(), 0..400);
+    assert_eq!(result.runs, 400);
     // Both engines have to fail: in about four steps at one in a hundred each that is roughly one run in a thousand.
-    assert!(result.probability > 0.97, "{result:?}");
-    assert!(result.interval.0 < result.probability && result.probability <= result.interval.1 + 1e-12);
-    assert_eq!(monte_carlo(&system, Options::default(), 400, 30, 11).expect("runs"), result, "seeded");
+    assert!(result.probability() > 0.97, "{result:?}");
+    let (low, high) = result.interval();
+    assert!(low < result.probability() && result.probability() <= high + 1e-12);
+    assert_eq!(tally(&system, &BTreeMap::new(), 0..400), result, "seeded");
+}
+
+fn tally(system: &System, inputs: &BTreeMap<u32, StepInput>, numbers: std::ops::Range<u64>) -> ProgramTally {
+    let trials = Trials { options: Options::default(), seed: 11, most_steps: 30, inputs };
+    sample(system, &trials, numbers, &mut || true).expect("runs")
+}
+
+#[test]
+fn runs_that_are_shared_out_add_up_to_the_same() {
+    let system = orbit();
+    let mut sum = tally(&system, &BTreeMap::new(), 250..400);
+    sum.merge(&tally(&system, &BTreeMap::new(), 0..250));
+    assert_eq!(sum, tally(&system, &BTreeMap::new(), 0..400));
+}
+
+#[test]
+fn a_run_that_got_stuck_is_made_again_from_its_seed() {
+    let system = orbit();
+    // With engine A failed, the end hangs on engine B alone.
+    let inputs: BTreeMap<u32, StepInput> =
+        [(3, input(&system, 3, &[(3, "EngineA", "Failed")]))].into_iter().collect();
+    let result = tally(&system, &inputs, 0..400);
+    let faults = result.faults["EngineB=Failed"];
+    assert!(result.reached < 400 && faults.runs > 0, "{result:?}");
+    assert_eq!(400 - result.reached, faults.runs - faults.reached, "only engine B keeps it from its end");
+    assert!(!result.faults.contains_key("EngineA=Failed"), "that was no chance");
+    let number = result.first_stuck.expect("a run got stuck");
+    let options = Options { seed: Some(run_seed(11, number)), ..Options::default() };
+    let mut run = Run::new(&system, options);
+    for step in 1..=30 {
+        run.step(inputs.get(&step).unwrap_or(&StepInput::default())).expect("step");
+    }
+    assert!(!run.is_done());
+    for label in run.upcoming().labels {
+        assert!(result.stuck.contains_key(&label), "{label} is marked for ever");
+    }
 }
 
 #[test]

@@ -7,6 +7,7 @@ pub mod automaton;
 pub mod drawing;
 pub mod geometry;
 pub mod look;
+pub mod machine;
 pub mod metrics;
 pub mod options;
 pub mod overlay;
@@ -32,6 +33,7 @@ pub use drawing::{
 };
 pub use geometry::{Piece, Point, Rect};
 pub use look::Parts;
+pub use machine::{MachineArc, MachineArcShape, MachineDrawing, machine};
 pub use metrics::{TextRole, approximate_text_width};
 pub use options::Options;
 pub use overlay::{OverlayCurve, OverlayKind};

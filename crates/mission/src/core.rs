@@ -18,6 +18,7 @@ use crate::control::read_control;
 use crate::ground::Grounds;
 use crate::planning::{self, Planned};
 use crate::problem::Problem;
+use crate::program_chance;
 use crate::programs::Programs;
 use crate::request::{Goal, Request, Response, Update};
 use crate::review;
@@ -78,6 +79,9 @@ impl Core {
             Request::Execute { update, script } => self.execute(&update, script, surroundings),
             Request::Sample { update, settings, from } => {
                 self.sample(&update, settings, from, surroundings);
+            }
+            Request::SampleProgram { revision, source, chance, from } => {
+                program_chance::answer((revision, &source), chance, from, surroundings);
             }
             Request::Review(update) => self.review(&update, surroundings),
             Request::WorkOut { token, update } => self.work_out_beside(token, &update, surroundings),

@@ -8,6 +8,7 @@ use smol_str::SmolStr;
 
 use crate::both_searches::BothSearches;
 use crate::execution::Execution;
+use crate::program_chance::ProgramChance;
 use crate::review::Review;
 use crate::robustness::{RobustnessSettings, Tally};
 use crate::snapshot::{MapKey, Snapshot};
@@ -31,6 +32,18 @@ pub enum Request {
         update: Update,
         /// What is left to chance.
         settings: RobustnessSettings,
+        /// The first run, from 0.
+        from: u64,
+    },
+    /// Run a control program many times, its components failing by chance: the runs from one number on. The answer says
+    /// how far it got.
+    SampleProgram {
+        /// The revision of the text.
+        revision: u64,
+        /// The whole text.
+        source: Arc<str>,
+        /// What the runs are.
+        chance: ProgramChance,
         /// The first run, from 0.
         from: u64,
     },
@@ -140,6 +153,17 @@ pub enum Response {
         from: u64,
         /// How they went; as many as there was time for, at least one.
         tally: Tally,
+    },
+    /// Some of many runs of a control program.
+    ProgramSampled {
+        /// The revision of its text.
+        revision: u64,
+        /// What the runs are.
+        chance: ProgramChance,
+        /// The first of these runs.
+        from: u64,
+        /// How they went, as many as there was time for, at least one; or why there can be none.
+        tally: Result<executive::model_based::ProgramTally, String>,
     },
     /// The two searches of a revision.
     Searches(Arc<BothSearches>),

@@ -14,15 +14,23 @@ pub struct Random {
     state: u64,
 }
 
+/// By how much the state of [`Random`] grows with each draw.
+const INCREMENT: u64 = 0x9e37_79b9_7f4a_7c15;
+
 impl Random {
     /// Starts from a seed.
     pub const fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
+    /// Starts from a seed, `count` draws later.
+    pub const fn skipped(seed: u64, count: u64) -> Self {
+        Self { state: seed.wrapping_add(INCREMENT.wrapping_mul(count)) }
+    }
+
     /// The next 64 random bits.
     pub const fn next_bits(&mut self) -> u64 {
-        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        self.state = self.state.wrapping_add(INCREMENT);
         let mut bits = self.state;
         bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -101,9 +109,9 @@ impl<'model> SimulatedPlant<'model> {
         for (&component, &mode) in injected {
             next.set_mode(component, mode);
         }
-        let free = Domains::observed(self.model, &Observation::default());
+        let mut free = Domains::observed(self.model, &Observation::default());
         for island in &self.model.islands {
-            if let Err(places) = Assumed::all(self.model, island, &next.0).satisfy(&mut free.clone()) {
+            if let Err(places) = Assumed::all(self.model, island, &next.0).check(&mut free) {
                 let blamed = island
                     .components
                     .iter()
@@ -152,7 +160,7 @@ pub fn observation_of(model: &Model, state: &State) -> Observation {
                 let mut trial = domains.clone();
                 trial.sets[symbol] = 1 << value;
                 let settled = assumed.settle_all(&mut trial);
-                if settled.is_ok() && assumed.satisfy(&mut trial.clone()).is_ok() {
+                if settled.is_ok() && assumed.check(&mut trial).is_ok() {
                     domains = trial;
                     observation.0.insert(variable, value);
                     break;

@@ -17,6 +17,7 @@ use crate::state::compare::CompareCommand;
 use crate::state::documents::ScheduleForm;
 use crate::state::editor::Find;
 use crate::state::execution::ExecutionCommand;
+use crate::state::program_chance::ProgramChanceCommand;
 use crate::state::review::ReviewCommand;
 use crate::state::search::SearchCommand;
 use crate::state::terrain::TerrainCommand;
@@ -97,6 +98,8 @@ pub enum Command {
     Execution(ExecutionCommand),
     /// Something that concerns many runs of a mission with chance.
     Chance(ChanceCommand),
+    /// Something that concerns many runs of a control program with chance.
+    ProgramChance(ProgramChanceCommand),
 
     /// Something that concerns the review.
     Review(ReviewCommand),

@@ -9,6 +9,7 @@ use crate::dialog::Dialog;
 use crate::host::FileKind;
 use crate::mission_file;
 use crate::panel::PanelKind;
+use crate::state::automaton::{AutomatonCommand, Program};
 use crate::state::chance::ChanceCommand;
 use crate::state::compare::CompareCommand;
 use crate::state::documents::ScheduleForm;
@@ -47,6 +48,29 @@ fn with_network(state: &AppState) -> Availability {
 fn with_plan(state: &AppState) -> Availability {
     let has_plan = state.shown().is_some_and(|shown| shown.plan().is_some());
     if has_plan { Ok(()) } else { Err("there is no plan") }
+}
+
+fn with_program(state: &AppState) -> Availability {
+    if state.automaton.moment().is_some() { Ok(()) } else { Err("there is no control program") }
+}
+
+/// The component and its mode by name; without a mode, the component is left to behave.
+fn injection(state: &AppState, arguments: &Value) -> Result<Command, String> {
+    let model = state.automaton.program().and_then(Program::model).ok_or("there is no plant")?;
+    let component = text_argument(arguments, "component")?;
+    let (id, mode) = if arguments.get("mode").is_none_or(Value::is_null) {
+        let id = model.component_named(component);
+        (id.ok_or_else(|| format!("the model has no component `{component}`"))?, None)
+    } else {
+        let (id, mode) = model.component_mode(component, text_argument(arguments, "mode")?)?;
+        (id, Some(mode))
+    };
+    Ok(Command::Automaton(AutomatonCommand::Inject(id, mode)))
+}
+
+/// Whether there is something that chance can go wrong with: a plan, or a control program with its plant.
+fn with_chance(state: &AppState) -> Availability {
+    if matches!(state.automaton.program(), Some(Program::Bound(_))) { Ok(()) } else { with_plan(state) }
 }
 
 /// Whether there is something to step through: a plan, a recorded search, or a control program.
@@ -937,10 +961,20 @@ pub static COMMANDS: &[CommandSpec] = &[
         with_run,
     ),
     when(
+        called("program.inject", "Bring a component into a mode in this step", Group::Play, injection),
+        with_program,
+    ),
+    when(
+        plain("program.reset", "Start the program anew", Group::Play, &[], Scope::Everywhere, |_| {
+            Command::Automaton(AutomatonCommand::Reset)
+        }),
+        with_program,
+    ),
+    when(
         plain("execute.sample", "Run many times with chance", Group::Play, &[], Scope::Everywhere, |_| {
             Command::Chance(ChanceCommand::Start)
         }),
-        with_plan,
+        with_chance,
     ),
     plain("execute.stopSampling", "Stop the runs with chance", Group::Play, &[], Scope::Everywhere, |_| {
         Command::Chance(ChanceCommand::Stop)

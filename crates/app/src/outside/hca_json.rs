@@ -5,10 +5,11 @@ use plant::Model;
 use serde_json::{Value, json};
 
 use crate::state::automaton::{AutomatonState, PlantMoment};
+use crate::state::program_chance::ProgramChanceState;
 
 /// The step that is looked at, what is marked there and, with a plant, what is believed, true, observed and commanded;
 /// nothing if the text is no control program.
-pub fn hca_json(state: &AutomatonState) -> Option<Value> {
+pub fn hca_json(state: &AutomatonState, revision: u64) -> Option<Value> {
     let program = state.program()?;
     let moment = state.moment();
     let plant = program.model().zip(moment.and_then(|moment| moment.plant.as_ref()));
@@ -25,7 +26,22 @@ pub fn hca_json(state: &AutomatonState) -> Option<Value> {
         "canStep": state.can_step(),
         "isPlaying": state.is_playing,
         "trouble": state.trouble,
+        "chance": chance_json(&state.chance, revision),
         "plant": plant.map(|(model, moment)| plant_json(model, moment)),
+    }))
+}
+
+/// How likely the program is to reach its end; null until runs were made of the present text.
+fn chance_json(chance: &ProgramChanceState, revision: u64) -> Option<Value> {
+    let tally = chance.tally(revision)?;
+    let (low, high) = tally.interval();
+    Some(json!({
+        "runs": tally.runs,
+        "isRunning": chance.is_running(),
+        "reached": tally.reached,
+        "probability": tally.probability(),
+        "interval": [low, high],
+        "meanSteps": tally.mean_steps(),
     }))
 }
 

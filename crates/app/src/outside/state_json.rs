@@ -52,7 +52,7 @@ pub fn state_json(state: &AppState) -> Value {
         "review": review_json(state),
         "compare": state.compare.reference().map(|side| json!({ "with": side.name, "planned": side.is_planned })),
         "search": search_json(state),
-        "hca": hca_json(&state.automaton),
+        "hca": hca_json(&state.automaton, state.document.revision()),
         "vehicles": shown.map(|shown| vehicles_json(state, shown)).unwrap_or_default(),
         "traverses": shown
             .zip(network)

@@ -11,8 +11,10 @@ use crate::host::{FileKind, HostEvent};
 use crate::mission_file;
 use crate::panel::PanelKind;
 use crate::state::automaton::AutomatonCommand;
+use crate::state::chance::ChanceCommand;
 use crate::state::editor::Reveal;
 use crate::state::growth::GrowthCommand;
+use crate::state::program_chance::ProgramChanceCommand;
 use crate::state::search::{self, SearchCommand};
 use crate::state::terrain::{TerrainCommand, TerrainState};
 use crate::state::{AppState, PinCommand, Pins, Selection, ToastKind, ViewRequest, playback};
@@ -119,7 +121,14 @@ impl AppState {
             }
             Command::Automaton(command) => self.automaton.apply(command),
             Command::Execution(command) => self.apply_to_run(command),
+            Command::Chance(ChanceCommand::Start) if self.automaton.program().is_some() => {
+                self.apply_to_program_chance(ProgramChanceCommand::Start);
+            }
+            Command::Chance(ChanceCommand::Stop) if self.automaton.program().is_some() => {
+                self.apply_to_program_chance(ProgramChanceCommand::Stop);
+            }
             Command::Chance(command) => self.apply_to_chance(command),
+            Command::ProgramChance(command) => self.apply_to_program_chance(command),
             Command::TogglePlaying if self.steps_search() => {
                 self.apply_to_search(SearchCommand::TogglePlaying);
             }
@@ -239,10 +248,12 @@ impl AppState {
                 self.take_run(answer);
             }
             HostEvent::Answer(answer @ Response::Sampled { .. }) => self.take_sample(answer),
+            HostEvent::Answer(answer @ Response::ProgramSampled { .. }) => self.take_program_sample(answer),
             HostEvent::CoreFailed { message, revision } => {
                 self.search.give_comparison_up(revision);
                 self.give_up_review();
                 self.compare.give_up();
+                self.automaton.chance.give_up();
                 self.toasts.add(
                     ToastKind::Failed,
                     format!(

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use executive::model_based::{Options, Run, StepInput, StepRecord, System};
+use executive::model_based::{Options, Run, StepInput, StepRecord, System, run_seed};
 use hca::{Automaton, Estimate, Marking, Stepper, TraceStep, VariableId};
 use mission::{Control, read_control};
 use plant::{Belief, Commands, ComponentId, Model, State};
@@ -13,6 +13,7 @@ use smol_str::SmolStr;
 
 use crate::mission_file;
 use crate::state::document::Document;
+use crate::state::program_chance::ProgramChanceState;
 
 /// The program of the text, if it is one, and its run.
 #[derive(Debug, Default)]
@@ -28,6 +29,10 @@ pub struct AutomatonState {
     moments: Vec<Moment>,
     /// The moment that is looked at.
     at: usize,
+    /// With it, components fail by chance.
+    luck: Option<Luck>,
+    /// How likely the program is to reach its end.
+    pub chance: ProgramChanceState,
     /// Why the last step could not be taken.
     pub trouble: Option<String>,
     /// Whether steps go by themselves.
@@ -55,6 +60,21 @@ pub struct Input {
     pub plant: StepInput,
     /// What is known of the program's variables, if there is none.
     pub known: BTreeMap<u32, u32>,
+}
+
+/// The luck that components have: with the same, the same ones fail in the same steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Luck {
+    /// Seeds chance.
+    pub seed: u64,
+    /// Which of the many runs with that seed, from 0; without it, the seed is that of the run itself.
+    pub run: Option<u64>,
+}
+
+impl Luck {
+    fn seed_of_run(self) -> u64 {
+        self.run.map_or(self.seed, |number| run_seed(self.seed, number))
+    }
 }
 
 /// How things stand between two steps.
@@ -102,6 +122,8 @@ pub enum AutomatonCommand {
     Observe(plant::VariableId, Option<u8>),
     /// In the next step, the value of a variable of a program without a plant is known to be this, or not known.
     Know(VariableId, Option<u32>),
+    /// From the first step on, components fail by chance, or only those that were made to.
+    SetLuck(Option<Luck>),
 }
 
 /// Steps a second while playing.
@@ -116,6 +138,7 @@ impl AutomatonState {
             return;
         }
         self.revision = document.revision();
+        self.chance.give_up();
         if !is_control {
             *self = Self { revision: self.revision, ..Self::default() };
             return;
@@ -171,8 +194,49 @@ impl AutomatonState {
         self.log.get(self.at.checked_sub(1)?)
     }
 
+    /// With it, components fail by chance.
+    pub const fn luck(&self) -> Option<Luck> {
+        self.luck
+    }
+
+    /// The modes that components were made to come into, by step from 1 and by component.
+    pub fn injected(&self) -> BTreeMap<u32, BTreeMap<SmolStr, SmolStr>> {
+        let Some(model) = self.program.as_ref().and_then(Program::model) else { return BTreeMap::new() };
+        let pending = self.pending.as_ref().map(|input| (self.at, input));
+        let logged = self.log.iter().enumerate().take(if pending.is_some() { self.at } else { usize::MAX });
+        let mut injected: BTreeMap<u32, BTreeMap<SmolStr, SmolStr>> = BTreeMap::new();
+        for (at, input) in logged.chain(pending) {
+            for (&id, &mode) in &input.plant.injected {
+                let Some(component) = model.component(id) else { continue };
+                let modes = injected.entry(at as u32 + 1).or_default();
+                modes.insert(component.name.clone(), model.mode_name(id, mode).into());
+            }
+        }
+        injected
+    }
+
+    /// Starts anew with this luck, and with these modes to come into by step and component.
+    pub fn show_run(&mut self, luck: Luck, injected: &BTreeMap<u32, BTreeMap<SmolStr, SmolStr>>) {
+        self.forget();
+        self.luck = Some(luck);
+        if let Some(model) = self.program.as_ref().and_then(Program::model) {
+            let last = injected.keys().last().copied().unwrap_or(0);
+            for step in 1..=last {
+                let mut input = Input::default();
+                for (component, mode) in injected.get(&step).into_iter().flatten() {
+                    if let Ok((component, mode)) = model.component_mode(component, mode) {
+                        input.plant.injected.insert(component, mode);
+                    }
+                }
+                self.log.push(input);
+            }
+        }
+        self.replay();
+    }
+
     /// Forgets all steps: another text was opened.
     pub fn forget(&mut self) {
+        self.luck = None;
         self.log.clear();
         self.moments.clear();
         self.pending = None;
@@ -203,7 +267,13 @@ impl AutomatonState {
                 self.elapsed_secs = 0.0;
             }
             AutomatonCommand::Reset => {
+                let luck = self.luck;
                 self.forget();
+                self.luck = luck;
+                self.replay();
+            }
+            AutomatonCommand::SetLuck(luck) => {
+                self.luck = luck;
                 self.replay();
             }
             AutomatonCommand::Inject(component, mode) => {
@@ -297,7 +367,7 @@ impl AutomatonState {
         self.trouble = None;
         self.moments = match &self.program {
             Some(Program::Bound(system)) => {
-                let (moments, trouble) = moments_of_system(system, &self.log);
+                let (moments, trouble) = moments_of_system(system, &self.log, self.luck);
                 self.trouble = trouble;
                 moments
             }
@@ -346,8 +416,9 @@ fn mode_names(component: &plant::Component) -> Vec<&str> {
     component.modes.iter().map(|mode| mode.name.as_str()).collect()
 }
 
-fn moments_of_system(system: &System, log: &[Input]) -> (Vec<Moment>, Option<String>) {
-    let mut run = Run::new(system, Options::default());
+fn moments_of_system(system: &System, log: &[Input], luck: Option<Luck>) -> (Vec<Moment>, Option<String>) {
+    let seed = luck.map(Luck::seed_of_run);
+    let mut run = Run::new(system, Options { seed, ..Options::default() });
     let mut moments = vec![moment_of_run(&run)];
     let mut trouble = None;
     // One step more than was taken tells what will be commanded.

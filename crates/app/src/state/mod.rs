@@ -16,6 +16,7 @@ pub mod language;
 pub mod pins;
 pub mod placing;
 pub mod playback;
+pub mod program_chance;
 pub mod review;
 pub mod search;
 pub mod search_text;
@@ -50,7 +51,7 @@ use crate::command::ViewAction;
 use crate::dialog::Dialog;
 use crate::mission_file;
 use crate::panel::PanelKind;
-use crate::workspace::Workspace;
+use crate::workspace::{Arrangement, Workspace};
 
 /// The state of the app. Only commands change it ([`AppState::apply`]).
 #[derive(Debug)]
@@ -189,6 +190,11 @@ impl AppState {
             frame: FrameInfo::default(),
             effects: vec![Effect::RecallReview],
         }
+    }
+
+    /// Which layout the panels have.
+    pub const fn arrangement(&self) -> Arrangement {
+        Arrangement::new(self.workspace, self.language.is_control())
     }
 
     /// What the panels show: see [`Snapshots::shown`].

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{anyhow, bail};
-use executive::model_based::{Estimation, Options, Run, StepInput, StepRecord, System, monte_carlo};
+use executive::model_based::{
+    Estimation, Options, ProgramTally, Run, StepInput, StepRecord, System, Trials, run_seed, sample,
+};
 use mission::Problem;
 use serde_json::{Map, Value, json};
 
@@ -34,7 +36,7 @@ pub struct Args {
     k: Option<usize>,
     /// Runs so many times by chance instead, and says how often the program reaches its end.
     #[arg(long, value_name = "RUNS")]
-    monte_carlo: Option<u32>,
+    monte_carlo: Option<u64>,
     /// For whom the answer is.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -61,10 +63,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         return Ok(exit(WRONG));
     };
     let options = Options { estimation: args.k.map(Estimation::Best), seed: args.seed, ..Options::default() };
-    if let Some(runs) = args.monte_carlo {
-        return chance(args, system, options, runs, &problems);
-    }
     let inputs = injections(system, &args.inject)?;
+    if let Some(runs) = args.monte_carlo {
+        let seed = args.seed.unwrap_or(0);
+        let trials = Trials { options, seed, most_steps: args.steps, inputs: &inputs };
+        return chance(args, system, &trials, runs, &problems);
+    }
     let mut run = Run::new(system, options);
     while !run.is_done() && run.records().len() < args.steps as usize {
         let step = run.records().len() as u32 + 1;
@@ -99,29 +103,59 @@ fn injections(system: &System, given: &[String]) -> anyhow::Result<BTreeMap<u32,
 fn chance(
     args: &Args,
     system: &System,
-    options: Options,
-    runs: u32,
+    trials: &Trials<'_>,
+    runs: u64,
     problems: &[Problem],
 ) -> anyhow::Result<ExitCode> {
-    let result = monte_carlo(system, options, runs, args.steps, args.seed.unwrap_or(0))?;
-    let (low, high) = result.interval;
+    let tally = sample(system, trials, 0..runs, &mut || true)?;
     match args.format {
         Format::Json => {
+            let (low, high) = tally.interval();
+            let faults = tally.faults.iter().map(|(fault, tally)| {
+                let members = json!({ "runs": tally.runs, "reached": tally.reached });
+                (fault.to_string(), members)
+            });
             let body = json!({
-                "runs": result.runs,
-                "reached": result.reached,
-                "probability": result.probability,
+                "runs": tally.runs,
+                "reached": tally.reached,
+                "probability": tally.probability(),
                 "interval": [low, high],
-                "mean_steps": result.mean_steps,
+                "mean_steps": tally.mean_steps(),
+                "ends": tally.ends,
+                "faults": faults.collect::<Map<_, _>>(),
+                "stuck": tally.stuck,
+                "stuck_seed": tally.first_stuck.map(|number| run_seed(trials.seed, number)),
             });
             print_json(&document("run", problems, body))?;
         }
-        Format::Text => print_text(&format!(
-            "{} of {} runs reached the program's end: {:.4} (95 % between {low:.4} and {high:.4}), after {:.1} steps on average\n",
-            result.reached, result.runs, result.probability, result.mean_steps
-        ))?,
+        Format::Text => print_text(&tally_text(&tally, trials.seed))?,
     }
     Ok(exit(YES))
+}
+
+fn tally_text(tally: &ProgramTally, seed: u64) -> String {
+    let (low, high) = tally.interval();
+    let mut out = format!(
+        "{} of {} runs reached the program's end: {:.4} (95 % between {low:.4} and {high:.4}), after {:.1} steps on average\n",
+        tally.reached,
+        tally.runs,
+        tally.probability(),
+        tally.mean_steps()
+    );
+    for (fault, tally) in &tally.faults {
+        out.push_str(&format!(
+            "  {fault} in {} runs, {} of which reached the end\n",
+            tally.runs, tally.reached
+        ));
+    }
+    for (label, runs) in &tally.stuck {
+        out.push_str(&format!("  still marked in {runs} runs: {label}\n"));
+    }
+    if let Some(number) = tally.first_stuck {
+        let seed = run_seed(seed, number);
+        out.push_str(&format!("The first run that did not end is that of --seed {seed}.\n"));
+    }
+    out
 }
 
 fn goals_json(goals: &[smol_str::SmolStr]) -> Value {
@@ -140,6 +174,11 @@ fn goals_json(goals: &[smol_str::SmolStr]) -> Value {
     Value::Object(members)
 }
 
+fn failed_text(system: &System, id: plant::ComponentId, mode: u8) -> String {
+    let name = system.model.component(id).map_or("?", |component| component.name.as_str());
+    format!("{name}={}", system.model.mode_name(id, mode))
+}
+
 fn step_json(system: &System, record: &StepRecord) -> Value {
     let model = &system.model;
     json!({
@@ -152,6 +191,7 @@ fn step_json(system: &System, record: &StepRecord) -> Value {
         "observations": model.observation_names(&record.observation),
         "estimate": model.state_names(record.belief.most_likely()),
         "probability": record.belief.highest_probability().to_string(),
+        "failed": record.failed.iter().map(|&(id, mode)| failed_text(system, id, mode)).collect::<Vec<_>>(),
         "true_state": model.state_names(&record.true_state),
         "unexplained": record.is_unexplained,
         "conflicts": record.conflicts.iter().map(|conflict| conflict.describe(model)).collect::<Vec<_>>(),
@@ -177,6 +217,9 @@ fn run_text(system: &System, run: &Run<'_>) -> String {
         out.push_str(&format!("step {}\n", record.trace.step));
         record.trace.labels.iter().for_each(|label| out.push_str(&format!("  marked    {label}\n")));
         out.push_str(&format!("  commands  {}\n", listed(model.command_names(&record.commands), ".")));
+        for &(id, mode) in &record.failed {
+            out.push_str(&format!("  by chance {}\n", failed_text(system, id, mode)));
+        }
         for (goal, reason) in &record.unachievable {
             out.push_str(&format!("  lost      {goal}: {reason}\n"));
         }

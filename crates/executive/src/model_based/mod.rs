@@ -10,6 +10,6 @@ mod run;
 mod system;
 
 pub use mind::{Estimation, Mind};
-pub use monte_carlo::{MonteCarlo, monte_carlo, wilson_interval};
+pub use monte_carlo::{FaultTally, ProgramTally, Trials, run_seed, sample, wilson_interval};
 pub use run::{Knowledge, Options, Run, StepInput, StepRecord};
 pub use system::{System, SystemCompilation};

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use hca::{Marking, Stepper, TraceStep};
+use plant::successor::nominal;
 use plant::{
     Belief, Commands, ComponentId, Conflict, EstimateError, Goal, Observation, Random, SimulatedPlant, State,
     VariableId,
@@ -53,6 +54,8 @@ pub struct StepRecord {
     pub commands: Commands,
     /// Goals that are not pursued, in the form `EngineA=Standby`, each with the reason.
     pub unachievable: Vec<(SmolStr, String)>,
+    /// Components that chance brought into another mode than the commanded one, with that mode.
+    pub failed: Vec<(ComponentId, u8)>,
     /// The plant's true state at the step's end.
     pub true_state: State,
     /// What was observed.
@@ -218,8 +221,18 @@ impl<'system> Run<'system> {
         let system = self.system;
         let mut trace = self.upcoming();
         let (commands, unachievable) = self.command();
+        let mut failed = Vec::new();
         match &mut self.random {
-            Some(random) => self.plant.step_with_chance(&commands, &input.injected, random)?,
+            Some(random) => {
+                let expected = nominal(&system.model, self.plant.state(), &commands)?;
+                self.plant.step_with_chance(&commands, &input.injected, random)?;
+                let state = self.plant.state();
+                let is_chance = |id: &ComponentId| {
+                    state.mode(*id) != expected.mode(*id) && !input.injected.contains_key(id)
+                };
+                let by_chance = system.model.component_ids().filter(is_chance);
+                failed.extend(by_chance.map(|id| (id, state.mode(id))));
+            }
             None => self.plant.step(&commands, &input.injected)?,
         }
         let mut observation = self.plant.observation();
@@ -239,6 +252,7 @@ impl<'system> Run<'system> {
             input: input.clone(),
             commands,
             unachievable,
+            failed,
             true_state: self.plant.state().clone(),
             observation,
             belief: thought.belief,

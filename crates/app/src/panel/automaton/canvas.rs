@@ -21,6 +21,8 @@ const WHEEL_ZOOM: f64 = 0.0022;
 const KEY_ZOOM: f64 = 1.3;
 /// How far from the pointer something may be to be pointed at, in points.
 const REACH: f64 = 6.0;
+/// What the legend takes of the height, in drawing units.
+const LEGEND_HEIGHT: f64 = 24.0;
 
 impl Canvas {
     /// Shows the drawing in the rest of `ui`.
@@ -79,10 +81,12 @@ impl Canvas {
             Some(ViewAction::ZoomIn) => self.view.zoom_at(panel, panel.center(), KEY_ZOOM),
             Some(ViewAction::ZoomOut) => self.view.zoom_at(panel, panel.center(), 1.0 / KEY_ZOOM),
             Some(ViewAction::ZoomReset) => self.view.reset_zoom(),
-            Some(ViewAction::Fit | ViewAction::FitSelection) => self.view.fit(panel, drawing.bounds),
+            Some(ViewAction::Fit | ViewAction::FitSelection) => {
+                self.view.fit(panel, with_legend(drawing.bounds));
+            }
         }
         if self.view.is_fitted() {
-            self.view.fit(panel, drawing.bounds);
+            self.view.fit(panel, with_legend(drawing.bounds));
         }
     }
 
@@ -119,6 +123,12 @@ impl Canvas {
             }
         }
     }
+}
+
+/// The legend stands below the drawing.
+fn with_legend(mut bounds: layout::Rect) -> layout::Rect {
+    bounds.max.y += LEGEND_HEIGHT;
+    bounds
 }
 
 /// The location whose text is the smallest around a place of the text.

@@ -69,6 +69,8 @@ fn jump(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let last = state.moments().len().max(1);
     let mut step = state.at() + 1;
     let name = ui.label(RichText::new("Step").color(context.tokens.text_muted)).id;
+    // The slider's handle stands out to the left.
+    ui.add_space(space::M);
     let slider = ui.add(Slider::new(&mut step, 1..=last.max(2))).labelled_by(name);
     if slider.changed() {
         commands.send(Command::Automaton(AutomatonCommand::GoTo(step.saturating_sub(1))));

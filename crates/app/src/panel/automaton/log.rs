@@ -60,6 +60,10 @@ fn outcome(shown: Shown<'_>, next: Option<&Moment>) -> String {
             let name = model.component(component).map_or("?", |component| component.name.as_str());
             parts.push(format!("injected: {name}={}", model.mode_name(component, mode)));
         }
+        for &(component, mode) in &record.failed {
+            let name = model.component(component).map_or("?", |component| component.name.as_str());
+            parts.push(format!("by chance: {name}={}", model.mode_name(component, mode)));
+        }
         if record.is_unexplained {
             parts.push("nothing explains what was observed".to_owned());
         }

@@ -3,16 +3,19 @@
 //! Components can be made to fail and observations be changed, to see what the executive makes of it.
 
 mod canvas;
+mod chance;
 mod components;
 mod controls;
 mod evidence;
 mod known;
 mod log;
+mod machine;
 mod shapes;
 
 use egui::{Frame, Margin, RichText, ScrollArea, Ui};
 use hca::Automaton;
 use layout::{AutomatonDrawing, approximate_text_width};
+use plant::Model;
 
 use crate::command::CommandSender;
 use crate::panel::{Context, Panel, show_empty};
@@ -23,7 +26,21 @@ use crate::theme::space;
 #[derive(Default)]
 pub struct AutomatonPanel {
     drawn: Option<Drawn>,
+    machines: Option<components::Machines>,
     canvas: canvas::Canvas,
+    side: Side,
+    /// Whether many runs were being made when the panel was last shown.
+    was_sampling: bool,
+}
+
+/// What stands beside the automaton.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Side {
+    /// The plant at the moment that is looked at.
+    #[default]
+    Plant,
+    /// Many runs with chance.
+    ManyRuns,
 }
 
 /// The drawing of the automaton that was laid out last.
@@ -61,24 +78,15 @@ impl Panel for AutomatonPanel {
         let shown = Shown { program, automaton, moment };
         controls::show(ui, context, commands);
         let frame = Frame::new().fill(context.tokens.surface).inner_margin(Margin::symmetric(8, 4));
+        egui::Panel::right("automaton-plant")
+            .resizable(true)
+            .default_size(356.0)
+            .frame(frame)
+            .show(ui, |ui| self.beside(ui, context, shown, commands));
         egui::Panel::bottom("automaton-log").resizable(true).default_size(170.0).frame(frame).show(
             ui,
             |ui| {
                 log::show(ui, context, shown, commands);
-            },
-        );
-        egui::Panel::right("automaton-plant").resizable(true).default_size(350.0).frame(frame).show(
-            ui,
-            |ui| {
-                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                    goals(ui, context, shown);
-                    if let (Some(model), Some(plant)) = (program.model(), &moment.plant) {
-                        components::show(ui, context, model, plant, commands);
-                        evidence::show(ui, context, model, plant, commands);
-                    } else {
-                        known::show(ui, context, automaton, commands);
-                    }
-                });
             },
         );
         self.layout(automaton);
@@ -89,6 +97,44 @@ impl Panel for AutomatonPanel {
 }
 
 impl AutomatonPanel {
+    /// What stands beside the automaton.
+    fn beside(&mut self, ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
+        let is_sampling = context.state.automaton.chance.is_running();
+        if is_sampling && !self.was_sampling {
+            self.side = Side::ManyRuns;
+        }
+        self.was_sampling = is_sampling;
+        let Some((model, plant)) = shown.program.model().zip(shown.moment.plant.as_ref()) else {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                goals(ui, context, shown);
+                known::show(ui, context, shown.automaton, commands);
+            });
+            return;
+        };
+        ui.horizontal(|ui| {
+            ui.selectable_value(&mut self.side, Side::Plant, "Plant");
+            ui.selectable_value(&mut self.side, Side::ManyRuns, "Many runs");
+        });
+        let side = self.side;
+        ScrollArea::vertical().id_salt(("automaton-side", side == Side::Plant)).auto_shrink(false).show(
+            ui,
+            |ui| {
+                if side == Side::ManyRuns {
+                    chance::show(ui, context, commands);
+                    return;
+                }
+                goals(ui, context, shown);
+                self.machines(ui, model).show(ui, context, plant, commands);
+                evidence::show(ui, context, model, plant, commands);
+            },
+        );
+    }
+
+    fn machines(&mut self, ui: &Ui, model: &Model) -> &components::Machines {
+        let known = self.machines.take().filter(|machines| machines.are_of(model));
+        self.machines.insert(known.unwrap_or_else(|| components::Machines::new(ui, model)))
+    }
+
     fn layout(&mut self, automaton: &Automaton) {
         if self.drawn.as_ref().is_some_and(|drawn| drawn.automaton == *automaton) {
             return;

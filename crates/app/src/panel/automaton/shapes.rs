@@ -141,8 +141,13 @@ impl Scene<'_> {
             }
             let font = FontId::proportional((9.5 * self.view.zoom()).clamp(6.0, 12.0) as f32);
             let name = self.shown.automaton.location_name(shape.id);
-            let corner = rect.right_bottom() + vec2(-4.0, 1.0);
-            self.painter.text(corner, Align2::RIGHT_TOP, name, font, tokens.text_muted);
+            // A tag on the border, so that it cannot be taken for the name of what lies below.
+            let galley = self.painter.layout_no_wrap(name, font, tokens.text_muted);
+            let half = galley.size() / 2.0;
+            let center = rect.right_bottom() - vec2(half.x + 8.0, 0.0);
+            let tag = Rect::from_center_size(center, galley.size() + vec2(6.0, -1.0));
+            self.painter.rect_filled(tag, 3.0, tokens.surface);
+            self.painter.galley(center - half, galley, tokens.text_muted);
             if is_marked {
                 let radius = (5.0 * self.view.zoom()).clamp(3.0, 8.0) as f32;
                 let outline = Stroke::new(1.5, tokens.surface);

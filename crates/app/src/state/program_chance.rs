@@ -1,0 +1,166 @@
+//! How likely a control program is to reach its end: many runs whose components fail by chance, made by the core.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use executive::model_based::ProgramTally;
+use mission::{ProgramChance, Request, Response};
+
+use super::automaton::{AutomatonState, Luck, Program};
+use super::{AppState, Effect, ToastKind};
+use crate::mission_file;
+
+/// What is asked for, and the runs made so far.
+#[derive(Debug, Default)]
+pub struct ProgramChanceState {
+    /// What is asked for.
+    pub settings: ProgramChanceSettings,
+    /// Which runs were asked for last, and of which revision of the text.
+    asked: Option<(u64, ProgramChance)>,
+    is_running: bool,
+    tally: ProgramTally,
+    /// Why there are no more runs.
+    pub trouble: Option<String>,
+}
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ProgramChanceSettings {
+    /// How many runs.
+    pub runs: u64,
+    /// Seeds chance.
+    pub seed: u64,
+    /// A run that takes more steps has not reached its end.
+    pub most_steps: u32,
+    /// Whether the faults that were injected by hand happen in every run.
+    pub keeps_injected: bool,
+}
+
+/// What can be asked about the chances of a program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProgramChanceCommand {
+    /// Makes the runs, from the first on.
+    Start,
+    /// Stops making them; what was found is kept.
+    Stop,
+    /// Changes what is asked for.
+    Set(ProgramChanceSettings),
+    /// Shows one of the runs step by step.
+    StepThrough(u64),
+}
+
+/// More runs than this are for the command line.
+pub const MOST_RUNS: u64 = 1_000_000;
+/// No run is longer: a program that reaches its end does so in fewer steps.
+pub const MOST_STEPS_OF_RUN: u32 = 400;
+
+impl Default for ProgramChanceSettings {
+    fn default() -> Self {
+        Self { runs: 2000, seed: 1, most_steps: 50, keeps_injected: true }
+    }
+}
+
+impl ProgramChanceState {
+    /// Whether runs are being made.
+    pub const fn is_running(&self) -> bool {
+        self.is_running
+    }
+
+    /// How the runs went that were made of a revision of the text; nothing if there were none.
+    pub fn tally(&self, revision: u64) -> Option<&ProgramTally> {
+        let is_of = self.asked.as_ref().is_some_and(|(asked, _)| *asked == revision);
+        (is_of && self.tally.runs > 0).then_some(&self.tally)
+    }
+
+    /// Which runs were asked for last.
+    pub fn asked(&self) -> Option<&ProgramChance> {
+        self.asked.as_ref().map(|(_, chance)| chance)
+    }
+
+    /// The core was started anew: no more answers come.
+    pub(super) const fn give_up(&mut self) {
+        self.is_running = false;
+    }
+}
+
+impl AppState {
+    pub(super) fn apply_to_program_chance(&mut self, command: ProgramChanceCommand) {
+        match command {
+            ProgramChanceCommand::Start => {
+                let state = &self.automaton;
+                if !matches!(state.program(), Some(Program::Bound(_))) {
+                    return;
+                }
+                let asked = asked_of(state);
+                let chance = &mut self.automaton.chance;
+                chance.asked = Some((self.document.revision(), asked));
+                chance.tally = ProgramTally::default();
+                chance.trouble = None;
+                chance.is_running = true;
+                self.sample_program_on();
+            }
+            ProgramChanceCommand::Stop => self.automaton.chance.is_running = false,
+            ProgramChanceCommand::Set(mut settings) => {
+                settings.runs = settings.runs.clamp(1, MOST_RUNS);
+                settings.most_steps = settings.most_steps.clamp(1, MOST_STEPS_OF_RUN);
+                self.automaton.chance.settings = settings;
+            }
+            ProgramChanceCommand::StepThrough(number) => {
+                let Some((_, chance)) = self.automaton.chance.asked.clone() else { return };
+                let luck = Luck { seed: chance.seed, run: Some(number) };
+                self.automaton.show_run(luck, &chance.injected);
+            }
+        }
+    }
+
+    /// Asks for the next runs, unless all are made or the text has changed.
+    fn sample_program_on(&mut self) {
+        let revision = self.document.revision();
+        let chance = &mut self.automaton.chance;
+        let from = chance.tally.runs;
+        let asked = chance.asked.clone().filter(|(asked, _)| *asked == revision && chance.is_running);
+        match asked {
+            Some((_, chance)) if from < chance.runs => {
+                let source = Arc::from(self.document.text());
+                self.effects.push(Effect::Post(Request::SampleProgram { revision, source, chance, from }));
+            }
+            _ => chance.is_running = false,
+        }
+    }
+
+    pub(super) fn take_program_sample(&mut self, answer: Response) {
+        let Response::ProgramSampled { revision, chance: answered, from, tally } = answer else { return };
+        let chance = &mut self.automaton.chance;
+        let is_wanted = chance.is_running
+            && chance.asked.as_ref().is_some_and(|(asked, chance)| *asked == revision && *chance == answered)
+            && from == chance.tally.runs;
+        if !is_wanted {
+            return;
+        }
+        match tally {
+            Ok(tally) => chance.tally.merge(&tally),
+            Err(trouble) => {
+                chance.trouble = Some(trouble);
+                chance.is_running = false;
+                return;
+            }
+        }
+        self.sample_program_on();
+        let chance = &self.automaton.chance;
+        if !chance.is_running && chance.tally.runs >= answered.runs {
+            let text = format!("{} runs made", chance.tally.runs);
+            self.toasts.add(ToastKind::Done, text);
+        }
+    }
+}
+
+fn asked_of(state: &AutomatonState) -> ProgramChance {
+    let settings = state.chance.settings;
+    ProgramChance {
+        plant: Some(Arc::from(mission_file::PLANT)),
+        runs: settings.runs,
+        seed: settings.seed,
+        most_steps: settings.most_steps,
+        injected: if settings.keeps_injected { state.injected() } else { BTreeMap::new() },
+    }
+}
