@@ -149,7 +149,7 @@ fn alternative_cell(alternative: &Alternative) -> String {
     if text.starts_with(name.trim_end_matches(')')) {
         format!("<code>{text}</code>")
     } else {
-        format!("{name}<br><code class=\"muted\">{text}</code>")
+        format!("{name}<div class=\"muted\"><code>{text}</code></div>")
     }
 }
 

@@ -12,6 +12,7 @@ pub mod limit;
 pub mod mixed;
 pub mod no_scenario;
 pub mod option;
+pub mod plant;
 pub mod recursion;
 pub mod similar;
 pub mod slack;
@@ -54,6 +55,7 @@ pub const EXPLANATIONS: &[&Explanation] = &[
     &option::EXPLANATION,
     &traverse::EXPLANATION,
     &encounter::EXPLANATION,
+    &plant::EXPLANATION,
 ];
 
 /// The manual page of a code such as `E-BOUNDS`; upper and lower case are the same.
