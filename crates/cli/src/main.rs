@@ -1,6 +1,7 @@
 //! The `enroute` command: reads the call, runs one command, and turns its answer into an exit status.
 
 mod commands;
+mod ground;
 mod input;
 mod load;
 mod output;

@@ -1,11 +1,13 @@
 //! A mission text worked out by the shared core, as the page does it: compiled, planned, and driven.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
 use mission::{Core, Goal, Request, Response, SearchKind, Snapshot, Surroundings, Update};
 use terrain::Terrain;
 
+use crate::ground::map_file;
 use crate::input::read_text;
 use crate::load::Target;
 
@@ -25,11 +27,17 @@ pub fn work_out(target: &Target, seed: u64) -> anyhow::Result<WorkedOut> {
     anyhow::ensure!(!is_network, "this command wants a mission text, not a network");
     let name = target.file.file_name().filter(|name| *name != "-");
     let name = name.map_or_else(|| "mission".to_owned(), |name| name.to_string_lossy().into_owned());
-    work_out_text(name, &read_text(&target.file)?, target.goal()?, seed)
+    work_out_text(name, &target.file, &read_text(&target.file)?, target.goal()?, seed)
 }
 
-/// Works out a mission text.
-pub fn work_out_text(name: String, source: &str, goal: Goal, seed: u64) -> anyhow::Result<WorkedOut> {
+/// Works out a mission text. The map file that it names, if it names one, lies beside `file`.
+pub fn work_out_text(
+    name: String,
+    file: &Path,
+    source: &str,
+    goal: Goal,
+    seed: u64,
+) -> anyhow::Result<WorkedOut> {
     let update = Update {
         revision: 1,
         source: source.into(),
@@ -38,8 +46,15 @@ pub fn work_out_text(name: String, source: &str, goal: Goal, seed: u64) -> anyho
         seed,
         trace: false,
     };
-    let mut answers = Answers { begun: Instant::now(), snapshot: None, ground: None };
-    Core::default().handle(Request::Update(update), &mut answers);
+    let mut answers = Answers { begun: Instant::now(), snapshot: None, ground: None, rejected: None };
+    let mut core = Core::default();
+    if let Some((name, bytes)) = map_file(file, &rmpl::parse(source).program().world)? {
+        core.handle(Request::ImportMap { name: name.into(), bytes }, &mut answers);
+        if let Some(reason) = answers.rejected.take() {
+            anyhow::bail!("the terrain cannot be used: {reason}");
+        }
+    }
+    core.handle(Request::Update(update), &mut answers);
     Ok(WorkedOut {
         name,
         snapshot: answers.snapshot.ok_or_else(|| anyhow::anyhow!("the planning core gave no answer"))?,
@@ -52,6 +67,8 @@ struct Answers {
     begun: Instant,
     snapshot: Option<Arc<Snapshot>>,
     ground: Option<Arc<Terrain>>,
+    /// Why a map was not taken.
+    rejected: Option<String>,
 }
 
 impl Surroundings for Answers {
@@ -67,6 +84,7 @@ impl Surroundings for Answers {
         match response {
             Response::Snapshot(snapshot) => self.snapshot = Some(snapshot),
             Response::Map { map, .. } => self.ground = Some(map),
+            Response::MapRejected { reason, .. } => self.rejected = Some(reason),
             _ => {}
         }
     }

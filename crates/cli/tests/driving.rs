@@ -73,3 +73,32 @@ fn vehicles_drive_in_simulation_and_scripts_get_in_their_way() {
     assert_eq!(refused.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&refused.stderr).contains("Nobody"));
 }
+
+#[test]
+fn a_mission_drives_over_a_map_file_that_lies_beside_it() {
+    // A valley between two ridges: 40 × 40 cells of 5 m, heights in whole metres.
+    let rows = (0..40).flat_map(|row: i32| std::iter::repeat_n((row - 20).unsigned_abs() as u8, 40));
+    let mut map = b"P5 40 40 255\n".to_vec();
+    map.extend(rows);
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
+    std::fs::write(folder.join("valley.pgm"), map).expect("the folder can be written to");
+    let text = "terrain \"valley.pgm\" cell 5;\nlocation A (20, 100);\nlocation B (180, 100);\n\
+        vehicle R : ATRV at A;\nprimitive Go(to) moves R;\nscenario S[0,60] = { Go(B)[0,60] }\n";
+    let mission = file("valley.rmpl", text);
+    let output = enroute(&["plan", &mission, "--format", "json"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let length = answer(&output)["traverses"][0]["legs"][0]["length_m"].as_f64();
+    assert!(length.is_some_and(|length| (length - 160.0).abs() < 1.0), "{length:?}");
+    let output = enroute(&["simulate", &mission, "--format", "json"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert_eq!(answer(&output)["drives"][0]["vehicles"][0]["vehicle"], "R");
+    let missing = file("nowhere.rmpl", &text.replace("valley.pgm", "nowhere.pgm"));
+    let output = enroute(&["plan", &missing]);
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert!(String::from_utf8_lossy(&output.stderr).contains("there is no terrain called \"nowhere.pgm\""));
+    std::fs::write(folder.join("broken.pgm"), b"P5 40 40 255\n..").expect("the folder can be written to");
+    let broken = file("broken.rmpl", &text.replace("valley.pgm", "broken.pgm"));
+    let output = enroute(&["simulate", &broken]);
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert!(String::from_utf8_lossy(&output.stderr).contains("the terrain \"broken.pgm\" cannot be used"));
+}

@@ -249,9 +249,11 @@ const CORNER_EXTRA_M: f64 = 0.3;
 /// How much longer a path may be for keeping away from obstacles: this share and so many metres.
 const ROOMY_SHARE: f64 = 1.06;
 const ROOMY_EXTRA_M: f64 = 2.0;
-/// Searches for each leg: obstacles leave several ways around, and one search takes any of them.
-const TRIES: u32 = 6;
-const TRIES_FOR_SHORTEST: u32 = 40;
+/// Searches for each leg: obstacles leave several ways around, and one search may miss the shortest.
+const TRIES: u32 = 2;
+const TRIES_FOR_SHORTEST: u32 = 12;
+/// How closely the ground is looked at for the shortest path ([`ShortcutSettings::blocks`]).
+const BLOCKS_FOR_SHORTEST: u32 = 10_000;
 /// Edges of a search tree that reach across a map at most.
 const STEPS_ACROSS: f64 = 60.0;
 /// Samples of a search that can be shown one by one.
@@ -266,9 +268,13 @@ fn find_leg(
     preference: Preference,
 ) -> Result<Leg, String> {
     let query = Query { start_m: from.position_m, goal_m: to.position_m };
-    let (tries, roomy) = match preference {
-        Preference::Roomy => (TRIES, free.roomy.as_slice()),
-        Preference::Shortest => (TRIES_FOR_SHORTEST, &[][..]),
+    let shortcut = ShortcutSettings { seed, ..ShortcutSettings::default() };
+    let (tries, shortcut, roomy) = match preference {
+        Preference::Roomy => (TRIES, shortcut, free.roomy.as_slice()),
+        Preference::Shortest => {
+            let closely = ShortcutSettings { blocks: BLOCKS_FOR_SHORTEST, ..shortcut };
+            (TRIES_FOR_SHORTEST, closely, &[][..])
+        }
     };
     let defaults = motion::Settings::of(PlannerKind::RrtConnect);
     let frame = free.exact.frame();
@@ -276,7 +282,6 @@ fn find_leg(
     // On a large map, short edges would not get anywhere.
     let step_m = defaults.step_m.max(longer_side_m / STEPS_ACROSS);
     let settings = motion::Settings { seed, step_m, ..defaults };
-    let shortcut = ShortcutSettings { seed, ..ShortcutSettings::default() };
     let search = |space: &ConfigurationSpace| {
         motion::find_shortest_path(space, query, &settings, &shortcut, tries, &mut |_| false)
     };

@@ -25,7 +25,8 @@ fn main() {
             };
             let query = Query { start_m: [8.0, 8.0], goal_m: [503.0, 503.0] };
             let reference = theta_star(&space, query).map_or(f64::NAN, |path| {
-                let settings = ShortcutSettings { attempts: 5000, corner_rounds: 200, seed: 1 };
+                let settings =
+                    ShortcutSettings { attempts: 5000, corner_rounds: 200, ..ShortcutSettings::default() };
                 shorten(&space, &path, &settings).length_m()
             });
             for planner in [PlannerKind::Rrt, PlannerKind::RrtConnect, PlannerKind::RrtStar] {

@@ -21,12 +21,19 @@ pub struct Convoy {
 #[derive(Clone, Debug)]
 struct Member {
     driver: Driver,
+    /// The length of the path that it set out with, in metres: what the others expect it to drive.
+    planned_m: f64,
     has_arrived: bool,
     /// What of the world is near, and where it was looked for.
     near: Option<(FineWorld, [f64; 2])>,
 }
 
 impl Member {
+    /// Metres that it still has to go.
+    fn remaining_m(&self) -> f64 {
+        if self.has_arrived { 0.0 } else { self.driver.length_m() - self.driver.progress_m() }
+    }
+
     /// Whether it is this near to the end of its path.
     fn is_within(&self, reach_m: f64) -> bool {
         let place = self.driver.state().position_m;
@@ -75,7 +82,8 @@ impl Convoy {
             .map(|(index, ConvoyMember { path, heading_rad, settings })| {
                 let settings = DriverSettings { step_s, ..settings };
                 let driver = Driver::new(path, heading_rad, settings, seed.wrapping_add(index as u64));
-                Member { driver, has_arrived: false, near: None }
+                let planned_m = driver.length_m();
+                Member { driver, planned_m, has_arrived: false, near: None }
             })
             .collect();
         Self { members, spacing_m, step_s, time_s: 0.0 }
@@ -103,7 +111,7 @@ impl Convoy {
 
     /// Metres that the leader still has to go.
     pub fn remaining_m(&self) -> f64 {
-        self.members.first().map_or(0.0, |leader| leader.driver.length_m() - leader.driver.progress_m())
+        self.members.first().map_or(0.0, Member::remaining_m)
     }
 
     /// Sends a vehicle along another path from where it is.
@@ -123,10 +131,8 @@ impl Convoy {
     ) -> Vec<(DriveEvent, LaserScan)> {
         self.time_s += self.step_s;
         let share = self.leader_share();
-        let lag_m = |member: &Member| {
-            (share * member.driver.length_m() - member.driver.progress_m())
-                * f64::from(u8::from(!member.has_arrived))
-        };
+        // By what is left to drive, so that a detour counts as lag and what lies behind a vehicle does not.
+        let lag_m = |member: &Member| member.remaining_m() - (1.0 - share) * member.planned_m;
         let waits = self.members.iter().skip(1).any(|it| lag_m(it) > WAITING_SPACINGS * self.spacing_m);
         let mut steps = Vec::with_capacity(self.members.len());
         for index in 0..self.members.len() {
@@ -162,10 +168,10 @@ impl Convoy {
         self.members.get(vehicle).map(|member| member.driver.state()).unwrap_or_default()
     }
 
+    /// The share of its planned path that the leader has behind it; less when it was led another way.
     fn leader_share(&self) -> f64 {
-        let Some(leader) = self.members.first().filter(|leader| !leader.has_arrived) else { return 1.0 };
-        let length_m = leader.driver.length_m();
-        if length_m > 0.0 { leader.driver.progress_m() / length_m } else { 1.0 }
+        let Some(leader) = self.members.first().filter(|leader| leader.planned_m > 0.0) else { return 1.0 };
+        (1.0 - leader.remaining_m() / leader.planned_m).clamp(0.0, 1.0)
     }
 
     /// Whether a vehicle must not go on because another is close in front of it.

@@ -26,8 +26,8 @@ pub struct LegFailure {
     pub failure: Failure,
 }
 
-/// How often a leg is searched: obstacles leave several ways around, and one search takes any of them.
-const TRIES: u32 = 6;
+/// How often a leg is searched: obstacles leave several ways around, and one search may miss the shortest.
+const TRIES: u32 = 2;
 
 /// A short path between two waypoints: the shortest of a few found by RRT-Connect and shortened. The result depends on
 /// nothing but the arguments, so a caller can keep it under them. Another seed may find a shorter path, or one where

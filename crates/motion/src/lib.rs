@@ -33,6 +33,7 @@ mod trace;
 mod trajectory;
 mod tree;
 mod vehicle;
+mod way_around;
 
 pub use altitude::path_in_space;
 pub use convoy::{Convoy, ConvoyMember, Surroundings};

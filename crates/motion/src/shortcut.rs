@@ -1,14 +1,16 @@
 //! Shortening a path: straight pieces between any two of its points where the way is free.
 //!
-//! Random shortcuts (Geraerts and Overmars 2007) find the coarse shape, then every corner is cut as far as obstacles
-//! allow, round after round. The path stays in the class of paths that obstacles separate from others, so this is no
-//! search for the shortest path of all.
+//! A coarse look at the ground finds shorter ways around obstacles, if there are any. Where there are none, random
+//! shortcuts (Geraerts and Overmars 2007) find the coarse shape. Then every corner is cut as far as obstacles allow,
+//! round after round. Every edge of the result was checked exactly; that it is the shortest path of all is likely but
+//! not proved.
 
 use serde::{Deserialize, Serialize};
 use terrain::{ConfigurationSpace, Random};
 
 use crate::geometry::{between, distance};
 use crate::path::Path;
+use crate::way_around::way_around;
 
 /// How much to try.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,13 +19,15 @@ pub struct ShortcutSettings {
     pub attempts: u32,
     /// Rounds of cutting every corner; they end early when a round gains less than a ten-thousandth.
     pub corner_rounds: u32,
+    /// Blocks of the ground, at most, in which another way around the obstacles is looked for; 0 for none.
+    pub blocks: u32,
     /// Where random choices come from.
     pub seed: u64,
 }
 
 impl Default for ShortcutSettings {
     fn default() -> Self {
-        Self { attempts: 100, corner_rounds: 12, seed: 1 }
+        Self { attempts: 100, corner_rounds: 12, blocks: 600, seed: 1 }
     }
 }
 
@@ -33,26 +37,49 @@ pub fn shorten(space: &ConfigurationSpace, path: &Path, settings: &ShortcutSetti
     let mut points = path.points_m.clone();
     points.dedup();
     skip_corners(space, &mut points);
+    let (Some(&first), Some(&last)) = (points.first(), points.last()) else { return path.clone() };
+    let other = (settings.blocks > 0 && points.len() > 2)
+        .then(|| way_around(space, [first, last], length(&points), settings.blocks))
+        .flatten();
+    let Some(mut other) = other else {
+        take_shortcuts(space, &mut points, settings);
+        pull_tight(space, &mut points, settings);
+        return Path::new(points);
+    };
+    pull_tight(space, &mut other, settings);
+    if length(&points) < length(&other) * WORTHWHILE {
+        take_shortcuts(space, &mut points, settings);
+        pull_tight(space, &mut points, settings);
+    }
+    Path::new(if length(&points) < length(&other) { points } else { other })
+}
+
+/// A path at most so many times as long as the one another way around may be shorter still once it is tight.
+const WORTHWHILE: f64 = 1.05;
+
+fn take_shortcuts(space: &ConfigurationSpace, points: &mut Vec<[f64; 2]>, settings: &ShortcutSettings) {
     let mut random = Random::from_seed(settings.seed);
     for _ in 0..settings.attempts {
         if points.len() < 3 {
             break;
         }
-        random_shortcut(space, &mut points, &mut random);
+        random_shortcut(space, points, &mut random);
     }
-    skip_corners(space, &mut points);
+    skip_corners(space, points);
+}
+
+fn pull_tight(space: &ConfigurationSpace, points: &mut Vec<[f64; 2]>, settings: &ShortcutSettings) {
     for _ in 0..settings.corner_rounds {
         if points.len() < 3 {
             break;
         }
-        let before = length(&points);
-        cut_corners(space, &mut points);
-        skip_corners(space, &mut points);
-        if length(&points) > before * (1.0 - 1e-4) {
+        let before = length(points);
+        cut_corners(space, points);
+        skip_corners(space, points);
+        if length(points) > before * (1.0 - 1e-4) {
             break;
         }
     }
-    Path::new(points)
 }
 
 fn length(points: &[[f64; 2]]) -> f64 {

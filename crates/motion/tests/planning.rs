@@ -226,6 +226,31 @@ fn no_sample_of_a_path_on_the_shared_maps_lies_in_an_obstacle_pixel() {
 }
 
 #[test]
+fn a_path_around_the_wrong_end_of_a_wall_is_led_around_the_other() {
+    let mut occupied = vec![false; 120 * 120];
+    for row in 10..110 {
+        occupied[row * 120 + 60] = true;
+    }
+    let frame = GridFrame::new(120, 120, 0.5);
+    let occupancy = Occupancy::from_obstacles(frame, &occupied);
+    let (start, goal) = ([15.0, 20.0], [45.0, 20.0]);
+    let given = Path::new(vec![start, [15.0, 58.0], [45.0, 58.0], goal]);
+    // The corners of the wall's southern end are at (30, 5) and (30.5, 5).
+    let shortest_m = 15.0_f64.hypot(15.0) + 0.5 + 14.5_f64.hypot(15.0);
+    for radius_m in [0.0, 0.3] {
+        let space = ConfigurationSpace::new(occupancy.clone(), radius_m);
+        assert!(given.is_free(&space));
+        let short = shorten(&space, &given, &ShortcutSettings::default());
+        assert_clear(&space, &short, "shortened");
+        let length_m = short.length_m();
+        assert!((shortest_m - 1e-9..1.02 * shortest_m).contains(&length_m), "{length_m} of {shortest_m}");
+        let settings = ShortcutSettings { blocks: 0, ..ShortcutSettings::default() };
+        let same_side = shorten(&space, &given, &settings).length_m();
+        assert!(same_side > 1.3 * shortest_m, "{same_side}");
+    }
+}
+
+#[test]
 fn more_tries_never_give_a_longer_path() {
     let space = random_space(4, 0.7);
     let query = Query { start_m: [-18.0, 37.0], goal_m: [60.0, 98.0] };

@@ -114,6 +114,25 @@ impl ConfigurationSpace {
         self.clearance.iter().map(|&cells| (f64::from(cells) * size - self.radius_m) as f32).collect()
     }
 
+    /// The cell with the most room among those from `low` to before `end` whose centre is surely free; the first of
+    /// several. Linear in their number.
+    pub fn most_open_cell(&self, low: Cell, end: Cell) -> Option<Cell> {
+        let frame = self.frame();
+        let (columns, rows) = (low.column..end.column.min(frame.width), low.row..end.row.min(frame.height));
+        let least = (self.radius + CLEARANCE_ROUNDING) as f32;
+        let mut best = None;
+        for row in rows {
+            for column in columns.clone() {
+                let cell = Cell { column, row };
+                let room = self.clearance[frame.index(cell)];
+                if room >= best.map_or(least, |(most, _)| most) && best.is_none_or(|(most, _)| room > most) {
+                    best = Some((room, cell));
+                }
+            }
+        }
+        best.map(|(_, cell)| cell)
+    }
+
     /// Metres from the vehicle's rim to the nearest obstacle when its centre is at a point; negative in collision
     /// and infinite on a map without obstacles. `None` outside the map. Exact outside obstacles; inside one, the depth
     /// is that of the cell's centre.

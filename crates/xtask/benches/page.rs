@@ -1,6 +1,8 @@
 //! How long the page's own code takes for a frame while drawings move, and how long a keystroke takes until what it
 //! changes is drawn: measured in headless Chromium, at about 1,000 and 10,000 nodes.
 //!
+//! Then the same for a camera that turns over a terrain while four rovers drive on it.
+//!
 //! `cargo xtask bench page` prints the tables; `--development` takes the page built for development. Times of frames
 //! are `enroute.state().timings.frame`: they leave out drawing, which this browser computes on the processor. The time
 //! of a keystroke runs on the page's clock from the key to the state that says its answer is drawn.
@@ -15,6 +17,8 @@ use xtask::{
 };
 
 const SIZES: [usize; 2] = [1_000, 10_000];
+/// Cells along the sides of maps.
+const MAP_SIDES: [usize; 2] = [512, 2_048];
 /// Steps of a drag, each a frame.
 const STEPS: usize = 60;
 /// Keys that are typed, each followed by its deletion.
@@ -44,7 +48,61 @@ fn main() -> Result<()> {
         let counted = tab.evaluate("enroute.state().tpn.nodes")?;
         println!("| {counted} | {far} | {near} | {timeline} | {keys} | {worked_out} |");
     }
+    println!("\nmilliseconds on the page with four rovers under way, p50 / p90 / p99, {flavour:?} build");
+    println!("| cells | turn, whole map | turn, near a rover |");
+    println!("|---|---|---|");
+    for side in MAP_SIDES {
+        let tab = browser.open_tab(1440, 900)?;
+        tab.go_to(&format!("{}#mission=enroute&workspace=review", server.url()))?;
+        tab.wait_until_ready()?;
+        open_map(&tab, side)?;
+        let far = pan(&tab, ("img", "Terrain"), 0)?;
+        tab.evaluate("enroute.dispatch('go.select', 'Rover1'); enroute.dispatch('terrain.follow')")?;
+        let near = pan(&tab, ("img", "Terrain"), 4)?;
+        println!("| {side} × {side} | {far} | {near} |");
+    }
     Ok(())
+}
+
+/// Drops a hilly map of `side` × `side` cells on the page, opens a mission on it, lets it play, and leaves the terrain
+/// alone on the screen.
+fn open_map(tab: &Tab, side: usize) -> Result<()> {
+    tab.evaluate(&format!(
+        "(() => {{
+            const side = {side};
+            const heights = new Uint8Array(side * side);
+            for (let row = 0; row < side; row += 1) {{
+                for (let column = 0; column < side; column += 1) {{
+                    heights[row * side + column] = 100 + 50 * Math.sin(row / 90) * Math.cos(column / 70);
+                }}
+            }}
+            const transfer = new DataTransfer();
+            transfer.items.add(new File([`P5 ${{side}} ${{side}} 255\\n`, heights], 'hills.pgm'));
+            const options = {{ bubbles: true, cancelable: true, dataTransfer: transfer }};
+            document.getElementById('canvas').dispatchEvent(new DragEvent('drop', options));
+        }})()"
+    ))?;
+    tab.wait_until("enroute.state().toasts.some((toast) => toast.includes('hills.pgm is a map'))")?;
+    let far = 10 * side - 200;
+    let text = format!(
+        "terrain \"hills.pgm\" cell 10;
+         location A (200, 200); location B ({far}, 300); location C (300, {far}); location D ({far}, {far});
+         vehicle Rover1 : ATRV at A; vehicle Rover2 : ATRV at A;
+         vehicle Rover3 : ATRV at B; vehicle Rover4 : ATRV at C;
+         primitive Go(to) moves Rover1, Rover2 speed (0, 1);
+         primitive Cross(to) moves Rover3 speed (0, 1);
+         primitive Climb(to) moves Rover4 speed (0, 1);
+         scenario S = {{ Go(D), Cross(C), Climb(B) }}"
+    );
+    tab.evaluate(&format!("enroute.setSource({})", json!(text)))?;
+    settle(tab)?;
+    let status = tab.evaluate("enroute.state().status")?;
+    ensure!(status == "plan", "the mission on the map of {side} cells is {status}");
+    for panel in ["review", "compare", "timeline", "network", "plan", "editor", "problems", "outline"] {
+        tab.evaluate(&format!("enroute.dispatch('view.closePanel', {{ name: '{panel}' }})"))?;
+    }
+    tab.evaluate("enroute.dispatch('play.toggle')")?;
+    tab.next_frame()
 }
 
 fn open(tab: &Tab, nodes: usize) -> Result<()> {

@@ -1,10 +1,15 @@
 //! `cargo xtask shot`: a picture of the built page, as a user would see it.
 
-use std::{fs, path::PathBuf};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use anyhow::{Context as _, Result, anyhow};
+use data_encoding::BASE64;
+use serde_json::json;
 use xtask::{
-    browser::{Browser, Graphics},
+    browser::{Browser, Graphics, Tab},
     server::SiteServer,
     site::{self, Flavour},
 };
@@ -21,6 +26,9 @@ pub(crate) struct Options {
     /// What stands after `#` in the address, such as `mission=enroute`.
     #[arg(long, default_value = "")]
     hash: String,
+    /// Files to drop on the page before the scripts run, such as maps.
+    #[arg(long)]
+    drop: Vec<PathBuf>,
     /// JavaScript to run before the picture is taken, in order; promises are awaited, values are printed.
     #[arg(long)]
     eval: Vec<String>,
@@ -51,6 +59,9 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let tab = browser.open_tab(width, height)?;
     tab.go_to(&format!("{}#{}", server.url(), options.hash.trim_start_matches('#')))?;
     tab.wait_until_ready()?;
+    for file in &options.drop {
+        drop_file(&tab, file)?;
+    }
     for script in &options.eval {
         println!("{}", tab.evaluate(script)?);
     }
@@ -66,6 +77,24 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     for message in tab.messages() {
         eprintln!("page: {message}");
     }
+    Ok(())
+}
+
+/// Drops a file on the page, as a user would from a folder.
+fn drop_file(tab: &Tab, file: &Path) -> Result<()> {
+    let bytes = fs::read(file).with_context(|| format!("reading {}", file.display()))?;
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    tab.evaluate(&format!(
+        "(async () => {{
+            const answer = await fetch('data:application/octet-stream;base64,{}');
+            const transfer = new DataTransfer();
+            transfer.items.add(new File([await answer.blob()], {}));
+            const options = {{ bubbles: true, cancelable: true, dataTransfer: transfer }};
+            document.getElementById('canvas').dispatchEvent(new DragEvent('drop', options));
+        }})()",
+        BASE64.encode(&bytes),
+        json!(name),
+    ))?;
     Ok(())
 }
 

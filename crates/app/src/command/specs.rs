@@ -1,6 +1,7 @@
 //! The registry: every command with its name, title, menu and keys (DESIGN 1).
 
 use egui::{Key, KeyboardShortcut, Modifiers};
+use motion::PlannerKind;
 use serde_json::Value;
 
 use crate::command::registry::{Availability, Build, CommandSpec, Group, Scope};
@@ -603,6 +604,21 @@ pub static COMMANDS: &[CommandSpec] = &[
     called("terrain.growTo", "Draw so many samples", Group::Terrain, |_, arguments| {
         let samples = number_argument(arguments, "samples")?.max(0.0) as u32;
         Ok(Command::Terrain(TerrainCommand::Growth(GrowthCommand::GoTo(samples))))
+    }),
+    called("terrain.growLeg", "Choose the leg of the search tree", Group::Terrain, |_, arguments| {
+        let leg = number_argument(arguments, "leg")?.max(0.0) as usize;
+        Ok(Command::Terrain(TerrainCommand::Growth(GrowthCommand::ChooseLeg(leg))))
+    }),
+    called("terrain.growBy", "Choose the path planner", Group::Terrain, |_, arguments| {
+        let planner = match text_argument(arguments, "planner")? {
+            "as-planned" => None,
+            "rrt" => Some(PlannerKind::Rrt),
+            "rrt-connect" => Some(PlannerKind::RrtConnect),
+            "rrt-star" => Some(PlannerKind::RrtStar),
+            "kinodynamic" => Some(PlannerKind::Kinodynamic),
+            other => return Err(format!("there is no path planner \"{other}\"")),
+        };
+        Ok(Command::Terrain(TerrainCommand::Growth(GrowthCommand::ChoosePlanner(planner))))
     }),
     when(
         plain("terrain.measure", "Measure", Group::Terrain, &[keys(PLAIN, Key::M)], Scope::NotTyping, |_| {

@@ -160,10 +160,20 @@ fn terrain_json(state: &AppState) -> Value {
             "length": shown.length_m(),
         })
     });
+    let time = state.playback.time;
+    let drives = state.run_shown().map_or(&[][..], |run| run.drives.as_slice());
+    let rays: usize = drives
+        .iter()
+        .flat_map(|drive| &drive.vehicles)
+        .filter(|it| it.frames.last().is_some_and(|last| last.time > time))
+        .filter_map(|it| it.at(time))
+        .map(|frame| frame.rays_m.len())
+        .sum();
     json!({
         "tool": terrain.tool.name(),
         "points": terrain.points_m,
         "clearance": state.settings.views.terrain.clearance,
+        "rays": rays,
         "growth": growth,
     })
 }

@@ -223,6 +223,8 @@ pub struct TerrainView {
     pub trees: bool,
     /// Obstacles.
     pub obstacles: bool,
+    /// What laser range finders see, in a run.
+    pub rays: bool,
     /// Contour lines.
     pub contours: bool,
     /// A grid in mission coordinates.
@@ -255,6 +257,7 @@ impl Default for TerrainView {
             paths: true,
             trees: false,
             obstacles: true,
+            rays: true,
             contours: true,
             grid: false,
             clearance: false,

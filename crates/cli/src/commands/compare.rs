@@ -85,21 +85,22 @@ impl Args {
                 activity: None,
                 bounds: None,
             };
-            return Self::worked_out(name, &text, target.goal()?, self.seed);
+            return Self::worked_out(path, &text, target.goal()?, self.seed);
         }
         let value: Value = serde_json::from_str(&text).with_context(|| format!("{name} is not JSON"))?;
         if value["format"] == mission::review::record::FORMAT {
             let record = Record::from_json(&text).with_context(|| format!("cannot read {name}"))?;
             let signed =
                 record.sign_offs.last().with_context(|| format!("nobody has signed the review {name}"))?;
-            return Self::worked_out(name, &signed.source, signed.goal.clone(), signed.seed);
+            return Self::worked_out(path, &signed.source, signed.goal.clone(), signed.seed);
         }
         let side = Side::of_json(&name, &value).with_context(|| format!("cannot read {name}"))?;
         Ok(Read { side, source: String::new(), problems: Vec::new() })
     }
 
-    fn worked_out(name: String, source: &str, goal: Goal, seed: u64) -> anyhow::Result<Read> {
-        let WorkedOut { name, snapshot, .. } = work_out_text(name, source, goal, seed)?;
+    fn worked_out(file: &Path, source: &str, goal: Goal, seed: u64) -> anyhow::Result<Read> {
+        let name = file.display().to_string();
+        let WorkedOut { name, snapshot, .. } = work_out_text(name, file, source, goal, seed)?;
         let side = Side::of_snapshot(&name, &snapshot);
         Ok(Read { side, source: source.to_owned(), problems: snapshot.problems.clone() })
     }

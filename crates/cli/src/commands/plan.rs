@@ -16,6 +16,7 @@ use rmpl::{Bound, LineIndex};
 use serde_json::{Value, json};
 use tpn::Network;
 
+use crate::ground::ground;
 use crate::load::{Loaded, Target, parse_time};
 use crate::output::{
     Format, LIMIT, NO, WRONG, YES, any_error, document, exit, print_json, print_problems, print_text,
@@ -78,7 +79,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let begun = Instant::now();
     let network = Arc::new(network);
     let planned = match (&loaded.program, args.no_paths) {
-        (Some(program), false) => args.plan_with_paths(&network, program, options),
+        (Some(program), false) => args.plan_with_paths(&network, program, options)?,
         _ => args.plan_network(&network, options),
     };
     let plan_millis = millis_since(begun);
@@ -145,10 +146,14 @@ impl Args {
         planning::without_paths(network, outcome)
     }
 
-    fn plan_with_paths(&self, network: &Arc<Network>, program: &Program, options: Options) -> Planned {
+    fn plan_with_paths(
+        &self,
+        network: &Arc<Network>,
+        program: &Program,
+        options: Options,
+    ) -> anyhow::Result<Planned> {
         let deadline = self.deadline();
-        let mut grounds = mission::Grounds::default();
-        let (ground, _) = grounds.resolve(&program.world);
+        let (mut grounds, ground) = ground(&self.target.file, &program.world)?;
         let problem = planning::Problem {
             network,
             program,
@@ -158,7 +163,7 @@ impl Args {
             facts: None,
         };
         let mut stop = || deadline.is_some_and(|deadline| Instant::now() >= deadline);
-        planning::plan(&problem, &mut grounds, &mut Paths::default(), &mut stop)
+        Ok(planning::plan(&problem, &mut grounds, &mut Paths::default(), &mut stop))
     }
 }
 

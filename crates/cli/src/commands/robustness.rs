@@ -12,6 +12,7 @@ use mission::sampling::Sampler;
 use mission::{Paths, RobustnessSettings, Tally, Uncertainty};
 use serde::{Deserialize, Serialize};
 
+use crate::ground::ground;
 use crate::input::{read_json, read_text};
 use crate::load::Target;
 use crate::output::{Format, NO, WRONG, YES, exit, print_problems, print_text};
@@ -149,9 +150,8 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
         bail!("what is said of {name} is no distribution: its numbers must not fall, and not be below 0");
     }
     ensure!(uncertainty.rocks.is_sound(), "rocks have lengths from 0 on, and the least radius comes first");
-    let mut grounds = mission::Grounds::default();
+    let (mut grounds, ground) = ground(&target.file, &program.world)?;
     let mut paths = Paths::default();
-    let (ground, _) = grounds.resolve(&program.world);
     let problem = Problem {
         network: &network,
         program,

@@ -15,6 +15,7 @@ use serde_json::{Value, json};
 use tpn::Network;
 use tpn::number::time_to_json;
 
+use crate::ground::ground;
 use crate::input::read_json;
 use crate::load::Target;
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
@@ -53,9 +54,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let (programs, _) = mission::programs::Programs::compile(program);
     let unknown = programs.unknown_faults(&network, &disturbances);
     anyhow::ensure!(unknown.is_empty(), "the mission has no {}", unknown.join(", "));
-    let mut grounds = mission::Grounds::default();
+    let (mut grounds, ground) = ground(&args.target.file, &program.world)?;
     let mut paths = Paths::default();
-    let (ground, _) = grounds.resolve(&program.world);
     let problem = Problem {
         network: &network,
         program,

@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use tpn::plan_json::{PlanError, plan_from_json, selected_activities, stated_activities};
 use tpn::{EventEnd, Network};
 
+use crate::ground::ground;
 use crate::input::read_json;
 use crate::load::{Loaded, Target, parse_time};
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
@@ -85,7 +86,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 fn check(args: &Args, loaded: &Loaded, network: &Network, stated: &Value) -> anyhow::Result<Vec<Value>> {
     let extended;
     let network = if names_path_vertices(stated) {
-        extended = with_paths(args, loaded, network);
+        extended = with_paths(args, loaded, network)?;
         &*extended
     } else {
         network
@@ -123,18 +124,17 @@ fn names_path_vertices(stated: &Value) -> bool {
 }
 
 /// The network with the paths that planning finds, which the seed determines.
-fn with_paths(args: &Args, loaded: &Loaded, network: &Network) -> Arc<Network> {
+fn with_paths(args: &Args, loaded: &Loaded, network: &Network) -> anyhow::Result<Arc<Network>> {
     let network = Arc::new(network.clone());
-    let Some(program) = &loaded.program else { return network };
+    let Some(program) = &loaded.program else { return Ok(network) };
     let has_paths = |network: &Network| {
         let mut events = network.nodes.iter().flat_map(|node| &node.events);
         events.any(|event| matches!(event.end, EventEnd::PathVertex { .. }))
     };
     if has_paths(&network) {
-        return network;
+        return Ok(network);
     }
-    let mut grounds = mission::Grounds::default();
-    let (ground, _) = grounds.resolve(&program.world);
+    let (mut grounds, ground) = ground(&args.target.file, &program.world)?;
     let problem = planning::Problem {
         network: &network,
         program,
@@ -143,5 +143,5 @@ fn with_paths(args: &Args, loaded: &Loaded, network: &Network) -> Arc<Network> {
         seed: args.seed,
         facts: None,
     };
-    planning::plan(&problem, &mut grounds, &mut Paths::default(), &mut || false).network
+    Ok(planning::plan(&problem, &mut grounds, &mut Paths::default(), &mut || false).network)
 }

@@ -1,15 +1,19 @@
 //! One image of the terrain: everything it depends on, and its way to the screen.
 
+use std::sync::Arc;
+
 use eframe::egui_wgpu::RenderState;
 use egui::{Color32, Painter, Rect};
 use glam::Vec3;
 use mission::Snapshot;
+use terrain::Terrain;
 
 use super::camera::Camera;
 use super::detail;
 use super::gpu::{Frame, TerrainImage, ViewUniform};
 use super::ground::Ground;
 use super::hud::{self, rgba};
+use super::rocks;
 use super::scene::{self, SceneInput, SceneOptions, ScenePalette, Sketch};
 use crate::panel::Context;
 use crate::state::settings::{Coloring, TerrainView};
@@ -22,6 +26,8 @@ pub struct Input<'a> {
     pub context: &'a Context<'a>,
     /// The mission.
     pub snapshot: &'a Snapshot,
+    /// Its map, once it is there.
+    pub map: Option<&'a Arc<Terrain>>,
     /// What is shown.
     pub view: &'a TerrainView,
     /// The view.
@@ -54,17 +60,18 @@ pub fn paint(
 }
 
 fn frame(input: &Input<'_>, pixels: [f32; 2], pixels_per_point: f32) -> Frame {
-    let Input { context, snapshot, view, camera, ground, sketch } = *input;
+    let Input { context, snapshot, map, view, camera, ground, sketch } = *input;
     let clip_from_world = camera.clip_from_world(pixels[0] / pixels[1].max(1.0));
     let eye = camera.eye_m();
     let relief = (ground.range_m[1] - ground.range_m[0]) / view.height_scale;
-    let contour = CONTOUR_STEPS_M.into_iter().find(|step| relief / step < 24.0).unwrap_or(5000.0);
+    let contour = CONTOUR_STEPS_M.into_iter().find(|step| relief / step < 20.0).unwrap_or(5000.0);
     let sun = Vec3::new(-0.55, 0.45, 0.70).normalize();
     let horizon = rgba(context.tokens.sunken);
     let options = SceneOptions {
         trees: view.trees,
         paths: view.paths,
         obstacles: view.obstacles,
+        rays: view.rays,
         vehicle_scale: hud::vehicle_scale(camera.distance_m),
     };
     let state = context.state;
@@ -77,6 +84,7 @@ fn frame(input: &Input<'_>, pixels: [f32; 2], pixels_per_point: f32) -> Frame {
         snapshot,
         ground,
         time: context.state.playback.time,
+        run: context.state.run_shown(),
         selection: &context.state.selection,
         hovered: &context.state.hovered,
         growth: &context.state.terrain.growth,
@@ -85,6 +93,9 @@ fn frame(input: &Input<'_>, pixels: [f32; 2], pixels_per_point: f32) -> Frame {
         sketch,
         appeared: &appeared,
     });
+    if let Some(map) = map {
+        rocks::draw(&mut shapes, ground, map, camera);
+    }
     shapes.scale_widths(pixels_per_point);
     Frame {
         view: ViewUniform {

@@ -9,6 +9,7 @@ mod clearance;
 mod decal;
 mod detail;
 mod drag;
+mod driving;
 mod flight;
 mod frame;
 mod gpu;
@@ -18,8 +19,11 @@ mod labels;
 mod measure;
 mod navigate;
 mod pick;
+mod rocks;
 mod scene;
 mod shapes;
+mod steer;
+mod surface;
 mod tool;
 mod toolbar;
 mod tree;
@@ -28,27 +32,25 @@ mod vehicles;
 use std::sync::Arc;
 
 use egui::{CursorIcon, Rect, Response, RichText, Sense};
-use glam::{Vec2, Vec3};
-use mission::{MapKey, Snapshot};
-use rmpl::program::ObstacleShape;
+use glam::Vec2;
+use mission::Snapshot;
 use terrain::Terrain;
 use tpn::OccurrenceId;
 
-use crate::command::{Command, CommandSender, ViewAction};
-use crate::panel::{Context, Panel, PanelKind, show_empty};
+use crate::command::{Command, CommandSender};
+use crate::panel::{Context, Panel, show_empty};
 use crate::state::settings::TerrainView;
 use crate::state::terrain::{TerrainCommand, Tool};
 use crate::state::{EditKind, Selection};
 use crate::theme::space;
 use camera::Camera;
 use clearance::Clearance;
-use decal::{ClearanceMap, Decal};
 use drag::Drag;
 use flight::Flight;
 use gpu::TerrainImage;
-use ground::Ground;
 use measure::Measurement;
 use pick::Scene;
+use surface::{DecalKey, Shown};
 
 /// The panel, with what concerns only it: the camera and what is on the graphics card.
 #[derive(Default)]
@@ -77,25 +79,8 @@ pub struct TerrainPanel {
     told_hover: Selection,
 }
 
-/// The ground that is on the graphics card.
-struct Shown {
-    key: Option<MapKey>,
-    height_scale: f32,
-    ground: Ground,
-}
-
-/// What the image on the ground was painted from.
-#[derive(PartialEq)]
-struct DecalKey {
-    map: Option<MapKey>,
-    obstacles: Vec<ObstacleShape>,
-    clearance: Option<Clearance>,
-}
-
 /// The margin between the image's border and what is written on it.
 const MARGIN: f32 = space::M;
-/// How near the camera comes to a place that it flies to, in metres.
-const NEAR_M: f32 = 45.0;
 
 impl Panel for TerrainPanel {
     fn show(&mut self, ui: &mut egui::Ui, context: &Context<'_>, commands: &mut CommandSender) {
@@ -132,68 +117,6 @@ impl Panel for TerrainPanel {
 }
 
 impl TerrainPanel {
-    /// Brings the ground of the mission to the graphics card, when it is not there yet.
-    fn show_ground(
-        &mut self,
-        context: &Context<'_>,
-        map: Option<&Arc<Terrain>>,
-        snapshot: &Snapshot,
-        view: &TerrainView,
-    ) {
-        let key = map.and(snapshot.map.clone());
-        let is_shown =
-            self.ground.as_ref().is_some_and(|it| it.key == key && it.height_scale == view.height_scale);
-        if !is_shown {
-            let ground =
-                map.map_or_else(|| Ground::flat(Vec2::ZERO, 300.0), |map| from_map(map, view.height_scale));
-            let is_new_place = self.ground.as_ref().is_none_or(|before| before.key != key);
-            if is_new_place {
-                (self.camera, self.flight, self.follow) = (None, None, None);
-            }
-            if let (Some(state), Some(image)) = (context.render_state, &mut self.image) {
-                image.set_ground(state, &ground);
-            }
-            self.ground = Some(Shown { key, height_scale: view.height_scale, ground });
-            self.decal = None;
-        }
-        if let (Some(state), None, Some(shown)) = (context.render_state, &self.image, &self.ground) {
-            let mut image = TerrainImage::new(state);
-            image.set_ground(state, &shown.ground);
-            self.image = Some(image);
-            self.decal = None;
-        }
-    }
-
-    /// Lays obstacles and the clearance map on the ground, when they have changed.
-    fn lay_decal(
-        &mut self,
-        context: &Context<'_>,
-        snapshot: &Snapshot,
-        map: Option<&Arc<Terrain>>,
-        view: &TerrainView,
-    ) {
-        let wanted = map.zip(snapshot.map.as_ref()).filter(|_| view.clearance);
-        let before = self.clearance.take();
-        self.clearance = wanted
-            .and_then(|(map, key)| Clearance::updated(before, key, map, snapshot, &context.state.selection));
-        let (Some(state), Some(image), Some(shown)) = (context.render_state, &mut self.image, &self.ground)
-        else {
-            return;
-        };
-        let obstacles = snapshot.program.world.obstacles.iter().filter(|_| view.obstacles);
-        let key = DecalKey {
-            map: shown.key.clone(),
-            obstacles: obstacles.map(|it| it.shape.clone()).collect(),
-            clearance: self.clearance.clone(),
-        };
-        if self.decal.as_ref() != Some(&key) {
-            let clearance = key.clearance.as_ref().map(|it| ClearanceMap { clearance_m: &it.room_m });
-            let decal = Decal::paint(&shown.ground, &key.obstacles, clearance);
-            image.set_decal(state, decal.as_ref());
-            self.decal = Some(key);
-        }
-    }
-
     fn show_image(
         &mut self,
         ui: &mut egui::Ui,
@@ -226,7 +149,7 @@ impl TerrainPanel {
         }
         let painter = ui.painter_at(rect);
         let pixels_per_point = ui.ctx().pixels_per_point();
-        let input = frame::Input { context, snapshot, view, camera: &camera, ground, sketch: &sketch };
+        let input = frame::Input { context, snapshot, map, view, camera: &camera, ground, sketch: &sketch };
         match (context.render_state, &mut self.image) {
             (Some(state), Some(image)) => {
                 frame::paint(&painter, rect, pixels_per_point, state, image, &input);
@@ -344,98 +267,6 @@ impl TerrainPanel {
         self.told_hover = pointed;
     }
 
-    /// Follows view actions, flights and vehicles, and keeps the eye over the ground.
-    fn move_camera(&mut self, response: &Response, context: &Context<'_>, snapshot: &Snapshot) {
-        if let Some(action) = context.view_action(PanelKind::Terrain, &mut self.followed_action) {
-            self.follow_action(action, response.rect.aspect_ratio(), context, snapshot);
-        }
-        let (Some(mut camera), Some(shown)) = (self.camera, &self.ground) else { return };
-        let ground = &shown.ground;
-        let time = context.state.playback.time;
-        let followed = self.follow.and_then(|index| {
-            let vehicle = snapshot.program.world.vehicles.get(index)?;
-            let (place, _) = scene::vehicle_pose(snapshot, index, time)?;
-            Some(ground.drape(place, scene::flight_height_m(ground, vehicle, place).unwrap_or(0.5)))
-        });
-        if let Some(flight) = self.flight {
-            let flight = followed.map_or(flight, |target| flight.toward(target));
-            let (now, is_over) = flight.at(context.now_secs);
-            camera = now;
-            self.flight = (!is_over).then_some(flight);
-            response.ctx.request_repaint();
-        } else if let Some(target) = followed {
-            camera.target_m = target;
-        } else {
-            let inside = ground.nearest(camera.target_m.truncate());
-            camera.target_m = ground.drape(inside, 0.0);
-        }
-        self.camera = Some(camera);
-        self.drawn = Some(camera.above(ground));
-    }
-
-    fn follow_action(&mut self, action: ViewAction, aspect: f32, context: &Context<'_>, snapshot: &Snapshot) {
-        let (Some(camera), Some(shown)) = (self.camera, &self.ground) else { return };
-        let whole = Camera::whole(&shown.ground, aspect);
-        match action {
-            ViewAction::ZoomIn | ViewAction::ZoomOut => {
-                let mut nearer = camera;
-                nearer.zoom(if action == ViewAction::ZoomIn { 0.7 } else { 1.0 / 0.7 });
-                self.fly(camera, nearer, context);
-            }
-            ViewAction::ZoomReset | ViewAction::Fit => {
-                self.follow = None;
-                self.fly(camera, whole, context);
-            }
-            ViewAction::TopView => self.fly(camera, camera.top_view(), context),
-            ViewAction::FitSelection => {
-                self.follow = None;
-                self.fly_to(context, snapshot, &context.state.selection, None);
-            }
-            ViewAction::Follow if self.follow.is_some() => self.follow = None,
-            ViewAction::Follow => {
-                self.follow = clearance::vehicle(snapshot, &context.state.selection);
-                self.fly_to_followed(context, snapshot);
-            }
-        }
-    }
-
-    /// Flies to what is selected, or nearer to a bare place.
-    fn fly_to(
-        &mut self,
-        context: &Context<'_>,
-        snapshot: &Snapshot,
-        selection: &Selection,
-        bare: Option<Vec3>,
-    ) {
-        let (Some(camera), Some(shown)) = (self.camera, &self.ground) else { return };
-        let place = pick::place_of(snapshot, selection, context.state.playback.time);
-        let target = match place {
-            Some(place) => {
-                let distance_m = NEAR_M.max(1.5 * pick::extent_of(snapshot, selection));
-                camera.close_up(shown.ground.drape(place, 0.0), distance_m)
-            }
-            None => match bare {
-                Some(hit) => camera.close_up(hit, camera.distance_m * 0.5),
-                None => return,
-            },
-        };
-        self.follow = None;
-        self.fly(camera, target, context);
-    }
-
-    fn fly_to_followed(&mut self, context: &Context<'_>, snapshot: &Snapshot) {
-        let (Some(camera), Some(shown)) = (self.camera, &self.ground) else { return };
-        let time = context.state.playback.time;
-        let pose = self.follow.and_then(|index| scene::vehicle_pose(snapshot, index, time));
-        if let Some((place, _)) = pose {
-            self.fly(camera, camera.close_up(shown.ground.drape(place, 0.5), NEAR_M * 0.6), context);
-        }
-    }
-
-    fn fly(&mut self, from: Camera, to: Camera, context: &Context<'_>) {
-        self.flight = Some(Flight::new(from, to, context.now_secs));
-    }
-
     /// The card of the selected path, and the one of a measurement.
     fn show_cards(
         &self,
@@ -487,6 +318,14 @@ fn describe(context: &Context<'_>, snapshot: &Snapshot, measured: Option<&Measur
             text.push_str(&format!(" {} at {:.0}, {:.0}.", vehicle.name.text, place.x, place.y));
         }
     }
+    if let Some(run) = context.state.run_shown() {
+        for (vehicle, frame) in driving::under_way(run, time) {
+            let vehicle = snapshot.program.world.vehicles.get(vehicle as usize);
+            if let Some((vehicle, away_m)) = vehicle.zip(driving::nearest_seen_m(frame)) {
+                text.push_str(&format!(" {} sees something {away_m:.1} m away.", vehicle.name.text));
+            }
+        }
+    }
     if let Some(shown) = context.state.terrain.growth.shown() {
         text.push_str(&format!(" Search tree: {}.", tree::words(shown)));
     }
@@ -512,12 +351,4 @@ fn show_without_world(ui: &mut egui::Ui, context: &Context<'_>, commands: &mut C
             commands.send(Command::Edit { edits: vec![edit], kind: EditKind::Single });
         }
     });
-}
-
-fn from_map(map: &Terrain, height_scale: f32) -> Ground {
-    let frame = map.frame();
-    let half = frame.cell_size_m / 2.0;
-    let origin = Vec2::new((frame.origin_m[0] + half) as f32, (frame.origin_m[1] + half) as f32);
-    let heights: Vec<f32> = map.heights_m().iter().map(|height| height * height_scale).collect();
-    Ground::new(frame.width, frame.height, frame.cell_size_m as f32, origin, &heights)
 }

@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3};
 use mission::Snapshot;
 use rmpl::program::{ObstacleShape, VehicleDecl, World};
 
+use super::driving;
 use super::ground::Ground;
 use super::shapes::{Shapes, circle_outline};
 use super::tree;
@@ -39,6 +40,8 @@ pub struct SceneOptions {
     pub paths: bool,
     /// Declared obstacles.
     pub obstacles: bool,
+    /// What laser range finders see, in a run.
+    pub rays: bool,
     /// How many times larger than life vehicles are drawn.
     pub vehicle_scale: f32,
 }
@@ -52,6 +55,8 @@ pub struct SceneInput<'a> {
     pub ground: &'a Ground,
     /// In mission units.
     pub time: f64,
+    /// The run that is shown, if one is.
+    pub run: Option<&'a mission::Execution>,
     /// What is selected in all panels.
     pub selection: &'a Selection,
     /// What the pointer is over in some panel.
@@ -104,6 +109,7 @@ pub fn build(input: &SceneInput<'_>) -> Shapes {
         paths(&mut shapes, input);
     }
     encounters(&mut shapes, input);
+    driving::draw(&mut shapes, input);
     vehicles(&mut shapes, input);
     tree::draw(&mut shapes, input);
     sketch(&mut shapes, input);

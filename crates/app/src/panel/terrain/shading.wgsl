@@ -80,8 +80,11 @@ fn ground_fragment(in: GroundVertex) -> @location(0) vec4<f32> {
     let covered = textureSample(overlay, smooth_sampler, in.uv) * view.image.w;
     color = color * (1.0 - covered.a) + covered.rgb;
     color = color * (0.25 + 0.95 * light);
-    let contour = line_at(in.world.z / view.origin_cell.w, max(view.range.z, 1e-3));
-    if (view.range.z > 0.0) { color = mix(color, color * 0.45, contour * 0.55); }
+    // Every fifth contour is darker, so that heights can be counted; the others stay behind what lies on the ground.
+    let level = in.world.z / view.origin_cell.w;
+    let contour = line_at(level, max(view.range.z, 1e-3));
+    let fifth = line_at(level, max(view.range.z * 5.0, 1e-3));
+    if (view.range.z > 0.0) { color = mix(color, color * 0.45, max(contour * 0.3, fifth * 0.65)); }
     let grid = max(line_at(in.world.x, max(view.range.w, 1e-3)), line_at(in.world.y, max(view.range.w, 1e-3)));
     if (view.range.w > 0.0) { color = mix(color, vec3<f32>(1.0), grid * 0.28); }
     let away = distance(in.world, view.eye.xyz);

@@ -50,7 +50,7 @@ impl Shapes {
     }
 
     /// Three corners; its normal is up for a counter-clockwise order seen from above.
-    fn triangle(&mut self, corners: [Vec3; 3], color: [f32; 4]) {
+    pub fn triangle(&mut self, corners: [Vec3; 3], color: [f32; 4]) {
         let normal =
             (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or(Vec3::Z).to_array();
         for corner in corners {

@@ -139,6 +139,11 @@ impl AppState {
         self.workspace == Workspace::Execute && self.execution.run.as_ref().is_some_and(belongs)
     }
 
+    /// The run of the mission, while it is shown.
+    pub fn run_shown(&self) -> Option<&Execution> {
+        self.execution.run.as_deref().filter(|_| self.is_executing())
+    }
+
     /// What the planning core is to execute, if it was not asked already.
     pub(crate) fn run_to_ask_for(&mut self) -> Option<Request> {
         let update = self.update_shown().filter(|_| self.workspace == Workspace::Execute)?;

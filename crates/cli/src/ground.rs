@@ -1,0 +1,49 @@
+//! The ground of a mission on the command line: a terrain that comes with Enroute, or a map file beside the mission.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use anyhow::Context as _;
+use mission::{Grounds, MapKey};
+use rmpl::program::World;
+use terrain::Terrain;
+
+use crate::input::read_bytes;
+
+/// The map of a mission that has places, with its key.
+pub type Ground = Option<(MapKey, Arc<Terrain>)>;
+
+/// A larger map file is refused before it is read.
+const LARGEST_MAP_BYTES: u64 = 512 << 20;
+
+/// The ground that a mission names, read from the folder of the mission's file unless it comes with Enroute. Fails when
+/// it is nowhere, or the file is no map.
+pub fn ground(mission: &Path, world: &World) -> anyhow::Result<(Grounds, Ground)> {
+    let mut grounds = Grounds::default();
+    if let Some((name, bytes)) = map_file(mission, world)? {
+        grounds.import(&name, &bytes).map_err(anyhow::Error::msg).with_context(|| cannot_read(&name))?;
+    }
+    let (ground, diagnostics) = grounds.resolve(world);
+    if let Some(diagnostic) = diagnostics.first() {
+        let beside = "a map file stands beside the mission's";
+        let hint = diagnostic.hint.as_deref().map_or(beside.to_owned(), |hint| format!("{hint}; {beside}"));
+        anyhow::bail!("{} ({hint})", diagnostic.message);
+    }
+    Ok((grounds, ground))
+}
+
+/// The name and the bytes of the map file that a mission names, if there is such a file beside the mission's.
+pub fn map_file(mission: &Path, world: &World) -> anyhow::Result<Option<(String, Vec<u8>)>> {
+    let Some(declared) = &world.terrain else { return Ok(None) };
+    let name = declared.asset.as_str();
+    let file = mission.parent().unwrap_or(Path::new("")).join(name);
+    if terrain::asset_names().any(|known| known == name) || !file.is_file() {
+        return Ok(None);
+    }
+    let bytes = read_bytes(&file, LARGEST_MAP_BYTES).with_context(|| cannot_read(name))?;
+    Ok(Some((name.to_owned(), bytes)))
+}
+
+fn cannot_read(name: &str) -> String {
+    format!("the terrain \"{name}\" cannot be used")
+}
