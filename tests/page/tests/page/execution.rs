@@ -71,7 +71,7 @@ fn a_vehicle_stops_and_an_obstacle_appears_by_hand_and_both_are_taken_back() -> 
     page.wait_for("state.terrain.tool === 'appear'")?;
     // A place to the side of the paths, on which nothing else stands.
     let map = page.tab.widget("img", "Terrain")?;
-    page.tab.click(map.x + 0.5 * map.width, map.y + 0.86 * map.height)?;
+    page.tab.click(map.x + 0.5 * map.width, map.y + 0.66 * map.height)?;
     page.wait_for("state.execution.disturbances.length === 1 && !state.execution.isWorking")?;
     let obstacle = page.state()?["execution"]["disturbances"][0].clone();
     assert_eq!(
