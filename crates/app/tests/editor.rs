@@ -79,7 +79,7 @@ fn typed_characters_go_where_the_caret_is_even_several_in_one_frame() {
 fn a_press_and_release_within_one_frame_places_the_caret_and_takes_the_keys() {
     let mut app = editing("$0first\nsecond\nthird");
     let area = app.harness.get_by_role_and_label(TEXT, "Mission text").rect();
-    app.harness.ctx.memory_mut(|memory| memory.stop_text_input());
+    app.harness.ctx.memory_mut(egui::Memory::stop_text_input);
     app.settle();
     let pos = egui::pos2(area.center().x, area.top() + 30.0);
     for pressed in [true, false] {

@@ -18,11 +18,15 @@ pub(crate) fn answer(
     options: &Options,
     termination: &mut dyn Termination,
 ) -> Result<(Outcome, bool), Overflow> {
-    let (mut outcome, has_doubts) = if options.search == Search::ConflictDirected && !options.all {
-        first_plan(model, options, termination)?
-    } else {
-        run(model, options, (Gaps::Exact, Stats::default()), termination)?
-    };
+    let (mut outcome, mut has_doubts) = searched(model, options, termination)?;
+    if outcome.trace.as_ref().is_some_and(|trace| trace.is_truncated) && outcome.status == Status::Limit {
+        // What is recorded is searched step by step as the paper does, and stops when the record is full: the answer is
+        // up to a search that may take the shortcuts.
+        let unrecorded = Options { trace_events: None, ..*options };
+        let trace = outcome.trace.take();
+        (outcome, has_doubts) = searched(model, &unrecorded, termination)?;
+        outcome.trace = trace;
+    }
     if outcome.status == Status::NoPlan && options.explain {
         let mut failure = explain::explain(network, model)?;
         if options.relax {
@@ -31,6 +35,18 @@ pub(crate) fn answer(
         outcome.failure = Some(failure);
     }
     Ok((outcome, has_doubts))
+}
+
+fn searched(
+    model: &Model,
+    options: &Options,
+    termination: &mut dyn Termination,
+) -> Result<(Outcome, bool), Overflow> {
+    if options.search == Search::ConflictDirected && !options.all {
+        first_plan(model, options, termination)
+    } else {
+        run(model, options, (Gaps::Exact, Stats::default()), termination)
+    }
 }
 
 /// The plan with these choices, if there is one, and if a search that trusts gaps would find it, too. Leaves in

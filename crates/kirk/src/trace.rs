@@ -1,7 +1,7 @@
 //! The record of a search: events in order, and the tree that they walk (SPEC 5; issue "Trace").
 //!
 //! A trace is small: events name ids, and windows and selections are computed again by [`crate::Replay`]. It is bounded:
-//! after the limit nothing more is recorded and [`Trace::is_truncated`] says so.
+//! at the limit the recorded search ends, [`Trace::is_truncated`] says so, and the answer is found without a record.
 
 use rmpl::Rational;
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ pub struct Trace {
     pub events: Vec<Entry>,
     /// The states of the search: one per alternative of each choice point, and the root.
     pub tree: Vec<TreeNode>,
-    /// Whether the search went on after the last recorded event.
+    /// Whether the record was full before the search came to an end.
     pub is_truncated: bool,
 }
 

@@ -35,7 +35,8 @@ fn problems(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         (0, _) => tokens.warning,
         _ => tokens.error,
     };
-    let name = format!("{errors} errors, {warnings} warnings");
+    let named = |count: usize, word: &str| format!("{count} {word}{}", if count == 1 { "" } else { "s" });
+    let name = format!("{}, {}", named(errors, "error"), named(warnings, "warning"));
     let (rect, response) = ui.allocate_exact_size(egui::vec2(64.0, 20.0), egui::Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
     if response.hovered() || response.has_focus() {

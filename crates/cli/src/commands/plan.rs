@@ -67,7 +67,7 @@ enum SearchName {
 }
 
 /// Events of a search that `--trace` writes at most.
-const TRACE_EVENTS: usize = 10_000_000;
+const TRACE_EVENTS: usize = 1_000_000;
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {

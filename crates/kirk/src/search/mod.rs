@@ -186,7 +186,8 @@ impl<'m> Engine<'m> {
             }
         }
         loop {
-            if termination.should_stop(&self.stats) {
+            let is_record_full = self.recorder.as_ref().is_some_and(|recorder| recorder.trace.is_truncated);
+            if is_record_full || termination.should_stop(&self.stats) {
                 return Ok(Halt::Stopped);
             }
             let goes_on = match self.next()? {

@@ -8,6 +8,8 @@ use crate::opened::Opened;
 /// The page in which the mission with both paths is executed, at this time.
 fn executing(time: u32) -> Result<Opened> {
     let page = Opened::with_fragment("mission=both-paths&workspace=execute")?;
+    // High enough to show all that can go wrong.
+    page.tab.resize(1280, 1500)?;
     page.settle()?;
     page.wait_for("state.execution !== null && !state.execution.isWorking")?;
     page.tab.evaluate(&format!("enroute.dispatch('play.seek', {{ time: {time} }})"))?;
@@ -63,9 +65,6 @@ fn withdrawing_the_window_of_path_1_while_the_rovers_wait_sends_them_by_path_2()
 #[test]
 fn a_vehicle_stops_and_an_obstacle_appears_by_hand_and_both_are_taken_back() -> Result<()> {
     let page = executing(100)?;
-    // High enough to show all that can go wrong.
-    page.tab.resize(1280, 1500)?;
-    page.tab.next_frame()?;
     let free = page.state()?["execution"]["log"].clone();
     page.tab.evaluate("enroute.dispatch('terrain.appear')")?;
     page.wait_for("state.terrain.tool === 'appear'")?;
@@ -76,7 +75,7 @@ fn a_vehicle_stops_and_an_obstacle_appears_by_hand_and_both_are_taken_back() -> 
     let obstacle = page.state()?["execution"]["disturbances"][0].clone();
     assert_eq!(
         (&obstacle["kind"], &obstacle["at"], &obstacle["radius"]),
-        (&json!("obstacle"), &json!(100), &json!(5.0))
+        (&json!("obstacle"), &json!(100), &json!(5))
     );
     page.wait_for("state.terrain.tool === 'look'")?;
 

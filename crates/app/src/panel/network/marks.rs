@@ -1,6 +1,6 @@
 //! Problems of the text as marks on the drawing, which may belong to an older text than they do.
 
-use egui::{Align2, FontId, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, FontId, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 use layout::{NetworkDrawing, Point};
 use mission::Snapshot;
 use rmpl::{Severity, Span};
@@ -25,6 +25,16 @@ pub(super) struct Mark {
     pub(super) span: Span,
 }
 
+impl Mark {
+    fn word(&self) -> &'static str {
+        if self.severity == Severity::Error { "Error" } else { "Warning" }
+    }
+
+    fn told(&self) -> String {
+        format!("{}: {}", self.word(), self.message)
+    }
+}
+
 /// With more problems than this, the list of problems serves better.
 const MOST: usize = 40;
 /// What shares less than this part of its text with a problem is not what the problem is about.
@@ -33,6 +43,10 @@ const LEAST_SHARE: f64 = 0.02;
 const OUTSIDE: f32 = 14.0;
 /// The size of a mark, in points of the screen.
 const RADIUS: f32 = 8.0;
+/// From one mark to the next at least, with room for a count, in points of the screen.
+const ROOM: f32 = 32.0;
+/// A tooltip tells the messages of this many problems.
+const MOST_TOLD: usize = 5;
 
 /// The marks of the problems of `latest` on a drawing of `network`, which was made from the text `source`.
 pub(super) fn marks(
@@ -61,7 +75,8 @@ pub(super) fn marks(
         .collect()
 }
 
-/// Shows the marks in view; a click goes to the problem's place in the text.
+/// Shows the marks in view, those that would cover each other as one; a click goes to the gravest problem's place in
+/// the text.
 pub(super) fn show(
     ui: &Ui,
     panel: Rect,
@@ -71,22 +86,21 @@ pub(super) fn show(
     commands: &mut CommandSender,
 ) {
     let painter = ui.painter_at(panel);
-    for (number, mark) in marks.iter().enumerate() {
-        // Below the line: names are above it, and what is clicked is on it.
-        let below = if view.zoom() > 0.3 { OUTSIDE * view.zoom() as f32 } else { 0.0 };
-        let center = view.screen_point(panel, mark.at) + vec2(0.0, below + RADIUS + 3.0);
-        if !panel.expand(RADIUS).contains(center) {
-            continue;
-        }
-        let (color, word) = match mark.severity {
-            Severity::Error => (tokens.error, "Error"),
-            _ => (tokens.warning, "Warning"),
-        };
+    for (center, members) in grouped(panel, view, marks) {
+        let [first, others @ ..] = members.as_slice() else { continue };
+        let (number, mark) = (*first, &marks[*first]);
+        let color = if mark.severity == Severity::Error { tokens.error } else { tokens.warning };
         let area = Rect::from_center_size(center, vec2(2.0 * RADIUS, 2.0 * RADIUS));
         let response =
             ui.interact(area.intersect(panel), ui.scope_id().with(("mark", number)), Sense::click());
         response.widget_info(|| {
-            WidgetInfo::labeled(Role::Button, true, format!("{word} on the network: {}", mark.message))
+            let more =
+                if others.is_empty() { String::new() } else { format!(", and {} more here", others.len()) };
+            WidgetInfo::labeled(
+                Role::Button,
+                true,
+                format!("{} on the network: {}{more}", mark.word(), mark.message),
+            )
         });
         let rim = Stroke::new(1.5, tokens.surface);
         if mark.severity == Severity::Error {
@@ -97,14 +111,43 @@ pub(super) fn show(
             let corners = vec![corner(0.0), corner(third), corner(2.0 * third)];
             painter.add(Shape::convex_polygon(corners, color, rim));
         }
-        let font = FontId::new(11.0, crate::theme::strong_family());
         let at = pos2(center.x, center.y + if mark.severity == Severity::Error { 0.0 } else { 1.0 });
-        painter.text(at, Align2::CENTER_CENTER, "!", font, tokens.surface);
+        let font = FontId::new(11.0, crate::theme::strong_family());
+        painter.text(at, Align2::CENTER_CENTER, "!", font.clone(), tokens.surface);
+        if !others.is_empty() {
+            let at = pos2(center.x + RADIUS + 2.0, center.y);
+            painter.text(at, Align2::LEFT_CENTER, members.len().to_string(), font, color);
+        }
         if response.clicked() {
             commands.send(Command::Reveal(mark.span));
         }
-        response.on_hover_text_at_pointer(format!("{word}: {}", mark.message));
+        let told = members.iter().take(MOST_TOLD).map(|&member| marks[member].told());
+        let mut told: Vec<String> = told.collect();
+        if members.len() > MOST_TOLD {
+            told.push(format!("and {} more", members.len() - MOST_TOLD));
+        }
+        response.on_hover_text_at_pointer(told.join("\n"));
     }
+}
+
+/// The marks in view by position, the gravest of each group first, and where each group is on the screen.
+fn grouped(panel: Rect, view: &View, marks: &[Mark]) -> Vec<(Pos2, Vec<usize>)> {
+    // Below the line: names are above it, and what is clicked is on it.
+    let below = if view.zoom() > 0.3 { OUTSIDE * view.zoom() as f32 } else { 0.0 };
+    let mut order: Vec<usize> = (0..marks.len()).collect();
+    order.sort_by_key(|&number| marks[number].severity);
+    let mut groups: Vec<(Pos2, Vec<usize>)> = Vec::new();
+    for number in order {
+        let center = view.screen_point(panel, marks[number].at) + vec2(0.0, below + RADIUS + 3.0);
+        if !panel.expand(RADIUS).contains(center) {
+            continue;
+        }
+        match groups.iter_mut().find(|(at, _)| at.distance(center) < ROOM) {
+            Some((_, members)) => members.push(number),
+            None => groups.push((center, vec![number])),
+        }
+    }
+    groups
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -164,6 +207,24 @@ fn carried(span: Span, from: &str, to: &str) -> Span {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn marks_that_would_cover_each_other_are_one_with_the_gravest_first() {
+        let mark = |x: f32, severity: Severity| Mark {
+            at: Point { x: x.into(), y: 10.0 },
+            arc: None,
+            severity,
+            message: String::new(),
+            span: Span::new(0, 1),
+        };
+        let panel = Rect::from_min_size(Pos2::ZERO, vec2(1000.0, 400.0));
+        let view = View::default();
+        let marks =
+            [mark(0.0, Severity::Warning), mark(5.0, Severity::Error), mark(300.0, Severity::Warning)];
+        let groups = grouped(panel, &view, &marks);
+        let members: Vec<_> = groups.into_iter().map(|(_, members)| members).collect();
+        assert_eq!(members, [vec![1, 0], vec![2]]);
+    }
 
     #[test]
     fn places_are_found_in_an_older_text() {

@@ -14,7 +14,8 @@ pub fn show(ui: &mut egui::Ui, context: &Context<'_>, recording: &Recording) {
     let tokens = context.tokens;
     let trace = recording.trace();
     let Some(view) = context.state.search.shown() else {
-        let more = if trace.is_truncated { "; the search went on after that" } else { "" };
+        let more =
+            if trace.is_truncated { "; the plan comes from a search that was not recorded" } else { "" };
         let text = format!(
             "{} steps recorded{more}. Press . to step, or click a state of the tree.",
             recording.steps()
