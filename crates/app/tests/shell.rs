@@ -2,6 +2,8 @@
 
 mod support;
 
+use std::rc::Rc;
+
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use serde_json::json;
@@ -20,6 +22,24 @@ fn the_app_opens_with_the_enroute_mission_and_its_plan() {
     assert_eq!(state["plan"]["windows"]["Group-Traverse-Path#1.start"], json!([10, 55]));
     assert_eq!(state["verdict"]["valid"], true);
     app.harness.get_by_label("Status: plan found");
+}
+
+#[test]
+fn nothing_on_the_bar_covers_the_workspaces_in_any_window() {
+    for width in [800.0, 1_000.0, 1_100.0, 1_200.0, 1_245.0, 1_440.0] {
+        let mut app = support::start_in(Rc::default(), |builder| builder.with_size([width, 600.0]));
+        app.settle();
+        let last = app.harness.get_by_label("Execute").rect();
+        let status = app.harness.get_by_label("Status: plan found").rect();
+        assert!(last.right() < status.left(), "{width} points: {last:?} {status:?}");
+        // The longest that stands there.
+        app.harness
+            .state_mut()
+            .run(app::command::Command::OpenSource { name: "broken".into(), source: "(".into() });
+        app.settle();
+        let status = app.harness.get_by_label_contains("Status: ").rect();
+        assert!(last.right() < status.left(), "{width} points: {last:?} {status:?}");
+    }
 }
 
 #[test]

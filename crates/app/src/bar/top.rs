@@ -36,7 +36,7 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
 }
 
 /// A bar narrower than this has its menus in one.
-const ROOM_FOR_MENUS: f32 = 1_080.0;
+const ROOM_FOR_MENUS: f32 = 1_240.0;
 
 fn menus(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     ui.spacing_mut().item_spacing.x = 0.0;

@@ -78,6 +78,12 @@ impl Camera {
         self.right().cross(self.forward())
     }
 
+    /// No farther away than `ground` is worth looking at.
+    pub fn not_lost_above(self, ground: &Ground) -> Self {
+        let farthest_m = (ground.size_m().max_element() * 4.0).max(20_000.0);
+        Self { distance_m: self.distance_m.min(farthest_m), ..self }
+    }
+
     /// Nothing nearer than this is drawn.
     pub fn near_m(&self) -> f32 {
         (self.distance_m * 0.02).max(0.1)
@@ -130,7 +136,7 @@ impl Camera {
 
     /// Comes nearer (`factor` below 1) or goes away.
     pub fn zoom(&mut self, factor: f32) {
-        self.distance_m = (self.distance_m * factor).clamp(2.0, 20_000.0);
+        self.distance_m = (self.distance_m * factor).max(2.0);
     }
 
     /// Comes nearer or goes away while `point_m` stays where it is in the image.

@@ -40,6 +40,7 @@ impl TerrainPanel {
             let inside = ground.nearest(camera.target_m.truncate());
             camera.target_m = ground.drape(inside, 0.0);
         }
+        let camera = camera.not_lost_above(ground);
         self.camera = Some(camera);
         self.drawn = Some(camera.above(ground));
     }

@@ -109,7 +109,7 @@ pub(super) fn controls(ui: &mut Ui, context: &Context<'_>, commands: &mut Comman
         if ui.add(slider).accessible_name("Samples").changed() {
             send(GrowthCommand::GoTo(samples));
         }
-        ui.label(RichText::new(words(shown)).color(tokens.text_muted));
+        ui.add(egui::Label::new(RichText::new(words(shown)).color(tokens.text_muted)).extend());
         if icon::button(ui, tokens, Icon::Close, "Hide the search tree").clicked() {
             send(GrowthCommand::Close);
         }
