@@ -16,7 +16,8 @@ pub(crate) fn listing(source: &str) -> String {
         let end = start + line.trim_end_matches(['\r', '\n']).len();
         out.push_str(&format!("<span class=\"line\" id=\"line-{number}\"><b>{number}</b>"));
         write_line(source, start, end, &highlights, &mut out);
-        out.push_str("</span>\n");
+        // Inside the line, which is a block: after it, it would be an empty line of its own.
+        out.push_str("\n</span>");
         start += line.len();
     }
     out.push_str("</code></pre>\n");

@@ -156,7 +156,6 @@ fn the_listing_is_the_program_and_links_lead_into_it() {
                 .map(|(_, text)| text)
                 .collect();
             text.replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", "\"").replace("&amp;", "&")
-                + "\n"
         })
         .collect();
     assert_eq!(without_numbers.trim_end(), SCENARIO.replace('\r', "").trim_end());
