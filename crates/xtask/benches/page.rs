@@ -67,21 +67,12 @@ fn main() -> Result<()> {
 /// Drops a hilly map of `side` × `side` cells on the page, opens a mission on it, lets it play, and leaves the terrain
 /// alone on the screen.
 fn open_map(tab: &Tab, side: usize) -> Result<()> {
-    tab.evaluate(&format!(
-        "(() => {{
-            const side = {side};
-            const heights = new Uint8Array(side * side);
-            for (let row = 0; row < side; row += 1) {{
-                for (let column = 0; column < side; column += 1) {{
-                    heights[row * side + column] = 100 + 50 * Math.sin(row / 90) * Math.cos(column / 70);
-                }}
-            }}
-            const transfer = new DataTransfer();
-            transfer.items.add(new File([`P5 ${{side}} ${{side}} 255\\n`, heights], 'hills.pgm'));
-            const options = {{ bubbles: true, cancelable: true, dataTransfer: transfer }};
-            document.getElementById('canvas').dispatchEvent(new DragEvent('drop', options));
-        }})()"
-    ))?;
+    let mut map = format!("P5 {side} {side} 255\n").into_bytes();
+    for cell in 0..side * side {
+        let (row, column) = ((cell / side) as f64, (cell % side) as f64);
+        map.push((100.0 + 50.0 * (row / 90.0).sin() * (column / 70.0).cos()) as u8);
+    }
+    tab.drop_file("hills.pgm", &map)?;
     tab.wait_until("enroute.state().toasts.some((toast) => toast.includes('hills.pgm is a map'))")?;
     let far = 10 * side - 200;
     let text = format!(

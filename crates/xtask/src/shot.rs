@@ -1,15 +1,10 @@
 //! `cargo xtask shot`: a picture of the built page, as a user would see it.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{fs, path::PathBuf};
 
 use anyhow::{Context as _, Result, anyhow};
-use data_encoding::BASE64;
-use serde_json::json;
 use xtask::{
-    browser::{Browser, Graphics, Tab},
+    browser::{Browser, Graphics},
     server::SiteServer,
     site::{self, Flavour},
 };
@@ -60,7 +55,8 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     tab.go_to(&format!("{}#{}", server.url(), options.hash.trim_start_matches('#')))?;
     tab.wait_until_ready()?;
     for file in &options.drop {
-        drop_file(&tab, file)?;
+        let bytes = fs::read(file).with_context(|| format!("reading {}", file.display()))?;
+        tab.drop_file(&file.file_name().unwrap_or_default().to_string_lossy(), &bytes)?;
     }
     for script in &options.eval {
         println!("{}", tab.evaluate(script)?);
@@ -77,24 +73,6 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     for message in tab.messages() {
         eprintln!("page: {message}");
     }
-    Ok(())
-}
-
-/// Drops a file on the page, as a user would from a folder.
-fn drop_file(tab: &Tab, file: &Path) -> Result<()> {
-    let bytes = fs::read(file).with_context(|| format!("reading {}", file.display()))?;
-    let name = file.file_name().unwrap_or_default().to_string_lossy();
-    tab.evaluate(&format!(
-        "(async () => {{
-            const answer = await fetch('data:application/octet-stream;base64,{}');
-            const transfer = new DataTransfer();
-            transfer.items.add(new File([await answer.blob()], {}));
-            const options = {{ bubbles: true, cancelable: true, dataTransfer: transfer }};
-            document.getElementById('canvas').dispatchEvent(new DragEvent('drop', options));
-        }})()",
-        BASE64.encode(&bytes),
-        json!(name),
-    ))?;
     Ok(())
 }
 

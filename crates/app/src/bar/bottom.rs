@@ -5,6 +5,7 @@ use rmpl::Severity;
 
 use crate::command::{Command, CommandSender};
 use crate::icon::{self, Icon};
+use crate::panel::plan::counted;
 use crate::panel::{Context, PanelKind};
 use crate::theme::space;
 
@@ -35,8 +36,7 @@ fn problems(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         (0, _) => tokens.warning,
         _ => tokens.error,
     };
-    let named = |count: usize, word: &str| format!("{count} {word}{}", if count == 1 { "" } else { "s" });
-    let name = format!("{}, {}", named(errors, "error"), named(warnings, "warning"));
+    let name = format!("{}, {}", counted(errors as u64, "error"), counted(warnings as u64, "warning"));
     let (rect, response) = ui.allocate_exact_size(egui::vec2(64.0, 20.0), egui::Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
     if response.hovered() || response.has_focus() {

@@ -255,3 +255,8 @@ fn create(kind: PanelKind) -> Box<dyn Panel> {
         PanelKind::Timeline => Box::new(timeline::TimelinePanel::default()),
     }
 }
+
+/// Whether the pointer went down here, though it may be up again: where frames are slow, one frame sees both.
+pub(crate) fn is_pressed(response: &egui::Response) -> bool {
+    response.is_pointer_button_down_on() || response.clicked()
+}

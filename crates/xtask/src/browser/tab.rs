@@ -324,6 +324,22 @@ impl Tab {
         bail!("the {role} \"{label}\" does not keep still")
     }
 
+    /// Drops a file on the page, as a user would from a folder.
+    pub fn drop_file(&self, name: &str, bytes: &[u8]) -> Result<()> {
+        self.evaluate(&format!(
+            "(async () => {{
+                const answer = await fetch('data:application/octet-stream;base64,{}');
+                const transfer = new DataTransfer();
+                transfer.items.add(new File([await answer.blob()], {}));
+                const options = {{ bubbles: true, cancelable: true, dataTransfer: transfer }};
+                document.getElementById('canvas').dispatchEvent(new DragEvent('drop', options));
+            }})()",
+            BASE64.encode(bytes),
+            json!(name),
+        ))?;
+        Ok(())
+    }
+
     /// The page as a PNG.
     pub fn screenshot_png(&self) -> Result<Vec<u8>> {
         let answer = self.call("Page.captureScreenshot", &json!({ "format": "png" }))?;

@@ -110,19 +110,9 @@ fn the_search_tree_grows_and_the_clearance_map_covers_the_ground() -> Result<()>
 #[test]
 fn a_map_file_dropped_on_the_page_is_read_and_a_broken_one_is_explained() -> Result<()> {
     let page = Opened::planned()?;
-    let drop_file = |name: &str, content: &str| {
-        page.tab.evaluate(&format!(
-            "(() => {{
-                const transfer = new DataTransfer();
-                transfer.items.add(new File([{content}], '{name}'));
-                const options = {{ bubbles: true, cancelable: true, dataTransfer: transfer }};
-                document.getElementById('canvas').dispatchEvent(new DragEvent('drop', options));
-            }})()"
-        ))
-    };
-    drop_file("broken.pgm", "'P5 30 30 255 '")?;
+    page.tab.drop_file("broken.pgm", b"P5 30 30 255 ")?;
     page.wait_for("state.toasts.some((toast) => toast.includes('broken.pgm cannot be used'))")?;
-    drop_file("level.pgm", "'P5 30 30 255 ' + 'x'.repeat(900)")?;
+    page.tab.drop_file("level.pgm", &[b"P5 30 30 255 ".as_slice(), &[b'x'; 900]].concat())?;
     page.wait_for("state.toasts.some((toast) => toast.includes('30 × 30 cells'))")?;
     let text = "terrain \"level.pgm\" cell 10;\\nprimitive Wait()[0,5];\\nscenario S = { Wait() }";
     page.tab.evaluate(&format!("enroute.setSource('{text}')"))?;

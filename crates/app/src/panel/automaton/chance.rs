@@ -90,11 +90,7 @@ fn answer(ui: &mut Ui, context: &Context<'_>, tally: &ProgramTally) {
     let tokens = context.tokens;
     let (low, high) = tally.interval();
     ui.add_space(space::M);
-    let color = match tally.probability() {
-        share if share >= 0.95 => tokens.good,
-        share if share >= 0.5 => tokens.warning,
-        _ => tokens.error,
-    };
+    let color = crate::panel::robustness::share_color(tokens, tally.probability());
     let share = percent(tally.probability());
     ui.label(strong(&share).size(size::TITLE * 1.8).color(color));
     let text = format!(

@@ -198,7 +198,7 @@ impl TextArea {
 
     fn follow_focus(ui: &Ui, context: &Context<'_>, response: &Response) {
         let wants_focus = context.state.editor.wants_focus && context.state.dialog.is_none();
-        if wants_focus || is_pressed(response) {
+        if wants_focus || crate::panel::is_pressed(response) {
             response.request_focus();
         }
         if response.has_focus() {
@@ -234,7 +234,8 @@ impl TextArea {
         let document = &context.state.document;
         let line = geometry.line_at(pointer.y).unwrap_or_default().min(document.line_count() - 1);
         let x = pointer.x - geometry.origin.x;
-        let primary_pressed = ui.input(|input| input.pointer.primary_pressed()) && is_pressed(response);
+        let primary_pressed =
+            ui.input(|input| input.pointer.primary_pressed()) && crate::panel::is_pressed(response);
         if x < 0.0 && primary_pressed && pointer.x >= fold_signs(geometry, ui.clip_rect()).min {
             let is_foldable = context.state.language.parse().is_some_and(|parse| {
                 folding::regions(document, parse).iter().any(|region| region.first_line == line)
@@ -270,7 +271,7 @@ impl TextArea {
             let anchor = self.drag_anchor.start;
             commands.send(Command::Text(TextCommand::Select { anchor, head: offset }));
         }
-        if is_pressed(response) {
+        if crate::panel::is_pressed(response) {
             commands.send(Command::Activate(PanelKind::Editor));
         }
     }
@@ -612,9 +613,4 @@ fn describe(ui: &Ui, context: &Context<'_>, response: &Response) {
         builder.add_action(egui::accesskit::Action::SetValue);
         builder.add_action(egui::accesskit::Action::ReplaceSelectedText);
     });
-}
-
-/// Whether the pointer went down on the text, though it may be up again: where frames are slow, one sees both.
-fn is_pressed(response: &Response) -> bool {
-    response.is_pointer_button_down_on() || response.clicked()
 }

@@ -56,7 +56,7 @@ impl Panel for PlanPanel {
 }
 
 /// A number with its noun, in the plural where it belongs.
-fn counted(count: u64, noun: &str) -> String {
+pub(crate) fn counted(count: u64, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }
 

@@ -122,16 +122,21 @@ fn conditions(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut mission::Unc
     });
 }
 
+/// The colour of a share of runs that reach their end.
+pub(crate) fn share_color(tokens: &crate::theme::Tokens, share: f64) -> egui::Color32 {
+    match share {
+        share if share >= 0.95 => tokens.good,
+        share if share >= 0.5 => tokens.warning,
+        _ => tokens.error,
+    }
+}
+
 fn show_result(ui: &mut Ui, context: &Context<'_>, robustness: &Robustness) {
     let tokens = context.tokens;
     let tally = &robustness.tally;
     let (low, high) = tally.interval();
     ui.add_space(space::M);
-    let color = match tally.probability() {
-        share if share >= 0.95 => tokens.good,
-        share if share >= 0.5 => tokens.warning,
-        _ => tokens.error,
-    };
+    let color = share_color(tokens, tally.probability());
     let share = format!("{:.1} %", tally.probability() * 100.0);
     ui.label(strong(share).size(size::TITLE * 1.8).color(color));
     let text = format!(

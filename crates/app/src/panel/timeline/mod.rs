@@ -324,7 +324,7 @@ impl TimelinePanel {
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Slider, true, "Time axis"));
         if !self.select_range(ui, &response, axis, view, commands)
             && let Some(pointer) = response.interact_pointer_pos()
-            && (response.is_pointer_button_down_on() || response.clicked())
+            && crate::panel::is_pressed(&response)
         {
             commands.send(Command::Seek(view.time(axis, pointer.x)));
         }
