@@ -129,7 +129,12 @@ impl Engine<'_> {
         let model = self.model;
         self.deselect(0, 0);
         self.stn.clear();
-        self.stn.propose(&self.setup.proposed);
+        if let Some(lookahead) = &self.lookahead {
+            // Times that fit what the look-ahead knows leave little to move for links.
+            self.stn.propose(lookahead.likely_times(model));
+        } else {
+            self.stn.propose(self.setup.proposed.iter().copied());
+        }
         let mut stack = vec![model.start];
         self.select_node(model.start, Context::ALWAYS);
         while let Some(node) = stack.pop() {

@@ -52,8 +52,8 @@ impl Stn {
     }
 
     /// Proposes a time for each point, so that [`Stn::settle`] moves little. Answers do not depend on it.
-    pub fn propose(&mut self, schedule: &[i64]) {
-        for (time, &proposed) in self.potential.iter_mut().zip(schedule) {
+    pub fn propose(&mut self, schedule: impl IntoIterator<Item = i64>) {
+        for (time, proposed) in self.potential.iter_mut().zip(schedule) {
             *time = proposed;
         }
     }

@@ -25,6 +25,11 @@ impl Lookahead {
                 .is_some_and(|slack| slack < 0)
     }
 
+    /// Whether that is so for what a link asks for.
+    pub(crate) fn refuses_link(&self, model: &Model, ask: u32, tell: u32) -> bool {
+        link_edges(model, ask, tell).iter().any(|&edge| self.is_refused(edge))
+    }
+
     /// Turns a contradiction into blame.
     pub(super) fn is_ok(
         &mut self,
@@ -116,7 +121,7 @@ impl Lookahead {
             }
             let is_left = |lookahead: &Self, tell: u32| {
                 !lookahead.is_active_label[tell as usize]
-                    || !link_edges(model, ask, tell).iter().any(|&edge| lookahead.is_refused(edge))
+                    || !lookahead.refuses_link(model, ask, tell)
             };
             let mut left = model.conditions.supporters(ask).filter(|&tell| is_left(self, tell));
             match (left.next(), left.next()) {

@@ -19,7 +19,7 @@ impl Lookahead {
         for tell in model.conditions.supporters(ask) {
             if tell != witness
                 && self.is_active_label[tell as usize]
-                && !link_edges(model, ask, tell).iter().any(|&edge| self.is_refused(edge))
+                && !self.refuses_link(model, ask, tell)
                 && self.guess(model, ask, tell)?
             {
                 self.witness[ask as usize] = tell;

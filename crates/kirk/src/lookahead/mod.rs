@@ -129,19 +129,18 @@ impl Lookahead {
         self.blamed.clear();
         self.activate_node(model.twin[model.start as usize]);
         self.collect(model, structure, None);
-        let checkpoint = self.stn.checkpoint();
         // A schedule in which the first alternatives fit needs little repair when they are taken.
-        let mut hulls = self.hulls.iter().copied();
         for position in 0..self.arriving.len() {
-            let mut arc = self.arriving[position];
-            if arc.tag == HULL
-                && let Some(decision) = hulls.next()
-                && decision != NONE
-                && let Some((lower, upper)) = structure.first_alternative(decision)?
-            {
-                (arc.lower, arc.upper) = (lower, upper);
+            if self.arriving[position].tag != HULL {
+                push(&mut self.stn, self.arriving[position]);
             }
-            push(&mut self.stn, arc);
+        }
+        let checkpoint = self.stn.checkpoint();
+        self.arriving.retain(|arc| arc.tag == HULL);
+        for (&hull, &decision) in self.arriving.iter().zip(&self.hulls) {
+            let first = if decision == NONE { None } else { structure.first_alternative(decision)? };
+            let (lower, upper) = first.unwrap_or((hull.lower, hull.upper));
+            push(&mut self.stn, Arriving { lower, upper, ..hull });
         }
         let order: Vec<PointId> =
             model.order.iter().copied().filter(|point| self.is_active_node[point.index()]).collect();
@@ -164,10 +163,13 @@ impl Lookahead {
             return Ok(false);
         }
         self.guide.copy_as(&self.stn, HULL);
+        let num_edges = self.stn.num_edges();
         if !self.check_labels(model, structure, chosen, 0)? {
             return Ok(false);
         }
-        self.find_windows(model, &order)?;
+        if self.stn.num_edges() > num_edges {
+            self.find_windows(model, &order)?;
+        }
         Ok(true)
     }
 
@@ -247,6 +249,16 @@ impl Lookahead {
         }
         self.reasons.truncate(mark.reasons as usize);
         self.forget_guesses(mark.guesses as usize);
+    }
+
+    /// A time for each node that fits all that is known to hold, and the guessed links; for nodes that are not in this
+    /// network the time of the start.
+    pub(crate) fn likely_times<'l>(&'l self, model: &'l Model) -> impl Iterator<Item = i64> + 'l {
+        let schedule = self.guide.schedule();
+        let start = schedule[model.twin[model.start as usize] as usize];
+        model.twin.iter().map(move |&twin| {
+            if self.is_active_node[twin as usize] { schedule[twin as usize] } else { start }
+        })
     }
 
     /// Takes into account what a decision does to the duration of a part without labels.

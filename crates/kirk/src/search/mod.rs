@@ -98,7 +98,7 @@ pub(crate) struct Engine<'m> {
     pub(crate) levels: Vec<Level>,
     structure: Option<&'m Structure>,
     tree: Option<TreeState>,
-    lookahead: Option<Lookahead>,
+    pub(crate) lookahead: Option<Lookahead>,
     pub(crate) is_selected_node: Vec<bool>,
     pub(crate) is_selected_arc: Vec<bool>,
     pub(crate) selected_nodes: Vec<u32>,
@@ -351,10 +351,14 @@ impl<'m> Engine<'m> {
             let assumed = self.setup.assumed.as_ref();
             let assumed =
                 assumed.and_then(|assumed| assumed.carriers.get(ask as usize)).copied().unwrap_or(NONE);
-            let tells = conditions
+            let mut tells: Vec<u32> = conditions
                 .supporters(ask)
                 .filter(|&tell| self.is_selected_label(tell) && (assumed == NONE || assumed == tell))
                 .collect();
+            if let Some(lookahead) = &self.lookahead {
+                // What windows refuse fails: it is tried last, for what that failure rests on.
+                tells.sort_by_key(|&tell| lookahead.refuses_link(self.model, ask, tell));
+            }
             return Ok(Next::Choice(Kind::Link { position: first_ask, ask, tells }));
         }
         match self.next_threat(first_pair)? {
