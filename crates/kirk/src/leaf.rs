@@ -1,6 +1,6 @@
 //! Phase 2 at a complete choice: the requirements to close and the conflicting pairs to order (SPEC 5.2, 5.3).
 
-use stn::{Inconsistency, Overflow};
+use stn::{Inconsistency, Overflow, PointId};
 
 use crate::failure::FailureKind;
 use crate::model::{Context, INFINITE, NONE};
@@ -19,10 +19,12 @@ pub(crate) struct Leaf {
     has_pairs: bool,
     /// For each pair that has been passed: whether the second comes first.
     pub(crate) is_swapped: Vec<bool>,
-    /// Distances from and to the start before any link or order: still bounds with them.
+    /// Distances from and to the start with all links and no order yet: still bounds with orders.
     from_start: Vec<i64>,
     to_start: Vec<i64>,
     pub(crate) has_windows: bool,
+    /// How many edges the network had then.
+    num_edges: usize,
     /// Times that fit all links and no order yet: orders that they break are seen at once not to follow.
     pub(crate) schedule: Vec<i64>,
 }
@@ -213,13 +215,23 @@ impl Engine<'_> {
             return Ok(());
         }
         self.leaf.has_windows = true;
-        let start = stn::PointId(self.model.start);
+        let start = PointId(self.model.start);
         let Self { stn, leaf, model, .. } = self;
+        leaf.num_edges = stn.num_edges();
         stn.sweep_distances(start, &model.order, &mut leaf.from_start, &mut leaf.to_start)
     }
 
+    /// The present distances of all nodes from and to the start.
+    pub(crate) fn windows_now(&mut self) -> Result<(Vec<i64>, Vec<i64>), Overflow> {
+        self.find_windows()?;
+        let Self { stn, leaf, model, .. } = self;
+        let (mut from_start, mut to_start) = (leaf.from_start.clone(), leaf.to_start.clone());
+        stn.tighten_distances(leaf.num_edges, &model.order, &mut from_start, &mut to_start)?;
+        Ok((from_start, to_start))
+    }
+
     /// Whether windows alone put `end` at least `gap` before `start`.
-    fn ends_by(&self, end: stn::PointId, start: stn::PointId, gap: i64) -> bool {
+    fn ends_by(&self, end: PointId, start: PointId, gap: i64) -> bool {
         let latest_end = self.leaf.from_start[end.index()];
         let earliest_start = self.leaf.to_start[start.index()];
         latest_end != INFINITE
@@ -228,7 +240,7 @@ impl Engine<'_> {
     }
 
     /// Whether every schedule has `start − end ≥ gap`.
-    fn is_entailed(&mut self, end: stn::PointId, start: stn::PointId, gap: i64) -> Result<bool, Overflow> {
+    fn is_entailed(&mut self, end: PointId, start: PointId, gap: i64) -> Result<bool, Overflow> {
         let schedule = self.stn.schedule();
         if schedule[start.index()].checked_sub(schedule[end.index()]).ok_or(Overflow)? < gap {
             return Ok(false);

@@ -140,10 +140,9 @@ impl Model {
     }
 
     /// Brings the structure up to date with all bounds.
-    pub(crate) fn refresh_structure(&mut self, network: &Network) -> Result<(), Overflow> {
-        if let Some(mut structure) = self.structure.take()
-            && structure.refresh(network, self)?
-        {
+    pub(crate) fn refresh_structure(&mut self) -> Result<(), Overflow> {
+        if let Some(mut structure) = self.structure.take() {
+            structure.refresh(self)?;
             self.structure = Some(structure);
         }
         Ok(())

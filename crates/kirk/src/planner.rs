@@ -119,7 +119,7 @@ impl Planner {
         }
         model.set_bounds(&self.network, arc.0, lower, upper);
         let Some(mut structure) = model.structure.take() else { return Ok(true) };
-        let is_kept = structure.set_arc(&self.network, model, arc.0)?;
+        let is_kept = structure.set_arc(model, arc.0)?;
         model.structure = Some(structure);
         Ok(is_kept)
     }

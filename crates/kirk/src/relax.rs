@@ -131,14 +131,14 @@ impl Trial<'_> {
         for arc in arcs {
             self.model.set_bounds(self.network, arc.0, new_lower, new_upper);
         }
-        self.model.refresh_structure(self.network)?;
+        self.model.refresh_structure()?;
         let setup = Setup { jumps: true, by_structure: true, gaps: Gaps::Trusted, ..Setup::default() };
         let limit = self.effort.expansions;
         let halt = Engine::new(&self.model, setup).run(&mut |stats: &Stats| stats.expanded >= limit)?;
         for arc in arcs {
             self.model.set_bounds(self.network, arc.0, lower, upper);
         }
-        self.model.refresh_structure(self.network)?;
+        self.model.refresh_structure()?;
         Ok(halt == Halt::Solution)
     }
 }

@@ -1,7 +1,7 @@
 //! A solution of the search as a plan: exact windows, links and orders.
 
 use rmpl::Bound;
-use stn::{Overflow, PointId};
+use stn::Overflow;
 use tpn::{CausalLink, Choice, DecisionId, LabelId, Ordering, Plan, Window};
 
 use crate::levels::Kind;
@@ -12,8 +12,7 @@ use crate::search::Engine;
 pub(crate) fn plan_at(engine: &mut Engine<'_>) -> Result<Plan, Overflow> {
     let conflict_order = engine.conflict_order()?;
     let model = engine.model;
-    let (mut latest, mut earliest) = (Vec::new(), Vec::new());
-    engine.stn.sweep_distances(PointId(model.start), &model.order, &mut latest, &mut earliest)?;
+    let (latest, earliest) = engine.windows_now()?;
     let windows = (0..model.num_nodes).map(|node| {
         let (latest, earliest) = (latest[node], earliest[node]);
         engine.is_selected_node[node].then(|| Window {

@@ -14,7 +14,7 @@ impl Stn {
     pub fn settle(&mut self, order: &[PointId]) -> Result<(), Inconsistency> {
         for &point in order {
             self.dirty[point.index()] = true;
-            self.parent[point.index()] = NONE;
+            self.reach[point.index()].parent = NONE;
         }
         let mut sweeps = 0_usize;
         let mut next_check = 3;
@@ -75,7 +75,7 @@ impl Stn {
                 let reached = time.checked_sub(edge.weight).ok_or(Inconsistency::Overflow)?;
                 if reached > self.potential[source] {
                     self.potential[source] = reached;
-                    self.parent[source] = next;
+                    self.reach[source].parent = next;
                     self.dirty[source] = true;
                     moved = true;
                 }
@@ -100,13 +100,13 @@ impl Stn {
             let mut point = start.index();
             while self.scratch[point] == 0 {
                 self.scratch[point] = walk;
-                let parent = self.parent[point];
+                let parent = self.reach[point].parent;
                 if parent == NONE {
                     break;
                 }
                 point = self.edges[parent as usize].to as usize;
             }
-            if self.scratch[point] == walk && self.parent[point] != NONE && self.closes(point) {
+            if self.scratch[point] == walk && self.reach[point].parent != NONE && self.closes(point) {
                 self.collect_parent_cycle(point);
                 return true;
             }
@@ -118,7 +118,7 @@ impl Stn {
     fn closes(&self, point: usize) -> bool {
         let mut at = point;
         for _ in 0..self.num_points() {
-            let parent = self.parent[at];
+            let parent = self.reach[at].parent;
             if parent == NONE {
                 return false;
             }
@@ -134,7 +134,7 @@ impl Stn {
         self.cycle.clear();
         let mut at = point;
         loop {
-            let edge = self.edges[self.parent[at] as usize];
+            let edge = self.edges[self.reach[at].parent as usize];
             self.cycle.push(edge.describe());
             at = edge.to as usize;
             if at == point {

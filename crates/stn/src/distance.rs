@@ -80,20 +80,42 @@ impl Stn {
         from_origin: &mut Vec<i64>,
         to_origin: &mut Vec<i64>,
     ) -> Result<(), Overflow> {
-        self.relax_sweeps::<true>(origin, order, from_origin)?;
-        self.relax_sweeps::<false>(origin, order, to_origin)
+        for row in [&mut *from_origin, &mut *to_origin] {
+            row.clear();
+            row.resize(self.num_points(), INFINITE);
+            row[origin.index()] = 0;
+        }
+        self.dirty[origin.index()] = true;
+        self.relax_sweeps::<true>(order, from_origin)?;
+        self.dirty[origin.index()] = true;
+        self.relax_sweeps::<false>(order, to_origin)
     }
 
+    /// Brings distances found by [`Stn::sweep_distances`] when there were `first_edge` edges up to date with those
+    /// inserted since; the earlier ones must still be there.
+    pub fn tighten_distances(
+        &mut self,
+        first_edge: usize,
+        order: &[PointId],
+        from_origin: &mut [i64],
+        to_origin: &mut [i64],
+    ) -> Result<(), Overflow> {
+        for edge in &self.edges[first_edge..] {
+            self.dirty[edge.from as usize] |= from_origin[edge.from as usize] != INFINITE;
+        }
+        self.relax_sweeps::<true>(order, from_origin)?;
+        for edge in &self.edges[first_edge..] {
+            self.dirty[edge.to as usize] |= to_origin[edge.to as usize] != INFINITE;
+        }
+        self.relax_sweeps::<false>(order, to_origin)
+    }
+
+    /// Relaxes the edges at dirty points until none is left.
     fn relax_sweeps<const FORWARDS: bool>(
         &mut self,
-        origin: PointId,
         order: &[PointId],
-        row: &mut Vec<i64>,
+        row: &mut [i64],
     ) -> Result<(), Overflow> {
-        row.clear();
-        row.resize(self.num_points(), INFINITE);
-        row[origin.index()] = 0;
-        self.dirty[origin.index()] = true;
         let mut ascending = true;
         loop {
             let mut moved = false;

@@ -81,6 +81,24 @@ pub(crate) struct Edge {
     is_withdrawn: bool,
 }
 
+/// How propagation reaches a point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach {
+    /// By how much the point must rise, negative, valid where `stamp` is the current one.
+    rise: i64,
+    /// The edge that makes it rise.
+    pub(crate) parent: u32,
+    stamp: u32,
+    /// The propagation that it has risen in last.
+    done: u32,
+    /// The walk that has come by last.
+    visit: u32,
+}
+
+impl Reach {
+    const NEVER: Self = Self { rise: 0, parent: NONE, stamp: 0, done: 0, visit: 0 };
+}
+
 /// A simple temporal network that is consistent at all times, except between [`Stn::push`] and [`Stn::settle`].
 #[derive(Clone, Debug, Default)]
 pub struct Stn {
@@ -93,18 +111,13 @@ pub struct Stn {
     pub(crate) heap: Heap,
     /// Points that must rise exactly as far as the one that is being raised, and so come before all in `heap`.
     level: Vec<u32>,
-    /// By how much a point must rise, negative, valid where `stamp` is the current one.
-    rise: Vec<i64>,
-    pub(crate) parent: Vec<u32>,
-    stamp: Vec<u32>,
-    done: Vec<u32>,
+    pub(crate) reach: Vec<Reach>,
     now: u32,
     changed: Vec<(u32, i64)>,
     /// Room for what several insertions moved.
     moved: Vec<(u32, i64)>,
     origin: Option<u32>,
     walk: Vec<u32>,
-    visit: Vec<u32>,
     visits: u32,
     pub(crate) scratch: Vec<i64>,
     pub(crate) dirty: Vec<bool>,
@@ -123,17 +136,17 @@ impl Stn {
         self.first_out.resize(points, NONE);
         self.first_in.resize(points, NONE);
         self.potential.resize(points, 0);
-        self.rise.resize(points, 0);
-        self.parent.resize(points, NONE);
-        self.stamp.resize(points, 0);
-        self.done.resize(points, 0);
+        self.reach.resize(points, Reach::NEVER);
         self.dirty.resize(points, false);
-        self.visit.resize(points, 0);
     }
 
     /// Makes room for `edges` more edges, so that inserting them does not allocate.
     pub fn reserve(&mut self, edges: usize) {
         self.edges.reserve(edges);
+        // More than this rarely moves at once.
+        let points = self.num_points().min(64);
+        self.level.reserve(points);
+        self.changed.reserve(points);
     }
 
     /// Becomes a copy of another network and of its schedule, in which everything has one tag.
@@ -332,63 +345,65 @@ impl Stn {
             return Err(Inconsistency::NegativeCycle);
         }
         self.next_stamp();
+        let now = self.now;
         self.heap.clear();
         self.level.clear();
-        self.rise[from as usize] = rise;
-        self.stamp[from as usize] = self.now;
-        self.parent[from as usize] = NONE;
-        self.heap.push(rise, from);
+        let start = &mut self.reach[from as usize];
+        (start.rise, start.stamp, start.parent) = (rise, now, NONE);
+        self.level.push(from);
         let mut present = rise;
         while let Some((rise, point)) =
             self.level.pop().map(|point| (present, point)).or_else(|| self.heap.pop())
         {
             present = rise;
-            if self.done[point as usize] == self.now || self.rise[point as usize] != rise {
+            let reach = &mut self.reach[point as usize];
+            if reach.done == now || reach.rise != rise {
                 continue;
             }
-            self.done[point as usize] = self.now;
-            let old = self.potential[point as usize];
+            reach.done = now;
+            let potential = &mut self.potential[point as usize];
+            let old = *potential;
             let Some(new) = old.checked_sub(rise) else {
                 self.restore();
                 return Err(Inconsistency::Overflow);
             };
+            *potential = new;
             self.changed.push((point, old));
-            self.potential[point as usize] = new;
             let mut next = self.first_in[point as usize];
             while next != NONE {
-                let edge = self.edges[next as usize];
-                let source = edge.from as usize;
-                let rise =
-                    new.checked_sub(edge.weight).and_then(|time| self.potential[source].checked_sub(time));
+                let edge = &self.edges[next as usize];
+                let (position, source) = (next, edge.from);
+                next = edge.next_in;
+                let time = new.checked_sub(edge.weight);
+                let rise = time.and_then(|time| self.potential[source as usize].checked_sub(time));
                 let Some(rise) = rise else {
                     self.restore();
                     return Err(Inconsistency::Overflow);
                 };
-                let rises_further = rise < 0
-                    && self.done[source] != self.now
-                    && (self.stamp[source] != self.now || rise < self.rise[source]);
-                if rises_further {
-                    self.rise[source] = rise;
-                    self.stamp[source] = self.now;
-                    self.parent[source] = next;
-                    if edge.from == to {
-                        self.collect_cycle(new_edge);
-                        self.restore();
-                        return Err(Inconsistency::NegativeCycle);
-                    }
-                    if self.origin == Some(edge.from) && self.hangs_on(to, edge.from) {
-                        self.collect_cycle_through(edge.from, new_edge);
-                        self.restore();
-                        return Err(Inconsistency::NegativeCycle);
-                    }
-                    // What is tightly bound rises as one piece: most points take this way past the heap.
-                    if rise == present {
-                        self.level.push(edge.from);
-                    } else {
-                        self.heap.push(rise, edge.from);
-                    }
+                if rise >= 0 {
+                    continue;
                 }
-                next = edge.next_in;
+                let reach = &mut self.reach[source as usize];
+                if reach.done == now || (reach.stamp == now && reach.rise <= rise) {
+                    continue;
+                }
+                (reach.rise, reach.stamp, reach.parent) = (rise, now, position);
+                if source == to {
+                    self.collect_cycle(new_edge);
+                    self.restore();
+                    return Err(Inconsistency::NegativeCycle);
+                }
+                if self.origin == Some(source) && self.hangs_on(to, source) {
+                    self.collect_cycle_through(source, new_edge);
+                    self.restore();
+                    return Err(Inconsistency::NegativeCycle);
+                }
+                // What is tightly bound rises as one piece: most points take this way past the heap.
+                if rise == present {
+                    self.level.push(source);
+                } else {
+                    self.heap.push(rise, source);
+                }
             }
         }
         Ok(())
@@ -399,7 +414,7 @@ impl Stn {
         self.cycle.push(new_edge);
         let mut point = new_edge.to.0;
         while point != new_edge.from.0 {
-            let edge = self.edges[self.parent[point as usize] as usize];
+            let edge = self.edges[self.reach[point as usize].parent as usize];
             self.cycle.push(edge.describe());
             point = edge.to;
         }
@@ -409,14 +424,14 @@ impl Stn {
     /// one at the origin last, and `point` cannot stay where it is if the origin rises.
     fn hangs_on(&mut self, point: u32, origin: u32) -> bool {
         // Points that have risen already have left their constraints behind.
-        if self.done[point as usize] == self.now {
+        if self.reach[point as usize].done == self.now {
             return false;
         }
         self.walk.clear();
         self.scratch.clear();
         self.scratch.push(i64::from(self.first_out[point as usize]));
         let mark = self.next_visit();
-        self.visit[point as usize] = mark;
+        self.reach[point as usize].visit = mark;
         while let Some(next) = self.scratch.last_mut() {
             let position = *next as u32;
             if position == NONE {
@@ -429,14 +444,15 @@ impl Stn {
             let target = edge.to as usize;
             let is_tight =
                 self.potential[edge.from as usize].checked_add(edge.weight) == Some(self.potential[target]);
-            if !is_tight || self.visit[target] == mark || self.done[target] == self.now {
+            let reach = &mut self.reach[target];
+            if !is_tight || reach.visit == mark || reach.done == self.now {
                 continue;
             }
             self.walk.push(position);
             if edge.to == origin {
                 return true;
             }
-            self.visit[target] = mark;
+            reach.visit = mark;
             self.scratch.push(i64::from(self.first_out[target]));
         }
         false
@@ -451,7 +467,7 @@ impl Stn {
         }
         let mut point = origin;
         while point != new_edge.from.0 {
-            let edge = self.edges[self.parent[point as usize] as usize];
+            let edge = self.edges[self.reach[point as usize].parent as usize];
             self.cycle.push(edge.describe());
             point = edge.to;
         }
@@ -459,7 +475,7 @@ impl Stn {
 
     fn next_visit(&mut self) -> u32 {
         if self.visits == u32::MAX {
-            self.visit.fill(0);
+            self.reach.iter_mut().for_each(|reach| reach.visit = 0);
             self.visits = 0;
         }
         self.visits += 1;
@@ -474,8 +490,7 @@ impl Stn {
 
     fn next_stamp(&mut self) {
         if self.now == u32::MAX {
-            self.stamp.fill(0);
-            self.done.fill(0);
+            self.reach.iter_mut().for_each(|reach| (reach.stamp, reach.done) = (0, 0));
             self.now = 0;
         }
         self.now += 1;

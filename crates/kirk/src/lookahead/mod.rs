@@ -167,16 +167,15 @@ impl Lookahead {
         if !self.check_labels(model, structure, chosen, 0)? {
             return Ok(false);
         }
-        if self.stn.num_edges() > num_edges {
-            self.find_windows(model, &order)?;
-        }
+        self.narrow_windows(num_edges, &order)?;
         Ok(true)
     }
 
     /// Links, as far as windows alone tell, what every plan has; each link narrows the windows of others.
     fn link_by_windows(&mut self, model: &Model, order: &[PointId]) -> Result<bool, Overflow> {
+        let start = PointId(model.twin[model.start as usize]);
+        self.stn.sweep_distances(start, order, &mut self.from_start, &mut self.to_start)?;
         loop {
-            self.find_windows(model, order)?;
             let num_edges = self.stn.num_edges();
             if !self.link_what_windows_leave(model) {
                 return Ok(false);
@@ -188,13 +187,13 @@ impl Lookahead {
             if !self.is_ok(model, settled)? {
                 return Ok(false);
             }
+            self.narrow_windows(num_edges, order)?;
         }
     }
 
-    /// Bounds the times of all active nodes by what is known to hold.
-    fn find_windows(&mut self, model: &Model, order: &[PointId]) -> Result<(), Overflow> {
-        let start = PointId(model.twin[model.start as usize]);
-        self.stn.sweep_distances(start, order, &mut self.from_start, &mut self.to_start)
+    /// Narrows the windows of all active nodes by the edges from the given one on.
+    fn narrow_windows(&mut self, first_edge: usize, order: &[PointId]) -> Result<(), Overflow> {
+        self.stn.tighten_distances(first_edge, order, &mut self.from_start, &mut self.to_start)
     }
 
     /// Activates what an alternative brings. `false` if it has no plan; then `blamed` says why.

@@ -1,6 +1,6 @@
 //! Blocks among each other: the arcs around them, and those whose conditions conflict only within.
 
-use super::{Shape, Structure, arc_between};
+use super::{Shape, Structure, TreeBlock, arc_between};
 use crate::enclosed::Enclosed;
 use crate::model::{Model, NONE};
 
@@ -26,12 +26,11 @@ impl Structure {
                 continue;
             }
             let Some(inside) = self.blocks_inside(common) else { continue };
-            let mut arcs = block.own_arcs.clone();
+            let mut arcs = self.own_arcs(common as usize).to_vec();
             for &id in &inside {
-                let block = &self.blocks[id as usize];
-                let (enter, leave) = block.around_arcs;
+                let (enter, leave) = self.blocks[id as usize].around_arcs;
                 arcs.extend([enter, leave].into_iter().filter(|&arc| arc != NONE));
-                arcs.extend_from_slice(&block.own_arcs);
+                arcs.extend_from_slice(self.own_arcs(id as usize));
             }
             let Some(enclosed) = Enclosed::new(model, block.ends, arcs) else { continue };
             self.blocks[common as usize].enclosed = self.enclosed.len() as u32;
@@ -44,10 +43,10 @@ impl Structure {
 
     /// The blocks inside another; `None` if there are many.
     fn blocks_inside(&self, id: u32) -> Option<Vec<u32>> {
-        let mut inside = self.blocks[id as usize].children.clone();
+        let mut inside = self.children(id as usize).to_vec();
         let mut next = 0;
         while let Some(&id) = inside.get(next) {
-            inside.extend_from_slice(&self.blocks[id as usize].children);
+            inside.extend_from_slice(self.children(id as usize));
             next += 1;
             if inside.len() > MAX_ENCLOSED_BLOCKS {
                 return None;
@@ -68,28 +67,30 @@ impl Structure {
         if left == right { left } else { NONE }
     }
 
-    pub(super) fn find_around_arcs(&mut self, model: &Model, id: usize) {
-        let block = &self.blocks[id];
-        let (start, end) = block.ends;
-        let children = block.children.clone();
-        for (position, &child) in children.iter().enumerate() {
-            let (child_start, child_end) = self.blocks[child as usize].ends;
-            let from = match self.blocks[id].shape {
-                Shape::Guard => {
-                    self.blocks[id].own_arcs.first().map_or(start, |&arc| model.arcs[arc as usize].to)
+    /// Finds the arcs around the children of a block; `false` if one is missing.
+    pub(super) fn find_around_arcs(&mut self, model: &Model, id: usize) -> bool {
+        let TreeBlock { ends: (start, end), shape, children: (_, num_children), .. } = self.blocks[id];
+        let inside_guard = self.own_arcs(id).first().map_or(start, |&arc| model.arcs[arc as usize].to);
+        for position in 0..num_children {
+            let child = self.child(id, position) as usize;
+            let (child_start, child_end) = self.blocks[child].ends;
+            let enter = match shape {
+                Shape::Guard => arc_between(model, inside_guard, child_start),
+                Shape::Sequence if position > 0 => Some(NONE),
+                Shape::Choice(decision) => {
+                    let arc = model.decisions[decision as usize].alternatives[position as usize];
+                    (model.arcs[arc as usize].to == child_start).then_some(arc)
                 }
-                Shape::Sequence if position > 0 => child_start,
-                _ => start,
+                _ => arc_between(model, start, child_start),
             };
-            let to = match self.blocks[id].shape {
-                Shape::Sequence => {
-                    children.get(position + 1).map_or(end, |&next| self.blocks[next as usize].ends.0)
-                }
-                _ => end,
+            let to = if shape == Shape::Sequence && position + 1 < num_children {
+                self.blocks[self.child(id, position + 1) as usize].ends.0
+            } else {
+                end
             };
-            let enter = arc_between(model, from, child_start).unwrap_or(NONE);
-            let leave = arc_between(model, child_end, to).unwrap_or(NONE);
-            self.blocks[child as usize].around_arcs = (enter, leave);
+            let (Some(enter), Some(leave)) = (enter, arc_between(model, child_end, to)) else { return false };
+            self.blocks[child].around_arcs = (enter, leave);
         }
+        true
     }
 }

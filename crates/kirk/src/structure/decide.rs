@@ -15,7 +15,7 @@ impl Structure {
         alternative: u32,
     ) -> Result<Result<(), u32>, Overflow> {
         let mut id = self.decision_blocks[decision as usize];
-        let child = self.blocks[id as usize].children[alternative as usize];
+        let child = self.child(id as usize, alternative);
         if state.durations[child as usize].is_empty() {
             return Ok(Err(self.innermost_empty(state, child)));
         }
@@ -95,13 +95,13 @@ impl Structure {
             match block.shape {
                 Shape::Leaf => {}
                 Shape::Sequence | Shape::Guard => {
-                    stack.extend(block.children.iter().map(|&child| (child, is_lower)));
+                    stack.extend(self.children(id as usize).iter().map(|&child| (child, is_lower)));
                 }
                 Shape::Choice(decision) => {
                     let alternative = chosen[decision as usize];
                     if alternative != NONE {
                         blame(decision);
-                        stack.push((block.children[alternative as usize], is_lower));
+                        stack.push((self.child(id as usize, alternative), is_lower));
                     }
                 }
                 Shape::Intersection => {
@@ -113,7 +113,7 @@ impl Structure {
                     };
                     let own_is_tight =
                         if is_lower { block.own.0 == held.lower } else { block.own.1 == held.upper() };
-                    if !own_is_tight && let Some(&child) = block.children.iter().find(is_tight) {
+                    if !own_is_tight && let Some(&child) = self.children(id as usize).iter().find(is_tight) {
                         stack.push((child, is_lower));
                     }
                 }
@@ -124,7 +124,7 @@ impl Structure {
     fn innermost_empty(&self, state: &TreeState, block: u32) -> u32 {
         let mut id = block;
         loop {
-            let children = &self.blocks[id as usize].children;
+            let children = self.children(id as usize);
             if matches!(self.blocks[id as usize].shape, Shape::Choice(_)) {
                 return id;
             }

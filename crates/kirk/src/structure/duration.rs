@@ -1,9 +1,8 @@
 //! The duration of each block before any choice.
 
 use stn::Overflow;
-use tpn::{BlockKind, Network};
 
-use super::{Duration, Shape, Structure, add, between, bounds, intersect, saturating_upper, sum_of};
+use super::{Duration, Shape, Structure, add, bounds, intersect, sum_of};
 use crate::enclosed::Durations;
 use crate::model::{INFINITE, Model, NONE};
 
@@ -26,7 +25,7 @@ impl Structure {
 
     fn nested_duration(&self, id: usize) -> Result<Duration, Overflow> {
         let block = &self.blocks[id];
-        let parts = block.children.iter().map(|&child| {
+        let parts = self.children(id).iter().map(|&child| {
             let inside = self.initial[child as usize];
             if inside.is_empty() {
                 Ok(None)
@@ -72,50 +71,21 @@ impl Structure {
         })
     }
 
-    /// What the structural arcs around a child add; `None` if there are none where there must be.
-    pub(super) fn around(
-        &self,
-        network: &Network,
-        model: &Model,
-        id: usize,
-        position: usize,
-    ) -> Result<Option<(i64, i64)>, Overflow> {
-        let block = &network.blocks[id];
-        let children = &self.blocks[id].children;
-        let child = &network.blocks[children[position] as usize];
-        let (enter, leave) = match self.blocks[id].shape {
-            Shape::Leaf => return Ok(Some((0, 0))),
-            Shape::Sequence => {
-                let next =
-                    children.get(position + 1).map_or(block.end, |&next| network.blocks[next as usize].start);
-                let enter =
-                    if position == 0 { between(model, block.start.0, child.start.0) } else { Some((0, 0)) };
-                (enter, between(model, child.end.0, next.0))
-            }
-            Shape::Guard => {
-                let BlockKind::Guard { arc, .. } = &block.kind else { return Ok(None) };
-                let inside = network.arcs[arc.index()].to.0;
-                (between(model, inside, child.start.0), between(model, child.end.0, block.end.0))
-            }
-            Shape::Choice(decision) => {
-                let arc = model.decisions[decision as usize].alternatives.get(position).copied();
-                let enter = arc.and_then(|arc| {
-                    let after = between(model, model.arcs[arc as usize].to, child.start.0)?;
-                    let choice = bounds(model, arc);
-                    Some((choice.0.checked_add(after.0)?, saturating_upper(choice.1, after.1)))
-                });
-                (enter, between(model, child.end.0, block.end.0))
-            }
-            Shape::Intersection => {
-                (between(model, block.start.0, child.start.0), between(model, child.end.0, block.end.0))
-            }
-        };
-        let (Some(enter), Some(leave)) = (enter, leave) else { return Ok(None) };
+    /// The bounds of a block's own arcs.
+    pub(super) fn own_bounds(&self, model: &Model, id: usize) -> (i64, i64) {
+        self.own_arcs(id).iter().fold((0, INFINITE), |own, &arc| intersect(own, bounds(model, arc)))
+    }
+
+    /// What the arcs around a block add to its duration.
+    pub(super) fn around(&self, model: &Model, id: usize) -> Result<(i64, i64), Overflow> {
+        let (enter, leave) = self.blocks[id].around_arcs;
+        let bounds = |arc: u32| if arc == NONE { (0, 0) } else { bounds(model, arc) };
+        let (enter, leave) = (bounds(enter), bounds(leave));
         let lower = enter.0.checked_add(leave.0).ok_or(Overflow)?;
         let upper = match (enter.1, leave.1) {
             (INFINITE, _) | (_, INFINITE) => INFINITE,
             (enter, leave) => enter.checked_add(leave).ok_or(Overflow)?,
         };
-        Ok(Some((lower, upper)))
+        Ok((lower, upper))
     }
 }

@@ -19,7 +19,11 @@ use crate::model::{INFINITE, Model, NONE};
 /// The tree, with the duration of each block before any choice.
 #[derive(Clone, Debug)]
 pub(crate) struct Structure {
+    /// Children before their parents.
     blocks: Vec<TreeBlock>,
+    /// The children of all blocks, and their own arcs; each block has its range of them.
+    children: Vec<u32>,
+    own_arcs: Vec<u32>,
     initial: Vec<Duration>,
     /// The block of each decision.
     decision_blocks: Vec<u32>,
@@ -30,14 +34,17 @@ pub(crate) struct Structure {
     enclosed: Vec<Enclosed>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 struct TreeBlock {
     parent: u32,
     /// Where it stands among its siblings.
     position: u32,
     depth: u32,
     shape: Shape,
-    children: Vec<u32>,
+    /// Where its part of [`Structure::children`] begins, and how many there are.
+    children: (u32, u32),
+    /// The same of [`Structure::own_arcs`].
+    own_arcs: (u32, u32),
     /// What the arcs from the parent's first event, and to its last or the next sibling's first, add to the duration.
     around: (i64, i64),
     /// The bounds of its own arcs.
@@ -52,10 +59,8 @@ struct TreeBlock {
     is_inside_enclosed: bool,
     /// Its first and last event.
     ends: (u32, u32),
-    /// Its own arcs.
-    own_arcs: Vec<u32>,
-    /// The arcs from the parent's first event and to its last or the next sibling's first, [`NONE`] where these are
-    /// the block's own.
+    /// The arcs that lead to it from the parent's first event and from it to the parent's last or the next sibling's
+    /// first, [`NONE`] where these are the block's own.
     around_arcs: (u32, u32),
 }
 
@@ -135,113 +140,125 @@ impl Structure {
         let Some(root) = network.root else { return Ok(None) };
         let mut structure = Self {
             blocks: Vec::with_capacity(network.blocks.len()),
+            children: Vec::with_capacity(network.blocks.len()),
+            own_arcs: Vec::with_capacity(network.arcs.len()),
             initial: Vec::new(),
             decision_blocks: vec![NONE; network.decisions.len()],
             arc_blocks: vec![NONE; network.arcs.len()],
             root: root.0,
             enclosed: Vec::new(),
         };
-        for (id, block) in (0..).zip(&network.blocks) {
-            let (shape, children, arcs) = match &block.kind {
-                BlockKind::Leaf { arc } => (Shape::Leaf, Vec::new(), vec![arc.0]),
-                BlockKind::Sequence { children } => (Shape::Sequence, ids(children), Vec::new()),
-                BlockKind::Parallel { branches } => (Shape::Intersection, ids(branches), Vec::new()),
-                BlockKind::Choose { decision, alternatives } => {
-                    structure.decision_blocks[decision.index()] = id;
-                    (Shape::Choice(decision.0), ids(alternatives), Vec::new())
-                }
-                BlockKind::Scope { child, arcs, .. } => {
-                    (Shape::Intersection, vec![child.0], arcs.iter().map(|arc| arc.0).collect())
-                }
-                BlockKind::Guard { arc, child } => (Shape::Guard, vec![child.0], vec![arc.0]),
-            };
-            let is_complete = match &block.kind {
-                BlockKind::Choose { decision, alternatives } => {
-                    alternatives.len() == network.decisions[decision.index()].alternatives.len()
-                }
-                BlockKind::Sequence { children } => !children.is_empty() || block.start == block.end,
-                _ => true,
-            };
-            if !is_complete || children.iter().any(|&child| child >= id) {
+        for block in &network.blocks {
+            if !structure.add_block(block, model) {
                 return Ok(None);
             }
-            for &arc in &arcs {
-                structure.arc_blocks[arc as usize] = id;
-            }
-            let own = (0, INFINITE);
-            let has_choices = matches!(shape, Shape::Choice(_))
-                || children.iter().any(|&child| structure.blocks[child as usize].has_choices);
-            let has_labels = arcs.iter().any(|&arc| !model.conditions.labels_of(arc).is_empty())
-                || children.iter().any(|&child| structure.blocks[child as usize].has_labels);
-            structure.blocks.push(TreeBlock {
-                parent: NONE,
-                position: 0,
-                depth: 0,
-                shape,
-                children,
-                around: (0, 0),
-                own,
-                has_choices,
-                has_labels,
-                enclosed: NONE,
-                is_inside_enclosed: false,
-                ends: (block.start.0, block.end.0),
-                own_arcs: arcs,
-                around_arcs: (NONE, NONE),
-            });
         }
         for id in (0..structure.blocks.len()).rev() {
             let depth = structure.blocks[id].depth + 1;
-            for position in 0..structure.blocks[id].children.len() {
-                let child = structure.blocks[id].children[position] as usize;
+            for position in 0..structure.blocks[id].children.1 {
+                let child = structure.child(id, position) as usize;
                 let child = &mut structure.blocks[child];
-                (child.parent, child.position, child.depth) = (id as u32, position as u32, depth);
+                (child.parent, child.position, child.depth) = (id as u32, position, depth);
+            }
+            if !structure.find_around_arcs(model, id) {
+                return Ok(None);
             }
         }
-        for id in 0..structure.blocks.len() {
-            structure.find_around_arcs(model, id);
-        }
         structure.find_enclosed(model);
-        if structure.refresh(network, model)? { Ok(Some(structure)) } else { Ok(None) }
+        structure.refresh(model)?;
+        Ok(Some(structure))
     }
 
-    /// Computes all durations anew from the model's bounds; `false` if an arc that the structure needs is missing.
-    pub(crate) fn refresh(&mut self, network: &Network, model: &Model) -> Result<bool, Overflow> {
+    /// Adds the next block, whose children are there. `false` if it is not what the model makes of it.
+    fn add_block(&mut self, block: &tpn::Block, model: &Model) -> bool {
+        let id = self.blocks.len() as u32;
+        let (first_child, first_arc) = (self.children.len(), self.own_arcs.len());
+        let mut adopt = |blocks: &[tpn::BlockId]| self.children.extend(blocks.iter().map(|block| block.0));
+        let shape = match &block.kind {
+            BlockKind::Leaf { arc } => {
+                self.own_arcs.push(arc.0);
+                Shape::Leaf
+            }
+            BlockKind::Sequence { children } => {
+                adopt(children);
+                if children.is_empty() && block.start != block.end {
+                    return false;
+                }
+                Shape::Sequence
+            }
+            BlockKind::Parallel { branches } => {
+                adopt(branches);
+                Shape::Intersection
+            }
+            BlockKind::Choose { decision, alternatives } => {
+                adopt(alternatives);
+                self.decision_blocks[decision.index()] = id;
+                if alternatives.len() != model.decisions[decision.index()].alternatives.len() {
+                    return false;
+                }
+                Shape::Choice(decision.0)
+            }
+            BlockKind::Scope { child, arcs, .. } => {
+                adopt(std::slice::from_ref(child));
+                self.own_arcs.extend(arcs.iter().map(|arc| arc.0));
+                Shape::Intersection
+            }
+            BlockKind::Guard { arc, child } => {
+                adopt(std::slice::from_ref(child));
+                self.own_arcs.push(arc.0);
+                Shape::Guard
+            }
+        };
+        let (children, arcs) = (&self.children[first_child..], &self.own_arcs[first_arc..]);
+        if children.iter().any(|&child| child >= id) {
+            return false;
+        }
+        for &arc in arcs {
+            self.arc_blocks[arc as usize] = id;
+        }
+        let inside = |test: fn(&TreeBlock) -> bool| children.iter().any(|&at| test(&self.blocks[at as usize]));
+        let has_choices = matches!(shape, Shape::Choice(_)) || inside(|child| child.has_choices);
+        let has_labels = arcs.iter().any(|&arc| !model.conditions.labels_of(arc).is_empty())
+            || inside(|child| child.has_labels);
+        self.blocks.push(TreeBlock {
+            parent: NONE,
+            position: 0,
+            depth: 0,
+            shape,
+            children: (first_child as u32, children.len() as u32),
+            own_arcs: (first_arc as u32, arcs.len() as u32),
+            around: (0, 0),
+            own: (0, INFINITE),
+            has_choices,
+            has_labels,
+            enclosed: NONE,
+            is_inside_enclosed: false,
+            ends: (block.start.0, block.end.0),
+            around_arcs: (NONE, NONE),
+        });
+        true
+    }
+
+    /// Computes all durations anew from the model's bounds.
+    pub(crate) fn refresh(&mut self, model: &Model) -> Result<(), Overflow> {
         self.initial.clear();
         self.initial.resize(self.blocks.len(), Duration::NEVER);
         for id in 0..self.blocks.len() {
-            let block = &network.blocks[id];
-            let own = match &block.kind {
-                BlockKind::Leaf { arc } | BlockKind::Guard { arc, .. } => bounds(model, arc.0),
-                BlockKind::Scope { arcs, .. } => {
-                    arcs.iter().fold((0, INFINITE), |own, arc| intersect(own, bounds(model, arc.0)))
-                }
-                _ => (0, INFINITE),
-            };
-            self.blocks[id].own = own;
-            for position in 0..self.blocks[id].children.len() {
-                let Some(around) = self.around(network, model, id, position)? else { return Ok(false) };
-                let child = self.blocks[id].children[position];
-                self.blocks[child as usize].around = around;
-            }
+            self.blocks[id].own = self.own_bounds(model, id);
+            self.blocks[id].around = self.around(model, id)?;
             self.initial[id] = self.initial_duration(model, id)?;
         }
-        Ok(true)
+        Ok(())
     }
 
     /// Changes one arc's bounds in the tree, where only its own block and its ancestors depend on it. `false` if the
     /// arc is structural and everything must be refreshed.
-    pub(crate) fn set_arc(&mut self, network: &Network, model: &Model, arc: u32) -> Result<bool, Overflow> {
+    pub(crate) fn set_arc(&mut self, model: &Model, arc: u32) -> Result<bool, Overflow> {
         let mut id = self.arc_blocks[arc as usize];
         if id == NONE {
             return Ok(false);
         }
-        self.blocks[id as usize].own = match &network.blocks[id as usize].kind {
-            BlockKind::Scope { arcs, .. } => {
-                arcs.iter().fold((0, INFINITE), |own, arc| intersect(own, bounds(model, arc.0)))
-            }
-            _ => bounds(model, arc),
-        };
+        self.blocks[id as usize].own = self.own_bounds(model, id as usize);
         while id != NONE {
             let duration = self.initial_duration(model, id as usize)?;
             let is_inside_enclosed = self.blocks[id as usize].is_inside_enclosed;
@@ -254,6 +271,20 @@ impl Structure {
         Ok(true)
     }
 
+    fn children(&self, id: usize) -> &[u32] {
+        let (first, count) = self.blocks[id].children;
+        &self.children[first as usize..(first + count) as usize]
+    }
+
+    fn child(&self, id: usize, position: u32) -> u32 {
+        self.children[(self.blocks[id].children.0 + position) as usize]
+    }
+
+    fn own_arcs(&self, id: usize) -> &[u32] {
+        let (first, count) = self.blocks[id].own_arcs;
+        &self.own_arcs[first as usize..(first + count) as usize]
+    }
+
     /// The node where a decision is made.
     pub(crate) fn decision_node(&self, decision: u32) -> u32 {
         self.blocks[self.decision_blocks[decision as usize] as usize].ends.0
@@ -261,8 +292,8 @@ impl Structure {
 
     /// The duration of a choice if its first possible alternative is taken.
     pub(crate) fn first_alternative(&self, decision: u32) -> Result<Option<(i64, i64)>, Overflow> {
-        let block = &self.blocks[self.decision_blocks[decision as usize] as usize];
-        let first = block.children.iter().find(|&&child| !self.initial[child as usize].is_empty());
+        let children = self.children(self.decision_blocks[decision as usize] as usize);
+        let first = children.iter().find(|&&child| !self.initial[child as usize].is_empty());
         let duration =
             first.map(|&child| add(self.initial[child as usize], self.blocks[child as usize].around));
         Ok(duration.transpose()?.map(|duration| (duration.lower, duration.upper())))
@@ -284,8 +315,7 @@ impl Structure {
         arrive: &mut impl FnMut(u32),
         hull: &mut impl FnMut(Hull),
     ) {
-        let block = &self.blocks[self.decision_blocks[decision as usize] as usize];
-        let child = block.children[alternative as usize];
+        let child = self.child(self.decision_blocks[decision as usize] as usize, alternative);
         self.emit_around(child, arrive);
         self.emit(child, arrive, hull);
     }
@@ -328,10 +358,10 @@ impl Structure {
             let (from, to) = block.ends;
             hull(Hull { from, to, lower: duration.lower, upper: duration.upper(), decision: NONE });
         }
-        for &arc in &block.own_arcs {
+        for &arc in self.own_arcs(id as usize) {
             arrive(arc);
         }
-        for &child in &block.children {
+        for &child in self.children(id as usize) {
             self.emit_around(child, arrive);
             self.emit(child, arrive, hull);
         }
@@ -383,10 +413,6 @@ impl Structure {
     }
 }
 
-fn ids(blocks: &[tpn::BlockId]) -> Vec<u32> {
-    blocks.iter().map(|block| block.0).collect()
-}
-
 fn bounds(model: &Model, arc: u32) -> (i64, i64) {
     let arc = &model.arcs[arc as usize];
     (arc.lower, arc.upper)
@@ -396,24 +422,11 @@ fn intersect(left: (i64, i64), right: (i64, i64)) -> (i64, i64) {
     (left.0.max(right.0), left.1.min(right.1))
 }
 
-fn saturating_upper(left: i64, right: i64) -> i64 {
-    if left == INFINITE || right == INFINITE { INFINITE } else { left.saturating_add(right) }
-}
-
-/// The bounds of an arc that leads from one node to another; zero for the same node.
-///
-/// Of several arcs the first structural one counts: any of them gives a sound interval.
-fn between(model: &Model, from: u32, to: u32) -> Option<(i64, i64)> {
-    if from == to {
-        return Some((0, 0));
-    }
-    let arc = model.out_arcs(from).iter().find(|&&arc| model.arcs[arc as usize].to == to)?;
-    Some(bounds(model, *arc))
-}
-
+/// An arc that leads from one node to another, the first of several: the bounds of any of them are sound. [`NONE`] for the
+/// same node, `None` if there is none.
 fn arc_between(model: &Model, from: u32, to: u32) -> Option<u32> {
     if from == to {
-        return None;
+        return Some(NONE);
     }
     model.out_arcs(from).iter().copied().find(|&arc| model.arcs[arc as usize].to == to)
 }
