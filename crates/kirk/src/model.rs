@@ -305,7 +305,7 @@ fn common_denominator(network: &Network, gap: Rational) -> Result<i64, Overflow>
     let mut times = network.arcs.iter().map(|arc| arc.lower).chain(uppers).chain([gap]);
     times.try_fold(1_i64, |common, time| {
         let denominator = *time.denom();
-        if common % denominator == 0 {
+        if denominator == 1 || common % denominator == 0 {
             return Ok(common);
         }
         common.checked_mul(denominator / greatest_common_divisor(common, denominator)).ok_or(Overflow)
@@ -320,6 +320,9 @@ pub(crate) fn greatest_common_divisor(mut left: i64, mut right: i64) -> i64 {
 }
 
 fn scaled(time: Rational, scale: i64) -> Result<i64, Overflow> {
+    if scale == 1 && *time.denom() == 1 {
+        return Ok(*time.numer());
+    }
     if scale % *time.denom() != 0 {
         return Err(Overflow);
     }

@@ -65,8 +65,8 @@ impl Engine<'_> {
 
     /// Propagates everything pushed so far. `false` if it is inconsistent.
     pub(crate) fn settle_selected(&mut self) -> Result<bool, Overflow> {
-        let order: Vec<PointId> =
-            self.model.order.iter().copied().filter(|point| self.is_selected_node[point.index()]).collect();
+        let mut order: Vec<PointId> = Vec::with_capacity(self.selected_nodes.len());
+        order.extend(self.model.order.iter().filter(|point| self.is_selected_node[point.index()]));
         match self.stn.settle(&order) {
             Ok(()) => Ok(true),
             Err(Inconsistency::Overflow) => Err(Overflow),

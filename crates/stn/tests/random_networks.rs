@@ -180,6 +180,32 @@ fn several_edges_are_admitted_only_together_and_move_nothing_where_they_are_not(
 }
 
 #[test]
+fn tightened_distances_are_those_found_anew() {
+    let mut num_shortened = 0;
+    for seed in 0..400 {
+        let (mut stn, points) = consistent_network(seed);
+        let mut random = Random(seed ^ 0x7197);
+        let order: Vec<PointId> = (0..points).map(point).collect();
+        let (mut from_origin, mut to_origin) = (Vec::new(), Vec::new());
+        stn.sweep_distances(point(0), &order, &mut from_origin, &mut to_origin).expect("small numbers");
+        let before = (from_origin.clone(), to_origin.clone());
+        let first_edge = stn.num_edges();
+        for _ in 0..6 {
+            let (from, to) = (point(random.below(points)), point(random.below(points)));
+            // Those that contradict are not inserted.
+            let _ = stn.insert(from, to, random.between(-6, 12), 0);
+        }
+        stn.tighten_distances(first_edge, &order, &mut from_origin, &mut to_origin).expect("small numbers");
+        let (mut from_anew, mut to_anew) = (Vec::new(), Vec::new());
+        stn.distances_from(point(0), &mut from_anew).expect("small numbers");
+        stn.distances_to(point(0), &mut to_anew).expect("small numbers");
+        assert_eq!((&from_origin, &to_origin), (&from_anew, &to_anew), "seed {seed}");
+        num_shortened += usize::from((from_origin, to_origin) != before);
+    }
+    assert!(num_shortened > 100, "only {num_shortened} networks had distances to shorten");
+}
+
+#[test]
 fn settling_many_edges_at_once_agrees_with_floyd_warshall() {
     let mut num_inconsistent = 0;
     for seed in 1000..1600 {

@@ -120,8 +120,7 @@ impl Lookahead {
                 continue;
             }
             let is_left = |lookahead: &Self, tell: u32| {
-                !lookahead.is_active_label[tell as usize]
-                    || !lookahead.refuses_link(model, ask, tell)
+                !lookahead.is_active_label[tell as usize] || !lookahead.refuses_link(model, ask, tell)
             };
             let mut left = model.conditions.supporters(ask).filter(|&tell| is_left(self, tell));
             match (left.next(), left.next()) {

@@ -108,10 +108,10 @@ impl Lookahead {
             reasons: Vec::new(),
             marks: Vec::new(),
             blamed: Vec::new(),
-            new_arcs: Vec::new(),
-            new_hulls: Vec::new(),
-            hulls: Vec::new(),
-            arriving: Vec::new(),
+            new_arcs: Vec::with_capacity(model.arcs.len()),
+            new_hulls: Vec::with_capacity(model.decisions.len()),
+            hulls: Vec::with_capacity(model.decisions.len()),
+            arriving: Vec::with_capacity(model.arcs.len()),
             rank,
             from_start: Vec::new(),
             to_start: Vec::new(),
@@ -142,8 +142,8 @@ impl Lookahead {
             let (lower, upper) = first.unwrap_or((hull.lower, hull.upper));
             push(&mut self.stn, Arriving { lower, upper, ..hull });
         }
-        let order: Vec<PointId> =
-            model.order.iter().copied().filter(|point| self.is_active_node[point.index()]).collect();
+        let mut order = Vec::with_capacity(model.num_nodes);
+        order.extend(model.order.iter().filter(|point| self.is_active_node[point.index()]));
         let guessed = self.stn.settle(&order);
         self.stn.rollback(checkpoint);
         for position in 0..self.arriving.len() {

@@ -216,7 +216,8 @@ impl Structure {
         for &arc in arcs {
             self.arc_blocks[arc as usize] = id;
         }
-        let inside = |test: fn(&TreeBlock) -> bool| children.iter().any(|&at| test(&self.blocks[at as usize]));
+        let inside =
+            |test: fn(&TreeBlock) -> bool| children.iter().any(|&at| test(&self.blocks[at as usize]));
         let has_choices = matches!(shape, Shape::Choice(_)) || inside(|child| child.has_choices);
         let has_labels = arcs.iter().any(|&arc| !model.conditions.labels_of(arc).is_empty())
             || inside(|child| child.has_labels);
