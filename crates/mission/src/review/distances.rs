@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use kirk::PlanNetwork;
+use executive::PlanNetwork;
 use rmpl::Bound;
-use stn::{INFINITE, PointId};
+use stn::INFINITE;
 use tpn::{Network, NodeId, Plan};
 
 use super::TimeRange;
@@ -17,7 +17,7 @@ pub(crate) struct Distances {
 impl Distances {
     /// `None` where times do not fit, which planning would already have said.
     pub(crate) fn new(network: &Network, plan: &Plan) -> Option<Self> {
-        PlanNetwork::new(network, plan, None).ok().map(|network| Self { network })
+        PlanNetwork::new(network, plan).ok().map(|network| Self { network })
     }
 
     /// For each pair, how much later the second event is than the first; `None` if nothing bounds it from below.
@@ -32,13 +32,14 @@ impl Distances {
         let mut found = vec![(INFINITE, INFINITE); pairs.len()];
         let mut row = Vec::new();
         for (source, targets) in wanted {
-            if self.network.stn().distances_from(PointId(source.0), &mut row).is_err() {
+            let Some(source) = self.network.point(source) else { continue };
+            if self.network.stn.distances_from(source, &mut row).is_err() {
                 continue;
             }
             for (target, index, is_forward) in targets {
-                let distance = row.get(target.index()).copied().unwrap_or(INFINITE);
+                let Some(target) = self.network.point(target) else { continue };
                 let slot = &mut found[index];
-                *(if is_forward { &mut slot.1 } else { &mut slot.0 }) = distance;
+                *(if is_forward { &mut slot.1 } else { &mut slot.0 }) = row[target.index()];
             }
         }
         found
