@@ -78,7 +78,7 @@ impl Lookahead {
     ) -> Result<bool, Overflow> {
         for position in 0..first {
             let label = self.labels[position];
-            if !model.conditions.labels[label as usize].is_ask {
+            if !self.is_in_question(model, label) {
                 continue;
             }
             // Most of the earlier requirements can still be carried as was guessed.
@@ -94,7 +94,7 @@ impl Lookahead {
         }
         for position in first..self.labels.len() {
             let label = self.labels[position];
-            if model.conditions.labels[label as usize].is_ask {
+            if self.is_in_question(model, label) {
                 if !self.check_ask(model, chosen, label)? {
                     return Ok(false);
                 }
@@ -116,7 +116,7 @@ impl Lookahead {
     pub(super) fn link_what_windows_leave(&mut self, model: &Model) -> bool {
         for position in 0..self.labels.len() {
             let ask = self.labels[position];
-            if !model.conditions.labels[ask as usize].is_ask || self.witness[ask as usize] != NONE {
+            if !self.is_in_question(model, ask) {
                 continue;
             }
             let is_left = |lookahead: &Self, tell: u32| {
@@ -131,12 +131,17 @@ impl Lookahead {
                     for (from, to, weight) in link_edges(model, ask, only) {
                         self.stn.push(from, to, weight, tag);
                     }
-                    self.witness[ask as usize] = only;
+                    self.is_linked[ask as usize] = true;
                 }
                 _ => {}
             }
         }
         true
+    }
+
+    /// Whether a label is a requirement that is not linked for good.
+    fn is_in_question(&self, model: &Model, label: u32) -> bool {
+        model.conditions.labels[label as usize].is_ask && !self.is_linked[label as usize]
     }
 
     /// Whether two conflicting intervals fit in some order.

@@ -35,6 +35,8 @@ pub(crate) struct Lookahead {
     /// Whether requirements that can still be carried are looked through for consequences again: worth its time once a
     /// complete choice has failed.
     pub(crate) is_thorough: bool,
+    /// Requirements whose only possible link is part of the network whatever is chosen.
+    is_linked: Vec<bool>,
     /// An assertion that could carry each requirement when it was checked last.
     witness: Vec<u32>,
     /// Where the two edges of each requirement's guessed link are, if it has one.
@@ -100,6 +102,7 @@ impl Lookahead {
             is_active_label: vec![false; model.conditions.labels.len()],
             label_position: vec![0; model.conditions.labels.len()],
             is_thorough: false,
+            is_linked: vec![false; model.conditions.labels.len()],
             witness: vec![NONE; model.conditions.labels.len()],
             guessed: vec![None; model.conditions.labels.len()],
             guesses: Vec::new(),
