@@ -2,7 +2,7 @@
 
 use stn::{Inconsistency, Overflow, PointId, Tag};
 
-use super::{CONSEQUENCE, HULL, Lookahead, context_of, interval, link_edges};
+use super::{CONSEQUENCE, HULL, LONGEST_PAUSE, Lookahead, context_of, interval, link_edges};
 use crate::model::{INFINITE, Model, NONE};
 use crate::structure::{Relation, Structure};
 
@@ -81,14 +81,7 @@ impl Lookahead {
             if !self.is_in_question(model, label) {
                 continue;
             }
-            // Most of the earlier requirements can still be carried as was guessed.
-            let has_guess = self.guessed[label as usize].is_some() || self.guess_carrier(model, label)?;
-            let is_settled = if self.is_thorough {
-                self.is_carried(model, label)
-            } else {
-                has_guess || self.can_stay(model, chosen, label)?
-            };
-            if !is_settled && !self.check_ask(model, chosen, label)? {
+            if !self.check_ask_again(model, chosen, label)? {
                 return Ok(false);
             }
         }
@@ -204,6 +197,31 @@ impl Lookahead {
         }
         let edges = link_edges(model, ask, only);
         self.conclude(model, &[ask, only], &edges)
+    }
+
+    /// Whether some assertion can carry a requirement that was checked before; most can still be carried as was guessed.
+    ///
+    /// Where that needs a thorough look and nothing follows from it, the next one is put off for twice as long.
+    fn check_ask_again(&mut self, model: &Model, chosen: &[u32], ask: u32) -> Result<bool, Overflow> {
+        let has_guess = self.guessed[ask as usize].is_some() || self.guess_carrier(model, ask)?;
+        let is_due = self.is_thorough && self.num_decided >= self.due[ask as usize].0;
+        let is_settled = if is_due {
+            self.is_carried(model, ask)
+        } else {
+            has_guess || self.can_stay(model, chosen, ask)?
+        };
+        if is_settled {
+            return Ok(true);
+        }
+        let num_reasons = self.reasons.len();
+        let is_possible = self.check_ask(model, chosen, ask)?;
+        if is_due {
+            let has_followed = !is_possible || self.reasons.len() > num_reasons;
+            let (due, pause) = &mut self.due[ask as usize];
+            *pause = if has_followed { 0 } else { (*pause * 2 + 1).min(LONGEST_PAUSE) };
+            *due = self.num_decided + *pause;
+        }
+        Ok(is_possible)
     }
 
     /// Whether some selected assertion carries a requirement in the present schedule.

@@ -22,6 +22,9 @@ const CONSEQUENCE: Tag = 1 << 30;
 /// Tags up to here are of links that are guessed, by requirement; everything else has [`HULL`] in the second network.
 const GUESS: Tag = 0;
 
+/// The most decisions after which a requirement is looked through again although nothing ever followed from that.
+const LONGEST_PAUSE: u32 = 63;
+
 #[derive(Debug)]
 pub(crate) struct Lookahead {
     /// What follows from the choices.
@@ -35,6 +38,10 @@ pub(crate) struct Lookahead {
     /// Whether requirements that can still be carried are looked through for consequences again: worth its time once a
     /// complete choice has failed.
     pub(crate) is_thorough: bool,
+    /// How often something has been decided.
+    num_decided: u32,
+    /// For each requirement when to look through it again, by `num_decided`, and the pause before that.
+    due: Vec<(u32, u32)>,
     /// Requirements whose only possible link is part of the network whatever is chosen.
     is_linked: Vec<bool>,
     /// An assertion that could carry each requirement when it was checked last.
@@ -102,6 +109,8 @@ impl Lookahead {
             is_active_label: vec![false; model.conditions.labels.len()],
             label_position: vec![0; model.conditions.labels.len()],
             is_thorough: false,
+            num_decided: 0,
+            due: vec![(0, 0); model.conditions.labels.len()],
             is_linked: vec![false; model.conditions.labels.len()],
             witness: vec![NONE; model.conditions.labels.len()],
             guessed: vec![None; model.conditions.labels.len()],
@@ -210,6 +219,7 @@ impl Lookahead {
         depth: usize,
     ) -> Result<bool, Overflow> {
         self.blamed.clear();
+        self.num_decided += 1;
         self.marks.push(Mark {
             depth: depth as u32,
             checkpoint: self.stn.checkpoint(),
