@@ -15,7 +15,7 @@ use crate::belief::{Belief, State};
 use crate::exact::weigh;
 use crate::likelihood::Likelihoods;
 use crate::model::{Commands, Model, Observation};
-use crate::observe::values;
+use crate::odds::{Bests, Odds, best_of, multiply};
 use crate::successor::{Choices, EstimateError, distributions};
 
 /// How many states as likely as the last one wanted are looked at, to list the first of them in the order of modes.
@@ -140,29 +140,19 @@ impl Ord for Waiting {
     }
 }
 
-/// Only components that may enter several modes are searched over; they are counted by `free` below.
-struct Search<'model> {
-    model: &'model Model,
-    /// The free components.
-    free: Vec<usize>,
-    /// Per free component, the modes it may enter.
-    options: Vec<Vec<u8>>,
-    /// Per free component, where its options start in a row of `table`.
-    starts: Vec<usize>,
-    /// How long a row of `table` is.
-    width: usize,
-    /// Per prior state and option, its probability and, for components that share nothing, its likelihood.
-    table: Vec<f64>,
-    /// Per prior state, its probability and that of what its other components do.
-    prior: Vec<f64>,
-    /// The modes of the components that are not free.
-    template: State,
+/// Only components that may enter several modes are searched over; they are counted by the odds' `free` below.
+struct Search {
+    odds: Odds,
     /// Islands of several components, whose modes have to be checked together.
     joint: Vec<usize>,
     /// Free components and options that cannot be together.
     known: Vec<Vec<(u32, u8)>>,
     nodes: Nodes,
+    /// Of the node under expansion.
+    bests: Bests,
     trial: Trial,
+    /// The state looked at.
+    state: State,
     queue: BinaryHeap<Waiting>,
     age: u32,
     statistics: SearchStatistics,
@@ -181,91 +171,29 @@ struct Nodes {
     split: Vec<u32>,
 }
 
-/// What is worked out of the node under expansion.
+/// Room for the bounds of a node's parts.
 #[derive(Default)]
 struct Trial {
-    /// Per prior state and free component, the best entry of the table and its option.
-    best: Vec<(f64, u8)>,
-    /// Per prior state, the product of the best entries; zero where one is zero.
-    products: Vec<f64>,
     is_split: Vec<bool>,
+    /// Per prior state, the product over the components of which the part at hand leaves no choice.
+    fixed: Vec<f64>,
+    /// Per place in the split and prior state, the best product over the components from there on.
     suffix: Vec<f64>,
     bounds: Vec<f64>,
 }
 
-const fn full_set(options: &[u8]) -> u64 {
-    if options.len() >= 64 { u64::MAX } else { (1 << options.len()) - 1 }
-}
-
-impl<'model> Search<'model> {
-    fn new(
-        model: &'model Model,
-        belief: &Belief,
-        choices: &Choices,
-        likelihoods: &mut Likelihoods<'_>,
-    ) -> Self {
-        let (count, rows) = (model.components.len(), belief.len());
-        let mut template = State(vec![0; count]);
-        let mut is_alone = vec![None; count];
-        for (at, island) in model.islands.iter().enumerate() {
-            if let [component] = island.components.as_slice() {
-                is_alone[component.0 as usize] = Some(at);
-            }
-        }
-        let (mut free, mut options, mut starts) = (Vec::new(), Vec::new(), Vec::new());
-        let mut width = 0;
-        let mut prior = belief.approximate();
-        let mut factors: Vec<f64> = Vec::new();
-        for (component, island) in is_alone.into_iter().enumerate() {
-            let entered = (0..rows).flat_map(|row| choices.of(row, component));
-            let modes = entered.fold(0_u64, |modes, (mode, _)| modes | 1 << mode);
-            let first = factors.len();
-            for mode in values(modes) {
-                template.0[component] = mode;
-                let factor = island.map_or(1.0, |island| {
-                    let divisor = likelihoods.divisor(island, &template.0).to_f64().unwrap_or(f64::MAX);
-                    if divisor > 0.0 { 1.0 / divisor } else { 0.0 }
-                });
-                factors.push(factor);
-            }
-            if modes.count_ones() > 1 {
-                free.push(component);
-                options.push(values(modes).collect::<Vec<u8>>());
-                starts.push(width);
-                width += modes.count_ones() as usize;
-            } else {
-                let factor = factors.get(first).copied().unwrap_or(0.0);
-                for prior in &mut prior {
-                    *prior *= factor;
-                }
-                factors.truncate(first);
-            }
-        }
-        let mut table = vec![0.0; rows * width];
-        for row in 0..rows {
-            for ((&component, options), &start) in free.iter().zip(&options).zip(&starts) {
-                let entered = choices.of(row, component);
-                let total: u64 = entered.iter().map(|(_, weight)| weight).sum();
-                for (mode, weight) in entered {
-                    let option = start + options.binary_search(mode).unwrap_or(0);
-                    table[row * width + option] = *weight as f64 / total as f64 * factors[option];
-                }
-            }
-        }
+impl Search {
+    fn new(model: &Model, belief: &Belief, choices: &Choices, likelihoods: &mut Likelihoods<'_>) -> Self {
+        let (odds, state) = Odds::new(model, belief, choices, likelihoods);
         Self {
-            model,
-            free,
-            options,
-            starts,
-            width,
-            table,
-            prior,
-            template,
             joint: (0..model.islands.len()).filter(|&at| model.islands[at].components.len() > 1).collect(),
             known: Vec::new(),
-            nodes: Nodes::default(),
+            nodes: Nodes::with_room_for(odds.free.len()),
+            bests: Bests::default(),
             trial: Trial::default(),
-            queue: BinaryHeap::new(),
+            odds,
+            state,
+            queue: BinaryHeap::with_capacity(256),
             age: 0,
             statistics: SearchStatistics::default(),
         }
@@ -273,12 +201,12 @@ impl<'model> Search<'model> {
 
     fn run(&mut self, most: usize, limit: u32, likelihoods: &mut Likelihoods<'_>) -> Vec<State> {
         self.push(f64::INFINITY, None);
+        // Once as many as wanted: most likely first, equally likely ones in the order of their modes.
         let mut found: Vec<(f64, State)> = Vec::new();
         while let Some(waiting) = self.queue.pop() {
             // Machine numbers order the search; a margin keeps rounding from dropping a state that the exact
             // weights, which decide, put among the first.
             if found.len() >= most {
-                found.sort_by(|left, right| right.0.total_cmp(&left.0).then_with(|| left.1.cmp(&right.1)));
                 let last = found.get(most - 1).map_or(0.0, |(value, _)| *value);
                 if waiting.bound < last * (1.0 - 1e-9) || found.len() > most.saturating_add(MOST_TIES) {
                     break;
@@ -289,7 +217,18 @@ impl<'model> Search<'model> {
                 break;
             }
             self.statistics.expanded += 1;
-            self.expand(waiting.part, &mut found, likelihoods);
+            if let Some(value) = self.expand(waiting.part, likelihoods) {
+                let one = (value, self.state.clone());
+                if found.len() >= most {
+                    let at = found.partition_point(|other| rank(other, &one).is_lt());
+                    found.insert(at, one);
+                } else {
+                    found.push(one);
+                    if found.len() == most {
+                        found.sort_by(rank);
+                    }
+                }
+            }
         }
         found.into_iter().map(|(_, state)| state).collect()
     }
@@ -301,136 +240,76 @@ impl<'model> Search<'model> {
         }
     }
 
-    /// Adds the options of a new node: those of its parent, without what the parts before it hold.
-    fn add_sets(&mut self, part: Option<(u32, u32)>) {
-        let Some((parent, place)) = part else {
-            self.nodes.sets.extend(self.options.iter().map(|options| full_set(options)));
-            return;
-        };
-        let count = self.free.len();
-        let (start, _) = self.nodes.ends[parent as usize];
-        let (parent, new) = (parent as usize * count, self.nodes.sets.len());
-        self.nodes.sets.extend_from_within(parent..parent + count);
-        for at in start..=start + place {
-            let component = self.nodes.split[at as usize] as usize;
-            let option = 1_u64 << self.nodes.chosen[parent + component];
-            let set = &mut self.nodes.sets[new + component];
-            *set = if at == start + place { *set & !option } else { option };
-        }
-    }
-
-    fn expand(
-        &mut self,
-        part: Option<(u32, u32)>,
-        found: &mut Vec<(f64, State)>,
-        likelihoods: &mut Likelihoods<'_>,
-    ) {
+    /// Looks at the most promising state of a node and splits the node; answers how likely the state is, if possible.
+    fn expand(&mut self, part: Option<(u32, u32)>, likelihoods: &mut Likelihoods<'_>) -> Option<f64> {
         let new = self.nodes.sets.len();
-        self.add_sets(part);
-        let (product, row) = self.find_best(new);
+        self.nodes.add_sets(part, &self.odds);
+        let (product, row) = self.bests.update(&self.odds, &self.nodes.sets[new..]);
         if product == 0.0 && part.is_some() {
             // Too unlikely for machine numbers.
             self.nodes.sets.truncate(new);
-            return;
+            return None;
         }
-        let count = self.free.len();
-        let chosen = self.trial.best[row * count..(row + 1) * count].iter().map(|(_, option)| *option);
-        self.nodes.chosen.extend(chosen);
-        let mut state = self.template.clone();
-        for (at, &component) in self.free.iter().enumerate() {
-            state.0[component] = self.options[at][self.nodes.chosen[new + at] as usize];
+        let count = self.odds.free.len();
+        for (at, option) in self.bests.options(row, self.odds.rows()).enumerate() {
+            self.nodes.chosen.push(option);
+            self.state.0[self.odds.free[at]] = self.odds.mode(at, option);
         }
         let start = self.nodes.split.len();
-        if let Some(conflict) = self.conflict(new, &state, likelihoods) {
+        let mut likelihood = None;
+        if let Some(conflict) = self.conflict(new, likelihoods) {
             let components = self.known[conflict].iter().map(|(component, _)| *component);
             self.nodes
                 .split
                 .extend(components.filter(|&at| self.nodes.sets[new + at as usize].count_ones() > 1));
         } else {
-            let mut value: f64 = (0..self.prior.len())
-                .map(|row| {
-                    let table = &self.table[row * self.width..(row + 1) * self.width];
-                    let chosen = &self.nodes.chosen[new..new + count];
-                    chosen.iter().zip(&self.starts).fold(self.prior[row], |product, (option, start)| {
-                        product * table[start + *option as usize]
-                    })
-                })
-                .sum();
+            let mut value: f64 = self.odds.products(&self.nodes.chosen[new..]).sum();
             for &at in &self.joint {
-                let divisor = likelihoods.divisor(at, &state.0);
+                let divisor = likelihoods.divisor(at, &self.state.0);
                 value /= divisor.to_f64().unwrap_or(f64::MAX).max(1.0);
             }
-            if value > 0.0 {
-                found.push((value, state));
-            }
+            likelihood = (value > 0.0).then_some(value);
             let several = |at: &u32| self.nodes.sets[new + *at as usize].count_ones() > 1;
             self.nodes.split.extend((0..count as u32).filter(several));
         }
         let end = self.nodes.split.len();
         self.nodes.ends.push((start as u32, end as u32));
         self.divide(new, start..end);
-    }
-
-    /// Works out the best entries of the node whose sets start at `new`; answers the largest product and its prior state.
-    fn find_best(&mut self, new: usize) -> (f64, usize) {
-        let sets = &self.nodes.sets[new..];
-        self.trial.best.clear();
-        self.trial.best.resize(self.prior.len() * sets.len(), (0.0, 0));
-        self.trial.products.clear();
-        let mut best = (0.0, 0);
-        for row in 0..self.prior.len() {
-            let table = &self.table[row * self.width..(row + 1) * self.width];
-            let mut product = self.prior[row];
-            let entries = self.trial.best[row * sets.len()..].iter_mut();
-            for ((entry, &set), &start) in entries.zip(sets).zip(&self.starts) {
-                *entry = best_of(&table[start..], set);
-                product *= entry.0;
-                if product == 0.0 {
-                    break;
-                }
-            }
-            self.trial.products.push(product);
-            if product > best.0 {
-                best = (product, row);
-            }
-        }
-        best
+        likelihood
     }
 
     /// Queues the parts of a node that are left when the chosen state, or the conflict in it, is taken out.
     fn divide(&mut self, new: usize, split: std::ops::Range<usize>) {
-        let count = self.free.len();
-        let Trial { best, products, is_split, suffix, bounds } = &mut self.trial;
+        let (count, rows) = (self.odds.free.len(), self.odds.rows());
+        let Trial { is_split, fixed, suffix, bounds } = &mut self.trial;
         let split = &self.nodes.split[split];
         is_split.clear();
         is_split.resize(count, false);
         for &at in split {
             is_split[at as usize] = true;
         }
+        fixed.clone_from(&self.odds.prior);
+        for (best, _) in self.bests.components(rows).zip(&*is_split).filter(|(_, is_split)| !**is_split) {
+            multiply(fixed, best);
+        }
+        suffix.resize((split.len() + 1) * rows, 1.0);
+        suffix[split.len() * rows..].fill(1.0);
+        for (place, &at) in split.iter().enumerate().rev() {
+            let (before, after) = suffix.split_at_mut((place + 1) * rows);
+            let product = &mut before[place * rows..];
+            product.copy_from_slice(&after[..rows]);
+            multiply(product, self.bests.component(at as usize, rows));
+        }
         bounds.clear();
-        bounds.resize(split.len(), 0.0);
-        suffix.clear();
-        suffix.resize(split.len() + 1, 1.0);
-        for (row, &product) in products.iter().enumerate() {
-            if product == 0.0 {
-                continue;
-            }
-            let table = &self.table[row * self.width..(row + 1) * self.width];
-            let best = &best[row * count..(row + 1) * count];
-            let mut fixed = self.prior[row];
-            for ((value, _), _) in best.iter().zip(&*is_split).filter(|(_, is_split)| !**is_split) {
-                fixed *= value;
-            }
-            for (place, &at) in split.iter().enumerate().rev() {
-                suffix[place] = suffix[place + 1] * best[at as usize].0;
-            }
-            for (place, &at) in split.iter().enumerate() {
-                let at = at as usize;
-                let chosen = self.nodes.chosen[new + at];
-                let others = self.nodes.sets[new + at] & !(1 << chosen);
-                bounds[place] += fixed * best_of(&table[self.starts[at]..], others).0 * suffix[place + 1];
-                fixed *= table[self.starts[at] + chosen as usize];
-            }
+        for (place, &at) in split.iter().enumerate() {
+            let at = at as usize;
+            let chosen = self.nodes.chosen[new + at];
+            let others = self.nodes.sets[new + at] & !(1 << chosen);
+            let after = &suffix[(place + 1) * rows..][..rows];
+            let parts = fixed.iter().zip(self.odds.ranked(at)).zip(after);
+            bounds
+                .push(parts.map(|((fixed, ranked), after)| fixed * best_of(ranked, others).0 * after).sum());
+            multiply(fixed, self.odds.entries(at, chosen));
         }
         let parent = self.nodes.ends.len() as u32 - 1;
         for place in 0..self.trial.bounds.len() {
@@ -439,7 +318,7 @@ impl<'model> Search<'model> {
     }
 
     /// Why the state is impossible, if it is: which of the known sets of modes that cannot be together it holds.
-    fn conflict(&mut self, new: usize, state: &State, likelihoods: &mut Likelihoods<'_>) -> Option<usize> {
+    fn conflict(&mut self, new: usize, likelihoods: &mut Likelihoods<'_>) -> Option<usize> {
         let chosen = &self.nodes.chosen[new..];
         let holds = |conflict: &Vec<(u32, u8)>| {
             conflict.iter().all(|&(component, option)| chosen[component as usize] == option)
@@ -450,11 +329,11 @@ impl<'model> Search<'model> {
         }
         self.statistics.checked += 1;
         for &at in &self.joint {
-            let island = &self.model.islands[at];
-            let Some(assumed) = likelihoods.conflict(at, &state.0) else { continue };
-            let involved = island.components.iter().zip(&assumed.modes).filter(|(_, mode)| mode.is_some());
-            let conflict = involved.filter_map(|(component, _)| {
-                let at = self.free.binary_search(&(component.0 as usize)).ok()?;
+            let Some(involved) = likelihoods.conflict(at, &self.state.0, |id| self.odds.is_free(id)) else {
+                continue;
+            };
+            let conflict = involved.into_iter().filter_map(|component| {
+                let at = self.odds.free.binary_search(&(component.0 as usize)).ok()?;
                 Some((at as u32, chosen[at]))
             });
             self.statistics.conflicts += 1;
@@ -465,16 +344,38 @@ impl<'model> Search<'model> {
     }
 }
 
-/// The largest of a component's entries among the options in `set`, and which it is; zero for an empty set.
-fn best_of(entries: &[f64], mut set: u64) -> (f64, u8) {
-    let mut best = (0.0, set.trailing_zeros().min(63) as u8);
-    while set != 0 {
-        let option = set.trailing_zeros();
-        set &= set - 1;
-        let value = entries[option as usize];
-        if value > best.0 {
-            best = (value, option as u8);
+/// The order of found states: most likely first, equally likely ones in the order of their modes.
+fn rank(left: &(f64, State), right: &(f64, State)) -> Ordering {
+    right.0.total_cmp(&left.0).then_with(|| left.1.cmp(&right.1))
+}
+
+impl Nodes {
+    /// Room for as many nodes as a search of a usual model takes.
+    fn with_room_for(count: usize) -> Self {
+        const NODES: usize = 64;
+        Self {
+            sets: Vec::with_capacity(NODES * count),
+            chosen: Vec::with_capacity(NODES * count),
+            ends: Vec::with_capacity(NODES),
+            split: Vec::with_capacity(4 * NODES),
         }
     }
-    best
+
+    /// Adds the options of a new node: those of its parent, without what the parts before it hold.
+    fn add_sets(&mut self, part: Option<(u32, u32)>, odds: &Odds) {
+        let Some((parent, place)) = part else {
+            self.sets.extend((0..odds.free.len()).map(|at| odds.full_set(at)));
+            return;
+        };
+        let count = odds.free.len();
+        let (start, _) = self.ends[parent as usize];
+        let (parent, new) = (parent as usize * count, self.sets.len());
+        self.sets.extend_from_within(parent..parent + count);
+        for at in start..=start + place {
+            let component = self.split[at as usize] as usize;
+            let option = 1_u64 << self.chosen[parent + component];
+            let set = &mut self.sets[new + component];
+            *set = if at == start + place { *set & !option } else { option };
+        }
+    }
 }

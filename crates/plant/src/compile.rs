@@ -43,6 +43,8 @@ pub fn compile(file: &ControlFile) -> (Option<Model>, Vec<Diagnostic>) {
         return (None, diagnostics);
     }
     model.islands = consistency::islands(&model);
+    model.watchers = consistency::watchers(&model);
+    model.led_by_commands = crate::successor::led_by_commands(&model);
     if let Some(cycle) = crate::order::cycle(&model) {
         let names: Vec<&str> =
             cycle.iter().filter_map(|id| Some(model.component(*id)?.name.as_str())).collect();
@@ -66,6 +68,8 @@ const fn empty() -> Model {
         variables: Vec::new(),
         command_variables: Vec::new(),
         islands: Vec::new(),
+        watchers: Vec::new(),
+        led_by_commands: Vec::new(),
         full: Vec::new(),
     }
 }

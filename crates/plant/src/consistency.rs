@@ -13,14 +13,21 @@ pub(crate) struct Island {
     pub(crate) components: Vec<ComponentId>,
     /// Its variables in their order.
     pub(crate) variables: Vec<VariableId>,
-    /// Per component (by place in `components`) the places of components to look at again when its symbols change.
-    pub(crate) neighbours: Vec<Vec<u32>>,
-    /// By place and mode, the symbols of the mode's constraint.
-    pub(crate) symbols: Vec<Vec<Vec<u32>>>,
+    /// The symbols of its variables and, where a constraint asks for modes, of its components.
+    own_symbols: Vec<u32>,
+    /// By place (in `components`) and mode, what the mode says.
+    pub(crate) sayings: Vec<Vec<Saying>>,
     /// Whether some constraint asks for the mode of a component.
     pub(crate) speaks_of_modes: bool,
-    /// By place and mode, the mode's constraint as a table, where it can be one.
-    pub(crate) tables: Vec<Vec<Option<Table>>>,
+}
+
+/// What a mode says, prepared for propagation.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Saying {
+    /// The symbols of the mode's constraint.
+    symbols: Vec<u32>,
+    /// The constraint as a table, where it can be one.
+    table: Option<Table>,
 }
 
 /// A set of components of an island, of which bit `b` stands for all places that are `b` modulo 128.
@@ -42,7 +49,7 @@ pub(crate) struct Domains {
     reasons: Vec<Places>,
     /// What was narrowed: the symbol, and its set and reasons before.
     trail: Vec<(u32, u64, Places)>,
-    /// Places whose constraints have to be looked at.
+    /// Places whose constraints have to be looked at again.
     waiting: Vec<u32>,
     /// Per place of the island under work.
     standing: Vec<Standing>,
@@ -59,14 +66,29 @@ enum Standing {
     Done,
 }
 
+impl Standing {
+    /// Where a place stands that was not looked at yet.
+    const fn of(mode: Option<u8>) -> Self {
+        if mode.is_some() { Self::Waiting } else { Self::Done }
+    }
+}
+
+/// Which modes of an island the domains are the consequences of; at first of none.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Settled {
+    /// By place; empty where no consequences can be built on.
+    modes: Vec<Option<u8>>,
+    standing: Vec<Standing>,
+}
+
 impl Domains {
     /// All values for all symbols, except that `observation` is as it is.
     pub(crate) fn observed(model: &Model, observation: &Observation) -> Self {
         let mut domains = Self {
             sets: model.full.clone(),
             reasons: vec![0; model.full.len()],
-            trail: Vec::new(),
-            waiting: Vec::new(),
+            trail: Vec::with_capacity(32),
+            waiting: Vec::with_capacity(16),
             standing: Vec::new(),
         };
         for (&variable, &value) in &observation.0 {
@@ -91,7 +113,7 @@ impl Domains {
     }
 
     /// Leaves a symbol only values of `set`, because of `blame`; false when none are left.
-    fn narrow(&mut self, symbol: u32, set: u64, blame: Places, changed: &mut bool) -> bool {
+    pub(crate) fn narrow(&mut self, symbol: u32, set: u64, blame: Places) -> bool {
         let at = symbol as usize;
         let Some(&before) = self.sets.get(at) else { return false };
         let narrowed = before & set;
@@ -99,7 +121,6 @@ impl Domains {
             self.trail.push((symbol, before, self.reasons[at]));
             self.sets[at] = narrowed;
             self.reasons[at] |= blame;
-            *changed = true;
         }
         narrowed != 0
     }
@@ -136,101 +157,169 @@ impl<'model> Assumed<'model> {
         Some(&self.model.component(*self.island.components.get(place)?)?.modes.get(mode as usize)?.constraint)
     }
 
-    /// The symbols of the constraint at a place.
-    fn symbols(&self, place: usize) -> &'model [u32] {
-        let mode = self.modes.get(place).copied().flatten().unwrap_or(0);
-        let modes = self.island.symbols.get(place);
-        modes.and_then(|modes| modes.get(usize::from(mode))).map_or(&[], Vec::as_slice)
-    }
-
     /// Narrows `domains` to what the assumed modes leave; the error names components that cannot hold together.
     ///
     /// Answers whether the constraints of all assumed modes now hold whatever values are chosen.
     pub(crate) fn propagate(&self, domains: &mut Domains) -> Result<bool, Places> {
+        self.assume(Places::MAX, domains)?;
+        self.settle(domains)
+    }
+
+    /// The same as [`Self::propagate`] where `domains` are what `settled` tells, and stay so: nothing is to be undone.
+    ///
+    /// Takes back only what rests on modes that differ from the settled ones, and looks at those places again that this
+    /// concerns (as de Kleer's assumption-based truth maintenance does, 1986, with one label per symbol).
+    pub(crate) fn propagate_from(
+        &self,
+        settled: &mut Settled,
+        domains: &mut Domains,
+    ) -> Result<bool, Places> {
+        domains.trail.clear();
+        std::mem::swap(&mut domains.standing, &mut settled.standing);
+        let result = self.change(&settled.modes, domains).and_then(|()| self.drain(domains));
+        std::mem::swap(&mut domains.standing, &mut settled.standing);
+        if result.is_ok() {
+            settled.modes.clone_from(&self.modes);
+        } else {
+            // Not all consequences were drawn, so that there is nothing to build on.
+            settled.modes.clear();
+        }
+        result
+    }
+
+    /// Takes back what rests on other modes than these, and marks the places to look at again.
+    fn change(&self, before: &[Option<u8>], domains: &mut Domains) -> Result<(), Places> {
+        let mut differing = Places::MAX;
+        if before.len() == self.modes.len() {
+            differing = 0;
+            for (place, (mode, before)) in self.modes.iter().zip(before).enumerate() {
+                if mode != before {
+                    differing |= place_bit(place);
+                }
+            }
+        } else {
+            domains.standing.clear();
+            domains.standing.resize(self.modes.len(), Standing::Done);
+        }
+        if differing == 0 {
+            return Ok(());
+        }
+        for (place, mode) in self.modes.iter().enumerate() {
+            if differing & place_bit(place) != 0 {
+                domains.standing[place] = Standing::of(*mode);
+            }
+        }
+        for &symbol in &self.island.own_symbols {
+            if domains.reasons[symbol as usize] & differing == 0 {
+                continue;
+            }
+            domains.reasons[symbol as usize] = 0;
+            domains.sets[symbol as usize] = self.model.full[symbol as usize];
+            for &place in &self.model.watchers[symbol as usize] {
+                domains.standing[place as usize] = Standing::of(self.modes[place as usize]);
+            }
+        }
+        self.assume(differing, domains)?;
+        for (symbol, ..) in &domains.trail {
+            for &place in &self.model.watchers[*symbol as usize] {
+                domains.standing[place as usize] = Standing::of(self.modes[place as usize]);
+            }
+        }
+        Ok(())
+    }
+
+    /// Where constraints ask for modes, says which ones are assumed at `places`.
+    fn assume(&self, places: Places, domains: &mut Domains) -> Result<(), Places> {
         let modes = if self.island.speaks_of_modes { self.modes.as_slice() } else { &[] };
-        for (place, mode) in modes.iter().enumerate() {
+        for (place, mode) in modes.iter().enumerate().filter(|(place, _)| places & place_bit(*place) != 0) {
             let (Some(mode), Some(component)) = (mode, self.island.components.get(place)) else { continue };
             let symbol = Model::mode_symbol(*component);
             let set = 1_u64.checked_shl(u32::from(*mode)).unwrap_or(0);
-            if !domains.narrow(symbol, set, place_bit(place), &mut false) {
+            if !domains.narrow(symbol, set, place_bit(place)) {
                 return Err(domains.blame(&[symbol], place));
             }
         }
-        self.settle(domains)
+        Ok(())
     }
 
     /// Enforces all assumed constraints until nothing changes any more.
     fn settle(&self, domains: &mut Domains) -> Result<bool, Places> {
-        let count = self.modes.len();
-        domains.waiting.clear();
         domains.standing.clear();
-        domains.standing.resize(count, Standing::Done);
-        for (place, mode) in self.modes.iter().enumerate().rev() {
-            if mode.is_some() {
-                domains.standing[place] = Standing::Waiting;
-                domains.waiting.push(place as u32);
+        domains.standing.extend(self.modes.iter().map(|mode| Standing::of(*mode)));
+        self.drain(domains)
+    }
+
+    /// Looks at all places that are waiting, and at those that this concerns; answers whether none is left open.
+    ///
+    /// Places are looked at in their order, and again when a symbol they speak of was narrowed: where causes are declared
+    /// before effects, once each.
+    fn drain(&self, domains: &mut Domains) -> Result<bool, Places> {
+        domains.waiting.clear();
+        for first in 0..self.modes.len() {
+            if domains.standing[first] != Standing::Waiting {
+                continue;
+            }
+            let mut next = Some(first);
+            while let Some(place) = next {
+                let mark = domains.mark();
+                let holds = self.enforce(place, domains)?;
+                domains.standing[place] = if holds { Standing::Done } else { Standing::Idle };
+                self.wake(mark, domains);
+                next = domains.waiting.pop().map(|place| place as usize);
             }
         }
-        let mut open = domains.waiting.len();
-        while let Some(place) = domains.waiting.pop() {
-            let place = place as usize;
-            let mut changed = false;
-            if self.enforce(place, domains, &mut changed)? {
-                domains.standing[place] = Standing::Done;
-                open -= 1;
-            } else {
-                domains.standing[place] = Standing::Idle;
-            }
-            if changed {
-                // Itself included: what it says may have come to hold, or may say more.
-                for &neighbour in self.island.neighbours.get(place).into_iter().flatten() {
-                    if domains.standing[neighbour as usize] == Standing::Idle {
-                        domains.standing[neighbour as usize] = Standing::Waiting;
-                        domains.waiting.push(neighbour);
-                    }
+        Ok(!domains.standing.contains(&Standing::Idle))
+    }
+
+    /// Has those places looked at again that speak of what was narrowed since `mark`.
+    fn wake(&self, mark: usize, domains: &mut Domains) {
+        for (symbol, ..) in &domains.trail[mark..] {
+            for &place in self.model.watchers.get(*symbol as usize).into_iter().flatten() {
+                if let Some(standing @ Standing::Idle) = domains.standing.get_mut(place as usize) {
+                    *standing = Standing::Waiting;
+                    domains.waiting.push(place);
                 }
             }
         }
-        Ok(open == 0)
     }
 
     /// Enforces the constraint at a place; answers whether it now holds whatever is chosen.
-    fn enforce(&self, place: usize, domains: &mut Domains, changed: &mut bool) -> Result<bool, Places> {
-        let Some(mode) = self.modes.get(place).copied().flatten() else { return Ok(true) };
-        let tables = self.island.tables.get(place);
-        let Some(Some(table)) = tables.and_then(|tables| tables.get(usize::from(mode))) else {
-            return self.enforce_formula(place, domains, changed);
-        };
-        let mut is_true = true;
-        for at in 0..table.clause_count() {
-            match table.clause(at, &domains.sets) {
-                Clause::True => {}
-                Clause::Open => is_true = false,
-                Clause::False => return Err(domains.blame(self.symbols(place), place)),
-                Clause::Needs(members) => {
-                    let blame = domains.blame(self.symbols(place), place);
-                    for &(symbol, set) in members {
-                        domains.narrow(symbol, set, blame, changed);
+    fn enforce(&self, place: usize, domains: &mut Domains) -> Result<bool, Places> {
+        let Some(mode) = self.modes[place] else { return Ok(true) };
+        let Some(saying) = self.island.sayings[place].get(usize::from(mode)) else { return Ok(true) };
+        let Some(table) = &saying.table else { return self.enforce_formula(place, saying, domains) };
+        loop {
+            let mark = domains.mark();
+            let (mut is_true, mut start) = (true, 0);
+            while let Some((clause, next)) = table.clause(start, &domains.sets) {
+                start = next;
+                match clause {
+                    Clause::True => {}
+                    Clause::Open => is_true = false,
+                    Clause::False => return Err(domains.blame(&saying.symbols, place)),
+                    Clause::Needs(members) => {
+                        let blame = domains.blame(&saying.symbols, place);
+                        for member in members {
+                            domains.narrow(member.symbol, member.set, blame);
+                        }
                     }
                 }
             }
+            // What one clause left may decide another.
+            if table.is_single() || domains.mark() == mark {
+                return Ok(is_true);
+            }
         }
-        Ok(is_true)
     }
 
     /// The same for constraints that are nested deeply.
-    fn enforce_formula(
-        &self,
-        place: usize,
-        domains: &mut Domains,
-        changed: &mut bool,
-    ) -> Result<bool, Places> {
+    fn enforce_formula(&self, place: usize, saying: &Saying, domains: &mut Domains) -> Result<bool, Places> {
         let Some(formula) = self.formula(place) else { return Ok(true) };
         if formula.truth(&domains.sets) == Truth::True {
             return Ok(true);
         }
-        let blame = domains.blame(self.symbols(place), place);
-        if enforce(formula, domains, blame, changed) { Ok(false) } else { Err(blame) }
+        let blame = domains.blame(&saying.symbols, place);
+        if enforce(formula, domains, blame) { Ok(false) } else { Err(blame) }
     }
 
     /// Whether some completion of `domains` satisfies all assumed modes; the error as in [`Self::propagate`].
@@ -254,7 +343,7 @@ impl<'model> Assumed<'model> {
         let mut blame = place_bit(place);
         for value in crate::observe::values(set) {
             let mark = domains.mark();
-            domains.narrow(symbol, 1 << value, 0, &mut false);
+            domains.narrow(symbol, 1 << value, 0);
             match self.settle(domains).and_then(|is_true| if is_true { Ok(()) } else { self.search(domains) })
             {
                 Ok(()) => return Ok(()),
@@ -284,12 +373,15 @@ impl<'model> Assumed<'model> {
         })
     }
 
-    /// Constraints not yet true whatever happens, by place.
-    pub(crate) fn open_places(&self, domains: &Domains) -> Vec<(usize, &'model Formula)> {
-        (0..self.modes.len())
-            .filter_map(|place| Some((place, self.formula(place)?)))
-            .filter(|(_, formula)| formula.truth(&domains.sets) == Truth::Open)
-            .collect()
+    /// The symbols of the constraints that are not yet true whatever happens.
+    pub(crate) fn open_symbols(&self, settled: &Settled) -> impl Iterator<Item = &'model [u32]> {
+        let open = settled.standing.iter().enumerate().filter(|(_, standing)| **standing == Standing::Idle);
+        open.filter_map(|(place, _)| Some(self.saying(place)?.symbols.as_slice()))
+    }
+
+    fn saying(&self, place: usize) -> Option<&'model Saying> {
+        let mode = self.modes.get(place).copied().flatten()?;
+        self.island.sayings.get(place)?.get(usize::from(mode))
     }
 
     /// Narrows after one symbol was fixed from outside.
@@ -299,11 +391,11 @@ impl<'model> Assumed<'model> {
 }
 
 /// Removes values that `formula` rules out; false when none are left.
-fn enforce(formula: &Formula, domains: &mut Domains, blame: Places, changed: &mut bool) -> bool {
+fn enforce(formula: &Formula, domains: &mut Domains, blame: Places) -> bool {
     match formula {
         Formula::Constant(value) => *value,
-        Formula::Member { symbol, set } => domains.narrow(*symbol, *set, blame, changed),
-        Formula::All(parts) => parts.iter().all(|part| enforce(part, domains, blame, changed)),
+        Formula::Member { symbol, set } => domains.narrow(*symbol, *set, blame),
+        Formula::All(parts) => parts.iter().all(|part| enforce(part, domains, blame)),
         Formula::Any(parts) => {
             let mut possible = None;
             for part in parts {
@@ -314,7 +406,7 @@ fn enforce(formula: &Formula, domains: &mut Domains, blame: Places, changed: &mu
                     Truth::Open => possible = Some(part),
                 }
             }
-            possible.is_some_and(|part| enforce(part, domains, blame, changed))
+            possible.is_some_and(|part| enforce(part, domains, blame))
         }
     }
 }
@@ -323,7 +415,6 @@ fn enforce(formula: &Formula, domains: &mut Domains, blame: Places, changed: &mu
 pub(crate) fn islands(model: &Model) -> Vec<Island> {
     let symbols = model.components.len() + model.variables.len();
     let mut parents: Vec<usize> = (0..symbols).collect();
-    let mut touched: Vec<Vec<u32>> = Vec::with_capacity(model.components.len());
     for (at, component) in model.components.iter().enumerate() {
         let mut mine = vec![at as u32];
         for mode in &component.modes {
@@ -336,7 +427,6 @@ pub(crate) fn islands(model: &Model) -> Vec<Island> {
             let (left, right) = (root(&mut parents, at), root(&mut parents, symbol as usize));
             parents[left.max(right)] = left.min(right);
         }
-        touched.push(mine);
     }
     // A variable that no mode speaks of stays with its component.
     for (at, variable) in model.variables.iter().enumerate() {
@@ -350,10 +440,9 @@ pub(crate) fn islands(model: &Model) -> Vec<Island> {
     let empty = || Island {
         components: Vec::new(),
         variables: Vec::new(),
-        neighbours: Vec::new(),
-        symbols: Vec::new(),
+        own_symbols: Vec::new(),
+        sayings: Vec::new(),
         speaks_of_modes: false,
-        tables: Vec::new(),
     };
     for component in model.component_ids() {
         let root = root(&mut parents, component.0 as usize);
@@ -366,35 +455,38 @@ pub(crate) fn islands(model: &Model) -> Vec<Island> {
     let mut islands: Vec<Island> = islands.into_values().collect();
     for island in &mut islands {
         let modes = island.components.iter().filter_map(|component| model.component(*component));
-        island.tables = modes
-            .clone()
-            .map(|component| component.modes.iter().map(|mode| Table::new(&mode.constraint)).collect())
-            .collect();
-        island.symbols = modes.map(|component| component.modes.iter().map(symbols_of).collect()).collect();
-        let mut asked = island.symbols.iter().flatten().flatten();
+        island.sayings = modes.map(|component| component.modes.iter().map(said).collect()).collect();
+        let mut asked = island.sayings.iter().flatten().flat_map(|saying| &saying.symbols);
         island.speaks_of_modes = asked.any(|&symbol| (symbol as usize) < model.components.len());
-        let shares = |left: &ComponentId, right: &ComponentId| {
-            let right = &touched[right.0 as usize];
-            touched[left.0 as usize].iter().any(|symbol| right.binary_search(symbol).is_ok())
-        };
-        island.neighbours = island
-            .components
-            .iter()
-            .map(|component| {
-                let others = island.components.iter().enumerate();
-                others.filter(|(_, other)| shares(component, other)).map(|(place, _)| place as u32).collect()
-            })
-            .collect();
+        let variables = island.variables.iter().map(|variable| model.variable_symbol(*variable));
+        let components = island.components.iter().map(|component| Model::mode_symbol(*component));
+        island.own_symbols = variables.chain(components.filter(|_| island.speaks_of_modes)).collect();
     }
     islands
 }
 
-fn symbols_of(mode: &Mode) -> Vec<u32> {
+/// By symbol, the places (in the island that the symbol belongs to) of the components whose modes speak of it.
+pub(crate) fn watchers(model: &Model) -> Vec<Vec<u32>> {
+    let mut watchers: Vec<Vec<u32>> = vec![Vec::new(); model.full.len()];
+    for island in &model.islands {
+        for (place, sayings) in (0..).zip(&island.sayings) {
+            for &symbol in sayings.iter().flat_map(|saying| &saying.symbols) {
+                let Some(watchers) = watchers.get_mut(symbol as usize) else { continue };
+                if watchers.last() != Some(&place) {
+                    watchers.push(place);
+                }
+            }
+        }
+    }
+    watchers
+}
+
+fn said(mode: &Mode) -> Saying {
     let mut symbols = Vec::new();
     mode.constraint.symbols(&mut |symbol| symbols.push(symbol));
     symbols.sort_unstable();
     symbols.dedup();
-    symbols
+    Saying { symbols, table: Table::new(&mode.constraint) }
 }
 
 fn root(parents: &mut [usize], mut at: usize) -> usize {

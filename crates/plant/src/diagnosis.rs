@@ -99,7 +99,7 @@ fn minimal(
     }
     let mut observed = Domains::observed(model, observation);
     let places = assumed.check(&mut observed).err()?;
-    shrink(&mut assumed, &mut observed, places);
+    shrink(&mut assumed, &mut observed, places, |_| true);
     let mut needed = observation.clone();
     for variable in observation.0.keys() {
         let mut fewer = needed.clone();
@@ -116,8 +116,13 @@ fn minimal(
     Some(Conflict { modes: modes.collect(), observations: needed.0.into_iter().collect() })
 }
 
-/// Drops assumptions until every one that is left is needed for the contradiction.
-pub(crate) fn shrink(assumed: &mut Assumed<'_>, observed: &mut Domains, mut places: Places) {
+/// Drops assumptions until every one that is left, and may go, is needed for the contradiction.
+pub(crate) fn shrink(
+    assumed: &mut Assumed<'_>,
+    observed: &mut Domains,
+    mut places: Places,
+    may_go: impl Fn(usize) -> bool,
+) {
     let keep = |assumed: &mut Assumed<'_>, places: Places| {
         for (place, mode) in assumed.modes.iter_mut().enumerate() {
             if places & place_bit(place) == 0 {
@@ -132,6 +137,9 @@ pub(crate) fn shrink(assumed: &mut Assumed<'_>, observed: &mut Domains, mut plac
         assumed.modes = before;
     }
     for place in 0..assumed.modes.len() {
+        if !may_go(place) {
+            continue;
+        }
         let Some(mode) = assumed.modes[place].take() else { continue };
         match assumed.check(observed) {
             Ok(()) => assumed.modes[place] = Some(mode),

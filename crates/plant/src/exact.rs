@@ -59,12 +59,11 @@ pub(crate) fn weigh(
         let mut divisor = BigUint::one();
         for at in 0..model.islands.len() {
             let one = likelihoods.divisor(at, &state.0);
-            if one.is_zero() {
-                divisor = one;
-                break;
-            }
             if !one.is_one() {
                 divisor *= one;
+            }
+            if divisor.is_zero() {
+                break;
             }
         }
         if !divisor.is_zero() {

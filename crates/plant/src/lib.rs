@@ -14,6 +14,7 @@ mod inherit;
 pub mod likelihood;
 pub mod model;
 pub mod observe;
+mod odds;
 pub mod order;
 pub mod policy;
 pub mod probability;

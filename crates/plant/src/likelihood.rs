@@ -5,67 +5,59 @@ use std::collections::BTreeMap;
 use num_bigint::BigUint;
 use num_traits::{One as _, Zero as _};
 
-use crate::consistency::{Assumed, Domains, Island, Places};
+use crate::consistency::{Assumed, Domains, Island, Places, Settled};
 use crate::diagnosis::shrink;
-use crate::model::{Model, Observation};
+use crate::model::{ComponentId, Model, Observation};
 use crate::observe::values;
-
-/// How many observations of the observed variables the modes admit; zero if they cannot hold.
-///
-/// `observed` are the island's observed variables; `free` has all values for all symbols, and is left so. Counting is
-/// over the parts that the modes leave undetermined; exponential in the largest of them at worst.
-fn admitted(assumed: &Assumed<'_>, observed: &[u32], free: &mut Domains) -> BigUint {
-    let mark = free.mark();
-    let count = match assumed.propagate(free) {
-        Err(_) => BigUint::zero(),
-        Ok(true) => product_of_values(observed, free),
-        Ok(false) => product_over_parts(assumed, free, observed.to_vec()),
-    };
-    free.undo(mark);
-    count
-}
 
 /// In how many ways variables that nothing ties together can be observed.
 fn product_of_values(observed: &[u32], domains: &Domains) -> BigUint {
+    // Gathered in a machine word before it meets the long number.
     let mut product = BigUint::one();
+    let mut gathered = 1_u64;
     for symbol in observed {
-        let values = domains.sets.get(*symbol as usize).map_or(0, |set| set.count_ones());
-        if values != 1 {
-            product *= values;
-        }
+        let values = u64::from(domains.sets.get(*symbol as usize).map_or(0, |set| set.count_ones()));
+        gathered = gathered.checked_mul(values).unwrap_or_else(|| {
+            product *= gathered;
+            values
+        });
+    }
+    if gathered != 1 {
+        product *= gathered;
     }
     product
 }
 
-fn product_over_parts(assumed: &Assumed<'_>, domains: &Domains, mut observed: Vec<u32>) -> BigUint {
+/// The same where constraints are still open: counted part by part, exponentially in the largest of them at worst.
+fn product_over_parts(
+    assumed: &Assumed<'_>,
+    settled: &Settled,
+    domains: &mut Domains,
+    observed: &[u32],
+) -> BigUint {
+    let mut outside = observed.to_vec();
     let mut product = BigUint::one();
-    for part in parts(assumed, domains) {
-        let (inside, outside): (Vec<u32>, Vec<u32>) =
-            observed.into_iter().partition(|symbol| part.contains(symbol));
-        observed = outside;
+    for part in parts(assumed, settled, domains) {
+        let inside: Vec<u32> = observed.iter().copied().filter(|symbol| part.contains(symbol)).collect();
         product *= count(assumed, domains, &inside);
         if product.is_zero() {
             return product;
         }
+        outside.retain(|symbol| !part.contains(symbol));
     }
-    product * product_of_values(&observed, domains)
+    product * product_of_values(&outside, domains)
 }
 
 /// The undetermined symbols of constraints that are still open, joined where they share one.
-fn parts(assumed: &Assumed<'_>, domains: &Domains) -> Vec<Vec<u32>> {
+fn parts(assumed: &Assumed<'_>, settled: &Settled, domains: &Domains) -> Vec<Vec<u32>> {
     let mut parts: Vec<Vec<u32>> = Vec::new();
-    for (_, formula) in assumed.open_places(domains) {
-        let mut mine = Vec::new();
-        formula.symbols(&mut |symbol| {
-            if domains.sets.get(symbol as usize).is_some_and(|set| set.count_ones() > 1) {
-                mine.push(symbol);
+    let is_open = |symbol: &u32| domains.sets.get(*symbol as usize).is_some_and(|set| set.count_ones() > 1);
+    for symbols in assumed.open_symbols(settled) {
+        let mut mine: Vec<u32> = symbols.iter().copied().filter(is_open).collect();
+        for at in (0..parts.len()).rev() {
+            if parts[at].iter().any(|symbol| mine.contains(symbol)) {
+                mine.extend(parts.swap_remove(at));
             }
-        });
-        let (touching, apart): (Vec<Vec<u32>>, Vec<Vec<u32>>) =
-            parts.into_iter().partition(|part| part.iter().any(|symbol| mine.contains(symbol)));
-        parts = apart;
-        for part in touching {
-            mine.extend(part);
         }
         mine.sort_unstable();
         mine.dedup();
@@ -74,20 +66,21 @@ fn parts(assumed: &Assumed<'_>, domains: &Domains) -> Vec<Vec<u32>> {
     parts
 }
 
-fn count(assumed: &Assumed<'_>, domains: &Domains, observed: &[u32]) -> BigUint {
+fn count(assumed: &Assumed<'_>, domains: &mut Domains, observed: &[u32]) -> BigUint {
     let open = observed
         .iter()
         .find(|&&symbol| domains.sets.get(symbol as usize).is_some_and(|set| set.count_ones() > 1));
     let Some(&symbol) = open else {
-        return if assumed.satisfy(&mut domains.clone()).is_ok() { BigUint::one() } else { BigUint::zero() };
+        return if assumed.check(domains).is_ok() { BigUint::one() } else { BigUint::zero() };
     };
     let mut sum = BigUint::zero();
     for value in values(domains.sets.get(symbol as usize).copied().unwrap_or(0)) {
-        let mut branch = domains.clone();
-        branch.sets[symbol as usize] = 1 << value;
-        if assumed.settle_all(&mut branch).is_ok() {
-            sum += count(assumed, &branch, observed);
+        let mark = domains.mark();
+        domains.narrow(symbol, 1 << value, 0);
+        if assumed.settle_all(domains).is_ok() {
+            sum += count(assumed, domains, observed);
         }
+        domains.undo(mark);
     }
     sum
 }
@@ -97,8 +90,10 @@ pub(crate) struct Likelihoods<'model> {
     model: &'model Model,
     /// What modes may be, given what is observed.
     observed: Domains,
-    /// What they may be without that.
+    /// What they may be without that, given the modes that were judged last.
     free: Domains,
+    /// By island, which modes these were.
+    settled: Vec<Settled>,
     /// By island, its observed variables.
     symbols: Vec<Vec<u32>>,
     /// By island and the modes of its components.
@@ -117,6 +112,7 @@ impl<'model> Likelihoods<'model> {
             model,
             observed: Domains::observed(model, observation),
             free: Domains::observed(model, &Observation::default()),
+            settled: vec![Settled::default(); model.islands.len()],
             symbols: model.islands.iter().map(observed_of).collect(),
             known: vec![BTreeMap::new(); model.islands.len()],
             modes: Vec::new(),
@@ -124,18 +120,17 @@ impl<'model> Likelihoods<'model> {
     }
 
     /// The number of observations that the island's modes admit, or zero if they do not admit this one.
-    pub(crate) fn divisor(&mut self, at: usize, state: &[u8]) -> BigUint {
-        let Some(island) = self.model.islands.get(at) else { return BigUint::one() };
+    pub(crate) fn divisor(&mut self, at: usize, state: &[u8]) -> &BigUint {
+        let island = &self.model.islands[at];
         self.modes.clear();
         let modes = island.components.iter().filter_map(|component| state.get(component.0 as usize));
         self.modes.extend(modes);
-        if let Some(known) = self.known[at].get(&self.modes) {
-            return known.clone();
+        if !self.known[at].contains_key(&self.modes) {
+            let assumed = Assumed::all(self.model, island, state);
+            let divisor = self.judge(at, &assumed).unwrap_or_default();
+            self.known[at].insert(self.modes.clone(), divisor);
         }
-        let assumed = Assumed::all(self.model, island, state);
-        let divisor = self.judge(at, &assumed).unwrap_or_default();
-        self.known[at].insert(self.modes.clone(), divisor.clone());
-        divisor
+        &self.known[at][&self.modes]
     }
 
     /// How many observations the assumed modes of an island admit; the error names components that cannot be in theirs.
@@ -143,32 +138,30 @@ impl<'model> Likelihoods<'model> {
     /// Where the modes leave no constraint open, what they say without the observation tells whether they admit it.
     fn judge(&mut self, at: usize, assumed: &Assumed<'_>) -> Result<BigUint, Places> {
         let observed = &self.symbols[at];
-        let mark = self.free.mark();
-        let result = match assumed.propagate(&mut self.free) {
-            Err(places) => Err(places),
-            Ok(true) => {
-                let contradicts = |symbol: &&u32| {
-                    let sets =
-                        self.free.sets.get(**symbol as usize).zip(self.observed.sets.get(**symbol as usize));
-                    sets.is_some_and(|(left, right)| left & right == 0)
-                };
-                match observed.iter().find(contradicts) {
-                    Some(contradicted) => Err(self.free.blame_of(*contradicted)),
-                    None => Ok(product_of_values(observed, &self.free)),
-                }
-            }
-            Ok(false) => {
-                self.free.undo(mark);
-                assumed.check(&mut self.observed)?;
-                return Ok(admitted(assumed, observed, &mut self.free));
-            }
+        let is_settled = assumed.propagate_from(&mut self.settled[at], &mut self.free)?;
+        let contradicts = |symbol: &&u32| {
+            let sets = self.free.sets.get(**symbol as usize).zip(self.observed.sets.get(**symbol as usize));
+            sets.is_some_and(|(left, right)| left & right == 0)
         };
-        self.free.undo(mark);
-        result
+        if let Some(contradicted) = observed.iter().find(contradicts) {
+            return Err(self.free.blame_of(*contradicted));
+        }
+        if is_settled {
+            return Ok(product_of_values(observed, &self.free));
+        }
+        assumed.check(&mut self.observed)?;
+        Ok(product_over_parts(assumed, &self.settled[at], &mut self.free, observed))
     }
 
-    /// Why the modes of an island do not admit the observation, if they do not: modes of which none can be left out.
-    pub(crate) fn conflict(&mut self, at: usize, state: &[u8]) -> Option<Assumed<'model>> {
+    /// Why the modes of an island do not admit the observation, if they do not: components of which none can be left out.
+    ///
+    /// Components that are not free are in their modes anyhow; they are not tried to be left out.
+    pub(crate) fn conflict(
+        &mut self,
+        at: usize,
+        state: &[u8],
+        is_free: impl Fn(ComponentId) -> bool,
+    ) -> Option<Vec<ComponentId>> {
         let island = self.model.islands.get(at)?;
         let mut assumed = Assumed::all(self.model, island, state);
         match self.judge(at, &assumed) {
@@ -180,8 +173,10 @@ impl<'model> Likelihoods<'model> {
                 None
             }
             Err(places) => {
-                shrink(&mut assumed, &mut self.observed, places);
-                Some(assumed)
+                let may_go = |place: usize| island.components.get(place).is_some_and(|id| is_free(*id));
+                shrink(&mut assumed, &mut self.observed, places, may_go);
+                let involved = island.components.iter().zip(&assumed.modes);
+                Some(involved.filter(|(_, mode)| mode.is_some()).map(|(component, _)| *component).collect())
             }
         }
     }

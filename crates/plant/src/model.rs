@@ -126,6 +126,10 @@ pub struct Model {
     pub command_variables: Vec<CommandVariable>,
     /// Parts whose mode constraints share nothing with those of other parts.
     pub(crate) islands: Vec<Island>,
+    /// Per symbol the places, in its island, of the components whose modes speak of it.
+    pub(crate) watchers: Vec<Vec<u32>>,
+    /// Per component its modes in which only commands decide where it goes, one bit each.
+    pub(crate) led_by_commands: Vec<u64>,
     /// Per symbol all its values, one bit each.
     pub(crate) full: Vec<u64>,
 }
@@ -183,6 +187,11 @@ impl Model {
 
     pub(crate) fn command_symbol(&self, command: CommandVariableId) -> u32 {
         (self.components.len() + self.variables.len()) as u32 + command.0
+    }
+
+    /// Whether only commands decide where a component goes from a mode.
+    pub(crate) fn is_led_by_commands(&self, component: ComponentId, mode: u8) -> bool {
+        self.led_by_commands.get(component.0 as usize).is_some_and(|modes| modes >> mode & 1 == 1)
     }
 
     /// The variable of a symbol, if it is one.

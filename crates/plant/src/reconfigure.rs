@@ -155,7 +155,7 @@ impl Planner<'_> {
             let mut assumed =
                 Assumed { model: self.model, island, modes: island.components.iter().map(wanted).collect() };
             let Err(places) = assumed.check(&mut free) else { continue };
-            shrink(&mut assumed, &mut free, places);
+            shrink(&mut assumed, &mut free, places, |_| true);
             let culprits: Vec<ComponentId> = island
                 .components
                 .iter()

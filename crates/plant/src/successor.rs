@@ -6,7 +6,7 @@ use thiserror::Error;
 use crate::belief::State;
 use crate::consistency::{Assumed, Domains};
 use crate::formula::{Formula, Truth};
-use crate::model::{CommandVariableId, Commands, ComponentId, Model, Observation};
+use crate::model::{CommandVariableId, Commands, Component, ComponentId, Mode, Model, Observation};
 
 /// What can go wrong in a step of estimation or simulation.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -155,10 +155,22 @@ pub(crate) fn distributions(
     let mut choices = Vec::with_capacity(2 * states.len() * components);
     let mut denominators = Vec::with_capacity(states.len() * components);
     let mut common = vec![1_u64; components];
-    for state in states {
+    for (row, state) in states.iter().enumerate() {
+        let before = row.checked_sub(1).map(|before| (states[before], before * components));
         for (component, common) in model.component_ids().zip(&mut common) {
             starts.push(choices.len() as u32);
-            let denominator = distribute(model, component, state, commands, &mut choices)?;
+            let mode = state.mode(component);
+            // States that are believed at once differ in few components.
+            let denominator = match before {
+                Some((before, first))
+                    if before.mode(component) == mode && model.is_led_by_commands(component, mode) =>
+                {
+                    let at = first + component.0 as usize;
+                    choices.extend_from_within(starts[at] as usize..starts[at + 1] as usize);
+                    denominators[at]
+                }
+                _ => distribute(model, component, state, commands, &mut choices)?,
+            };
             denominators.push(denominator);
             if *common != denominator {
                 *common = lcm(*common, denominator);
@@ -174,6 +186,22 @@ pub(crate) fn distributions(
         }
     }
     Ok(Choices { components, starts, weights: choices })
+}
+
+/// Per component the modes in which only commands decide where it goes, one bit each; called once per model.
+pub(crate) fn led_by_commands(model: &Model) -> Vec<u64> {
+    let asks_only_commands = |mode: &Mode| {
+        let mut result = true;
+        for transition in &mode.transitions {
+            transition.guard.symbols(&mut |symbol| result &= model.symbol_command(symbol).is_some());
+        }
+        result
+    };
+    let modes_of = |component: &Component| {
+        let modes = component.modes.iter().enumerate().filter(|(_, mode)| asks_only_commands(mode));
+        modes.fold(0, |modes, (at, _)| modes | 1 << at)
+    };
+    model.components.iter().map(modes_of).collect()
 }
 
 /// Whether a guard is true whatever the state and the commands leave open.

@@ -7,12 +7,27 @@ use crate::formula::{Formula, conjunction};
 /// A constraint as clauses, of each of which one alternative has to hold, which is a conjunction of memberships.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Table {
-    /// Symbols with the values that they may have.
-    members: Vec<(u32, u64)>,
-    /// Where each alternative ends among the members.
-    alternatives: Vec<u32>,
-    /// Where each clause ends among the alternatives.
-    clauses: Vec<u32>,
+    /// The memberships of all alternatives of all clauses, in a row.
+    members: Vec<Member>,
+    /// How many clauses there are.
+    clauses: u32,
+}
+
+/// That a symbol has one of some values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Member {
+    pub(crate) symbol: u32,
+    /// What ends with it.
+    ends: Ends,
+    pub(crate) set: u64,
+}
+
+/// What ends with a membership.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+enum Ends {
+    Nothing,
+    Alternative,
+    Clause,
 }
 
 /// What the values that are left make of a clause.
@@ -22,13 +37,13 @@ pub(crate) enum Clause<'table> {
     /// It cannot hold.
     False,
     /// It holds only if these memberships do.
-    Needs(&'table [(u32, u64)]),
+    Needs(&'table [Member]),
     /// There are several ways for it to hold.
     Open,
 }
 
 impl Table {
-    /// The table of a constraint; `None` if it is nested deeper than a table can say.
+    /// The table of a constraint; `None` if it is nested deeper than a table can say, or says nothing or too much.
     pub(crate) fn new(formula: &Formula) -> Option<Self> {
         let mut table = Self::default();
         match formula {
@@ -39,15 +54,17 @@ impl Table {
     }
 
     fn add_clause(&mut self, clause: &Formula) -> Option<()> {
+        let before = self.members.len();
         match clause {
             Formula::Constant(true) => return Some(()),
-            Formula::Constant(false) => {}
             Formula::Any(alternatives) => {
                 alternatives.iter().try_for_each(|alternative| self.add_alternative(alternative))?;
             }
             alternative => self.add_alternative(alternative)?,
         }
-        self.clauses.push(self.alternatives.len() as u32);
+        // A clause that can never hold has no members that could tell so.
+        self.members.get_mut(before..)?.last_mut()?.ends = Ends::Clause;
+        self.clauses += 1;
         Some(())
     }
 
@@ -62,45 +79,49 @@ impl Table {
             let Some(both) = conjunction(&members, &[(*symbol, *set)]) else { return Some(()) };
             members = both;
         }
-        self.members.append(&mut members);
-        self.alternatives.push(self.members.len() as u32);
+        let members = members.into_iter().map(|(symbol, set)| Member { symbol, ends: Ends::Nothing, set });
+        self.members.extend(members);
+        // One that always holds has no members either.
+        let last = if parts.is_empty() { None } else { self.members.last_mut() };
+        last?.ends = Ends::Alternative;
         Some(())
     }
 
-    /// How many clauses there are; all have to hold.
-    pub(crate) const fn clause_count(&self) -> usize {
-        self.clauses.len()
+    /// Whether there is only one clause; all have to hold.
+    pub(crate) const fn is_single(&self) -> bool {
+        self.clauses == 1
     }
 
-    /// What `domains` make of a clause.
-    pub(crate) fn clause(&self, at: usize, domains: &[u64]) -> Clause<'_> {
-        let first = at.checked_sub(1).map_or(0, |before| self.clauses[before] as usize);
-        let mut start = first.checked_sub(1).map_or(0, |before| self.alternatives[before] as usize);
-        let mut possible = None;
-        let mut is_open = false;
-        for &end in &self.alternatives[first..self.clauses[at] as usize] {
-            let members = &self.members[start..end as usize];
-            start = end as usize;
-            let (mut misses, mut exceeds) = (false, 0);
-            for &(symbol, set) in members {
-                let domain = domains[symbol as usize];
-                misses |= domain & set == 0;
-                exceeds |= domain & !set;
-            }
-            if misses {
+    /// What `domains` make of the clause whose members start at `start`, and where the next one starts.
+    #[inline]
+    pub(crate) fn clause(&self, start: usize, domains: &[u64]) -> Option<(Clause<'_>, usize)> {
+        let members = self.members.get(start..)?;
+        let (mut first, mut misses, mut exceeds) = (0, false, 0);
+        let (mut is_true, mut possible, mut needed) = (false, 0_u32, 0..0);
+        for (at, member) in members.iter().enumerate() {
+            let domain = domains[member.symbol as usize];
+            misses |= domain & member.set == 0;
+            exceeds |= domain & !member.set;
+            if member.ends == Ends::Nothing {
                 continue;
             }
-            if exceeds == 0 {
-                return Clause::True;
+            if !misses {
+                is_true |= exceeds == 0;
+                possible += 1;
+                needed = first..at + 1;
             }
-            is_open |= possible.is_some();
-            possible = Some(members);
+            (first, misses, exceeds) = (at + 1, false, 0);
+            if member.ends == Ends::Clause {
+                let clause = match possible {
+                    _ if is_true => Clause::True,
+                    0 => Clause::False,
+                    1 => Clause::Needs(&members[needed]),
+                    _ => Clause::Open,
+                };
+                return Some((clause, start + at + 1));
+            }
         }
-        match possible {
-            _ if is_open => Clause::Open,
-            Some(members) => Clause::Needs(members),
-            None => Clause::False,
-        }
+        None
     }
 }
 
@@ -126,17 +147,21 @@ mod tests {
         ]);
         let Formula::All(parts) = &formula else { panic!("a conjunction") };
         let table = Table::new(&formula).expect("flat enough");
-        assert_eq!(table.clause_count(), 3);
+        assert_eq!(table.clauses, 3);
         for code in 0..27_u64 {
             let domains = [code % 3 + 1, code / 3 % 3 + 1, code / 9 + 1];
-            for (at, part) in parts.iter().enumerate() {
+            let mut start = 0;
+            for part in parts {
                 let truth = part.truth(&domains);
-                match table.clause(at, &domains) {
-                    Clause::True => assert_eq!(truth, Truth::True, "{at} {domains:?}"),
-                    Clause::False => assert_eq!(truth, Truth::False, "{at} {domains:?}"),
-                    Clause::Needs(_) | Clause::Open => assert_eq!(truth, Truth::Open, "{at} {domains:?}"),
+                let (clause, next) = table.clause(start, &domains).expect("a clause for each part");
+                match clause {
+                    Clause::True => assert_eq!(truth, Truth::True, "{part:?} {domains:?}"),
+                    Clause::False => assert_eq!(truth, Truth::False, "{part:?} {domains:?}"),
+                    Clause::Needs(_) | Clause::Open => assert_eq!(truth, Truth::Open, "{part:?} {domains:?}"),
                 }
+                start = next;
             }
+            assert!(table.clause(start, &domains).is_none());
         }
     }
 
