@@ -69,7 +69,7 @@ fn exact_weights(belief: &Belief, choices: &Choices, states: &[State]) -> Vec<Bi
         let modes = states.iter().fold(0_u64, |modes, state| modes | 1 << state.0[component]);
         let mut divisor = 0;
         let mut is_same = true;
-        for row in 0..rows {
+        for row in (0..rows).filter(|row| !choices.is_repeated(*row, component)) {
             let mut missing = modes;
             for &(mode, weight) in choices.of(row, component) {
                 if modes >> mode & 1 == 1 && weight != divisor {

@@ -81,6 +81,12 @@ pub(crate) struct Settled {
     standing: Vec<Standing>,
 }
 
+/// What domains were like, and where places stood.
+pub(crate) struct Point {
+    mark: usize,
+    standing: Vec<Standing>,
+}
+
 impl Domains {
     /// All values for all symbols, except that `observation` is as it is.
     pub(crate) fn observed(model: &Model, observation: &Observation) -> Self {
@@ -97,6 +103,23 @@ impl Domains {
             }
         }
         domains
+    }
+
+    /// Where domains that were `settled` stand, to go on from there.
+    pub(crate) fn resume(&mut self, settled: &Settled) -> Point {
+        self.standing.clone_from(&settled.standing);
+        self.point()
+    }
+
+    /// A point to come back to when consequences have been tried.
+    pub(crate) fn point(&self) -> Point {
+        Point { mark: self.mark(), standing: self.standing.clone() }
+    }
+
+    /// Takes back everything since a point.
+    pub(crate) fn return_to(&mut self, point: &Point) {
+        self.undo(point.mark);
+        self.standing.clone_from(&point.standing);
     }
 
     /// A point to come back to by [`Self::undo`].
@@ -337,22 +360,42 @@ impl<'model> Assumed<'model> {
         result
     }
 
-    fn search(&self, domains: &mut Domains) -> Result<(), Places> {
+    /// The same where all consequences of the assumed modes were drawn already.
+    pub(crate) fn search(&self, domains: &mut Domains) -> Result<(), Places> {
         let Some((symbol, place)) = self.open_symbol(domains) else { return Ok(()) };
         let set = domains.sets.get(symbol as usize).copied().unwrap_or(0);
-        let mut blame = place_bit(place);
+        let mut blame = place_bit(place) | domains.blame_of(symbol);
+        let point = domains.point();
         for value in crate::observe::values(set) {
-            let mark = domains.mark();
-            domains.narrow(symbol, 1 << value, 0);
-            match self.settle(domains).and_then(|is_true| if is_true { Ok(()) } else { self.search(domains) })
-            {
-                Ok(()) => return Ok(()),
+            match self.restrict([(symbol, 1 << value)], domains) {
+                Ok(true) => return Ok(()),
+                Ok(false) => match self.search(domains) {
+                    Ok(()) => return Ok(()),
+                    Err(places) => blame |= places,
+                },
                 Err(places) => blame |= places,
             }
-            domains.undo(mark);
+            domains.return_to(&point);
         }
-        blame |= domains.reasons.get(symbol as usize).copied().unwrap_or(0);
         Err(blame)
+    }
+
+    /// Leaves symbols only some values, and draws the consequences for `domains` of which all were drawn before.
+    ///
+    /// Answers and errors are those of [`Self::propagate`].
+    pub(crate) fn restrict(
+        &self,
+        given: impl IntoIterator<Item = (u32, u64)>,
+        domains: &mut Domains,
+    ) -> Result<bool, Places> {
+        let mark = domains.mark();
+        for (symbol, set) in given {
+            if !domains.narrow(symbol, set, 0) {
+                return Err(domains.blame_of(symbol));
+            }
+        }
+        self.wake(mark, domains);
+        self.drain(domains)
     }
 
     /// A symbol with several values in a constraint that is not yet true whatever happens.

@@ -130,19 +130,15 @@ pub(crate) fn shrink(
             }
         }
     };
-    let before = assumed.modes.clone();
     keep(assumed, places);
-    if assumed.check(observed).is_ok() {
-        // Blame is kept conservatively everywhere, so this is a safeguard: start from all assumptions instead.
-        assumed.modes = before;
-    }
+    debug_assert!(assumed.check(observed).is_err(), "those to blame contradict each other");
     for place in 0..assumed.modes.len() {
-        if !may_go(place) {
+        if assumed.modes[place].is_none() || !may_go(place) {
             continue;
         }
-        let Some(mode) = assumed.modes[place].take() else { continue };
+        let mode = assumed.modes[place].take();
         match assumed.check(observed) {
-            Ok(()) => assumed.modes[place] = Some(mode),
+            Ok(()) => assumed.modes[place] = mode,
             Err(fewer) => {
                 places &= fewer;
                 if places == fewer {

@@ -66,21 +66,25 @@ fn parts(assumed: &Assumed<'_>, settled: &Settled, domains: &Domains) -> Vec<Vec
     parts
 }
 
+/// In how many ways the variables of a part can be observed; all consequences of the modes were drawn.
 fn count(assumed: &Assumed<'_>, domains: &mut Domains, observed: &[u32]) -> BigUint {
+    let point = domains.point();
     let open = observed
         .iter()
         .find(|&&symbol| domains.sets.get(symbol as usize).is_some_and(|set| set.count_ones() > 1));
     let Some(&symbol) = open else {
-        return if assumed.check(domains).is_ok() { BigUint::one() } else { BigUint::zero() };
+        let is_possible = assumed.search(domains).is_ok();
+        domains.return_to(&point);
+        return if is_possible { BigUint::one() } else { BigUint::zero() };
     };
     let mut sum = BigUint::zero();
     for value in values(domains.sets.get(symbol as usize).copied().unwrap_or(0)) {
-        let mark = domains.mark();
-        domains.narrow(symbol, 1 << value, 0);
-        if assumed.settle_all(domains).is_ok() {
-            sum += count(assumed, domains, observed);
+        match assumed.restrict([(symbol, 1 << value)], domains) {
+            Ok(true) => sum += product_of_values(observed, domains),
+            Ok(false) => sum += count(assumed, domains, observed),
+            Err(_) => {}
         }
-        domains.undo(mark);
+        domains.return_to(&point);
     }
     sum
 }
@@ -149,7 +153,13 @@ impl<'model> Likelihoods<'model> {
         if is_settled {
             return Ok(product_of_values(observed, &self.free));
         }
-        assumed.check(&mut self.observed)?;
+        let point = self.free.resume(&self.settled[at]);
+        let given = observed.iter().map(|symbol| (*symbol, self.observed.sets[*symbol as usize]));
+        let is_settled = assumed.restrict(given, &mut self.free);
+        let result =
+            is_settled.and_then(|is_true| if is_true { Ok(()) } else { assumed.search(&mut self.free) });
+        self.free.return_to(&point);
+        result?;
         Ok(product_over_parts(assumed, &self.settled[at], &mut self.free, observed))
     }
 

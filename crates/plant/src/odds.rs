@@ -53,7 +53,8 @@ impl Odds {
         };
         let mut factors: Vec<f64> = Vec::with_capacity(2 * count);
         for (component, island) in islands.into_iter().enumerate() {
-            let entered = (0..rows).flat_map(|row| choices.of(row, component));
+            let rows = (0..rows).filter(|row| !choices.is_repeated(*row, component));
+            let entered = rows.flat_map(|row| choices.of(row, component));
             let modes = entered.fold(0_u64, |modes, (mode, _)| modes | 1 << mode);
             let first = odds.modes.len();
             for mode in values(modes) {
@@ -82,17 +83,24 @@ impl Odds {
         self.table.resize(self.modes.len() * rows, 0.0);
         self.ranked.reserve(self.table.len());
         for (at, &component) in self.free.iter().enumerate() {
-            let options = self.starts[at]..self.starts[at + 1];
+            let (start, end) = (self.starts[at], self.starts[at + 1]);
             for row in 0..rows {
+                let first = self.ranked.len();
+                if choices.is_repeated(row, component) {
+                    for option in start..end {
+                        self.table[option * rows + row] = self.table[option * rows + row - 1];
+                    }
+                    self.ranked.extend_from_within(first - (end - start)..);
+                    continue;
+                }
                 let entered = choices.of(row, component);
                 let total = entered.iter().map(|(_, weight)| weight).sum::<u64>() as f64;
                 for (mode, weight) in entered {
-                    let Ok(option) = self.modes[options.clone()].binary_search(mode) else { continue };
-                    let option = options.start + option;
+                    let Ok(option) = self.modes[start..end].binary_search(mode) else { continue };
+                    let option = start + option;
                     self.table[option * rows + row] = *weight as f64 / total * factors[option];
                 }
-                let first = self.ranked.len();
-                self.ranked.extend(options.clone().map(|option| self.table[option * rows + row]).zip(0..));
+                self.ranked.extend((start..end).map(|option| self.table[option * rows + row]).zip(0..));
                 self.ranked[first..].sort_by(|left, right| right.0.total_cmp(&left.0));
             }
         }

@@ -124,8 +124,8 @@ fn distribute(
 /// Where components may go next from each of some states, over denominators that the states have in common.
 pub(crate) struct Choices {
     components: usize,
-    /// By state, then component, where its choices start; one more at the end.
-    starts: Vec<u32>,
+    /// By state, then component, where its choices start and end; what is the same is in the same place.
+    ranges: Vec<(u32, u32)>,
     /// Modes with their weights.
     weights: Vec<(u8, u64)>,
 }
@@ -133,9 +133,14 @@ pub(crate) struct Choices {
 impl Choices {
     /// The modes that a component may enter from a state, each with its weight.
     pub(crate) fn of(&self, state: usize, component: usize) -> &[(u8, u64)] {
+        let range = self.ranges.get(state * self.components + component);
+        range.map_or(&[], |(start, end)| &self.weights[*start as usize..*end as usize])
+    }
+
+    /// Whether a component may do from a state just what it may do from the one before.
+    pub(crate) fn is_repeated(&self, state: usize, component: usize) -> bool {
         let at = state * self.components + component;
-        let ends = self.starts.get(at).zip(self.starts.get(at + 1));
-        ends.map_or(&[], |(start, end)| &self.weights[*start as usize..*end as usize])
+        at.checked_sub(self.components).is_some_and(|before| self.ranges[at] == self.ranges[before])
     }
 
     /// How many components there are.
@@ -151,41 +156,38 @@ pub(crate) fn distributions(
     commands: &Commands,
 ) -> Result<Choices, EstimateError> {
     let components = model.components.len();
-    let mut starts = Vec::with_capacity(states.len() * components + 1);
-    let mut choices = Vec::with_capacity(2 * states.len() * components);
-    let mut denominators = Vec::with_capacity(states.len() * components);
+    let mut ranges: Vec<(u32, u32)> = Vec::with_capacity(states.len() * components);
+    let mut weights = Vec::with_capacity(4 * components);
+    // Per component and range, the denominator of its weights.
+    let mut denominators = Vec::with_capacity(2 * components);
     let mut common = vec![1_u64; components];
     for (row, state) in states.iter().enumerate() {
-        let before = row.checked_sub(1).map(|before| (states[before], before * components));
         for (component, common) in model.component_ids().zip(&mut common) {
-            starts.push(choices.len() as u32);
             let mode = state.mode(component);
             // States that are believed at once differ in few components.
-            let denominator = match before {
-                Some((before, first))
-                    if before.mode(component) == mode && model.is_led_by_commands(component, mode) =>
-                {
-                    let at = first + component.0 as usize;
-                    choices.extend_from_within(starts[at] as usize..starts[at + 1] as usize);
-                    denominators[at]
-                }
-                _ => distribute(model, component, state, commands, &mut choices)?,
-            };
-            denominators.push(denominator);
+            if row > 0 && states[row - 1].mode(component) == mode && model.is_led_by_commands(component, mode)
+            {
+                ranges.push(ranges[ranges.len() - components]);
+                continue;
+            }
+            let start = weights.len() as u32;
+            let denominator = distribute(model, component, state, commands, &mut weights)?;
+            ranges.push((start, weights.len() as u32));
+            denominators.push((component.0 as usize, start, denominator));
             if *common != denominator {
                 *common = lcm(*common, denominator);
             }
         }
     }
-    starts.push(choices.len() as u32);
-    for (at, denominator) in denominators.into_iter().enumerate() {
-        let scale = common[at % components] / denominator;
+    let mut end = weights.len();
+    for (component, start, denominator) in denominators.into_iter().rev() {
+        let scale = common[component] / denominator;
         if scale > 1 {
-            let range = starts[at] as usize..starts[at + 1] as usize;
-            choices[range].iter_mut().for_each(|(_, weight)| *weight *= scale);
+            weights[start as usize..end].iter_mut().for_each(|(_, weight)| *weight *= scale);
         }
+        end = start as usize;
     }
-    Ok(Choices { components, starts, weights: choices })
+    Ok(Choices { components, ranges, weights })
 }
 
 /// Per component the modes in which only commands decide where it goes, one bit each; called once per model.
