@@ -212,25 +212,20 @@ impl<'model> Assumed<'model> {
 
     /// Takes back what rests on other modes than these, and marks the places to look at again.
     fn change(&self, before: &[Option<u8>], domains: &mut Domains) -> Result<(), Places> {
-        let mut differing = Places::MAX;
+        let mut differing = 0;
         if before.len() == self.modes.len() {
-            differing = 0;
-            for (place, (mode, before)) in self.modes.iter().zip(before).enumerate() {
-                if mode != before {
-                    differing |= place_bit(place);
-                }
+            let places = self.modes.iter().zip(before).zip(&mut domains.standing).enumerate();
+            for (place, ((mode, _), standing)) in places.filter(|(_, ((mode, before), _))| mode != before) {
+                differing |= place_bit(place);
+                *standing = Standing::of(*mode);
+            }
+            if differing == 0 {
+                return Ok(());
             }
         } else {
+            differing = Places::MAX;
             domains.standing.clear();
-            domains.standing.resize(self.modes.len(), Standing::Done);
-        }
-        if differing == 0 {
-            return Ok(());
-        }
-        for (place, mode) in self.modes.iter().enumerate() {
-            if differing & place_bit(place) != 0 {
-                domains.standing[place] = Standing::of(*mode);
-            }
+            domains.standing.extend(self.modes.iter().map(|mode| Standing::of(*mode)));
         }
         for &symbol in &self.island.own_symbols {
             if domains.reasons[symbol as usize] & differing == 0 {
