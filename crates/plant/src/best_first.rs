@@ -111,13 +111,22 @@ fn exact_weights(belief: &Belief, choices: &Choices, states: &[State]) -> Vec<Bi
     states.iter().map(weight).collect()
 }
 
-/// A part of an expanded node not looked at yet.
+/// The most promising part of an expanded node that was not looked at yet.
 struct Waiting {
     bound: f64,
-    /// Ties are broken by age, so that results do not depend on the queue's insides.
-    age: u32,
-    /// The expanded node and the place in its split; `None` for the root.
-    part: Option<(u32, u32)>,
+    /// `None` for the whole, where the search starts.
+    part: Option<Part>,
+}
+
+/// What is left of an expanded node beside a place in its split.
+///
+/// Parts are in the order of their age, which breaks ties, so that results do not depend on the queue's insides.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Part {
+    /// Where it is among the splits of all nodes.
+    at: u32,
+    /// The expanded node.
+    node: u32,
 }
 
 impl PartialEq for Waiting {
@@ -136,7 +145,7 @@ impl PartialOrd for Waiting {
 
 impl Ord for Waiting {
     fn cmp(&self, other: &Self) -> Ordering {
-        self.bound.total_cmp(&other.bound).then(other.age.cmp(&self.age))
+        self.bound.total_cmp(&other.bound).then(other.part.cmp(&self.part))
     }
 }
 
@@ -153,8 +162,8 @@ struct Search {
     trial: Trial,
     /// The state looked at.
     state: State,
+    /// At most one part of each node.
     queue: BinaryHeap<Waiting>,
-    age: u32,
     statistics: SearchStatistics,
 }
 
@@ -169,6 +178,8 @@ struct Nodes {
     ends: Vec<(u32, u32)>,
     /// The free components around which nodes are split, in order.
     split: Vec<u32>,
+    /// For each of them the bound of the part beside it; zero when that was looked at.
+    bounds: Vec<f64>,
 }
 
 /// Room for the bounds of a node's parts.
@@ -179,7 +190,6 @@ struct Trial {
     fixed: Vec<f64>,
     /// Per place in the split and prior state, the best product over the components from there on.
     suffix: Vec<f64>,
-    bounds: Vec<f64>,
 }
 
 impl Search {
@@ -193,14 +203,13 @@ impl Search {
             trial: Trial::default(),
             odds,
             state,
-            queue: BinaryHeap::with_capacity(256),
-            age: 0,
+            queue: BinaryHeap::with_capacity(64),
             statistics: SearchStatistics::default(),
         }
     }
 
     fn run(&mut self, most: usize, limit: u32, likelihoods: &mut Likelihoods<'_>) -> Vec<State> {
-        self.push(f64::INFINITY, None);
+        self.queue.push(Waiting { bound: f64::INFINITY, part: None });
         // Once as many as wanted: most likely first, equally likely ones in the order of their modes.
         let mut found: Vec<(f64, State)> = Vec::new();
         while let Some(waiting) = self.queue.pop() {
@@ -217,6 +226,10 @@ impl Search {
                 break;
             }
             self.statistics.expanded += 1;
+            if let Some(part) = waiting.part {
+                self.nodes.bounds[part.at as usize] = 0.0;
+                self.offer(part.node);
+            }
             if let Some(value) = self.expand(waiting.part, likelihoods) {
                 let one = (value, self.state.clone());
                 if found.len() >= most {
@@ -233,15 +246,22 @@ impl Search {
         found.into_iter().map(|(_, state)| state).collect()
     }
 
-    fn push(&mut self, bound: f64, part: Option<(u32, u32)>) {
-        if bound > 0.0 {
-            self.age += 1;
-            self.queue.push(Waiting { bound, age: self.age, part });
+    /// Queues the most promising part of a node that is left.
+    fn offer(&mut self, node: u32) {
+        let (start, end) = self.nodes.ends[node as usize];
+        let mut best = Waiting { bound: 0.0, part: None };
+        for (at, &bound) in (start..end).zip(&self.nodes.bounds[start as usize..end as usize]) {
+            if bound > best.bound {
+                best = Waiting { bound, part: Some(Part { at, node }) };
+            }
+        }
+        if best.part.is_some() {
+            self.queue.push(best);
         }
     }
 
     /// Looks at the most promising state of a node and splits the node; answers how likely the state is, if possible.
-    fn expand(&mut self, part: Option<(u32, u32)>, likelihoods: &mut Likelihoods<'_>) -> Option<f64> {
+    fn expand(&mut self, part: Option<Part>, likelihoods: &mut Likelihoods<'_>) -> Option<f64> {
         let new = self.nodes.sets.len();
         self.nodes.add_sets(part, &self.odds);
         let (product, row) = self.bests.update(&self.odds, &self.nodes.sets[new..]);
@@ -275,13 +295,14 @@ impl Search {
         let end = self.nodes.split.len();
         self.nodes.ends.push((start as u32, end as u32));
         self.divide(new, start..end);
+        self.offer(self.nodes.ends.len() as u32 - 1);
         likelihood
     }
 
-    /// Queues the parts of a node that are left when the chosen state, or the conflict in it, is taken out.
+    /// Bounds the parts of a node that are left when the chosen state, or the conflict in it, is taken out.
     fn divide(&mut self, new: usize, split: std::ops::Range<usize>) {
         let (count, rows) = (self.odds.free.len(), self.odds.rows());
-        let Trial { is_split, fixed, suffix, bounds } = &mut self.trial;
+        let Trial { is_split, fixed, suffix } = &mut self.trial;
         let split = &self.nodes.split[split];
         is_split.clear();
         is_split.resize(count, false);
@@ -296,24 +317,21 @@ impl Search {
         suffix[split.len() * rows..].fill(1.0);
         for (place, &at) in split.iter().enumerate().rev() {
             let (before, after) = suffix.split_at_mut((place + 1) * rows);
-            let product = &mut before[place * rows..];
-            product.copy_from_slice(&after[..rows]);
-            multiply(product, self.bests.component(at as usize, rows));
+            let best = self.bests.component(at as usize, rows);
+            let factors = after[..rows].iter().zip(best);
+            for (product, (after, best)) in before[place * rows..].iter_mut().zip(factors) {
+                *product = after * best;
+            }
         }
-        bounds.clear();
         for (place, &at) in split.iter().enumerate() {
             let at = at as usize;
             let chosen = self.nodes.chosen[new + at];
             let others = self.nodes.sets[new + at] & !(1 << chosen);
             let after = &suffix[(place + 1) * rows..][..rows];
             let parts = fixed.iter().zip(self.odds.ranked(at)).zip(after);
-            bounds
-                .push(parts.map(|((fixed, ranked), after)| fixed * best_of(ranked, others).0 * after).sum());
+            let bound = parts.map(|((fixed, ranked), after)| fixed * best_of(ranked, others).0 * after);
+            self.nodes.bounds.push(bound.sum());
             multiply(fixed, self.odds.entries(at, chosen));
-        }
-        let parent = self.nodes.ends.len() as u32 - 1;
-        for place in 0..self.trial.bounds.len() {
-            self.push(self.trial.bounds[place], Some((parent, place as u32)));
         }
     }
 
@@ -358,24 +376,25 @@ impl Nodes {
             chosen: Vec::with_capacity(NODES * count),
             ends: Vec::with_capacity(NODES),
             split: Vec::with_capacity(4 * NODES),
+            bounds: Vec::with_capacity(4 * NODES),
         }
     }
 
     /// Adds the options of a new node: those of its parent, without what the parts before it hold.
-    fn add_sets(&mut self, part: Option<(u32, u32)>, odds: &Odds) {
-        let Some((parent, place)) = part else {
+    fn add_sets(&mut self, part: Option<Part>, odds: &Odds) {
+        let Some(part) = part else {
             self.sets.extend((0..odds.free.len()).map(|at| odds.full_set(at)));
             return;
         };
         let count = odds.free.len();
-        let (start, _) = self.ends[parent as usize];
-        let (parent, new) = (parent as usize * count, self.sets.len());
+        let (start, _) = self.ends[part.node as usize];
+        let (parent, new) = (part.node as usize * count, self.sets.len());
         self.sets.extend_from_within(parent..parent + count);
-        for at in start..=start + place {
+        for at in start..=part.at {
             let component = self.split[at as usize] as usize;
             let option = 1_u64 << self.chosen[parent + component];
             let set = &mut self.sets[new + component];
-            *set = if at == start + place { *set & !option } else { option };
+            *set = if at == part.at { *set & !option } else { option };
         }
     }
 }

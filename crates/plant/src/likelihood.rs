@@ -100,8 +100,13 @@ pub(crate) struct Likelihoods<'model> {
     settled: Vec<Settled>,
     /// By island, its observed variables.
     symbols: Vec<Vec<u32>>,
-    /// By island and the modes of its components.
+    /// Per mode of components that are islands by themselves.
+    alone: Vec<Option<BigUint>>,
+    /// By island, where the modes of its component start there.
+    alone_starts: Vec<usize>,
+    /// By other island and the modes of its components.
     known: Vec<BTreeMap<Vec<u8>, BigUint>>,
+    zero: BigUint,
     /// The modes that were asked for last.
     modes: Vec<u8>,
 }
@@ -112,12 +117,24 @@ impl<'model> Likelihoods<'model> {
             let variables = island.variables.iter().filter(|variable| observation.0.contains_key(variable));
             variables.map(|variable| model.variable_symbol(*variable)).collect()
         };
+        let mut alone = 0;
+        let start_of = |island: &Island| {
+            let start = alone;
+            if let [component] = island.components.as_slice() {
+                alone += model.component(*component).map_or(0, |component| component.modes.len());
+            }
+            start
+        };
+        let alone_starts = model.islands.iter().map(start_of).collect();
         Self {
             model,
             observed: Domains::observed(model, observation),
             free: Domains::observed(model, &Observation::default()),
             settled: vec![Settled::default(); model.islands.len()],
             symbols: model.islands.iter().map(observed_of).collect(),
+            alone: vec![None; alone],
+            alone_starts,
+            zero: BigUint::zero(),
             known: vec![BTreeMap::new(); model.islands.len()],
             modes: Vec::new(),
         }
@@ -126,15 +143,29 @@ impl<'model> Likelihoods<'model> {
     /// The number of observations that the island's modes admit, or zero if they do not admit this one.
     pub(crate) fn divisor(&mut self, at: usize, state: &[u8]) -> &BigUint {
         let island = &self.model.islands[at];
-        self.modes.clear();
-        let modes = island.components.iter().filter_map(|component| state.get(component.0 as usize));
-        self.modes.extend(modes);
+        let judge = |likelihoods: &mut Self| {
+            likelihoods.judge(at, &Assumed::all(likelihoods.model, island, state)).unwrap_or_default()
+        };
+        if let [component] = island.components.as_slice() {
+            let place = self.alone_starts[at] + usize::from(state[component.0 as usize]);
+            if self.alone[place].is_none() {
+                self.alone[place] = Some(judge(self));
+            }
+            return self.alone[place].as_ref().unwrap_or(&self.zero);
+        }
+        self.ask(at, state);
         if !self.known[at].contains_key(&self.modes) {
-            let assumed = Assumed::all(self.model, island, state);
-            let divisor = self.judge(at, &assumed).unwrap_or_default();
+            let divisor = judge(self);
             self.known[at].insert(self.modes.clone(), divisor);
         }
         &self.known[at][&self.modes]
+    }
+
+    /// Notes the modes of an island that are asked for.
+    fn ask(&mut self, at: usize, state: &[u8]) {
+        self.modes.clear();
+        let components = self.model.islands[at].components.iter();
+        self.modes.extend(components.filter_map(|component| state.get(component.0 as usize)));
     }
 
     /// How many observations the assumed modes of an island admit; the error names components that cannot be in theirs.
@@ -176,9 +207,7 @@ impl<'model> Likelihoods<'model> {
         let mut assumed = Assumed::all(self.model, island, state);
         match self.judge(at, &assumed) {
             Ok(divisor) => {
-                self.modes.clear();
-                let modes = island.components.iter().filter_map(|component| state.get(component.0 as usize));
-                self.modes.extend(modes);
+                self.ask(at, state);
                 self.known[at].entry(self.modes.clone()).or_insert(divisor);
                 None
             }

@@ -94,16 +94,25 @@ fn random_model(random: &mut Random) -> String {
         let observed = if random.below(3) > 0 { " OBSERVABLE" } else { "" };
         let chance = chances[random.below(3) as usize];
         let class = if before == 0 { "Source" } else { &format!("Relay{before}") };
-        let stuck = if random.below(2) == 0 { "true" } else { "(out = no)" };
+        let good = if before == 0 { "On" } else { "Closed" };
+        let worst = if before == 0 { "Dead" } else { "Stuck" };
+        // The last two ask for the mode of another component: nested deeper than a table, and ruling modes out together.
+        let stuck = match random.below(4) {
+            0 => "true".to_owned(),
+            1 => "(out = no)".to_owned(),
+            2 => format!(
+                "(((feed = {good}) AND (out = no)) OR ((NOT (feed = {good})) AND ((lamp = odd) OR (out = yes))))"
+            ),
+            _ => format!("(NOT (feed = {worst}))"),
+        };
         text.push_str(&format!(
             "(DEFCLASS Relay{at} () (PORT feed {class}) (VAR out {{no yes}}{observed}) (VAR lamp {{dark lit odd}} OBSERVABLE) (COMMAND cmd {{none open close}})
               (MODE Closed (((feed.out = yes) AND (out = yes) AND (lamp = lit)) OR ((feed.out = no) AND (out = no) AND (lamp = dark))))
               (MODE Open ((out = no) AND (NOT (lamp = lit))))
               (MODE Stuck {stuck})
-              (TRANSITION Closed Open (cmd = open)) (TRANSITION Open Closed ((cmd = close) AND (feed = {})))
+              (TRANSITION Closed Open (cmd = open)) (TRANSITION Open Closed ((cmd = close) AND (feed = {good})))
               (FAULT Closed Stuck {chance}) (FAULT Open Stuck 0.05))
-            (DEFINSTANCE c{at} Relay{at} (feed c{before}))\n",
-            if before == 0 { "On" } else { "Closed" }
+            (DEFINSTANCE c{at} Relay{at} (feed c{before}))\n"
         ));
     }
     text
