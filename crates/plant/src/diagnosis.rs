@@ -1,7 +1,9 @@
 //! Why a diagnosis is what it is: which observations contradict which mode assumptions.
 
 use crate::belief::State;
-use crate::consistency::{Assumed, Domains, Island, Places, place_bit};
+use crate::consistency::Assumed;
+use crate::domains::Domains;
+use crate::island::{Island, Places, place_bit};
 use crate::model::{Commands, ComponentId, Model, Observation, VariableId};
 use crate::successor::{EstimateError, nominal};
 

@@ -5,12 +5,15 @@
 
 pub mod belief;
 pub mod best_first;
+mod check;
 pub mod compile;
 pub mod consistency;
 pub mod diagnosis;
+mod domains;
 pub mod exact;
 pub mod formula;
 mod inherit;
+mod island;
 pub mod likelihood;
 pub mod model;
 pub mod observe;

@@ -5,8 +5,10 @@ use std::collections::BTreeMap;
 use num_bigint::BigUint;
 use num_traits::{One as _, Zero as _};
 
-use crate::consistency::{Assumed, Domains, Island, Places, Settled};
+use crate::consistency::Assumed;
 use crate::diagnosis::shrink;
+use crate::domains::{Domains, Settled};
+use crate::island::{Island, Places};
 use crate::model::{ComponentId, Model, Observation};
 use crate::observe::values;
 

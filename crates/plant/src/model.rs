@@ -6,8 +6,8 @@ use rmpl::Span;
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
-use crate::consistency::Island;
 use crate::formula::Formula;
+use crate::island::Island;
 
 /// Index of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]

@@ -117,6 +117,7 @@ impl Odds {
     }
 
     /// The mode of a free component's option.
+    #[inline]
     pub(crate) fn mode(&self, at: usize, option: u8) -> u8 {
         self.modes[self.starts[at] + option as usize]
     }
@@ -128,12 +129,14 @@ impl Odds {
     }
 
     /// By prior state, the probability of a free component's option.
+    #[inline]
     pub(crate) fn entries(&self, at: usize, option: u8) -> &[f64] {
         let rows = self.rows();
         &self.table[(self.starts[at] + option as usize) * rows..][..rows]
     }
 
     /// By prior state, a free component's options with their probabilities, best first.
+    #[inline]
     pub(crate) fn ranked(&self, at: usize) -> std::slice::ChunksExact<'_, (f64, u8)> {
         let (start, end, rows) = (self.starts[at], self.starts[at + 1], self.rows());
         self.ranked[start * rows..end * rows].chunks_exact(end - start)
@@ -193,6 +196,7 @@ impl Bests {
     }
 
     /// By prior state, a free component's largest entry.
+    #[inline]
     pub(crate) fn component(&self, at: usize, rows: usize) -> &[f64] {
         &self.values[at * rows..][..rows]
     }
@@ -209,11 +213,13 @@ impl Bests {
 }
 
 /// The best of a component's ranked entries whose option is in `set`; zero for an empty set.
+#[inline]
 pub(crate) fn best_of(ranked: &[(f64, u8)], set: u64) -> (f64, u8) {
     ranked.iter().copied().find(|(_, option)| set >> option & 1 == 1).unwrap_or((0.0, 0))
 }
 
 /// Multiplies number by number.
+#[inline]
 pub(crate) fn multiply(products: &mut [f64], factors: &[f64]) {
     for (product, factor) in products.iter_mut().zip(factors) {
         *product *= factor;

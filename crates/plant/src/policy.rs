@@ -1,7 +1,8 @@
 //! Precompiled reactive policies: for every component and pair of modes, what to do first (SPEC 9.2).
 
 use crate::belief::State;
-use crate::consistency::{Assumed, Domains};
+use crate::consistency::Assumed;
+use crate::domains::Domains;
 use crate::model::{CommandVariableId, Commands, ComponentId, Model, Observation};
 use crate::observe::values;
 use crate::order::CausalOrder;

@@ -5,8 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use smol_str::SmolStr;
 
 use crate::belief::State;
-use crate::consistency::{Assumed, Domains};
+use crate::consistency::Assumed;
 use crate::diagnosis::shrink;
+use crate::domains::Domains;
 use crate::model::{Commands, ComponentId, Model, Observation};
 use crate::observe::values;
 use crate::policy::Planner;

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::belief::State;
-use crate::consistency::{Assumed, Domains};
+use crate::consistency::Assumed;
+use crate::domains::Domains;
 use crate::model::{Commands, ComponentId, Model, Observation, VariableId};
 use crate::observe::values;
 use crate::successor::{EstimateError, distribution, nominal};

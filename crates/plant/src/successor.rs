@@ -4,7 +4,8 @@ use num_integer::lcm;
 use thiserror::Error;
 
 use crate::belief::State;
-use crate::consistency::{Assumed, Domains};
+use crate::consistency::Assumed;
+use crate::domains::Domains;
 use crate::formula::{Formula, Truth};
 use crate::model::{CommandVariableId, Commands, Component, ComponentId, Mode, Model, Observation};
 

@@ -1,0 +1,332 @@
+//! What is wrong with the classes and components of a text (SPEC 2.2).
+
+use std::collections::BTreeMap;
+
+use rmpl::control::{Constraint, ConstraintKind, ControlFile, Instance, Name, nearest};
+use rmpl::{Code, Diagnostic, Span};
+use smol_str::SmolStr;
+
+use crate::inherit::{MergedClass, MergedVariable};
+use crate::probability;
+
+/// Value sets are words of 64 bits.
+const MOST_VALUES: usize = 64;
+
+/// Adds what is wrong with the classes and components of a file that parsed without errors.
+pub(crate) fn check(
+    file: &ControlFile,
+    classes: &BTreeMap<SmolStr, MergedClass<'_>>,
+    diagnostics: &mut Vec<Diagnostic>,
+) {
+    let mut checker = Checker { file, classes, diagnostics };
+    for class in &file.classes {
+        checker.check_class(&class.name.text);
+    }
+    checker.check_instances();
+}
+
+/// What a name in a constraint of a class stands for.
+struct Meaning {
+    values: Vec<SmolStr>,
+    is_command: bool,
+}
+
+struct Checker<'check, 'file> {
+    file: &'file ControlFile,
+    classes: &'check BTreeMap<SmolStr, MergedClass<'file>>,
+    diagnostics: &'check mut Vec<Diagnostic>,
+}
+
+impl Checker<'_, '_> {
+    fn error(&mut self, code: &'static str, span: Span, message: impl Into<String>, hint: Option<String>) {
+        // An inherited field is met again in every class that extends its own.
+        if self.diagnostics.iter().any(|known| known.span == span && known.code == Code(code)) {
+            return;
+        }
+        let mut diagnostic = Diagnostic::error(Code(code), span, message);
+        diagnostic.hint = hint;
+        self.diagnostics.push(diagnostic);
+    }
+
+    fn check_class(&mut self, name: &SmolStr) {
+        let Some(class) = self.classes.get(name) else { return };
+        for variable in class.variables.iter().chain(&class.commands) {
+            if variable.values.len() > MOST_VALUES {
+                let message = format!(
+                    "`{}` has {} values; at most {MOST_VALUES} are possible",
+                    variable.name.text,
+                    variable.values.len()
+                );
+                self.error("E-VALUE", variable.name.span, message, None);
+            }
+            if let Some(shows) = &variable.shows
+                && !variable.values.contains(&shows.text)
+            {
+                let message = format!("`{}` is never `{}`", variable.name.text, shows.text);
+                self.error(
+                    "E-VALUE",
+                    shows.span,
+                    message,
+                    did_you_mean(&shows.text, variable.values.iter().map(SmolStr::as_str)),
+                );
+            }
+        }
+        for (port, target) in &class.ports {
+            if !self.file.classes.iter().any(|known| known.name.text == target.text) {
+                let known = self.file.classes.iter().map(|known| known.name.text.as_str());
+                let hint = did_you_mean(&target.text, known);
+                self.error("E-UNDEF", target.span, format!("the port `{}` names no class", port.text), hint);
+            }
+        }
+        if class.modes.len() > MOST_VALUES {
+            let span = class.modes[MOST_VALUES].0.span;
+            self.error("E-VALUE", span, format!("at most {MOST_VALUES} modes are possible"), None);
+        }
+        for (_, constraints) in &class.modes {
+            for constraint in constraints {
+                self.check_constraint(class, constraint, false);
+            }
+        }
+        for (from, to, guard) in &class.transitions {
+            self.check_mode(class, name, from);
+            self.check_mode(class, name, to);
+            self.check_constraint(class, guard, true);
+        }
+        self.check_faults(class, name);
+    }
+
+    fn check_mode(&mut self, class: &MergedClass<'_>, class_name: &str, mode: &Name) {
+        if class.mode(&mode.text).is_none() {
+            let hint = did_you_mean(&mode.text, class.modes.iter().map(|(known, _)| known.text.as_str()));
+            self.error("E-UNDEF", mode.span, format!("`{class_name}` has no mode `{}`", mode.text), hint);
+        }
+    }
+
+    fn check_faults(&mut self, class: &MergedClass<'_>, class_name: &str) {
+        let mut sums: BTreeMap<&str, (u64, u64)> = BTreeMap::new();
+        for (at, (from, to, given)) in class.faults.iter().enumerate() {
+            self.check_mode(class, class_name, from);
+            self.check_mode(class, class_name, to);
+            if class
+                .faults
+                .iter()
+                .take(at)
+                .any(|earlier| earlier.0.text == from.text && earlier.1.text == to.text)
+            {
+                self.error(
+                    "E-DUP",
+                    from.span,
+                    format!("the fault from `{}` to `{}` is declared twice", from.text, to.text),
+                    None,
+                );
+            }
+            let Some((numerator, denominator)) =
+                probability::parse(&given.text).filter(|(part, whole)| part <= whole)
+            else {
+                let hint = Some("write a number from 0 to 1, such as `0.01` or `1/100`".into());
+                self.error("E-VALUE", given.span, format!("`{}` is no probability", given.text), hint);
+                continue;
+            };
+            let sum = sums.entry(from.text.as_str()).or_insert((0, 1));
+            match add(*sum, (numerator, denominator)) {
+                Some(total) if total.0 <= total.1 => *sum = total,
+                Some(_) => {
+                    let message =
+                        format!("the faults of `{}` have a probability of more than 1 together", from.text);
+                    self.error("E-VALUE", given.span, message, None);
+                }
+                None => {
+                    let message = format!("the fault probabilities of `{}` have too many digits", from.text);
+                    self.error("E-VALUE", given.span, message, None);
+                }
+            }
+        }
+    }
+
+    /// What `name` means in a constraint of `class`.
+    fn meaning(&self, class: &MergedClass<'_>, name: &str) -> Option<Meaning> {
+        let of = |variables: &[MergedVariable], name: &str, is_command| {
+            let found = variables.iter().find(|known| known.name.text == name)?;
+            Some(Meaning { values: found.values.clone(), is_command })
+        };
+        let fields = |class: &MergedClass<'_>, name: &str| {
+            of(&class.variables, name, false).or_else(|| of(&class.commands, name, true))
+        };
+        let at_port = |port: &str| {
+            let (_, target) = class.ports.iter().find(|(known, _)| known.text == port)?;
+            self.classes.get(&target.text)
+        };
+        fields(class, name)
+            .or_else(|| {
+                let modes = at_port(name)?.modes.iter().map(|(mode, _)| mode.text.clone()).collect();
+                Some(Meaning { values: modes, is_command: false })
+            })
+            .or_else(|| {
+                let (port, field) = name.split_once('.')?;
+                fields(at_port(port)?, field)
+            })
+    }
+
+    fn check_constraint(&mut self, class: &MergedClass<'_>, constraint: &Constraint, is_guard: bool) {
+        match &constraint.kind {
+            ConstraintKind::Not(inner) => self.check_constraint(class, inner, is_guard),
+            ConstraintKind::And(parts) | ConstraintKind::Or(parts) => {
+                for part in parts {
+                    self.check_constraint(class, part, is_guard);
+                }
+            }
+            ConstraintKind::Parameter(name) => {
+                let hint = Some("a constraint reads `(variable = value)`".into());
+                self.error("E-CONSTRAINT", name.span, format!("`{}` is no constraint", name.text), hint);
+            }
+            ConstraintKind::Equals { variable, value } => {
+                let class_name = class.lineage.first().cloned().unwrap_or_default();
+                let Some(meaning) = self.meaning(class, &variable.text) else {
+                    // A port to an unknown class has been reported.
+                    let port = variable.text.split('.').next().unwrap_or("");
+                    if class
+                        .ports
+                        .iter()
+                        .any(|(known, target)| known.text == port && !self.classes.contains_key(&target.text))
+                    {
+                        return;
+                    }
+                    let names =
+                        class.variables.iter().chain(&class.commands).map(|known| known.name.text.as_str());
+                    let hint = did_you_mean(
+                        &variable.text,
+                        names.chain(class.ports.iter().map(|(port, _)| port.text.as_str())),
+                    );
+                    let message =
+                        format!("`{class_name}` has no variable, command or port `{}`", variable.text);
+                    self.error("E-UNDEF", variable.span, message, hint);
+                    return;
+                };
+                if meaning.is_command && !is_guard {
+                    let message = format!("`{}` is a command: a mode cannot constrain it", variable.text);
+                    self.error(
+                        "E-CONSTRAINT",
+                        variable.span,
+                        message,
+                        Some("commands belong into the guards of transitions".into()),
+                    );
+                } else if !meaning.values.contains(&value.text) {
+                    let hint = did_you_mean(&value.text, meaning.values.iter().map(SmolStr::as_str));
+                    self.error(
+                        "E-VALUE",
+                        value.span,
+                        format!("`{}` is never `{}`", variable.text, value.text),
+                        hint,
+                    );
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn check_instances(&mut self) {
+        let file = self.file;
+        for (at, instance) in file.instances.iter().enumerate() {
+            if file.instances.iter().take(at).any(|earlier| earlier.name.text == instance.name.text) {
+                self.error(
+                    "E-DUP",
+                    instance.name.span,
+                    format!("the component `{}` is declared twice", instance.name.text),
+                    None,
+                );
+            }
+            if !file.classes.iter().any(|class| class.name.text == instance.class.text) {
+                let hint = did_you_mean(
+                    &instance.class.text,
+                    file.classes.iter().map(|class| class.name.text.as_str()),
+                );
+                self.error(
+                    "E-UNDEF",
+                    instance.class.span,
+                    format!("no class is called `{}`", instance.class.text),
+                    hint,
+                );
+            }
+            let Some(class) = self.classes.get(&instance.class.text) else { continue };
+            if class.modes.is_empty() {
+                let message =
+                    format!("`{}` has no mode, so that no component can be one", instance.class.text);
+                self.error(
+                    "E-FORM",
+                    instance.class.span,
+                    message,
+                    Some("give it at least one, such as `(MODE Present true)`".into()),
+                );
+            }
+            if let Some(initial) = &instance.initial {
+                self.check_mode(class, &instance.class.text, initial);
+            }
+            self.check_ports(instance, class);
+        }
+    }
+
+    fn check_ports(&mut self, instance: &Instance, class: &MergedClass<'_>) {
+        for (at, (port, component)) in instance.ports.iter().enumerate() {
+            let Some((_, wanted)) = class.ports.iter().find(|(known, _)| known.text == port.text) else {
+                let hint = did_you_mean(&port.text, class.ports.iter().map(|(known, _)| known.text.as_str()));
+                self.error(
+                    "E-UNDEF",
+                    port.span,
+                    format!("`{}` has no port `{}`", instance.class.text, port.text),
+                    hint,
+                );
+                continue;
+            };
+            if instance.ports.iter().take(at).any(|(earlier, _)| earlier.text == port.text) {
+                self.error("E-DUP", port.span, format!("the port `{}` is connected twice", port.text), None);
+            }
+            let Some(other) = self.file.instances.iter().find(|known| known.name.text == component.text)
+            else {
+                let known = self.file.instances.iter().map(|known| known.name.text.as_str());
+                let hint = did_you_mean(&component.text, known);
+                self.error(
+                    "E-UNDEF",
+                    component.span,
+                    format!("no component is called `{}`", component.text),
+                    hint,
+                );
+                continue;
+            };
+            let fits =
+                self.classes.get(&other.class.text).is_none_or(|class| class.lineage.contains(&wanted.text));
+            if !fits {
+                let message = format!(
+                    "the port `{}` takes a {}, but `{}` is a {}",
+                    port.text, wanted.text, component.text, other.class.text
+                );
+                self.error("E-VALUE", component.span, message, None);
+            }
+        }
+        for (port, wanted) in &class.ports {
+            if !instance.ports.iter().any(|(known, _)| known.text == port.text) {
+                let message =
+                    format!("the port `{}` of `{}` is not connected", port.text, instance.name.text);
+                self.error(
+                    "E-ARITY",
+                    instance.name.span,
+                    message,
+                    Some(format!("connect a {}: `({} …)`", wanted.text, port.text)),
+                );
+            }
+        }
+    }
+}
+
+fn did_you_mean<'name>(word: &str, known: impl IntoIterator<Item = &'name str> + Clone) -> Option<String> {
+    let all: Vec<&str> = known.clone().into_iter().collect();
+    nearest(word, known)
+        .map(|known| format!("did you mean `{known}`?"))
+        .or_else(|| (!all.is_empty() && all.len() <= 12).then(|| format!("known are {}", all.join(", "))))
+}
+
+fn add(left: (u64, u64), right: (u64, u64)) -> Option<(u64, u64)> {
+    let divisor = num_integer::gcd(left.1, right.1).max(1);
+    let common = left.1.checked_mul(right.1 / divisor)?;
+    let sum = left.0.checked_mul(common / left.1)?.checked_add(right.0.checked_mul(common / right.1)?)?;
+    Some((sum, common))
+}
