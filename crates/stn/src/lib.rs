@@ -12,6 +12,7 @@ mod execution;
 mod format;
 mod heap;
 mod network;
+mod propagation;
 
 pub use dispatch::{DispatchEdge, Dispatchable, RigidComponent, dispatchable, rigid_components};
 pub use distance::{DistanceMatrix, INFINITE};

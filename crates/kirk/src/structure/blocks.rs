@@ -1,13 +1,121 @@
-//! Blocks among each other: the arcs around them, and those whose conditions conflict only within.
+//! The tree from a network's blocks: their arcs, those around them, and blocks whose conditions conflict only within.
 
-use super::{Shape, Structure, TreeBlock, arc_between};
+use stn::Overflow;
+use tpn::{BlockKind, Network};
+
+use super::{Shape, Structure, TreeBlock};
 use crate::enclosed::Enclosed;
-use crate::model::{Model, NONE};
+use crate::model::{INFINITE, Model, NONE};
 
 /// Parts of more blocks are not looked at for enclosed conditions.
 const MAX_ENCLOSED_BLOCKS: usize = 64;
 
 impl Structure {
+    /// `None` if the blocks do not account for their own arcs, as in networks changed by other tools.
+    pub(crate) fn new(network: &Network, model: &Model) -> Result<Option<Self>, Overflow> {
+        let Some(root) = network.root else { return Ok(None) };
+        let mut structure = Self {
+            blocks: Vec::with_capacity(network.blocks.len()),
+            children: Vec::with_capacity(network.blocks.len()),
+            own_arcs: Vec::with_capacity(network.arcs.len()),
+            initial: Vec::new(),
+            decision_blocks: vec![NONE; network.decisions.len()],
+            arc_blocks: vec![NONE; network.arcs.len()],
+            root: root.0,
+            enclosed: Vec::new(),
+        };
+        for block in &network.blocks {
+            if !structure.add_block(block, model) {
+                return Ok(None);
+            }
+        }
+        for id in (0..structure.blocks.len()).rev() {
+            let depth = structure.blocks[id].depth + 1;
+            for position in 0..structure.blocks[id].children.1 {
+                let child = structure.child(id, position) as usize;
+                let child = &mut structure.blocks[child];
+                (child.parent, child.position, child.depth) = (id as u32, position, depth);
+            }
+            if !structure.find_around_arcs(model, id) {
+                return Ok(None);
+            }
+        }
+        structure.find_enclosed(model);
+        structure.refresh(model)?;
+        Ok(Some(structure))
+    }
+
+    /// Adds the next block, whose children are there. `false` if it is not what the model makes of it.
+    fn add_block(&mut self, block: &tpn::Block, model: &Model) -> bool {
+        let id = self.blocks.len() as u32;
+        let (first_child, first_arc) = (self.children.len(), self.own_arcs.len());
+        let mut adopt = |blocks: &[tpn::BlockId]| self.children.extend(blocks.iter().map(|block| block.0));
+        let shape = match &block.kind {
+            BlockKind::Leaf { arc } => {
+                self.own_arcs.push(arc.0);
+                Shape::Leaf
+            }
+            BlockKind::Sequence { children } => {
+                adopt(children);
+                if children.is_empty() && block.start != block.end {
+                    return false;
+                }
+                Shape::Sequence
+            }
+            BlockKind::Parallel { branches } => {
+                adopt(branches);
+                Shape::Intersection
+            }
+            BlockKind::Choose { decision, alternatives } => {
+                adopt(alternatives);
+                self.decision_blocks[decision.index()] = id;
+                if alternatives.len() != model.decisions[decision.index()].alternatives.len() {
+                    return false;
+                }
+                Shape::Choice(decision.0)
+            }
+            BlockKind::Scope { child, arcs, .. } => {
+                adopt(std::slice::from_ref(child));
+                self.own_arcs.extend(arcs.iter().map(|arc| arc.0));
+                Shape::Intersection
+            }
+            BlockKind::Guard { arc, child } => {
+                adopt(std::slice::from_ref(child));
+                self.own_arcs.push(arc.0);
+                Shape::Guard
+            }
+        };
+        let (children, arcs) = (&self.children[first_child..], &self.own_arcs[first_arc..]);
+        if children.iter().any(|&child| child >= id) {
+            return false;
+        }
+        for &arc in arcs {
+            self.arc_blocks[arc as usize] = id;
+        }
+        let inside =
+            |test: fn(&TreeBlock) -> bool| children.iter().any(|&at| test(&self.blocks[at as usize]));
+        let has_choices = matches!(shape, Shape::Choice(_)) || inside(|child| child.has_choices);
+        let has_labels = arcs.iter().any(|&arc| !model.conditions.labels_of(arc).is_empty())
+            || inside(|child| child.has_labels);
+        self.blocks.push(TreeBlock {
+            parent: NONE,
+            position: 0,
+            depth: 0,
+            shape,
+            children: (first_child as u32, children.len() as u32),
+            own_arcs: (first_arc as u32, arcs.len() as u32),
+            around: (0, 0),
+            own: (0, INFINITE),
+            has_choices,
+            has_labels,
+            enclosed: NONE,
+            is_inside_enclosed: false,
+            ends: (block.start.0, block.end.0),
+            around_arcs: (NONE, NONE),
+        });
+        true
+    }
+
     /// Finds, for each variable, the smallest block with all its labels, and keeps those that are enclosed.
     pub(super) fn find_enclosed(&mut self, model: &Model) {
         let conditions = &model.conditions;
@@ -93,4 +201,13 @@ impl Structure {
         }
         true
     }
+}
+
+/// An arc that leads from one node to another, the first of several: the bounds of any of them are sound. [`NONE`] for the
+/// same node, `None` if there is none.
+fn arc_between(model: &Model, from: u32, to: u32) -> Option<u32> {
+    if from == to {
+        return Some(NONE);
+    }
+    model.out_arcs(from).iter().copied().find(|&arc| model.arcs[arc as usize].to == to)
 }
