@@ -1,5 +1,6 @@
 //! Activities that call themselves, directly or through others: no finite network can hold them.
 
+use crate::circles::circles;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostics::recursion as wording;
 use crate::span::Span;
@@ -29,79 +30,14 @@ pub(crate) fn recursion<'a>(
         });
         targets.collect()
     });
-    let mut search =
-        Search { calls: calls.collect(), state: vec![State::New; declarations.len()], circles: Vec::new() };
-    for start in 0..declarations.len() {
-        search.visit(start);
-    }
+    let calls: Vec<Vec<(usize, Span)>> = calls.collect();
     let name = |node: usize| {
         let definition = declarations.get(node).and_then(|(_, summary)| summary.definition.as_ref());
         definition.map(|definition| names.text(definition.name).as_str()).unwrap_or_default()
     };
-    let described = search.circles.iter().map(|circle| {
-        let way: Vec<&str> = circle.nodes.iter().map(|&node| name(node)).collect();
-        (declarations[circle.caller].0, wording::circle(&way, circle.span))
+    let described = circles(&calls).into_iter().map(|circle| {
+        let way: Vec<&str> = circle.members.iter().map(|&node| name(node)).collect();
+        (declarations[circle.last()].0, wording::circle(&way, circle.closing_call))
     });
     described.collect()
-}
-
-struct Search {
-    calls: Vec<Vec<(usize, Span)>>,
-    state: Vec<State>,
-    circles: Vec<Circle>,
-}
-
-struct Circle {
-    /// The activities, from the one that is called again.
-    nodes: Vec<usize>,
-    caller: usize,
-    span: Span,
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum State {
-    New,
-    Open,
-    Done,
-    Reported,
-}
-
-impl Search {
-    /// Depth first without the call stack, which a long chain of activities would exhaust.
-    fn visit(&mut self, start: usize) {
-        if self.state[start] != State::New {
-            return;
-        }
-        self.state[start] = State::Open;
-        let mut path = vec![(start, 0)];
-        while let Some((caller, next)) = path.last_mut() {
-            let caller = *caller;
-            let Some(&(callee, span)) = self.calls[caller].get(*next) else {
-                if self.state[caller] == State::Open {
-                    self.state[caller] = State::Done;
-                }
-                path.pop();
-                continue;
-            };
-            *next += 1;
-            match self.state[callee] {
-                State::New => {
-                    self.state[callee] = State::Open;
-                    path.push((callee, 0));
-                }
-                State::Open => {
-                    let from = path.iter().position(|&(open, _)| open == callee).unwrap_or(0);
-                    let nodes: Vec<usize> = path[from..].iter().map(|&(open, _)| open).collect();
-                    let is_told = nodes.iter().any(|&node| self.state[node] == State::Reported);
-                    for &node in &nodes {
-                        self.state[node] = State::Reported;
-                    }
-                    if !is_told {
-                        self.circles.push(Circle { nodes, caller, span });
-                    }
-                }
-                State::Done | State::Reported => {}
-            }
-        }
-    }
 }

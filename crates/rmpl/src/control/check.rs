@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::circles::circles;
 use crate::diagnostic::{Code, Diagnostic, Edit, Fix};
 
 use super::read_program::Reader;
@@ -169,40 +170,31 @@ impl<'file> Checker<'file> {
         self.error("E-UNDEF", name, format!("no definition is called `{}`", name.text), hint);
     }
 
-    /// One diagnostic per cycle of calls, at the definition of it that comes first in the text.
+    /// One diagnostic per circle of calls, at the call that closes it.
     fn recursion(&mut self) {
-        let file = self.file;
-        let calls: BTreeMap<&str, Vec<&Name>> = file
-            .definitions
-            .iter()
-            .map(|definition| {
-                let mut names = Vec::new();
-                called(&definition.body, &mut names);
-                names.retain(|name| !is_parameter(name, definition));
-                (definition.name.text.as_str(), names)
-            })
-            .collect();
-        let mut reported: Vec<&str> = Vec::new();
-        for definition in &file.definitions {
-            let start = definition.name.text.as_str();
-            let Some(cycle) = cycle_through(start, &calls) else { continue };
-            if cycle.iter().any(|name| reported.contains(&name.text.as_str())) {
-                continue;
-            }
-            reported.extend(cycle.iter().map(|name| name.text.as_str()));
-            let path: Vec<&str> =
-                std::iter::once(start).chain(cycle.iter().map(|name| name.text.as_str())).collect();
-            let Some(first) = cycle.first() else { continue };
-            let message = if path.len() == 2 {
-                format!("`{start}` calls itself")
-            } else {
-                format!("these definitions call each other in a circle: {}", path.join(" → "))
+        let definitions = &self.file.definitions;
+        let mut positions = BTreeMap::new();
+        for (position, definition) in definitions.iter().enumerate() {
+            positions.entry(definition.name.text.as_str()).or_insert(position);
+        }
+        let calls = definitions.iter().map(|definition| {
+            let mut names = Vec::new();
+            called(&definition.body, &mut names);
+            names.retain(|name| !is_parameter(name, definition));
+            names.iter().filter_map(|name| Some((*positions.get(name.text.as_str())?, name.span))).collect()
+        });
+        for circle in circles(&calls.collect::<Vec<_>>()) {
+            let way: Vec<&str> =
+                circle.members.iter().map(|&member| definitions[member].name.text.as_str()).collect();
+            let message = match way[..] {
+                [only] => format!("`{only}` calls itself"),
+                _ => {
+                    format!("these definitions call each other in a circle: {} → {}", way.join(" → "), way[0])
+                }
             };
-            self.error(
-                "E-RECURSION",
-                first,
-                message,
-                Some("an automaton is finite: repeat with ALWAYS or WHENEVER-DONEXT".into()),
+            self.diagnostics.push(
+                Diagnostic::error(Code("E-RECURSION"), circle.closing_call, message)
+                    .with_hint("an automaton is finite: repeat with ALWAYS or WHENEVER-DONEXT"),
             );
         }
     }
@@ -240,29 +232,4 @@ fn called<'file>(expression: &'file Expression, into: &mut Vec<&'file Name>) {
             }
         }
     }
-}
-
-/// A shortest path of calls from `start` back to itself.
-fn cycle_through<'file>(
-    start: &str,
-    calls: &BTreeMap<&'file str, Vec<&'file Name>>,
-) -> Option<Vec<&'file Name>> {
-    let mut paths: Vec<Vec<&Name>> = calls.get(start)?.iter().map(|name| vec![*name]).collect();
-    let mut seen: Vec<&str> = Vec::new();
-    let mut at = 0;
-    while let Some(path) = paths.get(at).cloned() {
-        at += 1;
-        let last = path.last()?.text.as_str();
-        if last == start {
-            return Some(path);
-        }
-        if seen.contains(&last) {
-            continue;
-        }
-        seen.push(last);
-        for next in calls.get(last).into_iter().flatten() {
-            paths.push(path.iter().copied().chain([*next]).collect());
-        }
-    }
-    None
 }

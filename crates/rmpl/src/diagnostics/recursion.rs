@@ -24,7 +24,7 @@ scenario Day[0,60] = { Patrol() }",
 };
 
 /// A circle of calls: the activities of the circle, and the call that closes it.
-pub(crate) fn circle(way: &[&str], call: Span) -> Diagnostic {
+pub fn circle(way: &[&str], call: Span) -> Diagnostic {
     let first = way.first().copied().unwrap_or_default();
     let steps: Vec<String> = way.iter().chain([&first]).map(|name| format!("`{name}`")).collect();
     let message =

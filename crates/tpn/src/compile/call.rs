@@ -1,5 +1,6 @@
 //! Calls: instances of defined activities with their header bounds (SPEC 1.4), and primitives.
 
+use rmpl::diagnostics::recursion;
 use rmpl::program::{ActivityDecl, ArgumentValue, Bounds, HeaderBound, HeaderBounds, Name};
 use rmpl::{Bound, Diagnostic, Span};
 use smol_str::SmolStr;
@@ -7,7 +8,6 @@ use smol_str::SmolStr;
 use super::bounds::{self, Interval};
 use super::expand::{End, Entry, Expander, Piece};
 use super::scope::{Scope, argument_text};
-use super::statics;
 use crate::network::{ArcKind, BlockKind, OccurrenceKind};
 
 /// A call with its bounds evaluated.
@@ -43,7 +43,7 @@ impl<'program> Expander<'program> {
         if self.active.contains(&activity.name.text.as_str()) {
             let message =
                 format!("activities may not call themselves, and `{callee}` does through its arguments");
-            self.diagnostics.push(Diagnostic::error(statics::E_RECURSION, name.span, message));
+            self.diagnostics.push(Diagnostic::error(recursion::CODE, name.span, message));
             return self.nothing(span, entry);
         }
         self.instance(activity, arguments, &call, entry, scope, OccurrenceKind::Activity)

@@ -16,6 +16,7 @@ mod statics;
 use std::collections::BTreeSet;
 
 use num_traits::Zero as _;
+use rmpl::diagnostics::recursion;
 use rmpl::program::{Program, ScenarioDecl};
 use rmpl::{Bound, Code, Diagnostic, Rational, Severity, Span};
 use smol_str::SmolStr;
@@ -59,7 +60,7 @@ impl Top {
 /// that it is about is expanded. Time is linear in the size of the expanded network, and nearly so in the program's.
 pub fn compile(program: &Program, top: &Top) -> (Option<Network>, Vec<Diagnostic>) {
     let mut diagnostics = statics::check(program);
-    if diagnostics.iter().any(|found| found.code == statics::E_RECURSION) {
+    if diagnostics.iter().any(|found| found.code == recursion::CODE) {
         return (None, without_repeats(diagnostics));
     }
     let mut expander = Expander::new(program);
