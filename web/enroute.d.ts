@@ -239,8 +239,16 @@ export interface State {
   selection: unknown;
   /** What draws the canvas: WebGPU or WebGL2. */
   renderer: string;
-  /** Milliseconds by stage, for the revision shown. */
-  timings: Record<"parse" | "compile" | "plan" | "layout" | "total" | "frame", number | null>;
+  /**
+   * Milliseconds by stage, for the revision shown. `frame` is the app's own code in the last frame, `wholeFrame` all
+   * that the frame before took on the page's thread. `answerFrame` is the app's code in the frame that first shows
+   * the answer to the present text, and `shownAt` is when that frame was ready, on the clock of `performance.now()`;
+   * both are `null` until then.
+   */
+  timings: Record<
+    "parse" | "compile" | "plan" | "layout" | "total" | "frame" | "wholeFrame" | "answerFrame" | "shownAt",
+    number | null
+  >;
   [more: string]: unknown;
 }
 

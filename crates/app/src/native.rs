@@ -2,6 +2,8 @@
 //!
 //! The page has its own in the `page` crate.
 
+mod picture;
+
 use std::{
     fs, io,
     panic::{AssertUnwindSafe, catch_unwind},
@@ -184,19 +186,14 @@ impl Host for NativeHost {
 
     fn save_file(&mut self, suggested_name: &str, bytes: Vec<u8>) {
         let suggested_name = suggested_name.to_owned();
-        self.in_background(move || {
-            let path = rfd::FileDialog::new().set_file_name(suggested_name).save_file()?;
-            let reason = write_whole(&path, &bytes).err()?.to_string();
-            Some(HostEvent::FileFailed { name: name_of(&path), reason })
-        });
+        self.in_background(move || save_asking(suggested_name, &bytes));
     }
 
-    fn save_picture(&mut self, suggested_name: &str, _svg: String, _size: [u32; 2]) {
-        // A renderer of SVGs would be most of this program, where every browser and office program is one.
-        let reason = "a window saves drawings as SVG; the page makes PNGs of them, too".to_owned();
-        self.in_background({
-            let name = suggested_name.to_owned();
-            move || Some(HostEvent::FileFailed { name, reason })
+    fn save_picture(&mut self, suggested_name: &str, svg: String, size: [u32; 2]) {
+        let name = suggested_name.to_owned();
+        self.in_background(move || match picture::png(&svg, size) {
+            Ok(bytes) => save_asking(name, &bytes),
+            Err(reason) => Some(HostEvent::FileFailed { name, reason }),
         });
     }
 
@@ -209,6 +206,13 @@ impl Host for NativeHost {
     fn link(&self, _fragment: &str) -> Option<String> {
         None
     }
+}
+
+/// Asks where to save a file and saves it; blocks meanwhile. Answers what went wrong, if anything did.
+fn save_asking(suggested_name: String, bytes: &[u8]) -> Option<HostEvent> {
+    let path = rfd::FileDialog::new().set_file_name(suggested_name).save_file()?;
+    let reason = write_whole(&path, bytes).err()?.to_string();
+    Some(HostEvent::FileFailed { name: name_of(&path), reason })
 }
 
 /// Starts the thread that plans; it ends when the sender it returns is dropped.

@@ -16,7 +16,7 @@ use crate::layouts::Layouts;
 use crate::mission_file::{self, EXAMPLES};
 use crate::outside;
 use crate::panel::{self, Context, PanelKind, Panels};
-use crate::state::{AppState, Effect, PlanSettings, Settings, ToastKind};
+use crate::state::{AnswerFrame, AppState, Effect, PlanSettings, Settings, Status, ToastKind};
 use crate::theme;
 use crate::toasts;
 use crate::workspace::Room;
@@ -105,7 +105,21 @@ impl Enroute {
             self.egui.request_repaint_after_secs(seconds as f32);
         }
         self.remember();
-        self.state.frame.cpu_millis = (self.host.monotonic_secs() - begun_secs) * 1000.0;
+        let done_secs = self.host.monotonic_secs();
+        self.state.frame.cpu_millis = (done_secs - begun_secs) * 1000.0;
+        self.note_answer(done_secs);
+    }
+
+    /// Notes the first frame that shows the answer to the present text.
+    fn note_answer(&mut self, done_secs: f64) {
+        let revision = self.state.document.revision();
+        let is_shown = self.state.shown().is_some_and(|shown| shown.revision == revision);
+        let is_noted = self.state.frame.answer.is_some_and(|answer| answer.revision == revision);
+        if is_shown && !is_noted && self.state.status() != Status::Working {
+            let cpu_millis = self.state.frame.cpu_millis;
+            self.state.frame.answer = Some(AnswerFrame { revision, done_secs, cpu_millis });
+            self.version += 1;
+        }
     }
 
     fn begin_frame(&mut self, now_secs: f64) {
@@ -301,6 +315,7 @@ impl Enroute {
 impl eframe::App for Enroute {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let render_state = frame.wgpu_render_state().cloned();
+        self.state.frame.whole_millis = frame.info().cpu_usage.map(|seconds| f64::from(seconds) * 1000.0);
         self.show(ui, render_state.as_ref());
     }
 

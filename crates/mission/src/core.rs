@@ -58,6 +58,9 @@ struct Last {
     planned: Planned,
 }
 
+/// Planning that is done within this time is answered once, with the plan.
+const QUICK_MILLIS: f64 = 60.0;
+
 /// Events of a search that are kept for stepping through it.
 const TRACE_EVENTS: usize = 200_000;
 
@@ -167,9 +170,10 @@ impl Core {
             surroundings.answer(Response::Snapshot(Arc::new(snapshot)));
             return;
         };
-        surroundings.answer(Response::Snapshot(Arc::new(snapshot.clone())));
+        let waiting = Some(Arc::new(snapshot.clone()));
+        let mut unhurried = Unhurried { surroundings, waiting, due_millis: compiled + QUICK_MILLIS };
         let program = Arc::clone(&snapshot.program);
-        let Some(planned) = self.plan(update, &network, &program, ground.as_ref(), surroundings) else {
+        let Some(planned) = self.plan(update, &network, &program, ground.as_ref(), &mut unhurried) else {
             return;
         };
         snapshot.stage = Stage::Complete;
@@ -230,6 +234,31 @@ impl Core {
             planned: planned.clone(),
         });
         Some(planned)
+    }
+}
+
+/// Answers with a compiled network once its plan takes long: to send it twice would hold up the plan.
+struct Unhurried<'a> {
+    surroundings: &'a mut dyn Surroundings,
+    waiting: Option<Arc<Snapshot>>,
+    due_millis: f64,
+}
+
+impl Surroundings for Unhurried<'_> {
+    fn now_millis(&self) -> f64 {
+        self.surroundings.now_millis()
+    }
+
+    fn is_superseded(&mut self) -> bool {
+        let is_due = self.surroundings.now_millis() >= self.due_millis;
+        if is_due && let Some(snapshot) = self.waiting.take() {
+            self.answer(Response::Snapshot(snapshot));
+        }
+        self.surroundings.is_superseded()
+    }
+
+    fn answer(&mut self, response: Response) {
+        self.surroundings.answer(response);
     }
 }
 

@@ -1,13 +1,16 @@
-//! How long the page's own code takes for a frame while drawings move, and how long a keystroke takes until what it
-//! changes is drawn: measured in headless Chromium, at about 1,000 and 10,000 nodes.
+//! What the page itself takes of the processor for a frame while the network moves, and how long a keystroke takes
+//! until what it changes is drawn, at about 1,000 and 10,000 nodes; then frames while a camera turns over a terrain on
+//! which four rovers drive. Measured in headless Chromium.
 //!
-//! Then the same for a camera that turns over a terrain while four rovers drive on it.
-//!
-//! `cargo xtask bench page` prints the tables; `--development` takes the page built for development. Times of frames
-//! are `enroute.state().timings.frame`: they leave out drawing, which this browser computes on the processor. The time
-//! of a keystroke runs on the page's clock from the key to the state that says its answer is drawn.
+//! `cargo xtask bench page` prints the tables; `--development` takes the page built for development, `--no-build` the
+//! page as it was last built, and `cargo bench --package xtask --bench page -- network` or `terrain` one table alone. The window is small and shows one drawing, since this browser draws on the
+//! processor, which is not what is measured: times of frames are `enroute.state().timings.frame`, the app's own code,
+//! and `wholeFrame`, with all that egui and eframe add on the page's thread. The time of a keystroke runs on the page's
+//! clock from the key to `shownAt`, when the frame with its answer is handed over to be drawn.
 
-use anyhow::{Context as _, Result, ensure};
+use std::time::Instant;
+
+use anyhow::{Context as _, Result, bail, ensure};
 use serde_json::{Value, json};
 use tpn::generate::{Recipe, Tightness, mission};
 use xtask::{
@@ -19,53 +22,249 @@ use xtask::{
 const SIZES: [usize; 2] = [1_000, 10_000];
 /// Cells along the sides of maps.
 const MAP_SIDES: [usize; 2] = [512, 2_048];
-/// Steps of a drag, each a frame.
-const STEPS: usize = 60;
+/// The window in CSS pixels.
+const WINDOW: (u32, u32) = (800, 500);
+/// Steps of a movement, each a frame that is measured.
+const STEPS: usize = 40;
 /// Keys that are typed, each followed by its deletion.
-const KEYS: usize = 30;
+const KEYS: usize = 12;
+/// The longest wait for a frame, and for the answer to an edit or a map.
+const LIMIT_MILLIS: u32 = 30_000;
+/// More panels than there are.
+const MOST_PANELS: usize = 20;
 
 #[expect(clippy::print_stdout, reason = "printing its tables is what a benchmark is for")]
 fn main() -> Result<()> {
-    let is_development = std::env::args().any(|argument| argument == "--development");
-    let flavour = if is_development { Flavour::Development } else { Flavour::Release };
-    let site = site::build(flavour)?;
+    let arguments: Vec<String> = std::env::args().collect();
+    let is_asked = |name: &str| arguments.iter().any(|argument| argument == name);
+    let flavour = if is_asked("--development") { Flavour::Development } else { Flavour::Release };
+    let site = if is_asked("--no-build") { flavour.folder() } else { site::build(flavour)? };
     let server = SiteServer::start(&site, 0, false)?;
     let browser = Browser::start(Graphics::WebGl2)?;
-    println!("milliseconds on the page, p50 / p90 / p99, {flavour:?} build");
-    println!(
-        "| nodes | pan network | pan network, near | pan timeline | key to drawing | of it worked out |"
-    );
-    println!("|---|---|---|---|---|---|");
-    for nodes in SIZES {
-        let tab = browser.open_tab(1440, 900)?;
-        tab.go_to(&format!("{}#mission=enroute&workspace=review", server.url()))?;
-        tab.wait_until_ready()?;
-        open(&tab, nodes)?;
-        let far = pan(&tab, ("img", "Network"), 0)?;
-        let near = pan(&tab, ("img", "Network"), 12)?;
-        let timeline = pan(&tab, ("slider", "Time axis"), 0)?;
-        let (keys, worked_out) = type_keys(&tab)?;
-        let counted = tab.evaluate("enroute.state().tpn.nodes")?;
-        println!("| {counted} | {far} | {near} | {timeline} | {keys} | {worked_out} |");
+    let bench = Bench { begun: Instant::now(), browser, url: server.url().to_owned() };
+    let (width, height) = WINDOW;
+    println!("milliseconds, p50 / p90 / p99 / worst; {flavour:?} build, {width} × {height} pixels\n");
+    if !is_asked("terrain") {
+        println!("| nodes | movement | app's own code | whole frame |\n|---|---|---|---|");
+        let mut keystrokes = Vec::new();
+        for nodes in SIZES {
+            keystrokes.push(bench.measure_network(nodes)?);
+        }
+        println!(
+            "\n| nodes | key to drawing | of it our own code | parse, compile | plan | frame with layout |\n\
+             |---|---|---|---|---|---|"
+        );
+        for row in keystrokes {
+            println!("{row}");
+        }
     }
-    println!("\nmilliseconds on the page with four rovers under way, p50 / p90 / p99, {flavour:?} build");
-    println!("| cells | turn, whole map | turn, near a rover |");
-    println!("|---|---|---|");
-    for side in MAP_SIDES {
-        let tab = browser.open_tab(1440, 900)?;
-        tab.go_to(&format!("{}#mission=enroute&workspace=review", server.url()))?;
-        tab.wait_until_ready()?;
-        open_map(&tab, side)?;
-        let far = pan(&tab, ("img", "Terrain"), 0)?;
-        tab.evaluate("enroute.dispatch('go.select', 'Rover1'); enroute.dispatch('terrain.follow')")?;
-        let near = pan(&tab, ("img", "Terrain"), 4)?;
-        println!("| {side} × {side} | {far} | {near} |");
+    if !is_asked("network") {
+        println!("\n| cells | movement | app's own code | whole frame |\n|---|---|---|---|");
+        for side in MAP_SIDES {
+            bench.measure_terrain(side)?;
+        }
     }
     Ok(())
 }
 
-/// Drops a hilly map of `side` × `side` cells on the page, opens a mission on it, lets it play, and leaves the terrain
-/// alone on the screen.
+/// A browser, and the page it goes to.
+struct Bench {
+    begun: Instant,
+    browser: Browser,
+    url: String,
+}
+
+impl Bench {
+    #[expect(clippy::print_stderr, reason = "a benchmark of minutes says how far it is")]
+    fn say(&self, what: &str) {
+        eprintln!("{:4} s: {what}", self.begun.elapsed().as_secs());
+    }
+
+    fn open_page(&self) -> Result<Tab> {
+        let tab = self.browser.open_tab(WINDOW.0, WINDOW.1)?;
+        tab.go_to(&format!("{}#mission=enroute&workspace=author", self.url))?;
+        tab.wait_until_ready()?;
+        Ok(tab)
+    }
+
+    /// Prints the rows of frames, and answers the row of keystrokes.
+    #[expect(clippy::print_stdout, reason = "each row is printed as soon as it is known")]
+    fn measure_network(&self, nodes: usize) -> Result<String> {
+        self.say(&format!("opening {nodes} nodes"));
+        let tab = self.open_page()?;
+        leave_alone(&tab, &["network"])?;
+        let text = mission(Recipe { nodes, tightness: Tightness::Feasible, seed: 1 });
+        set_source(&tab, &text, &format!("the mission of {nodes} nodes"))?;
+        let counted = tab.evaluate("enroute.state().tpn.nodes")?;
+        for (name, movement) in [
+            ("pan, all of it in view", Movement::Pan),
+            ("zoom in to single arcs and out", Movement::Zoom),
+            ("pan, names legible", Movement::PanNear),
+        ] {
+            self.say(&format!("{counted} nodes: {name}"));
+            let frames =
+                movement.measure(&tab, "Network").with_context(|| format!("{name}, {counted} nodes"))?;
+            println!("| {counted} | {name} | {frames} |");
+        }
+        self.say(&format!("{counted} nodes: typing"));
+        tab.evaluate("enroute.dispatch('view.fit')")?;
+        let keys = type_keys(&tab).with_context(|| format!("typing, {counted} nodes"))?;
+        Ok(format!("| {counted} | {keys} |"))
+    }
+
+    #[expect(clippy::print_stdout, reason = "each row is printed as soon as it is known")]
+    fn measure_terrain(&self, side: usize) -> Result<()> {
+        self.say(&format!("opening a map of {side} × {side} cells"));
+        let tab = self.open_page()?;
+        leave_alone(&tab, &["terrain"])?;
+        open_map(&tab, side)?;
+        for (name, vehicle) in [("turn, whole map", None), ("turn, near a rover", Some("Rover1"))] {
+            self.say(&format!("{side} × {side} cells: {name}"));
+            if let Some(vehicle) = vehicle {
+                tab.evaluate(&format!(
+                    "enroute.dispatch('go.select', {{ name: '{vehicle}' }}); enroute.dispatch('terrain.follow')"
+                ))?;
+                next_frame(&tab)?;
+            }
+            let frames = Movement::Pan.measure(&tab, "Terrain").with_context(|| format!("{name}, {side}"))?;
+            println!("| {side} × {side} | {name} | {frames} |");
+        }
+        Ok(())
+    }
+}
+
+/// How a drawing is moved.
+#[derive(Clone, Copy)]
+enum Movement {
+    /// Dragged to and fro.
+    Pan,
+    /// Nearer with the wheel until single arcs are large, and out again.
+    Zoom,
+    /// Dragged where names can be read.
+    PanNear,
+}
+
+impl Movement {
+    /// Moves the drawing of this name, and answers how long each frame took.
+    fn measure(self, tab: &Tab, drawing: &str) -> Result<Frames> {
+        let (x, y) = tab.widget("img", drawing)?.centre();
+        let mut frames = Frames::default();
+        match self {
+            Self::Zoom => {
+                for step in 0..STEPS {
+                    wheel(tab, (x, y), if step < STEPS / 2 { -120.0 } else { 120.0 })?;
+                    frames.read(tab)?;
+                }
+                tab.evaluate("enroute.dispatch('view.fit')")?;
+                next_frame(tab)?;
+            }
+            Self::PanNear => {
+                for _ in 0..STEPS / 4 {
+                    wheel(tab, (x, y), -120.0)?;
+                }
+                drag(tab, (x, y), &mut frames)?;
+            }
+            Self::Pan => drag(tab, (x, y), &mut frames)?,
+        }
+        Ok(frames)
+    }
+}
+
+fn drag(tab: &Tab, (x, y): (f64, f64), frames: &mut Frames) -> Result<()> {
+    let mouse = |kind: &str, x: f64| {
+        let buttons = u8::from(kind != "mouseReleased");
+        let event =
+            json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": buttons, "clickCount": 1 });
+        tab.call("Input.dispatchMouseEvent", &event)
+    };
+    tab.call("Input.dispatchMouseEvent", &json!({ "type": "mouseMoved", "x": x, "y": y }))?;
+    next_frame(tab)?;
+    mouse("mousePressed", x)?;
+    for step in 0..STEPS {
+        let turn = step as f64 / STEPS as f64 * std::f64::consts::TAU;
+        mouse("mouseMoved", x + 8.0 + 60.0 * turn.sin())?;
+        next_frame(tab)?;
+        frames.read(tab)?;
+    }
+    mouse("mouseReleased", x)?;
+    next_frame(tab)
+}
+
+fn wheel(tab: &Tab, (x, y): (f64, f64), delta: f64) -> Result<()> {
+    let event = json!({ "type": "mouseWheel", "x": x, "y": y, "deltaX": 0, "deltaY": delta });
+    tab.call("Input.dispatchMouseEvent", &event)?;
+    next_frame(tab)
+}
+
+/// Waits until the page has drawn twice: once with what was done before, once to show it.
+fn next_frame(tab: &Tab) -> Result<()> {
+    answer_of(
+        tab,
+        "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))",
+    )?;
+    Ok(())
+}
+
+/// The value of a promise, or an error if it takes too long.
+fn answer_of(tab: &Tab, promise: &str) -> Result<Value> {
+    tab.evaluate(&format!(
+        "Promise.race([{promise}, new Promise((_, fail) => setTimeout(
+            () => fail(new Error('no answer within {LIMIT_MILLIS} ms')), {LIMIT_MILLIS}))])"
+    ))
+}
+
+/// The value of an expression once it is neither false nor an exception; an error if that takes too long.
+fn wait_for(tab: &Tab, expression: &str) -> Result<Value> {
+    let waiting = format!(
+        "new Promise((done) => {{
+            const end = performance.now() + {LIMIT_MILLIS};
+            const look = () => {{
+                let value = false;
+                try {{ value = {expression}; }} catch {{}}
+                if (value) done(value); else if (performance.now() < end) setTimeout(look, 30);
+            }};
+            look();
+        }})"
+    );
+    answer_of(tab, &waiting).with_context(|| format!("waiting for `{expression}`"))
+}
+
+/// Closes all panels but these.
+fn leave_alone(tab: &Tab, panels: &[&str]) -> Result<()> {
+    tab.evaluate("enroute.dispatch('view.resetWorkspace')")?;
+    next_frame(tab)?;
+    for panel in panels {
+        tab.evaluate(&format!("enroute.dispatch('view.panel', {{ name: '{panel}' }})"))?;
+    }
+    next_frame(tab)?;
+    for _ in 0..MOST_PANELS {
+        let open = tab.evaluate("enroute.state().panels")?;
+        let open = open.as_array().context("panels are a list")?;
+        let too_many: Vec<&str> =
+            open.iter().filter_map(Value::as_str).filter(|panel| !panels.contains(panel)).collect();
+        if too_many.is_empty() {
+            ensure!(open.len() == panels.len(), "only {open:?} are on the screen");
+            return Ok(());
+        }
+        for panel in too_many {
+            tab.evaluate(&format!("enroute.dispatch('view.closePanel', {{ name: '{panel}' }})"))?;
+        }
+        next_frame(tab)?;
+    }
+    bail!("panels cannot be closed")
+}
+
+fn set_source(tab: &Tab, text: &str, what: &str) -> Result<()> {
+    tab.evaluate(&format!("enroute.setSource({})", json!(text)))?;
+    let status = wait_for(
+        tab,
+        "((state) => state.status !== 'working' && state.timings.shownAt && state.status)(enroute.state())",
+    )?;
+    ensure!(status == "plan", "{what} is {status}");
+    next_frame(tab)
+}
+
+/// Drops a hilly map of `side` × `side` cells on the page, opens a mission on it, and lets it play.
 fn open_map(tab: &Tab, side: usize) -> Result<()> {
     let mut map = format!("P5 {side} {side} 255\n").into_bytes();
     for cell in 0..side * side {
@@ -73,7 +272,7 @@ fn open_map(tab: &Tab, side: usize) -> Result<()> {
         map.push((100.0 + 50.0 * (row / 90.0).sin() * (column / 70.0).cos()) as u8);
     }
     tab.drop_file("hills.pgm", &map)?;
-    tab.wait_until("enroute.state().toasts.some((toast) => toast.includes('hills.pgm is a map'))")?;
+    wait_for(tab, "enroute.state().toasts.some((toast) => toast.includes('hills.pgm is a map'))")?;
     let far = 10 * side - 200;
     let text = format!(
         "terrain \"hills.pgm\" cell 10;
@@ -85,62 +284,14 @@ fn open_map(tab: &Tab, side: usize) -> Result<()> {
          primitive Climb(to) moves Rover4 speed (0, 1);
          scenario S = {{ Go(D), Cross(C), Climb(B) }}"
     );
-    tab.evaluate(&format!("enroute.setSource({})", json!(text)))?;
-    settle(tab)?;
-    let status = tab.evaluate("enroute.state().status")?;
-    ensure!(status == "plan", "the mission on the map of {side} cells is {status}");
-    for panel in ["review", "compare", "timeline", "network", "plan", "editor", "problems", "outline"] {
-        tab.evaluate(&format!("enroute.dispatch('view.closePanel', {{ name: '{panel}' }})"))?;
-    }
+    set_source(tab, &text, &format!("the mission on the map of {side} cells"))?;
     tab.evaluate("enroute.dispatch('play.toggle')")?;
-    tab.next_frame()
+    next_frame(tab)
 }
 
-fn open(tab: &Tab, nodes: usize) -> Result<()> {
-    let text = mission(Recipe { nodes, tightness: Tightness::Feasible, seed: 1 });
-    tab.evaluate(&format!("enroute.setSource({})", json!(text)))?;
-    settle(tab)?;
-    let status = tab.evaluate("enroute.state().status")?;
-    ensure!(status == "plan", "the mission of {nodes} nodes is {status}");
-    Ok(())
-}
-
-fn settle(tab: &Tab) -> Result<()> {
-    tab.wait_until(
-        "((state) => state.status !== 'working' && state.shownRevision === state.revision)(enroute.state())",
-    )?;
-    tab.next_frame()
-}
-
-/// The times of frames while a drawing is dragged to and fro, after turning the wheel so often to come nearer.
-fn pan(tab: &Tab, (role, label): (&str, &str), turns: usize) -> Result<Spread> {
-    let widget = tab.widget(role, label)?;
-    // Below the axis lies the track; of the network, the middle.
-    let (x, y) =
-        if role == "slider" { (widget.centre().0, widget.y + widget.height + 60.0) } else { widget.centre() };
-    for _ in 0..turns {
-        tab.wheel(x, y, -120.0)?;
-    }
-    let mut times = Vec::new();
-    let button = |kind: &str, x: f64| {
-        let event = json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": 1, "clickCount": 1 });
-        tab.call("Input.dispatchMouseEvent", &event)
-    };
-    tab.hover(x, y)?;
-    button("mousePressed", x)?;
-    for step in 0..STEPS {
-        let away = 40.0 * (step as f64 / STEPS as f64 * std::f64::consts::TAU).sin();
-        button("mouseMoved", x + 8.0 + away)?;
-        tab.next_frame()?;
-        times.push(number(&tab.evaluate("enroute.state().timings.frame")?)?);
-    }
-    button("mouseReleased", x)?;
-    tab.next_frame()?;
-    Ok(Spread::of(times))
-}
-
-/// The times from keys to their drawings, and what the stages and the layout take of it.
-fn type_keys(tab: &Tab) -> Result<(Spread, Spread)> {
+/// From keys to their drawings: all of it, what is our own code, and of that the parts.
+fn type_keys(tab: &Tab) -> Result<String> {
+    leave_alone(tab, &["network", "editor"])?;
     let source = tab.evaluate("enroute.source()")?;
     let source = source.as_str().context("the source is a text")?;
     // The greatest duration of an activity in the middle of the text: a digit more leaves it plannable.
@@ -150,50 +301,60 @@ fn type_keys(tab: &Tab) -> Result<(Spread, Spread)> {
     let caret = close.context("there are bounds")?;
     tab.click_widget("textbox", "Mission text")?;
     tab.evaluate(&format!("enroute.dispatch('edit.select', {{ start: {caret} }})"))?;
-    tab.wait_until(&format!("enroute.state().caret.head === {caret}"))?;
-    tab.evaluate("addEventListener('keydown', () => { window.pressed = performance.now(); }, true)")?;
-    let (mut times, mut worked_out) = (Vec::new(), Vec::new());
+    wait_for(tab, &format!("enroute.state().caret.head === {caret}"))?;
+    tab.evaluate("addEventListener('keydown', () => { window.pressed = performance.now(); }, true); 0")?;
+    let mut columns = [const { Vec::new() }; 5];
     for index in 0..2 * KEYS {
         let revision = number(&tab.evaluate("enroute.state().revision")?)?;
-        tab.evaluate(&format!(
-            "window.answered = new Promise((resolve) => {{
-                const end = enroute.subscribe((state) => {{
-                    if (state.revision > {revision} && state.shownRevision === state.revision) {{
-                        const timings = state.timings;
-                        end();
-                        resolve([performance.now() - window.pressed, timings.total + timings.frame]);
-                    }}
-                }});
-            }}); 0"
-        ))?;
         let key = if index % 2 == 0 { Key::Character('9') } else { Key::Backspace };
         tab.press(key, Modifiers::NONE)?;
-        let answer = tab.evaluate("window.answered")?;
-        times.push(number(&answer[0])?);
-        worked_out.push(number(&answer[1])?);
-        settle(tab)?;
+        let answer = wait_for(
+            tab,
+            &format!(
+                "(({{ revision, timings: it }}) => revision > {revision} && it.shownAt && [
+                    it.shownAt - window.pressed, it.parse + it.compile + it.plan + it.answerFrame,
+                    it.parse + it.compile, it.plan, it.answerFrame,
+                ])(enroute.state())"
+            ),
+        )?;
+        for (at, times) in columns.iter_mut().enumerate() {
+            times.push(number(&answer[at])?);
+        }
+        next_frame(tab)?;
     }
-    Ok((Spread::of(times), Spread::of(worked_out)))
+    Ok(columns.map(spread).join(" | "))
 }
 
 fn number(value: &Value) -> Result<f64> {
     value.as_f64().with_context(|| format!("a number, not {value}"))
 }
 
-/// How measured times are spread.
-struct Spread([f64; 3]);
+/// What measured frames took.
+#[derive(Default)]
+struct Frames {
+    own: Vec<f64>,
+    whole: Vec<f64>,
+}
 
-impl Spread {
-    fn of(mut times: Vec<f64>) -> Self {
-        times.sort_by(f64::total_cmp);
-        let at = |part: usize| times[((times.len() - 1) * part + 50) / 100];
-        Self([50, 90, 99].map(at))
+impl Frames {
+    fn read(&mut self, tab: &Tab) -> Result<()> {
+        let answer =
+            tab.evaluate("((timings) => [timings.frame, timings.wholeFrame])(enroute.state().timings)")?;
+        self.own.push(number(&answer[0])?);
+        self.whole.push(number(&answer[1])?);
+        Ok(())
     }
 }
 
-impl std::fmt::Display for Spread {
+impl std::fmt::Display for Frames {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let [half, most, nearly_all] = self.0;
-        write!(f, "{half:.1} / {most:.1} / {nearly_all:.1}")
+        write!(f, "{} | {}", spread(self.own.clone()), spread(self.whole.clone()))
     }
+}
+
+/// How measured times are spread: half of them, nine in ten, 99 in 100, and all are within.
+fn spread(mut times: Vec<f64>) -> String {
+    times.sort_by(f64::total_cmp);
+    let at = |part: usize| times[((times.len() - 1) * part + 50) / 100];
+    [50, 90, 99, 100].map(|part| format!("{:.1}", at(part))).join(" / ")
 }

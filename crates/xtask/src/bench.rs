@@ -22,6 +22,9 @@ pub(crate) struct Options {
     /// Measures the page as it is built for development, which is ready sooner.
     #[arg(long)]
     development: bool,
+    /// Measures the page as it was last built.
+    #[arg(long)]
+    no_build: bool,
     /// Only the tables of these crates, or only these tables.
     tables: Vec<String>,
 }
@@ -52,9 +55,9 @@ pub(crate) fn run_all(options: &Options) -> Result<()> {
         println!("\n{package}: {name}");
         let mut command = cargo();
         command.args(["bench", "--quiet", "--package", &package, "--bench", &name]);
-        if options.development {
-            command.args(["--", "--development"]);
-        }
+        command.arg("--");
+        command.args(options.development.then_some("--development"));
+        command.args(options.no_build.then_some("--no-build"));
         run(&mut command)?;
     }
     Ok(())

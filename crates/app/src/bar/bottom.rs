@@ -37,17 +37,22 @@ fn problems(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         _ => tokens.error,
     };
     let name = format!("{}, {}", counted(errors as u64, "error"), counted(warnings as u64, "warning"));
-    let (rect, response) = ui.allocate_exact_size(egui::vec2(64.0, 20.0), egui::Sense::click());
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let counts =
+        [errors, warnings].map(|count| ui.painter().layout_no_wrap(count.to_string(), font.clone(), color));
+    let width = 58.0 + counts.iter().map(|count| count.size().x).sum::<f32>();
+    let (rect, response) = ui.allocate_exact_size(egui::vec2(width, 20.0), egui::Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
     if response.hovered() || response.has_focus() {
         ui.painter().rect_filled(rect, 4.0, tokens.hover);
     }
-    let font = egui::TextStyle::Small.resolve(ui.style());
-    for (sign, count, x) in [(Icon::Error, errors, 10.0), (Icon::Warning, warnings, 40.0)] {
-        let at = egui::pos2(rect.left() + x, rect.center().y);
+    let mut x = rect.left() + 10.0;
+    for (sign, count) in [Icon::Error, Icon::Warning].into_iter().zip(counts) {
+        let at = egui::pos2(x, rect.center().y);
         icon::paint(ui.painter(), sign, egui::Rect::from_center_size(at, egui::Vec2::ZERO), 11.0, color);
-        let at = at + egui::vec2(9.0, 0.0);
-        ui.painter().text(at, egui::Align2::LEFT_CENTER, count.to_string(), font.clone(), color);
+        let size = count.size();
+        ui.painter().galley(egui::pos2(x + 9.0, rect.center().y - size.y / 2.0), count, color);
+        x += 25.0 + size.x;
     }
     if response.on_hover_text(name.clone()).clicked() {
         commands.send(Command::ShowPanel(PanelKind::Problems));

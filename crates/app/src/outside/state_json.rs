@@ -368,6 +368,8 @@ fn vehicles_json(state: &AppState, snapshot: &Snapshot) -> Vec<Value> {
 fn timings_json(state: &AppState) -> Value {
     let timings = state.shown().map(|shown| shown.timings).unwrap_or_default();
     let layout = state.frame.layout_millis;
+    let revision = state.document.revision();
+    let answer = state.frame.answer.filter(|answer| answer.revision == revision);
     let worked_out = timings.parse_millis + timings.compile_millis + timings.plan_millis;
     json!({
         "parse": timings.parse_millis,
@@ -376,6 +378,9 @@ fn timings_json(state: &AppState) -> Value {
         "layout": layout,
         "total": worked_out + layout,
         "frame": state.frame.cpu_millis,
+        "wholeFrame": state.frame.whole_millis,
+        "answerFrame": answer.map(|answer| answer.cpu_millis),
+        "shownAt": answer.map(|answer| answer.done_secs * 1000.0),
     })
 }
 

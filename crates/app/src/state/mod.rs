@@ -142,12 +142,28 @@ pub struct FrameInfo {
     pub renderer: String,
     /// Milliseconds that the app took for its last frame, without the time to draw it.
     pub cpu_millis: f64,
+    /// Milliseconds of the processor that the frame before took in all: the app, egui's shapes and triangles, and
+    /// handing them to the graphics; `None` if unknown.
+    pub whole_millis: Option<f64>,
+    /// The first frame with the last answer.
+    pub answer: Option<AnswerFrame>,
     /// Milliseconds that laying out the drawings took, when it last had to be done.
     pub layout_millis: f64,
     /// Seconds on the host's clock at the start of this frame.
     pub now_secs: f64,
     /// The date and time at the start of this frame, in milliseconds since 1970, in UTC.
     pub unix_millis: i64,
+}
+
+/// The first frame that showed an answer of the planning core.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AnswerFrame {
+    /// The revision of the text that was answered.
+    pub revision: u64,
+    /// When the frame was done, in seconds on the host's clock.
+    pub done_secs: f64,
+    /// Milliseconds that the app took for it, laying out included.
+    pub cpu_millis: f64,
 }
 
 impl AppState {

@@ -7,6 +7,8 @@ mod tokens;
 
 use serde::{Deserialize, Serialize};
 
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) use style::FONTS;
 pub use style::{apply, install_fonts, strong, strong_family};
 pub use tokens::{Syntax, Tokens};
 

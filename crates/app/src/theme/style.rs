@@ -44,6 +44,10 @@ pub fn install_fonts(context: &Context) {
     context.set_fonts(fonts);
 }
 
+/// The fonts of drawings that are saved as pictures.
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) const FONTS: [&[u8]; 3] = [INTER, INTER_STRONG, JETBRAINS_MONO];
+
 /// Text that carries weight: titles and verdicts.
 pub fn strong(text: impl Into<String>) -> RichText {
     RichText::new(text).family(strong_family())

@@ -37,6 +37,9 @@ pub(super) fn describe(item: Item, network: &Network, plan: Option<&Plan>) -> Op
     }
 }
 
+/// With more choices than this, nobody wants to hear them one by one.
+const MOST_CHOICES: usize = 30;
+
 /// The drawing in a sentence.
 pub(super) fn summary(network: &Network, plan: Option<&Plan>) -> String {
     let count = |number: usize, one: &str, many: &str| match number {
@@ -49,16 +52,18 @@ pub(super) fn summary(network: &Network, plan: Option<&Plan>) -> String {
         count(network.arcs.len(), "constraint", "constraints"),
         count(network.decisions.len(), "decision", "decisions")
     );
-    if let Some(plan) = plan {
-        let choices: Vec<String> = plan
-            .choices
-            .iter()
-            .map(|choice| format!("{}={}", Network::decision_name(choice.decision), choice.alternative))
-            .collect();
-        text.push_str(&format!(
-            " Chosen: {}.",
-            if choices.is_empty() { "nothing".into() } else { choices.join(", ") }
-        ));
+    let choices = plan.map(|plan| plan.choices.as_slice());
+    match choices {
+        None => {}
+        Some([]) => text.push_str(" Chosen: nothing."),
+        Some(choices) if choices.len() > MOST_CHOICES => {
+            text.push_str(&format!(" {} decisions are made.", choices.len()));
+        }
+        Some(choices) => {
+            let name = Network::decision_name;
+            let choices = choices.iter().map(|it| format!("{}={}", name(it.decision), it.alternative));
+            text.push_str(&format!(" Chosen: {}.", choices.collect::<Vec<_>>().join(", ")));
+        }
     }
     text
 }

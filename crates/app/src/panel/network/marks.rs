@@ -45,6 +45,8 @@ const OUTSIDE: f32 = 14.0;
 const RADIUS: f32 = 8.0;
 /// From one mark to the next at least, with room for a count, in points of the screen.
 const ROOM: f32 = 32.0;
+/// How wide a count beside a mark is, in points of the screen.
+const COUNT: f32 = 18.0;
 /// A tooltip tells the messages of this many problems.
 const MOST_TOLD: usize = 5;
 
@@ -75,18 +77,36 @@ pub(super) fn marks(
         .collect()
 }
 
-/// Shows the marks in view, those that would cover each other as one; a click goes to the gravest problem's place in
-/// the text.
+/// The marks in view, those that would cover each other as one.
+pub(super) struct Groups(Vec<(Pos2, Vec<usize>)>);
+
+impl Groups {
+    /// Those of `marks` that are in view.
+    pub(super) fn new(panel: Rect, view: &View, marks: &[Mark]) -> Self {
+        Self(grouped(panel, view, marks))
+    }
+
+    /// What each covers on the screen.
+    pub(super) fn rects(&self) -> impl Iterator<Item = Rect> {
+        self.0.iter().map(|(center, members)| {
+            let mark = Rect::from_center_size(*center, vec2(2.0 * RADIUS, 2.0 * RADIUS));
+            Rect { max: mark.max + vec2(if members.len() > 1 { COUNT } else { 0.0 }, 0.0), ..mark }
+        })
+    }
+}
+
+/// Shows the marks in view; a click goes to the gravest problem's place in the text.
 pub(super) fn show(
     ui: &Ui,
     panel: Rect,
-    view: &View,
+    groups: &Groups,
     marks: &[Mark],
     tokens: &Tokens,
     commands: &mut CommandSender,
 ) {
     let painter = ui.painter_at(panel);
-    for (center, members) in grouped(panel, view, marks) {
+    for (center, members) in &groups.0 {
+        let center = *center;
         let [first, others @ ..] = members.as_slice() else { continue };
         let (number, mark) = (*first, &marks[*first]);
         let color = if mark.severity == Severity::Error { tokens.error } else { tokens.warning };
@@ -115,8 +135,11 @@ pub(super) fn show(
         let font = FontId::new(11.0, crate::theme::strong_family());
         painter.text(at, Align2::CENTER_CENTER, "!", font.clone(), tokens.surface);
         if !others.is_empty() {
-            let at = pos2(center.x + RADIUS + 2.0, center.y);
-            painter.text(at, Align2::LEFT_CENTER, members.len().to_string(), font, color);
+            let at = pos2(center.x + RADIUS + 3.0, center.y);
+            let galley = painter.layout_no_wrap(members.len().to_string(), font, color);
+            let place = Align2::LEFT_CENTER.anchor_size(at, galley.size());
+            painter.rect_filled(place.expand2(vec2(2.0, 0.0)), 3.0, tokens.surface.gamma_multiply(0.85));
+            painter.galley(place.min, galley, color);
         }
         if response.clicked() {
             commands.send(Command::Reveal(mark.span));

@@ -8,6 +8,7 @@ mod describe;
 mod export;
 mod highlight;
 mod landmarks;
+mod level;
 mod marks;
 mod minimap;
 mod paint;
@@ -155,6 +156,8 @@ impl NetworkPanel {
         let selected = Highlight::of(&context.state.selection, network);
         let hovered = Highlight::of(&context.state.hovered, network);
         let focus = context.focus();
+        let marks = options.problems.then(|| marks::Groups::new(panel, &self.view, &self.drawn.marks));
+        let marked: Vec<Rect> = marks.iter().flat_map(marks::Groups::rects).collect();
         let scene = Scene {
             painter: &painter,
             panel,
@@ -168,10 +171,11 @@ impl NetworkPanel {
             hovered: &hovered,
             focus: focus.as_ref(),
             progress: progress.as_ref(),
+            marks: &marked,
         };
         scene.paint();
-        if options.problems {
-            marks::show(ui, panel, &self.view, &self.drawn.marks, context.tokens, commands);
+        if let Some(groups) = &marks {
+            marks::show(ui, panel, groups, &self.drawn.marks, context.tokens, commands);
         }
         if let Some(place) = overview {
             minimap::paint(&painter, place, panel, &self.view, &self.drawn, context.tokens);

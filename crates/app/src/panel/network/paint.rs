@@ -11,6 +11,7 @@ use tpn::{ArcKind, LabelId, Network, NodeId, Plan, Role};
 
 use super::data::Drawn;
 use super::highlight::Highlight;
+use super::level::LevelLines;
 use super::view::View;
 use crate::state::search::Focus;
 use crate::state::settings::NetworkView;
@@ -26,6 +27,20 @@ const FAR_ZOOM: f64 = 0.42;
 const OVERVIEW_ZOOM: f64 = 0.06;
 /// With more curves over the drawing than this, they are drawn thin and faint, but for those of the selection.
 const MANY_CURVES: usize = 80;
+/// Names that would be smaller than this in points keep this size instead, and are cut to the room there is.
+const LEGIBLE: f64 = 9.5;
+/// Below this zoom, rows lie too close for names between them.
+const CROWDED_ZOOM: f64 = 0.28;
+/// A name with less room than this on the screen is left out.
+const LEAST_NAME: f32 = 30.0;
+/// Outlines less high than this on the screen fade.
+const FADING_HEIGHT: f32 = 8.0;
+/// Outlines fainter than this are left out.
+const LEAST_STRENGTH: f32 = 0.04;
+/// Events smaller than this on the screen are dots.
+const DOT_RADIUS: f32 = 2.0;
+/// How far from the corner of its block a title may begin that finds others there, in points.
+const FARTHEST_TITLE: f32 = 70.0;
 /// From the edge of the panel to a heading that was moved into view.
 const HEADING_INSET: f64 = 16.0;
 
@@ -55,6 +70,8 @@ pub(super) struct Scene<'a> {
     pub(super) focus: Option<&'a Focus>,
     /// What has happened at the time shown, if that is shown.
     pub(super) progress: Option<&'a Progress>,
+    /// Where marks lie over the drawing, on the screen.
+    pub(super) marks: &'a [Rect],
 }
 
 /// The shapes in view, by their places in the drawing.
@@ -79,7 +96,10 @@ impl Scene<'_> {
         self.overlays();
         self.nodes(&shapes.nodes);
         if self.is_far() {
-            self.block_titles(&shapes.blocks);
+            let mut taken = self.block_titles(&shapes.blocks);
+            if self.view.zoom() >= CROWDED_ZOOM && self.options.parts().shows_text(TextRole::Name) {
+                self.names(&shapes.texts, &mut taken);
+            }
         } else {
             self.texts(&shapes);
         }
@@ -126,6 +146,7 @@ impl Scene<'_> {
     }
 
     fn blocks(&self, blocks: &[u32]) {
+        let mut outlines = LevelLines::default();
         for &at in blocks {
             let block = &self.drawn.drawing.blocks[at as usize];
             let is_outline = block.form == BlockForm::Activity && self.is_far() || self.is_overview();
@@ -135,14 +156,22 @@ impl Scene<'_> {
             let rect = self.view.screen_rect(self.panel, block.rect);
             let (fill, stroke) = look::block_look(block.form);
             let corner = CornerRadius::same((6.0 * self.view.zoom()).clamp(1.0, 8.0) as u8);
-            let line = Stroke::new(self.width(stroke.width).min(1.0), self.color(stroke.ink));
+            // Many thin outlines side by side would make an area of their own.
+            let strength = (rect.height() / FADING_HEIGHT).clamp(0.0, 1.0);
+            let color = self.color(stroke.ink).gamma_multiply(strength);
+            let line = Stroke::new(self.width(stroke.width).min(1.0), color);
             // Nested fills of the surface would hide the lanes around them.
-            if fill == Ink::Surface {
+            if self.is_overview() {
+                if strength > LEAST_STRENGTH {
+                    outlines.outline(rect, line);
+                }
+            } else if fill == Ink::Surface {
                 self.painter.rect_stroke(rect, corner, line, StrokeKind::Middle);
             } else {
                 self.painter.rect(rect, corner, self.color(fill), line, StrokeKind::Middle);
             }
         }
+        outlines.paint(self.painter);
     }
 
     /// The bands of the parallel branches.
@@ -240,6 +269,7 @@ impl Scene<'_> {
         }
         // What the plan selects lies over what it does not.
         for is_selected in [false, true] {
+            let mut level = LevelLines::default();
             for &at in &shapes.arcs {
                 let arc = &drawing.arcs[at as usize];
                 let standing = look::arc_standing(self.plan, arc.id);
@@ -255,16 +285,22 @@ impl Scene<'_> {
                     continue;
                 }
                 let color = self.color(look.ink).gamma_multiply(self.line_strength());
-                self.curve(
-                    arc.start,
-                    drawing.pieces(arc),
-                    Stroke::new(self.width(look.width), color),
-                    look.dash,
-                );
+                let stroke = Stroke::new(self.width(look.width), color);
+                let is_level = match (drawing.pieces(arc), look.dash) {
+                    ([Piece::Line(end)], Dash::Solid) if self.is_far() => {
+                        let at = |point| self.view.screen_point(self.panel, point);
+                        level.add(at(arc.start), at(*end), stroke)
+                    }
+                    _ => false,
+                };
+                if !is_level {
+                    self.curve(arc.start, drawing.pieces(arc), stroke, look.dash);
+                }
                 if let Some((tip, before)) = drawing.arrow(arc) {
                     self.arrow(tip, before, color);
                 }
             }
+            level.paint(self.painter);
         }
     }
 
@@ -343,7 +379,11 @@ impl Scene<'_> {
             let radius = ((node.radius * self.view.zoom()) as f32).max(1.0);
             let fill = self.color(look::node_fill(node.role, node.radius, standing));
             let line = Stroke::new(self.width(stroke.width), self.color(stroke.ink));
-            self.painter.circle(center, radius, fill, line);
+            if radius < DOT_RADIUS {
+                self.painter.circle_filled(center, radius, line.color);
+            } else {
+                self.painter.circle(center, radius, fill, line);
+            }
             let is_done = self.progress.is_some_and(|it| it.done.binary_search(&node.id).is_ok());
             // The numbers of events that have happened stand on the mark.
             let dot = ((look::done_radius(node.radius) * self.view.zoom()) as f32).max(0.8 * radius);
@@ -359,10 +399,11 @@ impl Scene<'_> {
 
     fn texts(&self, shapes: &InView) {
         let drawing = &self.drawn.drawing;
+        let mut taken = Vec::new();
         for &at in &shapes.texts {
             let text = &drawing.texts[at as usize];
             if text.slide.is_none() {
-                self.text(text, text.rect);
+                self.text(text, text.rect, &mut taken);
             }
         }
         let area = self.view.visible(self.panel);
@@ -372,24 +413,32 @@ impl Scene<'_> {
                 let text = &drawing.texts[at as usize];
                 let rect = text.rect_in_view(area.min.x + inset, area.max.x - inset);
                 if rect.touches(area) {
-                    self.text(text, rect);
+                    self.text(text, rect, &mut taken);
                 }
             }
         }
         if self.options.windows {
             for text in self.drawn.windows.iter().filter(|text| text.rect.touches(area)) {
-                self.text(text, text.rect);
+                self.text(text, text.rect, &mut taken);
             }
         }
     }
 
-    fn text(&self, text: &TextShape, rect: layout::Rect) {
+    fn text(&self, text: &TextShape, rect: layout::Rect, taken: &mut Vec<Rect>) {
         let wanted = self.options.parts().shows_text(text.role);
         let arc_of_label = |label: LabelId| self.network.labels[label.index()].arc;
         let standing = look::item_standing(self.plan, text.owner, arc_of_label);
         let size = text.size * self.view.zoom();
         let least = if text.role == TextRole::Node { LEAST_TEXT - 1.0 } else { LEAST_TEXT };
-        if !wanted || !self.is_shown(standing) || size < least {
+        if !wanted || !self.is_shown(standing) {
+            return;
+        }
+        let place = self.view.screen_rect(self.panel, rect);
+        if text.role == TextRole::Name && size < LEGIBLE {
+            self.name(text, place, standing, taken);
+            return;
+        }
+        if size < least {
             return;
         }
         let strength = ((size - least) / 1.5).clamp(0.35, 1.0) as f32;
@@ -399,7 +448,6 @@ impl Scene<'_> {
             _ => self.color(look::text_ink(text.role, standing)),
         };
         let color = ink.gamma_multiply(strength);
-        let place = self.view.screen_rect(self.panel, rect);
         if let Item::Label(label) = text.owner {
             self.mark_label(label, place);
         }
@@ -413,6 +461,45 @@ impl Scene<'_> {
         self.painter.galley(place.center() - galley.size() / 2.0, galley, color);
     }
 
+    /// Names of activities where the drawing is small, at a size that can be read.
+    fn names(&self, texts: &[u32], taken: &mut Vec<Rect>) {
+        for &at in texts {
+            let text = &self.drawn.drawing.texts[at as usize];
+            let arc_of_label = |label: LabelId| self.network.labels[label.index()].arc;
+            let standing = look::item_standing(self.plan, text.owner, arc_of_label);
+            if text.role != TextRole::Name || text.slide.is_some() || !self.is_shown(standing) {
+                continue;
+            }
+            let place = self.view.screen_rect(self.panel, text.rect);
+            self.name(text, place, standing, taken);
+        }
+    }
+
+    /// A name at the least legible size over the middle of its place, cut to the length of its arc, if there is room
+    /// for it between what is `taken`.
+    fn name(&self, text: &TextShape, place: Rect, standing: Standing, taken: &mut Vec<Rect>) {
+        let length = match text.owner {
+            Item::Arc(arc) => self.drawn.drawing.arc(arc).map(|arc| arc.bounds.width() * self.view.zoom()),
+            _ => None,
+        };
+        let room = length.map_or(place.width(), |length| length as f32 - 6.0);
+        if room < LEAST_NAME {
+            return;
+        }
+        let color = self.color(look::text_ink(text.role, standing));
+        let font = FontId::proportional(LEGIBLE as f32);
+        let mut job = egui::text::LayoutJob::simple_singleline(text.text.to_string(), font, color);
+        job.wrap = egui::text::TextWrapping::truncate_at_width(room);
+        let galley = self.painter.layout_job(job);
+        let rect = Align2::CENTER_BOTTOM.anchor_size(place.center_bottom() + vec2(0.0, 1.0), galley.size());
+        if taken.iter().all(|other| !other.intersects(rect)) {
+            // What passes behind would make so small a text hard to read.
+            self.painter.rect_filled(rect, 2.0, self.tokens.surface.gamma_multiply(0.8));
+            self.painter.galley(rect.min, galley, color);
+            taken.push(rect);
+        }
+    }
+
     fn mark_label(&self, label: LabelId, place: Rect) {
         if self.selected.labels.contains(&label) {
             self.painter.rect_filled(place.expand(2.0), 3.0, self.tokens.selection);
@@ -421,29 +508,31 @@ impl Scene<'_> {
         }
     }
 
-    /// Names of activities at a fixed size, where they have room, outer before inner.
-    fn block_titles(&self, blocks: &[u32]) {
+    /// Names of blocks at a fixed size, where they have room, outer before inner. Answers where they are.
+    fn block_titles(&self, blocks: &[u32]) -> Vec<Rect> {
         let font = FontId::proportional(crate::theme::size::SMALL);
-        let mut taken: Vec<Rect> = Vec::new();
+        let color = self.color(Ink::TextMuted);
+        let mut taken: Vec<Rect> = self.marks.to_vec();
         for &at in blocks {
             let block = &self.drawn.drawing.blocks[at as usize];
             let rect = self.view.screen_rect(self.panel, block.rect).intersect(self.panel);
             if block.title.is_empty() || rect.width() < 40.0 || rect.height() < 16.0 {
                 continue;
             }
-            let galley = self.painter.layout_no_wrap(
-                block.title.to_string(),
-                font.clone(),
-                self.color(Ink::TextMuted),
-            );
-            let place = Rect::from_min_size(rect.min + vec2(5.0, 2.0), galley.size());
-            let has_room = rect.contains_rect(place) && taken.iter().all(|other| !other.intersects(place));
-            if has_room {
+            let galley = self.painter.layout_no_wrap(block.title.to_string(), font.clone(), color);
+            let mut place = Rect::from_min_size(rect.min + vec2(5.0, 2.0), galley.size());
+            // Beside what is there already, as far as the block goes.
+            while let Some(other) = taken.iter().find(|other| other.intersects(place)) {
+                place = place.translate(vec2(other.right() + 6.0 - place.left(), 0.0));
+            }
+            let is_near = place.left() < rect.left() + FARTHEST_TITLE;
+            if is_near && rect.contains_rect(place) {
                 self.painter.rect_filled(place.expand(1.0), 2.0, self.tokens.surface.gamma_multiply(0.8));
-                self.painter.galley(place.min, galley, self.color(Ink::TextMuted));
+                self.painter.galley(place.min, galley, color);
                 taken.push(place);
             }
         }
+        taken
     }
 
     fn curve(&self, start: Point, pieces: &[Piece], stroke: Stroke, dash: Dash) {

@@ -54,7 +54,7 @@ pub(super) fn show(
             ui.label(RichText::new(text).small().color(context.tokens.text_muted));
         }
         ui.add_space(space::S);
-        if ui.available_width() < ROOM_FOR_SWITCHES {
+        if ui.available_size_before_wrap().x < ROOM_FOR_SWITCHES {
             ui.menu_button(RichText::new("Show").small(), |ui| {
                 for (value, name, help) in switches(view) {
                     ui.checkbox(value, name).on_hover_text(help);
@@ -65,7 +65,8 @@ pub(super) fn show(
                 ui.toggle_value(value, RichText::new(name).small()).on_hover_text(help);
             }
         }
-        if ui.small_button("Fit").on_hover_text("Show everything (F)").clicked() {
+        let small = |name: &str| egui::Button::new(RichText::new(name).small());
+        if ui.add(small("Fit")).on_hover_text("Show everything (F)").clicked() {
             commands.send(Command::ViewOf(PanelKind::Network, ViewAction::Fit));
         }
         ui.menu_button(RichText::new("Save").small(), |ui| {
@@ -77,12 +78,12 @@ pub(super) fn show(
             }
         });
         if !has_collapsed
-            && ui.small_button("Close all").on_hover_text("Collapse the outermost activities").clicked()
+            && ui.add(small("Close all")).on_hover_text("Collapse the outermost activities").clicked()
         {
             asked = Asked::CloseAll;
         }
         if has_collapsed
-            && ui.small_button("Open all").on_hover_text("Open everything that is collapsed").clicked()
+            && ui.add(small("Open all")).on_hover_text("Open everything that is collapsed").clicked()
         {
             asked = Asked::OpenAll;
         }
@@ -91,7 +92,7 @@ pub(super) fn show(
 }
 
 /// Narrower toolbars have their switches in a menu.
-const ROOM_FOR_SWITCHES: f32 = 640.0;
+const ROOM_FOR_SWITCHES: f32 = 880.0;
 
 /// What can be switched on and off, with its name and what it means.
 fn switches(view: &mut NetworkView) -> [(&mut bool, &'static str, &'static str); 12] {

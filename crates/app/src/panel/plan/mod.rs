@@ -108,27 +108,25 @@ fn show_step(ui: &mut Ui, context: &Context<'_>, view: &crate::state::search::Vi
 fn show_verdict(ui: &mut Ui, context: &Context<'_>, planning: &mission::Planning) {
     let tokens = context.tokens;
     let stats = planning.outcome.stats;
-    ui.horizontal_wrapped(|ui| {
-        match &planning.verdict {
-            Some(verdict) if verdict.valid => {
-                icon::label(ui, Icon::Check, tokens.good);
-                ui.label(RichText::new("The independent checker accepts this plan.").color(tokens.good));
-            }
-            Some(verdict) => {
-                icon::label(ui, Icon::Error, tokens.error);
-                let count = counted(verdict.violations.len() as u64, "violation");
-                let text = format!("The independent checker refuses this plan: {count}.");
-                ui.label(RichText::new(text).color(tokens.error));
-            }
-            None => {
-                icon::label(ui, Icon::Working, tokens.text_muted);
-                ui.label(RichText::new("Not checked yet.").color(tokens.text_muted));
-            }
+    ui.horizontal_wrapped(|ui| match &planning.verdict {
+        Some(verdict) if verdict.valid => {
+            icon::label(ui, Icon::Check, tokens.good);
+            ui.label(RichText::new("The independent checker accepts this plan.").color(tokens.good));
         }
-        let tried = counted(stats.expanded, "alternative");
-        let effort = format!("{tried} tried, {}", counted(stats.conflicts, "dead end"));
-        ui.label(RichText::new(effort).small().color(tokens.text_muted));
+        Some(verdict) => {
+            icon::label(ui, Icon::Error, tokens.error);
+            let count = counted(verdict.violations.len() as u64, "violation");
+            let text = format!("The independent checker refuses this plan: {count}.");
+            ui.label(RichText::new(text).color(tokens.error));
+        }
+        None => {
+            icon::label(ui, Icon::Working, tokens.text_muted);
+            ui.label(RichText::new("Not checked yet.").color(tokens.text_muted));
+        }
     });
+    let tried = counted(stats.expanded, "alternative");
+    let effort = format!("{tried} tried, {}", counted(stats.conflicts, "dead end"));
+    ui.label(RichText::new(effort).small().color(tokens.text_muted));
     for violation in planning.verdict.iter().flat_map(|verdict| &verdict.violations) {
         ui.label(RichText::new(&violation.message).color(tokens.error));
     }

@@ -21,13 +21,21 @@ pub struct View {
     /// From the middle of the panel's upper edge to the tree's upper left corner.
     scroll: egui::Vec2,
     fits: bool,
+    /// What fits must leave states at least this far apart downwards; else the goal is looked at from near.
+    least_down: f32,
     /// The state that was last brought into view.
     followed: Option<TreeNodeId>,
 }
 
 impl Default for View {
     fn default() -> Self {
-        Self { cell: vec2(34.0, 46.0), scroll: egui::Vec2::ZERO, fits: true, followed: None }
+        Self {
+            cell: vec2(34.0, 46.0),
+            scroll: egui::Vec2::ZERO,
+            fits: true,
+            least_down: LEAST_DOWN,
+            followed: None,
+        }
     }
 }
 
@@ -44,6 +52,9 @@ pub struct Tree<'a> {
     pub drawing: &'a TreeDrawing,
     /// The step that is looked at, if one is, and its state.
     pub step: Option<(usize, TreeNodeId)>,
+    /// The state that the search is for: its plan, or how far it came. The way there is marked while no step is looked
+    /// at.
+    pub goal: TreeNodeId,
     /// The name of the drawing for screen readers.
     pub name: &'a str,
 }
@@ -62,6 +73,8 @@ pub struct Pointed {
 /// The designed size of a cell, and the most and least that one is made.
 const CELL: egui::Vec2 = vec2(34.0, 46.0);
 const MOST_CELL: egui::Vec2 = vec2(110.0, 58.0);
+/// A tree in which states would be nearer to each other downwards is not shown as a whole unless that is asked for.
+const LEAST_DOWN: f32 = 5.0;
 const LEAST_CELL: egui::Vec2 = vec2(0.002, 0.002);
 const LARGEST_CELL: egui::Vec2 = vec2(260.0, 180.0);
 const RADIUS: f32 = 8.0;
@@ -72,7 +85,9 @@ const LEAST_GAP: f32 = 2.0;
 /// Below this distance states are bars without signs and labels.
 const LEAST_SIGN: f32 = 7.0;
 /// A label with less room than this is left out.
-const LEAST_LABEL: f32 = 18.0;
+const LEAST_LABEL: f32 = 16.0;
+/// With less room than this, a label that does not fit is replaced instead of cut.
+const LEAST_CUT: f32 = 56.0;
 
 impl View {
     /// Zooms or fits.
@@ -81,7 +96,7 @@ impl View {
             ViewAction::ZoomIn => self.zoom_at(rect.center(), rect, 1.25),
             ViewAction::ZoomOut => self.zoom_at(rect.center(), rect, 0.8),
             ViewAction::ZoomReset => (self.cell, self.fits, self.followed) = (CELL, false, None),
-            ViewAction::Fit | ViewAction::FitSelection => self.fits = true,
+            ViewAction::Fit | ViewAction::FitSelection => (self.fits, self.least_down) = (true, 0.0),
             ViewAction::TopView | ViewAction::Follow => {}
         }
     }
@@ -141,10 +156,22 @@ impl View {
             let room = rect.size() - 2.0 * MARGIN;
             let across = room.x / (tree.drawing.width + 0.6).max(1.0);
             let down = room.y / tree.drawing.depth().max(1.0);
+            if down < self.least_down {
+                self.look_at_goal(rect, tree);
+                return;
+            }
             self.cell = vec2(across, down).min(MOST_CELL).max(LEAST_CELL);
             // A tree of one row stands near the top.
             self.scroll = vec2(-(tree.drawing.width + 0.4) * self.cell.x / 2.0, MARGIN.y);
         }
+    }
+
+    /// At the designed size, with the goal where much of the way there is in view.
+    fn look_at_goal(&mut self, rect: Rect, tree: &Tree<'_>) {
+        let goal = tree.drawing.stand_in(tree.trace, tree.goal);
+        let Some([across, down]) = tree.drawing.places.get(goal as usize).copied().flatten() else { return };
+        self.cell = CELL;
+        self.scroll = vec2(0.0, rect.height() * 0.8) - vec2(across, down) * self.cell;
     }
 
     /// Brings the state of a new step into view if it is not.
@@ -179,10 +206,11 @@ fn radius(cell: egui::Vec2) -> f32 {
     (cell.x * 0.3).min(cell.y * 0.21).clamp(1.0, RADIUS)
 }
 
-/// The states from the root to that of the step, in this order; ascending, since parents come before their children.
+/// The states from the root to that of the step, or without a step to the goal, in this order; ascending, since parents come before their children.
 fn path_to(tree: &Tree<'_>) -> Vec<TreeNodeId> {
     let above = |&id: &TreeNodeId| tree.trace.tree.get(id as usize).and_then(|node| node.parent);
-    let mut path: Vec<_> = std::iter::successors(tree.step.map(|(_, state)| state), above).collect();
+    let mut path: Vec<_> =
+        std::iter::successors(Some(tree.step.map_or(tree.goal, |(_, state)| state)), above).collect();
     path.reverse();
     path
 }
@@ -308,7 +336,7 @@ impl Scene<'_> {
             self.sign(id, center, radius);
             if self.view.cell.x >= LEAST_SIGN && self.view.cell.y >= 16.0 {
                 let next = states.get(place + 1).and_then(|&next| self.at(next));
-                let right = next.map_or(self.rect.right() - 4.0, |next| next.x - radius - 5.0);
+                let right = next.map_or(self.rect.right() - 4.0, |next| next.x - radius - 3.0);
                 self.label(id, center, radius, right);
             }
         }
@@ -373,17 +401,25 @@ impl Scene<'_> {
     fn label(&self, id: TreeNodeId, center: Pos2, radius: f32, right: f32) {
         let tokens = self.context.tokens;
         let is_ringed = self.tree.step.is_some_and(|(_, state)| state == id);
-        let left = center.x + if is_ringed { radius * 1.5 + 5.0 } else { radius + 4.0 };
+        let left = center.x + if is_ringed { radius * 1.5 + 5.0 } else { radius + 3.0 };
         let room = right - left;
         if room < LEAST_LABEL {
             return;
         }
-        let name = short_label(self.tree.network, self.tree.trace.tree[id as usize].choice);
-        let text =
-            if self.is_folded(id) { format!("{name} +{}", self.tree.index.below[id as usize]) } else { name };
+        let choice = self.tree.trace.tree[id as usize].choice;
+        let mut text = short_label(self.tree.network, choice);
+        if self.is_folded(id) {
+            text = format!("{text} +{}", self.tree.index.below[id as usize]);
+        }
         let is_on_path = self.path.binary_search(&id).is_ok();
         let color = if is_on_path { tokens.text } else { tokens.text_muted };
-        let galley = self.one_line(&text, color, room);
+        let mut galley = self.one_line(&text, color, room);
+        if galley.elided && room < LEAST_CUT {
+            // A few letters say less than which alternative it is, or how many are folded.
+            let below = self.is_folded(id).then(|| format!("+{}", self.tree.index.below[id as usize]));
+            let Some(text) = below.or_else(|| shortest_label(choice)) else { return };
+            galley = self.one_line(&text, color, room);
+        }
         let at = Align2::LEFT_CENTER.anchor_size(pos2(left, center.y), galley.size());
         self.painter.galley(at.min, galley, color);
     }
@@ -416,5 +452,13 @@ pub fn short_label(network: &Network, choice: Option<TreeChoice>) -> String {
         Some(TreeChoice::Link(link)) => format!("← {}", owner(link.tell)),
         Some(TreeChoice::Order(order)) => format!("{} ≺ {}", owner(order.first), owner(order.then)),
         Some(TreeChoice::NoLink { ask }) => format!("{} ← nothing", condition(ask)),
+    }
+}
+
+/// The alternative alone, for states beside others of the same choice; none where it has no number.
+fn shortest_label(choice: Option<TreeChoice>) -> Option<String> {
+    match choice {
+        Some(TreeChoice::Decision { alternative, .. }) => Some(format!("={alternative}")),
+        _ => None,
     }
 }

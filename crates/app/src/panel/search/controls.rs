@@ -25,6 +25,7 @@ pub fn show(
         ui.spacing_mut().item_spacing = egui::vec2(space::XS, space::XS);
         ui.horizontal_wrapped(|ui| show_steps(ui, context, recordings, commands));
         ui.horizontal_wrapped(|ui| show_choices(ui, context, folds_failed, commands));
+        ui.horizontal_wrapped(|ui| show_breakpoints(ui, context, commands));
     });
 }
 
@@ -109,6 +110,11 @@ fn show_choices(ui: &mut Ui, context: &Context<'_>, folds_failed: &mut bool, com
     }
     ui.toggle_value(folds_failed, "Fold failures")
         .on_hover_text("Hides what is below states in which all fails");
+}
+
+fn show_breakpoints(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let search = &context.state.search;
+    ui.add_space(space::XS);
     ui.label(RichText::new("Stop at").color(context.tokens.text_muted));
     let mut breakpoints = search.breakpoints;
     for (value, name, help) in [

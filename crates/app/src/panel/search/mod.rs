@@ -56,7 +56,7 @@ struct Drawn {
     /// What the layout depends on besides.
     toggled: BTreeSet<TreeNodeId>,
     folds_failed: bool,
-    /// The states above and at the step, which are open.
+    /// The states above and at the step or the goal, which are open.
     open: Vec<TreeNodeId>,
 }
 
@@ -154,6 +154,7 @@ impl SearchPanel {
                 index: &drawn.index,
                 drawing: &drawn.drawing,
                 step: view.map(|view| (view.step.step, view.step.tree_node)),
+                goal: drawn.index.goal,
                 name: recording.kind().map_or("Search", kind_name),
             };
             let pointed = side.view.show(&mut part, context, &tree);
@@ -218,7 +219,8 @@ impl Side {
     fn follow(&mut self, recording: &Recording, context: &Context<'_>, number: usize) {
         let Some(drawn) = &mut self.drawn else { return };
         let trace = recording.trace();
-        let state = context.state.search.view(number).map(|view| view.step.tree_node);
+        let looked_at = context.state.search.view(number).map(|view| view.step.tree_node);
+        let state = Some(looked_at.unwrap_or(drawn.index.goal));
         let above = |&id: &TreeNodeId| trace.tree.get(id as usize).and_then(|node| node.parent);
         let is_above_step = |id: &TreeNodeId| drawn.index.is_failed_subtree(*id);
         let mut open: Vec<TreeNodeId> = if self.folds_failed {

@@ -34,6 +34,8 @@ pub struct TreeIndex {
     pub has_solution: Vec<bool>,
     /// The states in the order in which they were entered.
     pub entered: Vec<TreeNodeId>,
+    /// The state that the search is for: its last plan, or where it was when it ended without one.
+    pub goal: TreeNodeId,
 }
 
 impl TreeIndex {
@@ -76,6 +78,7 @@ impl TreeIndex {
             index.last_step[parent] = index.last_step[parent].max(index.last_step[id]);
         }
         index.find_known(trace);
+        index.find_goal();
         index
     }
 
@@ -119,6 +122,12 @@ impl TreeIndex {
         let id = id as usize;
         let bounds = self.child_start.get(id).zip(self.child_start.get(id + 1));
         bounds.and_then(|(&from, &to)| self.children.get(from as usize..to as usize)).unwrap_or_default()
+    }
+
+    fn find_goal(&mut self) {
+        let entered = || self.entered.iter().rev().copied();
+        let is_plan = |id: &TreeNodeId| self.children(*id).is_empty() && self.has_solution[*id as usize];
+        self.goal = entered().find(is_plan).or_else(|| entered().next()).unwrap_or(0);
     }
 
     /// Whether a state is known at `step`: it was entered, or it is an alternative of a choice that was reached. Without

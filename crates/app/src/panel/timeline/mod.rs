@@ -10,6 +10,7 @@ mod group;
 mod handle;
 mod hatch;
 mod link;
+mod overview;
 mod paint;
 pub(in crate::panel) mod ticks;
 mod view;
@@ -28,6 +29,7 @@ use self::bounds::BoundDrag;
 use self::chart::{Bar, Chart, RowKind};
 use self::handle::Pinned;
 use self::link::Links;
+use self::overview::Silhouette;
 use self::paint::{Painting, ROW_HEIGHT};
 use self::view::TimeView;
 use crate::command::{Command, CommandSender, ViewAction};
@@ -64,6 +66,7 @@ struct Prepared {
     closed: BTreeSet<SmolStr>,
     pins: u64,
     chart: Chart,
+    silhouette: Silhouette,
 }
 
 /// The height of the axis.
@@ -99,7 +102,7 @@ impl Panel for TimelinePanel {
         self.prepare(context, snapshot, network, plan);
         let Some(prepared) = self.prepared.take() else { return };
         controls::show(ui, context, network, commands);
-        self.show_chart(ui, context, (network, plan), &prepared.chart, commands);
+        self.show_chart(ui, context, (network, plan), &prepared, commands);
         self.prepared = Some(prepared);
     }
 }
@@ -123,9 +126,10 @@ impl TimelinePanel {
             // Pinned events only narrow windows: rows are those of the plan without them.
             let free = if step.is_none() { snapshot.plan().unwrap_or(plan) } else { plan };
             let mut chart = Chart::new(snapshot, network, free, view, &self.closed);
+            let silhouette = Silhouette::new(&chart);
             chart.retime(plan);
-            let (snapshot, closed) = (Arc::clone(snapshot), self.closed.clone());
-            self.prepared = Some(Prepared { snapshot, step, view: view.clone(), closed, pins, chart });
+            let (snapshot, closed, view) = (Arc::clone(snapshot), self.closed.clone(), view.clone());
+            self.prepared = Some(Prepared { snapshot, step, view, closed, pins, chart, silhouette });
         } else if let Some(prepared) = self.prepared.as_mut().filter(|it| it.pins != pins) {
             prepared.chart.retime(plan);
             prepared.pins = pins;
@@ -137,11 +141,14 @@ impl TimelinePanel {
         ui: &mut Ui,
         context: &Context<'_>,
         (network, plan): (&Network, &Plan),
-        chart: &Chart,
+        Prepared { chart, silhouette, .. }: &Prepared,
         commands: &mut CommandSender,
     ) {
         let horizon = chart.horizon.max(context.state.playback.end);
-        let rect = ui.available_rect_before_wrap();
+        let whole = ui.available_rect_before_wrap();
+        let all_rows = chart.rows.len() as f32 * ROW_HEIGHT + 8.0;
+        let column = overview::place(whole, whole.top() + AXIS_HEIGHT, all_rows);
+        let rect = column.map_or(whole, |column| whole.with_max_x(column.left() - 4.0));
         let names_width = self.names_width.min(rect.width() * 0.4);
         let axis = Rect::from_min_max(
             pos2(rect.left() + names_width, rect.top()),
@@ -155,8 +162,13 @@ impl TimelinePanel {
 
         let below = Rect::from_min_max(pos2(rect.left(), axis.bottom()), rect.max);
         let mut lower = ui.new_child(UiBuilder::new().max_rect(below));
-        ScrollArea::vertical().auto_shrink(false).show_viewport(&mut lower, |ui, viewport| {
-            let height = (chart.rows.len() as f32 * ROW_HEIGHT + 8.0).max(below.height());
+        let mut scroll = ScrollArea::vertical().auto_shrink(false);
+        let seen = below.height() / all_rows;
+        if let Some(from) = column.and_then(|column| overview::follow(ui, column, seen)) {
+            scroll = scroll.vertical_scroll_offset(from * all_rows);
+        }
+        let scrolled = scroll.show_viewport(&mut lower, |ui, viewport| {
+            let height = all_rows.max(below.height());
             let (area, _) = ui.allocate_exact_size(vec2(below.width(), height), Sense::hover());
             let track = Rect::from_min_max(pos2(axis.left(), area.top()), pos2(axis.right(), area.bottom()));
             let visible = track.intersect(below);
@@ -175,9 +187,13 @@ impl TimelinePanel {
             self.follow_selection(ui, &painting);
             view = moved;
         });
+        if let Some(column) = column {
+            let part = (scrolled.state.unclamped_offset().y / all_rows, seen);
+            overview::paint(ui, context, column, silhouette, part, (&view, axis, chart.horizon));
+        }
         self.show_divider(ui, rect, axis.left());
         self.view = Some(view);
-        ui.advance_cursor_after_rect(rect);
+        ui.advance_cursor_after_rect(whole);
     }
 
     fn show_rows(
