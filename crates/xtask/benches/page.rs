@@ -43,7 +43,7 @@ fn main() -> Result<()> {
     let browser = Browser::start(Graphics::WebGl2)?;
     let bench = Bench { begun: Instant::now(), browser, url: server.url().to_owned() };
     let (width, height) = WINDOW;
-    println!("milliseconds, p50 / p90 / p99 / worst; {flavour:?} build, {width} × {height} pixels\n");
+    println!("milliseconds, p50 / p90 / worst; {flavour:?} build, {width} × {height} pixels\n");
     if !is_asked("terrain") {
         println!("| nodes | movement | app's own code | whole frame |\n|---|---|---|---|");
         let mut keystrokes = Vec::new();
@@ -352,9 +352,9 @@ impl std::fmt::Display for Frames {
     }
 }
 
-/// How measured times are spread: half of them, nine in ten, 99 in 100, and all are within.
+/// How measured times are spread: half of them, nine in ten, and all are within.
 fn spread(mut times: Vec<f64>) -> String {
     times.sort_by(f64::total_cmp);
     let at = |part: usize| times[((times.len() - 1) * part + 50) / 100];
-    [50, 90, 99, 100].map(|part| format!("{:.1}", at(part))).join(" / ")
+    [50, 90, 100].map(|part| format!("{:.1}", at(part))).join(" / ")
 }

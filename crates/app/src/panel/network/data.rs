@@ -49,9 +49,9 @@ pub(super) struct Drawn {
     pub(super) marks: Vec<Mark>,
     /// The revision and stage of the problems.
     marked: Option<(u64, mission::Stage)>,
-    /// The pins whose windows are shown.
-    pins: u64,
-    /// The windows of the plan.
+    /// The pins whose windows are shown; `None` while windows are not kept up to date.
+    pins: Option<u64>,
+    /// The windows of the plan, while they are shown.
     pub(super) windows: Vec<TextShape>,
     /// The texts that slide along each arch, by the arch's place in the drawing.
     pub(super) sliding: BTreeMap<u32, Vec<u32>>,
@@ -62,7 +62,8 @@ pub(super) struct Drawn {
 }
 
 impl Drawn {
-    /// Draws what `snapshot` holds, as far as it has changed. Answers whether the drawing is new.
+    /// Draws what `snapshot` holds, as far as it has changed. Answers whether the drawing is new. `windows_of` are the
+    /// pins whose windows are written, and the plan with them; `None` while windows are not shown.
     pub(super) fn follow(
         &mut self,
         snapshot: &Snapshot,
@@ -70,7 +71,7 @@ impl Drawn {
         step: Option<&View>,
         collapsed: &BTreeSet<String>,
         latest: Option<&Snapshot>,
-        (pins, pinned): (u64, Option<&Plan>),
+        windows_of: Option<(u64, Option<&Plan>)>,
     ) -> bool {
         let same = |one: &Option<Arc<Network>>| one.as_ref().is_some_and(|one| Arc::ptr_eq(one, network));
         let is_new = !same(&self.network) || self.collapsed != *collapsed;
@@ -99,14 +100,19 @@ impl Drawn {
             self.step = step.map(|view| Arc::clone(&view.plan));
             self.lay_over(network, snapshot, step);
         }
-        if is_new || !same_planning || !same_step || self.pins != pins {
-            self.pins = pins;
-            let plan = step.map(|view| view.plan.as_ref()).or(pinned).or_else(|| snapshot.plan());
-            let plan = plan.filter(|plan| fits(plan, network));
-            let width = Options::default().window_width;
-            self.windows = plan
-                .map(|plan| windows(&self.drawing, plan, width, &approximate_text_width))
-                .unwrap_or_default();
+        match windows_of {
+            None => self.pins = None,
+            Some((pins, pinned)) => {
+                if is_new || !same_planning || !same_step || self.pins != Some(pins) {
+                    self.pins = Some(pins);
+                    let plan = step.map(|view| view.plan.as_ref()).or(pinned).or_else(|| snapshot.plan());
+                    let plan = plan.filter(|plan| fits(plan, network));
+                    let width = Options::default().window_width;
+                    let measure = &approximate_text_width;
+                    self.windows =
+                        plan.map(|plan| windows(&self.drawing, plan, width, measure)).unwrap_or_default();
+                }
+            }
         }
         let problems = latest.map(|latest| (latest.revision, latest.stage));
         if is_new || self.marked != problems {

@@ -72,6 +72,7 @@ impl Panel for NetworkPanel {
         let begun_secs = (context.clock)();
         let latest = context.state.snapshots.latest().map(std::convert::AsRef::as_ref);
         let pins = (context.state.pins.version(), context.state.pins.plan(snapshot));
+        let pins = context.state.settings.views.network.windows.then_some(pins);
         if self.drawn.follow(snapshot, network, context.step(), &self.collapsed, latest, pins) {
             context.layout_millis.set(Some(((context.clock)() - begun_secs) * 1000.0));
         }
