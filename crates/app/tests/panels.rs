@@ -2,7 +2,7 @@
 
 mod support;
 
-use app::command::{COMMANDS, Command};
+use app::command::{Command, all_commands};
 use app::host::Remote as _;
 use egui::Role;
 use egui_kittest::kittest::Queryable as _;
@@ -134,8 +134,8 @@ fn the_outline_lists_the_declarations_and_leads_to_them() {
 
 #[test]
 fn command_names_are_unique_and_no_two_commands_share_a_key_where_both_work() {
-    for (index, left) in COMMANDS.iter().enumerate() {
-        for right in &COMMANDS[index + 1..] {
+    for (index, left) in all_commands().enumerate() {
+        for right in all_commands().skip(index + 1) {
             assert_ne!(left.id, right.id);
             for key in left.keys {
                 assert!(!right.keys.contains(key), "{} and {} share {key:?}", left.id, right.id);

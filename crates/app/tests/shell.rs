@@ -91,7 +91,7 @@ fn the_key_list_names_every_shortcut_of_the_registry() {
     app.harness.get_by_label("Keyboard shortcuts").click();
     app.settle();
     assert_eq!(app.json()["dialog"], "keys");
-    for spec in app::command::COMMANDS.iter().filter(|spec| !spec.keys.is_empty()) {
+    for spec in app::command::all_commands().filter(|spec| !spec.keys.is_empty()) {
         assert!(
             app.harness.query_all_by_label(spec.title).next().is_some(),
             "{} is not in the key list",

@@ -4,7 +4,7 @@ use egui::{
     Align, Button, ComboBox, Frame, Layout, Margin, Panel, RichText, Role, Sense, Stroke, Ui, WidgetInfo,
 };
 
-use crate::command::{COMMANDS, Command, CommandSender, CommandSpec, Group};
+use crate::command::{Command, CommandSender, CommandSpec, Group, all_commands};
 use crate::dialog::Dialog;
 use crate::icon::{self, Icon};
 use crate::mission_file::EXAMPLES;
@@ -63,7 +63,7 @@ fn is_narrow(ui: &Ui) -> bool {
 
 fn menu(ui: &mut Ui, context: &Context<'_>, group: Group, commands: &mut CommandSender) {
     ui.set_min_width(220.0);
-    for spec in COMMANDS.iter().filter(|spec| spec.group == group && spec.is_plain()) {
+    for spec in all_commands().filter(|spec| spec.group == group && spec.is_plain()) {
         menu_item(ui, context, spec, commands);
     }
     if group == Group::View {

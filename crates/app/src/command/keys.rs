@@ -2,7 +2,7 @@
 
 use egui::{Context, Event, KeyboardShortcut};
 
-use crate::command::{COMMANDS, Command, CommandSpec, Scope};
+use crate::command::{Command, CommandSpec, Scope, all_commands};
 use crate::state::AppState;
 
 /// Who has the keyboard.
@@ -58,7 +58,7 @@ fn best_match(
     focus: Focus,
     state: &AppState,
 ) -> Option<&'static CommandSpec> {
-    let matching = COMMANDS.iter().flat_map(|spec| spec.keys.iter().map(move |keys| (spec, keys)));
+    let matching = all_commands().flat_map(|spec| spec.keys.iter().map(move |keys| (spec, keys)));
     matching
         .filter(|(spec, keys)| {
             keys.logical_key == key

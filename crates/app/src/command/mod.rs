@@ -27,7 +27,7 @@ use crate::workspace::Workspace;
 
 pub use keys::take_pressed;
 pub use registry::{Availability, Build, CommandSpec, Group, Scope, by_id, from_json, matching, score};
-pub use specs::COMMANDS;
+pub use specs::all_commands;
 
 /// Something the app is asked to do.
 #[derive(Clone, Debug, PartialEq)]

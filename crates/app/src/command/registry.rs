@@ -3,7 +3,7 @@
 use egui::KeyboardShortcut;
 use serde_json::Value;
 
-use crate::command::{COMMANDS, Command};
+use crate::command::{Command, all_commands};
 use crate::host::RemoteError;
 use crate::state::AppState;
 
@@ -121,7 +121,7 @@ impl CommandSpec {
 
 /// The command of this name.
 pub fn by_id(id: &str) -> Option<&'static CommandSpec> {
-    COMMANDS.iter().find(|spec| spec.id == id)
+    all_commands().find(|spec| spec.id == id)
 }
 
 /// The command of this name with these arguments, for host pages.
@@ -139,8 +139,7 @@ pub fn from_json(state: &AppState, id: &str, arguments: &Value) -> Result<Comman
 /// The commands without arguments whose title or group has the letters of `query` in order, best first: whole words
 /// and word starts count more than letters in between.
 pub fn matching(query: &str) -> Vec<&'static CommandSpec> {
-    let mut found: Vec<(i32, usize, &CommandSpec)> = COMMANDS
-        .iter()
+    let mut found: Vec<(i32, usize, &CommandSpec)> = all_commands()
         .enumerate()
         .filter(|(_, spec)| spec.is_plain())
         .filter_map(|(order, spec)| {

@@ -2,7 +2,7 @@
 
 use egui::{Grid, RichText, ScrollArea, Ui};
 
-use crate::command::{COMMANDS, Command, CommandSender, Group};
+use crate::command::{Command, CommandSender, Group, all_commands};
 use crate::panel::Context;
 use crate::theme::space;
 
@@ -24,7 +24,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
             for (index, group) in Group::ALL.into_iter().enumerate() {
                 let ui = &mut columns[index % 2];
                 let with_keys: Vec<_> =
-                    COMMANDS.iter().filter(|spec| spec.group == group && !spec.keys.is_empty()).collect();
+                    all_commands().filter(|spec| spec.group == group && !spec.keys.is_empty()).collect();
                 if with_keys.is_empty() {
                     continue;
                 }

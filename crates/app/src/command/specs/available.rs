@@ -1,0 +1,109 @@
+//! When commands can be used, and what they wait for otherwise.
+
+use crate::command::registry::Availability;
+use crate::state::AppState;
+use crate::state::automaton::Program;
+use crate::state::search::recorded;
+
+#[expect(clippy::unnecessary_wraps, reason = "it stands beside conditions that can fail")]
+pub(super) fn always(_: &AppState) -> Availability {
+    Ok(())
+}
+
+pub(super) fn with_network(state: &AppState) -> Availability {
+    let has_network = state.shown().is_some_and(|shown| shown.network.is_some());
+    if has_network { Ok(()) } else { Err("there is no network") }
+}
+
+pub(super) fn with_plan(state: &AppState) -> Availability {
+    let has_plan = state.shown().is_some_and(|shown| shown.plan().is_some());
+    if has_plan { Ok(()) } else { Err("there is no plan") }
+}
+
+pub(super) fn with_program(state: &AppState) -> Availability {
+    if state.automaton.moment().is_some() { Ok(()) } else { Err("there is no control program") }
+}
+
+/// Whether there is something that chance can go wrong with: a plan, or a control program with its plant.
+pub(super) fn with_chance(state: &AppState) -> Availability {
+    if matches!(state.automaton.program(), Some(Program::Bound(_))) { Ok(()) } else { with_plan(state) }
+}
+
+/// Whether there is something to step through: a plan, a recorded search, or a control program.
+pub(super) fn with_steps(state: &AppState) -> Availability {
+    if with_search(state).is_ok() || state.automaton.program().is_some() { Ok(()) } else { with_plan(state) }
+}
+
+pub(super) fn with_search(state: &AppState) -> Availability {
+    let is_compared = state.search.recordings(state.shown()).len() > 1;
+    let is_recorded = state.shown().is_some_and(|shown| recorded(shown).is_some());
+    if is_recorded || is_compared { Ok(()) } else { Err("no search is recorded") }
+}
+
+pub(super) fn with_step(state: &AppState) -> Availability {
+    if state.search.step().is_some() { Ok(()) } else { Err("no step of the search is shown") }
+}
+
+pub(super) fn with_comparison(state: &AppState) -> Availability {
+    let is_compared = state.search.recordings(state.shown()).len() > 1;
+    if is_compared { Ok(()) } else { Err("no searches are compared") }
+}
+
+pub(super) fn with_run(state: &AppState) -> Availability {
+    if state.is_executing() { Ok(()) } else { Err("no mission is executed") }
+}
+
+pub(super) fn with_selection(state: &AppState) -> Availability {
+    if state.selection.is_none() { Err("nothing is selected") } else { Ok(()) }
+}
+
+pub(super) fn with_ground(state: &AppState) -> Availability {
+    let has_ground = state.shown().is_some_and(|shown| shown.map.is_some());
+    if has_ground { Ok(()) } else { Err("the mission has no places") }
+}
+
+pub(super) fn with_paths(state: &AppState) -> Availability {
+    let has_paths = state.shown().is_some_and(|shown| !shown.traverses.is_empty());
+    if has_paths { Ok(()) } else { Err("the plan has no traverse with a path") }
+}
+
+pub(super) fn with_vehicles(state: &AppState) -> Availability {
+    let has_vehicles = state.shown().is_some_and(|shown| !shown.program.world.vehicles.is_empty());
+    if has_vehicles { Ok(()) } else { Err("the mission has no vehicles") }
+}
+
+pub(super) fn with_pins(state: &AppState) -> Availability {
+    if state.pins.is_empty() { Err("no event is pinned") } else { Ok(()) }
+}
+
+pub(super) fn with_undo(state: &AppState) -> Availability {
+    if state.document.can_undo() { Ok(()) } else { Err("nothing has been edited") }
+}
+
+pub(super) fn with_redo(state: &AppState) -> Availability {
+    if state.document.can_redo() { Ok(()) } else { Err("nothing has been undone") }
+}
+
+pub(super) fn with_earlier_draft(state: &AppState) -> Availability {
+    if state.earlier_draft.is_some() { Ok(()) } else { Err("no draft of an earlier visit is kept") }
+}
+
+pub(super) fn with_problems(state: &AppState) -> Availability {
+    let has_problems = state.snapshots.latest().is_some_and(|latest| !latest.problems.is_empty());
+    if has_problems { Ok(()) } else { Err("there are no problems") }
+}
+
+/// Whether a mission is open that can be reviewed, planned or not.
+pub(super) fn with_mission(state: &AppState) -> Availability {
+    let is_reviewed = state.automaton.program().is_none() && state.snapshots.latest().is_some();
+    if is_reviewed { Ok(()) } else { Err("there is no mission to review") }
+}
+
+pub(super) fn with_sign_off(state: &AppState) -> Availability {
+    let is_signed = !state.review.record().sign_offs.is_empty();
+    if is_signed { Ok(()) } else { Err("nobody has signed this mission off yet") }
+}
+
+pub(super) fn with_record(state: &AppState) -> Availability {
+    if state.review.record().is_empty() { Err("there are no comments and no sign-offs") } else { Ok(()) }
+}

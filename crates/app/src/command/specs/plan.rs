@@ -1,0 +1,35 @@
+//! Planning.
+
+use super::arguments::{number_argument, text_argument};
+use super::{called, plain};
+use crate::command::Command;
+use crate::command::registry::{CommandSpec, Group, Scope};
+use crate::state::search::SearchCommand;
+
+/// In the order of the menus.
+pub(super) const COMMANDS: &[CommandSpec] = &[
+    plain("plan.chronological", "Search chronologically", Group::Plan, &[], Scope::Everywhere, |_| {
+        Command::SetSearch(mission::SearchKind::Chronological)
+    }),
+    plain(
+        "plan.conflictDirected",
+        "Search directed by conflicts",
+        Group::Plan,
+        &[],
+        Scope::Everywhere,
+        |_| Command::SetSearch(mission::SearchKind::ConflictDirected),
+    ),
+    plain("plan.compare", "Compare both searches", Group::Plan, &[], Scope::Everywhere, |state| {
+        Command::Search(SearchCommand::Compare(!state.search.compares()))
+    }),
+    plain("plan.otherPaths", "Plan other paths", Group::Plan, &[], Scope::Everywhere, |state| {
+        Command::SetSeed(state.settings.plan.seed + 1)
+    }),
+    called("plan.seed", "Choose the seed of path planning", Group::Plan, |_, arguments| {
+        number_argument(arguments, "seed").map(|seed| Command::SetSeed(seed.max(0.0) as u64))
+    }),
+    called("plan.scenario", "Choose what to plan", Group::Plan, |_, arguments| {
+        let name = text_argument(arguments, "name")?;
+        Ok(Command::SetGoal(mission::Goal::Scenario(name.into())))
+    }),
+];
