@@ -153,7 +153,10 @@ fn status(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     };
     let font = egui::TextStyle::Body.resolve(ui.style());
     let galley = ui.painter().layout_no_wrap(text.to_owned(), font, color);
-    let size = egui::vec2(galley.size().x + 40.0, space::ROW + 2.0);
+    let width = galley.size().x + 40.0;
+    // The sign alone says enough where the words would cover the workspaces.
+    let has_room = width <= ui.available_width();
+    let size = egui::vec2(if has_room { width } else { 32.0 }, space::ROW + 2.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let name = status_name(context);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
@@ -166,7 +169,9 @@ fn status(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         egui::Rect::from_min_size(rect.min + egui::vec2(8.0, 0.0), egui::vec2(16.0, rect.height()));
     icon::paint(ui.painter(), sign, sign_rect, 13.0, color);
     let at = egui::pos2(rect.left() + 28.0, rect.center().y - galley.size().y / 2.0);
-    ui.painter().galley(at, galley, color);
+    if has_room {
+        ui.painter().galley(at, galley, color);
+    }
     if response.on_hover_text("Show the details").clicked() {
         commands.send(Command::ShowPanel(panel));
     }
