@@ -1,21 +1,27 @@
-//! The automaton on screen: pan, zoom, point at things, press a location to see its text.
+//! The automaton on screen: pan, zoom, point at things, press them to select their text.
 
 use egui::{Rect, Role, Sense, Ui, WidgetInfo};
-use hca::{Automaton, LocationId, LocationKind};
+use hca::{Automaton, CompositeKind, LocationKind};
 use layout::{AutomatonDrawing, AutomatonItem};
 
 use super::shapes::Scene;
-use super::{Shown, log};
+use super::{Shown, log, marks};
 use crate::command::{Command, CommandSender, ViewAction};
 use crate::panel::network::view::View;
 use crate::panel::{Context, PanelKind};
+use crate::state::TextCommand;
 
 /// Where the drawing is scrolled to.
 #[derive(Default)]
 pub(super) struct Canvas {
     view: View,
     followed_action: u64,
+    /// What was pressed last.
+    pressed: Option<AutomatonItem>,
 }
+
+/// What was pressed, and whether twice.
+type Press = (AutomatonItem, bool);
 
 const WHEEL_ZOOM: f64 = 0.0022;
 const KEY_ZOOM: f64 = 1.3;
@@ -43,18 +49,21 @@ impl Canvas {
         );
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
         self.navigate(&response, panel, drawing, context);
-        let caret = context.state.document.caret().head;
-        let at_caret = location_at(shown.automaton, caret);
+        let marked = marks::marked(shown.automaton, context.state.document.caret(), self.pressed);
         let painter = ui.painter_at(panel);
-        Scene { painter: &painter, panel, view: &self.view, tokens: context.tokens, shown, at_caret }
+        Scene { painter: &painter, panel, view: &self.view, tokens: context.tokens, shown, marked: &marked }
             .paint(drawing);
-        self.locations(ui, panel, shown, drawing, commands);
-        if response.clicked() {
-            commands.send(Command::Activate(PanelKind::Automaton));
-        }
+        let on_button = self.buttons(ui, panel, shown, drawing);
         let pointed = response
             .hover_pos()
             .and_then(|at| drawing.pick(self.view.drawing_point(panel, at), REACH / self.view.zoom()));
+        let on_drawing = pointed.filter(|_| response.clicked()).map(|item| (item, response.double_clicked()));
+        if let Some((item, is_double)) = on_button.or(on_drawing) {
+            self.press(shown.automaton, item, is_double, commands);
+        }
+        if response.clicked() || on_button.is_some() {
+            commands.send(Command::Activate(PanelKind::Automaton));
+        }
         if let Some(text) = pointed.and_then(|item| describe(shown.automaton, item)) {
             response.on_hover_text_at_pointer(text);
         }
@@ -90,38 +99,59 @@ impl Canvas {
         }
     }
 
-    /// Locations as buttons, for pointers, keys and screen readers.
-    fn locations(
+    /// Selects the text of something; pressed twice, brings the text to the front.
+    fn press(
+        &mut self,
+        automaton: &Automaton,
+        item: AutomatonItem,
+        is_double: bool,
+        commands: &mut CommandSender,
+    ) {
+        let Some(span) = marks::span_of(automaton, item) else { return };
+        self.pressed = Some(item);
+        // From its end to its start, so that the start is scrolled to.
+        let range = span.range();
+        let select = TextCommand::Select { anchor: range.end, head: range.start };
+        commands.send(if is_double { Command::Reveal(span) } else { Command::Text(select) });
+    }
+
+    /// Locations, guards and conditions as buttons, for pointers, keys and screen readers; answers which was pressed.
+    fn buttons(
         &self,
         ui: &mut Ui,
         panel: Rect,
         shown: Shown<'_>,
         drawing: &AutomatonDrawing,
-        commands: &mut CommandSender,
-    ) {
-        for shape in &drawing.locations {
-            let rect = self.view.screen_rect(panel, shape.rect).intersect(panel);
-            let Some(location) = shown.automaton.location(shape.id).filter(|_| rect.is_positive()) else {
-                continue;
+    ) -> Option<Press> {
+        let automaton = shown.automaton;
+        let locations = drawing.locations.iter().map(|shape| (AutomatonItem::Location(shape.id), shape.rect));
+        let texts = drawing.texts.iter().map(|text| (text.owner, text.rect));
+        let texts = texts.filter(|(owner, _)| !matches!(owner, AutomatonItem::Location(_)));
+        let mut pressed = None;
+        for (at, (item, rect)) in texts.chain(locations).enumerate() {
+            let rect = self.view.screen_rect(panel, rect).intersect(panel);
+            let Some(text) = describe(automaton, item).filter(|_| rect.is_positive()) else { continue };
+            let is_marked = matches!(item, AutomatonItem::Location(id) if shown.moment.marking.contains(id));
+            let name = match item {
+                AutomatonItem::Location(id) => {
+                    let label = automaton.location(id).map_or("", |location| location.label.as_str());
+                    let standing = if is_marked { ", marked" } else { "" };
+                    format!("{}: {label}{standing}", automaton.location_name(id))
+                }
+                _ => text.clone(),
             };
-            let is_marked = shown.moment.marking.contains(shape.id);
-            let standing = if is_marked { ", marked" } else { "" };
-            let name = format!("{}: {}{standing}", shown.automaton.location_name(shape.id), location.label);
-            let id = ui.scope_id().with(("location", shape.id.0));
-            let response = ui.interact(rect, id, Sense::click());
+            let response = ui.interact(rect, ui.scope_id().with(("automaton-item", at)), Sense::click());
             response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_marked, &name));
             if response.has_focus() {
                 let stroke = egui::Stroke::new(1.5, ui.visuals().selection.stroke.color);
                 ui.painter_at(panel).rect_stroke(rect.expand(3.0), 5.0, stroke, egui::StrokeKind::Outside);
             }
             if response.clicked() {
-                commands.send(Command::Reveal(location.span));
-                commands.send(Command::Activate(PanelKind::Automaton));
+                pressed = Some((item, response.double_clicked()));
             }
-            if let Some(text) = describe(shown.automaton, AutomatonItem::Location(shape.id)) {
-                response.on_hover_text(text);
-            }
+            response.on_hover_text(text);
         }
+        pressed
     }
 }
 
@@ -129,16 +159,6 @@ impl Canvas {
 fn with_legend(mut bounds: layout::Rect) -> layout::Rect {
     bounds.max.y += LEGEND_HEIGHT;
     bounds
-}
-
-/// The location whose text is the smallest around a place of the text.
-fn location_at(automaton: &Automaton, offset: usize) -> Option<LocationId> {
-    let numbered = (0..).map(LocationId).zip(&automaton.locations);
-    let around = numbered.filter(|(_, location)| {
-        let range = location.span.range();
-        range.start <= offset && offset < range.end
-    });
-    around.min_by_key(|(_, location)| location.span.range().len()).map(|(id, _)| id)
 }
 
 /// What something on the drawing means, in a sentence.
@@ -165,7 +185,14 @@ fn describe(automaton: &Automaton, item: AutomatonItem) -> Option<String> {
             Some(format!("Fires when {} {verb}", guard.constraint))
         }
         AutomatonItem::Composite(id) => {
-            let guard = automaton.guard(automaton.composite(id)?.maintenance?)?;
+            let composite = automaton.composite(id)?;
+            let Some(guard) = composite.maintenance.and_then(|test| automaton.guard(test)) else {
+                return match composite.kind {
+                    CompositeKind::Parallel => Some("All of this runs side by side".to_owned()),
+                    CompositeKind::Sequence => Some("What ends is followed by what is next".to_owned()),
+                    _ => None,
+                };
+            };
             let verb =
                 if guard.non_entailed { "becomes known to hold" } else { "is no longer known to hold" };
             Some(format!("All of this ends as soon as {} {verb}", guard.constraint))

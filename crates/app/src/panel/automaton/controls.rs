@@ -80,5 +80,6 @@ fn jump(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         Some(moment) => format!("{} marked", moment.marking.len()),
         None => String::new(),
     };
+    ui.add_space(space::S);
     ui.label(RichText::new(note).color(context.tokens.text_muted));
 }

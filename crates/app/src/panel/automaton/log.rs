@@ -9,26 +9,43 @@ use crate::command::{Command, CommandSender};
 use crate::panel::Context;
 use crate::state::automaton::{AutomatonCommand, Moment};
 
-const HEADINGS: [&str; 6] = ["Step", "Marked", "Goals", "Commands", "Observed", "What came of it"];
+/// What each column tells, and whether there is nothing to tell without a plant.
+const COLUMNS: [(&str, bool); 5] =
+    [("Marked", false), ("Goals", false), ("Commands", true), ("What came of it", false), ("Observed", true)];
 
-/// Shows the table.
-pub(super) fn show(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
+/// Shows the table; `in_view` is the step that was scrolled to last.
+pub(super) fn show(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    shown: Shown<'_>,
+    in_view: &mut usize,
+    commands: &mut CommandSender,
+) {
     let tokens = context.tokens;
     let state = &context.state.automaton;
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
-        Grid::new("automaton-steps").num_columns(HEADINGS.len()).striped(true).show(ui, |ui| {
-            for heading in HEADINGS {
+        let has_plant = shown.moment.plant.is_some();
+        let is_told = |(_, needs_plant): (&str, bool)| has_plant || !needs_plant;
+        Grid::new("automaton-steps").striped(true).show(ui, |ui| {
+            let headings = COLUMNS.into_iter().filter(|column| is_told(*column)).map(|(heading, _)| heading);
+            for heading in std::iter::once("Step").chain(headings) {
                 ui.label(RichText::new(heading).small().color(tokens.text_muted));
             }
             ui.end_row();
             for (at, moment) in state.moments().iter().enumerate() {
                 let is_shown = at == state.at();
                 let number = if moment.marking.is_empty() { "end".to_owned() } else { (at + 1).to_string() };
-                if ui.selectable_label(is_shown, number).on_hover_text("Shows this step").clicked() {
+                let label = ui.selectable_label(is_shown, number).on_hover_text("Shows this step");
+                if is_shown && *in_view != at {
+                    *in_view = at;
+                    label.scroll_to_me(None);
+                }
+                if label.clicked() {
                     commands.send(Command::Automaton(AutomatonCommand::GoTo(at)));
                 }
                 let color = if is_shown { tokens.text } else { tokens.text_muted };
-                for cell in cells(shown, moment, state.moments().get(at + 1)) {
+                let cells = cells(shown, moment, state.moments().get(at + 1));
+                for (cell, _) in cells.into_iter().zip(COLUMNS).filter(|(_, column)| is_told(*column)) {
                     ui.label(RichText::new(cell).small().color(color));
                 }
                 ui.end_row();
@@ -47,7 +64,7 @@ fn cells(shown: Shown<'_>, moment: &Moment, next: Option<&Moment>) -> [String; 5
         let names = model.observation_names(&record.observation);
         names.iter().map(|(name, value)| format!("{name}={value}")).collect::<Vec<_>>().join(", ")
     });
-    [marked, goals, commands.unwrap_or_default(), observed.unwrap_or_default(), outcome(shown, next)]
+    [marked, goals, commands.unwrap_or_default(), outcome(shown, next), observed.unwrap_or_default()]
 }
 
 /// What was injected, found and preempted in a step.

@@ -10,9 +10,10 @@ mod evidence;
 mod known;
 mod log;
 mod machine;
+mod marks;
 mod shapes;
 
-use egui::{Frame, Margin, RichText, ScrollArea, Ui};
+use egui::{Frame, Margin, RichText, ScrollArea, Ui, Vec2, vec2};
 use hca::Automaton;
 use layout::{AutomatonDrawing, approximate_text_width};
 use plant::Model;
@@ -28,20 +29,29 @@ pub struct AutomatonPanel {
     drawn: Option<Drawn>,
     machines: Option<components::Machines>,
     canvas: canvas::Canvas,
-    side: Side,
+    part: Part,
+    /// The step that the log was scrolled to last.
+    logged: usize,
     /// Whether many runs were being made when the panel was last shown.
     was_sampling: bool,
 }
 
-/// What stands beside the automaton.
+/// A part of the panel; the automaton and the steps stand beside the others where there is room.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Side {
-    /// The plant at the moment that is looked at.
+enum Part {
+    /// The drawing.
     #[default]
+    Automaton,
+    /// The plant at the moment that is looked at.
     Plant,
     /// Many runs with chance.
     ManyRuns,
+    /// All steps.
+    Steps,
 }
+
+/// With less room than this, one part is shown at a time.
+const LEAST_ROOM: Vec2 = vec2(760.0, 320.0);
 
 /// The drawing of the automaton that was laid out last.
 struct Drawn {
@@ -77,57 +87,114 @@ impl Panel for AutomatonPanel {
         };
         let shown = Shown { program, automaton, moment };
         controls::show(ui, context, commands);
+        let is_sampling = context.state.automaton.chance.is_running();
+        if is_sampling && !self.was_sampling {
+            self.part = Part::ManyRuns;
+        }
+        self.was_sampling = is_sampling;
+        self.layout(automaton);
+        let room = ui.available_size();
+        if room.x < LEAST_ROOM.x || room.y < LEAST_ROOM.y {
+            self.one_part(ui, context, shown, commands);
+            return;
+        }
         let frame = Frame::new().fill(context.tokens.surface).inner_margin(Margin::symmetric(8, 4));
         egui::Panel::right("automaton-plant")
             .resizable(true)
-            .default_size(356.0)
+            .default_size((room.x * 0.36).clamp(300.0, 356.0))
             .frame(frame)
             .show(ui, |ui| self.beside(ui, context, shown, commands));
-        egui::Panel::bottom("automaton-log").resizable(true).default_size(170.0).frame(frame).show(
-            ui,
-            |ui| {
-                log::show(ui, context, shown, commands);
-            },
-        );
-        self.layout(automaton);
-        if let Some(drawn) = &self.drawn {
-            self.canvas.show(ui, context, shown, &drawn.drawing, commands);
-        }
+        egui::Panel::bottom("automaton-log")
+            .resizable(true)
+            .default_size(170.0)
+            .frame(frame)
+            .show(ui, |ui| log::show(ui, context, shown, &mut self.logged, commands));
+        self.drawing(ui, context, shown, commands);
     }
 }
 
 impl AutomatonPanel {
+    /// One part at a time, with a row to choose it.
+    fn one_part(
+        &mut self,
+        ui: &mut Ui,
+        context: &Context<'_>,
+        shown: Shown<'_>,
+        commands: &mut CommandSender,
+    ) {
+        let has_plant = shown.moment.plant.is_some();
+        let parts = [
+            (Part::Automaton, "Automaton", true),
+            (Part::Plant, if has_plant { "Plant" } else { "What is known" }, true),
+            (Part::ManyRuns, "Many runs", has_plant),
+            (Part::Steps, "Steps", true),
+        ];
+        let margin = Margin::symmetric(8, 2);
+        Frame::new().inner_margin(margin).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                for (part, name, _) in parts.into_iter().filter(|(.., is_there)| *is_there) {
+                    ui.selectable_value(&mut self.part, part, name);
+                }
+            });
+        });
+        match self.part {
+            Part::Automaton => self.drawing(ui, context, shown, commands),
+            Part::Plant | Part::ManyRuns => {
+                Frame::new().inner_margin(margin).show(ui, |ui| self.side(ui, context, shown, commands));
+            }
+            Part::Steps => {
+                Frame::new().inner_margin(margin).show(ui, |ui| {
+                    log::show(ui, context, shown, &mut self.logged, commands);
+                });
+            }
+        }
+    }
+
+    fn drawing(
+        &mut self,
+        ui: &mut Ui,
+        context: &Context<'_>,
+        shown: Shown<'_>,
+        commands: &mut CommandSender,
+    ) {
+        if let Some(drawn) = &self.drawn {
+            self.canvas.show(ui, context, shown, &drawn.drawing, commands);
+        }
+    }
+
     /// What stands beside the automaton.
     fn beside(&mut self, ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
-        let is_sampling = context.state.automaton.chance.is_running();
-        if is_sampling && !self.was_sampling {
-            self.side = Side::ManyRuns;
-        }
-        self.was_sampling = is_sampling;
-        let Some((model, plant)) = shown.program.model().zip(shown.moment.plant.as_ref()) else {
-            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                goals(ui, context, shown);
-                known::show(ui, context, shown.automaton, commands);
-            });
-            return;
-        };
-        ui.horizontal(|ui| {
-            ui.selectable_value(&mut self.side, Side::Plant, "Plant");
-            ui.selectable_value(&mut self.side, Side::ManyRuns, "Many runs");
-        });
-        let side = self.side;
-        ScrollArea::vertical().id_salt(("automaton-side", side == Side::Plant)).auto_shrink(false).show(
-            ui,
-            |ui| {
-                if side == Side::ManyRuns {
-                    chance::show(ui, context, commands);
-                    return;
+        if shown.moment.plant.is_some() {
+            ui.horizontal(|ui| {
+                for (part, name) in [(Part::Plant, "Plant"), (Part::ManyRuns, "Many runs")] {
+                    let is_shown = (self.part == Part::ManyRuns) == (part == Part::ManyRuns);
+                    if ui.selectable_label(is_shown, name).clicked() {
+                        self.part = part;
+                    }
                 }
-                goals(ui, context, shown);
-                self.machines(ui, model).show(ui, context, plant, commands);
-                evidence::show(ui, context, model, plant, commands);
-            },
-        );
+            });
+        }
+        self.side(ui, context, shown, commands);
+    }
+
+    /// The plant, or many runs of it, or what is known where there is no plant.
+    fn side(&mut self, ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
+        let plant = shown.program.model().zip(shown.moment.plant.as_ref());
+        let is_sampled = plant.is_some() && self.part == Part::ManyRuns;
+        ScrollArea::vertical().id_salt(("automaton-side", is_sampled)).auto_shrink(false).show(ui, |ui| {
+            if is_sampled {
+                chance::show(ui, context, commands);
+                return;
+            }
+            goals(ui, context, shown);
+            match plant {
+                Some((model, plant)) => {
+                    self.machines(ui, model).show(ui, context, plant, commands);
+                    evidence::show(ui, context, model, plant, commands);
+                }
+                None => known::show(ui, context, shown.automaton, commands),
+            }
+        });
     }
 
     fn machines(&mut self, ui: &Ui, model: &Model) -> &components::Machines {
@@ -163,7 +230,9 @@ fn goals(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>) {
         title(ui, context, "The program has ended", "nothing is marked");
         return;
     }
-    title(ui, context, &format!("Step {}", moment.upcoming.step), "what is wanted, and what is commanded");
+    let has_plant = moment.plant.is_some();
+    let note = if has_plant { "what is wanted, and what is commanded" } else { "what is wanted" };
+    title(ui, context, &format!("Step {}", moment.upcoming.step), note);
     let goals = moment.upcoming.goals.join(", ");
     let goals = if goals.is_empty() { "no goals".to_owned() } else { goals };
     ui.label(RichText::new(format!("Goals: {goals}")).color(tokens.text));

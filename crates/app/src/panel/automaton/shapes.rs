@@ -3,7 +3,7 @@
 //! What is marked has a dot and a heavier border besides its colour. Non-entailment is a bar over what is not entailed.
 
 use egui::{Align2, Color32, FontId, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
-use hca::{CompositeKind, LocationId, LocationKind};
+use hca::{CompositeKind, LocationKind};
 use layout::look::arrow_head;
 use layout::{AutomatonDrawing, AutomatonItem, Piece, Point, TextRole};
 
@@ -26,8 +26,8 @@ pub(super) struct Scene<'a> {
     pub(super) tokens: &'a Tokens,
     /// What is shown.
     pub(super) shown: Shown<'a>,
-    /// The location whose text the caret is in.
-    pub(super) at_caret: Option<LocationId>,
+    /// What the text stands for that is selected, or that the caret is in.
+    pub(super) marked: &'a [AutomatonItem],
 }
 
 impl Scene<'_> {
@@ -53,6 +53,10 @@ impl Scene<'_> {
             let is_active = self.shown.automaton.is_active(shape.id, &self.shown.moment.marking);
             let fill = if shape.is_watching { tokens.raised } else { Color32::TRANSPARENT };
             self.painter.rect_filled(rect, 7.0, fill);
+            if self.marked.contains(&AutomatonItem::Composite(shape.id)) {
+                // Faint, so that what is written inside stays legible.
+                self.painter.rect_filled(rect, 7.0, self.tokens.selection.gamma_multiply(0.5));
+            }
             let color = match (shape.is_watching, is_active) {
                 (true, true) => tokens.decision,
                 (false, true) => tokens.text_muted,
@@ -102,7 +106,10 @@ impl Scene<'_> {
             let color = if has_fired { self.tokens.accent } else { self.tokens.path_unselected };
             let width = if has_fired { 2.6 } else { 1.3 };
             let points = layout::geometry::flatten(shape.start, &shape.pieces);
-            let points = points.into_iter().map(|point| self.point(point)).collect();
+            let points: Vec<Pos2> = points.into_iter().map(|point| self.point(point)).collect();
+            if self.marked.contains(&AutomatonItem::Transition(shape.id)) {
+                self.painter.add(Shape::line(points.clone(), Stroke::new(9.0, self.tokens.selection)));
+            }
             self.painter.add(Shape::line(points, Stroke::new(width, color)));
             if let Some((last, before)) = shape.pieces.split_last() {
                 let start = before.last().map_or(shape.start, |piece: &Piece| piece.end());
@@ -125,7 +132,7 @@ impl Scene<'_> {
             let color = if is_marked { tokens.tell } else { tokens.path_unselected };
             let stroke = Stroke::new(if is_marked { 2.6 } else { 1.3 }, color);
             let fill = if is_marked { tokens.soft[0] } else { tokens.node_fill };
-            if self.at_caret == Some(shape.id) {
+            if self.marked.contains(&AutomatonItem::Location(shape.id)) {
                 self.painter.rect_filled(rect.expand(4.0), corner + 4.0, tokens.selection);
             }
             self.painter.rect(rect, corner, fill, stroke, StrokeKind::Middle);
@@ -163,13 +170,17 @@ impl Scene<'_> {
             if size < LEAST_TEXT {
                 continue;
             }
+            let place = self.view.screen_rect(self.panel, text.rect);
+            if matches!(text.owner, AutomatonItem::Transition(_)) && self.marked.contains(&text.owner) {
+                self.painter.rect_filled(place.expand(2.0), 3.0, self.tokens.selection);
+            }
             let color = match (text.role, text.owner) {
                 (TextRole::Name, _) => self.tokens.text,
                 (_, AutomatonItem::Composite(_)) => self.tokens.decision,
                 (_, AutomatonItem::Transition(id)) if fired.contains(&id) => self.tokens.accent,
                 _ => self.tokens.text_muted,
             };
-            self.text(&text.text, size, self.view.screen_rect(self.panel, text.rect), color);
+            self.text(&text.text, size, place, color);
         }
     }
 
@@ -195,10 +206,25 @@ impl Scene<'_> {
         self.painter.galley(corner, galley, color);
     }
 
+    /// What the signs mean, as much of it as there is room for.
     fn legend(&self) {
-        let text = "● marked    double border: marked at the start    overbar: not known to hold    dashed arrow: then";
+        let parts = [
+            "● marked",
+            "double border: marked at the start",
+            "overbar: not known to hold",
+            "dashed arrow: then",
+        ];
         let font = FontId::proportional(size::SMALL);
-        let corner = self.panel.left_bottom() + vec2(8.0, -6.0);
-        self.painter.text(corner, Align2::LEFT_BOTTOM, text, font, self.tokens.text_faint);
+        let color = self.tokens.text_faint;
+        let mut at = self.panel.left_bottom() + vec2(8.0, -6.0);
+        for part in parts {
+            let galley = self.painter.layout_no_wrap(part.to_owned(), font.clone(), color);
+            let size = galley.size();
+            if at.x + size.x > self.panel.right() {
+                break;
+            }
+            self.painter.galley(at - vec2(0.0, size.y), galley, color);
+            at.x += size.x + 14.0;
+        }
     }
 }
