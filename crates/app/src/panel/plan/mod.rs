@@ -12,6 +12,9 @@ use crate::panel::{Context, Panel, show_empty};
 use crate::state::{Selection, Status};
 use crate::theme::space;
 
+/// Lists of more rows are made as far as they are on screen.
+const LONG_LIST: usize = 60;
+
 /// The plan.
 #[derive(Default)]
 pub struct PlanPanel {
@@ -69,6 +72,28 @@ pub(crate) fn section(ui: &mut Ui, context: &Context<'_>, title: &str, note: &st
             ui.label(RichText::new(note).small().color(context.tokens.text_muted));
         }
     });
+}
+
+/// Rows of one kind. Of long lists only those on screen are made: thousands of buttons would take longer than a frame.
+fn rows(ui: &mut Ui, id: &str, count: usize, mut show: impl FnMut(&mut Ui, usize)) {
+    if count <= LONG_LIST {
+        (0..count).for_each(|index| show(ui, index));
+        return;
+    }
+    // All rows are as high as the one that was made last.
+    let known = ui.scope_id().with(id).with("row height");
+    let spacing = ui.spacing().item_spacing.y;
+    let height = ui.data(|data| data.get_temp(known)).unwrap_or(ui.spacing().interact_size.y);
+    let pitch = height + spacing;
+    let (top, clip) = (ui.cursor().top(), ui.clip_rect());
+    let row_at = |y: f32| (((y - top) / pitch).max(0.0) as usize).min(count);
+    let (first, last) = (row_at(clip.top()), (row_at(clip.bottom()) + 1).min(count));
+    ui.add_space(first as f32 * pitch);
+    for index in first..last {
+        let row = ui.push_id((id, index), |ui| show(ui, index)).response.rect;
+        ui.data_mut(|data| data.insert_temp(known, row.height()));
+    }
+    ui.add_space((count - last) as f32 * pitch);
 }
 
 /// A row that selects something, with its text cut where the panel ends.
@@ -152,8 +177,9 @@ fn show_choices(
         return;
     }
     section(ui, context, "Choices", &format!("{reached} of {} decisions reached", network.decisions.len()));
-    for choice in &plan.choices {
-        let Some(decision) = network.decisions.get(choice.decision.index()) else { continue };
+    rows(ui, "choices", plan.choices.len(), |ui, index| {
+        let choice = &plan.choices[index];
+        let Some(decision) = network.decisions.get(choice.decision.index()) else { return };
         ui.horizontal(|ui| {
             let name = Network::decision_name(choice.decision);
             let text = RichText::new(&name).color(context.tokens.decision);
@@ -171,7 +197,7 @@ fn show_choices(
                 selectable_row(ui, context, &selection, text, commands);
             }
         });
-    }
+    });
 }
 
 /// What an alternative is about: the first activity in it.
@@ -204,11 +230,12 @@ fn show_links(
         return;
     }
     section(ui, context, "Causal links", "a requirement inside the assertion that carries it");
-    for &link in &plan.causal_links {
+    rows(ui, "links", plan.causal_links.len(), |ui, index| {
+        let link = plan.causal_links[index];
         let text = format!("{} ← {}", network.label_name(link.ask), network.label_name(link.tell));
         let text = RichText::new(text).color(context.tokens.link);
         selectable_row(ui, context, &Selection::Link(link), text, commands);
-    }
+    });
 }
 
 fn show_orderings(
@@ -225,7 +252,8 @@ fn show_orderings(
     let pairs = counted(plan.conflict_order.len() as u64, "conflicting pair");
     let note = format!("{pairs}, {added} ordered by planning");
     section(ui, context, "Threats and orderings", &note);
-    for &ordering in &plan.conflict_order {
+    rows(ui, "orderings", plan.conflict_order.len(), |ui, index| {
+        let ordering = plan.conflict_order[index];
         let text =
             format!("{} before {}", network.label_name(ordering.first), network.label_name(ordering.then));
         let is_added = plan.orderings_added.contains(&ordering);
@@ -236,5 +264,5 @@ fn show_orderings(
         };
         let text = RichText::new(format!("{text}{note}")).color(color);
         selectable_row(ui, context, &Selection::Ordering(ordering), text, commands);
-    }
+    });
 }

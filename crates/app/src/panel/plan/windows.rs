@@ -18,10 +18,11 @@ pub(crate) struct WindowTable {
     filter: String,
 }
 
-/// A row: an event and its window.
+/// A row: an event and its window. Of thousands, names are written only for those on screen.
+#[derive(Clone, Copy)]
 struct Row {
     node: NodeId,
-    name: String,
+    event: EventRef,
     earliest: Rational,
     latest: Bound,
 }
@@ -38,8 +39,9 @@ impl WindowTable {
         plan: &Plan,
         commands: &mut CommandSender,
     ) {
-        let rows = self.rows(context, network, plan);
+        let mut rows = self.rows(context, network, plan);
         if let Some(steps) = walk::arrows(ui, context, PanelKind::Plan).filter(|_| !rows.is_empty()) {
+            sort(&mut rows, context, network);
             let is_here = |row: &&Row| is_selected(context, network, row);
             let here = rows.iter().position(|row| is_here(&row));
             // One event can have several names, and rows.
@@ -70,6 +72,10 @@ impl WindowTable {
             egui::vec2(ui.available_width(), height * rows.len() as f32),
             Sense::hover(),
         );
+        if !ui.is_rect_visible(table) {
+            return;
+        }
+        sort(&mut rows, context, network);
         let clip = ui.clip_rect();
         let first = ((clip.top() - table.top()) / height).floor().max(0.0) as usize;
         let last = ((clip.bottom() - table.top()) / height).ceil().max(0.0) as usize;
@@ -81,10 +87,11 @@ impl WindowTable {
         }
     }
 
+    /// The events that the filter leaves, in no order.
     fn rows(&self, context: &Context<'_>, network: &Network, plan: &Plan) -> Vec<Row> {
         let filter = self.filter.to_lowercase();
         let shows_path_points = context.state.settings.views.plan.path_points;
-        let mut rows: Vec<Row> = network
+        network
             .nodes
             .iter()
             .zip(&plan.windows)
@@ -96,26 +103,34 @@ impl WindowTable {
                 };
                 node.events.iter().filter(is_shown).map(move |&event| Row {
                     node: NodeId::from_index(index),
-                    name: network.event_name(event),
+                    event,
                     earliest: window.earliest,
                     latest: window.latest,
                 })
             })
-            .filter(|row| filter.is_empty() || row.name.to_lowercase().contains(&filter))
-            .collect();
-        let view = &context.state.settings.views.plan;
-        rows.sort_by(|left, right| {
-            let by_time = (left.earliest, left.latest).cmp(&(right.earliest, right.latest));
-            let order = match view.sort {
-                WindowSort::Earliest => by_time,
-                WindowSort::Latest => left.latest.cmp(&right.latest).then(by_time),
-                WindowSort::Slack => slack(left).cmp(&slack(right)).then(by_time),
-                WindowSort::Event => left.name.cmp(&right.name),
-            };
-            let order = if view.descending { order.reverse() } else { order };
-            order.then_with(|| left.name.cmp(&right.name))
-        });
-        rows
+            .filter(|row| filter.is_empty() || row.name(network).to_lowercase().contains(&filter))
+            .collect()
+    }
+}
+
+impl Row {
+    fn name(&self, network: &Network) -> String {
+        network.event_name(self.event)
+    }
+}
+
+/// Sorts as the view says; what is equal comes in the order of the network.
+fn sort(rows: &mut [Row], context: &Context<'_>, network: &Network) {
+    let view = &context.state.settings.views.plan;
+    let by_time = |row: &Row| (row.earliest, row.latest);
+    match view.sort {
+        WindowSort::Earliest => rows.sort_by_key(by_time),
+        WindowSort::Latest => rows.sort_by_key(|row| (row.latest, by_time(row))),
+        WindowSort::Slack => rows.sort_by_cached_key(|row| (slack(row), by_time(row))),
+        WindowSort::Event => rows.sort_by_cached_key(|row| row.name(network)),
+    }
+    if view.descending {
+        rows.reverse();
     }
 }
 
@@ -174,12 +189,12 @@ fn show_row(
     commands: &mut CommandSender,
 ) {
     let tokens = context.tokens;
-    let response = ui.interact(rect, ui.scope_id().with(&row.name), Sense::click());
+    let name = row.name(network);
+    let response = ui.interact(rect, ui.scope_id().with(&name), Sense::click());
     let is_selected = is_selected(context, network, row);
     let window = time_text::interval(row.earliest, row.latest);
-    response.widget_info(|| {
-        WidgetInfo::selected(Role::Button, true, is_selected, format!("{} {window}", row.name))
-    });
+    response
+        .widget_info(|| WidgetInfo::selected(Role::Button, true, is_selected, format!("{name} {window}")));
     if is_selected {
         ui.painter().rect_filled(rect, 3.0, tokens.selection);
     } else if response.hovered() {
@@ -192,7 +207,7 @@ fn show_row(
     ui.painter().with_clip_rect(name_rect.intersect(ui.clip_rect())).text(
         at,
         Align2::LEFT_CENTER,
-        &row.name,
+        &name,
         body.clone(),
         tokens.text,
     );
@@ -213,7 +228,7 @@ fn show_row(
         commands.send(Command::SelectAndReveal(Selection::Node(row.node)));
     }
     response.on_hover_ui(|ui| {
-        ui.label(&row.name);
+        ui.label(&name);
         ui.label(RichText::new(window).color(tokens.text_muted));
     });
 }
@@ -223,14 +238,7 @@ fn is_selected(context: &Context<'_>, network: &Network, row: &Row) -> bool {
     match &context.state.selection {
         Selection::Node(node) => *node == row.node,
         selection @ (Selection::Occurrence(_) | Selection::Label(_)) => {
-            let occurrence = selection.occurrence(network);
-            let node = network.nodes.get(row.node.index());
-            occurrence.is_some_and(|occurrence| {
-                let name = network.occurrences.get(occurrence.index()).map(|it| format!("{}.", it.name));
-                let is_its_event =
-                    node.is_some_and(|node| node.events.iter().any(|event| event.occurrence == occurrence));
-                is_its_event && name.is_some_and(|name| row.name.starts_with(&name))
-            })
+            selection.occurrence(network).is_some_and(|occurrence| row.event.occurrence == occurrence)
         }
         _ => false,
     }
