@@ -3,7 +3,7 @@
 use app::{
     Enroute,
     accessibility::{AccessibilityMirror, Act},
-    command::COMMANDS,
+    command::all_commands,
     host::Remote,
 };
 use eframe::WebRunner;
@@ -78,7 +78,7 @@ pub fn uses_key(key: &str, control: bool, alt: bool, shift: bool) -> bool {
     let belongs = |shortcut: &egui::KeyboardShortcut| {
         shortcut.logical_key == key && pressed.matches_logically(shortcut.modifiers)
     };
-    !types && COMMANDS.iter().flat_map(|command| command.keys).any(belongs)
+    !types && all_commands().flat_map(|command| command.keys).any(belongs)
 }
 
 /// The running front end.
