@@ -4,6 +4,7 @@
 /** Keeps the elements under `root` in step with the front end that draws on `canvas`. */
 export function createMirror(root, canvas) {
   const shown = new Map();
+  const bounds = new Map();
   let act = () => {};
 
   for (const kind of ["click", "focus"]) {
@@ -41,11 +42,16 @@ export function createMirror(root, canvas) {
       for (const element of changed) {
         describe(shown.get(element.id), element);
         arrange(shown.get(element.id), element.children, shown);
+        bounds.set(element.id, element.bounds);
       }
       arrange(root, top, shown);
+      for (const { id, children } of changed) {
+        for (const moved of [id, ...children]) place(shown.get(moved), bounds);
+      }
       for (const id of removed) {
         shown.get(id)?.remove();
         shown.delete(id);
+        bounds.delete(id);
       }
       setFocus(focus);
     },
@@ -92,7 +98,7 @@ function create(id) {
 }
 
 /** Writes what an element is; nothing is touched that stays as it was. */
-function describe(element, { role, label, value, description, bounds, enabled, clickable, toggled, selected, ...rest }) {
+function describe(element, { role, label, value, description, enabled, clickable, toggled, selected, ...rest }) {
   const { expanded, multiline, number, level } = rest;
   const pressed = role === "button";
   const attributes = {
@@ -120,9 +126,14 @@ function describe(element, { role, label, value, description, bounds, enabled, c
   const words = element.firstChild;
   const text = value ?? (role === "" ? label : "");
   if (words.textContent !== text) words.textContent = text;
-  const [left, top, width, height] = bounds;
-  element.style.left = `${left}px`;
-  element.style.top = `${top}px`;
+}
+
+/** Puts an element where its widget is; what is inside another element, such as a menu in its button, counts from there. */
+function place(element, bounds) {
+  const [left, top, width, height] = bounds.get(element.dataset.id);
+  const [originX, originY] = bounds.get(element.parentElement?.dataset.id) ?? [0, 0];
+  element.style.left = `${left - originX}px`;
+  element.style.top = `${top - originY}px`;
   element.style.width = `${width}px`;
   element.style.height = `${height}px`;
 }

@@ -7,6 +7,7 @@ mod opened;
 
 mod accessibility;
 mod api;
+mod automaton;
 mod drawing;
 mod editing;
 mod execution;
