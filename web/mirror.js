@@ -41,13 +41,14 @@ export function createMirror(root, canvas) {
       }
       for (const element of changed) {
         describe(shown.get(element.id), element);
-        arrange(shown.get(element.id), element.children, shown);
         bounds.set(element.id, element.bounds);
       }
-      arrange(root, top, shown);
+      const moved = new Set(arrange(root, top, shown));
       for (const { id, children } of changed) {
-        for (const moved of [id, ...children]) place(shown.get(moved), bounds);
+        arrange(shown.get(id), children, shown);
+        for (const element of [id, ...children]) moved.add(shown.get(element));
       }
+      for (const element of moved) place(element, bounds);
       for (const id of removed) {
         shown.get(id)?.remove();
         shown.delete(id);
@@ -138,12 +139,14 @@ function place(element, bounds) {
   element.style.height = `${height}px`;
 }
 
-/** Puts the elements of these ids inside `parent`, in order, after its words. */
+/** Puts the elements of these ids inside `parent`, in order, after its words. Answers them if any was not there. */
 function arrange(parent, ids, shown) {
   const wanted = ids.map((id) => shown.get(id));
   const words = parent.dataset.id ? [parent.firstChild] : [];
   const present = parent.childNodes;
   const all = [...words, ...wanted];
   const same = present.length === all.length && all.every((element, index) => present[index] === element);
-  if (!same) parent.replaceChildren(...all);
+  if (same) return [];
+  parent.replaceChildren(...all);
+  return wanted;
 }

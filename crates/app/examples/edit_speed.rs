@@ -1,13 +1,15 @@
 //! Measures what an edit of a large mission costs: the core's answer, and the frame that shows it. `cargo run -p app
 //! --release --example edit_speed -- 10000`; panels are those of the Author workspace.
 
+mod figures;
 #[path = "../tests/support/mod.rs"]
 mod support;
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use app::command::Command;
 use app::state::TextCommand;
+use figures::report;
 use tpn::generate::{Recipe, Tightness, mission};
 
 const EDITS: usize = 20;
@@ -41,11 +43,4 @@ fn main() {
     report("edit, with the core's answer", keys);
     report("frame that shows it", answers);
     report("frame at rest", idle);
-}
-
-#[expect(clippy::print_stdout, reason = "the figures are this program's answer")]
-fn report(what: &str, mut times: Vec<Duration>) {
-    times.sort();
-    let at = |part: usize| times[(times.len() * part / 100).min(times.len() - 1)];
-    println!("{what}: median {:?}, 95 % {:?}, most {:?}", at(50), at(95), at(100));
 }

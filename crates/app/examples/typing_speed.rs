@@ -1,12 +1,14 @@
 //! Measures how long a frame and a keystroke take in the editor with a long text: `cargo run -p app --example typing_speed`.
 
+mod figures;
 #[path = "../tests/support/mod.rs"]
 mod support;
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use app::command::Command;
 use app::state::TextCommand;
+use figures::report;
 
 const LINES: usize = 10_000;
 const KEYS: usize = 200;
@@ -37,11 +39,4 @@ fn main() {
     }
     report("key", keys);
     report("frame", frames);
-}
-
-#[expect(clippy::print_stdout, reason = "the figures are this program's answer")]
-fn report(what: &str, mut times: Vec<Duration>) {
-    times.sort();
-    let at = |part: usize| times[(times.len() * part / 100).min(times.len() - 1)];
-    println!("{what}: median {:?}, 95 % {:?}, most {:?}", at(50), at(95), at(100));
 }

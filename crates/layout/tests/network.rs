@@ -1,8 +1,8 @@
 //! Drawings of networks that come from programs: nothing overlaps, nothing crosses, and edits move little.
 
-mod common;
+mod drawings;
 
-use common::{
+use drawings::{
     assert_nothing_overlaps, crossings, draw, draw_with, enroute, network_of, random_mission,
     segment_meets_rect, segments,
 };

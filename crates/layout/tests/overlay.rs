@@ -1,8 +1,8 @@
 //! What a plan or its failure adds to a drawing, and what of it is exported.
 
-mod common;
+mod drawings;
 
-use common::{draw, enroute, segment_meets_rect};
+use drawings::{draw, enroute, segment_meets_rect};
 use layout::overlay::{causal_links, negative_cycle, orderings, windows};
 use layout::{Item, Options, Palette, SvgOptions, approximate_text_width};
 use rmpl::{Bound, Rational};

@@ -1,8 +1,10 @@
 //! Drawings of networks that come without a program: their structure is found again, or they are drawn in columns.
 
-mod common;
+mod drawings;
 
-use common::{assert_nothing_overlaps, crossings, draw, enroute, network_of, random_mission, without_blocks};
+use drawings::{
+    assert_nothing_overlaps, crossings, draw, enroute, network_of, random_mission, without_blocks,
+};
 use layout::{NetworkDrawing, Route};
 use rmpl::{Bound, Rational};
 use tpn::generate::{Recipe, Rng, Tightness, mission};

@@ -19,7 +19,6 @@ pub(crate) struct WindowTable {
 }
 
 /// A row: an event and its window. Of thousands, names are written only for those on screen.
-#[derive(Clone, Copy)]
 struct Row {
     node: NodeId,
     event: EventRef,

@@ -1,4 +1,4 @@
-//! What the tests of drawings share: missions as networks, random programs, and geometry checked the slow way.
+//! Missions drawn for tests: as networks, as random programs, and with geometry checked the slow way.
 #![allow(dead_code, reason = "each test binary uses its part")]
 
 use layout::geometry::flatten;
