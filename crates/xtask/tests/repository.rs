@@ -10,9 +10,10 @@ use serde_json::Value;
 use xtask::process::{cargo, root};
 
 /// What each crate builds on: ARCHITECTURE.md's layers. A crate may use whatever these build on in turn.
-const LAYERS: [(&str, &[&str]); 18] = [
+const LAYERS: [(&str, &[&str]); 19] = [
     ("rmpl", &[]),
     ("stn", &[]),
+    ("stnu", &[]),
     ("terrain", &[]),
     ("tpn", &["rmpl"]),
     ("kirk", &["tpn", "stn"]),
@@ -32,9 +33,10 @@ const LAYERS: [(&str, &[&str]); 18] = [
 ];
 
 /// Crates that compute the same everywhere: no clocks, no threads, no files, nothing from the operating system.
-const PURE: [&str; 13] = [
+const PURE: [&str; 14] = [
     "rmpl",
     "stn",
+    "stnu",
     "tpn",
     "kirk",
     "verify",

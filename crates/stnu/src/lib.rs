@@ -1,0 +1,23 @@
+//! Simple temporal networks with uncertainty (STNUs) over exact integer time: dynamic and strong controllability,
+//! incrementally and with undo; conflicts and relaxations as explanations; generators.
+//!
+//! Some durations are *contingent*: nature chooses them within their ranges, and the executive sees when they end. A
+//! network is *dynamically controllable* if the executive can choose the other times as it goes, reacting at once, so
+//! that every constraint holds whatever nature chooses (Morris, Muscettola and Vidal, 2001; Morris, 2014). Nothing here
+//! knows about plans. Arithmetic is checked: what does not fit into 64 bits is [`Undecided::Overflow`], never wrapped.
+
+mod checker;
+mod conflict;
+pub mod generate;
+mod graph;
+mod heap;
+mod network;
+mod reduction;
+mod relaxation;
+mod strong;
+
+pub use checker::{Checker, Checkpoint, Refusal, Stop, Undecided, Verdict, check};
+pub use conflict::{Conflict, MAX_STEPS, Member, Part, Step, conflict_among, minimal, part_edge};
+pub use network::{Edge, EdgeId, Link, LinkError, LinkId, Network, NetworkSize, PointId};
+pub use relaxation::{Relaxation, relax, relaxations};
+pub use strong::{StrongVerdict, check_strong};
