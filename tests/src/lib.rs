@@ -1,5 +1,7 @@
-//! What the tests of the crates together share: missions from texts, an exhaustive reference planner, random missions.
+//! What the tests of the crates together share: the conformance cases, missions from texts, an exhaustive reference
+//! planner, random missions.
 
+pub mod cases;
 pub mod distances;
 pub mod mission;
 pub mod random;

@@ -28,6 +28,17 @@ pub struct Compilation {
 }
 
 /// Reads and compiles a text.
+///
+/// ```
+/// let text = "(SEQUENCE (Engine = Standby) (Engine = Firing))";
+/// let automaton = hca::compile_text(text, &hca::Vocabulary::default()).automaton.expect("no errors");
+/// let estimates = ["Off", "Standby", "Firing"].map(|mode| automaton.estimate([("Engine", mode)]));
+/// let run = hca::trace(&automaton, &estimates);
+/// // The first estimate does not make the first constraint hold, so its location stays marked.
+/// let marked: Vec<String> = run.steps.iter().map(|step| step.labels.join(", ")).collect();
+/// assert_eq!(marked, ["assert Engine=Standby", "assert Engine=Standby", "assert Engine=Firing", ""]);
+/// assert!(run.terminated);
+/// ```
 pub fn compile_text(text: &str, vocabulary: &Vocabulary) -> Compilation {
     let parsed = rmpl::control::parse(text);
     let mut diagnostics = parsed.diagnostics.clone();

@@ -41,6 +41,15 @@ use answer::answer;
 use model::Model;
 
 /// Plans `network`.
+///
+/// ```
+/// let parsed = rmpl::parse("scenario Day[0,60] = { Drive()[20,30]; delay; Dig()[5,10] }");
+/// let (network, _warnings) = tpn::compile(&parsed.program(), &tpn::Top::Scenario(None));
+/// let network = network.expect("nothing in it is an error");
+/// let outcome = kirk::plan(&network, &kirk::Options::default(), &mut kirk::Unlimited);
+/// let plan = tpn::plan_json::plan_to_json(&network, &outcome.plans[0]);
+/// assert_eq!(plan["windows"]["Dig#1.start"].to_string(), "[20,55]");
+/// ```
 pub fn plan(network: &Network, options: &Options, termination: &mut dyn Termination) -> Outcome {
     let model = Model::new(network, options.threat_gap);
     let outcome = model.and_then(|model| answer(network, &model, options, termination));

@@ -14,6 +14,22 @@ use crate::successor::{EstimateError, distributions};
 /// The belief after `commands` were given and `observation` was made.
 ///
 /// Exponential in the number of components that may fail; for larger models see [`crate::update_best`].
+///
+/// ```
+/// let text = "(DEFCLASS Valve () (VAR flow {no yes} OBSERVABLE) (COMMAND cmd {none open})
+///     (MODE Closed (flow = no)) (MODE Open (flow = yes)) (MODE Stuck (flow = no))
+///     (TRANSITION Closed Open (cmd = open)) (FAULT Closed Stuck 0.01))
+///   (DEFINSTANCE V Valve INIT Closed)";
+/// let (model, _diagnostics) = plant::compile(&rmpl::control::parse(text).file);
+/// let model = model.expect("nothing in it is an error");
+/// let before = plant::Belief::certain(model.initial_state());
+/// let commands = model.commands_from_names([("V", "open")])?;
+/// let observation = model.observation_from_names([("V.flow", "no")])?;
+/// // It was to open and nothing flows: only a fault explains that.
+/// let after = plant::update_exact(&model, &before, &commands, &observation).expect("some state explains it");
+/// assert_eq!(model.state_names(after.most_likely())["V"], "Stuck");
+/// # Ok::<(), String>(())
+/// ```
 pub fn update_exact(
     model: &Model,
     belief: &Belief,

@@ -19,6 +19,14 @@ use crate::span::Span;
 use crate::syntax::{DeclarationTree, SyntaxNode};
 
 /// Parses a mission text in the infix notation (SPEC 1). Never fails and never panics.
+///
+/// ```
+/// let parsed = rmpl::parse("scenario Day[0,60] = { Drive()[20,30]; Dig()[5,10] ");
+/// // The brace is missing: the author is told so once, and what is there is read nevertheless.
+/// let errors: Vec<&str> = parsed.diagnostics().iter().map(|it| it.code.0).filter(|it| it.starts_with("E-")).collect();
+/// assert_eq!(errors, ["E-SYNTAX"]);
+/// assert_eq!(parsed.program().scenarios[0].name.text, "Day");
+/// ```
 pub fn parse(text: &str) -> Parse {
     Parse::new(text.to_owned())
 }

@@ -16,7 +16,9 @@ fn programs() -> Vec<(String, String)> {
             let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
             (name, std::fs::read_to_string(path).unwrap())
         })
-        .filter(|(name, _)| !name.starts_with('h') && !name.starts_with("orbit"))
+        // Control programs have a reader of their own; state, resources, objectives and contingent durations are not
+        // built yet, as `tests/src/cases.rs` lists them.
+        .filter(|(name, _)| !name.starts_with(['h', 'o', 'r', 's', 'u']))
         .collect()
 }
 

@@ -81,6 +81,20 @@ pub(crate) struct Edge {
 }
 
 /// A simple temporal network that is consistent at all times, except between [`Stn::push`] and [`Stn::settle`].
+///
+/// ```
+/// use stn::{Inconsistency, PointId, Stn};
+///
+/// let (start, end) = (PointId(0), PointId(1));
+/// let mut network = Stn::new(2);
+/// // It takes from 20 to 30; the last argument says where a constraint comes from.
+/// assert_eq!(network.insert(start, end, 30, 0), Ok(()));
+/// assert_eq!(network.insert(end, start, -20, 0), Ok(()));
+/// // It cannot take at most 10 as well, and the network stays as it was.
+/// assert_eq!(network.insert(start, end, 10, 1), Err(Inconsistency::NegativeCycle));
+/// let reasons: Vec<u32> = network.cycle().iter().map(|edge| edge.tag).collect();
+/// assert!(reasons.contains(&0) && reasons.contains(&1));
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct Stn {
     pub(crate) edges: Vec<Edge>,

@@ -15,6 +15,27 @@ use crate::{Rule, Verdict, Violation, node_name};
 ///
 /// Time is about O((edges + conflicts) · log nodes) after the consistency check, with one row of distances for each
 /// conflicting interval that neither the windows nor an added constraint already order.
+///
+/// ```
+/// let parsed = rmpl::parse("scenario Day[0,60] = { Drive()[20,30] }");
+/// let (network, _warnings) = tpn::compile(&parsed.program(), &tpn::Top::Scenario(None));
+/// let network = network.expect("nothing in it is an error");
+/// let stated = |latest: u32| {
+///     serde_json::json!({
+///         "choices": {}, "activities": ["Drive#1"],
+///         "causal_links": [], "conflict_order": [], "orderings_added": [],
+///         "windows": {
+///             "scenario#1.start": [0, 0], "Drive#1.start": [0, 0],
+///             "Drive#1.end": [20, latest], "scenario#1.end": [20, 60],
+///         },
+///     })
+/// };
+/// let plan = tpn::plan_json::plan_from_json(&network, &stated(30))?;
+/// assert!(verify::check_plan(&network, &plan).valid);
+/// let plan = tpn::plan_json::plan_from_json(&network, &stated(31))?;
+/// assert_eq!(verify::check_plan(&network, &plan).violations[0].rule, verify::Rule::Window);
+/// # Ok::<(), tpn::plan_json::PlanError>(())
+/// ```
 pub fn check_plan(network: &Network, plan: &Plan) -> Verdict {
     if let Err(verdict) = selection::check_form(network, plan) {
         return verdict;

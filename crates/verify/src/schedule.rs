@@ -14,10 +14,11 @@ pub fn earliest_schedule(plan: &Plan) -> Vec<Option<Rational>> {
     plan.windows.iter().map(|window| window.map(|window| window.earliest)).collect()
 }
 
-/// Checks the times of `plan`'s selected nodes, indexed by node.
+/// Checks the times of `plan`'s selected nodes, indexed by node; the selection is checked as that of a plan is.
 ///
 /// A `[0,0]` interval holds at one instant, which must lie outside conflicting intervals, their start included. With a
-/// threat gap of zero touching is no overlap for instants either, as in planning (SPEC 5.3).
+/// threat gap of zero the rule is that of planning (SPEC 5.3): of two conflicting intervals one ends no later than the
+/// other starts, instants and intervals without length included.
 pub fn check_schedule(network: &Network, plan: &Plan, times: &[Option<Rational>]) -> Verdict {
     if let Err(verdict) = selection::check_form(network, plan) {
         return verdict;
@@ -29,6 +30,7 @@ pub fn check_schedule(network: &Network, plan: &Plan, times: &[Option<Rational>]
             "the schedule is of a network with other nodes",
         )]);
     }
+    selection::check_selection(network, plan, &mut violations);
     for (index, &selected) in plan.selected_nodes.iter().enumerate() {
         if selected && times[index].is_none() {
             let name = node_name(network, NodeId::from_index(index));
@@ -115,19 +117,16 @@ impl Schedule<'_> {
         {
             return true;
         }
-        let is_strict = self.network.threat_gap > Rational::from_integer(0);
-        let inside = |instant: Interval, around: Interval| {
-            let (at, from, to) = (self.time(instant.start), self.time(around.start), self.time(around.end));
-            at < to && (from < at || (is_strict && from == at))
-        };
+        let times = |interval: Interval| (self.time(interval.start), self.time(interval.end));
+        let ((from, to), (start, end)) = (times(one), times(other));
+        if self.network.threat_gap == Rational::from_integer(0) {
+            return to > start && end > from;
+        }
         match (one.is_instant, other.is_instant) {
-            (true, true) => is_strict && self.time(one.start) == self.time(other.start),
-            (true, false) => inside(one, other),
-            (false, true) => inside(other, one),
-            (false, false) => {
-                self.time(one.start).max(self.time(other.start))
-                    < self.time(one.end).min(self.time(other.end))
-            }
+            (true, true) => from == start,
+            (true, false) => start <= from && from < end,
+            (false, true) => from <= start && start < to,
+            (false, false) => from.max(start) < to.min(end),
         }
     }
 }

@@ -3,6 +3,7 @@
 //! The `xtask` binary and the page's end-to-end tests share this; nothing of it is part of the product.
 
 pub mod browser;
+pub mod dependencies;
 pub mod dist;
 pub mod process;
 pub mod server;

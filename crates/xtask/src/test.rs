@@ -27,10 +27,12 @@ pub(crate) fn run_all() -> Result<bool> {
     find_or_install_chromium()?;
     site::require_wasm_target()?;
     let mut count = Count::default();
-    let checks: [(&str, &dyn Fn() -> Result<()>); 4] = [
+    let checks: [(&str, &dyn Fn() -> Result<()>); 6] = [
         ("formatting", &check_formatting),
         ("lints", &check_lints),
         ("lints of the page's modules", &check_wasm_lints),
+        ("documentation", &check_documentation),
+        ("dependencies", &check_dependencies),
         ("the page's build", &|| site::build(Flavour::Development).map(drop)),
     ];
     for (name, check) in checks {
@@ -77,6 +79,26 @@ fn check_wasm_lints() -> Result<()> {
         "-D",
         "warnings",
     ]))
+}
+
+/// Builds the documentation of all crates without warnings: links lead somewhere, and nothing is malformed.
+fn check_documentation() -> Result<()> {
+    run(cargo().args(["doc", "--workspace", "--no-deps", "--quiet"]).env("RUSTDOCFLAGS", "-D warnings"))
+}
+
+/// Where `cargo-deny` is installed it checks all of `deny.toml`, known vulnerabilities too. The test
+/// `every_dependency_keeps_the_rules_of_deny_toml` always checks all but these.
+fn check_dependencies() -> Result<()> {
+    let is_installed =
+        cargo().args(["deny", "--version"]).output().is_ok_and(|answer| answer.status.success());
+    if is_installed {
+        return run(cargo().args(["deny", "--log-level", "error", "check"]));
+    }
+    println!(
+        "cargo-deny is not installed: licences, sources and versions are checked by a test, known vulnerabilities are \
+         not (`cargo install --locked cargo-deny`)"
+    );
+    Ok(())
 }
 
 /// Runs the workspace's tests, those of the page in a browser among them, and counts.

@@ -58,6 +58,14 @@ impl Top {
 ///
 /// The network is `None` exactly when a diagnostic is an error. Each diagnostic is given once, however often the text
 /// that it is about is expanded. Time is linear in the size of the expanded network, and nearly so in the program's.
+///
+/// ```
+/// let parsed = rmpl::parse("scenario Day[0,60] = { Drive()[20,30]; delay; Dig()[5,10] }");
+/// let (network, _warnings) = tpn::compile(&parsed.program(), &tpn::Top::Scenario(None));
+/// let network = network.expect("nothing in it is an error");
+/// let names: Vec<&str> = network.occurrences.iter().map(|it| it.name.as_str()).collect();
+/// assert_eq!(names, ["scenario#1", "Drive#1", "delay#1", "Dig#1"]);
+/// ```
 pub fn compile(program: &Program, top: &Top) -> (Option<Network>, Vec<Diagnostic>) {
     let mut diagnostics = statics::check(program);
     if diagnostics.iter().any(|found| found.code == recursion::CODE) {

@@ -1,0 +1,8 @@
+//! Tests of the checker, which everything else trusts: hand-written plans, each changed in one thing that must be
+//! refused by the right rule with the right names, and every verdict on tiny networks against brute force.
+
+mod brute_force;
+mod missions;
+mod oracle;
+mod plan_rules;
+mod schedule_rules;

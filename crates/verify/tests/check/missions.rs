@@ -1,0 +1,156 @@
+//! Networks from texts, and plans of them written out by hand. Nothing here plans.
+
+use rmpl::{Bound, Rational};
+use tpn::plan_json::Names;
+use tpn::{CausalLink, Choice, DecisionId, LabelId, Network, NodeId, Ordering, Plan, Top, Window};
+
+/// The network of the first scenario of `text`, which must have no errors.
+pub fn network(text: &str) -> Network {
+    let parsed = rmpl::parse(text);
+    let (network, diagnostics) = tpn::compile(&parsed.program(), &Top::Scenario(None));
+    network.unwrap_or_else(|| panic!("{text}\ndoes not compile: {:?} {diagnostics:?}", parsed.diagnostics()))
+}
+
+/// What a plan says, by the names of all output.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sketch<'names> {
+    /// The alternatives taken, of D1, D2, ….
+    pub choices: &'names [(u32, u32)],
+    /// Ask and Tell.
+    pub links: &'names [(&'names str, &'names str)],
+    /// First and then.
+    pub order: &'names [(&'names str, &'names str)],
+    /// Those of them that planning added.
+    pub added: &'names [(&'names str, &'names str)],
+}
+
+/// The plan of a sketch: its selection is the closure of its choices, its windows those of its constraints. Where the
+/// constraints contradict each other, and without a choice that it needs, it has no windows.
+pub fn plan(network: &Network, sketch: Sketch<'_>) -> Plan {
+    let choices: Vec<Choice> = (sketch.choices.iter())
+        .map(|&(number, alternative)| Choice { decision: DecisionId(number - 1), alternative })
+        .collect();
+    let (selected_nodes, selected_arcs) = closure(network, &choices);
+    let ordering =
+        |&(first, then): &(&str, &str)| Ordering { first: label(network, first), then: label(network, then) };
+    let mut plan = Plan {
+        choices,
+        selected_nodes,
+        selected_arcs,
+        causal_links: (sketch.links.iter())
+            .map(|(ask, tell)| CausalLink { ask: label(network, ask), tell: label(network, tell) })
+            .collect(),
+        conflict_order: sketch.order.iter().map(ordering).collect(),
+        orderings_added: sketch.added.iter().map(ordering).collect(),
+        windows: vec![None; network.nodes.len()],
+    };
+    plan.windows = windows(network, &plan);
+    plan
+}
+
+/// The labelled interval of a name.
+pub fn label(network: &Network, name: &str) -> LabelId {
+    Names::new(network).label(name).unwrap_or_else(|problem| panic!("{problem}"))
+}
+
+/// The event of a name.
+pub fn event(network: &Network, name: &str) -> NodeId {
+    Names::new(network).event(name).unwrap_or_else(|problem| panic!("{problem}"))
+}
+
+/// What the choices select (SPEC 3.1), node by node from the start.
+pub fn closure(network: &Network, choices: &[Choice]) -> (Vec<bool>, Vec<bool>) {
+    let mut nodes = vec![false; network.nodes.len()];
+    let mut arcs = vec![false; network.arcs.len()];
+    nodes[network.start.index()] = true;
+    // As often as there are nodes is enough for any path.
+    for _ in 0..network.nodes.len() {
+        for (index, arc) in network.arcs.iter().enumerate() {
+            let is_taken = match arc.choice {
+                None => true,
+                Some((decision, alternative)) => choices.contains(&Choice { decision, alternative }),
+            };
+            if nodes[arc.from.index()] && is_taken {
+                arcs[index] = true;
+                nodes[arc.to.index()] = true;
+            }
+        }
+    }
+    (nodes, arcs)
+}
+
+/// A constraint `lower ≤ to − from ≤ upper`.
+#[derive(Clone, Copy, Debug)]
+pub struct Constraint {
+    pub from: NodeId,
+    pub to: NodeId,
+    pub lower: Rational,
+    pub upper: Bound,
+}
+
+/// The selected arcs, the links and the added orderings of a plan (SPEC 5.2, 5.3).
+pub fn constraints(network: &Network, plan: &Plan) -> Vec<Constraint> {
+    let mut found = Vec::new();
+    for (arc, _) in network.arcs.iter().zip(&plan.selected_arcs).filter(|(_, selected)| **selected) {
+        found.push(Constraint { from: arc.from, to: arc.to, lower: arc.lower, upper: arc.upper });
+    }
+    let arc = |label: LabelId| &network.arcs[network.labels[label.index()].arc.index()];
+    let mut at_least = |from: NodeId, to: NodeId, lower: Rational| {
+        found.push(Constraint { from, to, lower, upper: Bound::Infinite });
+    };
+    for link in &plan.causal_links {
+        at_least(arc(link.tell).from, arc(link.ask).from, time(0));
+        at_least(arc(link.ask).to, arc(link.tell).to, time(0));
+    }
+    for ordering in &plan.orderings_added {
+        at_least(arc(ordering.first).to, arc(ordering.then).from, network.threat_gap);
+    }
+    found
+}
+
+/// The windows of the selected nodes by Floyd and Warshall's algorithm; none where the constraints contradict.
+pub fn windows(network: &Network, plan: &Plan) -> Vec<Option<Window>> {
+    let count = network.nodes.len();
+    let mut distance: Vec<Vec<Option<Rational>>> = vec![vec![None; count]; count];
+    let shorten = |entry: &mut Option<Rational>, through: Rational| {
+        *entry = Some(entry.map_or(through, |known| known.min(through)));
+    };
+    for (node, row) in distance.iter_mut().enumerate() {
+        row[node] = Some(time(0));
+    }
+    for constraint in constraints(network, plan) {
+        let (from, to) = (constraint.from.index(), constraint.to.index());
+        shorten(&mut distance[to][from], -constraint.lower);
+        if let Bound::Finite(upper) = constraint.upper {
+            shorten(&mut distance[from][to], upper);
+        }
+    }
+    for middle in 0..count {
+        for from in 0..count {
+            for to in 0..count {
+                if let (Some(there), Some(on)) = (distance[from][middle], distance[middle][to]) {
+                    shorten(&mut distance[from][to], there + on);
+                }
+            }
+        }
+    }
+    let is_consistent = (0..count).all(|node| distance[node][node] == Some(time(0)));
+    let start = network.start.index();
+    let window = |node: usize| {
+        let earliest = -distance[node][start]?;
+        let latest = distance[start][node].map_or(Bound::Infinite, Bound::Finite);
+        (is_consistent && plan.selected_nodes[node]).then_some(Window { earliest, latest })
+    };
+    (0..count).map(window).collect()
+}
+
+/// A whole number of time units.
+pub fn time(units: i64) -> Rational {
+    Rational::from_integer(units)
+}
+
+/// A time that must be a whole number of units.
+pub fn units(time: Rational) -> i64 {
+    assert!(time.is_integer(), "{time} is not whole");
+    time.to_integer()
+}
