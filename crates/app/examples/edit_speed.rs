@@ -7,10 +7,11 @@ mod support;
 
 use std::time::Instant;
 
-use app::command::Command;
-use app::state::TextCommand;
-use figures::report;
 use tpn::generate::{Recipe, Tightness, mission};
+use workbench::command::Command;
+use workbench::state::TextCommand;
+
+use figures::report;
 
 const EDITS: usize = 20;
 

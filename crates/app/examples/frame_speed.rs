@@ -6,13 +6,13 @@ mod support;
 
 use std::time::{Duration, Instant};
 
-use app::command::Command;
-use app::host::Remote as _;
-use app::state::PinCommand;
 use egui::{Pos2, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::json;
 use tpn::generate::{Recipe, Tightness, mission};
+use workbench::command::Command;
+use workbench::host::Remote as _;
+use workbench::state::PinCommand;
 
 const STEPS: usize = 80;
 

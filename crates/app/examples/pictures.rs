@@ -3,9 +3,9 @@
 #[path = "../tests/support/mod.rs"]
 mod support;
 
-use app::command::Command;
-use app::theme::ThemeChoice;
-use app::workspace::Workspace;
+use workbench::command::Command;
+use workbench::state::settings::ThemeChoice;
+use workbench::workspace::Workspace;
 
 fn main() {
     let mut arguments = std::env::args().skip(1);
@@ -20,7 +20,8 @@ fn main() {
             for step in &script {
                 let (name, arguments) = step.split_once(' ').unwrap_or((step, "null"));
                 let arguments = serde_json::from_str(arguments).expect("arguments are JSON");
-                app::host::Remote::dispatch(app.harness.state_mut(), name, &arguments).expect("a command");
+                workbench::host::Remote::dispatch(app.harness.state_mut(), name, &arguments)
+                    .expect("a command");
                 app.settle();
             }
             app.settle();

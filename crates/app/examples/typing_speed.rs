@@ -6,8 +6,9 @@ mod support;
 
 use std::time::Instant;
 
-use app::command::Command;
-use app::state::TextCommand;
+use workbench::command::Command;
+use workbench::state::TextCommand;
+
 use figures::report;
 
 const LINES: usize = 10_000;

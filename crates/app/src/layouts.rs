@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use egui_tiles::Tree;
+use workbench::PanelKind;
+use workbench::host::Host;
+use workbench::state::AppState;
+use workbench::workspace::Arrangement;
 
-use crate::host::Host;
-use crate::panel::PanelKind;
-use crate::state::AppState;
-use crate::workspace::{self, Arrangement, Room};
+use crate::default_layout::{self, Room, default_layout};
 
 /// One layout per workspace, and one for control programs.
 pub struct Layouts {
@@ -27,9 +28,9 @@ impl Layouts {
         let mut stored = BTreeMap::new();
         for arrangement in Arrangement::ALL {
             let text = host.stored(&key(arrangement));
-            let tree = text.as_deref().and_then(workspace::from_text);
-            let tree = tree.unwrap_or_else(|| arrangement.default_layout(Room::default()));
-            stored.insert(arrangement, workspace::to_text(&tree).unwrap_or_default());
+            let tree = text.as_deref().and_then(default_layout::from_text);
+            let tree = tree.unwrap_or_else(|| default_layout(arrangement, Room::default()));
+            stored.insert(arrangement, default_layout::to_text(&tree).unwrap_or_default());
             trees.insert(arrangement, tree);
         }
         Self { trees, stored, room: Room::default() }
@@ -41,9 +42,9 @@ impl Layouts {
             return;
         }
         for (&arrangement, tree) in &mut self.trees {
-            if *tree == arrangement.default_layout(self.room) {
-                *tree = arrangement.default_layout(room);
-                self.stored.insert(arrangement, workspace::to_text(tree).unwrap_or_default());
+            if *tree == default_layout(arrangement, self.room) {
+                *tree = default_layout(arrangement, room);
+                self.stored.insert(arrangement, default_layout::to_text(tree).unwrap_or_default());
             }
         }
         self.room = room;
@@ -52,29 +53,29 @@ impl Layouts {
     /// The layout of a workspace.
     pub fn tree_mut(&mut self, arrangement: Arrangement) -> &mut Tree<PanelKind> {
         let room = self.room;
-        self.trees.entry(arrangement).or_insert_with(|| arrangement.default_layout(room))
+        self.trees.entry(arrangement).or_insert_with(|| default_layout(arrangement, room))
     }
 
     /// Does what the state wants done to the present layout.
     pub fn follow(&mut self, state: &mut AppState) {
         let arrangement = state.arrangement();
         if std::mem::take(&mut state.wants_default_layout) {
-            self.trees.insert(arrangement, arrangement.default_layout(self.room));
+            self.trees.insert(arrangement, default_layout(arrangement, self.room));
         }
         let tree = self.tree_mut(arrangement);
         if let Some(panel) = state.unwanted_panel.take() {
-            workspace::close_panel(tree, panel);
+            default_layout::close_panel(tree, panel);
         }
         let wanted = state.also_wanted_panel.take().into_iter().chain(state.wanted_panel.take());
         for panel in wanted {
-            workspace::show_panel(tree, panel);
+            default_layout::show_panel(tree, panel);
         }
     }
 
     /// Lets the host keep what has changed.
     pub fn remember(&mut self, host: &mut dyn Host) {
         for (&arrangement, tree) in &self.trees {
-            let Some(text) = workspace::to_text(tree) else { continue };
+            let Some(text) = default_layout::to_text(tree) else { continue };
             if self.stored.get(&arrangement) != Some(&text) {
                 // A full storage only means that the layout is not remembered.
                 let _ = host.store(&key(arrangement), &text);

@@ -12,7 +12,9 @@ fn main() -> eframe::Result {
         let host = app::native::NativeHost::start(creation.egui_ctx.clone());
         let adapter = creation.wgpu_render_state.as_ref().map(|state| state.adapter.get_info());
         let renderer = adapter.map(|adapter| adapter.backend.to_string()).unwrap_or_default();
-        let app = app::Enroute::new(&creation.egui_ctx, Box::new(host), &renderer);
+        let read_dropped = host.drop_reader();
+        let app = app::Enroute::new(&creation.egui_ctx, Box::new(host), &renderer)
+            .reading_dropped_files(read_dropped);
         Ok(Box::new(app) as Box<dyn eframe::App>)
     };
     eframe::run_native("enroute", options, Box::new(create))

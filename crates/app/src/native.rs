@@ -20,9 +20,8 @@ use std::{
 use egui::Context;
 use etcetera::BaseStrategy as _;
 use mission::{Core, Request, Response, Surroundings};
-
-use crate::core_queue::{CoreQueue, revision};
-use crate::host::{FileKind, Host, HostEvent, StorageError};
+use workbench::core_queue::{CoreQueue, revision};
+use workbench::host::{FileKind, Host, HostEvent, StorageError};
 
 /// A window's surroundings.
 pub struct NativeHost {
@@ -87,8 +86,34 @@ impl NativeHost {
         Some(self.folder.as_ref()?.join(file_name(key)))
     }
 
+    /// Reads files that are dropped on the window.
+    pub fn drop_reader(&self) -> impl Fn(egui::DroppedFileHandle) + 'static {
+        let background = self.background();
+        move |file| {
+            background.run(move || {
+                let name = name_of(file.path());
+                Some(match file.bytes() {
+                    Ok(bytes) => HostEvent::FileOpened { kind: FileKind::of_name(&name), name, bytes },
+                    Err(reason) => HostEvent::FileFailed { name, reason },
+                })
+            });
+        }
+    }
+
+    fn background(&self) -> Background {
+        Background { outside: self.outside.clone(), wake: self.wake.clone() }
+    }
+}
+
+/// What threads beside the core tell the window through.
+struct Background {
+    outside: Sender<News>,
+    wake: Context,
+}
+
+impl Background {
     /// Runs a file dialog on a thread of its own, because some systems' dialogs block.
-    fn in_background(&self, ask: impl FnOnce() -> Option<HostEvent> + Send + 'static) {
+    fn run(&self, ask: impl FnOnce() -> Option<HostEvent> + Send + 'static) {
         let (outside, wake) = (self.outside.clone(), self.wake.clone());
         thread::spawn(move || {
             if let Some(event) = ask() {
@@ -161,7 +186,7 @@ impl Host for NativeHost {
     }
 
     fn open_file(&mut self, kind: FileKind) {
-        self.in_background(move || {
+        self.background().run(move || {
             let path = rfd::FileDialog::new()
                 .add_filter(kind.title(), kind.extensions())
                 .add_filter("All files", &["*"])
@@ -174,24 +199,14 @@ impl Host for NativeHost {
         });
     }
 
-    fn read_dropped(&mut self, file: egui::DroppedFileHandle) {
-        self.in_background(move || {
-            let name = name_of(file.path());
-            Some(match file.bytes() {
-                Ok(bytes) => HostEvent::FileOpened { kind: FileKind::of_name(&name), name, bytes },
-                Err(reason) => HostEvent::FileFailed { name, reason },
-            })
-        });
-    }
-
     fn save_file(&mut self, suggested_name: &str, bytes: Vec<u8>) {
         let suggested_name = suggested_name.to_owned();
-        self.in_background(move || save_asking(suggested_name, &bytes));
+        self.background().run(move || save_asking(suggested_name, &bytes));
     }
 
     fn save_picture(&mut self, suggested_name: &str, svg: String, size: [u32; 2]) {
         let name = suggested_name.to_owned();
-        self.in_background(move || match picture::png(&svg, size) {
+        self.background().run(move || match picture::png(&svg, size) {
             Ok(bytes) => save_asking(name, &bytes),
             Err(reason) => Some(HostEvent::FileFailed { name, reason }),
         });

@@ -7,19 +7,21 @@ use egui::{CentralPanel, Frame, Ui};
 use egui_tiles::{Behavior, TileId, Tiles, UiResponse};
 use mission::{Request, Update};
 use serde_json::Value;
+use workbench::PanelKind;
+use workbench::command::{self, Command, CommandSender};
+use workbench::host::{Host, Remote, RemoteError};
+use workbench::mission_file::{self, EXAMPLES};
+use workbench::outside;
+use workbench::state::{AnswerFrame, AppState, Effect, PlanSettings, Settings, Status, ToastKind};
 
 use crate::bar;
-use crate::command::{self, Command, CommandSender};
+use crate::default_layout::Room;
 use crate::dialog;
-use crate::host::{Host, Remote, RemoteError};
 use crate::layouts::Layouts;
-use crate::mission_file::{self, EXAMPLES};
-use crate::outside;
-use crate::panel::{self, Context, PanelKind, Panels};
-use crate::state::{AnswerFrame, AppState, Effect, PlanSettings, Settings, Status, ToastKind};
+use crate::panel::{self, Context, Panels};
+use crate::pressed::take_pressed;
 use crate::theme;
 use crate::toasts;
-use crate::workspace::Room;
 
 /// The app.
 pub struct Enroute {
@@ -27,6 +29,7 @@ pub struct Enroute {
     panels: Panels,
     layouts: Layouts,
     host: Box<dyn Host>,
+    read_dropped: ReadDropped,
     egui: egui::Context,
     posted: Option<Posted>,
     stored: Settings,
@@ -34,6 +37,9 @@ pub struct Enroute {
     last_secs: f64,
     version: u64,
 }
+
+/// Begins to read a file that was dropped on the app.
+type ReadDropped = Box<dyn Fn(egui::DroppedFileHandle)>;
 
 /// What the planning core was last asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,6 +68,7 @@ impl Enroute {
             panels: Panels::new(),
             layouts,
             host,
+            read_dropped: Box::new(|_| {}),
             egui: egui.clone(),
             posted: None,
             stored,
@@ -69,6 +76,14 @@ impl Enroute {
             last_secs,
             version: 1,
         }
+    }
+
+    /// The same app, whose host reads the files that are dropped on it with `read` and tells of them later, each for
+    /// what its name says it is.
+    #[must_use]
+    pub fn reading_dropped_files(mut self, read: impl Fn(egui::DroppedFileHandle) + 'static) -> Self {
+        self.read_dropped = Box::new(read);
+        self
     }
 
     /// The state, to look at.
@@ -90,7 +105,7 @@ impl Enroute {
     pub fn show(&mut self, ui: &mut Ui, render_state: Option<&RenderState>) {
         let begun_secs = self.host.monotonic_secs();
         self.begin_frame(begun_secs);
-        let pressed = command::take_pressed(ui.ctx(), &self.state, panel::editor_id());
+        let pressed = take_pressed(ui.ctx(), &self.state, panel::editor_id());
         self.apply(pressed);
         if self.state.dialog.is_none() {
             let typed = panel::typed_text(ui.ctx(), &self.state);
@@ -128,14 +143,14 @@ impl Enroute {
         self.state.frame.now_secs = now_secs;
         self.state.frame.unix_millis = self.host.unix_millis();
         while let Some(event) = self.host.poll() {
-            if let crate::host::HostEvent::FragmentChanged(fragment) = &event {
+            if let workbench::host::HostEvent::FragmentChanged(fragment) = &event {
                 outside::open_fragment(&mut self.state, fragment);
             }
             self.state.receive(event);
             self.version += 1;
         }
         for file in self.egui.input(|input| input.raw.dropped_files.clone()) {
-            self.host.read_dropped(file);
+            (self.read_dropped)(file);
         }
         let shown = self.state.shown().cloned();
         if self.state.snapshots.lose_patience(now_secs) {
@@ -189,7 +204,7 @@ impl Enroute {
             state: &self.state,
             snapshot: self.state.looked_at(),
             is_stale: self.state.snapshots.is_stale(self.state.document.revision()),
-            tokens: self.state.settings.theme.tokens(),
+            tokens: theme::tokens(self.state.settings.theme),
             render_state,
             now_secs: self.state.frame.now_secs,
             clock: &clock,
@@ -320,7 +335,7 @@ impl eframe::App for Enroute {
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        self.state.settings.theme.tokens().background.to_normalized_gamma_f32()
+        theme::tokens(self.state.settings.theme).background.to_normalized_gamma_f32()
     }
 
     #[cfg(target_arch = "wasm32")]

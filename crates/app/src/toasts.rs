@@ -1,11 +1,11 @@
 //! Shows the short messages in the corner.
 
 use egui::{Align2, Area, Frame, Id, Order, Stroke};
+use workbench::command::{Command, CommandSender};
+use workbench::state::ToastKind;
 
-use crate::command::{Command, CommandSender};
 use crate::icon::{self, Icon};
 use crate::panel::Context;
-use crate::state::ToastKind;
 use crate::theme::space;
 
 /// Shows all messages, newest at the bottom.

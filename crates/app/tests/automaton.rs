@@ -2,10 +2,10 @@
 
 mod support;
 
-use app::host::Remote as _;
 use egui::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::json;
+use workbench::host::Remote as _;
 
 fn opened(source: &str) -> support::App {
     let mut app = support::start();

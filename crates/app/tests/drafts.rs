@@ -4,7 +4,8 @@ mod support;
 
 use std::rc::Rc;
 
-use app::command::Command;
+use workbench::command::Command;
+
 use support::{World, start_in};
 
 const EDITED: &str = "Sortie()[l,u] = { Scan()[1,2] }\n";

@@ -2,12 +2,13 @@
 
 mod support;
 
-use app::command::Command;
-use app::host::Remote as _;
-use app::state::TextCommand;
 use egui::{Event, ImeEvent, Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use serde_json::json;
+use workbench::command::Command;
+use workbench::host::Remote as _;
+use workbench::state::TextCommand;
+
 use support::App;
 
 const TEXT: Role = egui::Role::MultilineTextInput;

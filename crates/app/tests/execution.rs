@@ -2,10 +2,10 @@
 
 mod support;
 
-use app::host::{FileKind, HostEvent, Remote as _};
 use egui::Role;
 use egui_kittest::kittest::Queryable as _;
 use serde_json::{Value, json};
+use workbench::host::{FileKind, HostEvent, Remote as _};
 
 fn executing(mission: &str) -> support::App {
     let mut app = support::start();

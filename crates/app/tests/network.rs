@@ -5,8 +5,7 @@ mod support;
 use egui::Key;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::json;
-
-use app::host::Remote as _;
+use workbench::host::Remote as _;
 
 fn started() -> support::App {
     let mut app = support::start();
@@ -121,7 +120,7 @@ fn the_saved_picture_shows_what_is_switched_on_of_all_that_is_drawn() {
     app.world.saved.borrow_mut().clear();
     let mut views = app.harness.state().app_state().settings.views.clone();
     (views.network.bounds, views.network.unselected) = (false, false);
-    app.harness.state_mut().run(app::command::Command::SetViews(Box::new(views)));
+    app.harness.state_mut().run(workbench::command::Command::SetViews(Box::new(views)));
     app.harness.state_mut().dispatch("file.networkSvg", &json!(null)).expect("there is a network");
     app.settle();
     app.settle();
@@ -171,7 +170,7 @@ fn an_error_is_marked_at_the_activity_that_it_is_in() {
 #[test]
 fn time_shows_on_the_network_while_it_is_not_at_the_start() {
     let mut app = started();
-    let now = app::theme::ThemeChoice::Dark.tokens().now;
+    let now = app::theme::tokens(workbench::state::settings::ThemeChoice::Dark).now;
     let dots = |app: &support::App| {
         let is_dot = |shape: &&egui::epaint::ClippedShape| match &shape.shape {
             egui::Shape::Circle(circle) => circle.fill == now,
@@ -193,7 +192,7 @@ fn lanes_carry_the_names_of_the_threads() {
     let mut app = started();
     let mut views = app.harness.state().app_state().settings.views.clone();
     views.network.lanes = true;
-    app.harness.state_mut().run(app::command::Command::SetViews(Box::new(views)));
+    app.harness.state_mut().run(workbench::command::Command::SetViews(Box::new(views)));
     app.settle();
     let is_written = |name: &str| {
         app.harness.output().shapes.iter().any(|shape| match &shape.shape {

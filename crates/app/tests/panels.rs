@@ -2,11 +2,11 @@
 
 mod support;
 
-use app::command::{Command, all_commands};
-use app::host::Remote as _;
 use egui::Role;
 use egui_kittest::kittest::Queryable as _;
 use serde_json::json;
+use workbench::command::{Command, all_commands};
+use workbench::host::Remote as _;
 
 /// Shows the plan's tables where there is room for all of them.
 fn show_windows(app: &mut support::App) {

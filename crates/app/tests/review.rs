@@ -2,12 +2,13 @@
 
 mod support;
 
-use app::command::Command;
-use app::host::{FileKind, HostEvent, Remote as _};
-use app::state::compare::CompareCommand;
 use egui::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::{Value, json};
+use workbench::command::Command;
+use workbench::host::{FileKind, HostEvent, Remote as _};
+use workbench::state::compare::CompareCommand;
+
 use support::App;
 
 /// The Review workspace in a window with room for everything.

@@ -2,11 +2,12 @@
 
 mod support;
 
-use app::command::Command;
-use app::host::Remote as _;
 use egui::{Key, Modifiers, Rect, Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::json;
+use workbench::command::Command;
+use workbench::host::Remote as _;
+
 use support::App;
 
 /// The app at this address, in a window of this size, worked out.
@@ -121,10 +122,10 @@ fn a_link_leads_to_its_step_and_a_step_into_the_link() {
     app.harness.state_mut().run(Command::CopyLink);
     app.settle();
     press(&mut app, Key::Period);
-    let fragment = app::outside::fragment(app.harness.state().app_state());
+    let fragment = workbench::outside::fragment(app.harness.state().app_state());
     assert!(fragment.contains("&step=61"), "{fragment}");
     press(&mut app, Key::Escape);
-    let fragment = app::outside::fragment(app.harness.state().app_state());
+    let fragment = workbench::outside::fragment(app.harness.state().app_state());
     assert!(!fragment.contains("step="), "{fragment}");
 }
 

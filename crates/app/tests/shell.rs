@@ -7,8 +7,7 @@ use std::rc::Rc;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use serde_json::json;
-
-use app::host::{Remote as _, RemoteError};
+use workbench::host::{Remote as _, RemoteError};
 
 #[test]
 fn the_app_opens_with_the_enroute_mission_and_its_plan() {
@@ -35,7 +34,7 @@ fn nothing_on_the_bar_covers_the_workspaces_in_any_window() {
         // The longest that stands there.
         app.harness
             .state_mut()
-            .run(app::command::Command::OpenSource { name: "broken".into(), source: "(".into() });
+            .run(workbench::command::Command::OpenSource { name: "broken".into(), source: "(".into() });
         app.settle();
         let status = app.harness.get_by_label_contains("Status: ").rect();
         assert!(last.right() < status.left(), "{width} points: {last:?} {status:?}");
@@ -91,7 +90,7 @@ fn the_key_list_names_every_shortcut_of_the_registry() {
     app.harness.get_by_label("Keyboard shortcuts").click();
     app.settle();
     assert_eq!(app.json()["dialog"], "keys");
-    for spec in app::command::all_commands().filter(|spec| !spec.keys.is_empty()) {
+    for spec in workbench::command::all_commands().filter(|spec| !spec.keys.is_empty()) {
         assert!(
             app.harness.query_all_by_label(spec.title).next().is_some(),
             "{} is not in the key list",

@@ -8,9 +8,9 @@ mod support;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use app::command::Command;
-use app::workspace::Workspace;
 use egui_kittest::kittest::NodeT as _;
+use workbench::command::Command;
+use workbench::workspace::Workspace;
 
 /// Names longer than this are cut: the mission's text is one.
 const MOST_CHARACTERS: usize = 80;

@@ -2,11 +2,11 @@
 
 mod support;
 
-use app::command::Command;
-use app::host::{FileKind, HostEvent, Remote as _};
 use egui::{Pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
 use serde_json::json;
+use workbench::command::Command;
+use workbench::host::{FileKind, HostEvent, Remote as _};
 
 /// Two places 80 m apart on level ground, and a rover that drives to one and from there to the other.
 const MISSION: &str = "\

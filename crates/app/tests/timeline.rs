@@ -2,12 +2,12 @@
 
 mod support;
 
-use app::command::Command;
-use app::host::Remote as _;
-use app::state::settings::Grouping;
 use egui::{Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::{Value, json};
+use workbench::command::Command;
+use workbench::host::Remote as _;
+use workbench::state::settings::Grouping;
 
 fn reviewing() -> support::App {
     // High enough for all rows, whatever else the workspace shows.

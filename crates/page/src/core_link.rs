@@ -7,13 +7,13 @@ use std::{
     rc::{Rc, Weak},
 };
 
-use app::{
-    core_queue::{CoreQueue, revision},
-    host::HostEvent,
-};
 use js_sys::Uint8Array;
 use mission::Request;
 use wasm_bindgen::prelude::*;
+use workbench::{
+    core_queue::{CoreQueue, revision},
+    host::HostEvent,
+};
 
 use crate::glue::{CoreWorker, Glue};
 

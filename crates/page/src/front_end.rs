@@ -3,13 +3,13 @@
 use app::{
     Enroute,
     accessibility::{AccessibilityMirror, Act},
-    command::all_commands,
-    host::Remote,
+    chord::shortcut,
 };
 use eframe::WebRunner;
 use egui::{Key, Modifiers};
 use wasm_bindgen::prelude::*;
 use web_sys::HtmlCanvasElement;
+use workbench::{command::all_commands, host::Remote};
 
 use crate::{
     glue::Glue,
@@ -30,8 +30,9 @@ pub async fn start(canvas: HtmlCanvasElement, glue: Glue) -> Result<FrontEnd, Js
             egui.add_plugin(AccessibilityMirror::default());
             let renderer = painter::name(creation.wgpu_render_state.as_ref());
             let host = PageHost::start(glue.clone(), egui.clone()).ok_or("this is no page")?;
+            let read_dropped = host.drop_reader();
             Ok(Box::new(PageApp {
-                app: Enroute::new(egui, Box::new(host), renderer),
+                app: Enroute::new(egui, Box::new(host), renderer).reading_dropped_files(read_dropped),
                 egui: egui.clone(),
                 glue,
             }))
@@ -75,10 +76,10 @@ pub fn uses_key(key: &str, control: bool, alt: bool, shift: bool) -> bool {
     let pressed = Modifiers { alt, shift, ctrl: control, command: control, ..Modifiers::NONE };
     let is_function_key = key.name().len() > 1 && key.name().starts_with('F');
     let types = !control && !alt && !is_function_key;
-    let belongs = |shortcut: &egui::KeyboardShortcut| {
+    let belongs = |shortcut: egui::KeyboardShortcut| {
         shortcut.logical_key == key && pressed.matches_logically(shortcut.modifiers)
     };
-    !types && all_commands().flat_map(|command| command.keys).any(belongs)
+    !types && all_commands().flat_map(|command| command.keys).map(|&keys| shortcut(keys)).any(belongs)
 }
 
 /// The running front end.

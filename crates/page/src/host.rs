@@ -1,10 +1,10 @@
 //! The app's surroundings in a page.
 
-use app::host::{FileKind, Host, HostEvent, StorageError};
 use js_sys::Uint8Array;
 use mission::Request;
 use wasm_bindgen::prelude::*;
 use web_sys::{DomException, Location, Storage, Window};
+use workbench::host::{FileKind, Host, HostEvent, StorageError};
 
 use crate::{
     core_link::CoreLink,
@@ -34,6 +34,21 @@ impl PageHost {
         });
         window.set_onhashchange(Some(listener.as_ref().unchecked_ref()));
         Some(Self { glue, link, window, _fragment_listener: listener })
+    }
+
+    /// Reads files that are dropped on the canvas.
+    pub(crate) fn drop_reader(&self) -> impl Fn(egui::DroppedFileHandle) + 'static {
+        let link = self.link.clone();
+        move |file| {
+            let link = link.clone();
+            wasm_bindgen_futures::spawn_local(async move {
+                let name = file.path().to_string_lossy().into_owned();
+                link.happened(match file.bytes_async().await {
+                    Ok(bytes) => HostEvent::FileOpened { kind: FileKind::of_name(&name), name, bytes },
+                    Err(reason) => HostEvent::FileFailed { name, reason },
+                });
+            });
+        }
     }
 
     fn storage(&self) -> Result<Storage, StorageError> {
@@ -110,17 +125,6 @@ impl Host for PageHost {
                     reason: words(&thrown),
                 }),
             }
-        });
-    }
-
-    fn read_dropped(&mut self, file: egui::DroppedFileHandle) {
-        let link = self.link.clone();
-        wasm_bindgen_futures::spawn_local(async move {
-            let name = file.path().to_string_lossy().into_owned();
-            link.happened(match file.bytes_async().await {
-                Ok(bytes) => HostEvent::FileOpened { kind: FileKind::of_name(&name), name, bytes },
-                Err(reason) => HostEvent::FileFailed { name, reason },
-            });
         });
     }
 

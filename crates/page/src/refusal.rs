@@ -1,8 +1,8 @@
 //! Errors as JavaScript sees them: `EnrouteError` with a `code` that programs look at.
 
-use app::host::RemoteError;
 use js_sys::{Error, Reflect};
 use wasm_bindgen::JsValue;
+use workbench::host::RemoteError;
 
 /// An `EnrouteError`.
 pub(crate) fn refusal(code: &str, message: &str) -> JsValue {

@@ -28,7 +28,8 @@ const LAYERS: [(&str, &[&str]); 19] = [
     ("mission", &["executive", "verify"]),
     ("layout", &["tpn", "hca"]),
     ("report", &["mission", "layout"]),
-    ("app", &["mission", "layout", "report"]),
+    ("workbench", &["mission", "layout", "report"]),
+    ("app", &["workbench"]),
     ("page", &["app"]),
     ("worker", &["mission"]),
     ("cli", &["mission", "layout", "report"]),
@@ -51,6 +52,7 @@ const PURE: [&str; 14] = [
     "mission",
     "layout",
     "report",
+    "workbench",
 ];
 
 /// What pure crates leave alone.

@@ -2,11 +2,12 @@
 
 use egui::{Align, Frame, Layout, Margin, Panel, RichText, Ui};
 use rmpl::Severity;
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender};
 
-use crate::command::{Command, CommandSender};
 use crate::icon::{self, Icon};
+use crate::panel::Context;
 use crate::panel::plan::counted;
-use crate::panel::{Context, PanelKind};
 use crate::theme::space;
 
 /// Shows the bar.

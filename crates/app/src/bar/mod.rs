@@ -6,8 +6,9 @@ pub mod top;
 
 use egui::RichText;
 use rmpl::Severity;
+use workbench::PanelKind;
 
-use crate::panel::{Context, PanelKind};
+use crate::panel::Context;
 
 /// The title of a panel's tab, with what the user should know while the panel is hidden.
 pub fn tab_title(context: &Context<'_>, panel: PanelKind) -> RichText {

@@ -3,15 +3,18 @@
 use egui::{
     Align, Button, ComboBox, Frame, Layout, Margin, Panel, RichText, Role, Sense, Stroke, Ui, WidgetInfo,
 };
+use workbench::Dialog;
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender, CommandSpec, Group, all_commands};
+use workbench::mission_file::EXAMPLES;
+use workbench::state::Status;
+use workbench::state::settings::ThemeChoice;
+use workbench::workspace::Workspace;
 
-use crate::command::{Command, CommandSender, CommandSpec, Group, all_commands};
-use crate::dialog::Dialog;
+use crate::chord;
 use crate::icon::{self, Icon};
-use crate::mission_file::EXAMPLES;
-use crate::panel::{Context, PanelKind};
-use crate::state::Status;
-use crate::theme::{ThemeChoice, space};
-use crate::workspace::Workspace;
+use crate::panel::Context;
+use crate::theme::space;
 
 /// Shows the bar.
 pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
@@ -79,7 +82,7 @@ fn menu(ui: &mut Ui, context: &Context<'_>, group: Group, commands: &mut Command
 }
 
 fn menu_item(ui: &mut Ui, context: &Context<'_>, spec: &CommandSpec, commands: &mut CommandSender) {
-    let keys = spec.keys.first().map(|keys| ui.ctx().format_shortcut(keys)).unwrap_or_default();
+    let keys = spec.keys.first().map(|&keys| chord::text(ui.ctx(), keys)).unwrap_or_default();
     let availability = (spec.available)(context.state);
     let button = Button::new(spec.title).shortcut_text(keys);
     let mut response = ui.add_enabled(availability.is_ok(), button);

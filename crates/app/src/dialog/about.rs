@@ -1,8 +1,8 @@
 //! What this program is.
 
 use egui::{RichText, Ui};
+use workbench::command::{Command, CommandSender};
 
-use crate::command::{Command, CommandSender};
 use crate::panel::Context;
 use crate::theme::space;
 

@@ -3,11 +3,11 @@
 use egui::{Button, Key, RichText, TextEdit, Ui};
 use report::calendar::Calendar;
 use rmpl::program::TimeUnit;
+use workbench::Dialog;
+use workbench::command::{Command, CommandSender};
+use workbench::state::documents::ScheduleForm;
 
-use crate::command::{Command, CommandSender};
-use crate::dialog::Dialog;
 use crate::panel::Context;
-use crate::state::documents::ScheduleForm;
 use crate::theme::space;
 
 /// Shows the question.

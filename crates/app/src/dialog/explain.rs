@@ -1,8 +1,8 @@
 //! What a kind of problem means, with an example and its mending: the language's manual page.
 
 use egui::{Frame, Margin, RichText, ScrollArea, Ui};
+use workbench::command::{Command, CommandSender};
 
-use crate::command::{Command, CommandSender};
 use crate::panel::{Context, show_markdown};
 use crate::theme::space;
 

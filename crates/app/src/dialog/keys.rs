@@ -1,8 +1,9 @@
 //! The list of keys, made from the command registry.
 
 use egui::{Grid, RichText, ScrollArea, Ui};
+use workbench::command::{Command, CommandSender, Group, all_commands};
 
-use crate::command::{Command, CommandSender, Group, all_commands};
+use crate::chord;
 use crate::panel::Context;
 use crate::theme::space;
 
@@ -32,7 +33,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
                 Grid::new(group.title()).num_columns(2).spacing([space::L, space::XS]).show(ui, |ui| {
                     for spec in with_keys {
                         let keys: Vec<String> =
-                            spec.keys.iter().map(|keys| ui.ctx().format_shortcut(keys)).collect();
+                            spec.keys.iter().map(|&keys| chord::text(ui.ctx(), keys)).collect();
                         ui.label(RichText::new(keys.join("  ")).monospace().color(tokens.text_muted));
                         ui.label(spec.title);
                         ui.end_row();

@@ -1,11 +1,13 @@
 //! The command palette: every command, panel and example, found by the letters of its name.
 
 use egui::{Key, Modifiers, RichText, Role, ScrollArea, Sense, TextEdit, Ui, WidgetInfo};
+use workbench::Dialog;
+use workbench::PanelKind;
+use workbench::command::{self, Command, CommandSender};
+use workbench::mission_file::EXAMPLES;
 
-use crate::command::{self, Command, CommandSender};
-use crate::dialog::Dialog;
-use crate::mission_file::EXAMPLES;
-use crate::panel::{Context, PanelKind};
+use crate::chord;
+use crate::panel::Context;
 use crate::theme::space;
 
 const WIDTH: f32 = 520.0;
@@ -81,7 +83,7 @@ fn entries(ui: &Ui, context: &Context<'_>, query: &str) -> Vec<Entry> {
         Some(Entry {
             group: spec.group.title(),
             title: spec.title.to_owned(),
-            keys: spec.keys.first().map(|keys| ui.ctx().format_shortcut(keys)).unwrap_or_default(),
+            keys: spec.keys.first().map(|&keys| chord::text(ui.ctx(), keys)).unwrap_or_default(),
             unavailable: (spec.available)(context.state).err(),
             command: spec.plain(context.state)?,
         })

@@ -1,9 +1,9 @@
 //! Asks for a new name of the name at the caret.
 
 use egui::{Key, RichText, TextEdit, Ui};
+use workbench::Dialog;
+use workbench::command::{Command, CommandSender, EditorCommand};
 
-use crate::command::{Command, CommandSender, EditorCommand};
-use crate::dialog::Dialog;
 use crate::panel::Context;
 
 /// Shows the question.

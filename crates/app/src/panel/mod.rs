@@ -22,124 +22,16 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use mission::Snapshot;
-use serde::{Deserialize, Serialize};
+use workbench::PanelKind;
+use workbench::command::{CommandSender, ViewAction};
+use workbench::state::AppState;
+use workbench::state::search::Focus;
 
-use crate::command::{CommandSender, ViewAction};
-use crate::state::AppState;
-use crate::state::search::Focus;
 use crate::theme::Tokens;
 
 pub(crate) use editor::show_markdown;
 pub use editor::{editor_id, typed_text};
 pub use empty::show_empty;
-pub use search::event_in_words;
-
-/// The kinds of panel. A layout holds at most one of each.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum PanelKind {
-    /// The text.
-    Editor,
-    /// What the text declares.
-    Outline,
-    /// What is wrong with it.
-    Problems,
-    /// The temporal plan network.
-    Network,
-    /// Choices, windows, links, orderings and the verdict, or why there is no plan.
-    Plan,
-    /// The activities over time.
-    Timeline,
-    /// The ground and the vehicles.
-    Terrain,
-    /// The search that found the plan.
-    Search,
-    /// The distances between the events of the plan, or of the step that is looked at.
-    Distances,
-    /// The run of a control program.
-    Automaton,
-    /// The checklist of the review, comments and sign-off.
-    Review,
-    /// Two plans side by side.
-    Compare,
-    /// The run of a mission.
-    Execution,
-    /// Many runs of it with chance.
-    Robustness,
-}
-
-impl PanelKind {
-    /// All of them, as the menu lists them.
-    pub const ALL: [Self; 14] = [
-        Self::Editor,
-        Self::Outline,
-        Self::Problems,
-        Self::Network,
-        Self::Plan,
-        Self::Timeline,
-        Self::Terrain,
-        Self::Search,
-        Self::Distances,
-        Self::Automaton,
-        Self::Review,
-        Self::Compare,
-        Self::Execution,
-        Self::Robustness,
-    ];
-
-    /// Its name on screen.
-    pub const fn title(self) -> &'static str {
-        match self {
-            Self::Editor => "Mission text",
-            Self::Outline => "Outline",
-            Self::Problems => "Problems",
-            Self::Network => "Network",
-            Self::Plan => "Plan",
-            Self::Timeline => "Timeline",
-            Self::Terrain => "Terrain",
-            Self::Search => "Search",
-            Self::Distances => "Distances",
-            Self::Automaton => "Automaton",
-            Self::Review => "Review",
-            Self::Compare => "Compare",
-            Self::Execution => "Execution",
-            Self::Robustness => "Robustness",
-        }
-    }
-
-    /// Its name in commands.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Editor => "editor",
-            Self::Outline => "outline",
-            Self::Problems => "problems",
-            Self::Network => "network",
-            Self::Plan => "plan",
-            Self::Timeline => "timeline",
-            Self::Terrain => "terrain",
-            Self::Search => "search",
-            Self::Distances => "distances",
-            Self::Automaton => "automaton",
-            Self::Review => "review",
-            Self::Compare => "compare",
-            Self::Execution => "execution",
-            Self::Robustness => "robustness",
-        }
-    }
-
-    /// The panel of this name.
-    pub fn by_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|panel| panel.name() == name)
-    }
-
-    /// Whether it has a view that can be zoomed and fitted.
-    pub const fn is_zoomable(self) -> bool {
-        matches!(
-            self,
-            Self::Network | Self::Timeline | Self::Terrain | Self::Search | Self::Distances | Self::Automaton
-        )
-    }
-}
 
 /// What a panel reads.
 #[derive(Clone, Copy)]
@@ -173,7 +65,7 @@ impl Context<'_> {
     }
 
     /// The step of the search that is looked at, if one is, with what the search knew there.
-    pub fn step(&self) -> Option<&crate::state::search::View> {
+    pub fn step(&self) -> Option<&workbench::state::search::View> {
         self.state.search.plan(self.snapshot?)?;
         self.state.search.shown()
     }

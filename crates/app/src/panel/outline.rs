@@ -3,10 +3,11 @@
 use egui::{RichText, Role, ScrollArea, Sense, Ui, WidgetInfo};
 use rmpl::Span;
 use rmpl::program::Program;
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender, EditorCommand};
+use workbench::state::TextCommand;
 
-use crate::command::{Command, CommandSender, EditorCommand};
-use crate::panel::{Context, Panel, PanelKind, show_empty, walk};
-use crate::state::TextCommand;
+use crate::panel::{Context, Panel, show_empty, walk};
 use crate::theme::{Tokens, space};
 
 /// The outline.

@@ -3,12 +3,13 @@
 use egui::{RichText, Role, ScrollArea, Sense, Ui, WidgetInfo};
 use mission::Problem;
 use rmpl::{Severity, Span};
+use workbench::Dialog;
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender, EditorCommand};
+use workbench::state::{EditKind, TextCommand};
 
-use crate::command::{Command, CommandSender, EditorCommand};
-use crate::dialog::Dialog;
 use crate::icon::{self, Icon};
-use crate::panel::{Context, Panel, PanelKind, show_empty, walk};
-use crate::state::{EditKind, TextCommand};
+use crate::panel::{Context, Panel, show_empty, walk};
 use crate::theme::{Tokens, space};
 
 /// The list of problems.

@@ -5,10 +5,11 @@
 
 use egui::{Key, Modifiers, Ui};
 use tpn::{EventEnd, Network, NodeId, OccurrenceId, OccurrenceKind, Plan};
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender};
+use workbench::state::Selection;
 
-use crate::command::{Command, CommandSender};
-use crate::panel::{Context, PanelKind};
-use crate::state::Selection;
+use crate::panel::Context;
 
 /// A way on a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

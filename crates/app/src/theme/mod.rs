@@ -5,39 +5,18 @@
 mod style;
 mod tokens;
 
-use serde::{Deserialize, Serialize};
+use workbench::state::settings::ThemeChoice;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) use style::FONTS;
 pub use style::{apply, install_fonts, strong, strong_family};
 pub use tokens::{Syntax, Tokens};
 
-/// Which theme the user wants.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ThemeChoice {
-    /// Light on dark.
-    #[default]
-    Dark,
-    /// Dark on light.
-    Light,
-}
-
-impl ThemeChoice {
-    /// The other one.
-    pub const fn toggled(self) -> Self {
-        match self {
-            Self::Dark => Self::Light,
-            Self::Light => Self::Dark,
-        }
-    }
-
-    /// Its tokens.
-    pub const fn tokens(self) -> &'static Tokens {
-        match self {
-            Self::Dark => &tokens::DARK,
-            Self::Light => &tokens::LIGHT,
-        }
+/// The tokens of a theme.
+pub const fn tokens(theme: ThemeChoice) -> &'static Tokens {
+    match theme {
+        ThemeChoice::Dark => &tokens::DARK,
+        ThemeChoice::Light => &tokens::LIGHT,
     }
 }
 

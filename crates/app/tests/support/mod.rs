@@ -6,9 +6,9 @@ use std::collections::{BTreeMap, VecDeque};
 use std::rc::Rc;
 
 use app::Enroute;
-use app::host::{FileKind, Host, HostEvent, StorageError};
 use egui_kittest::{Harness, HarnessBuilder};
 use mission::{Core, Request, Response, Surroundings};
+use workbench::host::{FileKind, Host, HostEvent, StorageError};
 
 /// What a test and its host share.
 #[derive(Default)]
@@ -62,8 +62,23 @@ pub fn start_in(
     let host = TestHost { core: Core::default(), world: Rc::clone(&world) };
     let builder =
         build(Harness::builder().with_size([1440.0, 900.0]).with_max_steps(8).with_step_dt(1.0 / 60.0));
-    let harness = builder.build_eframe(move |creation| Enroute::new(&creation.egui_ctx, Box::new(host), ""));
+    let dropped_on = Rc::clone(&world);
+    let harness = builder.build_eframe(move |creation| {
+        let app = Enroute::new(&creation.egui_ctx, Box::new(host), "");
+        app.reading_dropped_files(move |file| dropped_on.read_dropped(&file))
+    });
     App { harness, world }
+}
+
+impl World {
+    fn read_dropped(&self, file: &egui::DroppedFileHandle) {
+        let name = file.path().to_string_lossy().into_owned();
+        let event = match file.bytes() {
+            Ok(bytes) => HostEvent::FileOpened { kind: FileKind::of_name(&name), name, bytes },
+            Err(reason) => HostEvent::FileFailed { name, reason },
+        };
+        self.news.borrow_mut().push_back(event);
+    }
 }
 
 impl App {
@@ -77,7 +92,7 @@ impl App {
 
     /// The app's state as a host page sees it.
     pub fn json(&self) -> serde_json::Value {
-        app::host::Remote::state(self.harness.state())
+        workbench::host::Remote::state(self.harness.state())
     }
 }
 
@@ -122,15 +137,6 @@ impl Host for TestHost {
 
     fn open_file(&mut self, kind: FileKind) {
         self.world.asked.borrow_mut().push(kind);
-    }
-
-    fn read_dropped(&mut self, file: egui::DroppedFileHandle) {
-        let name = file.path().to_string_lossy().into_owned();
-        let event = match file.bytes() {
-            Ok(bytes) => HostEvent::FileOpened { kind: FileKind::of_name(&name), name, bytes },
-            Err(reason) => HostEvent::FileFailed { name, reason },
-        };
-        self.world.news.borrow_mut().push_back(event);
     }
 
     fn save_file(&mut self, suggested_name: &str, bytes: Vec<u8>) {

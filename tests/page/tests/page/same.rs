@@ -1,9 +1,10 @@
 //! The page works out exactly what the native build works out.
 
 use anyhow::Result;
-use app::{Enroute, host::Remote as _, mission_file::EXAMPLES, native::NativeHost};
+use app::{Enroute, native::NativeHost};
 use egui::{Context, RawInput};
 use serde_json::{Value, json};
+use workbench::{host::Remote as _, mission_file::EXAMPLES};
 
 use crate::opened::Opened;
 

@@ -3,13 +3,14 @@
 use egui::{Rect, Role, Sense, Ui, WidgetInfo};
 use hca::{Automaton, CompositeKind, LocationKind};
 use layout::{AutomatonDrawing, AutomatonItem};
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::state::TextCommand;
 
 use super::shapes::Scene;
 use super::{Shown, log, marks};
-use crate::command::{Command, CommandSender, ViewAction};
+use crate::panel::Context;
 use crate::panel::network::view::View;
-use crate::panel::{Context, PanelKind};
-use crate::state::TextCommand;
 
 /// Where the drawing is scrolled to.
 #[derive(Default)]

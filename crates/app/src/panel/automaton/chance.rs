@@ -5,14 +5,14 @@ use egui::{
     vec2,
 };
 use executive::model_based::ProgramTally;
+use workbench::command::{Command, CommandSender};
+use workbench::state::automaton::AutomatonCommand;
+use workbench::state::chance::ChanceCommand;
+use workbench::state::program_chance::{MOST_RUNS, MOST_STEPS_OF_RUN, ProgramChanceCommand};
 
 use super::components::percent;
 use super::title;
-use crate::command::{Command, CommandSender};
 use crate::panel::Context;
-use crate::state::automaton::AutomatonCommand;
-use crate::state::chance::ChanceCommand;
-use crate::state::program_chance::{MOST_RUNS, MOST_STEPS_OF_RUN, ProgramChanceCommand};
 use crate::theme::{size, space, strong};
 
 /// So many faults, and so many locations, are listed.

@@ -2,12 +2,12 @@
 
 use egui::{DragValue, Frame, Margin, Rect, RichText, Stroke, Ui, UiBuilder, vec2};
 use plant::{ComponentId, Model};
+use workbench::command::{Command, CommandSender};
+use workbench::state::automaton::{AutomatonCommand, Luck, PlantMoment};
 
 use super::machine::{Machine, Standing};
 use super::title;
-use crate::command::{Command, CommandSender};
 use crate::panel::Context;
-use crate::state::automaton::{AutomatonCommand, Luck, PlantMoment};
 use crate::theme::space;
 
 /// The state machines of a model's components, laid out.

@@ -1,11 +1,12 @@
 //! The row of buttons above the automaton: stepping, playing, jumping, and zoom.
 
 use egui::{Align, Frame, Layout, Margin, RichText, Slider, Ui};
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::state::automaton::{AutomatonCommand, Program};
 
-use crate::command::{Command, CommandSender, ViewAction};
 use crate::icon::{self, Icon};
-use crate::panel::{Context, PanelKind};
-use crate::state::automaton::{AutomatonCommand, Program};
+use crate::panel::Context;
 use crate::theme::space;
 
 /// Shows the row.

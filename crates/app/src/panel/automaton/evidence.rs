@@ -3,12 +3,12 @@
 use egui::{Align2, ComboBox, FontId, Grid, Rect, RichText, Sense, Ui, pos2, vec2};
 use num_traits::ToPrimitive as _;
 use plant::{Model, State, VariableId};
+use workbench::command::{Command, CommandSender};
+use workbench::state::automaton::{AutomatonCommand, PlantMoment};
 
 use super::components::percent;
 use super::title;
-use crate::command::{Command, CommandSender};
 use crate::panel::Context;
-use crate::state::automaton::{AutomatonCommand, PlantMoment};
 use crate::theme::{size, space};
 
 /// So many of the most likely states are listed.

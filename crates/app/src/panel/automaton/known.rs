@@ -2,11 +2,11 @@
 
 use egui::{ComboBox, Grid, RichText, Ui};
 use hca::{Automaton, VariableId};
+use workbench::command::{Command, CommandSender};
+use workbench::state::automaton::AutomatonCommand;
 
 use super::title;
-use crate::command::{Command, CommandSender};
 use crate::panel::Context;
-use crate::state::automaton::AutomatonCommand;
 
 /// Shows one choice per variable.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, automaton: &Automaton, commands: &mut CommandSender) {

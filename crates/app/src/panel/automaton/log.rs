@@ -3,11 +3,11 @@
 use egui::{Grid, RichText, ScrollArea, Ui};
 use hca::Automaton;
 use plant::{Commands, Model};
+use workbench::command::{Command, CommandSender};
+use workbench::state::automaton::{AutomatonCommand, Moment};
 
 use super::Shown;
-use crate::command::{Command, CommandSender};
 use crate::panel::Context;
-use crate::state::automaton::{AutomatonCommand, Moment};
 
 /// What each column tells, and whether there is nothing to tell without a plant.
 const COLUMNS: [(&str, bool); 5] =

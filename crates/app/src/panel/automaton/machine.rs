@@ -9,11 +9,11 @@ use layout::machine::MODE_HEIGHT;
 use layout::{MachineArc, MachineDrawing, Piece, Point};
 use num_traits::ToPrimitive as _;
 use plant::{Component, ComponentId, Model};
+use workbench::command::{Command, CommandSender};
+use workbench::state::automaton::{AutomatonCommand, PlantMoment};
 
 use super::components::percent;
-use crate::command::{Command, CommandSender};
 use crate::panel::Context;
-use crate::state::automaton::{AutomatonCommand, PlantMoment};
 use crate::theme::{Tokens, strong_family};
 
 /// A component's state machine, laid out.

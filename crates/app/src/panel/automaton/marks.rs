@@ -3,8 +3,7 @@
 use hca::{Automaton, CompositeId, CompositeKind, LocationId, TransitionId};
 use layout::AutomatonItem;
 use rmpl::Span;
-
-use crate::state::document::Caret;
+use workbench::state::document::Caret;
 
 /// Where something on the drawing is written; for a transition its guard.
 pub(super) fn span_of(automaton: &Automaton, item: AutomatonItem) -> Option<Span> {

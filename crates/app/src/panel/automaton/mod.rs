@@ -17,10 +17,10 @@ use egui::{Frame, Margin, RichText, ScrollArea, Ui, Vec2, vec2};
 use hca::Automaton;
 use layout::{AutomatonDrawing, approximate_text_width};
 use plant::Model;
+use workbench::command::CommandSender;
+use workbench::state::automaton::{Moment, Program};
 
-use crate::command::CommandSender;
 use crate::panel::{Context, Panel, show_empty};
-use crate::state::automaton::{Moment, Program};
 use crate::theme::space;
 
 /// The panel, with what concerns only it: the drawing and where it is scrolled to.

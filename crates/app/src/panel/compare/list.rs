@@ -2,9 +2,9 @@
 
 use egui::{Align2, Pos2, Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo};
 use mission::compare::{Comparison, Difference};
+use workbench::command::CommandSender;
 
 use super::{change_look, select};
-use crate::command::CommandSender;
 use crate::icon;
 use crate::panel::Context;
 use crate::theme::space;

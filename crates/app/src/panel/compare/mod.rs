@@ -9,12 +9,12 @@ use std::sync::Arc;
 use egui::{Frame, Margin, RichText, ScrollArea, Ui};
 use mission::Snapshot;
 use mission::compare::{Change, Comparison, Side, compare};
+use workbench::command::{Command, CommandSender};
+use workbench::state::Selection;
+use workbench::state::compare::CompareCommand;
 
-use crate::command::{Command, CommandSender};
 use crate::icon::Icon;
 use crate::panel::{Context, Panel};
-use crate::state::Selection;
-use crate::state::compare::CompareCommand;
 use crate::theme::{Tokens, space, strong};
 
 /// The comparison.

@@ -5,13 +5,13 @@ use egui::{
 };
 use mission::compare::{Comparison, Row, Subject, windows_text};
 use tpn::Window;
+use workbench::command::CommandSender;
+use workbench::state::playback::{bound, number};
 
 use super::{change_look, select};
-use crate::command::CommandSender;
 use crate::icon;
 use crate::panel::Context;
 use crate::panel::timeline::ticks::Ticks;
-use crate::state::playback::{bound, number};
 use crate::theme::space;
 
 /// The width of the names on the left.

@@ -8,8 +8,7 @@ use std::collections::BTreeMap;
 use kirk::{Constraint, CycleMember};
 use rmpl::{Bound, Rational};
 use tpn::{ArcId, CausalLink, EventEnd, Network, NodeId, Ordering};
-
-use crate::state::selection::node_name;
+use workbench::state::selection::node_name;
 
 /// What the graph is made of.
 #[derive(Clone, Copy)]

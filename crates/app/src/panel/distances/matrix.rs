@@ -6,11 +6,11 @@ use egui::RichText;
 use kirk::{Constraint, CycleMember};
 use rmpl::Bound;
 use tpn::{ArcId, Network, NodeId, Plan};
+use workbench::command::{Command, CommandSender};
+use workbench::state::Selection;
+use workbench::state::selection::node_name;
 
-use crate::command::{Command, CommandSender};
 use crate::panel::Context;
-use crate::state::Selection;
-use crate::state::selection::node_name;
 use crate::theme::{size, space};
 
 /// Larger networks are not shown as a matrix: nobody could read it.
@@ -80,7 +80,7 @@ pub fn show(ui: &mut egui::Ui, context: &Context<'_>, parts: &Parts<'_>, command
                         Bound::Finite(_) if from == to => tokens.text_faint,
                         Bound::Finite(_) => tokens.text,
                     };
-                    ui.label(text(crate::time_text::short_bound(distance)).color(color));
+                    ui.label(text(workbench::time_text::short_bound(distance)).color(color));
                 }
                 ui.end_row();
             }

@@ -12,11 +12,12 @@ use egui::{Rect, RichText, Role, Sense, Ui, WidgetInfo};
 use kirk::CycleMember;
 use mission::Snapshot;
 use tpn::{ArcId, Network, NodeId, Plan};
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::state::Selection;
 
 use super::network::view::View;
-use super::{Context, Panel, PanelKind, show_empty};
-use crate::command::{Command, CommandSender, ViewAction};
-use crate::state::Selection;
+use super::{Context, Panel, show_empty};
 use crate::theme::space;
 use arrange::{Arranged, arrange};
 use graph::{DistanceGraph, Selected};
@@ -115,13 +116,13 @@ impl DistancesPanel {
                 } else {
                     let total: rmpl::Rational = cycle.iter().map(|member| member.weight).sum();
                     let weights: Vec<String> =
-                        cycle.iter().map(|member| crate::time_text::time(member.weight)).collect();
-                    let total = crate::time_text::time(total);
+                        cycle.iter().map(|member| workbench::time_text::time(member.weight)).collect();
+                    let total = workbench::time_text::time(total);
                     let text =
                         format!("✗ Negative cycle: {} = {total}", weights.join(" + ").replace("+ -", "− "));
                     let names: Vec<String> = cycle
                         .iter()
-                        .map(|member| crate::state::selection::node_name(network, member.from))
+                        .map(|member| workbench::state::selection::node_name(network, member.from))
                         .collect();
                     ui.label(RichText::new(text).small().color(tokens.failure))
                         .on_hover_text(names.join(" → "));

@@ -6,15 +6,15 @@ use layout::Point;
 use layout::metrics::TEXT_SIZE;
 use rmpl::Rational;
 use tpn::Network;
+use workbench::state::Selection;
+use workbench::state::search::Focus;
+use workbench::state::selection::node_name;
+use workbench::time_text;
 
 use super::arrange::Arranged;
 use super::graph::{DistanceGraph, Edge, Vertex};
 use crate::panel::network::view::View;
-use crate::state::Selection;
-use crate::state::search::Focus;
-use crate::state::selection::node_name;
 use crate::theme::{Tokens, size};
-use crate::time_text;
 
 /// Everything that painting needs.
 pub struct Scene<'a> {

@@ -1,11 +1,11 @@
 //! The find bar above the text.
 
 use egui::{Button, Frame, Key, Margin, RichText, TextEdit, Ui};
+use workbench::command::{Command, CommandSender, EditorCommand};
+use workbench::state::editor::Find;
 
-use crate::command::{Command, CommandSender, EditorCommand};
 use crate::icon::{self, Icon};
 use crate::panel::Context;
-use crate::state::editor::Find;
 use crate::theme::space;
 
 /// Shows the find bar; what changes in it is sent as a whole.

@@ -25,7 +25,7 @@ impl HoverCache {
         let revisions = (context.state.document.revision(), shown.map_or(0, |shown| shown.revision));
         if self.revisions != revisions {
             self.revisions = revisions;
-            self.evaluation = shown.map(|it| crate::state::language::evaluation(it)).unwrap_or_default();
+            self.evaluation = shown.map(|it| workbench::state::language::evaluation(it)).unwrap_or_default();
             self.answered = None;
         }
         if self.answered.as_ref().is_none_or(|(at, _)| *at != offset) {

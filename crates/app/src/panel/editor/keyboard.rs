@@ -1,9 +1,8 @@
 //! What keys, clipboard, input methods and screen readers ask of the editor while it has the focus.
 
 use egui::{Context, Event, EventFilter, Id, ImeEvent, Key, Modifiers};
-
-use crate::command::{Command, EditorCommand};
-use crate::state::{AppState, Motion, TextCommand};
+use workbench::command::{Command, EditorCommand};
+use workbench::state::{AppState, Motion, TextCommand};
 
 /// The editor's widget id: who has the focus while the author types.
 pub fn editor_id() -> Id {

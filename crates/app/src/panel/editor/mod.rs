@@ -1,6 +1,6 @@
 //! The mission text: a code editor that lays out only the lines on screen.
 //!
-//! The text itself and what keys do to it are in [`crate::state`]; here it is shown, and the pointer is followed.
+//! The text itself and what keys do to it are in [`workbench::state`]; here it is shown, and the pointer is followed.
 
 mod brackets;
 mod find_bar;
@@ -12,8 +12,8 @@ mod popup;
 mod text_area;
 
 use egui::Ui;
+use workbench::command::CommandSender;
 
-use crate::command::CommandSender;
 use crate::panel::{Context, Panel};
 
 pub(crate) use hover::show_markdown;

@@ -4,10 +4,10 @@ use egui::{
     Align2, Area, Frame, Id, Margin, Order, Pos2, Rect, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo,
 };
 use rmpl::editor::CompletionKind;
+use workbench::command::{Command, CommandSender, EditorCommand};
+use workbench::state::editor::{Popup, PopupItem, PopupKind};
 
-use crate::command::{Command, CommandSender, EditorCommand};
 use crate::panel::Context;
-use crate::state::editor::{Popup, PopupItem, PopupKind};
 use crate::theme::{Tokens, space};
 
 const WIDTH: f32 = 380.0;

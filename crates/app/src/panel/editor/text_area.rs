@@ -8,18 +8,19 @@ use egui::{
 };
 use mission::Problem;
 use rmpl::{Severity, Span};
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender, EditorCommand};
+use workbench::state::TextCommand;
+use workbench::state::document::Document;
+use workbench::state::folding::{self, Rows};
 
-use crate::command::{Command, CommandSender, EditorCommand};
 use crate::icon::{self, Icon};
+use crate::panel::Context;
 use crate::panel::editor::hover::HoverCache;
 use crate::panel::editor::line::LineLayout;
 use crate::panel::editor::marks::Shift;
 use crate::panel::editor::{brackets, editor_id, keyboard, popup};
 use crate::panel::problems::severity_sign;
-use crate::panel::{Context, PanelKind};
-use crate::state::TextCommand;
-use crate::state::document::Document;
-use crate::state::folding::{self, Rows};
 use crate::theme::space;
 
 /// The text with its gutter.
@@ -154,7 +155,7 @@ impl TextArea {
         &self,
         context: &Context<'_>,
         area: ScrollArea,
-        reveal: crate::state::editor::Reveal,
+        reveal: workbench::state::editor::Reveal,
         geometry: &Geometry<'_>,
         available: egui::Vec2,
     ) -> ScrollArea {
@@ -348,13 +349,32 @@ fn lay_out(ui: &Ui, context: &Context<'_>, geometry: &Geometry<'_>, lines: Vec<u
     let document = &context.state.document;
     let mut shown = ShownLines { lines, layouts: Vec::new() };
     let Range { start, end } = shown.bytes(document);
-    let colors = context.state.language.colors(Span::new(start as u32, end as u32), context.tokens);
+    let roles = context.state.language.roles(Span::new(start as u32, end as u32));
+    let colors: Vec<_> =
+        roles.into_iter().map(|(span, role)| (span, syntax_color(role, context.tokens))).collect();
     let layouts = shown
         .lines
         .iter()
         .map(|&line| LineLayout::new(ui, context, &geometry.font, document.line_range(line), &colors));
     shown.layouts = layouts.collect();
     shown
+}
+
+const fn syntax_color(role: SyntaxRole, tokens: &Tokens) -> egui::Color32 {
+    let syntax = &tokens.syntax;
+    match role {
+        SyntaxRole::Keyword => syntax.keyword,
+        SyntaxRole::Activity => syntax.activity,
+        SyntaxRole::Variable => syntax.variable,
+        SyntaxRole::Value => syntax.value,
+        SyntaxRole::Parameter => syntax.parameter,
+        SyntaxRole::Place => syntax.place,
+        SyntaxRole::Number => syntax.number,
+        SyntaxRole::String => syntax.string,
+        SyntaxRole::Comment => syntax.comment,
+        SyntaxRole::Punctuation => syntax.punctuation,
+        SyntaxRole::Unknown => tokens.error,
+    }
 }
 
 /// The column of the gutter in which folds are opened and closed.

@@ -5,13 +5,13 @@ use executive::Disturbance;
 use mission::programs::Programs;
 use num_traits::ToPrimitive as _;
 use smol_str::SmolStr;
+use workbench::command::{Command, CommandSender};
+use workbench::state::execution::{ExecutionCommand, Pending};
+use workbench::state::playback::number;
 
 use super::{Shown, now};
-use crate::command::{Command, CommandSender};
 use crate::panel::Context;
 use crate::panel::plan::section;
-use crate::state::execution::{ExecutionCommand, Pending};
-use crate::state::playback::number;
 
 /// What is to fail, by places in the lists, and the programs that are known.
 #[derive(Default)]

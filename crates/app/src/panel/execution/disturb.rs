@@ -4,16 +4,16 @@ use egui::{Align, DragValue, Layout, RichText, Ui};
 use executive::Disturbance;
 use rmpl::Rational;
 use tpn::{OccurrenceId, OccurrenceKind};
+use workbench::command::{Command, CommandSender};
+use workbench::state::execution::{ExecutionCommand, Pending, disturbance_text, exact_time};
+use workbench::time_text;
 
 use super::components::Components;
 use super::vehicles::Vehicles;
 use super::{Shown, now};
-use crate::command::{Command, CommandSender};
 use crate::icon::{self, Icon};
 use crate::panel::Context;
 use crate::panel::plan::section;
-use crate::state::execution::{ExecutionCommand, Pending, disturbance_text, exact_time};
-use crate::time_text;
 
 /// What the buttons beside a name take, in points.
 const BUTTONS_WIDTH: f32 = 150.0;

@@ -2,15 +2,15 @@
 
 use egui::{RichText, ScrollArea, Ui};
 use executive::{Entry, Happening};
+use workbench::command::{Command, CommandSender};
+use workbench::state::Selection;
+use workbench::state::execution::has_come;
+use workbench::state::playback::number;
+use workbench::time_text;
 
 use super::Shown;
-use crate::command::{Command, CommandSender};
 use crate::panel::Context;
 use crate::panel::plan::section;
-use crate::state::Selection;
-use crate::state::execution::has_come;
-use crate::state::playback::number;
-use crate::time_text;
 
 /// Shows the log up to the time shown.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {

@@ -10,12 +10,12 @@ mod vehicles;
 
 use egui::{Frame, Margin, RichText, ScrollArea, Ui};
 use mission::Execution;
+use workbench::command::{Command, CommandSender};
+use workbench::state::Status;
+use workbench::state::execution::{ExecutionCommand, Moment};
 
-use crate::command::{Command, CommandSender};
 use crate::panel::timeline::controls;
 use crate::panel::{Context, Panel, show_empty};
-use crate::state::Status;
-use crate::state::execution::{ExecutionCommand, Moment};
 use crate::theme::space;
 
 /// The panel, with how much longer or later a disturbance makes things.
@@ -72,7 +72,7 @@ fn why_not(context: &Context<'_>) -> String {
         Status::Broken => "The mission has errors. See the problems.",
         Status::NoPlan => "There is no plan to execute. The plan panel says why.",
         Status::Empty => "There is no mission to execute.",
-        Status::Plan if state.workspace == crate::workspace::Workspace::Execute => "Working the run out…",
+        Status::Plan if state.workspace == workbench::workspace::Workspace::Execute => "Working the run out…",
         Status::Plan => "The mission runs in the Execute workspace.",
         Status::Working => "Planning…",
     };

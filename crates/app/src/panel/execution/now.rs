@@ -3,17 +3,17 @@
 use egui::{CornerRadius, Frame, Margin, RichText, Ui};
 use executive::{Ending, Happening};
 use tpn::OccurrenceId;
+use workbench::command::{Command, CommandSender};
+use workbench::state::Selection;
+use workbench::state::execution::{Pending, has_come};
+use workbench::state::playback::number;
+use workbench::time_text;
 
 use super::Shown;
-use crate::command::{Command, CommandSender};
 use crate::icon::{self, Icon};
 use crate::panel::Context;
 use crate::panel::plan::{section, selectable_row};
-use crate::state::Selection;
-use crate::state::execution::{Pending, has_come};
-use crate::state::playback::number;
 use crate::theme::{space, strong};
-use crate::time_text;
 
 /// So many of the things to come are listed.
 const MOST_LISTED: usize = 5;

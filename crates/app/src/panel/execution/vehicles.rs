@@ -1,14 +1,14 @@
 //! Disturbances of what drives: a vehicle slows down or stops, and something stands in the way.
 
 use egui::{DragValue, RichText, Ui};
+use workbench::command::{Command, CommandSender};
+use workbench::state::execution::{ExecutionCommand, exact_time};
+use workbench::state::terrain::{TerrainCommand, Tool};
+use workbench::time_text;
 
 use super::disturb::suffix;
-use crate::command::{Command, CommandSender};
 use crate::panel::Context;
 use crate::panel::plan::section;
-use crate::state::execution::{ExecutionCommand, exact_time};
-use crate::state::terrain::{TerrainCommand, Tool};
-use crate::time_text;
 
 /// How much slower a vehicle becomes, and for how long.
 pub(super) struct Vehicles {

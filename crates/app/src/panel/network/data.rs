@@ -9,10 +9,10 @@ use layout::{NetworkDrawing, Options, OverlayCurve, Piece, Point, TextShape, app
 use mission::{Planning, Snapshot};
 use smol_str::SmolStr;
 use tpn::{BlockId, BlockKind, Network, NodeId, Plan};
+use workbench::state::search::View;
+use workbench::state::selection::node_name;
 
 use super::marks::{Mark, marks};
-use crate::state::search::View;
-use crate::state::selection::node_name;
 
 /// The band of a parallel branch.
 #[derive(Clone, Debug, PartialEq)]

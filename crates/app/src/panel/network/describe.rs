@@ -4,8 +4,7 @@ use layout::Item;
 use layout::text::bounds_label;
 use rmpl::{Bound, rational};
 use tpn::{ArcKind, Network, Plan, Role};
-
-use crate::state::selection::node_name;
+use workbench::state::selection::node_name;
 
 /// A heading and lines about an item of the drawing.
 pub(super) fn describe(item: Item, network: &Network, plan: Option<&Plan>) -> Option<(String, Vec<String>)> {

@@ -2,11 +2,11 @@
 
 use layout::{Palette, Progress, SvgOptions};
 use tpn::{Network, Plan};
+use workbench::command::{Command, PictureFormat};
+use workbench::state::settings::NetworkView;
 
 use super::data::Drawn;
-use crate::command::{Command, PictureFormat};
 use crate::panel::Context;
-use crate::state::settings::NetworkView;
 
 /// Longer sides than this are more than browsers draw.
 const LONGEST_SIDE: f64 = 16_000.0;

@@ -2,9 +2,8 @@
 
 use layout::{Item, NetworkDrawing, Rect};
 use tpn::{ArcId, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind};
-
-use crate::state::Selection;
-use crate::state::search::Focus;
+use workbench::state::Selection;
+use workbench::state::search::Focus;
 
 /// The shapes of one selection.
 #[derive(Clone, Debug, Default, PartialEq)]

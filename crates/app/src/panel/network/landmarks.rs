@@ -3,11 +3,11 @@
 use egui::{Rect, Role, Sense, Ui, WidgetInfo};
 use layout::{Item, TextRole};
 use tpn::Network;
+use workbench::state::Selection;
 
 use super::data::Drawn;
 use super::highlight::selection_of;
 use super::view::View;
-use crate::state::Selection;
 
 /// With more in view, a list helps nobody.
 const MOST: usize = 150;

@@ -5,9 +5,9 @@ use layout::{NetworkDrawing, Point};
 use mission::Snapshot;
 use rmpl::{Severity, Span};
 use tpn::{ArcId, Network, NodeId, OccurrenceKind};
+use workbench::command::{Command, CommandSender};
 
 use super::view::View;
-use crate::command::{Command, CommandSender};
 use crate::theme::Tokens;
 
 /// A problem at its place on the drawing.

@@ -23,6 +23,10 @@ use egui::{CursorIcon, Key, PointerButton, Rect, Response, Role, Sense, Ui, Widg
 use layout::{Item, OverlayCurve, OverlayKind, Point, Progress};
 use mission::Snapshot;
 use tpn::{BlockId, Network, Plan};
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::state::settings::NetworkView;
+use workbench::state::{Selection, Status, Views};
 
 use self::data::{Drawn, block_key, fits, is_collapsible};
 use self::highlight::{Highlight, selection_of};
@@ -30,10 +34,7 @@ use self::paint::{Scene, badge};
 use self::search::Search;
 use self::toolbar::Asked;
 use self::view::View;
-use super::{Context, Panel, PanelKind, show_empty};
-use crate::command::{Command, CommandSender, ViewAction};
-use crate::state::settings::NetworkView;
-use crate::state::{Selection, Status, Views};
+use super::{Context, Panel, show_empty};
 
 /// The network panel.
 #[derive(Default)]
@@ -460,8 +461,8 @@ fn show_badges(painter: &egui::Painter, panel: Rect, context: &Context<'_>, snap
         let trace = view.recording.trace();
         let (step, steps) = (view.step.step, trace.events.len());
         let Some(entry) = trace.events.get(step) else { return };
-        let text = crate::panel::event_in_words(view.recording.network(), &entry.event);
-        let is_failure = crate::state::search::focus::is_failure(&entry.event);
+        let text = workbench::state::search::wording::event(view.recording.network(), &entry.event);
+        let is_failure = workbench::state::search::focus::is_failure(&entry.event);
         let color = if is_failure { tokens.failure } else { tokens.accent };
         badge(painter, corner, &format!("Step {} / {steps}: {text}", step + 1), color, tokens, width);
         return;

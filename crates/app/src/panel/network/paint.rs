@@ -8,13 +8,13 @@ use layout::{
     BlockForm, Item, OverlayCurve, OverlayKind, Piece, Point, Progress, Route, TextRole, TextShape,
 };
 use tpn::{ArcKind, LabelId, Network, NodeId, Plan, Role};
+use workbench::state::search::Focus;
+use workbench::state::settings::NetworkView;
 
 use super::data::Drawn;
 use super::highlight::Highlight;
 use super::level::LevelLines;
 use super::view::View;
-use crate::state::search::Focus;
-use crate::state::settings::NetworkView;
 use crate::theme::Tokens;
 
 /// Below this size in points a text is left out, and fades in from there.

@@ -1,8 +1,7 @@
 //! Finding events, activities, decisions and conditions by a part of their name.
 
 use tpn::{DecisionId, LabelId, Network, NodeId, OccurrenceId};
-
-use crate::state::Selection;
+use workbench::state::Selection;
 
 /// More matches than this are not listed; they would not help.
 const MOST_MATCHES: usize = 500;

@@ -1,11 +1,12 @@
 //! The switches above the drawing, and the search field.
 
 use egui::{RichText, TextEdit, Ui};
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender, PictureFormat, ViewAction};
+use workbench::state::settings::NetworkView;
 
 use super::search::Search;
-use crate::command::{Command, CommandSender, PictureFormat, ViewAction};
-use crate::panel::{Context, PanelKind};
-use crate::state::settings::NetworkView;
+use crate::panel::Context;
 use crate::theme::space;
 
 /// What the user asked for.

@@ -4,12 +4,12 @@ use egui::{Frame, Margin, RichText, Stroke, Ui};
 use kirk::{FailureKind, Reason, Status};
 use mission::Planning;
 use tpn::Network;
+use workbench::command::{Command, CommandSender, EditorCommand};
+use workbench::state::EditKind;
 
-use crate::command::{Command, CommandSender, EditorCommand};
 use crate::icon::{self, Icon};
 use crate::panel::Context;
 use crate::panel::plan::{alternative_text, section};
-use crate::state::EditKind;
 use crate::theme::space;
 
 /// Shows why there is no plan.
@@ -130,15 +130,15 @@ fn show_cycle(ui: &mut Ui, context: &Context<'_>, network: &Network, reason: &Re
                 total += member.weight;
                 let step = format!(
                     "{} is at most {} after {}",
-                    crate::state::selection::node_name(network, member.to),
-                    crate::time_text::time(member.weight),
-                    crate::state::selection::node_name(network, member.from),
+                    workbench::state::selection::node_name(network, member.to),
+                    workbench::time_text::time(member.weight),
+                    workbench::state::selection::node_name(network, member.from),
                 );
                 ui.label(RichText::new(step).small().color(tokens.text_muted));
             }
             let sum = format!(
                 "Around the circle this adds up to {}, less than zero.",
-                crate::time_text::time(total)
+                workbench::time_text::time(total)
             );
             ui.label(RichText::new(sum).small().color(tokens.threat));
         });

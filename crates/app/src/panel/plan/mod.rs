@@ -5,11 +5,11 @@ mod windows;
 
 use egui::{RichText, ScrollArea, Ui};
 use tpn::{DecisionId, Network, OccurrenceKind, Plan};
+use workbench::command::{Command, CommandSender};
+use workbench::state::{Selection, Status};
 
-use crate::command::{Command, CommandSender};
 use crate::icon::{self, Icon};
 use crate::panel::{Context, Panel, show_empty};
-use crate::state::{Selection, Status};
 use crate::theme::space;
 
 /// Lists of more rows are made as far as they are on screen.
@@ -120,7 +120,7 @@ pub(crate) fn selectable_row(
 }
 
 /// Says that what follows is not the plan.
-fn show_step(ui: &mut Ui, context: &Context<'_>, view: &crate::state::search::View) {
+fn show_step(ui: &mut Ui, context: &Context<'_>, view: &workbench::state::search::View) {
     ui.horizontal_wrapped(|ui| {
         let (step, steps) = (view.step.step + 1, view.recording.steps());
         let text = format!("Step {step} / {steps} of the search");
@@ -198,25 +198,6 @@ fn show_choices(
             }
         });
     });
-}
-
-/// What an alternative is about: the first activity in it.
-pub(crate) fn alternative_text(network: &Network, decision: DecisionId, alternative: u32) -> String {
-    let span = network
-        .decisions
-        .get(decision.index())
-        .and_then(|decision| decision.alternative_spans.get(alternative as usize));
-    let first = span.and_then(|span| {
-        network.occurrences.iter().find(|occurrence| {
-            let is_activity = matches!(occurrence.kind, OccurrenceKind::Primitive | OccurrenceKind::Activity);
-            let is_inside = occurrence.span.is_some_and(|at| span.start <= at.start && at.end <= span.end);
-            is_activity && is_inside
-        })
-    });
-    match first {
-        Some(occurrence) => format!("{alternative}: {}", occurrence.name),
-        None => format!("{alternative}"),
-    }
 }
 
 fn show_links(

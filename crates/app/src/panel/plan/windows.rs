@@ -3,14 +3,15 @@
 use egui::{Align2, RichText, Role, Sense, TextEdit, TextStyle, Ui, WidgetInfo};
 use rmpl::{Bound, Rational};
 use tpn::{EventEnd, EventRef, Network, NodeId, Plan};
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender};
+use workbench::state::Selection;
+use workbench::state::settings::WindowSort;
+use workbench::time_text;
 
-use crate::command::{Command, CommandSender};
 use crate::panel::plan::section;
-use crate::panel::{Context, PanelKind, walk};
-use crate::state::Selection;
-use crate::state::settings::WindowSort;
+use crate::panel::{Context, walk};
 use crate::theme::space;
-use crate::time_text;
 
 /// The table, with what was typed into its filter.
 #[derive(Default)]

@@ -3,10 +3,10 @@
 use egui::{Align2, Pos2, Rect, Role, Sense, TextStyle, Ui, WidgetInfo};
 use mission::review::{EventReview, Section, short_time};
 use rmpl::Bound;
+use workbench::command::CommandSender;
+use workbench::state::playback::bound;
 
 use super::{List, lines, row};
-use crate::command::CommandSender;
-use crate::state::playback::bound;
 use crate::theme::space;
 
 /// Events that are listed before "Show all".

@@ -4,10 +4,10 @@ use egui::Ui;
 use mission::Snapshot;
 use mission::review::{Fate, Line, Section, Status};
 use tpn::{CausalLink, DecisionId, LabelId, Ordering};
+use workbench::command::{Command, CommandSender};
+use workbench::state::Selection;
 
 use super::{List, row};
-use crate::command::{Command, CommandSender};
-use crate::state::Selection;
 
 /// Shows a line of any section.
 pub(super) fn line(

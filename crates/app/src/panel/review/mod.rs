@@ -13,12 +13,12 @@ use std::collections::BTreeSet;
 
 use egui::{Frame, Margin, ScrollArea, Ui};
 use mission::review::{Review, Section, Status};
+use workbench::command::{Command, CommandSender};
+use workbench::state;
+use workbench::state::review::ReviewCommand;
 
-use crate::command::{Command, CommandSender};
 use crate::icon::Icon;
 use crate::panel::{Context, Panel, show_empty};
-use crate::state;
-use crate::state::review::ReviewCommand;
 use crate::theme::{Tokens, space};
 
 /// The review.

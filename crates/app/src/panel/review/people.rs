@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 
 use egui::{Button, Frame, Margin, RichText, TextEdit, Ui};
 use mission::review::record::Comment;
+use workbench::command::{Command, CommandSender};
+use workbench::state::Selection;
+use workbench::state::review::{ReviewCommand, Signed, may_sign};
 
 use super::{header, row, verdict};
-use crate::command::{Command, CommandSender};
 use crate::icon::{self, Icon};
 use crate::panel::Context;
-use crate::state::Selection;
-use crate::state::review::{ReviewCommand, Signed, may_sign};
 use crate::theme::{space, strong};
 
 /// What was typed and not sent yet.

@@ -2,9 +2,9 @@
 
 use egui::{Button, Ui};
 use mission::Robustness;
+use workbench::command::{self, CommandSender};
 
 use super::row;
-use crate::command::{self, CommandSender};
 use crate::panel::Context;
 
 /// The command that makes the runs.

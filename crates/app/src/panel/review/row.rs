@@ -5,11 +5,11 @@ use egui::{
 };
 use mission::review::Status;
 use tpn::Network;
+use workbench::state::Selection;
 
 use super::status_look;
 use crate::icon::{self, Icon};
 use crate::panel::Context;
-use crate::state::Selection;
 use crate::theme::{space, strong_family};
 
 /// How far the text of lines is from the left.

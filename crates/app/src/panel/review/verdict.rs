@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use egui::{Frame, Margin, RichText, Ui};
 use mission::review::{Review, Status};
+use workbench::command::{Command, CommandSender};
+use workbench::state::review::{ReviewCommand, Signed};
 
 use super::status_look;
-use crate::command::{Command, CommandSender};
 use crate::icon::{self, Icon};
 use crate::panel::Context;
-use crate::state::review::{ReviewCommand, Signed};
 use crate::theme::{space, strong};
 
 /// Characters of the hash that are shown.

@@ -3,11 +3,11 @@
 use egui::{DragValue, Grid, ProgressBar, RichText, ScrollArea, Ui};
 use mission::Robustness;
 use mission::robustness::{Others, Traverses};
+use workbench::command::{Command, CommandSender};
+use workbench::state::chance::{ChanceCommand, MOST_RUNS};
 
-use crate::command::{Command, CommandSender};
 use crate::panel::plan::section;
 use crate::panel::{Context, Panel, show_empty};
-use crate::state::chance::{ChanceCommand, MOST_RUNS};
 use crate::theme::{size, space, strong};
 
 /// The panel.

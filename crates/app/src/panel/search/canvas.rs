@@ -6,11 +6,11 @@
 use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, pos2, vec2};
 use kirk::{Trace, TreeChoice, TreeNodeId, TreeStatus};
 use tpn::Network;
+use workbench::command::ViewAction;
+use workbench::state::search::focus::concerns;
 
 use super::tree::{TreeDrawing, TreeIndex};
-use crate::command::ViewAction;
 use crate::panel::Context;
-use crate::state::search::focus::concerns;
 use crate::theme::size;
 
 /// Where the tree is looked at from.

@@ -2,12 +2,13 @@
 
 use egui::{Button, ComboBox, RichText, Slider, Ui};
 use mission::SearchKind;
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender};
+use workbench::state::search::{Recording, SearchCommand};
 
 use super::kind_name;
-use crate::command::{Command, CommandSender};
 use crate::icon::{self, Icon};
-use crate::panel::{Context, PanelKind};
-use crate::state::search::{Recording, SearchCommand};
+use crate::panel::Context;
 use crate::theme::space;
 
 /// Speeds that can be chosen, in steps a second.

@@ -4,15 +4,16 @@
 use egui::{RichText, ScrollArea, Ui};
 use kirk::{Event, Trace, TreeNodeId, TreeStatus};
 use tpn::Window;
+use workbench::command::{Command, CommandSender};
+use workbench::state::Selection;
+use workbench::state::search::wording;
+use workbench::state::search::{Recording, WindowChange};
+use workbench::state::selection::node_name;
+use workbench::time_text;
 
+use super::step;
 use super::tree::TreeIndex;
-use super::wording;
-use crate::command::{Command, CommandSender};
 use crate::panel::Context;
-use crate::state::Selection;
-use crate::state::search::{Recording, WindowChange};
-use crate::state::selection::node_name;
-use crate::time_text;
 
 /// More changed windows than this are counted, not listed.
 const MOST_CHANGES: usize = 60;
@@ -32,7 +33,7 @@ pub fn show(
             show_state(ui, context, recording, index, state);
             return;
         }
-        wording::show(ui, context, recording);
+        step::show(ui, context, recording);
         if let Some(step) = context.state.search.step() {
             show_state(ui, context, recording, index, step.tree_node);
         }
@@ -91,7 +92,7 @@ fn failure_of<'a>(trace: &'a Trace, index: &TreeIndex, state: TreeNodeId) -> Opt
     let (first, last) = ((*index.first_step.get(at)?)?, (*index.last_step.get(at)?)?);
     let events = trace.events.get(first..=last)?;
     let mut own = events.iter().rev().filter(|entry| entry.tree_node == state).map(|entry| &entry.event);
-    own.find(|event| crate::state::search::focus::is_failure(event))
+    own.find(|event| workbench::state::search::focus::is_failure(event))
 }
 
 /// The windows that the step changed: before and after.

@@ -3,12 +3,13 @@
 
 use egui::{Key, Modifiers};
 use kirk::{Trace, TreeNodeId};
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender};
+use workbench::state::search::SearchCommand;
+use workbench::state::search::focus::selection_of;
 
 use super::tree::TreeIndex;
-use crate::command::{Command, CommandSender};
-use crate::panel::{Context, PanelKind};
-use crate::state::search::SearchCommand;
-use crate::state::search::focus::selection_of;
+use crate::panel::Context;
 
 /// Follows the keys that were pressed, if they are meant for this panel.
 pub fn follow(

@@ -8,25 +8,24 @@ mod controls;
 mod details;
 mod keys;
 mod statistics;
+mod step;
 mod tree;
-mod wording;
 
 use std::collections::BTreeSet;
 
 use egui::{RichText, Ui, UiBuilder};
 use kirk::TreeNodeId;
 use mission::SearchKind;
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender};
+use workbench::state::Selection;
+use workbench::state::search::focus::selection_of;
+use workbench::state::search::{Recording, SearchCommand};
 
-use crate::command::{Command, CommandSender};
-use crate::panel::{Context, Panel, PanelKind};
-use crate::state::Selection;
-use crate::state::search::focus::selection_of;
-use crate::state::search::{Recording, SearchCommand};
+use crate::panel::{Context, Panel};
 use crate::theme::space;
 use canvas::{Pointed, Tree};
 use tree::{TreeDrawing, TreeIndex};
-
-pub use wording::event as event_in_words;
 
 /// The panel, with what concerns only it: where each tree is scrolled to and which of its states are folded.
 #[derive(Default)]

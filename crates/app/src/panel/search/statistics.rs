@@ -2,11 +2,12 @@
 
 use egui::{RichText, Ui};
 use kirk::Status;
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender};
+use workbench::state::search::{Counts, Recording, SearchCommand};
 
 use super::kind_name;
-use crate::command::{Command, CommandSender};
-use crate::panel::{Context, PanelKind};
-use crate::state::search::{Counts, Recording, SearchCommand};
+use crate::panel::Context;
 
 /// Shows the heading and the figures of a search.
 pub fn show(

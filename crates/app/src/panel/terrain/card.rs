@@ -4,14 +4,14 @@ use egui::{Frame, Pos2, Rect, RichText, Sense, Ui, UiBuilder, pos2, vec2};
 use glam::Vec2;
 use mission::{Snapshot, Traverse};
 use rmpl::program::TimeUnit;
+use workbench::command::{Command, CommandSender};
+use workbench::state::Selection;
+use workbench::time_text;
 
 use super::measure::{Measurement, metres, show_chart, show_rows};
-use crate::command::{Command, CommandSender};
 use crate::icon::{self, Icon};
 use crate::panel::Context;
-use crate::state::Selection;
 use crate::theme::{size, space, strong};
-use crate::time_text;
 
 /// Cards are as wide as this, or as the panel allows.
 const WIDTH: f32 = 232.0;
@@ -143,7 +143,7 @@ fn time_rows(context: &Context<'_>, traverse: &Traverse) -> Vec<(&'static str, S
         ("Duration", format!("{} {name}", time_text::short(end - start))),
         ("From and to", format!("{} to {} {name}", time_text::short(start), time_text::short(end))),
     ];
-    let seconds = crate::state::playback::number(end - start) * unit.seconds() as f64;
+    let seconds = workbench::state::playback::number(end - start) * unit.seconds() as f64;
     if seconds > 0.0 {
         rows.push(("Mean speed", format!("{:.2} cm/s", 100.0 * traverse.length_m / seconds)));
     }

@@ -6,10 +6,10 @@ use mission::{MapKey, Snapshot};
 use rmpl::program::ObstacleShape;
 use smol_str::SmolStr;
 use terrain::Terrain;
+use workbench::state::Selection;
+use workbench::state::growth::obstacles;
 
 use super::card::selected_traverse;
-use crate::state::Selection;
-use crate::state::growth::obstacles;
 
 /// The last clearance map, with what it was made from.
 #[derive(Clone, Debug, PartialEq)]

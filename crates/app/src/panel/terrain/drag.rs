@@ -5,13 +5,13 @@ use glam::Vec2;
 use rmpl::Edit;
 use rmpl::program::{ObstacleShape, Program};
 use smol_str::SmolStr;
+use workbench::command::{Command, CommandSender};
+use workbench::state::placing::{VehicleStart, place};
+use workbench::state::terrain::TerrainCommand;
+use workbench::state::{EditKind, Selection};
 
 use super::pick::Scene;
 use super::scene;
-use crate::command::{Command, CommandSender};
-use crate::state::placing::{VehicleStart, place};
-use crate::state::terrain::TerrainCommand;
-use crate::state::{EditKind, Selection};
 
 /// A drag under way.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,6 +7,8 @@ use egui::{Color32, Painter, Rect};
 use glam::Vec3;
 use mission::Snapshot;
 use terrain::Terrain;
+use workbench::state::settings::ThemeChoice;
+use workbench::state::settings::{Coloring, TerrainView};
 
 use super::camera::Camera;
 use super::detail;
@@ -16,8 +18,7 @@ use super::hud::{self, rgba};
 use super::rocks;
 use super::scene::{self, SceneInput, SceneOptions, ScenePalette, Sketch};
 use crate::panel::Context;
-use crate::state::settings::{Coloring, TerrainView};
-use crate::theme::{ThemeChoice, Tokens};
+use crate::theme::{Tokens, tokens};
 
 /// What an image shows.
 #[derive(Clone, Copy)]
@@ -129,7 +130,7 @@ fn frame(input: &Input<'_>, pixels: [f32; 2], pixels_per_point: f32) -> Frame {
 
 /// The colours of the scene: those of the dark theme, because the ground is as dark in both.
 fn palette() -> ScenePalette {
-    let tokens = ThemeChoice::Dark.tokens();
+    let tokens = tokens(ThemeChoice::Dark);
     let color = |color, opacity| {
         let [red, green, blue, _] = rgba(color);
         [red, green, blue, opacity]

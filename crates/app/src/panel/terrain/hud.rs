@@ -3,6 +3,8 @@
 use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, StrokeKind, pos2, vec2};
 use glam::{Vec2, Vec3};
 use mission::Snapshot;
+use workbench::state::Selection;
+use workbench::state::settings::{Coloring, TerrainView};
 
 use super::MARGIN;
 use super::camera::Camera;
@@ -11,8 +13,6 @@ use super::ground::Ground;
 use super::labels::{self, Label, Rank};
 use super::scene;
 use crate::panel::Context;
-use crate::state::Selection;
-use crate::state::settings::{Coloring, TerrainView};
 use crate::theme::{Tokens, size};
 
 /// Everything the overlay needs.

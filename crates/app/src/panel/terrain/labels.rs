@@ -1,8 +1,8 @@
 //! Names over the ground: on plates, so that they stay readable over light and dark ground, and never on each other.
 
 use egui::{Color32, FontId, Painter, Pos2, Rect, Stroke, StrokeKind, Vec2, vec2};
+use workbench::state::Selection;
 
-use crate::state::Selection;
 use crate::theme::{Tokens, size};
 
 /// A name to write.

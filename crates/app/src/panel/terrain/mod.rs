@@ -36,12 +36,12 @@ use glam::Vec2;
 use mission::Snapshot;
 use terrain::Terrain;
 use tpn::OccurrenceId;
+use workbench::command::{Command, CommandSender};
+use workbench::state::settings::TerrainView;
+use workbench::state::terrain::{TerrainCommand, Tool};
+use workbench::state::{EditKind, Selection};
 
-use crate::command::{Command, CommandSender};
 use crate::panel::{Context, Panel, show_empty};
-use crate::state::settings::TerrainView;
-use crate::state::terrain::{TerrainCommand, Tool};
-use crate::state::{EditKind, Selection};
 use crate::theme::space;
 use camera::Camera;
 use clearance::Clearance;
@@ -101,7 +101,7 @@ impl Panel for TerrainPanel {
         let followed = self.follow;
         toolbar::show(ui, context, snapshot, &mut view, &mut self.follow, commands);
         if view != views.terrain {
-            commands.send(Command::SetViews(Box::new(crate::state::Views {
+            commands.send(Command::SetViews(Box::new(workbench::state::Views {
                 terrain: view.clone(),
                 ..views.clone()
             })));
@@ -346,7 +346,7 @@ fn show_without_world(ui: &mut egui::Ui, context: &Context<'_>, commands: &mut C
         ui.label(RichText::new(text).color(context.tokens.text_muted));
         ui.add_space(space::M);
         if ui.button("Add a terrain and a location").clicked() {
-            let offset = crate::state::placing::first_code(context.state.document.text()) as u32;
+            let offset = workbench::state::placing::first_code(context.state.document.text()) as u32;
             let edit = rmpl::Edit { span: rmpl::Span::new(offset, offset), text: WORLD.to_owned() };
             commands.send(Command::Edit { edits: vec![edit], kind: EditKind::Single });
         }

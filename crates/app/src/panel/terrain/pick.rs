@@ -4,12 +4,12 @@ use egui::{Pos2, Rect};
 use glam::{Vec2, Vec3};
 use mission::Snapshot;
 use rmpl::program::ObstacleShape;
+use workbench::state::Selection;
 
 use super::camera::Camera;
 use super::ground::Ground;
 use super::scene;
 use crate::panel::Context;
-use crate::state::Selection;
 
 /// What picking looks at.
 #[derive(Clone, Copy)]

@@ -3,14 +3,14 @@
 use glam::{Vec2, Vec3};
 use mission::Snapshot;
 use rmpl::program::{ObstacleShape, VehicleDecl, World};
+use workbench::state::Selection;
+use workbench::state::growth::Growth;
 
 use super::driving;
 use super::ground::Ground;
 use super::shapes::{Shapes, circle_outline};
 use super::tree;
 use super::vehicles::{VehicleShape, airship, rover};
-use crate::state::Selection;
-use crate::state::growth::Growth;
 
 /// The colours of the scene. They do not depend on the theme, because the ground does not.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,13 +3,14 @@
 use egui::Response;
 use glam::Vec3;
 use mission::Snapshot;
+use workbench::PanelKind;
+use workbench::command::ViewAction;
+use workbench::state::Selection;
 
 use super::camera::Camera;
 use super::flight::Flight;
 use super::{TerrainPanel, clearance, pick, scene};
-use crate::command::ViewAction;
-use crate::panel::{Context, PanelKind};
-use crate::state::Selection;
+use crate::panel::Context;
 
 /// How near the camera comes to a place that it flies to, in metres.
 const NEAR_M: f32 = 45.0;

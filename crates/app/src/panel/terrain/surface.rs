@@ -6,6 +6,7 @@ use glam::Vec2;
 use mission::{MapKey, Snapshot};
 use rmpl::program::ObstacleShape;
 use terrain::Terrain;
+use workbench::state::settings::TerrainView;
 
 use super::TerrainPanel;
 use super::clearance::Clearance;
@@ -13,7 +14,6 @@ use super::decal::{ClearanceMap, Decal};
 use super::gpu::TerrainImage;
 use super::ground::Ground;
 use crate::panel::Context;
-use crate::state::settings::TerrainView;
 
 /// The ground that is on the graphics card.
 pub(super) struct Shown {

@@ -2,15 +2,15 @@
 
 use egui::{Key, PointerButton, Pos2, Response};
 use glam::Vec2;
+use workbench::command::{Command, CommandSender};
+use workbench::state::execution::ExecutionCommand;
+use workbench::state::placing::{NewThing, VehicleStart};
+use workbench::state::terrain::{TerrainCommand, Tool};
 
 use super::drag::start_at;
 use super::measure::Measurement;
 use super::pick::Scene;
 use super::scene::{Sketch, place};
-use crate::command::{Command, CommandSender};
-use crate::state::execution::ExecutionCommand;
-use crate::state::placing::{NewThing, VehicleStart};
-use crate::state::terrain::{TerrainCommand, Tool};
 
 /// The radius that a click alone gives a round obstacle, in metres.
 const CLICKED_RADIUS_M: f64 = 5.0;

@@ -2,12 +2,13 @@
 
 use egui::Ui;
 use mission::Snapshot;
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::state::growth::GrowthCommand;
+use workbench::state::settings::{Coloring, TerrainView};
+use workbench::state::terrain::{TerrainCommand, Tool};
 
-use crate::command::{Command, CommandSender, ViewAction};
-use crate::panel::{Context, PanelKind};
-use crate::state::growth::GrowthCommand;
-use crate::state::settings::{Coloring, TerrainView};
-use crate::state::terrain::{TerrainCommand, Tool};
+use crate::panel::Context;
 use crate::theme::space;
 
 /// Shows the row. `follow` is the vehicle that the camera follows.

@@ -3,14 +3,14 @@
 use egui::{RichText, Ui};
 use glam::Vec2;
 use motion::PlannerKind;
+use workbench::command::{Command, CommandSender};
+use workbench::state::growth::{GrowthCommand, Shown, planner_title};
+use workbench::state::terrain::TerrainCommand;
 
 use super::scene::{SceneInput, cased_line, faded, place};
 use super::shapes::{Shapes, circle_outline};
-use crate::command::{Command, CommandSender};
 use crate::icon::{self, Icon};
 use crate::panel::Context;
-use crate::state::growth::{GrowthCommand, Shown, planner_title};
-use crate::state::terrain::TerrainCommand;
 use crate::theme::space;
 
 /// Draws the trees as they stand, the last sample, and the best path.

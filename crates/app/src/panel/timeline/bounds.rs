@@ -4,13 +4,13 @@ use std::ops::Range;
 
 use egui::{CursorIcon, Rect, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 use rmpl::{Edit, Rational, Span};
+use workbench::command::{Command, CommandSender};
+use workbench::state::EditKind;
+use workbench::state::playback::{bound, number};
 
 use super::chart::Bar;
 use super::handle::round_time;
 use super::paint::{Painting, note};
-use crate::command::{Command, CommandSender};
-use crate::state::EditKind;
-use crate::state::playback::{bound, number};
 
 /// A bound that is being dragged.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,7 +109,7 @@ pub(super) fn show(
         let square = Rect::from_center_size(pos2(x, y), vec2(2.0 * HALF - 1.0, 2.0 * HALF - 1.0));
         painter.rect(square, 1.0, fill, Stroke::new(1.5, tokens.text_muted), StrokeKind::Middle);
         let side = if is_upper { "Greatest" } else { "Least" };
-        let text = value.map(crate::time_text::time).unwrap_or_default();
+        let text = value.map(workbench::time_text::time).unwrap_or_default();
         response
             .on_hover_cursor(CursorIcon::ResizeHorizontal)
             .on_hover_text_at_pointer(format!("{side} duration {text}. Drag to change the text."));

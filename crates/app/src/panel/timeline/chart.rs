@@ -7,12 +7,12 @@ use std::ops::Range;
 use mission::Snapshot;
 use smol_str::SmolStr;
 use tpn::{CausalLink, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind, Ordering, Plan, Window};
+use workbench::state::Selection;
+use workbench::state::playback::{bound, number};
+use workbench::state::settings::TimelineView;
+use workbench::time_text;
 
 use super::group;
-use crate::state::Selection;
-use crate::state::playback::{bound, number};
-use crate::state::settings::TimelineView;
-use crate::time_text;
 
 /// Rows of bars, and the links between them.
 #[derive(Clone, Debug, Default)]

@@ -1,18 +1,18 @@
 //! The row of buttons above the timeline: playing, the time, what is shown, zoom.
 
 use egui::{Button, ComboBox, Frame, Margin, RichText, Ui};
-
 use rmpl::program::TimeUnit;
 use tpn::{Network, OccurrenceKind};
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::state::PinCommand;
+use workbench::state::settings::Grouping;
+use workbench::time_text;
 
 use super::handle;
-use crate::command::{Command, CommandSender, ViewAction};
 use crate::icon::{self, Icon};
-use crate::panel::{Context, PanelKind};
-use crate::state::PinCommand;
-use crate::state::settings::Grouping;
+use crate::panel::Context;
 use crate::theme::space;
-use crate::time_text;
 
 /// Shows the row.
 pub(crate) fn show(ui: &mut Ui, context: &Context<'_>, network: &Network, commands: &mut CommandSender) {

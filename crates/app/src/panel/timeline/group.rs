@@ -7,9 +7,9 @@ use mission::Snapshot;
 use rmpl::program::LabelMode;
 use smol_str::{SmolStr, format_smolstr};
 use tpn::{LabelId, Network, OccurrenceId, OccurrenceKind, Plan};
+use workbench::state::settings::{Grouping, TimelineView};
 
 use super::chart::{Bar, BarKind, Item, RowKind, times};
-use crate::state::settings::{Grouping, TimelineView};
 
 /// The rows of a plan from top to bottom, parents before children.
 pub(super) fn items(snapshot: &Snapshot, network: &Network, plan: &Plan, view: &TimelineView) -> Vec<Item> {

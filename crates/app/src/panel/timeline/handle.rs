@@ -7,16 +7,16 @@ use egui::{
 };
 use rmpl::Rational;
 use tpn::{EventEnd, EventRef, NodeId};
+use workbench::command::{Command, CommandSender};
+use workbench::state::PinCommand;
+use workbench::state::pins::event_name;
+use workbench::state::playback::{bound, number};
+use workbench::time_text;
 
 use super::chart::Bar;
 use super::paint::{Painting, note};
 use super::view::TimeView;
-use crate::command::{Command, CommandSender};
 use crate::panel::Context;
-use crate::state::PinCommand;
-use crate::state::pins::event_name;
-use crate::state::playback::{bound, number};
-use crate::time_text;
 
 /// The pinned events of a frame.
 pub(super) type Pinned = BTreeMap<NodeId, Rational>;

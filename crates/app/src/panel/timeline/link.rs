@@ -2,10 +2,10 @@
 
 use egui::epaint::CubicBezierShape;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, pos2, vec2};
+use workbench::state::Selection;
 
 use super::chart::{Link, LinkKind};
 use super::paint::{Painting, ROW_HEIGHT};
-use crate::state::Selection;
 
 /// With more links in view than this, they are drawn thin and faint, but for those of the selection.
 const MANY: usize = 60;

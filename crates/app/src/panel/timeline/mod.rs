@@ -24,6 +24,11 @@ use egui::{
 use mission::Snapshot;
 use smol_str::SmolStr;
 use tpn::{LabelId, Network, Plan};
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::state::Selection;
+use workbench::state::settings::TimelineView;
+use workbench::time_text;
 
 use self::bounds::BoundDrag;
 use self::chart::{Bar, Chart, RowKind};
@@ -32,11 +37,7 @@ use self::link::Links;
 use self::overview::Silhouette;
 use self::paint::{Painting, ROW_HEIGHT};
 use self::view::TimeView;
-use crate::command::{Command, CommandSender, ViewAction};
-use crate::panel::{Context, Panel, PanelKind, show_empty};
-use crate::state::Selection;
-use crate::state::settings::TimelineView;
-use crate::time_text;
+use crate::panel::{Context, Panel, show_empty};
 
 /// The timeline.
 pub struct TimelinePanel {
@@ -365,7 +366,7 @@ impl TimelinePanel {
         let Some(from) = self.range_from.filter(|_| response.dragged() || response.drag_stopped()) else {
             return has_shift;
         };
-        let round = |time: f64| crate::state::playback::number(handle::round_time(&view, time)).max(0.0);
+        let round = |time: f64| workbench::state::playback::number(handle::round_time(&view, time)).max(0.0);
         let range = [round(from), round(view.time(area, pointer.x))];
         commands.send(Command::SelectTimes((range[0] != range[1]).then_some(range)));
         if response.drag_stopped() {

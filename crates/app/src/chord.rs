@@ -1,0 +1,62 @@
+//! The keys of commands as egui knows them.
+
+use egui::{Key, KeyboardShortcut, Modifiers};
+use workbench::command::chord::{self, Chord};
+
+/// The chord as egui's shortcut.
+pub fn shortcut(chord: Chord) -> KeyboardShortcut {
+    let chord::Modifiers { command, shift, alt } = chord.modifiers;
+    let held = [(command, Modifiers::COMMAND), (shift, Modifiers::SHIFT), (alt, Modifiers::ALT)];
+    let modifiers = held.into_iter().filter(|(is_held, _)| *is_held).map(|(_, modifier)| modifier);
+    KeyboardShortcut::new(modifiers.fold(Modifiers::NONE, |all, one| all | one), key(chord.key))
+}
+
+/// The chord as menus and lists write it on this system.
+pub fn text(egui: &egui::Context, chord: Chord) -> String {
+    egui.format_shortcut(&shortcut(chord))
+}
+
+const fn key(key: chord::Key) -> Key {
+    match key {
+        chord::Key::ArrowDown => Key::ArrowDown,
+        chord::Key::ArrowRight => Key::ArrowRight,
+        chord::Key::ArrowUp => Key::ArrowUp,
+        chord::Key::C => Key::C,
+        chord::Key::CloseBracket => Key::CloseBracket,
+        chord::Key::Comma => Key::Comma,
+        chord::Key::D => Key::D,
+        chord::Key::End => Key::End,
+        chord::Key::Equals => Key::Equals,
+        chord::Key::Escape => Key::Escape,
+        chord::Key::F => Key::F,
+        chord::Key::F1 => Key::F1,
+        chord::Key::F12 => Key::F12,
+        chord::Key::F2 => Key::F2,
+        chord::Key::F3 => Key::F3,
+        chord::Key::F6 => Key::F6,
+        chord::Key::F8 => Key::F8,
+        chord::Key::G => Key::G,
+        chord::Key::H => Key::H,
+        chord::Key::Home => Key::Home,
+        chord::Key::K => Key::K,
+        chord::Key::M => Key::M,
+        chord::Key::Minus => Key::Minus,
+        chord::Key::Num0 => Key::Num0,
+        chord::Key::Num1 => Key::Num1,
+        chord::Key::Num2 => Key::Num2,
+        chord::Key::Num3 => Key::Num3,
+        chord::Key::Num4 => Key::Num4,
+        chord::Key::O => Key::O,
+        chord::Key::OpenBracket => Key::OpenBracket,
+        chord::Key::P => Key::P,
+        chord::Key::Period => Key::Period,
+        chord::Key::Plus => Key::Plus,
+        chord::Key::Questionmark => Key::Questionmark,
+        chord::Key::S => Key::S,
+        chord::Key::Slash => Key::Slash,
+        chord::Key::Space => Key::Space,
+        chord::Key::T => Key::T,
+        chord::Key::Y => Key::Y,
+        chord::Key::Z => Key::Z,
+    }
+}

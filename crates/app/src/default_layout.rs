@@ -1,0 +1,197 @@
+//! Where the panels of each workspace stand at first, and how panels are brought back and closed.
+
+use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
+use workbench::PanelKind;
+use workbench::workspace::{Arrangement, Workspace};
+
+/// How much room there is for panels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Room {
+    /// Enough for five or six at a time.
+    #[default]
+    Wide,
+    /// Enough for two or three.
+    Narrow,
+}
+
+impl Room {
+    /// That of a window of this size in points.
+    pub fn of(size: egui::Vec2) -> Self {
+        if size.x < 1_160.0 || size.y < 640.0 { Self::Narrow } else { Self::Wide }
+    }
+}
+
+/// Where its panels stand before the user moves them.
+pub fn default_layout(arrangement: Arrangement, room: Room) -> Tree<PanelKind> {
+    let mut tiles = Tiles::default();
+    let root = match (arrangement, room) {
+        (Arrangement::Of(workspace), Room::Wide) => wide_layout(workspace, &mut tiles),
+        (Arrangement::Of(workspace), Room::Narrow) => narrow_layout(workspace, &mut tiles),
+        (Arrangement::Program, Room::Narrow) => {
+            use PanelKind::{Automaton, Editor, Outline, Problems};
+            tabs(&mut tiles, &[Automaton, Editor, Outline, Problems])
+        }
+        (Arrangement::Program, Room::Wide) => {
+            let text = tabs(&mut tiles, &[PanelKind::Editor, PanelKind::Outline, PanelKind::Problems]);
+            let automaton = tabs(&mut tiles, &[PanelKind::Automaton]);
+            split(&mut tiles, LinearDir::Horizontal, &[(text, 0.29), (automaton, 0.71)])
+        }
+    };
+    Tree::new(egui::Id::unique(("workspace", arrangement.name())), root, tiles)
+}
+
+fn wide_layout(workspace: Workspace, tiles: &mut Tiles<PanelKind>) -> TileId {
+    use LinearDir::{Horizontal, Vertical};
+    use PanelKind::{
+        Automaton, Compare, Distances, Editor, Execution, Network, Outline, Plan, Problems, Review,
+        Robustness, Search, Terrain, Timeline,
+    };
+    match workspace {
+        Workspace::Author => {
+            let text = tabs(tiles, &[Editor, Outline]);
+            let problems = tabs(tiles, &[Problems]);
+            let left = split(tiles, Vertical, &[(text, 0.78), (problems, 0.22)]);
+            let network = tabs(tiles, &[Network]);
+            let plan = tabs(tiles, &[Plan]);
+            let terrain = tabs(tiles, &[Terrain]);
+            let lower = split(tiles, Horizontal, &[(plan, 0.5), (terrain, 0.5)]);
+            let timeline = tabs(tiles, &[Timeline]);
+            let right = split(tiles, Vertical, &[(network, 0.40), (lower, 0.32), (timeline, 0.28)]);
+            split(tiles, Horizontal, &[(left, 0.36), (right, 0.64)])
+        }
+        Workspace::Teach => {
+            let text = tabs(tiles, &[Editor, Outline]);
+            let plan = tabs(tiles, &[Plan, Problems]);
+            let left = split(tiles, Vertical, &[(text, 0.58), (plan, 0.42)]);
+            let network = tabs(tiles, &[Network, Distances, Terrain]);
+            let timeline = tabs(tiles, &[Timeline]);
+            let middle = split(tiles, Vertical, &[(network, 0.68), (timeline, 0.32)]);
+            let search = tabs(tiles, &[Search]);
+            split(tiles, Horizontal, &[(left, 0.25), (middle, 0.40), (search, 0.35)])
+        }
+        Workspace::Review => {
+            let review = tabs(tiles, &[Review, Plan]);
+            let timeline = tabs(tiles, &[Timeline, Compare]);
+            let network = tabs(tiles, &[Network]);
+            let terrain = tabs(tiles, &[Terrain]);
+            let text = tabs(tiles, &[Editor, Problems, Outline]);
+            let middle = split(tiles, Horizontal, &[(network, 0.5), (terrain, 0.5)]);
+            let right = split(tiles, Vertical, &[(timeline, 0.36), (middle, 0.34), (text, 0.30)]);
+            split(tiles, Horizontal, &[(review, 0.38), (right, 0.62)])
+        }
+        Workspace::Execute => {
+            let left = tabs(tiles, &[Editor, Execution, Robustness, Problems]);
+            let network = tabs(tiles, &[Network, Automaton]);
+            let timeline = tabs(tiles, &[Timeline]);
+            let terrain = tabs(tiles, &[Terrain, Plan]);
+            let lower = split(tiles, Horizontal, &[(timeline, 0.55), (terrain, 0.45)]);
+            let right = split(tiles, Vertical, &[(network, 0.5), (lower, 0.5)]);
+            split(tiles, Horizontal, &[(left, 0.3), (right, 0.7)])
+        }
+    }
+}
+
+/// Fewer panels at a time, the others behind tabs.
+fn narrow_layout(workspace: Workspace, tiles: &mut Tiles<PanelKind>) -> TileId {
+    use LinearDir::{Horizontal, Vertical};
+    use PanelKind::{
+        Automaton, Compare, Distances, Editor, Execution, Network, Outline, Plan, Problems, Review,
+        Robustness, Search, Terrain, Timeline,
+    };
+    let (left, right, share) = match workspace {
+        Workspace::Author => {
+            let text = tabs(tiles, &[Editor, Outline, Problems]);
+            let network = tabs(tiles, &[Network, Terrain]);
+            let plan = tabs(tiles, &[Timeline, Plan]);
+            let right = split(tiles, Vertical, &[(network, 0.52), (plan, 0.48)]);
+            (text, right, 0.42)
+        }
+        Workspace::Teach => {
+            let network = tabs(tiles, &[Network, Distances, Timeline, Terrain]);
+            let text = tabs(tiles, &[Editor, Plan, Problems]);
+            let left = split(tiles, Vertical, &[(network, 0.58), (text, 0.42)]);
+            let search = tabs(tiles, &[Search]);
+            (left, search, 0.52)
+        }
+        Workspace::Review => {
+            let review = tabs(tiles, &[Review, Plan]);
+            let timeline = tabs(tiles, &[Timeline, Compare, Network, Terrain]);
+            let text = tabs(tiles, &[Editor, Problems]);
+            let right = split(tiles, Vertical, &[(timeline, 0.6), (text, 0.4)]);
+            (review, right, 0.48)
+        }
+        Workspace::Execute => {
+            let left = tabs(tiles, &[Editor, Execution, Robustness, Problems]);
+            let network = tabs(tiles, &[Network, Automaton, Terrain]);
+            let timeline = tabs(tiles, &[Timeline, Plan]);
+            let right = split(tiles, Vertical, &[(network, 0.55), (timeline, 0.45)]);
+            (left, right, 0.4)
+        }
+    };
+    split(tiles, Horizontal, &[(left, share), (right, 1.0 - share)])
+}
+
+/// Brings a panel to the front, wherever it stands; a closed panel comes back beside the others.
+pub fn show_panel(tree: &mut Tree<PanelKind>, panel: PanelKind) {
+    if tree.tiles.find_pane(&panel).is_none() {
+        let pane = tree.tiles.insert_pane(panel);
+        let neighbours = largest_tabs(tree);
+        match (neighbours, tree.root()) {
+            (Some(container), _) => tree.move_tile_to_container(pane, container, usize::MAX, false),
+            (None, Some(root)) => {
+                let both = split(&mut tree.tiles, LinearDir::Horizontal, &[(root, 0.7), (pane, 0.3)]);
+                tree.root = Some(both);
+            }
+            (None, None) => tree.root = Some(tabs_of(&mut tree.tiles, vec![pane])),
+        }
+    }
+    tree.make_active(|_, tile| *tile == Tile::Pane(panel));
+}
+
+/// Closes a panel.
+pub fn close_panel(tree: &mut Tree<PanelKind>, panel: PanelKind) {
+    if let Some(tile) = tree.tiles.find_pane(&panel) {
+        tree.remove_recursively(tile);
+    }
+}
+
+/// The layout as text, to be remembered.
+pub fn to_text(tree: &Tree<PanelKind>) -> Option<String> {
+    serde_json::to_string(tree).ok()
+}
+
+/// A remembered layout; `None` if it cannot be used any more.
+pub fn from_text(text: &str) -> Option<Tree<PanelKind>> {
+    let tree: Tree<PanelKind> = serde_json::from_str(text).ok()?;
+    (!tree.is_empty()).then_some(tree)
+}
+
+/// The tab container on screen with the most room.
+fn largest_tabs(tree: &Tree<PanelKind>) -> Option<TileId> {
+    tree.tiles
+        .iter()
+        .filter(|(_, tile)| matches!(tile, Tile::Container(Container::Tabs(_))))
+        .max_by(|(left, _), (right, _)| {
+            let area = |id| tree.tiles.rect(id).map_or(0.0, |rect| rect.area());
+            area(**left).total_cmp(&area(**right)).then(right.0.cmp(&left.0))
+        })
+        .map(|(id, _)| *id)
+}
+
+fn tabs(tiles: &mut Tiles<PanelKind>, panels: &[PanelKind]) -> TileId {
+    let panes = panels.iter().map(|&panel| tiles.insert_pane(panel)).collect();
+    tabs_of(tiles, panes)
+}
+
+fn tabs_of(tiles: &mut Tiles<PanelKind>, panes: Vec<TileId>) -> TileId {
+    tiles.insert_tab_tile(panes)
+}
+
+/// A row or column of tiles with their shares of the room.
+fn split(tiles: &mut Tiles<PanelKind>, direction: LinearDir, parts: &[(TileId, f32)]) -> TileId {
+    let mut linear = Linear::new(direction, parts.iter().map(|&(tile, _)| tile).collect());
+    for &(tile, share) in parts {
+        linear.shares.set_share(tile, share);
+    }
+    tiles.insert_container(linear)
+}

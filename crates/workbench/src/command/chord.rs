@@ -1,0 +1,78 @@
+//! Keys that commands have, as plain data: the front end matches them with what is pressed.
+
+/// A key with the modifiers that are held with it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Chord {
+    /// What is held.
+    pub modifiers: Modifiers,
+    /// What is pressed.
+    pub key: Key,
+}
+
+/// What is held while a key is pressed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Modifiers {
+    /// Ctrl, or ⌘ on a Mac.
+    pub command: bool,
+    /// Shift.
+    pub shift: bool,
+    /// Alt, or ⌥ on a Mac.
+    pub alt: bool,
+}
+
+impl Modifiers {
+    /// Nothing.
+    pub const NONE: Self = Self { command: false, shift: false, alt: false };
+    /// Ctrl, or ⌘ on a Mac.
+    pub const COMMAND: Self = Self { command: true, ..Self::NONE };
+    /// Shift.
+    pub const SHIFT: Self = Self { shift: true, ..Self::NONE };
+    /// Alt, or ⌥ on a Mac.
+    pub const ALT: Self = Self { alt: true, ..Self::NONE };
+}
+
+/// The keys that commands have, by what they mean on the user's keyboard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "the names are what stands on the keys")]
+pub enum Key {
+    ArrowDown,
+    ArrowRight,
+    ArrowUp,
+    C,
+    CloseBracket,
+    Comma,
+    D,
+    End,
+    Equals,
+    Escape,
+    F,
+    F1,
+    F12,
+    F2,
+    F3,
+    F6,
+    F8,
+    G,
+    H,
+    Home,
+    K,
+    M,
+    Minus,
+    Num0,
+    Num1,
+    Num2,
+    Num3,
+    Num4,
+    O,
+    OpenBracket,
+    P,
+    Period,
+    Plus,
+    Questionmark,
+    S,
+    Slash,
+    Space,
+    T,
+    Y,
+    Z,
+}

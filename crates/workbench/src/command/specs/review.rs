@@ -1,0 +1,127 @@
+//! Judging and comparing plans, and documents about them.
+
+use serde_json::Value;
+
+use super::arguments::text_argument;
+use super::available::{with_mission, with_pins, with_plan, with_record, with_sign_off};
+use super::{called, plain, when};
+use crate::Dialog;
+use crate::command::Command;
+use crate::command::registry::{CommandSpec, Group, Scope};
+use crate::state::compare::CompareCommand;
+use crate::state::documents::ScheduleForm;
+use crate::state::pins::event_by_name;
+use crate::state::review::{ReviewCommand, may_sign};
+use crate::state::{AppState, PinCommand};
+
+/// In the order of the menus.
+pub(super) const COMMANDS: &[CommandSpec] = &[
+    when(
+        plain("review.run", "Review this plan", Group::Review, &[], Scope::Everywhere, |_| {
+            Command::Review(ReviewCommand::Run)
+        }),
+        with_mission,
+    ),
+    when(
+        plain("file.report", "Write the report", Group::Review, &[], Scope::Everywhere, |_| {
+            Command::WriteReport
+        }),
+        with_mission,
+    ),
+    when(
+        plain("export.csv", "Export the schedule as CSV", Group::Review, &[], Scope::Everywhere, |_| {
+            Command::WriteSchedule { form: ScheduleForm::Csv, epoch: String::new() }
+        }),
+        with_plan,
+    ),
+    when(
+        plain("export.openMct", "Export to Open MCT…", Group::Review, &[], Scope::Everywhere, |state| {
+            ask_epoch(state, ScheduleForm::OpenMct)
+        }),
+        with_plan,
+    ),
+    when(
+        plain("export.icalendar", "Export to a calendar…", Group::Review, &[], Scope::Everywhere, |state| {
+            ask_epoch(state, ScheduleForm::Icalendar)
+        }),
+        with_plan,
+    ),
+    when(
+        plain("compare.pin", "Compare from now on", Group::Review, &[], Scope::Everywhere, |_| {
+            Command::Compare(CompareCommand::Pin)
+        }),
+        with_plan,
+    ),
+    when(
+        plain(
+            "compare.signedOff",
+            "Compare with the last sign-off",
+            Group::Review,
+            &[],
+            Scope::Everywhere,
+            |_| Command::Compare(CompareCommand::WithSignedOff),
+        ),
+        with_sign_off,
+    ),
+    plain("compare.file", "Compare with a file…", Group::Review, &[], Scope::Everywhere, |_| {
+        Command::Compare(CompareCommand::OpenFile)
+    }),
+    when(
+        plain("review.save", "Save comments and sign-offs", Group::Review, &[], Scope::Everywhere, |_| {
+            Command::Review(ReviewCommand::SaveRecord)
+        }),
+        with_record,
+    ),
+    plain("review.open", "Add comments and sign-offs…", Group::Review, &[], Scope::Everywhere, |_| {
+        Command::Review(ReviewCommand::OpenRecord)
+    }),
+    called("review.sign", "Sign off", Group::Review, |state, arguments| {
+        let name = text_argument(arguments, "name")?;
+        match state.current_review().map(|review| may_sign(review)) {
+            Some(Ok(())) => Ok(Command::Review(ReviewCommand::Sign { name: name.to_owned() })),
+            Some(Err(reason)) => Err(reason.to_owned()),
+            None => Err("the present text has not been reviewed".to_owned()),
+        }
+    }),
+    called("review.comment", "Comment", Group::Review, |_, arguments| {
+        Ok(Command::Review(ReviewCommand::Comment {
+            author: text_argument(arguments, "author")?.to_owned(),
+            about: arguments.get("about").and_then(Value::as_str).map(str::to_owned),
+            text: text_argument(arguments, "text")?.to_owned(),
+        }))
+    }),
+    called("export.schedule", "Export the schedule", Group::Review, |_, arguments| {
+        let name = text_argument(arguments, "as")?;
+        let form = ScheduleForm::by_name(name)
+            .ok_or_else(|| "\"as\" is \"csv\", \"open-mct\" or \"icalendar\"".to_owned())?;
+        let epoch = arguments.get("epoch").and_then(Value::as_str).unwrap_or_default().to_owned();
+        Ok(Command::WriteSchedule { form, epoch })
+    }),
+    when(
+        plain("plan.release", "Release pinned events", Group::Plan, &[], Scope::Everywhere, |_| {
+            Command::Pins(PinCommand::ReleaseAll)
+        }),
+        with_pins,
+    ),
+    when(
+        called("plan.pin", "Pin an event to a time", Group::Plan, |state, arguments| {
+            let name = arguments.get("event").and_then(Value::as_str);
+            let time = arguments.get("time").and_then(Value::as_f64);
+            let (Some(name), Some(time)) = (name, time.filter(|time| time.abs() < 1e12)) else {
+                return Err("it takes {\"event\": text, \"time\": number}".to_owned());
+            };
+            let network = state.shown().and_then(|shown| shown.network.as_deref());
+            let node = network.and_then(|network| event_by_name(network, name));
+            let node = node.ok_or_else(|| format!("there is no event \"{name}\""))?;
+            // Pins are resolved to a tenth of a unit at least; thousandths are finer than any drag.
+            let time = rmpl::Rational::new((time * 1000.0).round() as i64, 1000);
+            Ok(Command::Pins(PinCommand::Pin(node, time)))
+        }),
+        with_plan,
+    ),
+];
+
+/// Asks when the mission starts, beginning with what was said last.
+fn ask_epoch(state: &AppState, form: ScheduleForm) -> Command {
+    Command::ShowDialog(Dialog::Epoch { form, epoch: state.settings.epoch.clone() })
+}

@@ -1,0 +1,223 @@
+//! The line between the front end and where it runs: a page, a native window, or a test.
+//!
+//! [`Host`] is what the app needs from outside: the planning core, storage, files, the address line and a clock. The
+//! app never touches a thread, a file or a clock itself. [`Remote`] is the other direction: how a host page, a test
+//! or a window drives the app; it mirrors `window.enroute` (DESIGN 4.3).
+
+use mission::{Request, Response};
+use serde_json::Value;
+
+/// What the app needs from where it runs.
+///
+/// Nothing here blocks. What takes time is begun by one call and answered by a later [`Host::poll`]; the host asks for
+/// a repaint when it has something to tell.
+pub trait Host {
+    /// Sends a request to the planning core.
+    ///
+    /// An [`Request::Update`] supersedes every earlier one that has not been answered in full: the earlier one may
+    /// then be dropped or stopped half way. Other requests are kept, in order.
+    fn post(&mut self, request: Request);
+
+    /// The next thing that happened outside, oldest first; `None` when there is nothing new.
+    ///
+    /// To be called in every frame until it answers `None`.
+    fn poll(&mut self) -> Option<HostEvent>;
+
+    /// Seconds since an arbitrary fixed moment; never goes back.
+    fn monotonic_secs(&self) -> f64;
+
+    /// The date and time, in milliseconds since the start of 1970 in UTC; for saying when something was written, not
+    /// for measuring.
+    fn unix_millis(&self) -> i64;
+
+    /// The text kept under this key, if any.
+    fn stored(&self, key: &str) -> Option<String>;
+
+    /// Keeps a text under a key, beyond the end of this run.
+    fn store(&mut self, key: &str, value: &str) -> Result<(), StorageError>;
+
+    /// Drops what is kept under a key.
+    fn forget(&mut self, key: &str);
+
+    /// Lets the user choose one file; [`HostEvent::FileOpened`] brings it. Must be called while handling a click or a
+    /// key press: browsers refuse otherwise.
+    fn open_file(&mut self, kind: FileKind);
+
+    /// Lets the user save `bytes` as a file.
+    fn save_file(&mut self, suggested_name: &str, bytes: Vec<u8>);
+
+    /// Lets the user save an SVG as a PNG of this width and height in pixels. A browser can draw SVGs; hosts that
+    /// cannot answer with [`HostEvent::FileFailed`].
+    fn save_picture(&mut self, suggested_name: &str, svg: String, size: [u32; 2]);
+
+    /// What stands after `#` in the page's address; empty outside a page.
+    fn fragment(&self) -> String;
+
+    /// Replaces what stands after `#` in the page's address, without a new entry in the history. Does nothing
+    /// outside a page.
+    fn set_fragment(&mut self, fragment: &str);
+
+    /// The whole address of the page with this fragment, for sharing; `None` outside a page.
+    fn link(&self, fragment: &str) -> Option<String>;
+}
+
+/// Something that happened outside the app.
+#[derive(Clone, Debug, PartialEq)]
+pub enum HostEvent {
+    /// The planning core answered.
+    Answer(Response),
+    /// The planning core stopped while it worked on this revision and has been started anew. The text and the last
+    /// answer are unharmed; the next [`Request::Update`] is answered as usual, the one that stopped it is not
+    /// repeated.
+    CoreFailed {
+        /// The revision that was being worked on, if the request had one.
+        revision: Option<u64>,
+        /// What the core said when it stopped.
+        message: String,
+    },
+    /// The user chose a file.
+    FileOpened {
+        /// What it was asked for.
+        kind: FileKind,
+        /// Its name, without folders.
+        name: String,
+        /// All of it.
+        bytes: Vec<u8>,
+    },
+    /// A file could not be read or written.
+    FileFailed {
+        /// Its name, as far as known.
+        name: String,
+        /// Why, for the person who chose it.
+        reason: String,
+    },
+    /// The user edited the address line or followed a link within the page: the new text after `#`.
+    FragmentChanged(String),
+}
+
+/// What a file is opened for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileKind {
+    /// A mission's text.
+    Mission,
+    /// An elevation or occupancy map.
+    Map,
+    /// What reviewers said and signed, or another JSON document.
+    Json,
+    /// A mission, a saved plan or a signed review, to compare the open mission with.
+    Comparison,
+}
+
+impl FileKind {
+    /// What a file of this name is opened for; a mission if its extension says nothing.
+    pub fn of_name(name: &str) -> Self {
+        let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
+        let is_one = |kind: &Self| kind.extensions().contains(&extension.as_str());
+        [Self::Map, Self::Json].into_iter().find(is_one).unwrap_or(Self::Mission)
+    }
+
+    /// What the file dialog calls it.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Mission => "RMPL missions",
+            Self::Map => "Maps",
+            Self::Json => "JSON documents",
+            Self::Comparison => "Missions, plans and reviews",
+        }
+    }
+
+    /// The extensions that the file dialog offers, without dots.
+    pub fn extensions(self) -> &'static [&'static str] {
+        match self {
+            Self::Mission => &["rmpl", "txt", "lisp"],
+            Self::Map => &["pgm", "png", "map", "tif", "tiff", "asc", "dem", "img", "lbl"],
+            Self::Json => &["json", "edn"],
+            Self::Comparison => &["rmpl", "txt", "json"],
+        }
+    }
+}
+
+/// Why a text was not kept.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum StorageError {
+    /// The place is full; nothing was changed.
+    #[error("there is no room left to keep {bytes} more bytes")]
+    Full {
+        /// How many bytes were to be kept.
+        bytes: usize,
+    },
+    /// There is no place to keep anything, as in a private window.
+    #[error("nothing can be kept here: {reason}")]
+    Unavailable {
+        /// What the host says about it.
+        reason: String,
+    },
+}
+
+/// How the world outside drives the app: the same operations as `window.enroute` (DESIGN 4.3).
+pub trait Remote {
+    /// Opens the example mission of this name.
+    fn open(&mut self, name: &str) -> Result<(), RemoteError>;
+
+    /// Replaces the whole text, as one undoable edit.
+    fn set_source(&mut self, text: &str);
+
+    /// The text as it stands.
+    fn source(&self) -> String;
+
+    /// Runs a command of the registry by its name.
+    fn dispatch(&mut self, command: &str, arguments: &Value) -> Result<(), RemoteError>;
+
+    /// The state as plain JSON, in the shape of DESIGN 4.3.
+    fn state(&self) -> Value;
+
+    /// Grows whenever [`Remote::state`] may have changed; subscribers are told then.
+    fn state_version(&self) -> u64;
+}
+
+/// Why a call from outside was refused.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RemoteError {
+    /// There is no example of this name.
+    #[error("there is no mission \"{name}\"; there are {}", known.join(", "))]
+    UnknownMission {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: Vec<String>,
+    },
+    /// The registry has no such command.
+    #[error("there is no command \"{name}\"")]
+    UnknownCommand {
+        /// What was asked for.
+        name: String,
+    },
+    /// The command cannot be used with these arguments.
+    #[error("the command \"{command}\" cannot be used like this: {reason}")]
+    BadArguments {
+        /// The command.
+        command: String,
+        /// What is wrong with the arguments.
+        reason: String,
+    },
+    /// The command cannot be used now.
+    #[error("the command \"{command}\" cannot be used now: {reason}")]
+    Unavailable {
+        /// The command.
+        command: String,
+        /// What it waits for.
+        reason: String,
+    },
+}
+
+impl RemoteError {
+    /// A stable name for programs: the `code` of the error that the page throws.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::UnknownMission { .. } => "unknown-mission",
+            Self::UnknownCommand { .. } => "unknown-command",
+            Self::BadArguments { .. } => "bad-arguments",
+            Self::Unavailable { .. } => "unavailable",
+        }
+    }
+}

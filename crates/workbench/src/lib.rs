@@ -1,0 +1,19 @@
+//! The workbench: everything the app knows and does, without a front end.
+//!
+//! [`AppState`](state::AppState) changes only by [`Command`](command::Command)s, which menus, keys, panels and host
+//! pages send; what only the host can do it leaves behind as effects. It draws nothing and knows no widget: the panels
+//! and the app around them read it.
+
+pub mod command;
+pub mod core_queue;
+mod dialog;
+pub mod host;
+pub mod mission_file;
+pub mod outside;
+mod panel_kind;
+pub mod state;
+pub mod time_text;
+pub mod workspace;
+
+pub use dialog::Dialog;
+pub use panel_kind::PanelKind;

@@ -1,0 +1,510 @@
+//! How commands change the state. What only the host can do is left as an [`Effect`].
+
+use std::sync::Arc;
+
+use mission::{Request, Response, Snapshot};
+use rmpl::Span;
+use smol_str::SmolStr;
+
+use crate::PanelKind;
+use crate::command::Command;
+use crate::host::{FileKind, HostEvent};
+use crate::mission_file;
+use crate::state::automaton::AutomatonCommand;
+use crate::state::chance::ChanceCommand;
+use crate::state::editor::Reveal;
+use crate::state::growth::GrowthCommand;
+use crate::state::program_chance::ProgramChanceCommand;
+use crate::state::search::{self, SearchCommand};
+use crate::state::terrain::{TerrainCommand, TerrainState};
+use crate::state::{AppState, PinCommand, Pins, Selection, ToastKind, ViewRequest, playback};
+use crate::workspace::Workspace;
+
+/// Something that the host is to do.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Effect {
+    /// Put text on the clipboard.
+    Copy(String),
+    /// Let the user choose a file.
+    OpenFile(FileKind),
+    /// Let the user save a file.
+    SaveFile {
+        /// The name to suggest.
+        name: String,
+        /// The content.
+        bytes: Vec<u8>,
+    },
+    /// Let the user save a picture as a PNG.
+    SavePicture {
+        /// The name to suggest.
+        name: String,
+        /// The picture as an SVG.
+        svg: String,
+        /// Width and height in pixels.
+        size: [u32; 2],
+    },
+    /// Put a link to the present view on the clipboard.
+    CopyLink,
+    /// Send something to the planning core.
+    Post(Request),
+    /// Keep what reviewers said of the open mission.
+    KeepReview {
+        /// Whether what is kept already, perhaps by another tab, is joined with it.
+        joins: bool,
+    },
+    /// Find what reviewers said of the open mission.
+    RecallReview,
+    /// The appearance changed.
+    Restyle,
+    /// Take the keyboard from the widget that has it, so that plain keys go to the active panel.
+    DropFocus,
+}
+
+impl AppState {
+    /// Does what a command asks for.
+    pub fn apply(&mut self, command: Command) {
+        self.do_command(command);
+        self.language.follow(&self.document);
+        self.editor.folding.follow(&mut self.document, self.language.parse());
+        self.automaton.follow(&self.document, self.language.is_control());
+        self.ask_for_comparison();
+        self.follow_review();
+        self.follow_run();
+    }
+
+    fn do_command(&mut self, command: Command) {
+        match command {
+            Command::OpenExample(name) => self.open_example(&name),
+            Command::OpenSource { name, source } => self.open(name, &source),
+            Command::OpenEarlierDraft => {
+                if let Some(draft) = self.earlier_draft.take() {
+                    self.open(draft.name, &draft.source);
+                }
+            }
+            Command::OpenFile(kind) => self.effects.push(Effect::OpenFile(kind)),
+            Command::SaveMission => self.save(),
+            Command::CopyLink => self.effects.push(Effect::CopyLink),
+
+            Command::SetSource(text) => self.document.replace_all(&text),
+            Command::Text(command) => self.type_text(&command),
+            Command::Edit { edits, kind } => self.document.edit(&edits, kind, None),
+            Command::Reveal(span) => {
+                self.reveal(span);
+                self.select_at(span.start);
+            }
+            Command::Editor(command) => self.apply_to_editor(command),
+
+            Command::Select(selection) => self.select(selection),
+            Command::SelectAndReveal(selection) => {
+                let span = self.shown().and_then(|shown| selection.span(shown));
+                self.selection = selection;
+                if let Some(span) = span.filter(|_| !self.snapshots.is_stale(self.document.revision())) {
+                    self.reveal(span);
+                }
+            }
+            Command::Hover(selection) => self.hovered = selection,
+
+            Command::Terrain(command) => self.apply_to_terrain(command),
+            Command::Seek(time) => self.playback.seek(time),
+            Command::TogglePlaying if self.steps_growth() => {
+                self.apply_to_terrain(TerrainCommand::Growth(GrowthCommand::TogglePlaying));
+            }
+            Command::StepTime(forwards) if self.steps_growth() => {
+                let step = GrowthCommand::Step(if forwards { 1 } else { -1 });
+                self.apply_to_terrain(TerrainCommand::Growth(step));
+            }
+            Command::TogglePlaying if self.automaton.program().is_some() => {
+                self.automaton.apply(AutomatonCommand::TogglePlaying);
+            }
+            Command::StepTime(forwards) if self.automaton.program().is_some() => {
+                self.automaton.apply(AutomatonCommand::Step(if forwards { 1 } else { -1 }));
+            }
+            Command::Automaton(command) => self.automaton.apply(command),
+            Command::Execution(command) => self.apply_to_run(command),
+            Command::Chance(ChanceCommand::Start) if self.automaton.program().is_some() => {
+                self.apply_to_program_chance(ProgramChanceCommand::Start);
+            }
+            Command::Chance(ChanceCommand::Stop) if self.automaton.program().is_some() => {
+                self.apply_to_program_chance(ProgramChanceCommand::Stop);
+            }
+            Command::Chance(command) => self.apply_to_chance(command),
+            Command::ProgramChance(command) => self.apply_to_program_chance(command),
+            Command::TogglePlaying if self.steps_search() => {
+                self.apply_to_search(SearchCommand::TogglePlaying);
+            }
+            Command::StepTime(forwards) if self.steps_search() => {
+                self.apply_to_search(SearchCommand::Step(if forwards { 1 } else { -1 }));
+            }
+            Command::TogglePlaying => self.playback.toggle(),
+            Command::StepTime(forwards) => self.step_time(forwards),
+            Command::Search(command) => self.apply_to_search(command),
+            Command::TurnPanel(forwards) => self.turn_panel(forwards),
+            Command::SetRate(rate) => self.playback.rate = rate.clamp(0.125, 64.0),
+
+            Command::Review(command) => self.apply_to_review(command),
+            Command::Compare(command) => {
+                self.wanted_panel = Some(PanelKind::Compare);
+                self.apply_to_compare(&command);
+            }
+            Command::WriteReport => self.write_report(),
+            Command::WriteSchedule { form, epoch } => {
+                self.dialog = None;
+                self.write_schedule(form, &epoch);
+            }
+            Command::Pins(command) => self.apply_to_pins(command),
+            Command::SelectTimes(range) => {
+                self.time_range = range.map(|[from, to]| [from.min(to), from.max(to)]);
+            }
+
+            Command::SetGoal(goal) => self.settings.plan.goal = goal,
+            Command::SetSearch(search) => self.settings.plan.search = search,
+            Command::SetSeed(seed) => self.settings.plan.seed = seed,
+            Command::SetTrace(trace) => self.settings.plan.trace = trace,
+
+            Command::ShowWorkspace(workspace) => {
+                self.workspace = workspace;
+                // A lecturer steps through the search; it must have been recorded.
+                self.settings.plan.trace |= workspace == Workspace::Teach;
+                match workspace {
+                    Workspace::Teach => self.focus_panel(PanelKind::Search),
+                    Workspace::Review => self.active_panel = PanelKind::Review,
+                    Workspace::Author | Workspace::Execute => {}
+                }
+                if workspace == Workspace::Execute && !self.language.is_control() {
+                    self.wanted_panel = Some(PanelKind::Execution);
+                    self.active_panel = PanelKind::Timeline;
+                }
+                self.fit_time();
+            }
+            Command::ResetWorkspace => self.wants_default_layout = true,
+            Command::ShowPanel(panel) => {
+                self.wanted_panel = Some(panel);
+                self.active_panel = panel;
+            }
+            Command::ClosePanel(panel) => self.unwanted_panel = Some(panel),
+            Command::Activate(panel) => self.active_panel = panel,
+            Command::View(action) => {
+                let active = self.active_panel;
+                let panel = if active.is_zoomable() { active } else { PanelKind::Network };
+                self.request_view(panel, action);
+            }
+            Command::ViewOf(panel, action) => self.request_view(panel, action),
+            Command::SetViews(views) => self.settings.views = *views,
+            Command::SetTheme(theme) => {
+                self.settings.theme = theme;
+                self.effects.push(Effect::Restyle);
+            }
+            Command::SetTextScale(scale) => {
+                self.settings.text_scale = (scale * 10.0).round().clamp(6.0, 25.0) / 10.0;
+                self.effects.push(Effect::Restyle);
+            }
+
+            Command::ShowDialog(dialog) => self.dialog = Some(dialog),
+            Command::CloseDialog => self.dialog = None,
+            Command::Escape => self.escape(),
+            Command::Notify(kind, text) => self.toasts.add(kind, text),
+            Command::DismissToast(index) => self.toasts.dismiss(index),
+            Command::Copy(text) => self.effects.push(Effect::Copy(text)),
+            Command::SaveNetwork(format) => {
+                let count = self.picture_request.map_or(1, |(count, _)| count + 1);
+                self.picture_request = Some((count, format));
+                self.wanted_panel = Some(PanelKind::Network);
+            }
+            Command::SaveFile { name, bytes } => self.effects.push(Effect::SaveFile { name, bytes }),
+            Command::SavePicture { name, svg, size } => {
+                self.effects.push(Effect::SavePicture { name, svg, size });
+            }
+        }
+    }
+
+    /// Takes in something that happened outside.
+    pub fn receive(&mut self, event: HostEvent) {
+        self.take(event);
+        self.ask_for_comparison();
+    }
+
+    fn take(&mut self, event: HostEvent) {
+        match event {
+            HostEvent::Answer(Response::Snapshot(snapshot)) => self.take_snapshot(snapshot),
+            HostEvent::Answer(Response::Map { key, map }) => {
+                self.maps.insert(key, map);
+            }
+            HostEvent::Answer(Response::Searches(comparison)) => {
+                let shown = self.snapshots.shown().cloned();
+                self.search.take_comparison(comparison, shown.as_ref(), self.settings.plan.search);
+            }
+            HostEvent::Answer(Response::MapAccepted { name, cells: [width, height], no_data_cells }) => {
+                self.take_map(&name, [width, height], no_data_cells);
+            }
+            HostEvent::Answer(Response::MapRejected { name, reason }) => {
+                self.toasts.add(ToastKind::Failed, format!("The map {name} cannot be used: {reason}"));
+            }
+            HostEvent::FragmentChanged(_) => {}
+            HostEvent::Answer(Response::Review { revision, review }) => self.take_review(revision, review),
+            HostEvent::Answer(Response::WorkedOut { token, snapshot }) => {
+                self.take_worked_out(token, &snapshot);
+            }
+            HostEvent::Answer(answer @ (Response::Execution(_) | Response::NotExecuted { .. })) => {
+                self.take_run(answer);
+            }
+            HostEvent::Answer(answer @ Response::Sampled { .. }) => self.take_sample(answer),
+            HostEvent::Answer(answer @ Response::ProgramSampled { .. }) => self.take_program_sample(answer),
+            HostEvent::CoreFailed { message, revision } => {
+                self.search.give_comparison_up(revision);
+                self.give_up_review();
+                self.compare.give_up();
+                self.automaton.chance.give_up();
+                self.toasts.add(
+                    ToastKind::Failed,
+                    format!(
+                        "Planning stopped and was started anew. Edit the text to plan again. ({message})"
+                    ),
+                );
+            }
+            HostEvent::FileOpened { kind, name, bytes } => self.open_file(kind, &name, bytes),
+            HostEvent::FileFailed { name, reason } => {
+                self.toasts.add(ToastKind::Failed, format!("{name}: {reason}"));
+            }
+        }
+        self.follow_review();
+    }
+
+    /// Whether the keys that step and play go to the search instead of time.
+    pub fn steps_search(&self) -> bool {
+        let shows_time = matches!(self.active_panel, PanelKind::Timeline | PanelKind::Terrain);
+        self.active_panel == PanelKind::Search || self.search.step().is_some() && !shows_time
+    }
+
+    fn apply_to_search(&mut self, command: SearchCommand) {
+        let shown = self.snapshots.shown().cloned();
+        self.search.apply(command, shown.as_ref());
+        self.reveal_step();
+    }
+
+    /// Shows in the editor what a new step is about; the caret stays where it is.
+    pub fn reveal_step(&mut self) {
+        if self.snapshots.is_stale(self.document.revision()) {
+            return;
+        }
+        let Some(view) = self.search.shown() else { return };
+        let focus = search::Focus::of(view.recording.network(), view.recording.trace(), &view.step);
+        if let Some(&span) = focus.spans.first() {
+            self.editor.reveal = Some(Reveal { span, center: true });
+        }
+    }
+
+    /// Shows a step of the search, counted from 1: at once if it is recorded, otherwise as soon as it is.
+    pub fn want_step(&mut self, step: usize) {
+        match self.snapshots.shown().cloned() {
+            Some(shown)
+                if search::recorded(&shown).is_some()
+                    && !self.snapshots.is_stale(self.document.revision()) =>
+            {
+                let target = step.checked_sub(1).map_or(SearchCommand::Close, SearchCommand::GoTo);
+                self.search.apply(target, Some(&shown));
+            }
+            _ => self.search.want_step(step),
+        }
+    }
+
+    fn ask_for_comparison(&mut self) {
+        let shown = self.snapshots.shown().cloned();
+        if let Some(revision) = self.search.ask_for_comparison(shown.as_ref(), self.document.revision()) {
+            self.effects.push(Effect::Post(Request::CompareSearches { revision }));
+        }
+    }
+
+    /// Turns to the next or the previous panel on screen, and gives it the keyboard.
+    fn turn_panel(&mut self, forwards: bool) {
+        let panels = &self.panels_on_screen;
+        let at = panels.iter().position(|&panel| panel == self.active_panel);
+        let next = match (at, forwards) {
+            (None, _) => 0,
+            (Some(at), true) => (at + 1) % panels.len(),
+            (Some(at), false) => (at + panels.len() - 1) % panels.len(),
+        };
+        if let Some(&panel) = panels.get(next) {
+            self.focus_panel(panel);
+        }
+    }
+
+    /// Gives a panel the keyboard.
+    fn focus_panel(&mut self, panel: PanelKind) {
+        self.active_panel = panel;
+        if panel == PanelKind::Editor {
+            self.editor.wants_focus = true;
+        } else {
+            self.editor.wants_focus = false;
+            self.effects.push(Effect::DropFocus);
+        }
+    }
+
+    /// Takes a new snapshot and carries selection and time over to it.
+    fn take_snapshot(&mut self, snapshot: Arc<Snapshot>) {
+        let before = self.snapshots.shown().cloned();
+        self.snapshots.take(snapshot, self.frame.now_secs);
+        self.follow_shown(before.as_ref());
+    }
+
+    /// Adapts selection and time if another snapshot than `before` is shown now.
+    pub fn follow_shown(&mut self, before: Option<&Arc<Snapshot>>) {
+        let Some(after) = self.snapshots.shown().cloned() else { return };
+        if before.is_some_and(|before| Arc::ptr_eq(before, &after)) {
+            return;
+        }
+        self.search.follow(before, &after);
+        let same_plan = |before: &Arc<Snapshot>| match (&before.planning, &after.planning) {
+            (Some(before), Some(after)) => Arc::ptr_eq(before, after),
+            _ => false,
+        };
+        if !before.is_some_and(same_plan) {
+            self.pins.follow(before.map(Arc::as_ref), &after);
+        }
+        if let Some(before) = before {
+            self.selection = self.selection.carried(before, &after);
+            self.hovered = Selection::None;
+        }
+        self.fit_time();
+        self.follow_with_terrain();
+    }
+
+    fn apply_to_pins(&mut self, command: PinCommand) {
+        let Some(shown) = self.snapshots.shown().cloned() else { return };
+        if let Err(reason) = self.pins.apply(command, &shown) {
+            self.toasts.add(ToastKind::Failed, reason);
+        }
+    }
+
+    fn step_pins_back(&mut self) -> bool {
+        let shown = self.snapshots.shown().cloned();
+        self.pins.step_back(shown.as_ref())
+    }
+
+    fn open_example(&mut self, name: &str) {
+        if let Some(example) = mission_file::example(name) {
+            self.open(example.name.into(), example.source);
+        }
+    }
+
+    fn open(&mut self, name: SmolStr, source: &str) {
+        self.document.open(source);
+        self.editor.popup = None;
+        self.editor.folding.unfold_all();
+        self.mission = name;
+        self.leave_review();
+        self.snapshots.clear();
+        self.automaton.forget();
+        self.search.forget();
+        self.execution.forget();
+        self.turn_to_notation(source);
+        self.selection = Selection::None;
+        self.hovered = Selection::None;
+        self.terrain = TerrainState::default();
+        self.pins = Pins::default();
+        self.time_range = None;
+        self.playback = playback::Playback { rate: self.playback.rate, ..Default::default() };
+        self.settings.plan.goal = mission::Goal::Default;
+        self.editor.reveal = Some(Reveal { span: Span::new(0, 0), center: false });
+        self.dialog = None;
+    }
+
+    /// Control programs and missions are looked at in different workspaces.
+    fn turn_to_notation(&mut self, source: &str) {
+        let is_control = rmpl::control::is_control_text(source);
+        if is_control {
+            self.workspace = Workspace::Execute;
+            self.wanted_panel = Some(PanelKind::Automaton);
+            self.also_wanted_panel = Some(PanelKind::Editor);
+            self.active_panel = PanelKind::Automaton;
+        } else if self.workspace == Workspace::Execute && !self.language.is_control() {
+            self.wanted_panel = Some(PanelKind::Execution);
+        } else if self.workspace == Workspace::Execute {
+            self.workspace = Workspace::Author;
+            self.active_panel = PanelKind::Editor;
+        }
+    }
+
+    fn open_file(&mut self, kind: FileKind, name: &str, bytes: Vec<u8>) {
+        match kind {
+            FileKind::Mission => match String::from_utf8(bytes) {
+                Ok(source) => {
+                    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+                    self.open(stem.into(), &source);
+                }
+                Err(_) => self.toasts.add(ToastKind::Failed, format!("{name} is not a text file")),
+            },
+            FileKind::Map => {
+                // The core reads it, and says what it has found.
+                self.effects.push(Effect::Post(Request::ImportMap { name: SmolStr::new(name), bytes }));
+            }
+            FileKind::Json => match String::from_utf8(bytes) {
+                Ok(text) => {
+                    let document = serde_json::from_str(&text).unwrap_or_default();
+                    if !self.open_run(&document) {
+                        self.import_record(name, &text);
+                    }
+                }
+                Err(_) => self.toasts.add(ToastKind::Failed, format!("{name} is not a text file")),
+            },
+            FileKind::Comparison => match String::from_utf8(bytes) {
+                Ok(text) => self.compare_with_file(name, &text),
+                Err(_) => self.toasts.add(ToastKind::Failed, format!("{name} is not a text file")),
+            },
+        }
+    }
+
+    fn save(&mut self) {
+        self.effects.push(Effect::SaveFile {
+            name: format!("{}.rmpl", self.mission),
+            bytes: self.document.text().as_bytes().to_vec(),
+        });
+        self.document.mark_saved();
+    }
+
+    fn step_time(&mut self, forwards: bool) {
+        let now = self.playback.time;
+        let times: Vec<f64> = match self.execution.run() {
+            Some(run) if self.is_executing() => {
+                run.log.iter().map(|entry| playback::number(entry.time)).collect()
+            }
+            _ => {
+                let Some(plan) = self.shown().and_then(|shown| shown.plan()) else { return };
+                plan.windows.iter().flatten().map(|window| playback::number(window.earliest)).collect()
+            }
+        };
+        let times = times.into_iter();
+        let next = if forwards {
+            times.filter(|&time| time > now).reduce(f64::min)
+        } else {
+            times.filter(|&time| time < now).reduce(f64::max)
+        };
+        if let Some(time) = next {
+            self.playback.seek(time);
+        }
+    }
+
+    pub(super) fn request_view(&mut self, panel: PanelKind, action: crate::command::ViewAction) {
+        let sequence = self.view_request.map_or(1, |request| request.sequence + 1);
+        self.view_request = Some(ViewRequest { sequence, panel, action });
+    }
+
+    fn escape(&mut self) {
+        if self.dialog.take().is_some() {
+            return;
+        }
+        if self.editor.popup.take().is_some() {
+            return;
+        }
+        if self.editor.find.take().is_some() {
+            self.editor.wants_focus = true;
+        } else if self.escape_from_terrain() {
+            // The tool was put away, or what it had.
+        } else if self.search.step().is_some() {
+            self.search.close();
+        } else if self.pins.held().is_some() {
+            self.step_pins_back();
+        } else if self.time_range.take().is_none() && !self.step_pins_back() {
+            self.selection = Selection::None;
+        }
+    }
+}

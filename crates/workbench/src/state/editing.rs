@@ -1,0 +1,209 @@
+//! How the editor's commands change the state: typing, finding, going to places.
+//!
+//! Completion, fixes and renaming are in [`super::services`].
+
+use rmpl::Span;
+use rmpl::editor;
+
+use crate::PanelKind;
+use crate::command::EditorCommand;
+use crate::state::document::Caret;
+use crate::state::editor::{Find, Reveal};
+use crate::state::folding::Folding;
+use crate::state::{AppState, EditKind, Effect, Selection, TextCommand, ToastKind};
+
+impl AppState {
+    pub(super) fn type_text(&mut self, command: &TextCommand) {
+        match (command, self.language.parse()) {
+            (TextCommand::NewLine, Some(parse)) => {
+                let range = self.document.caret().range();
+                let (edit, caret) = editor::new_line(parse, span_of(&range));
+                self.document.edit(&[edit], EditKind::Typing, Some(Caret::at(caret as usize)));
+            }
+            (TextCommand::ToggleComment, Some(parse)) => {
+                let edits = editor::toggle_comment(parse.text(), span_of(&self.document.caret().range()));
+                self.document.edit(&edits, EditKind::Single, None);
+            }
+            _ => command.apply(&mut self.document),
+        }
+        self.language.follow(&self.document);
+        self.follow_popup(command);
+        self.editor.active_secs = self.frame.now_secs;
+        self.editor.composition.clear();
+        let head = self.document.caret().head as u32;
+        self.editor.reveal = Some(Reveal { span: Span::new(head, head), center: false });
+        if matches!(
+            command,
+            TextCommand::Move { .. } | TextCommand::Select { .. } | TextCommand::SelectWord(_)
+        ) {
+            self.select_at_caret();
+        }
+    }
+
+    /// Selects in all panels what stands at the caret, as long as the drawings belong to this text.
+    fn select_at_caret(&mut self) {
+        self.select_at(self.document.caret().head as u32);
+    }
+
+    /// Selects in all panels what stands at a byte of the text, as long as the drawings belong to this text.
+    pub(super) fn select_at(&mut self, offset: u32) {
+        if self.snapshots.is_stale(self.document.revision()) {
+            return;
+        }
+        let Some(shown) = self.shown() else { return };
+        let found = Selection::at_offset(shown, offset, &self.selection);
+        self.selection = found;
+    }
+
+    /// Selects something in all panels; the editor shows its text, and the caret stays where it is.
+    pub(super) fn select(&mut self, selection: Selection) {
+        let is_current = !self.snapshots.is_stale(self.document.revision());
+        let span = self.shown().filter(|_| is_current).and_then(|shown| selection.span(shown));
+        self.selection = selection;
+        if let Some(span) = span {
+            self.editor.reveal = Some(Reveal { span, center: true });
+        }
+    }
+
+    pub(super) fn reveal(&mut self, span: Span) {
+        self.document.set_caret(Caret::selecting(span.start as usize, span.end as usize));
+        self.editor.reveal = Some(Reveal { span, center: true });
+        self.editor.active_secs = self.frame.now_secs;
+        self.wanted_panel = Some(PanelKind::Editor);
+    }
+
+    pub(super) fn apply_to_editor(&mut self, command: EditorCommand) {
+        match command {
+            EditorCommand::Focus => {
+                self.wanted_panel = Some(PanelKind::Editor);
+                self.editor.wants_focus = true;
+            }
+            EditorCommand::Compose(text) => self.editor.composition = text,
+            EditorCommand::Find { replacing } => self.open_find(replacing),
+            EditorCommand::SetFind(find) => self.editor.find = Some(find),
+            EditorCommand::CloseFind => {
+                self.editor.find = None;
+                self.editor.wants_focus = true;
+            }
+            EditorCommand::FindNext => self.go_to_match(true),
+            EditorCommand::FindPrevious => self.go_to_match(false),
+            EditorCommand::ReplaceOne => self.replace_one(),
+            EditorCommand::ReplaceAll => self.replace_every_match(),
+            EditorCommand::GoToLine(line) => {
+                let range =
+                    self.document.line_range(line.saturating_sub(1).min(self.document.line_count() - 1));
+                self.reveal(Span::new(range.start as u32, range.start as u32));
+                self.editor.wants_focus = true;
+            }
+            EditorCommand::GoToProblem { forwards } => self.go_to_problem(forwards),
+            EditorCommand::CopySelection { cut } => self.copy_selection(cut),
+            EditorCommand::Complete => self.complete(true),
+            EditorCommand::QuickFix => self.list_fixes(),
+            EditorCommand::FindReferences => self.list_references(),
+            EditorCommand::GoToDefinition => self.go_to_definition(),
+            EditorCommand::MoveInPopup(steps) => {
+                if let Some(popup) = &mut self.editor.popup {
+                    let last = popup.items.len().saturating_sub(1);
+                    popup.chosen = popup.chosen.saturating_add_signed(steps).min(last);
+                }
+            }
+            EditorCommand::TakeFromPopup(index) => self.take_from_popup(index),
+            EditorCommand::ClosePopup => self.editor.popup = None,
+            EditorCommand::Rename => self.ask_for_name(),
+            EditorCommand::RenameTo(name) => self.rename_to(&name),
+            EditorCommand::Format => self.format(),
+            EditorCommand::ToggleFold(line) => self.fold(|folding, document, parse| {
+                folding.toggle(line, document, parse);
+            }),
+            EditorCommand::FoldAtCaret(folds) => self.fold_at_caret(folds),
+            EditorCommand::FoldAll(false) => self.editor.folding.unfold_all(),
+            EditorCommand::FoldAll(true) => self.fold(Folding::fold_all),
+            EditorCommand::ExpandSelection => self.expand_selection(),
+        }
+    }
+
+    fn open_find(&mut self, replacing: bool) {
+        let mut find = self.editor.find.take().unwrap_or_default();
+        let selected = self.document.selected_text();
+        if !selected.is_empty() && !selected.contains('\n') {
+            find = Find { query: selected.to_owned(), is_regex: false, ..find };
+        }
+        find.replacing |= replacing;
+        find.wants_focus = true;
+        self.editor.find = Some(find);
+        self.wanted_panel = Some(PanelKind::Editor);
+    }
+
+    fn go_to_match(&mut self, forwards: bool) {
+        let Some(find) = &self.editor.find else { return };
+        let Ok(pattern) = find.pattern() else { return };
+        let range = self.document.caret().range();
+        let text = self.document.text();
+        let found = if forwards {
+            pattern.find_after(text, range.end)
+        } else {
+            pattern.find_before(text, range.start)
+        };
+        if let Some(found) = found {
+            self.reveal(Span::new(found.start as u32, found.end as u32));
+        }
+    }
+
+    fn replace_one(&mut self) {
+        let Some(find) = self.editor.find.clone() else { return };
+        let Ok(pattern) = find.pattern() else { return };
+        let range = self.document.caret().range();
+        if let Some(text) = pattern.replacement(self.document.text(), range.clone(), &find.replacement) {
+            let span = Span::new(range.start as u32, range.end as u32);
+            self.document.replace(span, &text, EditKind::Single);
+        }
+        self.go_to_match(true);
+    }
+
+    fn replace_every_match(&mut self) {
+        let Some(find) = self.editor.find.clone() else { return };
+        let Ok(pattern) = find.pattern() else { return };
+        let edits = pattern.replacements(self.document.text(), &find.replacement);
+        let count = edits.len();
+        self.document.edit(&edits, EditKind::Single, None);
+        let matches = if count == 1 { "match" } else { "matches" };
+        self.toasts.add(ToastKind::Done, format!("Replaced {count} {matches}"));
+    }
+
+    fn go_to_problem(&mut self, forwards: bool) {
+        let Some(latest) = self.snapshots.latest().cloned() else { return };
+        let caret = self.document.caret().range();
+        let spans: Vec<Span> = latest.problems.iter().map(|problem| problem.span).collect();
+        let next = if forwards {
+            spans.iter().find(|span| span.start as usize > caret.start).or(spans.first())
+        } else {
+            spans.iter().rev().find(|span| (span.start as usize) < caret.start).or(spans.last())
+        };
+        if let Some(&span) = next {
+            self.reveal(span);
+            self.select_at(span.start);
+            self.editor.wants_focus = true;
+        }
+    }
+
+    fn copy_selection(&mut self, cut: bool) {
+        let caret = self.document.caret();
+        if caret.is_empty() {
+            // Without a selection, copy and cut mean the line, as in other editors.
+            TextCommand::SelectLine(caret.head).apply(&mut self.document);
+        }
+        self.effects.push(Effect::Copy(self.document.selected_text().to_owned()));
+        if cut {
+            let range = self.document.caret().range();
+            let span = Span::new(range.start as u32, range.end as u32);
+            self.document.replace(span, "", EditKind::Single);
+        } else {
+            self.document.set_caret(caret);
+        }
+    }
+}
+
+/// A range of bytes as a span.
+pub(super) fn span_of(range: &std::ops::Range<usize>) -> Span {
+    Span::new(range.start as u32, range.end as u32)
+}

@@ -1,0 +1,196 @@
+//! What the language crate knows about the text, kept up to date with every edit.
+
+use rmpl::control::{ParsedControl, is_control_text};
+use rmpl::editor::{self, Evaluation, EventWindow, Invocation};
+use rmpl::{Edit, Parse, Span};
+use tpn::{OccurrenceKind, Plan};
+
+use crate::state::document::{Document, difference};
+
+/// The text as the language sees it.
+#[derive(Debug)]
+pub struct Language {
+    revision: u64,
+    notation: Notation,
+}
+
+/// The two notations.
+#[derive(Debug)]
+enum Notation {
+    /// Missions (SPEC 1).
+    Mission(Box<Parse>),
+    /// Control programs (SPEC 2), with their text.
+    Control(Box<ParsedControl>, String),
+}
+
+/// What a piece of source text is, in either notation: each has a colour of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SyntaxRole {
+    /// A keyword.
+    Keyword,
+    /// An activity or a primitive.
+    Activity,
+    /// A state variable.
+    Variable,
+    /// A value of a state variable.
+    Value,
+    /// A formal or a bound parameter.
+    Parameter,
+    /// A location, an obstacle or a vehicle.
+    Place,
+    /// A number or infinity.
+    Number,
+    /// A text in quotes.
+    String,
+    /// A comment.
+    Comment,
+    /// A bracket, a separator or an operator.
+    Punctuation,
+    /// Nothing that the language knows.
+    Unknown,
+}
+
+/// An edit longer than this may turn a text into one of the other notation.
+const LARGE_EDIT_BYTES: usize = 64;
+
+impl Language {
+    /// Reads a document.
+    pub fn new(document: &Document) -> Self {
+        Self { revision: document.revision(), notation: read(document.text()) }
+    }
+
+    /// Reads what has changed in the document since.
+    pub fn follow(&mut self, document: &Document) {
+        if self.revision == document.revision() {
+            return;
+        }
+        self.revision = document.revision();
+        match &mut self.notation {
+            Notation::Mission(parse) => {
+                let edit = difference(parse.text(), document.text());
+                let is_large = edit.text.len() > LARGE_EDIT_BYTES
+                    || edit.span.range().len() > LARGE_EDIT_BYTES
+                    || document.text().len() < 4 * LARGE_EDIT_BYTES;
+                if is_large && is_control_text(document.text()) {
+                    self.notation = read(document.text());
+                } else {
+                    parse.edit(&edit);
+                }
+            }
+            Notation::Control(..) => self.notation = read(document.text()),
+        }
+    }
+
+    /// The tree, if the text is a mission.
+    pub fn parse(&self) -> Option<&Parse> {
+        match &self.notation {
+            Notation::Mission(parse) => Some(parse),
+            Notation::Control(..) => None,
+        }
+    }
+
+    /// Whether the text is a control program.
+    pub const fn is_control(&self) -> bool {
+        matches!(self.notation, Notation::Control(..))
+    }
+
+    /// What the pieces of the text in `range` are, in textual order.
+    pub fn roles(&self, range: Span) -> Vec<(Span, SyntaxRole)> {
+        match &self.notation {
+            Notation::Mission(parse) => editor::highlight(parse, range)
+                .into_iter()
+                .map(|found| (found.span, mission_role(found.kind)))
+                .collect(),
+            Notation::Control(parsed, text) => rmpl::control::highlight(text, parsed)
+                .into_iter()
+                .map(|found| (found.span, control_role(found.kind)))
+                .collect(),
+        }
+    }
+
+    /// The text in its canonical layout, as edits; nothing if it has that already.
+    pub fn formatted(&self) -> Option<Edit> {
+        match &self.notation {
+            Notation::Mission(parse) => rmpl::format_edit(parse.text()),
+            Notation::Control(_, text) => {
+                let formatted = rmpl::control::format(text);
+                (formatted != *text).then(|| difference(text, &formatted))
+            }
+        }
+    }
+}
+
+/// What planning found out, for hovering over the text.
+pub fn evaluation(snapshot: &mission::Snapshot) -> Evaluation {
+    let Some(network) = snapshot.network.as_deref() else { return Evaluation::default() };
+    let invocations = network
+        .occurrences
+        .iter()
+        .filter(|occurrence| occurrence.kind == OccurrenceKind::Activity)
+        .filter_map(|occurrence| {
+            let arc = network.arcs.get(occurrence.arc?.index())?;
+            Some(Invocation {
+                activity: occurrence.activity.clone(),
+                occurrence: occurrence.name.clone(),
+                lower: arc.lower,
+                upper: arc.upper,
+            })
+        })
+        .collect();
+    let windows = snapshot.plan().map(|plan| windows(network, plan)).unwrap_or_default();
+    Evaluation { invocations, windows }
+}
+
+fn windows(network: &tpn::Network, plan: &Plan) -> Vec<EventWindow> {
+    let of_node = |(node, window): (&tpn::Node, &Option<tpn::Window>)| {
+        let window = (*window)?;
+        let events = node.events.iter().filter_map(|&event| {
+            let span = network.occurrences.get(event.occurrence.index())?.span?;
+            Some(EventWindow {
+                span,
+                event: network.event_name(event).into(),
+                earliest: window.earliest,
+                latest: window.latest,
+            })
+        });
+        Some(events.collect::<Vec<_>>())
+    };
+    network.nodes.iter().zip(&plan.windows).filter_map(of_node).flatten().collect()
+}
+
+fn read(text: &str) -> Notation {
+    if is_control_text(text) {
+        Notation::Control(Box::new(rmpl::control::parse(text)), text.to_owned())
+    } else {
+        Notation::Mission(Box::new(rmpl::parse(text)))
+    }
+}
+
+const fn mission_role(kind: editor::HighlightKind) -> SyntaxRole {
+    use editor::HighlightKind as Kind;
+    match kind {
+        Kind::Comment => SyntaxRole::Comment,
+        Kind::Keyword | Kind::Option => SyntaxRole::Keyword,
+        Kind::Activity | Kind::Scenario => SyntaxRole::Activity,
+        Kind::Variable => SyntaxRole::Variable,
+        Kind::Value => SyntaxRole::Value,
+        Kind::Parameter | Kind::BoundName | Kind::Symbol => SyntaxRole::Parameter,
+        Kind::Location | Kind::Vehicle => SyntaxRole::Place,
+        Kind::Number => SyntaxRole::Number,
+        Kind::String => SyntaxRole::String,
+        Kind::Operator | Kind::Punctuation => SyntaxRole::Punctuation,
+        Kind::Unknown => SyntaxRole::Unknown,
+    }
+}
+
+const fn control_role(kind: rmpl::control::HighlightKind) -> SyntaxRole {
+    use rmpl::control::HighlightKind as Kind;
+    match kind {
+        Kind::Keyword | Kind::Bar => SyntaxRole::Keyword,
+        Kind::Definition => SyntaxRole::Activity,
+        Kind::Variable => SyntaxRole::Variable,
+        Kind::Value => SyntaxRole::Value,
+        Kind::Punctuation => SyntaxRole::Punctuation,
+        Kind::Comment => SyntaxRole::Comment,
+    }
+}

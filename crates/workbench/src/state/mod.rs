@@ -1,0 +1,239 @@
+//! Everything the app knows: the one thing that commands change and panels read.
+
+mod apply;
+pub mod automaton;
+pub mod chance;
+pub mod compare;
+pub mod document;
+pub mod documents;
+mod draft;
+mod editing;
+pub mod editor;
+pub mod execution;
+pub mod folding;
+pub mod growth;
+pub mod language;
+pub mod pins;
+pub mod placing;
+pub mod playback;
+pub mod program_chance;
+pub mod review;
+pub mod search;
+pub mod search_text;
+pub mod selection;
+mod services;
+pub mod settings;
+mod snapshots;
+pub mod terrain;
+pub mod toast;
+pub mod typing;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use mission::{MapKey, Snapshot};
+use smol_str::SmolStr;
+
+pub use apply::Effect;
+pub use document::{Caret, Document, EditKind};
+pub use draft::Draft;
+pub use editor::EditorState;
+pub use language::Language;
+pub use pins::{PinCommand, Pins};
+pub use playback::Playback;
+pub use selection::Selection;
+pub use settings::{PlanSettings, Settings, Views};
+pub use snapshots::{Snapshots, Status};
+pub use toast::{Toast, ToastKind, Toasts};
+pub use typing::{Motion, TextCommand};
+
+use crate::Dialog;
+use crate::PanelKind;
+use crate::command::ViewAction;
+use crate::mission_file;
+use crate::workspace::{Arrangement, Workspace};
+
+/// The state of the app. Only commands change it ([`AppState::apply`]).
+#[derive(Debug)]
+pub struct AppState {
+    /// The text, its caret and its history.
+    pub document: Document,
+    /// What the language knows about the text.
+    pub language: Language,
+    /// The name of the open mission, without extension.
+    pub mission: SmolStr,
+    /// An edited text that is not the open one: of an earlier run, or of another mission of this one.
+    pub earlier_draft: Option<Draft>,
+    /// What the planning core answered.
+    pub snapshots: Snapshots,
+    /// The ground of the missions opened so far.
+    pub maps: BTreeMap<MapKey, Arc<::terrain::Terrain>>,
+    /// What is selected, in all panels.
+    pub selection: Selection,
+    /// What the pointer is over in some panel, for the others to hint at.
+    pub hovered: Selection,
+    /// The step of the search that is looked at.
+    pub search: search::SearchState,
+    /// The control program, if the text is one, and its run.
+    pub automaton: automaton::AutomatonState,
+    /// The review of the mission, with what was said and signed.
+    pub review: review::ReviewState,
+    /// What the mission is compared with.
+    pub compare: compare::CompareState,
+    /// The tool in hand on the terrain, and what it has.
+    pub terrain: terrain::TerrainState,
+    /// The mission as it is executed.
+    pub execution: execution::ExecutionState,
+    /// Many runs of it with chance.
+    pub chance: chance::ChanceState,
+    /// The time shown, and whether it runs.
+    pub playback: Playback,
+    /// Events that are pinned to times, to see what that leaves of the plan.
+    pub pins: Pins,
+    /// The range of times that is selected, in mission units.
+    pub time_range: Option<[f64; 2]>,
+    /// Which workspace is shown.
+    pub workspace: Workspace,
+    /// What is remembered between runs.
+    pub settings: Settings,
+    /// What the editor shows besides the text.
+    pub editor: EditorState,
+    /// Short messages.
+    pub toasts: Toasts,
+    /// The dialog on top, if any.
+    pub dialog: Option<Dialog>,
+    /// The panel that was used last; view actions go to it.
+    pub active_panel: PanelKind,
+    /// The panels that were on screen in the last frame, in the order of the layout.
+    pub panels_on_screen: Vec<PanelKind>,
+    /// The last view action, for its panel to follow once.
+    pub view_request: Option<ViewRequest>,
+    /// The network's drawing is to be saved: how often that was asked for, and in which format last.
+    pub picture_request: Option<(u64, crate::command::PictureFormat)>,
+    /// A panel that is to be brought back or to the front of its tabs.
+    pub wanted_panel: Option<PanelKind>,
+    /// Another one, beside it.
+    pub also_wanted_panel: Option<PanelKind>,
+    /// A panel that is to be closed.
+    pub unwanted_panel: Option<PanelKind>,
+    /// Whether the layout of the present workspace is to go back to its default.
+    pub wants_default_layout: bool,
+    /// How the last frame went.
+    pub frame: FrameInfo,
+    /// What the host is to do.
+    pub(crate) effects: Vec<Effect>,
+}
+
+/// A view action for one panel. A panel follows a request once: when `sequence` differs from the last it followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewRequest {
+    /// Grows with every request.
+    pub sequence: u64,
+    /// Who is to follow it.
+    pub panel: PanelKind,
+    /// What to do.
+    pub action: ViewAction,
+}
+
+/// How the last frame went.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FrameInfo {
+    /// What draws: `webgpu`, `webgl2`, `vulkan`, …; empty if unknown.
+    pub renderer: String,
+    /// Milliseconds that the app took for its last frame, without the time to draw it.
+    pub cpu_millis: f64,
+    /// Milliseconds of the processor that the frame before took in all: the app, egui's shapes and triangles, and
+    /// handing them to the graphics; `None` if unknown.
+    pub whole_millis: Option<f64>,
+    /// The first frame with the last answer.
+    pub answer: Option<AnswerFrame>,
+    /// Milliseconds that laying out the drawings took, when it last had to be done.
+    pub layout_millis: f64,
+    /// Seconds on the host's clock at the start of this frame.
+    pub now_secs: f64,
+    /// The date and time at the start of this frame, in milliseconds since 1970, in UTC.
+    pub unix_millis: i64,
+}
+
+/// The first frame that showed an answer of the planning core.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AnswerFrame {
+    /// The revision of the text that was answered.
+    pub revision: u64,
+    /// When the frame was done, in seconds on the host's clock.
+    pub done_secs: f64,
+    /// Milliseconds that the app took for it, laying out included.
+    pub cpu_millis: f64,
+}
+
+impl AppState {
+    /// The state with which the app starts: the first example, before anything was answered.
+    pub fn new() -> Self {
+        let example = mission_file::EXAMPLES[0];
+        let document = Document::new(example.source);
+        Self {
+            language: Language::new(&document),
+            document,
+            mission: example.name.into(),
+            earlier_draft: None,
+            snapshots: Snapshots::default(),
+            maps: BTreeMap::new(),
+            selection: Selection::None,
+            hovered: Selection::None,
+            search: search::SearchState::default(),
+            automaton: automaton::AutomatonState::default(),
+            review: review::ReviewState::default(),
+            compare: compare::CompareState::default(),
+            terrain: terrain::TerrainState::default(),
+            execution: execution::ExecutionState::default(),
+            chance: chance::ChanceState::default(),
+            playback: Playback::default(),
+            pins: Pins::default(),
+            time_range: None,
+            workspace: Workspace::default(),
+            settings: Settings::default(),
+            editor: EditorState::default(),
+            toasts: Toasts::default(),
+            dialog: None,
+            active_panel: PanelKind::Editor,
+            panels_on_screen: Vec::new(),
+            view_request: None,
+            picture_request: None,
+            wanted_panel: None,
+            also_wanted_panel: None,
+            unwanted_panel: None,
+            wants_default_layout: false,
+            frame: FrameInfo::default(),
+            effects: vec![Effect::RecallReview],
+        }
+    }
+
+    /// Which layout the panels have.
+    pub const fn arrangement(&self) -> Arrangement {
+        Arrangement::new(self.workspace, self.language.is_control())
+    }
+
+    /// What the panels show: see [`Snapshots::shown`].
+    pub fn shown(&self) -> Option<&Arc<Snapshot>> {
+        self.snapshots.shown()
+    }
+
+    /// Where the plan stands, for the status display.
+    pub fn status(&self) -> Status {
+        match self.snapshots.status(self.document.revision()) {
+            Status::Empty if self.automaton.program().is_some() => Status::Program,
+            status => status,
+        }
+    }
+
+    /// Takes what the host is to do.
+    pub fn take_effects(&mut self) -> Vec<Effect> {
+        std::mem::take(&mut self.effects)
+    }
+}
+
+impl Default for AppState {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,73 @@
+//! The steps of a search in words.
+
+use kirk::{Constraint, CycleMember, Event, TreeChoice};
+use rmpl::Bound;
+use tpn::{LabelId, Network};
+
+use crate::state::selection::{alternative_text, node_name};
+
+/// What was chosen in a state, in words.
+pub fn choice(network: &Network, choice: Option<TreeChoice>) -> String {
+    let label = |id: LabelId| network.label_name(id);
+    match choice {
+        None => "Before any choice".to_owned(),
+        Some(TreeChoice::Decision { decision, alternative }) => {
+            let text = alternative_text(network, decision, alternative);
+            format!("{} = {text}", Network::decision_name(decision))
+        }
+        Some(TreeChoice::Link(link)) => format!("{} carries {}", label(link.tell), label(link.ask)),
+        Some(TreeChoice::Order(order)) => format!("{} before {}", label(order.first), label(order.then)),
+        Some(TreeChoice::NoLink { ask }) => format!("Nothing carries {}", label(ask)),
+    }
+}
+
+/// One event in a sentence.
+pub fn event(network: &Network, event: &Event) -> String {
+    let label = |id: LabelId| network.label_name(id);
+    match event {
+        Event::Expand { node } => format!("Follow all arcs out of {}.", node_name(network, *node)),
+        Event::Decide { decision, alternative } => {
+            format!("Decide {} = {alternative}.", Network::decision_name(*decision))
+        }
+        Event::AddArc { arc } => {
+            let Some(arc) = network.arcs.get(arc.index()) else { return String::new() };
+            let (from, to) = (node_name(network, arc.from), node_name(network, arc.to));
+            format!("Add {from} → {to} [{}, {}].", Bound::Finite(arc.lower), arc.upper)
+        }
+        Event::Propagate { moved: 0 } => "Propagate: nothing has to move.".to_owned(),
+        Event::Propagate { moved: 1 } => "Propagate: one event moves.".to_owned(),
+        Event::Propagate { moved } => format!("Propagate: {moved} events move."),
+        Event::Inconsistent { cycle } => {
+            let total: rmpl::Rational = cycle.iter().map(|member| member.weight).sum();
+            format!("Dead end: a negative cycle of {}.", Bound::Finite(total))
+        }
+        Event::Unclosable { ask } => format!("Dead end: nothing can carry {}.", label(*ask)),
+        Event::TryLink { link } => format!("Let {} carry {}.", label(link.tell), label(link.ask)),
+        Event::Threat { left, right } => {
+            format!("Threat: {} and {} may overlap.", label(*left), label(*right))
+        }
+        Event::TryOrder { order } => format!("Put {} before {}.", label(order.first), label(order.then)),
+        Event::Unresolvable { left, right } => {
+            format!("Dead end: {} and {} fit in neither order.", label(*left), label(*right))
+        }
+        Event::Known => "Dead end: these choices contain a conflict that was learned before.".to_owned(),
+        Event::Backtrack { .. } => "Back to the last choice.".to_owned(),
+        Event::Backjump { because, .. } => {
+            format!("Jump back to the last choice that is to blame, one of {}.", because.len().max(1))
+        }
+        Event::Solution { .. } => "A plan.".to_owned(),
+        Event::Exhausted => "Nothing is left to try.".to_owned(),
+    }
+}
+
+/// A constraint of a negative cycle, and why it holds.
+pub fn cycle_step(network: &Network, member: &CycleMember) -> String {
+    let (from, to) = (node_name(network, member.from), node_name(network, member.to));
+    let why = match member.constraint {
+        Constraint::Lower(_) => "least duration",
+        Constraint::Upper(_) => "greatest duration",
+        Constraint::Link(_) => "causal link",
+        Constraint::Order(_) => "ordering",
+    };
+    format!("{from} → {to}: {} ({why})", Bound::Finite(member.weight))
+}

@@ -1,0 +1,234 @@
+//! The editor's language services: completion, quick fixes, definitions, references, renaming, formatting.
+
+use rmpl::{Parse, editor};
+
+use crate::Dialog;
+use crate::state::document::{Caret, Document};
+use crate::state::editing::span_of;
+use crate::state::editor::{Popup, PopupAction, PopupItem, PopupKind};
+use crate::state::folding::Folding;
+use crate::state::typing::is_name_character;
+use crate::state::{AppState, EditKind, TextCommand, ToastKind};
+
+/// Characters that begin a place where something known can be written.
+const OPENERS: [char; 4] = ['=', '(', '[', ':'];
+
+/// Entries that a list shows at most; the rest is reached by typing on.
+const MOST_ITEMS: usize = 100;
+
+impl AppState {
+    /// Opens, narrows or closes the list at the caret after a key.
+    pub(super) fn follow_popup(&mut self, command: &TextCommand) {
+        let is_completing = self.editor.popup.as_ref().is_some_and(|it| it.kind == PopupKind::Completion);
+        match command {
+            TextCommand::Insert(text) => {
+                let last = text.chars().next_back();
+                if last.is_some_and(|c| is_name_character(c) && (is_completing || c.is_alphabetic()))
+                    || last.is_some_and(|c| OPENERS.contains(&c))
+                {
+                    self.complete(false);
+                } else {
+                    self.editor.popup = None;
+                }
+            }
+            TextCommand::Delete(_) if is_completing => self.complete(false),
+            _ => self.editor.popup = None,
+        }
+    }
+
+    /// Lists what can be written at the caret. Unless the author asked for it, only where it helps: in a word of at
+    /// least two letters, or right behind a sign that asks for something.
+    pub(super) fn complete(&mut self, is_asked: bool) {
+        self.editor.popup = None;
+        let Some(parse) = self.language.parse() else { return };
+        let head = self.document.caret().head;
+        let found = editor::complete(parse, head as u32);
+        let typed = self.document.text().get(found.replaces.start as usize..head).unwrap_or_default();
+        let behind_opener = self.document.text()[..head].ends_with(OPENERS);
+        let is_finished = found.items.iter().any(|item| item.label == typed);
+        if !is_asked && ((typed.chars().count() < 2 && !behind_opener) || is_finished) {
+            return;
+        }
+        let items: Vec<PopupItem> = found
+            .items
+            .into_iter()
+            .take(MOST_ITEMS)
+            .map(|item| PopupItem {
+                label: item.label,
+                detail: item.detail,
+                kind: Some(item.kind),
+                action: PopupAction::Insert(item.insert),
+            })
+            .collect();
+        if items.is_empty() {
+            if is_asked {
+                self.toasts.add(ToastKind::Info, "Nothing is known to go here");
+            }
+            return;
+        }
+        self.editor.popup =
+            Some(Popup { kind: PopupKind::Completion, items, chosen: 0, span: found.replaces });
+    }
+
+    /// Lists what mends the problems at the caret, in its line if there are none right there.
+    pub(super) fn list_fixes(&mut self) {
+        self.editor.popup = None;
+        let revision = self.document.revision();
+        let Some(latest) = self.snapshots.latest().filter(|latest| latest.revision == revision) else {
+            self.toasts.add(ToastKind::Info, "The text is still being read");
+            return;
+        };
+        let caret = span_of(&self.document.caret().range());
+        let line = span_of(&self.document.line_range(self.document.line_at(self.document.caret().head)));
+        let fixes_in = |place: rmpl::Span| -> Vec<PopupItem> {
+            let problems = latest.problems.iter();
+            let touching = problems.filter(|it| it.span.start <= place.end && place.start <= it.span.end);
+            touching
+                .flat_map(|problem| problem.fixes.iter().map(move |fix| (problem, fix)))
+                .map(|(problem, fix)| PopupItem {
+                    label: fix.label.clone(),
+                    detail: problem.code.to_string(),
+                    kind: None,
+                    action: PopupAction::Edit(fix.edits.clone()),
+                })
+                .collect()
+        };
+        let mut items = fixes_in(caret);
+        if items.is_empty() {
+            items = fixes_in(line);
+        }
+        if items.is_empty() {
+            self.toasts.add(ToastKind::Info, "No fix is known for this line");
+            return;
+        }
+        self.editor.popup = Some(Popup { kind: PopupKind::Fixes, items, chosen: 0, span: caret });
+        self.editor.wants_focus = true;
+    }
+
+    pub(super) fn list_references(&mut self) {
+        let Some(parse) = self.language.parse() else { return };
+        let caret = span_of(&self.document.caret().range());
+        let items: Vec<PopupItem> = editor::references(parse, caret.start)
+            .into_iter()
+            .map(|found| {
+                let line = self.document.line_at(found.span.start as usize);
+                PopupItem {
+                    label: self.document.line_text(line).trim().to_owned(),
+                    detail: format!(
+                        "{}{}",
+                        if found.is_definition { "declared, line " } else { "line " },
+                        line + 1
+                    ),
+                    kind: None,
+                    action: PopupAction::Reveal(found.span),
+                }
+            })
+            .collect();
+        if items.is_empty() {
+            self.toasts.add(ToastKind::Info, "There is no name here");
+            return;
+        }
+        self.editor.popup = Some(Popup { kind: PopupKind::References, items, chosen: 0, span: caret });
+        self.editor.wants_focus = true;
+    }
+
+    pub(super) fn go_to_definition(&mut self) {
+        let head = self.document.caret().head as u32;
+        match self.language.parse().and_then(|parse| editor::definition(parse, head)) {
+            Some(span) => {
+                self.reveal(span);
+                self.editor.wants_focus = true;
+            }
+            None => self.toasts.add(ToastKind::Info, "This is not declared in the text"),
+        }
+    }
+
+    pub(super) fn take_from_popup(&mut self, index: Option<usize>) {
+        let Some(popup) = self.editor.popup.take() else { return };
+        let Some(item) = popup.items.into_iter().nth(index.unwrap_or(popup.chosen)) else { return };
+        match item.action {
+            PopupAction::Insert(text) => {
+                let start = popup.span.start as usize;
+                let caret = text.find("$0").unwrap_or(text.len());
+                let text = text.replacen("$0", "", 1);
+                let end = self.document.caret().head.max(popup.span.end as usize);
+                let edit = rmpl::Edit { span: rmpl::Span::new(popup.span.start, end as u32), text };
+                self.document.edit(&[edit], EditKind::Single, Some(Caret::at(start + caret)));
+            }
+            PopupAction::Edit(edits) => self.document.edit(&edits, EditKind::Single, None),
+            PopupAction::Reveal(span) => self.reveal(span),
+        }
+        self.editor.wants_focus = true;
+    }
+
+    pub(super) fn ask_for_name(&mut self) {
+        let head = self.document.caret().head as u32;
+        let Some(parse) = self.language.parse() else { return };
+        match editor::prepare_rename(parse, head) {
+            Ok((span, name)) => {
+                self.document.set_caret(Caret::selecting(span.start as usize, span.end as usize));
+                self.dialog = Some(Dialog::Rename { old: name.clone(), name });
+            }
+            Err(problem) => self.toasts.add(ToastKind::Failed, format!("Cannot rename: {problem}")),
+        }
+    }
+
+    pub(super) fn rename_to(&mut self, name: &str) {
+        let start = self.document.caret().range().start as u32;
+        let Some(parse) = self.language.parse() else { return };
+        match editor::rename(parse, start, name) {
+            Ok(edits) => {
+                let count = edits.len();
+                self.document.edit(&edits, EditKind::Single, None);
+                let places = if count == 1 { "place" } else { "places" };
+                self.toasts.add(ToastKind::Done, format!("Renamed in {count} {places}"));
+            }
+            Err(problem) => self.toasts.add(ToastKind::Failed, format!("Cannot rename: {problem}")),
+        }
+        self.editor.wants_focus = true;
+    }
+
+    pub(super) fn format(&mut self) {
+        match self.language.formatted() {
+            Some(edit) => {
+                self.document.edit(&[edit], EditKind::Single, None);
+                self.toasts.add(ToastKind::Done, "Formatted");
+            }
+            None => self.toasts.add(ToastKind::Info, "The text is formatted already"),
+        }
+    }
+
+    /// Folds the innermost open piece around the caret, or opens what is folded at its line.
+    pub(super) fn fold_at_caret(&mut self, folds: bool) {
+        let line = self.document.line_at(self.document.caret().head);
+        if !folds && !self.editor.folding.rows().is_folded_at(line) {
+            return;
+        }
+        self.fold(|folding, document, parse| {
+            if folds {
+                folding.fold_around(line, document, parse);
+            } else {
+                folding.toggle(line, document, parse);
+            }
+        });
+    }
+
+    /// Folds and unfolds; a caret in what disappears goes to the end of the line that stays.
+    pub(super) fn fold(&mut self, change: impl FnOnce(&mut Folding, &Document, &Parse)) {
+        let Some(parse) = self.language.parse() else { return };
+        change(&mut self.editor.folding, &self.document, parse);
+        let line = self.document.line_at(self.document.caret().head);
+        if let Some(hidden) = self.editor.folding.rows().hiding(line) {
+            let end = self.document.line_range(hidden.start.saturating_sub(1)).end;
+            self.document.set_caret(Caret::at(end));
+        }
+    }
+
+    pub(super) fn expand_selection(&mut self) {
+        let caret = span_of(&self.document.caret().range());
+        let wider = self.language.parse().and_then(|parse| editor::wider_selection(parse, caret));
+        if let Some(span) = wider {
+            self.document.set_caret(Caret::selecting(span.start as usize, span.end as usize));
+        }
+    }
+}

@@ -1,0 +1,287 @@
+//! What is remembered between runs: appearance, how to plan, and what each panel shows.
+
+use mission::{Goal, SearchKind};
+use serde::{Deserialize, Serialize};
+
+/// The user's settings.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// Light or dark.
+    pub theme: ThemeChoice,
+    /// How large text and everything with it is; 1 is the designed size.
+    pub text_scale: f32,
+    /// How to plan. What to plan belongs to the mission and is not remembered.
+    pub plan: PlanSettings,
+    /// What each panel shows.
+    pub views: Views,
+    /// Who comments and signs.
+    pub reviewer: String,
+    /// When missions start, as it was last given for a schedule with dates.
+    pub epoch: String,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            theme: ThemeChoice::default(),
+            text_scale: 1.0,
+            plan: PlanSettings::default(),
+            views: Views::default(),
+            reviewer: String::new(),
+            epoch: String::new(),
+        }
+    }
+}
+
+/// Which theme the user wants.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ThemeChoice {
+    /// Light on dark.
+    #[default]
+    Dark,
+    /// Dark on light.
+    Light,
+}
+
+impl ThemeChoice {
+    /// The other one.
+    pub const fn toggled(self) -> Self {
+        match self {
+            Self::Dark => Self::Light,
+            Self::Light => Self::Dark,
+        }
+    }
+}
+
+/// What and how to plan.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct PlanSettings {
+    /// What to plan.
+    #[serde(skip)]
+    pub goal: Goal,
+    /// Which search plans.
+    pub search: SearchKind,
+    /// Seeds path planning.
+    pub seed: u64,
+    /// Whether the search is recorded for stepping through it.
+    pub trace: bool,
+}
+
+/// What each panel shows. A panel changes its part with [`crate::command::Command::SetViews`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Views {
+    /// The network.
+    pub network: NetworkView,
+    /// The timeline.
+    pub timeline: TimelineView,
+    /// The plan's tables.
+    pub plan: PlanView,
+    /// The terrain.
+    pub terrain: TerrainView,
+}
+
+/// What the network shows.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct NetworkView {
+    /// Bounds on the arcs.
+    pub bounds: bool,
+    /// Asked and told conditions on the arcs.
+    pub labels: bool,
+    /// The names of events and activities.
+    pub names: bool,
+    /// The windows of selected events.
+    pub windows: bool,
+    /// Causal links.
+    pub links: bool,
+    /// Orderings that resolve threats.
+    pub orderings: bool,
+    /// Whether what the plan does not select is drawn.
+    pub unselected: bool,
+    /// Boxes around activities and blocks.
+    pub structure: bool,
+    /// A named band for every parallel branch.
+    pub lanes: bool,
+    /// What has happened at the time shown, and what is under way.
+    pub now: bool,
+    /// Problems of the text at their places.
+    pub problems: bool,
+    /// The small overview.
+    pub minimap: bool,
+}
+
+impl NetworkView {
+    /// The parts of a drawing that it shows.
+    pub const fn parts(&self) -> layout::Parts {
+        layout::Parts {
+            names: self.names,
+            bounds: self.bounds,
+            conditions: self.labels,
+            unselected: self.unselected,
+            structure: self.structure,
+            lanes: self.lanes,
+        }
+    }
+}
+
+impl Default for NetworkView {
+    fn default() -> Self {
+        Self {
+            bounds: true,
+            labels: true,
+            names: true,
+            windows: false,
+            links: true,
+            orderings: true,
+            unselected: true,
+            structure: false,
+            lanes: false,
+            now: true,
+            problems: true,
+            minimap: true,
+        }
+    }
+}
+
+/// What the timeline shows.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct TimelineView {
+    /// Causal links and orderings between bars.
+    pub links: bool,
+    /// Conditions as tracks, one for each state variable.
+    pub conditions: bool,
+    /// Delays as bars of their own.
+    pub delays: bool,
+    /// By what the bars are grouped.
+    pub grouping: Grouping,
+}
+
+impl Default for TimelineView {
+    fn default() -> Self {
+        Self { links: true, conditions: true, delays: false, grouping: Grouping::default() }
+    }
+}
+
+/// By what the bars of the timeline are grouped.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Grouping {
+    /// By the activities that they are part of.
+    #[default]
+    Structure,
+    /// By the parallel branches of the program.
+    Thread,
+    /// By the vehicles that they occupy.
+    Vehicle,
+}
+
+impl Grouping {
+    /// All of them, as the timeline lists them.
+    pub const ALL: [Self; 3] = [Self::Structure, Self::Thread, Self::Vehicle];
+
+    /// Its name on screen.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Structure => "By activity",
+            Self::Thread => "By thread",
+            Self::Vehicle => "By vehicle",
+        }
+    }
+
+    /// Its name in commands.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Structure => "structure",
+            Self::Thread => "thread",
+            Self::Vehicle => "vehicle",
+        }
+    }
+}
+
+/// What the plan panel shows.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct PlanView {
+    /// By what the windows are sorted.
+    pub sort: WindowSort,
+    /// Whether the order is reversed.
+    pub descending: bool,
+    /// Whether the vertices of planned paths are listed among the events.
+    pub path_points: bool,
+}
+
+/// The columns of the table of windows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WindowSort {
+    /// By earliest time, then latest, then name.
+    #[default]
+    Earliest,
+    /// By latest time.
+    Latest,
+    /// By slack.
+    Slack,
+    /// By name.
+    Event,
+}
+
+/// What the terrain shows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct TerrainView {
+    /// Names of places and vehicles.
+    pub names: bool,
+    /// Planned paths.
+    pub paths: bool,
+    /// The search trees that found them.
+    pub trees: bool,
+    /// Obstacles.
+    pub obstacles: bool,
+    /// What laser range finders see, in a run.
+    pub rays: bool,
+    /// Contour lines.
+    pub contours: bool,
+    /// A grid in mission coordinates.
+    pub grid: bool,
+    /// How much room the vehicle has to the nearest obstacle.
+    pub clearance: bool,
+    /// What the colours of the ground mean.
+    pub coloring: Coloring,
+    /// How much heights are exaggerated; 1 is true to scale.
+    pub height_scale: f32,
+}
+
+/// What the colours of the ground mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Coloring {
+    /// As it would look.
+    #[default]
+    Natural,
+    /// Height.
+    Height,
+    /// Slope.
+    Slope,
+}
+
+impl Default for TerrainView {
+    fn default() -> Self {
+        Self {
+            names: true,
+            paths: true,
+            trees: false,
+            obstacles: true,
+            rays: true,
+            contours: true,
+            grid: false,
+            clearance: false,
+            coloring: Coloring::Natural,
+            height_scale: 2.0,
+        }
+    }
+}
