@@ -1,22 +1,19 @@
-//! The egui front end: panels, dialogs, theme and renderers; also a native window.
+//! The app around the panels: their layout, bars, dialogs and keys, and a native window.
 //!
 //! [`Enroute`] is the whole app. It runs on a [`Host`](workbench::host::Host), which brings the planning core, storage
 //! and files, and is driven from outside through [`Remote`](workbench::host::Remote). Its state is the
-//! [`workbench`]'s and changes only by commands; panels ([`panel::Panel`]) read it and send them.
+//! [`workbench`]'s and changes only by commands; panels ([`panels::Panel`]) read it and send them.
 
 pub mod accessibility;
 pub mod bar;
 pub mod chord;
 pub mod default_layout;
 pub mod dialog;
-pub mod icon;
 pub mod layouts;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod native;
-pub mod panel;
 mod pressed;
 mod shell;
-pub mod theme;
 pub mod toasts;
 
 pub use shell::Enroute;

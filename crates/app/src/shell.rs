@@ -6,6 +6,7 @@ use eframe::egui_wgpu::RenderState;
 use egui::{CentralPanel, Frame, Ui};
 use egui_tiles::{Behavior, TileId, Tiles, UiResponse};
 use mission::{Request, Update};
+use panels::{Context, Panels};
 use serde_json::Value;
 use workbench::PanelKind;
 use workbench::command::{self, Command, CommandSender};
@@ -18,9 +19,7 @@ use crate::bar;
 use crate::default_layout::Room;
 use crate::dialog;
 use crate::layouts::Layouts;
-use crate::panel::{self, Context, Panels};
 use crate::pressed::take_pressed;
-use crate::theme;
 use crate::toasts;
 
 /// The app.
@@ -59,7 +58,7 @@ impl Enroute {
         let drafts = outside::DraftKeeper::start(&mut state, host.as_ref());
         outside::open_fragment(&mut state, &host.fragment());
         theme::install_fonts(egui);
-        theme::apply(egui, state.settings.theme, state.settings.text_scale);
+        theme::apply(egui, panels::tokens(state.settings.theme), state.settings.text_scale);
         let layouts = Layouts::remembered(host.as_ref());
         let last_secs = host.monotonic_secs();
         let stored = state.settings.clone();
@@ -105,10 +104,10 @@ impl Enroute {
     pub fn show(&mut self, ui: &mut Ui, render_state: Option<&RenderState>) {
         let begun_secs = self.host.monotonic_secs();
         self.begin_frame(begun_secs);
-        let pressed = take_pressed(ui.ctx(), &self.state, panel::editor_id());
+        let pressed = take_pressed(ui.ctx(), &self.state, panels::editor_id());
         self.apply(pressed);
         if self.state.dialog.is_none() {
-            let typed = panel::typed_text(ui.ctx(), &self.state);
+            let typed = panels::typed_text(ui.ctx(), &self.state);
             self.apply(typed);
         }
 
@@ -204,7 +203,7 @@ impl Enroute {
             state: &self.state,
             snapshot: self.state.looked_at(),
             is_stale: self.state.snapshots.is_stale(self.state.document.revision()),
-            tokens: theme::tokens(self.state.settings.theme),
+            tokens: panels::tokens(self.state.settings.theme),
             render_state,
             now_secs: self.state.frame.now_secs,
             clock: &clock,
@@ -219,7 +218,7 @@ impl Enroute {
             let mut tiles =
                 PanelTiles { panels: &mut self.panels, context: &context, commands, shown: Vec::new() };
             tree.ui(&mut tiles, ui);
-            panel::walk::follow(ui, tiles.context, tiles.commands);
+            panels::walk::follow(ui, tiles.context, tiles.commands);
             shown = tiles.shown;
         });
         dialog::show(ui.ctx(), &context, commands);
@@ -270,7 +269,7 @@ impl Enroute {
                 Effect::RecallReview => outside::recall_review(self.host.as_ref(), &mut self.state),
                 Effect::Restyle => {
                     let Settings { theme, text_scale, .. } = self.state.settings;
-                    theme::apply(&self.egui, theme, text_scale);
+                    theme::apply(&self.egui, panels::tokens(theme), text_scale);
                 }
             }
         }
@@ -335,7 +334,7 @@ impl eframe::App for Enroute {
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        theme::tokens(self.state.settings.theme).background.to_normalized_gamma_f32()
+        panels::tokens(self.state.settings.theme).background.to_normalized_gamma_f32()
     }
 
     #[cfg(target_arch = "wasm32")]

@@ -1,12 +1,11 @@
 //! Shows the short messages in the corner.
 
 use egui::{Align2, Area, Frame, Id, Order, Stroke};
+use panels::Context;
+use theme::icon::{self, Icon};
+use theme::space;
 use workbench::command::{Command, CommandSender};
 use workbench::state::ToastKind;
-
-use crate::icon::{self, Icon};
-use crate::panel::Context;
-use crate::theme::space;
 
 /// Shows all messages, newest at the bottom.
 pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandSender) {

@@ -13,7 +13,7 @@ use xtask::{
 };
 
 /// What each crate builds on: ARCHITECTURE.md's layers. A crate may use whatever these build on in turn.
-const LAYERS: [(&str, &[&str]); 19] = [
+const LAYERS: [(&str, &[&str]); 22] = [
     ("rmpl", &[]),
     ("stn", &[]),
     ("stnu", &[]),
@@ -29,7 +29,10 @@ const LAYERS: [(&str, &[&str]); 19] = [
     ("layout", &["tpn", "hca"]),
     ("report", &["mission", "layout"]),
     ("workbench", &["mission", "layout", "report"]),
-    ("app", &["workbench"]),
+    ("theme", &[]),
+    ("terrain_view", &["workbench", "theme"]),
+    ("panels", &["workbench", "terrain_view"]),
+    ("app", &["panels"]),
     ("page", &["app"]),
     ("worker", &["mission"]),
     ("cli", &["mission", "layout", "report"]),

@@ -1,14 +1,13 @@
 //! The bar below: the selection, the caret, problems, timings, the renderer.
 
 use egui::{Align, Frame, Layout, Margin, Panel, RichText, Ui};
+use panels::Context;
+use panels::counted;
 use rmpl::Severity;
+use theme::icon::{self, Icon};
+use theme::space;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender};
-
-use crate::icon::{self, Icon};
-use crate::panel::Context;
-use crate::panel::plan::counted;
-use crate::theme::space;
 
 /// Shows the bar.
 pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {

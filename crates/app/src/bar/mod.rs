@@ -5,10 +5,9 @@ pub mod tab;
 pub mod top;
 
 use egui::RichText;
+use panels::Context;
 use rmpl::Severity;
 use workbench::PanelKind;
-
-use crate::panel::Context;
 
 /// The title of a panel's tab, with what the user should know while the panel is hidden.
 pub fn tab_title(context: &Context<'_>, panel: PanelKind) -> RichText {

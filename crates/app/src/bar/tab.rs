@@ -2,11 +2,11 @@
 
 use egui::{Align2, CursorIcon, Id, Rect, Response, Role, Sense, TextStyle, Ui, Vec2, WidgetInfo};
 use egui_tiles::TabState;
+use panels::Context;
+use theme::icon::{self, Icon};
 use workbench::PanelKind;
 
 use crate::bar::tab_title;
-use crate::icon::{self, Icon};
-use crate::panel::Context;
 
 /// A tab as it was shown.
 pub struct Tab {

@@ -3,6 +3,9 @@
 use egui::{
     Align, Button, ComboBox, Frame, Layout, Margin, Panel, RichText, Role, Sense, Stroke, Ui, WidgetInfo,
 };
+use panels::Context;
+use theme::icon::{self, Icon};
+use theme::space;
 use workbench::Dialog;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, CommandSpec, Group, all_commands};
@@ -12,9 +15,6 @@ use workbench::state::settings::ThemeChoice;
 use workbench::workspace::Workspace;
 
 use crate::chord;
-use crate::icon::{self, Icon};
-use crate::panel::Context;
-use crate::theme::space;
 
 /// Shows the bar.
 pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {

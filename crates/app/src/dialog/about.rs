@@ -1,10 +1,9 @@
 //! What this program is.
 
 use egui::{RichText, Ui};
+use panels::Context;
+use theme::space;
 use workbench::command::{Command, CommandSender};
-
-use crate::panel::Context;
-use crate::theme::space;
 
 /// Shows name, version and purpose.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {

@@ -1,14 +1,13 @@
 //! Asks when the mission starts, for schedules with dates.
 
 use egui::{Button, Key, RichText, TextEdit, Ui};
+use panels::Context;
 use report::calendar::Calendar;
 use rmpl::program::TimeUnit;
+use theme::space;
 use workbench::Dialog;
 use workbench::command::{Command, CommandSender};
 use workbench::state::documents::ScheduleForm;
-
-use crate::panel::Context;
-use crate::theme::space;
 
 /// Shows the question.
 pub(super) fn show(

@@ -1,10 +1,9 @@
 //! What a kind of problem means, with an example and its mending: the language's manual page.
 
 use egui::{Frame, Margin, RichText, ScrollArea, Ui};
+use panels::{Context, show_markdown};
+use theme::space;
 use workbench::command::{Command, CommandSender};
-
-use crate::panel::{Context, show_markdown};
-use crate::theme::space;
 
 /// Shows the manual page of `code`.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, code: &str, commands: &mut CommandSender) {
@@ -24,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, code: &str, commands: &mu
         show_markdown(ui, tokens, page.meaning);
         for (title, text) in [("Example", page.example), ("Mended", page.mended)] {
             ui.add_space(space::S);
-            ui.label(crate::theme::strong(title));
+            ui.label(theme::strong(title));
             Frame::new().fill(tokens.sunken).corner_radius(4.0).inner_margin(Margin::same(8)).show(
                 ui,
                 |ui| {

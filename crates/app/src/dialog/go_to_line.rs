@@ -1,10 +1,9 @@
 //! Asks for a line of the text.
 
 use egui::{Key, RichText, TextEdit, Ui};
+use panels::Context;
 use workbench::Dialog;
 use workbench::command::{Command, CommandSender, EditorCommand};
-
-use crate::panel::Context;
 
 /// Shows the question.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, line: &str, commands: &mut CommandSender) {

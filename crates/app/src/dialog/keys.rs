@@ -1,11 +1,11 @@
 //! The list of keys, made from the command registry.
 
 use egui::{Grid, RichText, ScrollArea, Ui};
+use panels::Context;
+use theme::space;
 use workbench::command::{Command, CommandSender, Group, all_commands};
 
 use crate::chord;
-use crate::panel::Context;
-use crate::theme::space;
 
 /// Shows the list.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {

@@ -9,11 +9,10 @@ mod palette;
 mod rename;
 
 use egui::{Align2, Area, Frame, Id, Order};
+use panels::Context;
+use theme::space;
 use workbench::Dialog;
 use workbench::command::{Command, CommandSender};
-
-use crate::panel::Context;
-use crate::theme::space;
 
 /// Shows the open dialog, if there is one.
 pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandSender) {

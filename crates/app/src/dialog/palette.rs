@@ -1,14 +1,14 @@
 //! The command palette: every command, panel and example, found by the letters of its name.
 
 use egui::{Key, Modifiers, RichText, Role, ScrollArea, Sense, TextEdit, Ui, WidgetInfo};
+use panels::Context;
+use theme::space;
 use workbench::Dialog;
 use workbench::PanelKind;
 use workbench::command::{self, Command, CommandSender};
 use workbench::mission_file::EXAMPLES;
 
 use crate::chord;
-use crate::panel::Context;
-use crate::theme::space;
 
 const WIDTH: f32 = 520.0;
 

@@ -1,10 +1,9 @@
 //! Asks for a new name of the name at the caret.
 
 use egui::{Key, RichText, TextEdit, Ui};
+use panels::Context;
 use workbench::Dialog;
 use workbench::command::{Command, CommandSender, EditorCommand};
-
-use crate::panel::Context;
 
 /// Shows the question.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, old: &str, name: &str, commands: &mut CommandSender) {

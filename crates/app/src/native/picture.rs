@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb::Database};
-
-use crate::theme;
+use theme;
 
 /// The picture of an SVG in pixels of this many across and down, in the fonts of the app.
 ///

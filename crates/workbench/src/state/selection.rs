@@ -8,7 +8,7 @@ use rmpl::Span;
 use rmpl::program::World;
 use serde_json::{Value, json};
 use smol_str::SmolStr;
-use tpn::{ArcId, CausalLink, DecisionId, LabelId, Network, NodeId, OccurrenceId, Ordering};
+use tpn::{ArcId, CausalLink, DecisionId, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind, Ordering};
 
 /// The one thing that is selected in all panels.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -1,0 +1,202 @@
+//! The automaton on screen: pan, zoom, point at things, press them to select their text.
+
+use egui::{Rect, Role, Sense, Ui, WidgetInfo};
+use hca::{Automaton, CompositeKind, LocationKind};
+use layout::{AutomatonDrawing, AutomatonItem};
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::state::TextCommand;
+
+use super::shapes::Scene;
+use super::{Shown, log, marks};
+use crate::Context;
+use crate::network::view::View;
+
+/// Where the drawing is scrolled to.
+#[derive(Default)]
+pub(super) struct Canvas {
+    view: View,
+    followed_action: u64,
+    /// What was pressed last.
+    pressed: Option<AutomatonItem>,
+}
+
+/// What was pressed, and whether twice.
+type Press = (AutomatonItem, bool);
+
+const WHEEL_ZOOM: f64 = 0.0022;
+const KEY_ZOOM: f64 = 1.3;
+/// How far from the pointer something may be to be pointed at, in points.
+const REACH: f64 = 6.0;
+/// What the legend takes of the height, in drawing units.
+const LEGEND_HEIGHT: f64 = 24.0;
+
+impl Canvas {
+    /// Shows the drawing in the rest of `ui`.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        context: &Context<'_>,
+        shown: Shown<'_>,
+        drawing: &AutomatonDrawing,
+        commands: &mut CommandSender,
+    ) {
+        let (panel, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        let name = format!(
+            "Automaton. {} locations. Step {}, marked: {}.",
+            shown.automaton.locations.len(),
+            shown.moment.upcoming.step,
+            log::marked_text(shown.automaton, shown.moment)
+        );
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
+        self.navigate(&response, panel, drawing, context);
+        let marked = marks::marked(shown.automaton, context.state.document.caret(), self.pressed);
+        let painter = ui.painter_at(panel);
+        Scene { painter: &painter, panel, view: &self.view, tokens: context.tokens, shown, marked: &marked }
+            .paint(drawing);
+        let on_button = self.buttons(ui, panel, shown, drawing);
+        let pointed = response
+            .hover_pos()
+            .and_then(|at| drawing.pick(self.view.drawing_point(panel, at), REACH / self.view.zoom()));
+        let on_drawing = pointed.filter(|_| response.clicked()).map(|item| (item, response.double_clicked()));
+        if let Some((item, is_double)) = on_button.or(on_drawing) {
+            self.press(shown.automaton, item, is_double, commands);
+        }
+        if response.clicked() || on_button.is_some() {
+            commands.send(Command::Activate(PanelKind::Automaton));
+        }
+        if let Some(text) = pointed.and_then(|item| describe(shown.automaton, item)) {
+            response.on_hover_text_at_pointer(text);
+        }
+    }
+
+    fn navigate(
+        &mut self,
+        response: &egui::Response,
+        panel: Rect,
+        drawing: &AutomatonDrawing,
+        context: &Context<'_>,
+    ) {
+        self.view.pan(response.drag_delta());
+        if let Some(pointer) = response.hover_pos() {
+            let (scroll, pinch) =
+                response.ctx.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            let factor = f64::from(pinch) * (f64::from(scroll) * WHEEL_ZOOM).exp();
+            if factor != 1.0 {
+                self.view.zoom_at(panel, pointer, factor);
+            }
+        }
+        match context.view_action(PanelKind::Automaton, &mut self.followed_action) {
+            None | Some(ViewAction::TopView | ViewAction::Follow) => {}
+            Some(ViewAction::ZoomIn) => self.view.zoom_at(panel, panel.center(), KEY_ZOOM),
+            Some(ViewAction::ZoomOut) => self.view.zoom_at(panel, panel.center(), 1.0 / KEY_ZOOM),
+            Some(ViewAction::ZoomReset) => self.view.reset_zoom(),
+            Some(ViewAction::Fit | ViewAction::FitSelection) => {
+                self.view.fit(panel, with_legend(drawing.bounds));
+            }
+        }
+        if self.view.is_fitted() {
+            self.view.fit(panel, with_legend(drawing.bounds));
+        }
+    }
+
+    /// Selects the text of something; pressed twice, brings the text to the front.
+    fn press(
+        &mut self,
+        automaton: &Automaton,
+        item: AutomatonItem,
+        is_double: bool,
+        commands: &mut CommandSender,
+    ) {
+        let Some(span) = marks::span_of(automaton, item) else { return };
+        self.pressed = Some(item);
+        // From its end to its start, so that the start is scrolled to.
+        let range = span.range();
+        let select = TextCommand::Select { anchor: range.end, head: range.start };
+        commands.send(if is_double { Command::Reveal(span) } else { Command::Text(select) });
+    }
+
+    /// Locations, guards and conditions as buttons, for pointers, keys and screen readers; answers which was pressed.
+    fn buttons(
+        &self,
+        ui: &mut Ui,
+        panel: Rect,
+        shown: Shown<'_>,
+        drawing: &AutomatonDrawing,
+    ) -> Option<Press> {
+        let automaton = shown.automaton;
+        let locations = drawing.locations.iter().map(|shape| (AutomatonItem::Location(shape.id), shape.rect));
+        let texts = drawing.texts.iter().map(|text| (text.owner, text.rect));
+        let texts = texts.filter(|(owner, _)| !matches!(owner, AutomatonItem::Location(_)));
+        let mut pressed = None;
+        for (at, (item, rect)) in texts.chain(locations).enumerate() {
+            let rect = self.view.screen_rect(panel, rect).intersect(panel);
+            let Some(text) = describe(automaton, item).filter(|_| rect.is_positive()) else { continue };
+            let is_marked = matches!(item, AutomatonItem::Location(id) if shown.moment.marking.contains(id));
+            let name = match item {
+                AutomatonItem::Location(id) => {
+                    let label = automaton.location(id).map_or("", |location| location.label.as_str());
+                    let standing = if is_marked { ", marked" } else { "" };
+                    format!("{}: {label}{standing}", automaton.location_name(id))
+                }
+                _ => text.clone(),
+            };
+            let response = ui.interact(rect, ui.scope_id().with(("automaton-item", at)), Sense::click());
+            response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_marked, &name));
+            if response.has_focus() {
+                let stroke = egui::Stroke::new(1.5, ui.visuals().selection.stroke.color);
+                ui.painter_at(panel).rect_stroke(rect.expand(3.0), 5.0, stroke, egui::StrokeKind::Outside);
+            }
+            if response.clicked() {
+                pressed = Some((item, response.double_clicked()));
+            }
+            response.on_hover_text(text);
+        }
+        pressed
+    }
+}
+
+/// The legend stands below the drawing.
+fn with_legend(mut bounds: layout::Rect) -> layout::Rect {
+    bounds.max.y += LEGEND_HEIGHT;
+    bounds
+}
+
+/// What something on the drawing means, in a sentence.
+fn describe(automaton: &Automaton, item: AutomatonItem) -> Option<String> {
+    match item {
+        AutomatonItem::Location(id) => {
+            let location = automaton.location(id)?;
+            let meaning = match location.kind {
+                LocationKind::Assert => "stays marked, and its goal pursued, until the goal holds",
+                LocationKind::Always => "starts its body at every step",
+                LocationKind::If => "chooses once",
+                LocationKind::Unless => "starts its body once unless something is known to hold",
+                LocationKind::When => "waits until something is known to hold, then starts its body once",
+                LocationKind::Whenever => "starts its body whenever something is known to hold",
+            };
+            Some(format!("{}: {}\n{meaning}", automaton.location_name(id), location.label))
+        }
+        AutomatonItem::Transition(id) => {
+            let transition = automaton.transitions.get(id.0 as usize)?;
+            let Some(guard) = transition.guard.and_then(|guard| automaton.guard(guard)) else {
+                return Some("Fires at every step".to_owned());
+            };
+            let verb = if guard.non_entailed { "is not known to hold" } else { "is known to hold" };
+            Some(format!("Fires when {} {verb}", guard.constraint))
+        }
+        AutomatonItem::Composite(id) => {
+            let composite = automaton.composite(id)?;
+            let Some(guard) = composite.maintenance.and_then(|test| automaton.guard(test)) else {
+                return match composite.kind {
+                    CompositeKind::Parallel => Some("All of this runs side by side".to_owned()),
+                    CompositeKind::Sequence => Some("What ends is followed by what is next".to_owned()),
+                    _ => None,
+                };
+            };
+            let verb =
+                if guard.non_entailed { "becomes known to hold" } else { "is no longer known to hold" };
+            Some(format!("All of this ends as soon as {} {verb}", guard.constraint))
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! The components as cards with their state machines, and what makes them fail.
+
+use egui::{DragValue, Frame, Margin, Rect, RichText, Stroke, Ui, UiBuilder, vec2};
+use plant::{ComponentId, Model};
+use theme::space;
+use workbench::command::{Command, CommandSender};
+use workbench::state::automaton::{AutomatonCommand, Luck, PlantMoment};
+
+use super::machine::{Machine, Standing};
+use super::title;
+use crate::Context;
+
+/// The state machines of a model's components, laid out.
+pub(super) struct Machines {
+    model: Model,
+    machines: Vec<Machine>,
+}
+
+const CARD_PADDING: Margin = Margin { left: 8, right: 8, top: 4, bottom: 7 };
+/// The height of a card's first line.
+const HEAD: f32 = 24.0;
+const HEAD_GAP: f32 = 5.0;
+const CARD_GAP: f32 = 6.0;
+
+impl Machines {
+    /// Lays the machines of a model out.
+    pub(super) fn new(ui: &Ui, model: &Model) -> Self {
+        let machines = model.components.iter().map(|component| Machine::new(ui, component)).collect();
+        Self { model: model.clone(), machines }
+    }
+
+    /// Whether they are those of `model`.
+    pub(super) fn are_of(&self, model: &Model) -> bool {
+        self.model == *model
+    }
+
+    /// Shows all cards, as many beside each other as there is room for.
+    pub(super) fn show(
+        &self,
+        ui: &mut Ui,
+        context: &Context<'_>,
+        plant: &PlantMoment,
+        commands: &mut CommandSender,
+    ) {
+        title(ui, context, "Components", "shade: how likely   ● true   dashed: fault");
+        luck(ui, context, commands);
+        let available = ui.available_width();
+        let mut row: Vec<(ComponentId, f32)> = Vec::new();
+        let mut used = 0.0;
+        for (id, machine) in self.model.component_ids().zip(&self.machines) {
+            let width = self.card_width(ui, id, machine).min(available);
+            if !row.is_empty() && used + CARD_GAP + width > available {
+                self.row(ui, context, plant, &row, commands);
+                row.clear();
+                used = 0.0;
+            }
+            used += width + if row.is_empty() { 0.0 } else { CARD_GAP };
+            row.push((id, width));
+        }
+        self.row(ui, context, plant, &row, commands);
+    }
+
+    fn card_width(&self, ui: &Ui, id: ComponentId, machine: &Machine) -> f32 {
+        let name = self.model.component(id).map_or("", |component| component.name.as_str());
+        let font = egui::TextStyle::Button.resolve(ui.style());
+        let text = ui.painter().layout_no_wrap(name.to_owned(), font, ui.visuals().text_color());
+        let head = text.size().x + 2.0 * ui.spacing().button_padding.x;
+        head.max(machine.width() + 2.0) + CARD_PADDING.sum().x
+    }
+
+    /// Cards beside each other share what is left of the width.
+    fn row(
+        &self,
+        ui: &mut Ui,
+        context: &Context<'_>,
+        plant: &PlantMoment,
+        row: &[(ComponentId, f32)],
+        commands: &mut CommandSender,
+    ) {
+        if row.is_empty() {
+            return;
+        }
+        let heights = row.iter().filter_map(|(id, _)| self.machines.get(id.0 as usize)).map(Machine::height);
+        let height = heights.fold(0.0, f32::max) + HEAD + HEAD_GAP + 2.0 + CARD_PADDING.sum().y;
+        let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), egui::Sense::hover());
+        let used = row.iter().map(|(_, width)| width).sum::<f32>() + CARD_GAP * (row.len() as f32 - 1.0);
+        let share = (rect.width() - used).max(0.0) / row.len() as f32;
+        let mut left = rect.left();
+        for &(id, width) in row {
+            let place = Rect::from_min_size(egui::pos2(left, rect.top()), vec2(width + share, height));
+            left = place.right() + CARD_GAP;
+            let mut inner = ui.new_child(UiBuilder::new().max_rect(place).id_salt(("component", id.0)));
+            self.card(&mut inner, context, plant, id, commands);
+        }
+        ui.add_space(CARD_GAP - ui.spacing().item_spacing.y);
+    }
+
+    fn card(
+        &self,
+        ui: &mut Ui,
+        context: &Context<'_>,
+        plant: &PlantMoment,
+        id: ComponentId,
+        commands: &mut CommandSender,
+    ) {
+        let tokens = context.tokens;
+        let standing = Standing::new(context, &self.model, plant, id);
+        let outline = match (standing.injected, standing.is_right()) {
+            (Some(_), _) => tokens.error,
+            (None, true) => tokens.line,
+            (None, false) => tokens.warning,
+        };
+        let frame = Frame::new()
+            .fill(tokens.raised)
+            .stroke(Stroke::new(1.0, outline))
+            .corner_radius(5.0)
+            .inner_margin(CARD_PADDING);
+        let size = ui.max_rect().size() - CARD_PADDING.sum();
+        frame.show(ui, |ui| {
+            ui.set_min_size(size);
+            ui.spacing_mut().item_spacing.y = HEAD_GAP;
+            ui.horizontal(|ui| {
+                ui.set_min_height(HEAD);
+                ui.spacing_mut().item_spacing.x = space::S;
+                fault_menu(ui, &self.model, id, standing.injected, commands);
+                let class = self.model.component(id).map_or("", |component| component.class.as_str());
+                let (note, color) = standing.injected.map_or_else(
+                    || (class.to_owned(), tokens.text_faint),
+                    |mode| (format!("→ {}", self.model.mode_name(id, mode)), tokens.error),
+                );
+                ui.add(egui::Label::new(RichText::new(note).small().color(color)).truncate());
+            });
+            if let Some(machine) = self.machines.get(id.0 as usize) {
+                machine.show(ui, context, &self.model, &standing, commands);
+            }
+        });
+    }
+}
+
+/// Whether components fail by chance, and with which luck.
+fn luck(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let luck = context.state.automaton.luck();
+    let usual = Luck { seed: context.state.automaton.chance.settings.seed, run: None };
+    ui.horizontal_wrapped(|ui| {
+        let mut is_on = luck.is_some();
+        if ui.checkbox(&mut is_on, "Components fail by chance").changed() {
+            commands.send(Command::Automaton(AutomatonCommand::SetLuck(is_on.then_some(usual))));
+        }
+        match luck {
+            Some(Luck { mut seed, run: None }) => {
+                let label = ui.label(RichText::new("Luck").color(context.tokens.text_muted)).id;
+                let field = DragValue::new(&mut seed).speed(0.1);
+                let field = ui.add(field).labelled_by(label);
+                if field.on_hover_text("With the same number, the same components fail").changed() {
+                    let luck = Some(Luck { seed, run: None });
+                    commands.send(Command::Automaton(AutomatonCommand::SetLuck(luck)));
+                }
+            }
+            Some(Luck { seed, run: Some(run) }) => {
+                let text = format!("as in run {} with seed {seed}", run + 1);
+                ui.label(RichText::new(text).color(context.tokens.text_muted));
+            }
+            None => {}
+        }
+    });
+}
+
+fn fault_menu(
+    ui: &mut Ui,
+    model: &Model,
+    id: ComponentId,
+    injected: Option<u8>,
+    commands: &mut CommandSender,
+) {
+    let Some(component) = model.component(id) else { return };
+    let menu = ui.menu_button(component.name.as_str(), |ui| {
+        ui.label(RichText::new("In this step, whatever is commanded, it comes into").small());
+        for (mode, data) in (0_u8..).zip(&component.modes) {
+            if ui.selectable_label(injected == Some(mode), data.name.as_str()).clicked() {
+                commands.send(Command::Automaton(AutomatonCommand::Inject(id, Some(mode))));
+                ui.close();
+            }
+        }
+        ui.separator();
+        if ui.selectable_label(injected.is_none(), "Let it behave").clicked() {
+            commands.send(Command::Automaton(AutomatonCommand::Inject(id, None)));
+            ui.close();
+        }
+    });
+    menu.response.on_hover_text(format!("{}, a {}: inject a fault", component.name, component.class));
+}
+
+/// A probability for reading: never rounded to certainty.
+pub(super) fn percent(probability: f64) -> String {
+    let percent = probability * 100.0;
+    match percent {
+        _ if percent >= 99.995 && probability < 1.0 => ">99.99 %".to_owned(),
+        _ if percent > 0.0 && percent < 0.005 => "<0.01 %".to_owned(),
+        _ if percent == 0.0 || percent == 100.0 => format!("{percent:.0} %"),
+        _ if (10.0..99.0).contains(&percent) => format!("{percent:.1} %"),
+        _ => format!("{percent:.2} %"),
+    }
+}

@@ -1,0 +1,86 @@
+//! The row of buttons above the automaton: stepping, playing, jumping, and zoom.
+
+use egui::{Align, Frame, Layout, Margin, RichText, Slider, Ui};
+use theme::icon::{self, Icon};
+use theme::space;
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::state::automaton::{AutomatonCommand, Program};
+
+use crate::Context;
+
+/// Shows the row.
+pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    Frame::new().inner_margin(Margin::symmetric(8, 3)).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = space::XS;
+            stepping(ui, context, commands);
+            ui.add_space(space::M);
+            jump(ui, context, commands);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let zoom = [
+                    (Icon::Fit, "Show the whole automaton", ViewAction::Fit),
+                    (Icon::Plus, "Closer", ViewAction::ZoomIn),
+                    (Icon::Minus, "Further away", ViewAction::ZoomOut),
+                ];
+                for (sign, name, action) in zoom {
+                    if icon::button(ui, context.tokens, sign, name).clicked() {
+                        commands.send(Command::ViewOf(PanelKind::Automaton, action));
+                    }
+                }
+                if matches!(context.state.automaton.program(), Some(Program::Unbound(_))) {
+                    let text = "No plant: what is known is typed in";
+                    ui.label(RichText::new(text).small().color(context.tokens.text_muted));
+                }
+            });
+        });
+    });
+    if let Some(trouble) = &context.state.automaton.trouble {
+        ui.label(RichText::new(format!("✗ The step cannot be taken: {trouble}")).color(context.tokens.error));
+    }
+}
+
+fn stepping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let state = &context.state.automaton;
+    let (sign, name) =
+        if state.is_playing { (Icon::Pause, "Pause the program") } else { (Icon::Play, "Run the program") };
+    let buttons = [
+        (Icon::ToStart, "Back to the start of the program", AutomatonCommand::GoTo(0), state.at() > 0),
+        (Icon::StepBack, "Step back", AutomatonCommand::Step(-1), state.at() > 0),
+        (sign, name, AutomatonCommand::TogglePlaying, true),
+        (Icon::StepForward, "Step", AutomatonCommand::Step(1), state.can_step()),
+    ];
+    for (sign, name, command, is_enabled) in buttons {
+        let is_on = sign == Icon::Pause;
+        let pressed =
+            ui.add_enabled_ui(is_enabled, |ui| icon::toggle(ui, context.tokens, sign, name, is_on).clicked());
+        if pressed.inner {
+            commands.send(Command::Activate(PanelKind::Automaton));
+            commands.send(Command::Automaton(command));
+        }
+    }
+    let reset = ui.button("Reset").on_hover_text("Forgets all steps, faults and changed observations");
+    if reset.clicked() {
+        commands.send(Command::Automaton(AutomatonCommand::Reset));
+    }
+}
+
+fn jump(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let state = &context.state.automaton;
+    let last = state.moments().len().max(1);
+    let mut step = state.at() + 1;
+    let name = ui.label(RichText::new("Step").color(context.tokens.text_muted)).id;
+    // The slider's handle stands out to the left.
+    ui.add_space(space::M);
+    let slider = ui.add(Slider::new(&mut step, 1..=last.max(2))).labelled_by(name);
+    if slider.changed() {
+        commands.send(Command::Automaton(AutomatonCommand::GoTo(step.saturating_sub(1))));
+    }
+    let note = match state.moment() {
+        Some(moment) if moment.marking.is_empty() => "ended".to_owned(),
+        Some(moment) => format!("{} marked", moment.marking.len()),
+        None => String::new(),
+    };
+    ui.add_space(space::S);
+    ui.label(RichText::new(note).color(context.tokens.text_muted));
+}

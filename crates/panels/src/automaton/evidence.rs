@@ -1,0 +1,203 @@
+//! What was observed, what is believed because of it, and why.
+
+use egui::{Align2, ComboBox, FontId, Grid, Rect, RichText, Sense, Ui, pos2, vec2};
+use num_traits::ToPrimitive as _;
+use plant::{Model, State, VariableId};
+use theme::{size, space};
+use workbench::command::{Command, CommandSender};
+use workbench::state::automaton::{AutomatonCommand, PlantMoment};
+
+use super::components::percent;
+use super::title;
+use crate::Context;
+
+/// So many of the most likely states are listed.
+const MOST_LISTED: usize = 6;
+
+/// Shows belief, observations and diagnosis.
+pub(super) fn show(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    model: &Model,
+    plant: &PlantMoment,
+    commands: &mut CommandSender,
+) {
+    belief(ui, context, model, plant);
+    history(ui, context, commands);
+    observations(ui, context, model, plant, commands);
+    diagnosis(ui, context, model, plant);
+    ui.add_space(space::L);
+}
+
+fn belief(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMoment) {
+    let count = plant.belief.len();
+    let note =
+        if count == 1 { "one state is possible".to_owned() } else { format!("{count} states are possible") };
+    title(ui, context, "Belief", &note);
+    let listed: Vec<(&State, f64)> = plant
+        .belief
+        .states()
+        .take(MOST_LISTED)
+        .map(|(state, probability)| (state, probability.to_f64().unwrap_or(0.0)))
+        .collect();
+    for (rank, (state, probability)) in listed.iter().enumerate() {
+        let text = if rank == 0 && count > 1 {
+            "most likely".to_owned()
+        } else if rank == 0 {
+            "as estimated above".to_owned()
+        } else {
+            difference(model, listed[0].0, state)
+        };
+        bar(ui, context, *probability, &text, *state == &plant.true_state, &model.describe(state));
+    }
+    if count > listed.len() {
+        let rest = 1.0 - listed.iter().map(|(_, probability)| probability).sum::<f64>();
+        let text = format!("and {} more, {}", count - listed.len(), percent(rest.max(0.0)));
+        ui.label(RichText::new(text).small().color(context.tokens.text_muted));
+    }
+}
+
+/// How a state differs from the most likely one.
+fn difference(model: &Model, most_likely: &State, state: &State) -> String {
+    let parts: Vec<String> = model
+        .component_ids()
+        .filter(|&id| most_likely.mode(id) != state.mode(id))
+        .filter_map(|id| {
+            Some(format!("{}={}", model.component(id)?.name, model.mode_name(id, state.mode(id))))
+        })
+        .collect();
+    parts.join(", ")
+}
+
+fn bar(ui: &mut Ui, context: &Context<'_>, probability: f64, text: &str, is_true: bool, state: &str) {
+    let tokens = context.tokens;
+    let (rect, response) =
+        ui.allocate_exact_size(vec2(ui.available_width(), space::ROW - 2.0), Sense::hover());
+    let name = format!("{} {text}", percent(probability));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &name));
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, 3.0, tokens.sunken);
+    let part = Rect::from_min_size(rect.min, vec2(rect.width() * probability as f32, rect.height()));
+    painter.rect_filled(part, 3.0, tokens.selection);
+    let font = FontId::proportional(size::SMALL);
+    let at = rect.left_center() + vec2(6.0, 0.0);
+    let sign = if is_true { "● " } else { "" };
+    painter.text(
+        at,
+        Align2::LEFT_CENTER,
+        format!("{}  {sign}{text}", percent(probability)),
+        font,
+        tokens.text,
+    );
+    response.on_hover_text(state);
+}
+
+/// One column per step: the states that were believed possible, most likely at the bottom.
+fn history(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let tokens = context.tokens;
+    let state = &context.state.automaton;
+    let moments = state.moments();
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 44.0), Sense::click());
+    let name = format!("Belief over {} steps", moments.len());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &name));
+    let painter = ui.painter_at(rect);
+    let width = (rect.width() / moments.len().max(1) as f32).min(26.0);
+    for (at, moment) in moments.iter().enumerate() {
+        let Some(plant) = &moment.plant else { continue };
+        let left = rect.left() + at as f32 * width;
+        let mut bottom = rect.bottom() - 12.0;
+        for (rank, (_, probability)) in plant.belief.states().take(MOST_LISTED).enumerate() {
+            let height =
+                (probability.to_f64().unwrap_or(0.0) as f32 * 30.0).max(if rank == 0 { 1.0 } else { 1.5 });
+            let part =
+                Rect::from_min_max(pos2(left + 1.0, bottom - height), pos2(left + width - 1.0, bottom));
+            painter.rect_filled(part, 0.0, tokens.series[rank % tokens.series.len()]);
+            bottom -= height;
+        }
+        let color = if at == state.at() { tokens.accent } else { tokens.text_faint };
+        let place = pos2(left + width / 2.0, rect.bottom());
+        painter.text(place, Align2::CENTER_BOTTOM, (at + 1).to_string(), FontId::proportional(9.0), color);
+    }
+    if response.clicked()
+        && let Some(pointer) = response.interact_pointer_pos()
+    {
+        let at = ((pointer.x - rect.left()) / width) as usize;
+        if at < moments.len() {
+            commands.send(Command::Automaton(AutomatonCommand::GoTo(at)));
+        }
+    }
+    response.on_hover_text("The most likely states before each step; press a step to go there");
+}
+
+fn observations(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    model: &Model,
+    plant: &PlantMoment,
+    commands: &mut CommandSender,
+) {
+    let Some(record) = &plant.record else {
+        title(ui, context, "Observations", "made at the end of each step");
+        return;
+    };
+    title(
+        ui,
+        context,
+        &format!("Observed in step {}", record.trace.step),
+        "change one to see the diagnosis change",
+    );
+    Grid::new("automaton-observations").num_columns(3).show(ui, |ui| {
+        for (&id, &value) in &record.observation.0 {
+            let Some(variable) = model.variables.get(id.0 as usize) else { continue };
+            let is_changed = record.input.observed.contains_key(&id);
+            let color = if is_changed { context.tokens.warning } else { context.tokens.text };
+            ui.label(RichText::new(variable.name.as_str()).color(color));
+            observation(ui, id, &variable.name, &variable.values, value, commands);
+            if is_changed
+                && ui.small_button("as shown").on_hover_text("What the plant really showed").clicked()
+            {
+                commands.send(Command::Automaton(AutomatonCommand::Observe(id, None)));
+            }
+            ui.end_row();
+        }
+    });
+}
+
+fn observation(
+    ui: &mut Ui,
+    id: VariableId,
+    name: &str,
+    values: &[smol_str::SmolStr],
+    now: u8,
+    commands: &mut CommandSender,
+) {
+    let text = values.get(usize::from(now)).map_or("?", |value| value.as_str());
+    let combo = ComboBox::from_id_salt(("observed", id.0)).selected_text(text).show_ui(ui, |ui| {
+        for (value, text) in (0_u8..).zip(values) {
+            if ui.selectable_label(value == now, text.as_str()).clicked() && value != now {
+                commands.send(Command::Automaton(AutomatonCommand::Observe(id, Some(value))));
+            }
+        }
+    });
+    combo.response.accessible_name(format!("{name} was observed to be"));
+}
+
+fn diagnosis(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMoment) {
+    let Some(record) = &plant.record else { return };
+    let tokens = context.tokens;
+    title(ui, context, "Diagnosis", "");
+    if record.is_unexplained {
+        let text = "Nothing that was believed possible explains the observation; it is left out of account.";
+        ui.label(RichText::new(text).color(tokens.error));
+    }
+    if record.conflicts.is_empty() && !record.is_unexplained {
+        ui.label(RichText::new("All is as expected.").color(tokens.good));
+    }
+    for conflict in &record.conflicts {
+        ui.label(RichText::new(conflict.describe(model)).color(tokens.warning));
+    }
+    if plant.belief.most_likely() != &plant.true_state {
+        let text = format!("In truth: {}", difference(model, plant.belief.most_likely(), &plant.true_state));
+        ui.label(RichText::new(text).small().color(tokens.text_muted));
+    }
+}

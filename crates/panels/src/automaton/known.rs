@@ -1,0 +1,36 @@
+//! What is known of the variables of a program without a plant: chosen by hand before each step.
+
+use egui::{ComboBox, Grid, RichText, Ui};
+use hca::{Automaton, VariableId};
+use workbench::command::{Command, CommandSender};
+use workbench::state::automaton::AutomatonCommand;
+
+use super::title;
+use crate::Context;
+
+/// Shows one choice per variable.
+pub(super) fn show(ui: &mut Ui, context: &Context<'_>, automaton: &Automaton, commands: &mut CommandSender) {
+    title(ui, context, "What is known at the end of this step", "the text has no plant to estimate it from");
+    let input = context.state.automaton.next_input();
+    Grid::new("automaton-known").num_columns(2).show(ui, |ui| {
+        for (variable, id) in automaton.variables.iter().zip(0..) {
+            ui.label(RichText::new(variable.name.as_str()).color(context.tokens.text));
+            let now = input.known.get(&id).copied();
+            let text = |value: Option<u32>| match value {
+                None => "not known",
+                Some(value) => {
+                    variable.values.get(value as usize).map_or("something else", |name| name.as_str())
+                }
+            };
+            let combo = ComboBox::from_id_salt(("known", id)).selected_text(text(now)).show_ui(ui, |ui| {
+                for value in std::iter::once(None).chain((0..variable.value_count()).map(Some)) {
+                    if ui.selectable_label(now == value, text(value)).clicked() {
+                        commands.send(Command::Automaton(AutomatonCommand::Know(VariableId(id), value)));
+                    }
+                }
+            });
+            combo.response.accessible_name(format!("{} is known to be", variable.name));
+            ui.end_row();
+        }
+    });
+}

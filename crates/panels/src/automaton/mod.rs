@@ -1,0 +1,247 @@
+//! A control program as it runs: the automaton with its marking, the plant as it is believed to be, and all steps.
+//!
+//! Components can be made to fail and observations be changed, to see what the executive makes of it.
+
+mod canvas;
+mod chance;
+mod components;
+mod controls;
+mod evidence;
+mod known;
+mod log;
+mod machine;
+mod marks;
+mod shapes;
+
+use egui::{Frame, Margin, RichText, ScrollArea, Ui, Vec2, vec2};
+use hca::Automaton;
+use layout::{AutomatonDrawing, approximate_text_width};
+use plant::Model;
+use theme::space;
+use workbench::command::CommandSender;
+use workbench::state::automaton::{Moment, Program};
+
+use crate::{Context, Panel, show_empty};
+
+/// The panel, with what concerns only it: the drawing and where it is scrolled to.
+#[derive(Default)]
+pub struct AutomatonPanel {
+    drawn: Option<Drawn>,
+    machines: Option<components::Machines>,
+    canvas: canvas::Canvas,
+    part: Part,
+    /// The step that the log was scrolled to last.
+    logged: usize,
+    /// Whether many runs were being made when the panel was last shown.
+    was_sampling: bool,
+}
+
+/// A part of the panel; the automaton and the steps stand beside the others where there is room.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Part {
+    /// The drawing.
+    #[default]
+    Automaton,
+    /// The plant at the moment that is looked at.
+    Plant,
+    /// Many runs with chance.
+    ManyRuns,
+    /// All steps.
+    Steps,
+}
+
+/// With less room than this, one part is shown at a time.
+const LEAST_ROOM: Vec2 = vec2(760.0, 320.0);
+
+/// The drawing of the automaton that was laid out last.
+struct Drawn {
+    automaton: Automaton,
+    drawing: AutomatonDrawing,
+}
+
+/// What the parts of the panel show.
+#[derive(Clone, Copy)]
+struct Shown<'a> {
+    program: &'a Program,
+    automaton: &'a Automaton,
+    moment: &'a Moment,
+}
+
+impl Panel for AutomatonPanel {
+    fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+        let state = &context.state.automaton;
+        let Some(program) = state.program() else {
+            show_empty(ui, context, "The text is a mission. A control program shows its automaton here.");
+            return;
+        };
+        let Some((automaton, moment)) = program.automaton().zip(state.moment()) else {
+            match program {
+                Program::Plant(_) => show_empty(
+                    ui,
+                    context,
+                    "The text describes a plant. Add a program below it to see the plant controlled.",
+                ),
+                _ => show_empty(ui, context, "The program has errors. See the problems."),
+            }
+            return;
+        };
+        let shown = Shown { program, automaton, moment };
+        controls::show(ui, context, commands);
+        let is_sampling = context.state.automaton.chance.is_running();
+        if is_sampling && !self.was_sampling {
+            self.part = Part::ManyRuns;
+        }
+        self.was_sampling = is_sampling;
+        self.layout(automaton);
+        let room = ui.available_size();
+        if room.x < LEAST_ROOM.x || room.y < LEAST_ROOM.y {
+            self.one_part(ui, context, shown, commands);
+            return;
+        }
+        let frame = Frame::new().fill(context.tokens.surface).inner_margin(Margin::symmetric(8, 4));
+        egui::Panel::right("automaton-plant")
+            .resizable(true)
+            .default_size((room.x * 0.36).clamp(300.0, 356.0))
+            .frame(frame)
+            .show(ui, |ui| self.beside(ui, context, shown, commands));
+        egui::Panel::bottom("automaton-log")
+            .resizable(true)
+            .default_size(170.0)
+            .frame(frame)
+            .show(ui, |ui| log::show(ui, context, shown, &mut self.logged, commands));
+        self.drawing(ui, context, shown, commands);
+    }
+}
+
+impl AutomatonPanel {
+    /// One part at a time, with a row to choose it.
+    fn one_part(
+        &mut self,
+        ui: &mut Ui,
+        context: &Context<'_>,
+        shown: Shown<'_>,
+        commands: &mut CommandSender,
+    ) {
+        let has_plant = shown.moment.plant.is_some();
+        let parts = [
+            (Part::Automaton, "Automaton", true),
+            (Part::Plant, if has_plant { "Plant" } else { "What is known" }, true),
+            (Part::ManyRuns, "Many runs", has_plant),
+            (Part::Steps, "Steps", true),
+        ];
+        let margin = Margin::symmetric(8, 2);
+        Frame::new().inner_margin(margin).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                for (part, name, _) in parts.into_iter().filter(|(.., is_there)| *is_there) {
+                    ui.selectable_value(&mut self.part, part, name);
+                }
+            });
+        });
+        match self.part {
+            Part::Automaton => self.drawing(ui, context, shown, commands),
+            Part::Plant | Part::ManyRuns => {
+                Frame::new().inner_margin(margin).show(ui, |ui| self.side(ui, context, shown, commands));
+            }
+            Part::Steps => {
+                Frame::new().inner_margin(margin).show(ui, |ui| {
+                    log::show(ui, context, shown, &mut self.logged, commands);
+                });
+            }
+        }
+    }
+
+    fn drawing(
+        &mut self,
+        ui: &mut Ui,
+        context: &Context<'_>,
+        shown: Shown<'_>,
+        commands: &mut CommandSender,
+    ) {
+        if let Some(drawn) = &self.drawn {
+            self.canvas.show(ui, context, shown, &drawn.drawing, commands);
+        }
+    }
+
+    /// What stands beside the automaton.
+    fn beside(&mut self, ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
+        if shown.moment.plant.is_some() {
+            ui.horizontal(|ui| {
+                for (part, name) in [(Part::Plant, "Plant"), (Part::ManyRuns, "Many runs")] {
+                    let is_shown = (self.part == Part::ManyRuns) == (part == Part::ManyRuns);
+                    if ui.selectable_label(is_shown, name).clicked() {
+                        self.part = part;
+                    }
+                }
+            });
+        }
+        self.side(ui, context, shown, commands);
+    }
+
+    /// The plant, or many runs of it, or what is known where there is no plant.
+    fn side(&mut self, ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
+        let plant = shown.program.model().zip(shown.moment.plant.as_ref());
+        let is_sampled = plant.is_some() && self.part == Part::ManyRuns;
+        ScrollArea::vertical().id_salt(("automaton-side", is_sampled)).auto_shrink(false).show(ui, |ui| {
+            if is_sampled {
+                chance::show(ui, context, commands);
+                return;
+            }
+            goals(ui, context, shown);
+            match plant {
+                Some((model, plant)) => {
+                    self.machines(ui, model).show(ui, context, plant, commands);
+                    evidence::show(ui, context, model, plant, commands);
+                }
+                None => known::show(ui, context, shown.automaton, commands),
+            }
+        });
+    }
+
+    fn machines(&mut self, ui: &Ui, model: &Model) -> &components::Machines {
+        let known = self.machines.take().filter(|machines| machines.are_of(model));
+        self.machines.insert(known.unwrap_or_else(|| components::Machines::new(ui, model)))
+    }
+
+    fn layout(&mut self, automaton: &Automaton) {
+        if self.drawn.as_ref().is_some_and(|drawn| drawn.automaton == *automaton) {
+            return;
+        }
+        let drawing = layout::automaton(automaton, &approximate_text_width);
+        self.drawn = Some(Drawn { automaton: automaton.clone(), drawing });
+    }
+}
+
+/// The title of a part.
+fn title(ui: &mut Ui, context: &Context<'_>, text: &str, note: &str) {
+    ui.add_space(space::S);
+    ui.horizontal_wrapped(|ui| {
+        ui.label(theme::strong(text).color(context.tokens.text));
+        if !note.is_empty() {
+            ui.label(RichText::new(note).small().color(context.tokens.text_muted));
+        }
+    });
+}
+
+/// What the next step wants, and what it commands for that.
+fn goals(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>) {
+    let tokens = context.tokens;
+    let moment = shown.moment;
+    if moment.marking.is_empty() {
+        title(ui, context, "The program has ended", "nothing is marked");
+        return;
+    }
+    let has_plant = moment.plant.is_some();
+    let note = if has_plant { "what is wanted, and what is commanded" } else { "what is wanted" };
+    title(ui, context, &format!("Step {}", moment.upcoming.step), note);
+    let goals = moment.upcoming.goals.join(", ");
+    let goals = if goals.is_empty() { "no goals".to_owned() } else { goals };
+    ui.label(RichText::new(format!("Goals: {goals}")).color(tokens.text));
+    let Some((model, plant)) = shown.program.model().zip(moment.plant.as_ref()) else { return };
+    if let Some(commands) = &plant.next_commands {
+        let text = format!("Commands: {}", log::commands_text(model, commands));
+        ui.label(RichText::new(text).color(tokens.accent));
+    }
+    for (goal, reason) in &plant.unachievable {
+        ui.label(RichText::new(format!("✗ {goal} is not pursued: {reason}")).color(tokens.warning));
+    }
+}

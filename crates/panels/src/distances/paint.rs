@@ -1,0 +1,331 @@
+//! Paints a distance graph: names in boxes, bounds as curves with their weights, the negative cycle over all.
+
+use egui::{Align2, Color32, FontId, Pos2, Rect, Shape, Stroke, StrokeKind, vec2};
+use kirk::Constraint;
+use layout::Point;
+use layout::metrics::TEXT_SIZE;
+use rmpl::Rational;
+use theme::{Tokens, size};
+use tpn::Network;
+use workbench::state::Selection;
+use workbench::state::search::Focus;
+use workbench::state::selection::node_name;
+use workbench::time_text;
+
+use super::arrange::Arranged;
+use super::graph::{DistanceGraph, Edge, Vertex};
+use crate::network::view::View;
+
+/// Everything that painting needs.
+pub struct Scene<'a> {
+    /// Paints inside the panel only.
+    pub painter: &'a egui::Painter,
+    /// The panel.
+    pub panel: Rect,
+    /// Where it is looked at from.
+    pub view: &'a View,
+    /// The graph.
+    pub graph: &'a DistanceGraph,
+    /// Its places.
+    pub arranged: &'a Arranged,
+    /// The network that it is of.
+    pub network: &'a Network,
+    /// The colours.
+    pub tokens: &'a Tokens,
+    /// What is selected.
+    pub selection: &'a Selection,
+    /// What the step is about.
+    pub focus: &'a Focus,
+}
+
+/// What the pointer is over, by position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pointed {
+    /// A vertex.
+    Vertex(usize),
+    /// An edge.
+    Edge(usize),
+}
+
+/// The height of a box with a name.
+const BOX_HEIGHT: f64 = 24.0;
+/// The radius of a vertex without a name.
+const DOT: f64 = 6.0;
+/// Below this size in points, texts are left out.
+const LEAST_TEXT: f32 = 6.5;
+
+/// How wide a vertex is drawn.
+pub fn width(vertex: &Vertex) -> f64 {
+    if vertex.name.is_empty() {
+        return 2.0 * DOT;
+    }
+    // Measured in another size than the one that is drawn; the shape of letters is the same.
+    f64::from(layout::approximate_text_width(&vertex.name)) * f64::from(size::BODY) / TEXT_SIZE + 18.0
+}
+
+impl Scene<'_> {
+    /// Paints everything.
+    pub fn paint(&self, pointed: Option<Pointed>) {
+        let has_cycle = self.graph.edges.iter().any(|edge| edge.is_in_cycle);
+        let mut edges: Vec<usize> = (0..self.graph.edges.len()).collect();
+        edges.sort_by_key(|&edge| (self.graph.edges[edge].is_in_cycle, self.is_new(&self.graph.edges[edge])));
+        for &edge in &edges {
+            self.edge(edge, has_cycle, pointed == Some(Pointed::Edge(edge)));
+        }
+        for vertex in 0..self.graph.vertices.len() {
+            self.vertex(vertex, pointed == Some(Pointed::Vertex(vertex)));
+        }
+        // Weights lie over the boxes' edges, never under them.
+        let mut taken: Vec<Rect> = (0..self.graph.vertices.len()).map(|vertex| self.frame(vertex)).collect();
+        for &edge in edges.iter().rev() {
+            self.weight(edge, has_cycle, &mut taken);
+        }
+    }
+
+    /// What is at a place of the screen.
+    pub fn pointed(&self, pointer: Pos2) -> Option<Pointed> {
+        if let Some(vertex) =
+            (0..self.graph.vertices.len()).find(|&vertex| self.frame(vertex).contains(pointer))
+        {
+            return Some(Pointed::Vertex(vertex));
+        }
+        let distance = |edge: usize| {
+            let points = self.curve(edge);
+            let segments = points.windows(2).map(|pair| distance_to_segment(pointer, pair[0], pair[1]));
+            segments.fold(f32::INFINITY, f32::min)
+        };
+        let all = (0..self.graph.edges.len()).map(|edge| (distance(edge), edge));
+        let nearest = all.min_by(|one, other| one.0.total_cmp(&other.0));
+        nearest.filter(|(distance, _)| *distance < 5.0).map(|(_, edge)| Pointed::Edge(edge))
+    }
+
+    /// What is said about it.
+    pub fn describe(&self, pointed: Pointed) -> Vec<String> {
+        match pointed {
+            Pointed::Vertex(vertex) => {
+                let nodes = &self.graph.vertices[vertex].nodes;
+                nodes.iter().map(|&node| node_name(self.network, node)).collect()
+            }
+            Pointed::Edge(edge) => {
+                let edge = &self.graph.edges[edge];
+                let name = |vertex: usize| {
+                    let vertex = &self.graph.vertices[vertex];
+                    vertex.nodes.first().map(|&node| node_name(self.network, node)).unwrap_or_default()
+                };
+                let (from, to) = (name(edge.from), name(edge.to));
+                let weight = time_text::time(edge.weight);
+                let why = match edge.constraint {
+                    Constraint::Lower(_) => "a least duration",
+                    Constraint::Upper(_) => "a greatest duration",
+                    Constraint::Link(_) => "a causal link",
+                    Constraint::Order(_) => "an ordering",
+                };
+                vec![format!("{to} is at most {weight} after {from}"), why.to_owned()]
+            }
+        }
+    }
+
+    /// What it selects.
+    pub fn selection_of(&self, pointed: Pointed) -> Selection {
+        match pointed {
+            Pointed::Vertex(vertex) => {
+                let nodes = &self.graph.vertices[vertex].nodes;
+                nodes.first().map_or(Selection::None, |&node| Selection::Node(node))
+            }
+            Pointed::Edge(edge) => match self.graph.edges[edge].constraint {
+                Constraint::Lower(arc) | Constraint::Upper(arc) => Selection::Arc(arc),
+                Constraint::Link(link) => Selection::Link(link),
+                Constraint::Order(order) => Selection::Ordering(order),
+            },
+        }
+    }
+
+    fn frame(&self, vertex: usize) -> Rect {
+        let zoom = self.view.zoom() as f32;
+        let center = self.view.screen_point(self.panel, self.arranged.places[vertex]);
+        let vertex = &self.graph.vertices[vertex];
+        let height = if vertex.name.is_empty() { 2.0 * DOT } else { BOX_HEIGHT };
+        Rect::from_center_size(center, vec2(width(vertex) as f32, height as f32) * zoom)
+    }
+
+    /// Whether the step that is looked at is about a bound.
+    fn is_new(&self, edge: &Edge) -> bool {
+        match edge.constraint {
+            Constraint::Lower(arc) | Constraint::Upper(arc) => self.focus.arcs.contains(&arc),
+            Constraint::Link(link) => self.focus.labels.contains(&link.ask),
+            Constraint::Order(order) => self.focus.labels.contains(&order.first),
+        }
+    }
+
+    fn is_selected(&self, edge: &Edge) -> bool {
+        match (edge.constraint, self.selection) {
+            (Constraint::Lower(arc) | Constraint::Upper(arc), Selection::Arc(selected)) => arc == *selected,
+            (Constraint::Lower(arc) | Constraint::Upper(arc), Selection::Occurrence(selected)) => {
+                self.network.arcs.get(arc.index()).is_some_and(|arc| arc.occurrence == Some(*selected))
+            }
+            (Constraint::Link(link), Selection::Link(selected)) => link == *selected,
+            (Constraint::Order(order), Selection::Ordering(selected)) => order == *selected,
+            _ => false,
+        }
+    }
+
+    fn color(&self, edge: &Edge, has_cycle: bool) -> Color32 {
+        let tokens = self.tokens;
+        if edge.is_in_cycle {
+            return tokens.threat;
+        }
+        let color = match edge.constraint {
+            _ if self.is_selected(edge) || self.is_new(edge) => tokens.accent,
+            Constraint::Link(_) => tokens.link,
+            Constraint::Order(_) => tokens.ordering,
+            Constraint::Upper(_) => tokens.path,
+            Constraint::Lower(_) => tokens.text_muted,
+        };
+        if has_cycle { color.gamma_multiply(0.4) } else { color }
+    }
+
+    fn edge(&self, edge: usize, has_cycle: bool, is_pointed: bool) {
+        let points = self.curve(edge);
+        let edge = &self.graph.edges[edge];
+        let color = self.color(edge, has_cycle);
+        let strong = edge.is_in_cycle || self.is_new(edge) || self.is_selected(edge) || is_pointed;
+        let stroke = Stroke::new(if strong { 2.4 } else { 1.1 }, color);
+        let dashed = matches!(edge.constraint, Constraint::Lower(_)) && !edge.is_in_cycle;
+        if dashed {
+            self.painter.extend(Shape::dashed_line(&points, stroke, 5.0, 3.0));
+        } else {
+            self.painter.add(Shape::line(points.clone(), stroke));
+        }
+        self.arrow(edge.to, &points, color);
+    }
+
+    /// The arrow's head, where the curve meets the box that it leads to.
+    fn arrow(&self, to: usize, points: &[Pos2], color: Color32) {
+        let frame = self.frame(to).expand(1.0);
+        let Some(enters) = points.windows(2).find(|pair| !frame.contains(pair[0]) && frame.contains(pair[1]))
+        else {
+            return;
+        };
+        // The point on the frame, by halving.
+        let (mut outside, mut inside) = (enters[0], enters[1]);
+        for _ in 0..8 {
+            let middle = outside + (inside - outside) / 2.0;
+            if frame.contains(middle) { inside = middle } else { outside = middle }
+        }
+        let along = (enters[1] - enters[0]).normalized();
+        let length = (7.0 * self.view.zoom() as f32).clamp(4.0, 9.0);
+        let back = outside - along * length;
+        let side = along.rot90() * length * 0.42;
+        self.painter.add(Shape::convex_polygon(vec![outside, back + side, back - side], color, Stroke::NONE));
+    }
+
+    fn vertex(&self, vertex: usize, is_pointed: bool) {
+        let tokens = self.tokens;
+        let frame = self.frame(vertex);
+        let it = &self.graph.vertices[vertex];
+        let owner = |node: tpn::NodeId| {
+            let events =
+                self.network.nodes.get(node.index()).map(|node| node.events.as_slice()).unwrap_or_default();
+            matches!(self.selection, Selection::Occurrence(selected) if events.iter().any(|it| it.occurrence == *selected))
+        };
+        let is_selected =
+            it.nodes.iter().any(|&node| *self.selection == Selection::Node(node) || owner(node));
+        let is_in_cycle = self
+            .graph
+            .edges
+            .iter()
+            .any(|edge| edge.is_in_cycle && (edge.from == vertex || edge.to == vertex));
+        let is_new = it.nodes.iter().any(|node| self.focus.nodes.contains(node));
+        let (line, width) = match (is_in_cycle, is_selected || is_pointed || is_new) {
+            (true, _) => (tokens.threat, 2.0),
+            (_, true) => (tokens.accent, 2.0),
+            _ => (tokens.line_strong, 1.0),
+        };
+        let fill = if is_selected { tokens.accent_soft } else { tokens.raised };
+        let round = if it.name.is_empty() { frame.height() / 2.0 } else { 6.0 };
+        self.painter.rect(frame, round, fill, Stroke::new(width, line), StrokeKind::Middle);
+        let font_size = size::BODY * self.view.zoom() as f32;
+        if !it.name.is_empty() && font_size >= LEAST_TEXT {
+            let mut job = egui::text::LayoutJob::simple_singleline(
+                it.name.clone(),
+                FontId::proportional((font_size * 2.0).floor() / 2.0),
+                tokens.text,
+            );
+            job.wrap = egui::text::TextWrapping::truncate_at_width(frame.width() - 4.0);
+            let galley = self.painter.layout_job(job);
+            self.painter.galley(frame.center() - galley.size() / 2.0, galley, tokens.text);
+        }
+    }
+
+    /// The weight of an edge on its curve, where it covers nothing else.
+    fn weight(&self, edge: usize, has_cycle: bool, taken: &mut Vec<Rect>) {
+        let font_size = ((size::SMALL + 1.0) * self.view.zoom() as f32).min(14.0);
+        if font_size < LEAST_TEXT {
+            return;
+        }
+        let points = self.curve(edge);
+        let edge = &self.graph.edges[edge];
+        let color = self.color(edge, has_cycle);
+        let text = time_text::time(edge.weight);
+        let font = FontId::proportional((font_size * 2.0).floor() / 2.0);
+        let galley = self.painter.layout_no_wrap(text, font, color);
+        // Forward and backward edges lie side by side: their weights stand at different places along them.
+        let first = if edge.weight > Rational::default() { 0.42 } else { 0.58 };
+        for along in [first, 0.5, 0.34, 0.66, 0.26, 0.74, 0.18, 0.82] {
+            let place = Align2::CENTER_CENTER.anchor_size(at_fraction(&points, along), galley.size());
+            let fits = taken.iter().all(|other| !other.intersects(place));
+            if fits {
+                self.painter.rect_filled(place.expand2(vec2(3.0, 0.0)), 3.0, self.tokens.surface);
+                self.painter.galley(place.min, galley, color);
+                taken.push(place.expand2(vec2(3.0, 0.0)));
+                return;
+            }
+        }
+    }
+
+    /// An edge on the screen, as a line of many points.
+    fn curve(&self, edge: usize) -> Vec<Pos2> {
+        let way: Vec<Point> = self.arranged.ways.get(edge).cloned().unwrap_or_default();
+        let mut points = Vec::new();
+        for (index, pair) in way.windows(2).enumerate() {
+            let (from, to) = (pair[0], pair[1]);
+            // Level at the places it passes, so that a long edge is one smooth curve.
+            let bend = (to.x - from.x) * 0.5;
+            for step in usize::from(index > 0)..=12 {
+                let along = step as f64 / 12.0;
+                let keep = 1.0 - along;
+                let x = from.x * keep.powi(3)
+                    + 3.0 * (from.x + bend) * keep * keep * along
+                    + 3.0 * (to.x - bend) * keep * along * along
+                    + to.x * along.powi(3);
+                let y = from.y * keep.powi(3)
+                    + 3.0 * from.y * keep * keep * along
+                    + 3.0 * to.y * keep * along * along
+                    + to.y * along.powi(3);
+                points.push(self.view.screen_point(self.panel, Point::new(x, y)));
+            }
+        }
+        points
+    }
+}
+
+/// The point of a line that is so far along it.
+fn at_fraction(points: &[Pos2], fraction: f32) -> Pos2 {
+    let length: f32 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+    let mut rest = length * fraction;
+    for pair in points.windows(2) {
+        let part = pair[0].distance(pair[1]);
+        if rest <= part && part > 0.0 {
+            return pair[0] + (pair[1] - pair[0]) * (rest / part);
+        }
+        rest -= part;
+    }
+    points.last().copied().unwrap_or(Pos2::ZERO)
+}
+
+fn distance_to_segment(point: Pos2, from: Pos2, to: Pos2) -> f32 {
+    let along = to - from;
+    let length = along.length_sq();
+    let at = if length > 0.0 { ((point - from).dot(along) / length).clamp(0.0, 1.0) } else { 0.0 };
+    point.distance(from + along * at)
+}

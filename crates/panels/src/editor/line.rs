@@ -1,0 +1,126 @@
+//! One line of text as a galley, with its colours and with what an input method is composing in it.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use egui::text::{CCursor, LayoutJob, TextFormat};
+use egui::{Color32, FontId, Galley, Stroke, Ui};
+use rmpl::Span;
+
+use crate::Context;
+
+/// A laid-out line.
+pub(crate) struct LineLayout {
+    galley: Arc<Galley>,
+    /// The bytes of the document that the line shows.
+    bytes: Range<usize>,
+    /// Where composed text is inserted, in bytes of the document, and how long it is.
+    composed: Option<(usize, usize)>,
+}
+
+impl LineLayout {
+    /// Lays out the line that covers `bytes`. `colors` are coloured parts of the text in textual order.
+    pub(crate) fn new(
+        ui: &Ui,
+        context: &Context<'_>,
+        font: &FontId,
+        bytes: Range<usize>,
+        colors: &[(Span, Color32)],
+    ) -> Self {
+        let document = &context.state.document;
+        let text = document.text().get(bytes.clone()).unwrap_or_default();
+        let plain = |color| TextFormat::simple(font.clone(), color);
+        let mut job = LayoutJob::default();
+        let mut done = bytes.start;
+        let mut append = |range: Range<usize>, format: TextFormat| {
+            if let Some(part) = document.text().get(range.clone()).filter(|part| !part.is_empty()) {
+                job.append(part, 0.0, format);
+            }
+        };
+        let first = colors.partition_point(|(span, _)| span.end as usize <= bytes.start);
+        for (span, color) in colors[first..].iter().take_while(|(span, _)| (span.start as usize) < bytes.end)
+        {
+            let start = (span.start as usize).max(done);
+            let end = (span.end as usize).min(bytes.end);
+            if start < end {
+                append(done..start, plain(context.tokens.text));
+                append(start..end, plain(*color));
+                done = end;
+            }
+        }
+        append(done..bytes.end, plain(context.tokens.text));
+        let composed = Self::compose(context, &bytes, &mut job, font);
+        if job.text.is_empty() {
+            job.append("", 0.0, plain(context.tokens.text));
+        }
+        job.keep_trailing_whitespace = true;
+        debug_assert!(job.text.len() >= text.len());
+        Self { galley: ui.fonts_mut(|fonts| fonts.layout_job(job)), bytes, composed }
+    }
+
+    /// Inserts composed text at the caret, if it stands in this line.
+    fn compose(
+        context: &Context<'_>,
+        bytes: &Range<usize>,
+        job: &mut LayoutJob,
+        font: &FontId,
+    ) -> Option<(usize, usize)> {
+        let text = &context.state.editor.composition;
+        let head = context.state.document.caret().head;
+        if text.is_empty() || !(bytes.start..=bytes.end).contains(&head) {
+            return None;
+        }
+        let before = std::mem::take(job);
+        let at = head - bytes.start;
+        let mut format = TextFormat::simple(font.clone(), context.tokens.text);
+        format.underline = Stroke::new(1.0, context.tokens.accent);
+        let mut inserted = false;
+        for section in &before.sections {
+            let range = section.byte_range.start.0..section.byte_range.end.0;
+            let split = at.clamp(range.start, range.end);
+            job.append(&before.text[range.start..split], 0.0, section.format.clone());
+            if !inserted && at <= range.end {
+                job.append(text, 0.0, format.clone());
+                inserted = true;
+            }
+            job.append(&before.text[split..range.end], 0.0, section.format.clone());
+        }
+        if !inserted {
+            job.append(text, 0.0, format);
+        }
+        Some((head, text.len()))
+    }
+
+    /// The galley.
+    pub(crate) fn galley(&self) -> &Arc<Galley> {
+        &self.galley
+    }
+
+    /// How far right of the line's start a byte of the document stands; behind composed text at its place.
+    pub(crate) fn x_of(&self, context: &Context<'_>, offset: usize) -> f32 {
+        let offset = offset.clamp(self.bytes.start, self.bytes.end);
+        let text = context.state.document.text();
+        let mut characters = text.get(self.bytes.start..offset).map_or(0, |before| before.chars().count());
+        if self.composed.is_some_and(|(at, _)| offset >= at) {
+            characters += context.state.editor.composition.chars().count();
+        }
+        self.galley.pos_from_cursor(CCursor::new(characters)).left()
+    }
+
+    /// The byte of the document nearest to `x`, measured from the line's start.
+    pub(crate) fn offset_at(&self, context: &Context<'_>, x: f32) -> usize {
+        let cursor = self.galley.cursor_from_pos(egui::vec2(x, 1.0));
+        let mut character = cursor.index.0;
+        let text = context.state.document.text().get(self.bytes.clone()).unwrap_or_default();
+        if let Some((at, _)) = self.composed {
+            let before = context.state.document.text().get(self.bytes.start..at);
+            let before = before.map_or(0, |before| before.chars().count());
+            let composed = context.state.editor.composition.chars().count();
+            if character > before {
+                character = character.saturating_sub(composed).max(before);
+            }
+        }
+        let found = text.char_indices().nth(character).map(|(at, _)| at);
+        self.bytes.start + found.unwrap_or(text.len())
+    }
+}

@@ -1,0 +1,134 @@
+//! Disturbances by hand: what can still go otherwise than planned, and what was made to.
+
+use egui::{Align, DragValue, Layout, RichText, Ui};
+use executive::Disturbance;
+use rmpl::Rational;
+use theme::icon::{self, Icon};
+use tpn::{OccurrenceId, OccurrenceKind};
+use workbench::command::{Command, CommandSender};
+use workbench::state::execution::{ExecutionCommand, Pending, disturbance_text, exact_time};
+use workbench::time_text;
+
+use super::components::Components;
+use super::vehicles::Vehicles;
+use super::{Shown, now};
+use crate::Context;
+use crate::plan::section;
+
+/// What the buttons beside a name take, in points.
+const BUTTONS_WIDTH: f32 = 150.0;
+
+/// How much longer or later, in mission units, and what is meant to happen to vehicles and components.
+pub(super) struct Disturb {
+    amount: f64,
+    vehicles: Vehicles,
+    components: Components,
+}
+
+impl Default for Disturb {
+    fn default() -> Self {
+        Self { amount: 30.0, vehicles: Vehicles::default(), components: Components::default() }
+    }
+}
+
+impl Disturb {
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        context: &Context<'_>,
+        shown: Shown<'_>,
+        commands: &mut CommandSender,
+    ) {
+        let moment = shown.moment;
+        let all: Vec<&Pending> =
+            moment.under_way.iter().chain(&moment.holding).chain(&moment.to_come).collect();
+        let unit = context.snapshot.map(|snapshot| time_text::unit(snapshot.program.options.time_unit));
+        if !all.is_empty() {
+            section(ui, context, "Let something go wrong", "from now on");
+            ui.horizontal(|ui| {
+                let name = ui.label(RichText::new("longer or later by").color(context.tokens.text_muted)).id;
+                let field = DragValue::new(&mut self.amount).range(0.0..=1e6).speed(0.5).max_decimals(1);
+                ui.add(field.suffix(suffix(unit))).labelled_by(name);
+            });
+            for &pending in &all {
+                ui.horizontal(|ui| self.row(ui, shown, pending, commands));
+            }
+            self.vehicles.show(ui, context, commands);
+            self.components.show(ui, context, shown, &all, commands);
+        }
+        made(ui, context, commands);
+    }
+
+    fn row(&self, ui: &mut Ui, shown: Shown<'_>, pending: &Pending, commands: &mut CommandSender) {
+        let id = pending.occurrence;
+        let name = now::name(shown, id);
+        let Some(occurrence) = shown.network.occurrences.get(id.index()) else { return };
+        let name_size =
+            egui::vec2((ui.available_width() - BUTTONS_WIDTH).max(60.0), ui.spacing().interact_size.y);
+        ui.allocate_ui_with_layout(name_size, Layout::left_to_right(Align::Center), |ui| {
+            ui.set_min_width(name_size.x);
+            ui.add(egui::Label::new(&name).truncate());
+        });
+        ui.horizontal(|ui| {
+            let mut button = |ui: &mut Ui, text: &str, make: &dyn Fn() -> ExecutionCommand| {
+                let response = ui.small_button(text);
+                response.widget_info(|| {
+                    egui::WidgetInfo::labeled(egui::Role::Button, true, format!("{text} {name}"))
+                });
+                if response.clicked() {
+                    commands.send(Command::Execution(make()));
+                }
+            };
+            let amount = exact_time(self.amount.max(0.0));
+            if occurrence.kind == OccurrenceKind::Assertion {
+                button(ui, "Withdraw", &|| ExecutionCommand::Withdraw(occurrence.name.clone()));
+                if pending.since.is_none() {
+                    button(ui, "Later", &|| {
+                        let at = pending.window.earliest + amount;
+                        let condition = occurrence.name.clone();
+                        ExecutionCommand::Disturb(Disturbance::Late { condition, at })
+                    });
+                }
+            } else {
+                button(ui, "Longer", &|| {
+                    let duration = usual_duration(shown, id) + amount;
+                    let activity = occurrence.name.clone();
+                    ExecutionCommand::Disturb(Disturbance::Duration { activity, duration })
+                });
+            }
+        });
+    }
+}
+
+/// How long an activity takes as things stand: in this run if it comes to its end, otherwise at least.
+fn usual_duration(shown: Shown<'_>, id: OccurrenceId) -> Rational {
+    let Some(occurrence) = shown.network.occurrences.get(id.index()) else { return Rational::default() };
+    let took = shown.run.plans.last().and_then(|last| {
+        let at = |node: tpn::NodeId| last.times.get(node.index()).copied().flatten();
+        Some(at(occurrence.end)? - at(occurrence.start)?)
+    });
+    took.or_else(|| Some(shown.network.arcs.get(occurrence.arc?.index())?.lower)).unwrap_or_default()
+}
+
+/// What was made to go wrong so far.
+fn made(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let disturbances = context.state.execution.disturbances();
+    if disturbances.is_empty() {
+        return;
+    }
+    section(ui, context, "Made to go wrong", "");
+    for (index, disturbance) in disturbances.iter().enumerate() {
+        ui.horizontal(|ui| {
+            let text = disturbance_text(disturbance);
+            if icon::button(ui, context.tokens, Icon::Close, &format!("Take back: {text}")).clicked() {
+                commands.send(Command::Execution(ExecutionCommand::TakeBack(index)));
+            }
+            ui.add(egui::Label::new(&text).truncate()).on_hover_text(&text);
+        });
+    }
+}
+
+/// What stands behind a number in a unit.
+pub(super) fn suffix(unit: Option<&str>) -> String {
+    unit.map_or_else(String::new, |unit| format!(" {unit}"))
+}

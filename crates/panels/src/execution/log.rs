@@ -1,0 +1,71 @@
+//! What has happened, newest last; a row leads to its moment.
+
+use egui::{RichText, ScrollArea, Ui};
+use executive::{Entry, Happening};
+use workbench::command::{Command, CommandSender};
+use workbench::state::Selection;
+use workbench::state::execution::has_come;
+use workbench::state::playback::number;
+use workbench::time_text;
+
+use super::Shown;
+use crate::Context;
+use crate::plan::section;
+
+/// Shows the log up to the time shown.
+pub(super) fn show(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
+    let time = context.state.playback.time;
+    let seen: Vec<&Entry> = shown.run.log.iter().filter(|entry| has_come(entry.time, time)).collect();
+    let vertices = |entry: &&&Entry| match &entry.happening {
+        Happening::Executed { name } => !name.contains(".vertex"),
+        _ => true,
+    };
+    let rows: Vec<&Entry> = seen.iter().filter(vertices).copied().collect();
+    section(ui, context, "Log", &format!("{} of {} entries", seen.len(), shown.run.log.len()));
+    ScrollArea::vertical().auto_shrink(false).stick_to_bottom(true).show(ui, |ui| {
+        for entry in rows {
+            row(ui, context, shown, entry, commands);
+        }
+    });
+}
+
+fn row(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, entry: &Entry, commands: &mut CommandSender) {
+    let tokens = context.tokens;
+    let (text, color) = match &entry.happening {
+        Happening::Executed { name } => (name.to_string(), tokens.text),
+        Happening::Progress { name, text } => (format!("{name}: {text}"), tokens.text_muted),
+        Happening::Violation { reason, .. } => (format!("✗ {reason}"), tokens.error),
+        Happening::Replanned { changes } if changes.is_empty() => {
+            ("→ planned again, with the same choices".to_owned(), tokens.warning)
+        }
+        Happening::Replanned { changes } => {
+            (format!("→ planned again: {}", changes.join(", ")), tokens.warning)
+        }
+        Happening::Stopped { reason } => (format!("✗ stopped: {reason}"), tokens.error),
+        Happening::Finished => ("✓ finished".to_owned(), tokens.good),
+    };
+    ui.horizontal(|ui| {
+        let at = format!("{:>8}", time_text::short(entry.time).replace("≈ ", ""));
+        ui.label(RichText::new(at).monospace().small().color(tokens.text_muted));
+        let button = egui::Button::selectable(false, RichText::new(&text).small().color(color)).truncate();
+        if ui.add(button).on_hover_text(&text).clicked() {
+            commands.send(Command::Seek(number(entry.time)));
+            if let Some(selection) = subject(shown, entry) {
+                commands.send(Command::Select(selection));
+            }
+        }
+    });
+}
+
+/// What an entry is about.
+fn subject(shown: Shown<'_>, entry: &Entry) -> Option<Selection> {
+    let name = match &entry.happening {
+        Happening::Executed { name } | Happening::Violation { name, .. } => {
+            name.rsplit_once('.').map_or(name.as_str(), |(occurrence, _)| occurrence)
+        }
+        Happening::Progress { name, .. } => name.as_str(),
+        _ => return None,
+    };
+    let index = shown.network.occurrences.iter().position(|occurrence| occurrence.name == name)?;
+    Some(Selection::Occurrence(tpn::OccurrenceId::from_index(index)))
+}

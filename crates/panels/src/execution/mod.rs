@@ -1,0 +1,109 @@
+//! A mission under execution: the clock, what is under way and waited for, disturbances by hand, and the log.
+//!
+//! Network, timeline and terrain show the same run at the same time.
+
+mod components;
+mod disturb;
+mod log;
+mod now;
+mod vehicles;
+
+use egui::{Frame, Margin, RichText, ScrollArea, Ui};
+use mission::Execution;
+use theme::space;
+use workbench::command::{Command, CommandSender};
+use workbench::state::Status;
+use workbench::state::execution::{ExecutionCommand, Moment};
+
+use crate::timeline::controls;
+use crate::{Context, Panel, show_empty};
+
+/// The panel, with how much longer or later a disturbance makes things.
+#[derive(Default)]
+pub struct ExecutionPanel {
+    disturb: disturb::Disturb,
+}
+
+/// What the parts of the panel show.
+#[derive(Clone, Copy)]
+struct Shown<'a> {
+    run: &'a Execution,
+    moment: &'a Moment,
+    network: &'a tpn::Network,
+}
+
+impl Panel for ExecutionPanel {
+    fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+        let state = &context.state.execution;
+        let network = context.snapshot.and_then(|snapshot| snapshot.network.as_deref());
+        let is_shown = context.state.is_executing();
+        let parts = state.run().filter(|_| is_shown).zip(state.moment()).zip(network);
+        let Some(((run, moment), network)) = parts else {
+            show_empty(ui, context, &why_not(context));
+            return;
+        };
+        let shown = Shown { run, moment, network };
+        bar(ui, context, commands);
+        now::banner(ui, context, shown);
+        let frame = Frame::new().fill(context.tokens.surface).inner_margin(Margin::symmetric(8, 2));
+        egui::Panel::bottom("execution-log").resizable(true).default_size(220.0).frame(frame).show(
+            ui,
+            |ui| {
+                log::show(ui, context, shown, commands);
+            },
+        );
+        egui::CentralPanel::default().frame(frame).show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                now::show(ui, context, shown, commands);
+                self.disturb.show(ui, context, shown, commands);
+                ui.add_space(space::L);
+            });
+        });
+    }
+}
+
+fn why_not(context: &Context<'_>) -> String {
+    let state = context.state;
+    if let Some(trouble) = state.execution.trouble() {
+        return format!("The mission cannot be executed: {trouble}.");
+    }
+    let text = match state.status() {
+        Status::Program => "A control program is stepped in the automaton panel.",
+        Status::Broken => "The mission has errors. See the problems.",
+        Status::NoPlan => "There is no plan to execute. The plan panel says why.",
+        Status::Empty => "There is no mission to execute.",
+        Status::Plan if state.workspace == workbench::workspace::Workspace::Execute => "Working the run out…",
+        Status::Plan => "The mission runs in the Execute workspace.",
+        Status::Working => "Planning…",
+    };
+    text.to_owned()
+}
+
+/// The clock and what moves it.
+fn bar(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    Frame::new().inner_margin(Margin::symmetric(8, 3)).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = space::XS;
+            controls::playing(ui, context, commands);
+            ui.add_space(space::M);
+            controls::clock(ui, context);
+            ui.add_space(space::M);
+            controls::rate(ui, context, commands);
+        });
+        ui.horizontal(|ui| {
+            let buttons = [
+                ("Start over", "Back to the start, without disturbances", ExecutionCommand::Reset),
+                ("Save run…", "Disturbances and log as a file that replays exactly", ExecutionCommand::Save),
+                ("Replay…", "Opens the file of a run and compares its log", ExecutionCommand::Open),
+            ];
+            for (name, hint, command) in buttons {
+                if ui.small_button(name).on_hover_text(hint).clicked() {
+                    commands.send(Command::Execution(command));
+                }
+            }
+            if context.state.execution.is_working() {
+                ui.label(RichText::new("working the run out…").small().color(context.tokens.text_muted));
+            }
+        });
+    });
+}

@@ -1,0 +1,138 @@
+//! How the run stands: a line on top, then what is under way, what holds, what comes next and what is due.
+
+use egui::{CornerRadius, Frame, Margin, RichText, Ui};
+use executive::{Ending, Happening};
+use theme::icon::{self, Icon};
+use theme::{space, strong};
+use tpn::OccurrenceId;
+use workbench::command::{Command, CommandSender};
+use workbench::state::Selection;
+use workbench::state::execution::{Pending, has_come};
+use workbench::state::playback::number;
+use workbench::time_text;
+
+use super::Shown;
+use crate::Context;
+use crate::plan::{section, selectable_row};
+
+/// So many of the things to come are listed.
+const MOST_LISTED: usize = 5;
+
+/// Says in one line how the run stands, and what last broke the plan.
+pub(super) fn banner(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>) {
+    let tokens = context.tokens;
+    let time = context.state.playback.time;
+    let seen = shown.run.log.iter().filter(|entry| has_come(entry.time, time));
+    let mut sign = (Icon::Play, tokens.info, tokens.soft[3], "Under way".to_owned());
+    let mut because = None;
+    for entry in seen {
+        let at = time_text::short(entry.time);
+        match &entry.happening {
+            Happening::Violation { reason, .. } => because = Some(reason.clone()),
+            Happening::Replanned { changes } => {
+                let how =
+                    if changes.is_empty() { "with the same choices".to_owned() } else { changes.join(", ") };
+                sign =
+                    (Icon::Warning, tokens.warning, tokens.soft[1], format!("Planned again at {at}: {how}"));
+            }
+            Happening::Stopped { reason } => {
+                sign =
+                    (Icon::Error, tokens.error, tokens.soft[2], format!("Stopped safely at {at}: {reason}"));
+            }
+            Happening::Finished => {
+                let text = format!("The mission ended well at {at}");
+                sign = (Icon::Check, tokens.good, tokens.soft[0], text);
+            }
+            _ => {}
+        }
+    }
+    let (icon, color, fill, text) = sign;
+    let frame = Frame::new()
+        .fill(fill)
+        .corner_radius(CornerRadius::same(4))
+        .inner_margin(Margin::symmetric(8, 4))
+        .outer_margin(Margin::symmetric(8, 2));
+    frame.show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.horizontal_wrapped(|ui| {
+            icon::label(ui, icon, color);
+            ui.label(strong(text).color(tokens.text));
+        });
+        if let Some(because) = because {
+            ui.label(RichText::new(because).small().color(tokens.text_muted));
+        }
+    });
+}
+
+/// The lists.
+pub(super) fn show(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
+    let is_over = shown.run.log.last().is_some_and(|last| {
+        has_come(last.time, context.state.playback.time)
+            && (shown.run.ending == Ending::Stopped || shown.moment.to_come.is_empty())
+            && shown.moment.deadline.is_none_or(|_| shown.run.ending == Ending::Stopped)
+    });
+    if is_over && shown.run.ending == Ending::Finished {
+        return;
+    }
+    due(ui, context, shown, commands);
+    let moment = shown.moment;
+    section(ui, context, "Under way", "");
+    if moment.under_way.is_empty() {
+        ui.label(RichText::new("No activity").color(context.tokens.text_muted));
+    }
+    for pending in moment.under_way.iter().chain(&moment.holding) {
+        let window = time_text::interval(pending.window.earliest, pending.window.latest);
+        let since = pending.since.map(time_text::short).unwrap_or_default();
+        row(ui, context, shown, pending, &format!("since {since}, ends {window}"), commands);
+    }
+    if moment.to_come.is_empty() {
+        return;
+    }
+    section(ui, context, "Waited for", "when it can begin");
+    for pending in moment.to_come.iter().take(MOST_LISTED) {
+        let window = time_text::interval(pending.window.earliest, pending.window.latest);
+        row(ui, context, shown, pending, &window, commands);
+    }
+    let rest = moment.to_come.len().saturating_sub(MOST_LISTED);
+    if rest > 0 {
+        ui.label(RichText::new(format!("and {rest} more")).small().color(context.tokens.text_muted));
+    }
+}
+
+/// The next deadline.
+fn due(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
+    let Some((event, latest)) = shown.moment.deadline else { return };
+    let left = number(latest) - context.state.playback.time;
+    let note = if left >= 0.0 { format!("in {left:.1}") } else { "overdue".to_owned() };
+    section(ui, context, "Next deadline", &note);
+    let name = shown.network.event_name(event);
+    let text = RichText::new(format!("{name} by {}", time_text::short(latest)));
+    selectable_row(ui, context, &Selection::Occurrence(event.occurrence), text, commands);
+}
+
+fn row(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    shown: Shown<'_>,
+    pending: &Pending,
+    note: &str,
+    commands: &mut CommandSender,
+) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = space::S;
+        let name = name(shown, pending.occurrence);
+        let selection = Selection::Occurrence(pending.occurrence);
+        let is_selected = context.state.selection == selection;
+        let button = egui::Button::selectable(is_selected, RichText::new(&name));
+        if ui.add(button).clicked() {
+            commands.send(Command::Select(selection));
+        }
+        let note = RichText::new(note).small().color(context.tokens.text_muted);
+        ui.add(egui::Label::new(note).truncate());
+    });
+}
+
+/// The name of an occurrence on screen.
+pub(super) fn name(shown: Shown<'_>, occurrence: OccurrenceId) -> String {
+    shown.network.occurrences.get(occurrence.index()).map_or_else(String::new, |it| it.name.to_string())
+}

@@ -1,0 +1,41 @@
+//! The panels: each shows one aspect of the workbench's state and sends commands; none changes anything else.
+
+mod automaton;
+mod compare;
+mod distances;
+mod editor;
+mod empty;
+mod execution;
+mod network;
+mod outline;
+mod panel;
+mod plan;
+mod problems;
+mod registry;
+mod review;
+mod robustness;
+mod search;
+mod terrain;
+mod timeline;
+pub mod walk;
+
+use workbench::state::settings::ThemeChoice;
+
+pub use editor::{editor_id, show_markdown, typed_text};
+pub use empty::show_empty;
+pub use panel::{Context, Panel};
+pub use plan::counted;
+pub use registry::Panels;
+
+/// The tokens of the theme that the user has chosen.
+pub const fn tokens(theme: ThemeChoice) -> &'static theme::Tokens {
+    match theme {
+        ThemeChoice::Dark => &theme::DARK,
+        ThemeChoice::Light => &theme::LIGHT,
+    }
+}
+
+/// Whether the pointer went down here, though it may be up again: where frames are slow, one frame sees both.
+pub(crate) fn is_pressed(response: &egui::Response) -> bool {
+    response.is_pointer_button_down_on() || response.clicked()
+}

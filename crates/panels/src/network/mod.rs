@@ -1,0 +1,503 @@
+//! The temporal plan network: drawn from the mission's structure, with what the plan or its failure adds.
+//!
+//! `data` holds what is drawn, `view` where it is seen from, `paint` puts it on the screen. Coordinates come from the
+//! `layout` crate and are computed anew when the network changes.
+
+mod data;
+mod describe;
+mod export;
+mod highlight;
+mod landmarks;
+mod level;
+mod marks;
+mod minimap;
+mod paint;
+mod search;
+mod toolbar;
+pub(crate) mod view;
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use egui::{CursorIcon, Key, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo, vec2};
+use layout::{Item, OverlayCurve, OverlayKind, Point, Progress};
+use mission::Snapshot;
+use tpn::{BlockId, Network, Plan};
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::state::settings::NetworkView;
+use workbench::state::{Selection, Status, Views};
+
+use self::data::{Drawn, block_key, fits, is_collapsible};
+use self::highlight::{Highlight, selection_of};
+use self::paint::{Scene, badge};
+use self::search::Search;
+use self::toolbar::Asked;
+use self::view::View;
+use super::{Context, Panel, show_empty};
+
+/// The network panel.
+#[derive(Default)]
+pub struct NetworkPanel {
+    drawn: Drawn,
+    view: View,
+    /// Names of collapsed blocks.
+    collapsed: BTreeSet<String>,
+    search: Search,
+    followed_action: u64,
+    followed_picture: u64,
+    /// The selection that was last brought into view.
+    followed_selection: Selection,
+    /// The step of the search that was last brought into view.
+    followed_step: Option<usize>,
+    /// What this panel last said the pointer is over.
+    told_hover: Selection,
+    /// Whether the overview is being dragged.
+    is_dragging_overview: bool,
+}
+
+/// How far from the pointer something may be to be pointed at, in points.
+const REACH: f64 = 6.0;
+const WHEEL_ZOOM: f64 = 0.0022;
+const KEY_ZOOM: f64 = 1.3;
+/// A selection elsewhere is shown no larger than this.
+const SELECTION_ZOOM: f64 = 1.4;
+
+impl Panel for NetworkPanel {
+    fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+        let Some((snapshot, network)) = context.snapshot.and_then(|it| Some((it, it.network.as_ref()?)))
+        else {
+            show_empty(ui, context, "The network appears when the mission has been read.");
+            return;
+        };
+        let begun_secs = (context.clock)();
+        let latest = context.state.snapshots.latest().map(std::convert::AsRef::as_ref);
+        let pins = (context.state.pins.version(), context.state.pins.plan(snapshot));
+        let pins = context.state.settings.views.network.windows.then_some(pins);
+        if self.drawn.follow(snapshot, network, context.step(), &self.collapsed, latest, pins) {
+            context.layout_millis.set(Some(((context.clock)() - begun_secs) * 1000.0));
+        }
+        self.search.follow(network, self.drawn.version);
+        let views = &context.state.settings.views;
+        let mut options = views.network.clone();
+        let asked =
+            toolbar::show(ui, context, &mut options, &mut self.search, !self.collapsed.is_empty(), commands);
+        if options != views.network {
+            commands.send(Command::SetViews(Box::new(Views { network: options.clone(), ..views.clone() })));
+        }
+        self.answer(asked, network, commands);
+        self.show_drawing(ui, context, snapshot, network, &options, commands);
+    }
+}
+
+impl NetworkPanel {
+    fn answer(&mut self, asked: Asked, network: &Network, commands: &mut CommandSender) {
+        let found = match asked {
+            Asked::Nothing => return,
+            Asked::OpenAll => {
+                self.collapsed.clear();
+                return;
+            }
+            Asked::CloseAll => {
+                self.collapsed = data::outermost_activities(network);
+                return;
+            }
+            Asked::NextMatch => self.search.step(true),
+            Asked::PreviousMatch => self.search.step(false),
+        };
+        if let Some(selection) = found {
+            self.open_around(&selection, network);
+            commands.send(Command::SelectAndReveal(selection));
+        }
+    }
+
+    /// Opens the collapsed blocks that hide a selection.
+    fn open_around(&mut self, selection: &Selection, network: &Network) {
+        let hidden = Highlight::of(selection, network);
+        if hidden.nodes.iter().any(|&node| self.drawn.drawing.node(node).is_none()) {
+            self.collapsed.clear();
+        }
+    }
+
+    fn show_drawing(
+        &mut self,
+        ui: &mut Ui,
+        context: &Context<'_>,
+        snapshot: &Snapshot,
+        network: &Arc<Network>,
+        options: &NetworkView,
+        commands: &mut CommandSender,
+    ) {
+        let plan = context.plan().map(|(_, plan)| plan).filter(|plan| fits(plan, network));
+        let now = context.state.playback.time;
+        let is_timed = options.now && now > 0.0 && context.step().is_none();
+        let progress = plan.filter(|_| is_timed).map(|plan| Progress::at(network, plan, now));
+        self.save_picture(context, network, plan, progress.as_ref(), options, commands);
+        let (panel, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        let summary = describe::summary(network, plan);
+        response
+            .widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("{}. {summary}", title(context))));
+        self.move_view(ui, context, panel, &response, network);
+
+        let act = landmarks::show(ui, panel, &self.view, &self.drawn, network, &context.state.selection);
+        let overview = if options.minimap { minimap::place(panel, &self.view, &self.drawn) } else { None };
+        let pointer =
+            pointer_over(ui, &response).filter(|at| overview.is_none_or(|overview| !overview.contains(*at)));
+        let pointed = pointer.and_then(|at| self.pointed(panel, at, network, plan, options));
+        self.tell_hover(context, pointed.as_ref(), commands);
+        match act {
+            Some(act) if act.is_double => self.toggle_block_under(pointer, panel, network),
+            Some(act) => {
+                self.followed_selection = act.selection.clone();
+                commands.send(Command::SelectAndReveal(act.selection));
+            }
+            None => self.click(&response, pointed.as_ref(), panel, network, commands),
+        }
+
+        let painter = ui.painter_at(panel);
+        let selected = Highlight::of(&context.state.selection, network);
+        let hovered = Highlight::of(&context.state.hovered, network);
+        let focus = context.focus();
+        let marks = options.problems.then(|| marks::Groups::new(panel, &self.view, &self.drawn.marks));
+        let marked: Vec<Rect> = marks.iter().flat_map(marks::Groups::rects).collect();
+        let scene = Scene {
+            painter: &painter,
+            panel,
+            view: &self.view,
+            drawn: &self.drawn,
+            network,
+            plan,
+            options,
+            tokens: context.tokens,
+            selected: &selected,
+            hovered: &hovered,
+            focus: focus.as_ref(),
+            progress: progress.as_ref(),
+            marks: &marked,
+        };
+        scene.paint();
+        if let Some(groups) = &marks {
+            marks::show(ui, panel, groups, &self.drawn.marks, context.tokens, commands);
+        }
+        if let Some(place) = overview {
+            minimap::paint(&painter, place, panel, &self.view, &self.drawn, context.tokens);
+        }
+        show_badges(&painter, panel, context, snapshot);
+        if response.has_focus() {
+            let stroke = egui::Stroke::new(1.0, context.tokens.accent);
+            painter.rect_stroke(panel.shrink(1.0), 2.0, stroke, egui::StrokeKind::Inside);
+        }
+        if let Some(pointed) = pointed.filter(|_| !response.dragged()) {
+            show_tooltip(&response, context, &pointed, network, plan);
+        }
+    }
+
+    /// Saves the drawing once for every time that was asked for.
+    fn save_picture(
+        &mut self,
+        context: &Context<'_>,
+        network: &Network,
+        plan: Option<&Plan>,
+        progress: Option<&Progress>,
+        options: &NetworkView,
+        commands: &mut CommandSender,
+    ) {
+        let Some((count, format)) = context.state.picture_request else { return };
+        if count != self.followed_picture {
+            self.followed_picture = count;
+            commands.send(export::save(format, context, &self.drawn, network, plan, progress, options));
+        }
+    }
+
+    /// Follows the mouse, the keys, and what was asked of the view.
+    fn move_view(
+        &mut self,
+        ui: &Ui,
+        context: &Context<'_>,
+        panel: Rect,
+        response: &Response,
+        network: &Network,
+    ) {
+        let overview = minimap::place(panel, &self.view, &self.drawn)
+            .filter(|_| context.state.settings.views.network.minimap);
+        let pointer = response.interact_pointer_pos();
+        if response.drag_started() || response.clicked() {
+            let is_over = |place: &Rect| pointer.is_some_and(|at| place.contains(at));
+            self.is_dragging_overview = overview.as_ref().is_some_and(is_over);
+        }
+        if let (true, Some(place), Some(at)) = (self.is_dragging_overview, overview, pointer) {
+            self.view.look_at(minimap::point_at(place, &self.drawn, at));
+        } else if response.dragged_by(PointerButton::Primary) || response.dragged_by(PointerButton::Middle) {
+            self.view.pan(response.drag_delta());
+            ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+        }
+        if response.drag_stopped() {
+            self.is_dragging_overview = false;
+        }
+        if let Some(at) = pointer_over(ui, response) {
+            let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta(), input.zoom_delta()));
+            let factor =
+                if pinch == 1.0 { (f64::from(scroll.y) * WHEEL_ZOOM).exp() } else { f64::from(pinch) };
+            if factor != 1.0 {
+                self.view.zoom_at(panel, at, factor);
+            }
+            self.view.pan(vec2(scroll.x, 0.0));
+        }
+        // With something selected, arrows go from it to its neighbours.
+        if response.has_focus() && context.state.selection.is_none() {
+            self.view.pan(arrow_keys(ui) * 48.0);
+        }
+        let action = context.view_action(PanelKind::Network, &mut self.followed_action);
+        self.follow_action(action, panel, context, network);
+        self.follow_selection(panel, context, network);
+        self.follow_step(panel, context, network);
+        if self.view.is_fitted() {
+            self.view.fit(panel, self.drawn.drawing.bounds);
+        }
+    }
+
+    fn follow_action(
+        &mut self,
+        action: Option<ViewAction>,
+        panel: Rect,
+        context: &Context<'_>,
+        network: &Network,
+    ) {
+        match action {
+            None | Some(ViewAction::TopView | ViewAction::Follow) => {}
+            Some(ViewAction::ZoomIn) => self.view.zoom_at(panel, panel.center(), KEY_ZOOM),
+            Some(ViewAction::ZoomOut) => self.view.zoom_at(panel, panel.center(), 1.0 / KEY_ZOOM),
+            Some(ViewAction::ZoomReset) => self.view.reset_zoom(),
+            Some(ViewAction::Fit) => self.view.fit(panel, self.drawn.drawing.bounds),
+            Some(ViewAction::FitSelection) => {
+                let shapes = Highlight::of(&context.state.selection, network);
+                match shapes.bounds(&self.drawn.drawing) {
+                    Some(area) => self.view.show(panel, area.expanded(60.0), SELECTION_ZOOM),
+                    None => self.view.fit(panel, self.drawn.drawing.bounds),
+                }
+            }
+        }
+    }
+
+    /// Brings a new selection into view if none of it is.
+    fn follow_selection(&mut self, panel: Rect, context: &Context<'_>, network: &Network) {
+        let selection = &context.state.selection;
+        if *selection == self.followed_selection {
+            return;
+        }
+        self.followed_selection = selection.clone();
+        let Some(area) = Highlight::of(selection, network).bounds(&self.drawn.drawing) else { return };
+        if !self.view.visible(panel).overlaps(area.expanded(1.0)) {
+            self.view.look_at(area.center());
+        }
+    }
+
+    /// Brings what a new step is about into view if none of it is.
+    fn follow_step(&mut self, panel: Rect, context: &Context<'_>, network: &Network) {
+        let step = context.state.search.step().map(|step| step.step);
+        if step == self.followed_step {
+            return;
+        }
+        self.followed_step = step;
+        // All of a fitted drawing is in view.
+        if self.view.is_fitted() {
+            return;
+        }
+        let Some(focus) = context.focus() else { return };
+        let area = Highlight::of_focus(&focus, network).bounds(&self.drawn.drawing);
+        if let Some(area) = area.filter(|area| !self.view.visible(panel).overlaps(area.expanded(1.0))) {
+            self.view.look_at(area.center());
+        }
+    }
+
+    /// What is under the pointer: a shape, or a curve over the shapes.
+    fn pointed(
+        &self,
+        panel: Rect,
+        at: egui::Pos2,
+        network: &Network,
+        plan: Option<&Plan>,
+        options: &NetworkView,
+    ) -> Option<Pointed> {
+        let point = self.view.drawing_point(panel, at);
+        let reach = REACH / self.view.zoom();
+        let item = self.drawn.drawing.pick(point, reach);
+        let is_small = matches!(item, Some(Item::Node(_) | Item::Label(_)));
+        if !is_small && let Some(plan) = plan {
+            let links = options.links.then_some(&self.drawn.links);
+            let orderings = options.orderings.then_some(&self.drawn.orderings);
+            let curves = links.into_iter().chain(orderings).flatten();
+            let nearest = curves
+                .map(|curve| (distance(curve, point, reach), curve))
+                .filter(|(distance, _)| *distance <= reach * 0.7)
+                .min_by(|left, right| left.0.total_cmp(&right.0));
+            if let Some((_, curve)) = nearest {
+                return overlay_selection(curve, plan).map(Pointed::Curve);
+            }
+        }
+        let item = item?;
+        (!matches!(item, Item::Block(_)) || options.structure || is_box(&self.drawn, item))
+            .then(|| Pointed::Item(item, selection_of(item, network)))
+    }
+
+    fn tell_hover(&mut self, context: &Context<'_>, pointed: Option<&Pointed>, commands: &mut CommandSender) {
+        let hover = pointed.map(|pointed| pointed.selection().clone()).unwrap_or_default();
+        if hover != self.told_hover {
+            // Another panel's hint is not taken away when the pointer merely is not here.
+            if !hover.is_none() || context.state.hovered == self.told_hover {
+                commands.send(Command::Hover(hover.clone()));
+            }
+            self.told_hover = hover;
+        }
+    }
+
+    fn click(
+        &mut self,
+        response: &Response,
+        pointed: Option<&Pointed>,
+        panel: Rect,
+        network: &Network,
+        commands: &mut CommandSender,
+    ) {
+        if response.double_clicked() && !self.is_dragging_overview {
+            self.toggle_block_under(response.interact_pointer_pos(), panel, network);
+        } else if response.clicked() && !self.is_dragging_overview {
+            response.request_focus();
+            let selection = pointed.map(|pointed| pointed.selection().clone()).unwrap_or_default();
+            self.followed_selection = selection.clone();
+            commands.send(Command::SelectAndReveal(selection));
+        }
+    }
+
+    /// Opens the collapsed block at a place, or collapses the innermost block there.
+    fn toggle_block_under(&mut self, pointer: Option<egui::Pos2>, panel: Rect, network: &Network) {
+        let Some(point) = pointer.map(|at| self.view.drawing_point(panel, at)) else { return };
+        let blocks = self.drawn.drawing.blocks.iter().filter(|block| block.rect.contains(point));
+        let found = blocks.rev().find_map(|block| {
+            let id: BlockId = block.block?;
+            is_collapsible(network, id).then_some(id)
+        });
+        let Some(key) = found.and_then(|block| block_key(network, block)) else { return };
+        if !self.collapsed.remove(&key) {
+            self.collapsed.insert(key);
+        }
+    }
+}
+
+/// What the pointer is over.
+enum Pointed {
+    Item(Item, Selection),
+    Curve(Selection),
+}
+
+impl Pointed {
+    fn selection(&self) -> &Selection {
+        match self {
+            Self::Item(_, selection) | Self::Curve(selection) => selection,
+        }
+    }
+}
+
+fn is_box(drawn: &Drawn, item: Item) -> bool {
+    let Item::Block(id) = item else { return false };
+    let mut boxes = drawn.drawing.blocks.iter().filter(|block| block.form == layout::BlockForm::Collapsed);
+    boxes.any(|block| block.block == Some(id))
+}
+
+fn distance(curve: &OverlayCurve, point: Point, reach: f64) -> f64 {
+    if !curve.bounds.expanded(reach).contains(point) {
+        return f64::INFINITY;
+    }
+    layout::geometry::distance_point_curve(point, curve.start, &curve.pieces)
+}
+
+fn overlay_selection(curve: &OverlayCurve, plan: &Plan) -> Option<Selection> {
+    let number = curve.number as usize;
+    match curve.kind {
+        OverlayKind::CausalLink => plan.causal_links.get(number).map(|&link| Selection::Link(link)),
+        OverlayKind::Ordering => {
+            plan.orderings_added.get(number).map(|&ordering| Selection::Ordering(ordering))
+        }
+        OverlayKind::NegativeCycle | OverlayKind::Threat => None,
+    }
+}
+
+/// The name of the drawing for screen readers.
+fn title(context: &Context<'_>) -> &'static str {
+    if context.is_stale && context.state.status() == Status::Broken {
+        "Network of the last text without errors"
+    } else {
+        "Network"
+    }
+}
+
+/// Where the pointer is, if it is over the drawing or one of its landmarks.
+fn pointer_over(ui: &Ui, response: &Response) -> Option<egui::Pos2> {
+    if response.contains_pointer() { ui.input(|input| input.pointer.hover_pos()) } else { None }
+}
+
+/// How the arrow keys move the drawing.
+fn arrow_keys(ui: &Ui) -> egui::Vec2 {
+    ui.input(|input| {
+        let pressed = |key| f32::from(u8::from(input.key_pressed(key)));
+        vec2(
+            pressed(Key::ArrowLeft) - pressed(Key::ArrowRight),
+            pressed(Key::ArrowUp) - pressed(Key::ArrowDown),
+        )
+    })
+}
+
+/// Says when the drawing is that of an older text, and why there is no plan.
+fn show_badges(painter: &egui::Painter, panel: Rect, context: &Context<'_>, snapshot: &Snapshot) {
+    let tokens = context.tokens;
+    let width = (panel.width() - 60.0).clamp(80.0, 520.0);
+    let mut corner = panel.left_top() + vec2(10.0, 8.0);
+    if context.is_stale && context.state.status() == Status::Broken {
+        let text = "⚠ The text has errors: this is its last good network";
+        badge(painter, corner, text, tokens.warning, tokens, width);
+        corner.y += 30.0;
+    }
+    if let Some(view) = context.step() {
+        let trace = view.recording.trace();
+        let (step, steps) = (view.step.step, trace.events.len());
+        let Some(entry) = trace.events.get(step) else { return };
+        let text = workbench::state::search::wording::event(view.recording.network(), &entry.event);
+        let is_failure = workbench::state::search::focus::is_failure(&entry.event);
+        let color = if is_failure { tokens.failure } else { tokens.accent };
+        badge(painter, corner, &format!("Step {} / {steps}: {text}", step + 1), color, tokens, width);
+        return;
+    }
+    let failure = snapshot.planning.as_ref().and_then(|planning| planning.outcome.failure.as_ref());
+    if let Some(reason) = failure.and_then(|failure| failure.reasons.first()) {
+        badge(painter, corner, &format!("✗ No plan: {}", reason.message), tokens.error, tokens, width);
+    }
+}
+
+fn show_tooltip(
+    response: &Response,
+    context: &Context<'_>,
+    pointed: &Pointed,
+    network: &Network,
+    plan: Option<&Plan>,
+) {
+    let (heading, lines) = match pointed {
+        Pointed::Item(item, _) => match describe::describe(*item, network, plan) {
+            Some(described) => described,
+            None => return,
+        },
+        Pointed::Curve(selection) => {
+            let what = match selection {
+                Selection::Link(_) => "causal link: the assertion holds as long as the requirement",
+                _ => "ordering: the first ends before the second starts",
+            };
+            (selection.name(Some(network)), vec![what.to_owned()])
+        }
+    };
+    response.clone().on_hover_ui_at_pointer(|ui| {
+        ui.set_max_width(420.0);
+        ui.label(egui::RichText::new(heading).strong().color(context.tokens.text));
+        for line in lines {
+            ui.label(egui::RichText::new(line).color(context.tokens.text_muted));
+        }
+    });
+}

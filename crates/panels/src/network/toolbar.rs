@@ -1,0 +1,114 @@
+//! The switches above the drawing, and the search field.
+
+use egui::{RichText, TextEdit, Ui};
+use theme::space;
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender, PictureFormat, ViewAction};
+use workbench::state::settings::NetworkView;
+
+use super::search::Search;
+use crate::Context;
+
+/// What the user asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Asked {
+    /// Nothing.
+    Nothing,
+    /// The next match of the search.
+    NextMatch,
+    /// The match before.
+    PreviousMatch,
+    /// Everything that is collapsed is opened.
+    OpenAll,
+    /// The outermost activities are collapsed.
+    CloseAll,
+}
+
+/// Shows the switches and answers what was asked for besides.
+pub(super) fn show(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    view: &mut NetworkView,
+    search: &mut Search,
+    has_collapsed: bool,
+    commands: &mut CommandSender,
+) -> Asked {
+    let mut asked = Asked::Nothing;
+    ui.add_space(space::XS);
+    ui.horizontal_wrapped(|ui| {
+        ui.add_space(space::S);
+        ui.spacing_mut().item_spacing.x = space::S;
+        let field = TextEdit::singleline(&mut search.text).hint_text("Find…").desired_width(110.0);
+        let field = ui.add(field).on_hover_text("Find activities, events, decisions and conditions by name");
+        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Find in the network"));
+        if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) {
+            let back = ui.input(|input| input.modifiers.shift);
+            asked = if back { Asked::PreviousMatch } else { Asked::NextMatch };
+            field.request_focus();
+        }
+        if !search.text.trim().is_empty() {
+            let text = match search.count() {
+                (0, _) => "none".to_owned(),
+                (count, None) => format!("{count}"),
+                (count, Some(at)) => format!("{at}/{count}"),
+            };
+            ui.label(RichText::new(text).small().color(context.tokens.text_muted));
+        }
+        ui.add_space(space::S);
+        if ui.available_size_before_wrap().x < ROOM_FOR_SWITCHES {
+            ui.menu_button(RichText::new("Show").small(), |ui| {
+                for (value, name, help) in switches(view) {
+                    ui.checkbox(value, name).on_hover_text(help);
+                }
+            });
+        } else {
+            for (value, name, help) in switches(view) {
+                ui.toggle_value(value, RichText::new(name).small()).on_hover_text(help);
+            }
+        }
+        let small = |name: &str| egui::Button::new(RichText::new(name).small());
+        if ui.add(small("Fit")).on_hover_text("Show everything (F)").clicked() {
+            commands.send(Command::ViewOf(PanelKind::Network, ViewAction::Fit));
+        }
+        ui.menu_button(RichText::new("Save").small(), |ui| {
+            for (format, name) in [(PictureFormat::Svg, "As SVG"), (PictureFormat::Png, "As PNG")] {
+                if ui.button(name).clicked() {
+                    commands.send(Command::SaveNetwork(format));
+                    ui.close();
+                }
+            }
+        });
+        if !has_collapsed
+            && ui.add(small("Close all")).on_hover_text("Collapse the outermost activities").clicked()
+        {
+            asked = Asked::CloseAll;
+        }
+        if has_collapsed
+            && ui.add(small("Open all")).on_hover_text("Open everything that is collapsed").clicked()
+        {
+            asked = Asked::OpenAll;
+        }
+    });
+    asked
+}
+
+/// Narrower toolbars have their switches in a menu.
+const ROOM_FOR_SWITCHES: f32 = 880.0;
+
+/// What can be switched on and off, with its name and what it means.
+fn switches(view: &mut NetworkView) -> [(&mut bool, &'static str, &'static str); 12] {
+    [
+        (&mut view.names, "Names", "Names of activities"),
+        (&mut view.bounds, "Bounds", "Bounds of every constraint"),
+        (&mut view.labels, "Conditions", "Asked and told conditions"),
+        (&mut view.windows, "Windows", "When each event may happen"),
+        (&mut view.links, "Links", "Causal links: which assertion carries which requirement"),
+        (&mut view.orderings, "Orderings", "What planning put in order to resolve threats"),
+        (&mut view.unselected, "Unselected", "What the plan does without"),
+        (&mut view.structure, "Structure", "Outlines of activities, lanes of branches"),
+        (&mut view.lanes, "Lanes", "A named band for every parallel branch"),
+        (&mut view.now, "Time", "What has happened at the time shown, and what is under way"),
+        (&mut view.problems, "Problems", "Errors and warnings at their places"),
+        (&mut view.minimap, "Overview", "The small map of the whole drawing"),
+    ]
+}

@@ -1,0 +1,74 @@
+//! What a panel is: what it reads, and how it is shown.
+
+use std::cell::Cell;
+use std::sync::Arc;
+
+use mission::Snapshot;
+use theme::Tokens;
+use workbench::PanelKind;
+use workbench::command::{CommandSender, ViewAction};
+use workbench::state::AppState;
+use workbench::state::search::Focus;
+
+/// What a panel reads.
+#[derive(Clone, Copy)]
+pub struct Context<'a> {
+    /// The whole state of the app.
+    pub state: &'a AppState,
+    /// What is to be drawn: the latest snapshot with a network, which may belong to an older text.
+    pub snapshot: Option<&'a Arc<Snapshot>>,
+    /// Whether `snapshot` belongs to an older text than the editor's.
+    pub is_stale: bool,
+    /// The colours.
+    pub tokens: &'static Tokens,
+    /// For panels that draw with wgpu; `None` in tests without a graphics adapter.
+    pub render_state: Option<&'a eframe::egui_wgpu::RenderState>,
+    /// Seconds on the host's clock at the start of this frame.
+    pub now_secs: f64,
+    /// The host's clock itself, for measuring.
+    pub clock: &'a dyn Fn() -> f64,
+    /// Where a panel that lays out its drawing anew says how long that took.
+    pub layout_millis: &'a Cell<Option<f64>>,
+}
+
+impl Context<'_> {
+    /// The plan that is shown, if there is one, with its network: what the search had selected at the step that is
+    /// looked at, if one is; with the windows that pinned events leave, if there are any.
+    pub fn plan(&self) -> Option<(&tpn::Network, &tpn::Plan)> {
+        let snapshot = self.snapshot?;
+        let step = self.state.search.plan(snapshot).map(std::convert::AsRef::as_ref);
+        let plan = step.or_else(|| self.state.pins.plan(snapshot)).or_else(|| snapshot.plan())?;
+        Some((snapshot.network.as_deref()?, plan))
+    }
+
+    /// The step of the search that is looked at, if one is, with what the search knew there.
+    pub fn step(&self) -> Option<&workbench::state::search::View> {
+        self.state.search.plan(self.snapshot?)?;
+        self.state.search.shown()
+    }
+
+    /// What the step that is looked at is about.
+    pub fn focus(&self) -> Option<Focus> {
+        let view = self.step()?;
+        Some(Focus::of(view.recording.network(), view.recording.trace(), &view.step))
+    }
+
+    /// The view action for `panel` that has not been followed yet. `followed` is the panel's memory of the last one.
+    pub fn view_action(&self, panel: PanelKind, followed: &mut u64) -> Option<ViewAction> {
+        let request = self.state.view_request.filter(|request| request.panel == panel)?;
+        if request.sequence == *followed {
+            return None;
+        }
+        *followed = request.sequence;
+        Some(request.action)
+    }
+}
+
+/// A part of the window that shows one aspect of the state.
+///
+/// Its own fields hold only what concerns nobody else: scroll positions, caches, cameras. Everything it wants changed
+/// goes through `commands`, which are applied before the next frame.
+pub trait Panel {
+    /// Shows the panel, filling `ui`.
+    fn show(&mut self, ui: &mut egui::Ui, context: &Context<'_>, commands: &mut CommandSender);
+}

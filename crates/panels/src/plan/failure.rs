@@ -1,0 +1,154 @@
+//! Why there is no plan: a reason per group of choices, and the smallest changes that would give one.
+
+use egui::{Frame, Margin, RichText, Stroke, Ui};
+use kirk::{FailureKind, Reason, Status};
+use mission::Planning;
+use theme::icon::{self, Icon};
+use theme::space;
+use tpn::Network;
+use workbench::command::{Command, CommandSender, EditorCommand};
+use workbench::state::EditKind;
+use workbench::state::selection::alternative_text;
+
+use crate::Context;
+use crate::plan::section;
+
+/// Shows why there is no plan.
+pub(crate) fn show(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    network: &Network,
+    planning: &Planning,
+    commands: &mut CommandSender,
+) {
+    let tokens = context.tokens;
+    let verdict = match planning.outcome.status {
+        Status::Plan | Status::NoPlan => "This mission has no plan.",
+        Status::Limit => "Planning was stopped before it had an answer.",
+        Status::Error => "A time in this mission is too large to be planned exactly.",
+    };
+    ui.horizontal(|ui| {
+        icon::label(ui, Icon::Error, tokens.error);
+        ui.label(theme::strong(verdict).color(tokens.error));
+    });
+    let Some(failure) = &planning.outcome.failure else { return };
+    for (index, reason) in failure.reasons.iter().enumerate() {
+        ui.push_id(index, |ui| show_reason(ui, context, network, reason, commands));
+    }
+    if !failure.is_complete {
+        let note = "There are more combinations of choices than can be listed; all of them fail.";
+        ui.label(RichText::new(note).color(tokens.text_muted));
+    }
+    if failure.relaxations.is_empty() {
+        return;
+    }
+    section(ui, context, "What would give a plan", "each change alone, the smallest first");
+    let source = context.snapshot.map(|snapshot| snapshot.source.as_ref()).unwrap_or_default();
+    for relaxation in &failure.relaxations {
+        let fix = relaxation.fix(source);
+        ui.horizontal(|ui| {
+            icon::label(ui, Icon::Fix, tokens.accent);
+            let can_apply = fix.is_some() && !context.is_stale;
+            let button = ui.add_enabled(can_apply, egui::Button::new(&relaxation.label).wrap());
+            let button = button.accessible_name(format!("Fix: {}", relaxation.label));
+            if button.clicked()
+                && let Some(fix) = fix
+            {
+                commands.send(Command::Edit { edits: fix.edits, kind: EditKind::Single });
+            }
+            if let Some(span) = relaxation.span
+                && ui.add(egui::Button::new("Show").frame_when_inactive(false)).clicked()
+            {
+                commands.send(Command::Reveal(span));
+                commands.send(Command::Editor(EditorCommand::Focus));
+            }
+        });
+    }
+}
+
+fn show_reason(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    network: &Network,
+    reason: &Reason,
+    commands: &mut CommandSender,
+) {
+    let tokens = context.tokens;
+    let frame = Frame::new()
+        .fill(tokens.raised)
+        .stroke(Stroke::new(1.0, tokens.line))
+        .corner_radius(6.0)
+        .inner_margin(Margin::same(8));
+    ui.add_space(space::S);
+    frame.show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        let kind = match reason.kind {
+            FailureKind::Temporal => "The bounds contradict each other",
+            FailureKind::OpenCondition => "A requirement cannot be met",
+            FailureKind::Threat => "Conditions cannot be kept apart",
+        };
+        let choices: Vec<String> = reason
+            .choices
+            .iter()
+            .map(|choice| {
+                let name = Network::decision_name(choice.decision);
+                format!("{name} = {}", alternative_text(network, choice.decision, choice.alternative))
+            })
+            .collect();
+        let heading = if choices.is_empty() {
+            format!("{kind}, whatever is chosen")
+        } else {
+            format!("{kind} with {}", choices.join(", "))
+        };
+        ui.label(RichText::new(heading).color(tokens.threat));
+        ui.label(&reason.message);
+        if !reason.cycle.is_empty() {
+            show_cycle(ui, context, network, reason);
+        }
+        ui.horizontal_wrapped(|ui| {
+            for (index, &span) in reason.spans.iter().enumerate() {
+                let source = context.snapshot.and_then(|snapshot| snapshot.source.get(span.range()));
+                let text = one_line(source.unwrap_or_default());
+                let button = egui::Button::new(RichText::new(text).monospace().small()).truncate();
+                let button = ui.add(button).accessible_name(format!("Place {} in the text", index + 1));
+                if button.clicked() {
+                    commands.send(Command::Reveal(span));
+                    commands.send(Command::Editor(EditorCommand::Focus));
+                }
+            }
+        });
+    });
+}
+
+/// The contradiction as a sum: the steps of the cycle, which add up to less than zero.
+fn show_cycle(ui: &mut Ui, context: &Context<'_>, network: &Network, reason: &Reason) {
+    let tokens = context.tokens;
+    egui::CollapsingHeader::new(RichText::new("The contradiction, step by step").small())
+        .id_salt("cycle")
+        .show(ui, |ui| {
+            let mut total = rmpl::Rational::from(0);
+            for member in &reason.cycle {
+                total += member.weight;
+                let step = format!(
+                    "{} is at most {} after {}",
+                    workbench::state::selection::node_name(network, member.to),
+                    workbench::time_text::time(member.weight),
+                    workbench::state::selection::node_name(network, member.from),
+                );
+                ui.label(RichText::new(step).small().color(tokens.text_muted));
+            }
+            let sum = format!(
+                "Around the circle this adds up to {}, less than zero.",
+                workbench::time_text::time(total)
+            );
+            ui.label(RichText::new(sum).small().color(tokens.threat));
+        });
+}
+
+/// A piece of text on one line, cut when it is long.
+fn one_line(text: &str) -> String {
+    const LONGEST: usize = 48;
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let line = words.join(" ");
+    if line.chars().count() <= LONGEST { line } else { line.chars().take(LONGEST).chain(['…']).collect() }
+}

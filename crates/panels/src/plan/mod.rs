@@ -1,0 +1,250 @@
+//! The plan: the checker's verdict, choices, links, orderings and windows; or why there is none.
+
+mod failure;
+mod windows;
+
+use egui::{RichText, ScrollArea, Ui};
+use theme::icon::{self, Icon};
+use theme::space;
+use tpn::{Network, Plan};
+use workbench::command::{Command, CommandSender};
+use workbench::state::selection::alternative_text;
+use workbench::state::{Selection, Status};
+
+use crate::{Context, Panel, show_empty};
+
+/// Lists of more rows are made as far as they are on screen.
+const LONG_LIST: usize = 60;
+
+/// The plan.
+#[derive(Default)]
+pub struct PlanPanel {
+    windows: windows::WindowTable,
+}
+
+impl Panel for PlanPanel {
+    fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+        let planning = context.snapshot.and_then(|snapshot| snapshot.planning.as_ref());
+        let Some((snapshot, planning)) = context.snapshot.zip(planning) else {
+            let text = match context.state.status() {
+                Status::Broken => "The text has errors. See the problems.",
+                Status::Empty => "There is nothing to plan in this text.",
+                _ => "Planning…",
+            };
+            show_empty(ui, context, text);
+            return;
+        };
+        let Some(network) = snapshot.network.as_deref() else { return };
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            egui::Frame::new().inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+                if context.is_stale {
+                    let note = "This belongs to an older text.";
+                    ui.label(RichText::new(note).color(context.tokens.warning));
+                }
+                match context.plan() {
+                    Some((network, plan)) => {
+                        match context.step() {
+                            Some(view) => show_step(ui, context, view),
+                            None => show_verdict(ui, context, planning),
+                        }
+                        show_choices(ui, context, network, plan, commands);
+                        show_links(ui, context, network, plan, commands);
+                        show_orderings(ui, context, network, plan, commands);
+                        self.windows.show(ui, context, network, plan, commands);
+                    }
+                    None => failure::show(ui, context, network, planning, commands),
+                }
+            });
+        });
+    }
+}
+
+/// A number with its noun, in the plural where it belongs.
+pub fn counted(count: u64, noun: &str) -> String {
+    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
+}
+
+/// The title of a section.
+pub(crate) fn section(ui: &mut Ui, context: &Context<'_>, title: &str, note: &str) {
+    ui.add_space(space::M);
+    ui.horizontal(|ui| {
+        ui.label(theme::strong(title).color(context.tokens.text));
+        if !note.is_empty() {
+            ui.label(RichText::new(note).small().color(context.tokens.text_muted));
+        }
+    });
+}
+
+/// Rows of one kind. Of long lists only those on screen are made: thousands of buttons would take longer than a frame.
+fn rows(ui: &mut Ui, id: &str, count: usize, mut show: impl FnMut(&mut Ui, usize)) {
+    if count <= LONG_LIST {
+        (0..count).for_each(|index| show(ui, index));
+        return;
+    }
+    // All rows are as high as the one that was made last.
+    let known = ui.scope_id().with(id).with("row height");
+    let spacing = ui.spacing().item_spacing.y;
+    let height = ui.data(|data| data.get_temp(known)).unwrap_or(ui.spacing().interact_size.y);
+    let pitch = height + spacing;
+    let (top, clip) = (ui.cursor().top(), ui.clip_rect());
+    let row_at = |y: f32| (((y - top) / pitch).max(0.0) as usize).min(count);
+    let (first, last) = (row_at(clip.top()), (row_at(clip.bottom()) + 1).min(count));
+    ui.add_space(first as f32 * pitch);
+    for index in first..last {
+        let row = ui.push_id((id, index), |ui| show(ui, index)).response.rect;
+        ui.data_mut(|data| data.insert_temp(known, row.height()));
+    }
+    ui.add_space((count - last) as f32 * pitch);
+}
+
+/// A row that selects something, with its text cut where the panel ends.
+pub(crate) fn selectable_row(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    selection: &Selection,
+    text: RichText,
+    commands: &mut CommandSender,
+) {
+    let is_selected = context.state.selection == *selection;
+    let whole = text.text().to_owned();
+    let button = egui::Button::selectable(is_selected, text).truncate();
+    let response = ui.add(button).on_hover_text(whole);
+    if response.hovered() && context.state.hovered != *selection {
+        commands.send(Command::Hover(selection.clone()));
+    }
+    if response.clicked() {
+        commands.send(Command::Select(selection.clone()));
+    }
+    if response.double_clicked() {
+        commands.send(Command::SelectAndReveal(selection.clone()));
+    }
+}
+
+/// Says that what follows is not the plan.
+fn show_step(ui: &mut Ui, context: &Context<'_>, view: &workbench::state::search::View) {
+    ui.horizontal_wrapped(|ui| {
+        let (step, steps) = (view.step.step + 1, view.recording.steps());
+        let text = format!("Step {step} / {steps} of the search");
+        ui.label(theme::strong(&text).color(context.tokens.accent));
+        let note = "what was chosen, added and possible then";
+        ui.label(RichText::new(note).small().color(context.tokens.text_muted));
+    });
+}
+
+fn show_verdict(ui: &mut Ui, context: &Context<'_>, planning: &mission::Planning) {
+    let tokens = context.tokens;
+    let stats = planning.outcome.stats;
+    ui.horizontal_wrapped(|ui| match &planning.verdict {
+        Some(verdict) if verdict.valid => {
+            icon::label(ui, Icon::Check, tokens.good);
+            ui.label(RichText::new("The independent checker accepts this plan.").color(tokens.good));
+        }
+        Some(verdict) => {
+            icon::label(ui, Icon::Error, tokens.error);
+            let count = counted(verdict.violations.len() as u64, "violation");
+            let text = format!("The independent checker refuses this plan: {count}.");
+            ui.label(RichText::new(text).color(tokens.error));
+        }
+        None => {
+            icon::label(ui, Icon::Working, tokens.text_muted);
+            ui.label(RichText::new("Not checked yet.").color(tokens.text_muted));
+        }
+    });
+    let tried = counted(stats.expanded, "alternative");
+    let effort = format!("{tried} tried, {}", counted(stats.conflicts, "dead end"));
+    ui.label(RichText::new(effort).small().color(tokens.text_muted));
+    for violation in planning.verdict.iter().flat_map(|verdict| &verdict.violations) {
+        ui.label(RichText::new(&violation.message).color(tokens.error));
+    }
+    for undrivable in &planning.undrivable {
+        let network = context.state.shown().and_then(|shown| shown.network.as_ref());
+        let name = network
+            .and_then(|network| network.occurrences.get(undrivable.occurrence.index()))
+            .map_or("A traverse", |occurrence| occurrence.name.as_str());
+        let text = format!("{name} can't be driven {}", undrivable.reason);
+        ui.label(RichText::new(text).color(tokens.warning));
+    }
+}
+
+fn show_choices(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    network: &Network,
+    plan: &Plan,
+    commands: &mut CommandSender,
+) {
+    let reached = plan.choices.len();
+    if network.decisions.is_empty() {
+        return;
+    }
+    section(ui, context, "Choices", &format!("{reached} of {} decisions reached", network.decisions.len()));
+    rows(ui, "choices", plan.choices.len(), |ui, index| {
+        let choice = &plan.choices[index];
+        let Some(decision) = network.decisions.get(choice.decision.index()) else { return };
+        ui.horizontal(|ui| {
+            let name = Network::decision_name(choice.decision);
+            let text = RichText::new(&name).color(context.tokens.decision);
+            selectable_row(ui, context, &Selection::Decision(choice.decision), text, commands);
+            for alternative in 0..decision.alternatives.len() as u32 {
+                let is_taken = alternative == choice.alternative;
+                let text = alternative_text(network, choice.decision, alternative);
+                let color = if is_taken { context.tokens.text } else { context.tokens.text_faint };
+                let text = RichText::new(text).color(color);
+                let text = if is_taken { text } else { text.strikethrough() };
+                let selection = Selection::Alternative(choice.decision, alternative);
+                if is_taken {
+                    icon::label(ui, Icon::Check, context.tokens.good);
+                }
+                selectable_row(ui, context, &selection, text, commands);
+            }
+        });
+    });
+}
+
+fn show_links(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    network: &Network,
+    plan: &Plan,
+    commands: &mut CommandSender,
+) {
+    if plan.causal_links.is_empty() {
+        return;
+    }
+    section(ui, context, "Causal links", "a requirement inside the assertion that carries it");
+    rows(ui, "links", plan.causal_links.len(), |ui, index| {
+        let link = plan.causal_links[index];
+        let text = format!("{} ← {}", network.label_name(link.ask), network.label_name(link.tell));
+        let text = RichText::new(text).color(context.tokens.link);
+        selectable_row(ui, context, &Selection::Link(link), text, commands);
+    });
+}
+
+fn show_orderings(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    network: &Network,
+    plan: &Plan,
+    commands: &mut CommandSender,
+) {
+    if plan.conflict_order.is_empty() {
+        return;
+    }
+    let added = plan.orderings_added.len();
+    let pairs = counted(plan.conflict_order.len() as u64, "conflicting pair");
+    let note = format!("{pairs}, {added} ordered by planning");
+    section(ui, context, "Threats and orderings", &note);
+    rows(ui, "orderings", plan.conflict_order.len(), |ui, index| {
+        let ordering = plan.conflict_order[index];
+        let text =
+            format!("{} before {}", network.label_name(ordering.first), network.label_name(ordering.then));
+        let is_added = plan.orderings_added.contains(&ordering);
+        let (note, color) = if is_added {
+            ("   added", context.tokens.ordering)
+        } else {
+            ("   holds anyway", context.tokens.text_muted)
+        };
+        let text = RichText::new(format!("{text}{note}")).color(color);
+        selectable_row(ui, context, &Selection::Ordering(ordering), text, commands);
+    });
+}

@@ -1,0 +1,177 @@
+//! The review: a checklist that is computed, what reviewers say, and the sign-off.
+//!
+//! Each line leads to its place in all other panels. A state is always a sign and a word, never a colour alone.
+
+mod events;
+mod lines;
+mod people;
+mod robustness;
+mod row;
+mod verdict;
+
+use std::collections::BTreeSet;
+
+use egui::{Frame, Margin, ScrollArea, Ui};
+use mission::review::{Review, Section, Status};
+use theme::icon::Icon;
+use theme::{Tokens, space};
+use workbench::command::{Command, CommandSender};
+use workbench::state;
+use workbench::state::review::ReviewCommand;
+
+use crate::{Context, Panel, show_empty};
+
+/// The review.
+#[derive(Default)]
+pub struct ReviewPanel {
+    /// The sections that are folded.
+    closed: BTreeSet<&'static str>,
+    /// The sections of which everything is listed.
+    whole: BTreeSet<&'static str>,
+    people: people::People,
+}
+
+/// Lines of a section that are listed before "Show all".
+const FIRST_LINES: usize = 40;
+
+impl Panel for ReviewPanel {
+    fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+        let state = context.state;
+        let is_worked_out = state.status() != state::Status::Working;
+        if state.status() == state::Status::Program {
+            show_empty(ui, context, "A control program is run, not reviewed.");
+            return;
+        }
+        if state.review.is_unasked() && !state.review.is_running() && is_worked_out {
+            commands.send(Command::Review(ReviewCommand::Run));
+        }
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            Frame::new().inner_margin(Margin::symmetric(10, 8)).show(ui, |ui| {
+                ui.spacing_mut().item_spacing.y = space::S;
+                let shown = state.review.shown(state.settings.plan.search);
+                verdict::show(ui, context, shown, commands);
+                if let Some((review, is_stale)) = shown {
+                    let selected = row::selected_names(context);
+                    let list = List { context, review, is_stale, selected: &selected };
+                    self.sections(ui, &list, commands);
+                }
+                self.people.show(ui, context, &mut self.closed, commands);
+            });
+        });
+    }
+}
+
+/// What all lines of one review need.
+struct List<'a> {
+    context: &'a Context<'a>,
+    review: &'a Review,
+    is_stale: bool,
+    /// The names of what is selected.
+    selected: &'a [String],
+}
+
+impl ReviewPanel {
+    fn sections(&mut self, ui: &mut Ui, list: &List<'_>, commands: &mut CommandSender) {
+        for section in Section::ALL {
+            let lines = list.review.lines(section);
+            let status = list.review.section_status(section);
+            let note = section_note(&lines.iter().map(|line| line.status).collect::<Vec<_>>(), section);
+            let is_empty_without_plan =
+                lines.is_empty() && !list.review.is_planned() && section != Section::Warnings;
+            let shown_status = (!is_empty_without_plan).then_some(status);
+            let is_open = header(ui, list.context, &mut self.closed, section.title(), shown_status, &note);
+            if is_open {
+                ui.push_id(section.title(), |ui| self.section(ui, list, section, commands));
+            }
+            if section == Section::Encounters {
+                let figures = list.context.snapshot.and_then(|snapshot| snapshot.robustness.as_deref());
+                let note = robustness::note(figures);
+                if header(ui, list.context, &mut self.closed, "Robustness", None, &note) {
+                    robustness::show(ui, list.context, figures, commands);
+                }
+            }
+        }
+    }
+
+    fn section(&mut self, ui: &mut Ui, list: &List<'_>, section: Section, commands: &mut CommandSender) {
+        let lines = list.review.lines(section);
+        if lines.is_empty() {
+            row::quiet(ui, list.context, list.review.nothing(section));
+            return;
+        }
+        let is_whole = self.whole.contains(section.title());
+        let most = if section == Section::Events { events::FIRST_EVENTS } else { FIRST_LINES };
+        let count = if is_whole { lines.len() } else { lines.len().min(most) };
+        match section {
+            Section::Choices => lines::choices(ui, list, count, commands),
+            Section::Events => events::show(ui, list, count, commands),
+            _ => {
+                for (index, line) in lines.iter().enumerate().take(count) {
+                    lines::line(ui, list, section, index, line, commands);
+                }
+            }
+        }
+        if lines.len() > most {
+            let text = if is_whole { "Show fewer".to_owned() } else { format!("Show all {}", lines.len()) };
+            ui.horizontal(|ui| {
+                ui.add_space(row::INDENT);
+                let name = format!("{text}: {}", section.title());
+                if ui.small_button(&text).accessible_name(name).clicked() {
+                    if is_whole {
+                        self.whole.remove(section.title());
+                    } else {
+                        self.whole.insert(section.title());
+                    }
+                }
+            });
+        }
+    }
+}
+
+/// The sign, the word and the colour of a status.
+fn status_look(tokens: &Tokens, status: Status) -> (Icon, &'static str, egui::Color32) {
+    match status {
+        Status::Passed => (Icon::Check, "passed", tokens.good),
+        Status::Attention => (Icon::Warning, "attention", tokens.warning),
+        Status::Failed => (Icon::Error, "failed", tokens.error),
+    }
+}
+
+/// How the lines of a section stand, in words.
+fn section_note(statuses: &[Status], section: Section) -> String {
+    if statuses.is_empty() {
+        return String::new();
+    }
+    if section == Section::Events {
+        return format!("{} events, tightest first", statuses.len());
+    }
+    [Status::Failed, Status::Attention, Status::Passed]
+        .into_iter()
+        .filter_map(|status| {
+            let count = statuses.iter().filter(|it| **it == status).count();
+            (count > 0).then(|| format!("{count} {}", status.name()))
+        })
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+/// The heading of a section, which folds it; whether it is open.
+fn header(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    closed: &mut BTreeSet<&'static str>,
+    title: &'static str,
+    status: Option<Status>,
+    note: &str,
+) -> bool {
+    ui.add_space(space::S);
+    let is_open = !closed.contains(title);
+    if row::heading(ui, context, title, status, note, is_open).clicked() {
+        if is_open {
+            closed.insert(title);
+        } else {
+            closed.remove(title);
+        }
+    }
+    is_open
+}

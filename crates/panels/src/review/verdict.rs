@@ -1,0 +1,141 @@
+//! The head of the review: what it comes to, whether it is stale, and who has signed.
+
+use std::sync::Arc;
+
+use egui::{Frame, Margin, RichText, Ui};
+use mission::review::{Review, Status};
+use theme::icon::{self, Icon};
+use theme::{space, strong};
+use workbench::command::{Command, CommandSender};
+use workbench::state::review::{ReviewCommand, Signed};
+
+use super::status_look;
+use crate::Context;
+
+/// Characters of the hash that are shown.
+const HASH_LENGTH: usize = 12;
+
+/// Shows the head.
+pub(super) fn show(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    shown: Option<(&Arc<Review>, bool)>,
+    commands: &mut CommandSender,
+) {
+    let tokens = context.tokens;
+    let [good, warning, error, info] = tokens.soft;
+    let (sign, color, fill, title) = match shown {
+        None if context.state.review.is_running() => {
+            (Icon::Working, tokens.info, info, "Reviewing…".to_owned())
+        }
+        None => (Icon::Nothing, tokens.info, info, "Not reviewed yet".to_owned()),
+        Some((_, true)) => (Icon::Warning, tokens.warning, warning, "Stale".to_owned()),
+        Some((review, false)) => {
+            let (sign, _, color) = status_look(tokens, review.status);
+            let fill = match review.status {
+                Status::Passed => good,
+                Status::Attention => warning,
+                Status::Failed => error,
+            };
+            (sign, color, fill, title(review))
+        }
+    };
+    Frame::new().fill(fill).corner_radius(6.0).inner_margin(Margin::symmetric(10, 8)).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.horizontal_wrapped(|ui| {
+            icon::label(ui, sign, color);
+            ui.label(strong(title).color(color));
+        });
+        if let Some((review, is_stale)) = shown {
+            if is_stale {
+                let text = "The text, the map or the seed has changed since this review. Undoing the change makes \
+                            it current again.";
+                ui.label(RichText::new(text).color(tokens.text));
+            }
+            let [passed, attention, failed] = review.counts();
+            let counts = format!("{passed} passed, {attention} for attention, {failed} failed");
+            ui.label(RichText::new(counts).color(tokens.text));
+            content(ui, context, review, commands);
+        } else {
+            let text = "Every line is computed from the plan; none is typed.";
+            ui.label(RichText::new(text).color(tokens.text_muted));
+        }
+        ui.add_space(space::XS);
+        signed(ui, context);
+        ui.add_space(space::S);
+        buttons(ui, context, shown, commands);
+    });
+}
+
+fn title(review: &Review) -> String {
+    let [_, attention, failed] = review.counts();
+    match review.status {
+        Status::Passed => "Everything is as it should be".to_owned(),
+        Status::Attention if attention == 1 => "1 line deserves a look".to_owned(),
+        Status::Attention => format!("{attention} lines deserve a look"),
+        Status::Failed if failed == 1 => "Not ready: 1 line failed".to_owned(),
+        Status::Failed => format!("Not ready: {failed} lines failed"),
+    }
+}
+
+/// The hash of what was reviewed; a click copies it.
+fn content(ui: &mut Ui, context: &Context<'_>, review: &Review, commands: &mut CommandSender) {
+    let hash = &review.content_hash;
+    let short = hash.get(..HASH_LENGTH).unwrap_or(hash);
+    let text = RichText::new(format!("Content {short}…")).small().color(context.tokens.text_muted);
+    let label = ui.add(egui::Button::new(text).frame(false));
+    let label = label.on_hover_text(format!("SHA-256 of text, map and seed. Click to copy.\n{hash}"));
+    if label.accessible_name("Copy the content hash").clicked() {
+        commands.send(Command::Copy(hash.clone()));
+    }
+}
+
+fn signed(ui: &mut Ui, context: &Context<'_>) {
+    let tokens = context.tokens;
+    let (sign, color, text) = match context.state.review.signed() {
+        Signed::Never => (Icon::Nothing, tokens.text_muted, "Not signed off".to_owned()),
+        Signed::Current(by) => {
+            (Icon::Check, tokens.good, format!("Signed off by {}, {}", by.name, moment(&by.time)))
+        }
+        Signed::Stale(by) => (
+            Icon::Warning,
+            tokens.warning,
+            format!("Sign-off is stale: {} signed another content, {}", by.name, moment(&by.time)),
+        ),
+    };
+    ui.horizontal_wrapped(|ui| {
+        icon::label(ui, sign, color);
+        ui.label(RichText::new(text).color(color));
+    });
+}
+
+fn buttons(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    shown: Option<(&Arc<Review>, bool)>,
+    commands: &mut CommandSender,
+) {
+    ui.horizontal_wrapped(|ui| {
+        let is_running = context.state.review.is_running();
+        let is_current = shown.is_some_and(|(_, is_stale)| !is_stale);
+        let text = match (is_running, shown) {
+            (true, _) => "Reviewing…",
+            (false, None) => "Review",
+            (false, Some(_)) => "Review again",
+        };
+        if !is_current && ui.add_enabled(!is_running, egui::Button::new(text)).clicked() {
+            commands.send(Command::Review(ReviewCommand::Run));
+        }
+        if ui.button("Write the report").clicked() {
+            commands.send(Command::WriteReport);
+        }
+    });
+}
+
+/// `2026-01-02T03:04:05Z` as `2026-01-02 03:04 UTC`; another text as it is.
+pub(super) fn moment(time: &str) -> String {
+    match (time.get(..10), time.get(11..16), time.ends_with('Z')) {
+        (Some(day), Some(minute), true) => format!("{day} {minute} UTC"),
+        _ => time.to_owned(),
+    }
+}

@@ -1,0 +1,464 @@
+//! The search tree on screen: pan, zoom, click a state to go there, double click to fold what is below it.
+//!
+//! What is painted is bounded by the room on screen, however large the search: only rows and states in view, and of
+//! states that would share a pixel one.
+
+use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, pos2, vec2};
+use kirk::{Trace, TreeChoice, TreeNodeId, TreeStatus};
+use theme::size;
+use tpn::Network;
+use workbench::command::ViewAction;
+use workbench::state::search::focus::concerns;
+
+use super::tree::{TreeDrawing, TreeIndex};
+use crate::Context;
+
+/// Where the tree is looked at from.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// Points per cell, across and down.
+    cell: egui::Vec2,
+    /// From the middle of the panel's upper edge to the tree's upper left corner.
+    scroll: egui::Vec2,
+    fits: bool,
+    /// What fits must leave states at least this far apart downwards; else the goal is looked at from near.
+    least_down: f32,
+    /// The state that was last brought into view.
+    followed: Option<TreeNodeId>,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self {
+            cell: vec2(34.0, 46.0),
+            scroll: egui::Vec2::ZERO,
+            fits: true,
+            least_down: LEAST_DOWN,
+            followed: None,
+        }
+    }
+}
+
+/// What is drawn of one search.
+#[derive(Clone, Copy)]
+pub struct Tree<'a> {
+    /// The network that was searched.
+    pub network: &'a Network,
+    /// What was recorded.
+    pub trace: &'a Trace,
+    /// What is known of its states.
+    pub index: &'a TreeIndex,
+    /// Where they stand.
+    pub drawing: &'a TreeDrawing,
+    /// The step that is looked at, if one is, and its state.
+    pub step: Option<(usize, TreeNodeId)>,
+    /// The state that the search is for: its plan, or how far it came. The way there is marked while no step is looked
+    /// at.
+    pub goal: TreeNodeId,
+    /// The name of the drawing for screen readers.
+    pub name: &'a str,
+}
+
+/// What the pointer did.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pointed {
+    /// The state under the pointer.
+    pub hovered: Option<TreeNodeId>,
+    /// It was clicked: go there.
+    pub clicked: bool,
+    /// It was clicked twice: fold or unfold it.
+    pub toggled: bool,
+}
+
+/// The designed size of a cell, and the most and least that one is made.
+const CELL: egui::Vec2 = vec2(34.0, 46.0);
+const MOST_CELL: egui::Vec2 = vec2(110.0, 58.0);
+/// A tree in which states would be nearer to each other downwards is not shown as a whole unless that is asked for.
+const LEAST_DOWN: f32 = 5.0;
+const LEAST_CELL: egui::Vec2 = vec2(0.002, 0.002);
+const LARGEST_CELL: egui::Vec2 = vec2(260.0, 180.0);
+const RADIUS: f32 = 8.0;
+/// From the edges of the panel to the tree when all of it is in view.
+const MARGIN: egui::Vec2 = vec2(22.0, 18.0);
+/// States nearer to each other than this, in points, are drawn as one.
+const LEAST_GAP: f32 = 2.0;
+/// Below this distance states are bars without signs and labels.
+const LEAST_SIGN: f32 = 7.0;
+/// A label with less room than this is left out.
+const LEAST_LABEL: f32 = 16.0;
+/// With less room than this, a label that does not fit is replaced instead of cut.
+const LEAST_CUT: f32 = 56.0;
+
+impl View {
+    /// Zooms or fits.
+    pub fn follow(&mut self, action: ViewAction, rect: Rect) {
+        match action {
+            ViewAction::ZoomIn => self.zoom_at(rect.center(), rect, 1.25),
+            ViewAction::ZoomOut => self.zoom_at(rect.center(), rect, 0.8),
+            ViewAction::ZoomReset => (self.cell, self.fits, self.followed) = (CELL, false, None),
+            ViewAction::Fit | ViewAction::FitSelection => (self.fits, self.least_down) = (true, 0.0),
+            ViewAction::TopView | ViewAction::Follow => {}
+        }
+    }
+
+    /// Zooms; what is at `anchor` stays there.
+    fn zoom_at(&mut self, anchor: Pos2, rect: Rect, factor: f32) {
+        let before = self.cell;
+        self.cell = (self.cell * factor).max(LEAST_CELL).min(LARGEST_CELL);
+        let from_corner = anchor - rect.center_top() - self.scroll;
+        self.scroll += from_corner - from_corner * self.cell / before;
+        self.fits = false;
+    }
+
+    /// Paints the tree and answers what the pointer did.
+    pub fn show(&mut self, ui: &mut egui::Ui, context: &Context<'_>, tree: &Tree<'_>) -> Pointed {
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        let count = tree.trace.tree.len();
+        response.widget_info(|| {
+            let name = format!("{}: search tree of {count} states", tree.name);
+            egui::WidgetInfo::labeled(egui::Role::Image, true, name)
+        });
+        self.navigate(&response, rect, tree);
+        self.follow_step(rect, tree);
+        let painter = ui.painter_at(rect);
+        let path = path_to(tree);
+        let scene = Scene { painter: &painter, rect, view: *self, context, tree, path: &path };
+        scene.paint();
+        let hovered = response.hover_pos().and_then(|pointer| self.state_at(rect, pointer, tree));
+        Pointed {
+            hovered,
+            clicked: response.clicked() && hovered.is_some(),
+            toggled: response.double_clicked() && hovered.is_some(),
+        }
+    }
+
+    fn state_at(&self, rect: Rect, pointer: Pos2, tree: &Tree<'_>) -> Option<TreeNodeId> {
+        let at = self.cells(rect, pointer);
+        let reach = vec2(radius(self.cell).max(7.0), radius(self.cell).max(7.0)) / self.cell;
+        let found = tree.drawing.nearest(at, [reach.x, reach.y.min(0.5)])?;
+        tree.index.is_known(found, tree.step.map(|(step, _)| step)).then_some(found)
+    }
+
+    fn navigate(&mut self, response: &egui::Response, rect: Rect, tree: &Tree<'_>) {
+        if response.dragged() {
+            self.scroll += response.drag_delta();
+            self.fits = false;
+        }
+        if let Some(pointer) = response.hover_pos() {
+            let (scroll, pinch) =
+                response.ctx.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            let factor = pinch * (scroll * 0.003).exp();
+            if factor != 1.0 {
+                self.zoom_at(pointer, rect, factor);
+            }
+        }
+        if self.fits {
+            let room = rect.size() - 2.0 * MARGIN;
+            let across = room.x / (tree.drawing.width + 0.6).max(1.0);
+            let down = room.y / tree.drawing.depth().max(1.0);
+            if down < self.least_down {
+                self.look_at_goal(rect, tree);
+                return;
+            }
+            self.cell = vec2(across, down).min(MOST_CELL).max(LEAST_CELL);
+            // A tree of one row stands near the top.
+            self.scroll = vec2(-(tree.drawing.width + 0.4) * self.cell.x / 2.0, MARGIN.y);
+        }
+    }
+
+    /// At the designed size, with the goal where much of the way there is in view.
+    fn look_at_goal(&mut self, rect: Rect, tree: &Tree<'_>) {
+        let goal = tree.drawing.stand_in(tree.trace, tree.goal);
+        let Some([across, down]) = tree.drawing.places.get(goal as usize).copied().flatten() else { return };
+        self.cell = CELL;
+        self.scroll = vec2(0.0, rect.height() * 0.8) - vec2(across, down) * self.cell;
+    }
+
+    /// Brings the state of a new step into view if it is not.
+    fn follow_step(&mut self, rect: Rect, tree: &Tree<'_>) {
+        let current = tree.step.map(|(_, state)| tree.drawing.stand_in(tree.trace, state));
+        if current == self.followed {
+            return;
+        }
+        self.followed = current;
+        let place = current.and_then(|id| tree.drawing.places.get(id as usize).copied().flatten());
+        if let Some(place) = place {
+            let at = self.place(rect, place);
+            if !rect.shrink2(MARGIN.min(rect.size() / 4.0)).contains(at) {
+                self.scroll += rect.center() - at;
+                self.fits = false;
+            }
+        }
+    }
+
+    fn place(&self, rect: Rect, [across, down]: [f32; 2]) -> Pos2 {
+        rect.center_top() + self.scroll + vec2(across, down) * self.cell
+    }
+
+    fn cells(&self, rect: Rect, at: Pos2) -> [f32; 2] {
+        let from_corner = (at - rect.center_top() - self.scroll) / self.cell;
+        [from_corner.x, from_corner.y]
+    }
+}
+
+/// The size of a state's sign.
+fn radius(cell: egui::Vec2) -> f32 {
+    (cell.x * 0.3).min(cell.y * 0.21).clamp(1.0, RADIUS)
+}
+
+/// The states from the root to that of the step, or without a step to the goal, in this order; ascending, since parents come before their children.
+fn path_to(tree: &Tree<'_>) -> Vec<TreeNodeId> {
+    let above = |&id: &TreeNodeId| tree.trace.tree.get(id as usize).and_then(|node| node.parent);
+    let mut path: Vec<_> =
+        std::iter::successors(Some(tree.step.map_or(tree.goal, |(_, state)| state)), above).collect();
+    path.reverse();
+    path
+}
+
+/// Everything that painting needs.
+struct Scene<'a> {
+    painter: &'a egui::Painter,
+    rect: Rect,
+    view: View,
+    context: &'a Context<'a>,
+    tree: &'a Tree<'a>,
+    path: &'a [TreeNodeId],
+}
+
+impl Scene<'_> {
+    fn paint(&self) {
+        let [left, top] = self.view.cells(self.rect, self.rect.min);
+        let [right, bottom] = self.view.cells(self.rect, self.rect.max);
+        let last = self.tree.drawing.rows.len().saturating_sub(1);
+        let first_row = (top.floor() - 1.0).max(0.0) as usize;
+        let last_row = ((bottom.ceil() + 1.0).max(0.0) as usize).min(last);
+        let stride = (LEAST_GAP / self.view.cell.y).ceil().max(1.0) as usize;
+        let rows: Vec<(usize, Vec<TreeNodeId>)> = (first_row..=last_row)
+            .step_by(stride)
+            .map(|row| (row, self.seen(row, left - 1.0, right + 1.0)))
+            .collect();
+        for (row, states) in rows.iter().filter(|(row, _)| *row > 0) {
+            self.edges(*row, states);
+        }
+        self.path_edges(first_row, last_row);
+        for (_, states) in &rows {
+            self.states(states);
+        }
+        // What matters is seen even where only one of many states is drawn.
+        for &id in self.path {
+            self.sign_of(id);
+        }
+        if let Some((_, state)) = self.tree.step {
+            self.current(self.tree.drawing.stand_in(self.tree.trace, state));
+        }
+    }
+
+    fn step(&self) -> Option<usize> {
+        self.tree.step.map(|(step, _)| step)
+    }
+
+    /// The states of a row that are drawn: those in view, and of those that would share a place one.
+    fn seen(&self, row: usize, left: f32, right: f32) -> Vec<TreeNodeId> {
+        let states = self.tree.drawing.between(row, left, right);
+        let least = LEAST_GAP / self.view.cell.x;
+        let across = |id: TreeNodeId| self.tree.drawing.places[id as usize].map_or(0.0, |place| place[0]);
+        let mut seen = Vec::new();
+        let mut at = 0;
+        while let Some(&id) = states.get(at) {
+            let next = if least > 1.0 {
+                at + 1 + states[at + 1..].partition_point(|&other| across(other) < across(id) + least)
+            } else {
+                at + 1
+            };
+            // A solution stands out of those that share its place; what is not known yet gives way.
+            let group = states[at..next].iter().take(64).copied();
+            let known = group.filter(|&id| self.tree.index.is_known(id, self.step()));
+            seen.extend(known.max_by_key(|&id| {
+                (self.tree.index.has_solution[id as usize], self.tree.index.first_step[id as usize].is_some())
+            }));
+            at = next;
+        }
+        seen
+    }
+
+    fn at(&self, id: TreeNodeId) -> Option<Pos2> {
+        let place = self.tree.drawing.places.get(id as usize).copied().flatten()?;
+        Some(self.view.place(self.rect, place))
+    }
+
+    /// From each state of a row up to the level of its choice point and over to it.
+    fn edges(&self, row: usize, states: &[TreeNodeId]) {
+        let color = self.context.tokens.line_strong;
+        let strength = (self.view.cell.x / 6.0).clamp(0.35, 1.0);
+        let stroke =
+            Stroke::new(if self.view.cell.x < 4.0 { 0.6 } else { 1.0 }, color.gamma_multiply(strength));
+        if self.view.cell.y < LEAST_GAP && row > 1 {
+            return;
+        }
+        for &id in states {
+            self.edge(id, stroke);
+        }
+    }
+
+    fn edge(&self, id: TreeNodeId, stroke: Stroke) {
+        let parent = self.tree.trace.tree.get(id as usize).and_then(|node| node.parent);
+        let (Some(to), Some(from)) = (self.at(id), parent.and_then(|parent| self.at(parent))) else { return };
+        let middle = f32::midpoint(from.y, to.y);
+        // Clipped here: a long tree has lines that are too long to be painted exactly.
+        let clip = |x: f32| x.clamp(self.rect.left() - 4.0, self.rect.right() + 4.0);
+        self.painter.line_segment([pos2(to.x, to.y), pos2(to.x, middle)], stroke);
+        if (from.x - to.x).abs() > 0.1 {
+            self.painter.line_segment([pos2(clip(to.x), middle), pos2(clip(from.x), middle)], stroke);
+        }
+        self.painter.line_segment([pos2(from.x, middle), from], stroke);
+    }
+
+    fn path_edges(&self, first_row: usize, last_row: usize) {
+        let stroke = Stroke::new(if self.view.cell.x < 6.0 { 1.5 } else { 2.5 }, self.context.tokens.accent);
+        let rows = first_row.saturating_sub(1)..(last_row + 2).min(self.path.len());
+        for &id in self.path.get(rows).unwrap_or_default() {
+            self.edge(id, stroke);
+        }
+    }
+
+    fn states(&self, states: &[TreeNodeId]) {
+        let radius = radius(self.view.cell);
+        for (place, &id) in states.iter().enumerate() {
+            let Some(center) = self.at(id).filter(|at| self.rect.expand(RADIUS * 2.0).contains(*at)) else {
+                continue;
+            };
+            let choice = self.tree.trace.tree[id as usize].choice;
+            if concerns(choice, &self.context.state.selection, self.tree.network) {
+                self.painter.circle_filled(center, radius + 5.0, self.context.tokens.selection);
+            } else if concerns(choice, &self.context.state.hovered, self.tree.network) {
+                self.painter.circle_filled(center, radius + 4.0, self.context.tokens.hover);
+            }
+            self.sign(id, center, radius);
+            if self.view.cell.x >= LEAST_SIGN && self.view.cell.y >= 16.0 {
+                let next = states.get(place + 1).and_then(|&next| self.at(next));
+                let right = next.map_or(self.rect.right() - 4.0, |next| next.x - radius - 3.0);
+                self.label(id, center, radius, right);
+            }
+        }
+    }
+
+    fn sign_of(&self, id: TreeNodeId) {
+        if let Some(center) = self.at(id).filter(|at| self.rect.contains(*at)) {
+            self.sign(id, center, radius(self.view.cell).max(2.0));
+        }
+    }
+
+    fn sign(&self, id: TreeNodeId, center: Pos2, radius: f32) {
+        let tokens = self.context.tokens;
+        match self.tree.index.status(self.tree.trace, id, self.step()) {
+            TreeStatus::Unexplored => {
+                let outline = Stroke::new((radius / 6.0).clamp(0.5, 1.2), tokens.text_muted);
+                self.painter.circle(center, radius * 0.8, tokens.surface, outline);
+            }
+            TreeStatus::Decision => {
+                self.painter.circle_filled(center, radius, tokens.decision);
+            }
+            TreeStatus::Failed => {
+                let square = Rect::from_center_size(center, vec2(radius, radius) * 1.7);
+                self.painter.rect_filled(square, 1.5, tokens.failure);
+            }
+            TreeStatus::Solution => {
+                // Seen from afar as well.
+                let radius = radius.max(3.0);
+                let points = [(0.0, -1.35), (1.35, 0.0), (0.0, 1.35), (-1.35, 0.0)];
+                let points = points.map(|(x, y)| pos2(center.x + x * radius, center.y + y * radius)).to_vec();
+                self.painter.add(Shape::convex_polygon(points, tokens.solution, Stroke::NONE));
+            }
+        }
+        if radius >= 4.0 && self.is_folded(id) {
+            let (top, half) = (center.y + radius * 1.25, radius * 0.8);
+            let corners = vec![
+                pos2(center.x - half, top),
+                pos2(center.x + half, top),
+                pos2(center.x, top + radius * 0.75),
+            ];
+            self.painter.add(Shape::convex_polygon(corners, tokens.failure, Stroke::NONE));
+        }
+    }
+
+    /// Whether a state is drawn without what is below it.
+    fn is_folded(&self, id: TreeNodeId) -> bool {
+        let children = self.tree.index.children(id);
+        !children.is_empty()
+            && children.iter().all(|&child| self.tree.drawing.places[child as usize].is_none())
+    }
+
+    fn current(&self, id: TreeNodeId) {
+        let Some(center) = self.at(id) else { return };
+        let radius = radius(self.view.cell).max(3.0);
+        self.sign(id, center, radius);
+        let ring = Rect::from_center_size(center, egui::Vec2::splat((radius * 3.0).max(12.0)));
+        let stroke = Stroke::new(2.0, self.context.tokens.accent);
+        self.painter.rect_stroke(ring, radius, stroke, StrokeKind::Middle);
+    }
+
+    /// A label beside a state, cut to the room before `right`, or none where there is no room.
+    fn label(&self, id: TreeNodeId, center: Pos2, radius: f32, right: f32) {
+        let tokens = self.context.tokens;
+        let is_ringed = self.tree.step.is_some_and(|(_, state)| state == id);
+        let left = center.x + if is_ringed { radius * 1.5 + 5.0 } else { radius + 3.0 };
+        let room = right - left;
+        if room < LEAST_LABEL {
+            return;
+        }
+        let choice = self.tree.trace.tree[id as usize].choice;
+        let mut text = short_label(self.tree.network, choice);
+        if self.is_folded(id) {
+            text = format!("{text} +{}", self.tree.index.below[id as usize]);
+        }
+        let is_on_path = self.path.binary_search(&id).is_ok();
+        let color = if is_on_path { tokens.text } else { tokens.text_muted };
+        let mut galley = self.one_line(&text, color, room);
+        if galley.elided && room < LEAST_CUT {
+            // A few letters say less than which alternative it is, or how many are folded.
+            let below = self.is_folded(id).then(|| format!("+{}", self.tree.index.below[id as usize]));
+            let Some(text) = below.or_else(|| shortest_label(choice)) else { return };
+            galley = self.one_line(&text, color, room);
+        }
+        let at = Align2::LEFT_CENTER.anchor_size(pos2(left, center.y), galley.size());
+        self.painter.galley(at.min, galley, color);
+    }
+
+    fn one_line(&self, text: &str, color: Color32, room: f32) -> std::sync::Arc<egui::Galley> {
+        let mut job = egui::text::LayoutJob::simple_singleline(
+            text.to_owned(),
+            FontId::proportional(size::SMALL),
+            color,
+        );
+        job.wrap = egui::text::TextWrapping::truncate_at_width(room);
+        self.painter.layout_job(job)
+    }
+}
+
+/// A name for a state that is short enough to stand beside it.
+pub fn short_label(network: &Network, choice: Option<TreeChoice>) -> String {
+    let condition =
+        |id: tpn::LabelId| network.labels.get(id.index()).map(|it| it.text.clone()).unwrap_or_default();
+    let owner = |id: tpn::LabelId| {
+        let label = network.labels.get(id.index());
+        let owner = label.and_then(|label| network.occurrences.get(label.owner?.index()));
+        owner.map_or_else(|| network.label_name(id), |owner| owner.name.to_string())
+    };
+    match choice {
+        None => "start".to_owned(),
+        Some(TreeChoice::Decision { decision, alternative }) => {
+            format!("{}={alternative}", Network::decision_name(decision))
+        }
+        Some(TreeChoice::Link(link)) => format!("← {}", owner(link.tell)),
+        Some(TreeChoice::Order(order)) => format!("{} ≺ {}", owner(order.first), owner(order.then)),
+        Some(TreeChoice::NoLink { ask }) => format!("{} ← nothing", condition(ask)),
+    }
+}
+
+/// The alternative alone, for states beside others of the same choice; none where it has no number.
+fn shortest_label(choice: Option<TreeChoice>) -> Option<String> {
+    match choice {
+        Some(TreeChoice::Decision { alternative, .. }) => Some(format!("={alternative}")),
+        _ => None,
+    }
+}

@@ -1,0 +1,151 @@
+//! The rows of controls above the search tree: stepping, playing, breakpoints, and which search runs.
+
+use egui::{Button, ComboBox, RichText, Slider, Ui};
+use mission::SearchKind;
+use theme::icon::{self, Icon};
+use theme::space;
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender};
+use workbench::state::search::{Recording, SearchCommand};
+
+use super::kind_name;
+use crate::Context;
+
+/// Speeds that can be chosen, in steps a second.
+const SPEEDS: [f64; 8] = [1.0, 2.0, 4.0, 10.0, 30.0, 100.0, 1_000.0, 10_000.0];
+
+/// Shows the controls.
+pub fn show(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    recordings: &[Recording],
+    folds_failed: &mut bool,
+    commands: &mut CommandSender,
+) {
+    egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 4)).show(ui, |ui| {
+        ui.spacing_mut().item_spacing = egui::vec2(space::XS, space::XS);
+        ui.horizontal_wrapped(|ui| show_steps(ui, context, recordings, commands));
+        ui.horizontal_wrapped(|ui| show_choices(ui, context, folds_failed, commands));
+        ui.horizontal_wrapped(|ui| show_breakpoints(ui, context, commands));
+    });
+}
+
+fn show_steps(ui: &mut Ui, context: &Context<'_>, recordings: &[Recording], commands: &mut CommandSender) {
+    let tokens = context.tokens;
+    let search = &context.state.search;
+    let (sign, play) =
+        if search.is_playing { (Icon::Pause, "Stop (Space)") } else { (Icon::Play, "Play (Space)") };
+    for (sign, name, command) in [
+        (Icon::ToStart, "First step (Home)", SearchCommand::GoTo(0)),
+        (Icon::RunBack, "Back to the breakpoint before ([)", SearchCommand::Run(false)),
+        (Icon::StepBack, "Step back (,)", SearchCommand::Step(-1)),
+        (sign, play, SearchCommand::TogglePlaying),
+        (Icon::StepForward, "Step forward (.)", SearchCommand::Step(1)),
+        (Icon::Run, "Run to the next breakpoint (])", SearchCommand::Run(true)),
+        (Icon::ToEnd, "Last step (End)", SearchCommand::GoTo(usize::MAX)),
+    ] {
+        if icon::toggle(ui, tokens, sign, name, sign == Icon::Pause).clicked() {
+            commands.send(Command::Activate(PanelKind::Search));
+            commands.send(Command::Search(command));
+        }
+    }
+    show_speed(ui, context, commands);
+    let longest = recordings.iter().map(Recording::steps).max().unwrap_or(1).max(1);
+    let steps = match (search.is_linked(), recordings.get(search.side())) {
+        (false, Some(recording)) => recording.steps(),
+        _ => longest,
+    };
+    let mut step = search.step().map_or(steps, |step| step.step + 1);
+    let rest = ui.available_size_before_wrap().x;
+    if rest < 140.0 {
+        ui.end_row();
+    }
+    let room = if rest < 140.0 { ui.available_width() } else { rest };
+    ui.spacing_mut().slider_width = (room - 80.0).clamp(60.0, 180.0);
+    let slider = ui.add(Slider::new(&mut step, 1..=steps)).accessible_name("Step of the search");
+    if slider.changed() {
+        commands.send(Command::Search(SearchCommand::GoTo(step - 1)));
+    }
+    if search.step().is_some() {
+        let close =
+            ui.button("Show the plan").on_hover_text("Leaves the search and shows the plan again (Esc)");
+        if close.clicked() {
+            commands.send(Command::Search(SearchCommand::Close));
+        }
+    }
+}
+
+fn show_speed(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let now = context.state.search.steps_per_sec;
+    let mut speed = now;
+    ComboBox::from_id_salt("search-speed")
+        .selected_text(format!("{now}/s"))
+        .width(58.0)
+        .show_ui(ui, |ui| {
+            for choice in SPEEDS {
+                ui.selectable_value(&mut speed, choice, format!("{choice} steps a second"));
+            }
+        })
+        .response
+        .accessible_name("Speed");
+    if speed != now {
+        commands.send(Command::Search(SearchCommand::SetSpeed(speed)));
+    }
+}
+
+fn show_choices(ui: &mut Ui, context: &Context<'_>, folds_failed: &mut bool, commands: &mut CommandSender) {
+    let search = &context.state.search;
+    let mut compares = search.compares();
+    if compares {
+        let mut is_linked = search.is_linked();
+        ui.toggle_value(&mut is_linked, "Together").on_hover_text("Both searches step together");
+        if is_linked != search.is_linked() {
+            commands.send(Command::Search(SearchCommand::Link(is_linked)));
+        }
+    } else {
+        show_kind(ui, context, commands);
+    }
+    ui.toggle_value(&mut compares, "Compare").on_hover_text("Shows both searches side by side");
+    if compares != search.compares() {
+        commands.send(Command::Search(SearchCommand::Compare(compares)));
+    }
+    ui.toggle_value(folds_failed, "Fold failures")
+        .on_hover_text("Hides what is below states in which all fails");
+}
+
+fn show_breakpoints(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let search = &context.state.search;
+    ui.add_space(space::XS);
+    ui.label(RichText::new("Stop at").color(context.tokens.text_muted));
+    let mut breakpoints = search.breakpoints;
+    for (value, name, help) in [
+        (&mut breakpoints.decision, "decisions", "Run and Play stop where an alternative is taken"),
+        (&mut breakpoints.failure, "dead ends", "Run and Play stop at dead ends"),
+        (&mut breakpoints.threat, "threats", "Run and Play stop where conflicting intervals may overlap"),
+        (&mut breakpoints.solution, "plans", "Run and Play stop at plans"),
+    ] {
+        let button = ui.add(Button::selectable(*value, name)).on_hover_text(help);
+        if button.accessible_name(format!("Stop at {name}")).clicked() {
+            *value = !*value;
+        }
+    }
+    if breakpoints != search.breakpoints {
+        commands.send(Command::Search(SearchCommand::SetBreakpoints(breakpoints)));
+    }
+}
+
+fn show_kind(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let mut kind = context.state.settings.plan.search;
+    ComboBox::from_id_salt("search-kind")
+        .selected_text(kind_name(kind))
+        .show_ui(ui, |ui| {
+            for choice in [SearchKind::Chronological, SearchKind::ConflictDirected] {
+                ui.selectable_value(&mut kind, choice, kind_name(choice));
+            }
+        })
+        .response
+        .accessible_name("Search");
+    if kind != context.state.settings.plan.search {
+        commands.send(Command::SetSearch(kind));
+    }
+}

@@ -1,0 +1,42 @@
+//! Says what happens at the step that is looked at.
+
+use kirk::Event;
+use workbench::state::search::Recording;
+use workbench::state::search::focus::is_failure;
+use workbench::state::search::wording::{cycle_step, event};
+
+use crate::Context;
+
+/// Says what happens at the step that is looked at.
+pub fn show(ui: &mut egui::Ui, context: &Context<'_>, recording: &Recording) {
+    let tokens = context.tokens;
+    let trace = recording.trace();
+    let Some(view) = context.state.search.shown() else {
+        let more =
+            if trace.is_truncated { "; the plan comes from a search that was not recorded" } else { "" };
+        let text = format!(
+            "{} steps recorded{more}. Press . to step, or click a state of the tree.",
+            recording.steps()
+        );
+        ui.label(egui::RichText::new(text).color(tokens.text_muted));
+        return;
+    };
+    let step = view.step.step;
+    let Some(entry) = trace.events.get(step) else { return };
+    let color = match entry.event {
+        Event::Solution { .. } => tokens.solution,
+        _ if is_failure(&entry.event) => tokens.failure,
+        _ => tokens.text,
+    };
+    let position = format!("{} / {}", step + 1, trace.events.len());
+    ui.horizontal_wrapped(|ui| {
+        ui.label(egui::RichText::new(position).color(tokens.text_muted).monospace());
+        ui.label(egui::RichText::new(event(recording.network(), &entry.event)).color(color));
+    });
+    if let Event::Inconsistent { cycle } = &entry.event {
+        for member in cycle {
+            let text = cycle_step(recording.network(), member);
+            ui.label(egui::RichText::new(text).color(tokens.text_muted).small());
+        }
+    }
+}

@@ -1,0 +1,352 @@
+//! The terrain: the ground in three dimensions with the mission's places, obstacles, paths and vehicles.
+//!
+//! Left drag turns, right drag or Shift moves, the wheel zooms. Dragging a place, an obstacle or a vehicle that has not
+//! moved yet rewrites its declaration in the text. A click on a path shows what is known of it.
+
+mod card;
+mod clearance;
+mod drag;
+mod hud;
+mod labels;
+mod measure;
+mod steer;
+mod surface;
+mod tool;
+mod toolbar;
+mod tree;
+
+use std::sync::Arc;
+
+use egui::{CursorIcon, Rect, Response, RichText, Sense};
+use glam::Vec2;
+use mission::Snapshot;
+use terrain::Terrain;
+use terrain_view::camera::Camera;
+use terrain_view::flight::Flight;
+use terrain_view::gpu::TerrainImage;
+use terrain_view::pick::Scene;
+use terrain_view::{driving, frame, navigate, scene};
+use theme::space;
+use tpn::OccurrenceId;
+use workbench::command::{Command, CommandSender};
+use workbench::state::settings::TerrainView;
+use workbench::state::terrain::{TerrainCommand, Tool};
+use workbench::state::{EditKind, Selection};
+
+use crate::{Context, Panel, show_empty};
+use clearance::Clearance;
+use drag::Drag;
+use measure::Measurement;
+use surface::{DecalKey, Shown};
+
+/// The panel, with what concerns only it: the camera and what is on the graphics card.
+#[derive(Default)]
+pub struct TerrainPanel {
+    image: Option<TerrainImage>,
+    ground: Option<Shown>,
+    decal: Option<DecalKey>,
+    clearance: Option<Clearance>,
+    /// Where the user wants to look from.
+    camera: Option<Camera>,
+    /// Where the last frame looked from: over the ground.
+    drawn: Option<Camera>,
+    flight: Option<Flight>,
+    /// The vehicle that the camera follows, as an index into the program's world.
+    follow: Option<usize>,
+    drag: Option<Drag>,
+    /// Where a tool's drag began.
+    pressed_m: Option<Vec2>,
+    /// How many drags there were: each is one step of the history.
+    drag_count: u64,
+    followed_action: u64,
+    /// The path that was clicked last: its traverse, its leg and the place.
+    clicked: Option<(OccurrenceId, usize, Vec2)>,
+    /// The plates with names in the last frame.
+    plates: Vec<(Rect, Selection)>,
+    told_hover: Selection,
+}
+
+/// The margin between the image's border and what is written on it.
+const MARGIN: f32 = space::M;
+
+impl Panel for TerrainPanel {
+    fn show(&mut self, ui: &mut egui::Ui, context: &Context<'_>, commands: &mut CommandSender) {
+        if context.state.automaton.program().is_some() {
+            show_empty(ui, context, "A control program has no ground. Open a mission to see one.");
+            return;
+        }
+        let Some(snapshot) = context.snapshot else {
+            show_empty(ui, context, "The ground appears when the mission has been read.");
+            return;
+        };
+        if snapshot.map.is_none() {
+            show_without_world(ui, context, commands);
+            return;
+        }
+        let views = &context.state.settings.views;
+        let mut view = views.terrain.clone();
+        let followed = self.follow;
+        toolbar::show(ui, context, snapshot, &mut view, &mut self.follow, commands);
+        if view != views.terrain {
+            commands.send(Command::SetViews(Box::new(workbench::state::Views {
+                terrain: view.clone(),
+                ..views.clone()
+            })));
+        }
+        if self.follow != followed && self.follow.is_some() {
+            self.fly_to_followed(context, snapshot);
+        }
+        let map = snapshot.map.as_ref().and_then(|key| context.state.maps.get(key));
+        self.show_ground(context, map, snapshot, &view);
+        self.lay_decal(context, snapshot, map, &view);
+        self.show_image(ui, context, snapshot, map, &view, commands);
+    }
+}
+
+impl TerrainPanel {
+    fn show_image(
+        &mut self,
+        ui: &mut egui::Ui,
+        context: &Context<'_>,
+        snapshot: &Snapshot,
+        map: Option<&Arc<Terrain>>,
+        view: &TerrainView,
+        commands: &mut CommandSender,
+    ) {
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        let measured = map.and_then(|map| measurement(context, map));
+        let described = describe(context, snapshot, measured.as_ref());
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Terrain. {described}"))
+        });
+        if rect.width() < 2.0 || rect.height() < 2.0 {
+            return;
+        }
+        if let (None, Some(shown)) = (self.camera, &self.ground) {
+            self.camera = Some(Camera::whole(&shown.ground, rect.aspect_ratio()));
+        }
+        self.handle_input(&response, rect, context, snapshot, commands);
+        self.move_camera(&response, context, snapshot);
+        let (Some(camera), Some(shown)) = (self.drawn, &self.ground) else { return };
+        let ground = &shown.ground;
+        let scene =
+            Scene { rect, camera: &camera, ground, snapshot, state: context.state, plates: &self.plates };
+        let mut sketch = tool::sketch(&response, &scene, self.pressed_m, measured.as_ref());
+        if let Some(drag) = self.drag.as_ref().filter(|drag| drag.is_start()) {
+            sketch.marks.push(drag.last_m);
+        }
+        let painter = ui.painter_at(rect);
+        let pixels_per_point = ui.ctx().pixels_per_point();
+        let input = frame::Input {
+            state: context.state,
+            tokens: context.tokens,
+            snapshot,
+            map,
+            view,
+            camera: &camera,
+            ground,
+            sketch: &sketch,
+        };
+        match (context.render_state, &mut self.image) {
+            (Some(state), Some(image)) => {
+                frame::paint(&painter, rect, pixels_per_point, state, image, &input);
+            }
+            _ => {
+                painter.rect_filled(rect, 0.0, context.tokens.sunken);
+            }
+        }
+        let overlay =
+            hud::Overlay { painter: &painter, rect, camera: &camera, ground, snapshot, context, view };
+        let terrain = &context.state.terrain;
+        let hint = tool::hint(&terrain.tool, terrain.points_m.len());
+        let clearance_of = self.clearance.as_ref().map(|it| it.model.as_str());
+        let plates = overlay.paint(response.hover_pos(), hint.as_deref(), clearance_of);
+        if let Some(hint) = &hint {
+            let top = Rect::from_min_size(rect.min, egui::vec2(rect.width(), space::BAR));
+            let node = ui.interact(top, response.id.with("hint"), Sense::hover());
+            node.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, hint));
+        }
+        for (plate, names) in &plates {
+            let name = format!("{} on the map", names.name(None));
+            let node = ui.interact(*plate, response.id.with(&name), Sense::hover());
+            node.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &name));
+        }
+        self.show_cards(ui, context, snapshot, &overlay, measured.as_ref(), commands);
+        self.plates = plates;
+    }
+
+    /// What clicks, drags and the pointer do.
+    fn handle_input(
+        &mut self,
+        response: &Response,
+        rect: Rect,
+        context: &Context<'_>,
+        snapshot: &Snapshot,
+        commands: &mut CommandSender,
+    ) {
+        let (Some(wanted), Some(shown)) = (self.camera, &self.ground) else { return };
+        let camera = self.drawn.unwrap_or(wanted);
+        let ground = &shown.ground;
+        let scene =
+            Scene { rect, camera: &camera, ground, snapshot, state: context.state, plates: &self.plates };
+        let tool = &context.state.terrain.tool;
+        if response.clicked() || response.drag_started() {
+            response.request_focus();
+        }
+        if *tool == Tool::Look {
+            self.drag = drag::update(self.drag.take(), &mut self.drag_count, response, &scene, commands);
+        } else {
+            self.drag = None;
+            tool::update(response, &scene, &mut self.pressed_m, commands);
+        }
+        let draws_disc =
+            matches!(tool, Tool::Circle | Tool::Appear) && response.dragged_by(egui::PointerButton::Primary);
+        if self.drag.is_none() && !draws_disc {
+            let mut moved = wanted;
+            let under = response.hover_pos().and_then(|pointer| scene.hit(pointer));
+            navigate::update(response, &mut moved, scene.size(), under);
+            if moved != wanted {
+                self.flight = None;
+                if moved.target_m != wanted.target_m && !is_zoomed(&wanted, &moved) {
+                    self.follow = None;
+                }
+                self.camera = Some(moved);
+            }
+        }
+        if *tool != Tool::Look {
+            if response.hovered() {
+                response.ctx.set_cursor_icon(CursorIcon::Crosshair);
+            }
+            return;
+        }
+        let pointed = response.hover_pos().map(|pointer| scene.pick(pointer)).unwrap_or_default();
+        if response.hovered() && self.drag.is_none() {
+            let icon = match () {
+                () if drag::is_draggable(&pointed, &scene) => Some(CursorIcon::Grab),
+                () if !pointed.is_none() => Some(CursorIcon::PointingHand),
+                () => None,
+            };
+            if let Some(icon) = icon {
+                response.ctx.set_cursor_icon(icon);
+            }
+        }
+        let mut clicked = None;
+        let mut flies_to = None;
+        if let Some(pointer) = response.interact_pointer_pos() {
+            if response.clicked() {
+                let on_path = scene.pick_path(pointer);
+                let selection = scene.pick(pointer);
+                let occurrence = selection.occurrence_of_path(snapshot);
+                clicked = on_path.zip(occurrence).map(|(on, occurrence)| (occurrence, on.leg, on.place_m));
+                commands.send(Command::Select(selection));
+            }
+            if response.double_clicked() {
+                let selection = scene.pick(pointer);
+                flies_to = Some((selection, scene.hit(pointer)));
+            }
+        }
+        if response.clicked() {
+            self.clicked = clicked;
+        }
+        self.tell_hover(context, pointed, commands);
+        if let Some((selection, hit)) = flies_to {
+            self.fly_to(context, snapshot, &selection, hit);
+        }
+    }
+
+    /// Tells the other panels what the pointer is over, when that has changed.
+    fn tell_hover(&mut self, context: &Context<'_>, pointed: Selection, commands: &mut CommandSender) {
+        if pointed == self.told_hover {
+            return;
+        }
+        if !pointed.is_none() || context.state.hovered == self.told_hover {
+            commands.send(Command::Hover(pointed.clone()));
+        }
+        self.told_hover = pointed;
+    }
+
+    /// The card of the selected path, and the one of a measurement.
+    fn show_cards(
+        &self,
+        ui: &mut egui::Ui,
+        context: &Context<'_>,
+        snapshot: &Snapshot,
+        overlay: &hud::Overlay<'_>,
+        measured: Option<&Measurement>,
+        commands: &mut CommandSender,
+    ) {
+        let anchor = |place: Vec2| overlay.at(overlay.ground.drape(place, 0.0));
+        if let Some(measured) = measured {
+            let at = anchor(scene::place(measured.ends_m[1])).unwrap_or(overlay.rect.center());
+            if card::show_measurement(ui, context, overlay.rect, at, measured) {
+                commands.send(Command::Terrain(TerrainCommand::Take(Tool::Measure)));
+            }
+            return;
+        }
+        if context.state.terrain.tool != Tool::Look || !overlay.view.paths {
+            return;
+        }
+        let Some(traverse) = card::selected_traverse(snapshot, &context.state.selection) else { return };
+        let clicked = self.clicked.filter(|(occurrence, ..)| *occurrence == traverse.occurrence);
+        let place = card::path_anchor(traverse, clicked.map(|(.., place)| place));
+        let Some(at) = place.and_then(anchor) else { return };
+        let leg = clicked.map(|(_, leg, _)| leg);
+        card::show_path(ui, context, overlay.rect, at, (traverse, leg), commands);
+    }
+}
+
+/// Whether a camera has only come nearer or gone away, which following a vehicle survives.
+fn is_zoomed(before: &Camera, after: &Camera) -> bool {
+    before.distance_m != after.distance_m
+}
+
+/// What the measuring tool has measured, if it has two places.
+fn measurement(context: &Context<'_>, map: &Terrain) -> Option<Measurement> {
+    let terrain = &context.state.terrain;
+    let [from, to] = terrain.points_m.as_slice() else { return None };
+    (terrain.tool == Tool::Measure).then(|| Measurement::new(map, [*from, *to])).flatten()
+}
+
+/// What a screen reader says of the image.
+fn describe(context: &Context<'_>, snapshot: &Snapshot, measured: Option<&Measurement>) -> String {
+    let time = context.state.playback.time;
+    let mut text = format!("Time {time:.0}.");
+    for (index, vehicle) in snapshot.program.world.vehicles.iter().enumerate() {
+        if let Some((place, _)) = scene::vehicle_pose(snapshot, index, time) {
+            text.push_str(&format!(" {} at {:.0}, {:.0}.", vehicle.name.text, place.x, place.y));
+        }
+    }
+    if let Some(run) = context.state.run_shown() {
+        for (vehicle, frame) in driving::under_way(run, time) {
+            let vehicle = snapshot.program.world.vehicles.get(vehicle as usize);
+            if let Some((vehicle, away_m)) = vehicle.zip(driving::nearest_seen_m(frame)) {
+                text.push_str(&format!(" {} sees something {away_m:.1} m away.", vehicle.name.text));
+            }
+        }
+    }
+    if let Some(shown) = context.state.terrain.growth.shown() {
+        text.push_str(&format!(" Search tree: {}.", tree::words(shown)));
+    }
+    if let Some(measured) = measured {
+        let rows = measured.rows().into_iter().map(|(what, how_much)| format!("{what} {how_much}"));
+        text.push_str(&format!(" Measured: {}.", rows.collect::<Vec<_>>().join(", ")));
+    }
+    text
+}
+
+/// A mission without places: what to write, and a button that writes it.
+fn show_without_world(ui: &mut egui::Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    const WORLD: &str = "terrain \"tai-plain\";\nlocation BASE (40, 40);\n\n";
+    ui.vertical_centered(|ui| {
+        ui.add_space((ui.available_height() * 0.3).max(space::L));
+        ui.set_max_width(ui.available_width().min(380.0));
+        let text = "This mission has no places. With a terrain and a location, its world appears here.";
+        ui.label(RichText::new(text).color(context.tokens.text_muted));
+        ui.add_space(space::M);
+        if ui.button("Add a terrain and a location").clicked() {
+            let offset = workbench::state::placing::first_code(context.state.document.text()) as u32;
+            let edit = rmpl::Edit { span: rmpl::Span::new(offset, offset), text: WORLD.to_owned() };
+            commands.send(Command::Edit { edits: vec![edit], kind: EditKind::Single });
+        }
+    });
+}

@@ -1,0 +1,112 @@
+//! Where the camera goes by itself: view actions, flights, and vehicles that it follows.
+
+use egui::Response;
+use glam::Vec3;
+use mission::Snapshot;
+use terrain_view::camera::Camera;
+use terrain_view::flight::Flight;
+use terrain_view::{pick, scene};
+use workbench::PanelKind;
+use workbench::command::ViewAction;
+use workbench::state::Selection;
+
+use super::{TerrainPanel, clearance};
+use crate::Context;
+
+/// How near the camera comes to a place that it flies to, in metres.
+const NEAR_M: f32 = 45.0;
+
+impl TerrainPanel {
+    /// Follows view actions, flights and vehicles, and keeps the eye over the ground.
+    pub(super) fn move_camera(&mut self, response: &Response, context: &Context<'_>, snapshot: &Snapshot) {
+        if let Some(action) = context.view_action(PanelKind::Terrain, &mut self.followed_action) {
+            self.follow_action(action, response.rect.aspect_ratio(), context, snapshot);
+        }
+        let (Some(mut camera), Some(shown)) = (self.camera, &self.ground) else { return };
+        let ground = &shown.ground;
+        let time = context.state.playback.time;
+        let followed = self.follow.and_then(|index| {
+            let vehicle = snapshot.program.world.vehicles.get(index)?;
+            let (place, _) = scene::vehicle_pose(snapshot, index, time)?;
+            Some(ground.drape(place, scene::flight_height_m(ground, vehicle, place).unwrap_or(0.5)))
+        });
+        if let Some(flight) = self.flight {
+            let flight = followed.map_or(flight, |target| flight.toward(target));
+            let (now, is_over) = flight.at(context.now_secs);
+            camera = now;
+            self.flight = (!is_over).then_some(flight);
+            response.ctx.request_repaint();
+        } else if let Some(target) = followed {
+            camera.target_m = target;
+        } else {
+            let inside = ground.nearest(camera.target_m.truncate());
+            camera.target_m = ground.drape(inside, 0.0);
+        }
+        let camera = camera.not_lost_above(ground);
+        self.camera = Some(camera);
+        self.drawn = Some(camera.above(ground));
+    }
+
+    fn follow_action(&mut self, action: ViewAction, aspect: f32, context: &Context<'_>, snapshot: &Snapshot) {
+        let (Some(camera), Some(shown)) = (self.camera, &self.ground) else { return };
+        let whole = Camera::whole(&shown.ground, aspect);
+        match action {
+            ViewAction::ZoomIn | ViewAction::ZoomOut => {
+                let mut nearer = camera;
+                nearer.zoom(if action == ViewAction::ZoomIn { 0.7 } else { 1.0 / 0.7 });
+                self.fly(camera, nearer, context);
+            }
+            ViewAction::ZoomReset | ViewAction::Fit => {
+                self.follow = None;
+                self.fly(camera, whole, context);
+            }
+            ViewAction::TopView => self.fly(camera, camera.top_view(), context),
+            ViewAction::FitSelection => {
+                self.follow = None;
+                self.fly_to(context, snapshot, &context.state.selection, None);
+            }
+            ViewAction::Follow if self.follow.is_some() => self.follow = None,
+            ViewAction::Follow => {
+                self.follow = clearance::vehicle(snapshot, &context.state.selection);
+                self.fly_to_followed(context, snapshot);
+            }
+        }
+    }
+
+    /// Flies to what is selected, or nearer to a bare place.
+    pub(super) fn fly_to(
+        &mut self,
+        context: &Context<'_>,
+        snapshot: &Snapshot,
+        selection: &Selection,
+        bare: Option<Vec3>,
+    ) {
+        let (Some(camera), Some(shown)) = (self.camera, &self.ground) else { return };
+        let place = pick::place_of(snapshot, selection, context.state.playback.time);
+        let target = match place {
+            Some(place) => {
+                let distance_m = NEAR_M.max(1.5 * pick::extent_of(snapshot, selection));
+                camera.close_up(shown.ground.drape(place, 0.0), distance_m)
+            }
+            None => match bare {
+                Some(hit) => camera.close_up(hit, camera.distance_m * 0.5),
+                None => return,
+            },
+        };
+        self.follow = None;
+        self.fly(camera, target, context);
+    }
+
+    pub(super) fn fly_to_followed(&mut self, context: &Context<'_>, snapshot: &Snapshot) {
+        let (Some(camera), Some(shown)) = (self.camera, &self.ground) else { return };
+        let time = context.state.playback.time;
+        let pose = self.follow.and_then(|index| scene::vehicle_pose(snapshot, index, time));
+        if let Some((place, _)) = pose {
+            self.fly(camera, camera.close_up(shown.ground.drape(place, 0.5), NEAR_M * 0.6), context);
+        }
+    }
+
+    fn fly(&mut self, from: Camera, to: Camera, context: &Context<'_>) {
+        self.flight = Some(Flight::new(from, to, context.now_secs));
+    }
+}

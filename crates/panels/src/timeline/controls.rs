@@ -1,0 +1,167 @@
+//! The row of buttons above the timeline: playing, the time, what is shown, zoom.
+
+use egui::{Button, ComboBox, Frame, Margin, RichText, Ui};
+use rmpl::program::TimeUnit;
+use theme::icon::{self, Icon};
+use theme::space;
+use tpn::{Network, OccurrenceKind};
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::state::PinCommand;
+use workbench::state::settings::Grouping;
+use workbench::time_text;
+
+use super::handle;
+use crate::Context;
+
+/// Shows the row.
+pub(crate) fn show(ui: &mut Ui, context: &Context<'_>, network: &Network, commands: &mut CommandSender) {
+    let frame = Frame::new().inner_margin(Margin::symmetric(8, 3));
+    frame.show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = egui::vec2(space::XS, space::XS);
+            playing(ui, context, commands);
+            ui.add_space(space::M);
+            clock(ui, context);
+            ui.add_space(space::M);
+            rate(ui, context, commands);
+            ui.add_space(space::M);
+            grouping(ui, context, commands);
+            switches(ui, context, commands);
+            ui.add_space(space::M);
+            zoom(ui, context, commands);
+            ui.add_space(space::M);
+            pins(ui, context, commands);
+            range(ui, context, network, commands);
+        });
+    });
+}
+
+/// How many events are pinned, and the way back.
+fn pins(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let Some(text) = handle::summary(context) else { return };
+    ui.label(RichText::new(text).small().color(context.tokens.accent));
+    let button = ui.button(RichText::new("Release").small());
+    if button.on_hover_text("Give all pinned events their windows back (Escape)").clicked() {
+        commands.send(Command::Pins(PinCommand::ReleaseAll));
+    }
+}
+
+/// The range of times that is selected, and what lies in it.
+fn range(ui: &mut Ui, context: &Context<'_>, network: &Network, commands: &mut CommandSender) {
+    let (Some([from, to]), Some((_, plan))) = (context.state.time_range, context.plan()) else { return };
+    let mut counts = [0_usize; 2];
+    for occurrence in network.occurrences.iter().filter(|it| it.kind == OccurrenceKind::Primitive) {
+        let Some([start, end]) = super::chart::times(plan, [occurrence.start, occurrence.end]) else {
+            continue;
+        };
+        counts[0] += usize::from(start[0] <= to && end[1] >= from);
+        counts[1] += usize::from(start[1] <= to && end[0] >= from);
+    }
+    let text = format!(
+        "{from} to {to} ({}): {} activities for certain, {} at most",
+        ((to - from) * 1000.0).round() / 1000.0,
+        counts[1],
+        counts[0]
+    );
+    ui.label(RichText::new(text).small().color(context.tokens.accent));
+    if ui.button(RichText::new("Zoom").small()).on_hover_text("Show just this range").clicked() {
+        commands.send(Command::ViewOf(PanelKind::Timeline, ViewAction::FitSelection));
+    }
+    if ui.button(RichText::new("Clear").small()).on_hover_text("Select no range (Escape)").clicked() {
+        commands.send(Command::SelectTimes(None));
+    }
+}
+
+fn grouping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let chosen = context.state.settings.views.timeline.grouping;
+    ComboBox::from_id_salt("grouping")
+        .selected_text(chosen.title())
+        .width(96.0)
+        .show_ui(ui, |ui| {
+            for choice in Grouping::ALL {
+                if ui.selectable_label(chosen == choice, choice.title()).clicked() {
+                    let mut views = context.state.settings.views.clone();
+                    views.timeline.grouping = choice;
+                    commands.send(Command::SetViews(Box::new(views)));
+                }
+            }
+        })
+        .response
+        .accessible_name("Grouping of the timeline");
+}
+
+/// The buttons that move time.
+pub(crate) fn playing(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let playback = context.state.playback;
+    let (sign, name) = if playback.is_playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
+    let buttons = [
+        (Icon::ToStart, "To the start", Command::Seek(0.0)),
+        (Icon::StepBack, "Previous event", Command::StepTime(false)),
+        (sign, name, Command::TogglePlaying),
+        (Icon::StepForward, "Next event", Command::StepTime(true)),
+        (Icon::ToEnd, "To the end", Command::Seek(playback.end)),
+    ];
+    for (sign, name, command) in buttons {
+        let is_on = sign == Icon::Pause;
+        if icon::toggle(ui, context.tokens, sign, name, is_on).clicked() {
+            commands.send(command);
+        }
+    }
+}
+
+/// The time.
+pub(crate) fn clock(ui: &mut Ui, context: &Context<'_>) {
+    let unit = context.snapshot.map_or(TimeUnit::Minute, |snapshot| snapshot.program.options.time_unit);
+    let time = context.state.playback.time;
+    let text = format!("{time:.1} {}", time_text::unit(unit));
+    ui.label(RichText::new(text).monospace().color(context.tokens.text));
+    ui.add_space(space::M);
+    ui.label(RichText::new(time_text::clock(time, unit)).small().color(context.tokens.text_muted));
+}
+
+/// How fast time runs.
+pub(crate) fn rate(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let rate = context.state.playback.rate;
+    ComboBox::from_id_salt("rate")
+        .selected_text(format!("×{rate}"))
+        .width(56.0)
+        .show_ui(ui, |ui| {
+            for choice in [0.25, 0.5, 1.0, 2.0, 4.0, 8.0] {
+                if ui.selectable_label(rate == choice, format!("×{choice}")).clicked() {
+                    commands.send(Command::SetRate(choice));
+                }
+            }
+        })
+        .response
+        .accessible_name("Speed");
+}
+
+fn switches(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let mut views = context.state.settings.views.clone();
+    let view = &mut views.timeline;
+    let mut changed = false;
+    for (value, name) in
+        [(&mut view.delays, "Delays"), (&mut view.conditions, "Conditions"), (&mut view.links, "Links")]
+    {
+        if ui.add(Button::selectable(*value, RichText::new(name).small())).clicked() {
+            *value = !*value;
+            changed = true;
+        }
+    }
+    if changed {
+        commands.send(Command::SetViews(Box::new(views)));
+    }
+}
+
+fn zoom(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    for (sign, name, action) in [
+        (Icon::Fit, "Fit the timeline", ViewAction::Fit),
+        (Icon::Plus, "Zoom into the timeline", ViewAction::ZoomIn),
+        (Icon::Minus, "Zoom out of the timeline", ViewAction::ZoomOut),
+    ] {
+        if icon::button(ui, context.tokens, sign, name).clicked() {
+            commands.send(Command::ViewOf(PanelKind::Timeline, action));
+        }
+    }
+}

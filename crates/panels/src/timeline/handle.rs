@@ -1,0 +1,223 @@
+//! Handles of events: dragging one pins its event inside its window, and everything else moves along.
+
+use std::collections::BTreeMap;
+
+use egui::{
+    CursorIcon, EventFilter, Key, Rect, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
+};
+use rmpl::Rational;
+use tpn::{EventEnd, EventRef, NodeId};
+use workbench::command::{Command, CommandSender};
+use workbench::state::PinCommand;
+use workbench::state::pins::event_name;
+use workbench::state::playback::{bound, number};
+use workbench::time_text;
+
+use super::chart::Bar;
+use super::paint::{Painting, note};
+use super::view::TimeView;
+use crate::Context;
+
+/// The pinned events of a frame.
+pub(super) type Pinned = BTreeMap<NodeId, Rational>;
+
+/// Half the width of a handle, in points; the other half of a neighbour's is its own.
+const HALF_WIDTH: f32 = 7.0;
+/// The upper part of a row belongs to the handles of bounds.
+const TOP: f32 = 8.0;
+
+/// Shows the handles of a bar's two events. `is_prominent` draws them before the pointer is over one.
+pub(super) fn show(
+    ui: &Ui,
+    painting: &Painting<'_>,
+    pinned: &Pinned,
+    (row_index, bar): (usize, &Bar),
+    is_prominent: bool,
+    commands: &mut CommandSender,
+) {
+    if !bar.is_whole(painting.network) {
+        return;
+    }
+    let row = painting.row(row_index);
+    let windows = [bar.start, bar.end];
+    let [start_x, end_x] = windows.map(|window| painting.x(window[0]));
+    let between = f32::midpoint(start_x, end_x);
+    for (side, &node) in bar.events.iter().enumerate() {
+        let is_pinned = pinned.contains_key(&node);
+        let is_free = bar.free[side][1] > bar.free[side][0];
+        if !is_free || !(is_pinned || windows[side][1] > windows[side][0]) {
+            continue;
+        }
+        let x = [start_x, end_x][side];
+        let (left, right) = match side {
+            0 => (x - HALF_WIDTH, (x + HALF_WIDTH).min(between)),
+            _ => ((x - HALF_WIDTH).max(between), x + HALF_WIDTH),
+        };
+        let area = Rect::from_min_max(pos2(left, row.top() + TOP), pos2(right, row.bottom()));
+        let area = area.intersect(painting.visible.expand2(vec2(HALF_WIDTH, 0.0)));
+        if !area.is_positive() {
+            continue;
+        }
+        let id = ui.scope_id().with(("event", node.0, row_index));
+        let response = ui.interact(area, id, Sense::click_and_drag());
+        let name = name_of(painting, bar, side);
+        response.widget_info(|| {
+            let label = format!("Move {name} on the timeline");
+            WidgetInfo::slider(true, windows[side][0], label)
+        });
+        follow(ui, &response, painting, node, windows[side][0], commands);
+        let is_held = painting.context.state.pins.held().is_some_and(|(held, _)| held == node);
+        if is_pinned || is_prominent || is_held || response.hovered() || response.has_focus() {
+            paint(ui, painting, x, row, is_pinned, is_held || response.hovered() || response.has_focus());
+        }
+        let hint = if is_pinned { "Double click releases it." } else { "Drag to see what moves along." };
+        response.on_hover_cursor(CursorIcon::ResizeHorizontal).on_hover_ui_at_pointer(|ui| {
+            ui.label(theme::strong(name));
+            ui.label(in_words(windows[side], is_pinned));
+            ui.label(hint);
+        });
+    }
+}
+
+/// Over everything, while an event is held: its window, and where it is.
+pub(super) fn show_held(ui: &Ui, painting: &Painting<'_>, pinned: &Pinned) {
+    let Some((node, window)) = painting.context.state.pins.held() else { return };
+    let Some(&time) = pinned.get(&node) else { return };
+    let tokens = painting.context.tokens;
+    let painter = painting.on_track(ui);
+    let (from, to) = (painting.x(number(window.earliest)), painting.x(bound(window.latest)));
+    let band = Rect::from_x_y_ranges(from..=to, painting.visible.y_range());
+    painter.rect_filled(band, 0.0, tokens.accent.gamma_multiply(0.07));
+    for x in [from, to] {
+        painter.vline(x, band.y_range(), Stroke::new(1.0, tokens.accent.gamma_multiply(0.5)));
+    }
+    let x = painting.x(number(time));
+    painter.vline(x, band.y_range(), Stroke::new(1.5, tokens.accent));
+    let text = format!(
+        "{} at {}, may be {}",
+        event_name(painting.network, node),
+        time_text::time(time),
+        time_text::interval(window.earliest, window.latest)
+    );
+    let pointer = ui.input(|input| input.pointer.hover_pos()).unwrap_or(band.center_top());
+    note(&painter, painting.context, pos2(x + 10.0, pointer.y - 34.0), &text, tokens.accent);
+}
+
+/// A time in the view as a round number: no finer than what a point of the screen can tell apart.
+pub(super) fn round_time(view: &TimeView, time: f64) -> Rational {
+    let exponent = (1.0 / view.scale).log10().floor().clamp(-3.0, 9.0) as i32;
+    if exponent >= 0 {
+        let step = 10_f64.powi(exponent);
+        return Rational::from(((time / step).round() * step).clamp(-1e15, 1e15) as i64);
+    }
+    let parts = 10_i64.pow(exponent.unsigned_abs());
+    Rational::new((time * parts as f64).round().clamp(-1e15, 1e15) as i64, parts)
+}
+
+fn in_words(window: [f64; 2], is_pinned: bool) -> String {
+    let [from, to] =
+        window.map(|time| if time.is_finite() { format!("{}", round3(time)) } else { "∞".to_owned() });
+    if is_pinned { format!("pinned at {from}") } else { format!("may happen from {from} to {to}") }
+}
+
+fn round3(time: f64) -> f64 {
+    (time * 1000.0).round() / 1000.0
+}
+
+/// The name of an event as its bar's: a node may be the event of several.
+fn name_of(painting: &Painting<'_>, bar: &Bar, side: usize) -> String {
+    match bar.occurrence {
+        Some(occurrence) => {
+            let end = if side == 0 { EventEnd::Start } else { EventEnd::End };
+            painting.network.event_name(EventRef { occurrence, end })
+        }
+        None => event_name(painting.network, bar.events[side]),
+    }
+}
+
+/// Drags and keys.
+fn follow(
+    ui: &Ui,
+    response: &Response,
+    painting: &Painting<'_>,
+    node: NodeId,
+    now: f64,
+    commands: &mut CommandSender,
+) {
+    let mut send = |command| commands.send(Command::Pins(command));
+    let is_held = painting.context.state.pins.held().is_some_and(|(held, _)| held == node);
+    if response.drag_started() {
+        send(PinCommand::Grab(node));
+    }
+    if response.dragged()
+        && is_held
+        && let Some(pointer) = response.interact_pointer_pos()
+    {
+        send(PinCommand::MoveTo(round_time(painting.view, painting.view.time(painting.track, pointer.x))));
+    }
+    if response.drag_stopped() && is_held {
+        send(PinCommand::Drop);
+    }
+    if response.double_clicked() {
+        send(PinCommand::Release(node));
+    }
+    if response.clicked() {
+        response.request_focus();
+    }
+    if !response.has_focus() {
+        return;
+    }
+    let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    let (steps, is_released) = ui.input(|input| {
+        let large = if input.modifiers.shift { 10.0 } else { 1.0 };
+        let pressed = |key| f64::from(u8::from(input.key_pressed(key)));
+        let steps = (pressed(Key::ArrowRight) - pressed(Key::ArrowLeft)) * large;
+        (steps, input.key_pressed(Key::Delete) || input.key_pressed(Key::Backspace))
+    });
+    if steps != 0.0 {
+        // Eight points are far enough to be seen, and near enough to aim.
+        send(PinCommand::Pin(node, round_time(painting.view, now + steps * 8.0 / painting.view.scale)));
+    }
+    if is_released {
+        send(PinCommand::Release(node));
+    }
+}
+
+fn paint(ui: &Ui, painting: &Painting<'_>, x: f32, row: Rect, is_pinned: bool, is_strong: bool) {
+    let tokens = painting.context.tokens;
+    let painter = painting.on_track(ui);
+    let middle = row.center().y - 1.0;
+    if is_pinned {
+        // A pin: a head above a needle, so that colour is not the only sign.
+        painter.vline(x, row.top() + 2.0..=row.bottom() - 1.0, Stroke::new(2.0, tokens.accent));
+        painter.circle(pos2(x, row.top() + 5.0), 4.5, tokens.accent, Stroke::new(1.0, tokens.surface));
+        return;
+    }
+    let grip = Rect::from_center_size(pos2(x, middle), vec2(5.0, 15.0));
+    let line = Stroke::new(if is_strong { 2.0 } else { 1.2 }, tokens.accent);
+    painter.rect(grip, 2.5, tokens.surface, line, StrokeKind::Middle);
+}
+
+/// What the timeline says of the pins: how many there are, or which event is held.
+pub(super) fn summary(context: &Context<'_>) -> Option<String> {
+    match context.state.pins.all().len() {
+        0 => None,
+        1 => Some("1 event pinned".to_owned()),
+        count => Some(format!("{count} events pinned")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dragged_times_are_as_round_as_the_zoom_allows() {
+        let at = |scale: f64, time: f64| round_time(&TimeView { start: 0.0, scale }, time);
+        assert_eq!(at(0.9, 432.4), Rational::from(432));
+        assert_eq!(at(0.04, 1_234.5), Rational::from(1_230));
+        assert_eq!(at(20.0, 12.345), Rational::new(1_235, 100));
+        assert_eq!(at(3.0, 12.345), Rational::new(123, 10));
+    }
+}

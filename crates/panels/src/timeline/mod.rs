@@ -1,0 +1,539 @@
+//! The timeline: activities and conditions as bars with their flexible starts and ends, and time as it plays.
+//!
+//! `chart` says which bars there are, `group` in which rows; both are prepared once for a plan. `paint` and `link` draw
+//! what is in view, `handle` drags events inside their windows, `bounds` drags bounds in the text.
+
+mod bounds;
+mod chart;
+pub(crate) mod controls;
+mod group;
+mod handle;
+mod hatch;
+mod link;
+mod overview;
+mod paint;
+pub(crate) mod ticks;
+mod view;
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use egui::{
+    CursorIcon, PointerButton, Rect, Response, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+};
+use mission::Snapshot;
+use smol_str::SmolStr;
+use tpn::{LabelId, Network, Plan};
+use workbench::PanelKind;
+use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::state::Selection;
+use workbench::state::settings::TimelineView;
+use workbench::time_text;
+
+use self::bounds::BoundDrag;
+use self::chart::{Bar, Chart, RowKind};
+use self::handle::Pinned;
+use self::link::Links;
+use self::overview::Silhouette;
+use self::paint::{Painting, ROW_HEIGHT};
+use self::view::TimeView;
+use crate::{Context, Panel, show_empty};
+
+/// The timeline.
+pub struct TimelinePanel {
+    view: Option<TimeView>,
+    /// Whether the view keeps showing everything; ends when the user moves it.
+    is_fitted: bool,
+    followed: u64,
+    prepared: Option<Prepared>,
+    /// Keys of the rows that are closed.
+    closed: BTreeSet<SmolStr>,
+    /// The width of the names.
+    names_width: f32,
+    /// The selection that was last brought into view.
+    followed_selection: Selection,
+    bound_drag: Option<BoundDrag>,
+    drags: u64,
+    /// Where a range of times that is being selected began.
+    range_from: Option<f64>,
+}
+
+/// A chart and what it was made of.
+struct Prepared {
+    snapshot: Arc<Snapshot>,
+    /// What the search had selected at the step that was looked at.
+    step: Option<Arc<Plan>>,
+    view: TimelineView,
+    closed: BTreeSet<SmolStr>,
+    pins: u64,
+    chart: Chart,
+    silhouette: Silhouette,
+}
+
+/// The height of the axis.
+const AXIS_HEIGHT: f32 = 24.0;
+/// The width of the names, at first and at least.
+const NAMES_WIDTH: (f32, f32) = (190.0, 60.0);
+/// Bars narrower than this cannot be pointed at one by one.
+const LEAST_TARGET: f32 = 4.0;
+
+impl Default for TimelinePanel {
+    fn default() -> Self {
+        Self {
+            view: None,
+            is_fitted: true,
+            followed: 0,
+            prepared: None,
+            closed: BTreeSet::new(),
+            names_width: NAMES_WIDTH.0,
+            followed_selection: Selection::None,
+            bound_drag: None,
+            drags: 0,
+            range_from: None,
+        }
+    }
+}
+
+impl Panel for TimelinePanel {
+    fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+        let (Some(snapshot), Some((network, plan))) = (context.snapshot, context.plan()) else {
+            show_empty(ui, context, "There is no plan to show over time.");
+            return;
+        };
+        self.prepare(context, snapshot, network, plan);
+        let Some(prepared) = self.prepared.take() else { return };
+        controls::show(ui, context, network, commands);
+        self.show_chart(ui, context, (network, plan), &prepared, commands);
+        self.prepared = Some(prepared);
+    }
+}
+
+impl TimelinePanel {
+    /// Makes the chart anew where something that it is made of has changed.
+    fn prepare(&mut self, context: &Context<'_>, snapshot: &Arc<Snapshot>, network: &Network, plan: &Plan) {
+        let state = context.state;
+        let (view, step) =
+            (&state.settings.views.timeline, context.step().map(|step| Arc::clone(&step.plan)));
+        let pins = state.pins.version();
+        let is_current = self.prepared.as_ref().is_some_and(|it| {
+            let same_step = match (&it.step, &step) {
+                (Some(one), Some(other)) => Arc::ptr_eq(one, other),
+                (None, None) => true,
+                _ => false,
+            };
+            Arc::ptr_eq(&it.snapshot, snapshot) && same_step && it.view == *view && it.closed == self.closed
+        });
+        if !is_current {
+            // Pinned events only narrow windows: rows are those of the plan without them.
+            let free = if step.is_none() { snapshot.plan().unwrap_or(plan) } else { plan };
+            let mut chart = Chart::new(snapshot, network, free, view, &self.closed);
+            let silhouette = Silhouette::new(&chart);
+            chart.retime(plan);
+            let (snapshot, closed, view) = (Arc::clone(snapshot), self.closed.clone(), view.clone());
+            self.prepared = Some(Prepared { snapshot, step, view, closed, pins, chart, silhouette });
+        } else if let Some(prepared) = self.prepared.as_mut().filter(|it| it.pins != pins) {
+            prepared.chart.retime(plan);
+            prepared.pins = pins;
+        }
+    }
+
+    fn show_chart(
+        &mut self,
+        ui: &mut Ui,
+        context: &Context<'_>,
+        (network, plan): (&Network, &Plan),
+        Prepared { chart, silhouette, .. }: &Prepared,
+        commands: &mut CommandSender,
+    ) {
+        let horizon = chart.horizon.max(context.state.playback.end);
+        let whole = ui.available_rect_before_wrap();
+        let all_rows = chart.rows.len() as f32 * ROW_HEIGHT + 8.0;
+        let column = overview::place(whole, whole.top() + AXIS_HEIGHT, all_rows);
+        let rect = column.map_or(whole, |column| whole.with_max_x(column.left() - 4.0));
+        let names_width = self.names_width.min(rect.width() * 0.4);
+        let axis = Rect::from_min_max(
+            pos2(rect.left() + names_width, rect.top()),
+            pos2(rect.right() - 8.0, rect.top() + AXIS_HEIGHT),
+        );
+        let mut view = self.view_for(axis, horizon);
+        self.follow_request(context, (network, plan), axis, horizon, &mut view);
+        self.follow_axis(ui, axis, view, commands);
+        let unit = context.snapshot.map_or("", |it| time_text::unit(it.program.options.time_unit));
+        paint::axis(ui, context, axis, &view, unit);
+
+        let below = Rect::from_min_max(pos2(rect.left(), axis.bottom()), rect.max);
+        let mut lower = ui.new_child(UiBuilder::new().max_rect(below));
+        let mut scroll = ScrollArea::vertical().auto_shrink(false);
+        let seen = below.height() / all_rows;
+        if let Some(from) = column.and_then(|column| overview::follow(ui, column, seen)) {
+            scroll = scroll.vertical_scroll_offset(from * all_rows);
+        }
+        let scrolled = scroll.show_viewport(&mut lower, |ui, viewport| {
+            let height = all_rows.max(below.height());
+            let (area, _) = ui.allocate_exact_size(vec2(below.width(), height), Sense::hover());
+            let track = Rect::from_min_max(pos2(axis.left(), area.top()), pos2(axis.right(), area.bottom()));
+            let visible = track.intersect(below);
+            let painting =
+                Painting { context, network, chart, view: &view, track, visible, names_left: area.left() };
+            let links = if context.state.settings.views.timeline.links {
+                Some(Links::in_view(&painting))
+            } else {
+                None
+            };
+            let mut moved = view;
+            self.navigate(ui, &painting, horizon, links.as_ref(), &mut moved, commands);
+            let first = (viewport.top() / ROW_HEIGHT).floor().max(0.0) as usize;
+            let last = ((viewport.bottom() / ROW_HEIGHT).ceil().max(0.0) as usize).min(chart.rows.len());
+            self.show_rows(ui, &painting, plan, first..last, links.as_ref(), commands);
+            self.follow_selection(ui, &painting);
+            view = moved;
+        });
+        if let Some(column) = column {
+            let part = (scrolled.state.unclamped_offset().y / all_rows, seen);
+            overview::paint(ui, context, column, silhouette, part, (&view, axis, chart.horizon));
+        }
+        self.show_divider(ui, rect, axis.left());
+        self.view = Some(view);
+        ui.advance_cursor_after_rect(whole);
+    }
+
+    fn show_rows(
+        &mut self,
+        ui: &Ui,
+        painting: &Painting<'_>,
+        plan: &Plan,
+        rows: std::ops::Range<usize>,
+        links: Option<&Links<'_>>,
+        commands: &mut CommandSender,
+    ) {
+        let state = painting.context.state;
+        let pinned: Pinned = state.pins.all().into_iter().collect();
+        painting.grid(ui);
+        let painter = painting.on_track(ui);
+        let mut handles = Vec::new();
+        let mut chosen = None;
+        for index in rows {
+            let row = painting.row(index);
+            let shown = &painting.chart.rows[index];
+            let bars = shown.bars.clone().map(|at| (at, &painting.chart.bars[at]));
+            let is_row_selected = shown.kind == RowKind::Single
+                && bars.clone().any(|(_, bar)| is_chosen(bar, &state.selection, painting.network));
+            let is_row_hovered = self.show_row(ui, painting, plan, index, is_row_selected, commands);
+            painting.row_ground(ui, shown, row, is_row_selected, is_row_hovered);
+            painting.name(ui, shown, row, is_row_selected);
+            let mut painted_to = f32::MIN;
+            for (at, bar) in bars {
+                let place = painting.bar_rect(bar, row);
+                let whole = if bar.is_narrowed() { place.expand2(vec2(1e4, 0.0)) } else { place };
+                // Bars that fall onto the same point of the screen are drawn once.
+                let is_seen = whole.intersects(painting.visible.expand2(vec2(4.0, 40.0)));
+                let is_merged = place.width() < 1.0 && place.right() < painted_to + 1.0;
+                if !is_seen || is_merged {
+                    continue;
+                }
+                painted_to = painted_to.max(place.right());
+                let is_selected = is_chosen(bar, &state.selection, painting.network);
+                let is_single = shown.kind == RowKind::Single && !shown.is_closed;
+                let is_hovered = if is_single {
+                    is_row_hovered
+                } else {
+                    show_bar(ui, painting, plan, (index, at), is_selected, commands)
+                };
+                painting.bar(&painter, bar, row, is_selected, is_hovered);
+                handles.push((index, bar, is_selected || is_hovered));
+                if is_selected && chosen.is_none() {
+                    chosen = Some((index, bar));
+                }
+            }
+        }
+        if let Some(links) = links {
+            links.paint(painting, &painter);
+        }
+        painting.now(ui);
+        // Handles come last, so that they are over the bars that they belong to.
+        for (index, bar, is_prominent) in handles {
+            handle::show(ui, painting, &pinned, (index, bar), is_prominent, commands);
+        }
+        match chosen {
+            Some(chosen) => {
+                bounds::show(ui, painting, chosen, &mut self.bound_drag, &mut self.drags, commands);
+            }
+            None => self.bound_drag = None,
+        }
+        handle::show_held(ui, painting, &pinned);
+    }
+
+    /// A row as something to click; opens and closes it where it has others below. Answers whether it is pointed at.
+    fn show_row(
+        &mut self,
+        ui: &Ui,
+        painting: &Painting<'_>,
+        plan: &Plan,
+        index: usize,
+        is_selected: bool,
+        commands: &mut CommandSender,
+    ) -> bool {
+        let shown = &painting.chart.rows[index];
+        let row = painting.row(index);
+        let bar = painting.chart.bars.get(shown.bars.clone()).and_then(<[Bar]>::first);
+        let mut is_hovered = false;
+        if let (RowKind::Single, Some(bar)) = (shown.kind, bar) {
+            let response = ui.interact(row, ui.scope_id().with(("row", index)), Sense::click());
+            is_hovered = respond(&response, painting, plan, bar, is_selected, commands);
+        }
+        let Some(key) = &shown.key else { return is_hovered };
+        let area = match shown.kind {
+            RowKind::Single => paint::arrow_rect(shown, row),
+            _ => Rect::from_min_max(row.min, pos2(painting.track.left(), row.bottom())),
+        };
+        let response = ui.interact(area, ui.scope_id().with(("open", key)), Sense::click());
+        response.widget_info(|| {
+            let act = if shown.is_closed { "Open" } else { "Close" };
+            WidgetInfo::labeled(egui::Role::Button, true, format!("{act} {} on the timeline", shown.name))
+        });
+        if response.clicked() && !self.closed.remove(key) {
+            self.closed.insert(key.clone());
+        }
+        is_hovered || response.hovered()
+    }
+
+    /// The view as the user left it; before that, everything.
+    fn view_for(&mut self, axis: Rect, horizon: f64) -> TimeView {
+        match self.view {
+            Some(view) if !self.is_fitted => view,
+            _ => TimeView::fit(horizon, axis.width()),
+        }
+    }
+
+    fn follow_request(
+        &mut self,
+        context: &Context<'_>,
+        (network, plan): (&Network, &Plan),
+        axis: Rect,
+        horizon: f64,
+        view: &mut TimeView,
+    ) {
+        let Some(action) = context.view_action(PanelKind::Timeline, &mut self.followed) else { return };
+        self.is_fitted = false;
+        match action {
+            ViewAction::ZoomIn => view.zoom(axis, axis.center().x, 1.4, horizon),
+            ViewAction::ZoomOut => view.zoom(axis, axis.center().x, 1.0 / 1.4, horizon),
+            ViewAction::TopView | ViewAction::Follow => {}
+            ViewAction::ZoomReset | ViewAction::Fit => {
+                self.is_fitted = true;
+                *view = TimeView::fit(horizon, axis.width());
+            }
+            ViewAction::FitSelection => {
+                let selected = context.state.selection.occurrence(network);
+                let occurrence = selected.and_then(|id| network.occurrences.get(id.index()));
+                let times = occurrence.and_then(|it| chart::times(plan, [it.start, it.end]));
+                let range = times.map(|[start, end]| [start[0], end[1].min(horizon)]);
+                if let Some([from, to]) = context.state.time_range.or(range) {
+                    *view = TimeView::range(from, to, axis.width());
+                }
+            }
+        }
+    }
+
+    /// Dragging along the axis moves the time; with Shift it selects a range.
+    fn follow_axis(&mut self, ui: &Ui, axis: Rect, view: TimeView, commands: &mut CommandSender) {
+        let response = ui.interact(axis, ui.scope_id().with("axis"), Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(egui::Role::Slider, true, "Time axis"));
+        if !self.select_range(ui, &response, axis, view, commands)
+            && let Some(pointer) = response.interact_pointer_pos()
+            && crate::is_pressed(&response)
+        {
+            commands.send(Command::Seek(view.time(axis, pointer.x)));
+        }
+        response.on_hover_cursor(CursorIcon::ResizeHorizontal);
+    }
+
+    /// Selects a range of times by a drag with Shift. Answers whether that is going on.
+    fn select_range(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        area: Rect,
+        view: TimeView,
+        commands: &mut CommandSender,
+    ) -> bool {
+        let Some(pointer) = response.interact_pointer_pos() else { return false };
+        let (has_shift, origin) = ui.input(|input| (input.modifiers.shift, input.pointer.press_origin()));
+        if response.drag_started_by(PointerButton::Primary) {
+            let begun = origin.unwrap_or(pointer);
+            self.range_from = has_shift.then(|| view.time(area, begun.x));
+        }
+        let Some(from) = self.range_from.filter(|_| response.dragged() || response.drag_stopped()) else {
+            return has_shift;
+        };
+        let round = |time: f64| workbench::state::playback::number(handle::round_time(&view, time)).max(0.0);
+        let range = [round(from), round(view.time(area, pointer.x))];
+        commands.send(Command::SelectTimes((range[0] != range[1]).then_some(range)));
+        if response.drag_stopped() {
+            self.range_from = None;
+        }
+        true
+    }
+
+    /// Wheel and drags on the empty track move and scale time.
+    fn navigate(
+        &mut self,
+        ui: &Ui,
+        painting: &Painting<'_>,
+        horizon: f64,
+        links: Option<&Links<'_>>,
+        view: &mut TimeView,
+        commands: &mut CommandSender,
+    ) {
+        let track = painting.visible;
+        let response = ui.interact(track, ui.scope_id().with("track"), Sense::click_and_drag());
+        let is_selecting = self.select_range(ui, &response, painting.track, *view, commands);
+        let is_dragged =
+            response.dragged_by(PointerButton::Primary) || response.dragged_by(PointerButton::Middle);
+        if is_dragged && !is_selecting {
+            self.is_fitted &= response.drag_delta().x == 0.0;
+            view.pan(response.drag_delta().x);
+            ui.scroll_with_delta(vec2(0.0, response.drag_delta().y));
+        }
+        let pointed = response.hover_pos().and_then(|at| links?.at(at));
+        if response.clicked() {
+            let selection = pointed.map_or(Selection::None, |link| link.kind.selection());
+            commands.send(Command::Select(selection));
+        }
+        if response.double_clicked() {
+            commands.send(Command::ViewOf(PanelKind::Timeline, ViewAction::Fit));
+        }
+        if let Some(link) = pointed {
+            let name = link.kind.selection().name(Some(painting.network));
+            response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text_at_pointer(name);
+        }
+        let pointer =
+            ui.ctx().pointer_hover_pos().filter(|&at| track.contains(at) && ui.rect_contains_pointer(track));
+        let Some(pointer) = pointer else { return };
+        let (zoom, scroll, shift) =
+            ui.input(|input| (input.zoom_delta(), input.smooth_scroll_delta(), input.modifiers.shift));
+        if (zoom - 1.0).abs() > f32::EPSILON {
+            self.is_fitted = false;
+            view.zoom(painting.track, pointer.x, f64::from(zoom), horizon);
+        }
+        let sideways = if shift && scroll.x == 0.0 { scroll.y } else { scroll.x };
+        if sideways != 0.0 {
+            self.is_fitted = false;
+            view.pan(sideways);
+        }
+    }
+
+    /// Scrolls to the row of a new selection.
+    fn follow_selection(&mut self, ui: &Ui, painting: &Painting<'_>) {
+        let selection = &painting.context.state.selection;
+        if *selection == self.followed_selection {
+            return;
+        }
+        self.followed_selection = selection.clone();
+        let is_of = |row: &chart::Row| {
+            let mut bars = row.bars.clone().map(|at| &painting.chart.bars[at]);
+            bars.any(|bar| is_chosen(bar, selection, painting.network))
+        };
+        let rows = &painting.chart.rows;
+        let all: Vec<usize> = (0..rows.len()).filter(|&at| is_of(&rows[at])).collect();
+        let is_seen = |&at: &usize| {
+            painting.visible.expand(1.0).contains(pos2(painting.visible.left(), painting.row(at).center().y))
+        };
+        if let Some(&first) = all.first().filter(|_| !all.iter().any(is_seen)) {
+            ui.scroll_to_rect(painting.row(first), Some(egui::Align::Center));
+        }
+    }
+
+    /// The line between names and bars, which can be dragged.
+    fn show_divider(&mut self, ui: &Ui, rect: Rect, x: f32) {
+        let area = Rect::from_center_size(pos2(x, rect.center().y), vec2(6.0, rect.height()));
+        let response = ui.interact(area, ui.scope_id().with("divider"), Sense::drag());
+        if response.dragged()
+            && let Some(pointer) = response.interact_pointer_pos()
+        {
+            self.names_width = (pointer.x - rect.left()).clamp(NAMES_WIDTH.1, rect.width() * 0.4);
+        }
+        if response.hovered() || response.dragged() {
+            let stroke = egui::Stroke::new(2.0, ui.visuals().selection.stroke.color);
+            ui.painter().vline(x, rect.y_range(), stroke);
+        }
+        response.on_hover_cursor(CursorIcon::ResizeColumn);
+    }
+}
+
+/// A bar that shares its row with others, as something to click. Answers whether it is pointed at.
+fn show_bar(
+    ui: &Ui,
+    painting: &Painting<'_>,
+    plan: &Plan,
+    (row, at): (usize, usize),
+    is_selected: bool,
+    commands: &mut CommandSender,
+) -> bool {
+    let bar = &painting.chart.bars[at];
+    let area = painting.bar_rect(bar, painting.row(row)).expand2(vec2(0.0, 3.0)).intersect(painting.visible);
+    if area.width() < LEAST_TARGET || !area.is_positive() {
+        return false;
+    }
+    let response = ui.interact(area, ui.scope_id().with(("bar", at)), Sense::click());
+    respond(&response, painting, plan, bar, is_selected, commands)
+}
+
+/// What pointing at a bar and clicking it does. Answers whether it is pointed at, here or in another panel.
+fn respond(
+    response: &Response,
+    painting: &Painting<'_>,
+    plan: &Plan,
+    bar: &Bar,
+    is_selected: bool,
+    commands: &mut CommandSender,
+) -> bool {
+    let context = painting.context;
+    let selection = bar.selection(painting.network);
+    response.widget_info(|| {
+        let owner = bar.occurrence.and_then(|it| painting.network.occurrences.get(it.index()));
+        let name = match (bar.label, owner) {
+            (Some(_), Some(owner)) if owner.name != bar.name => format!("{} of {}", bar.name, owner.name),
+            _ => bar.name.to_string(),
+        };
+        WidgetInfo::selected(egui::Role::Button, true, is_selected, format!("{name}: {}", bar.words(plan)))
+    });
+    if response.hovered() && context.state.hovered != selection {
+        commands.send(Command::Hover(selection.clone()));
+    }
+    if response.double_clicked() {
+        commands.send(Command::SelectAndReveal(selection.clone()));
+    } else if response.clicked() {
+        commands.send(Command::Select(selection.clone()));
+    }
+    let is_hovered = response.hovered() || is_chosen(bar, &context.state.hovered, painting.network);
+    response.clone().on_hover_ui_at_pointer(|ui| {
+        ui.label(theme::strong(selection.name(Some(painting.network))));
+        ui.label(bar.words(plan));
+        for &label in &bar.labels {
+            if let Some(label) = painting.network.labels.get(label.index()) {
+                let verb = if label.mode == rmpl::program::LabelMode::Ask { "requires" } else { "asserts" };
+                ui.label(format!("{verb} {}", label.text));
+            }
+        }
+    });
+    is_hovered
+}
+
+/// Whether a selection is about a bar: its occurrence, its condition, or a link or an ordering that ends at it.
+fn is_chosen(bar: &Bar, selection: &Selection, network: &Network) -> bool {
+    let is_of = |label: LabelId| {
+        if let Some(own) = bar.label {
+            return own == label;
+        }
+        let owner = network.labels.get(label.index()).and_then(|label| label.owner);
+        owner.is_some() && owner == bar.occurrence
+    };
+    match selection {
+        Selection::None => false,
+        Selection::Label(label) => is_of(*label),
+        Selection::Link(link) => is_of(link.ask) || is_of(link.tell),
+        Selection::Ordering(ordering) => is_of(ordering.first) || is_of(ordering.then),
+        _ => selection.occurrence(network).is_some_and(|chosen| bar.occurrence == Some(chosen)),
+    }
+}

@@ -1,0 +1,357 @@
+//! What stands and lies on the ground: obstacles, locations, search trees, paths, trails, vehicles, and what a tool has.
+
+use glam::{Vec2, Vec3};
+use mission::Snapshot;
+use rmpl::program::{ObstacleShape, VehicleDecl, World};
+use workbench::state::Selection;
+use workbench::state::growth::Growth;
+
+use crate::driving;
+use crate::ground::Ground;
+use crate::shapes::{Shapes, circle_outline};
+use crate::tree;
+use crate::vehicles::{VehicleShape, airship, rover};
+
+/// The colours of the scene. They do not depend on the theme, because the ground does not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScenePalette {
+    /// Posts, rims and paths.
+    pub light: [f32; 4],
+    /// Under light lines, to set them off.
+    pub under: [f32; 4],
+    /// The fences around obstacles.
+    pub fence: [f32; 4],
+    /// Whatever is selected.
+    pub selected: [f32; 4],
+    /// Trees that grow from the start and from the goal.
+    pub trees: [[f32; 4]; 2],
+    /// Places where vehicles come too near each other, and views that are blocked.
+    pub warning: [f32; 4],
+    /// Vehicles, by turns.
+    pub vehicles: [[f32; 4]; 6],
+}
+
+/// What is shown beside the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneOptions {
+    /// The trees that found the paths.
+    pub trees: bool,
+    /// The paths.
+    pub paths: bool,
+    /// Declared obstacles.
+    pub obstacles: bool,
+    /// What laser range finders see, in a run.
+    pub rays: bool,
+    /// How many times larger than life vehicles are drawn.
+    pub vehicle_scale: f32,
+}
+
+/// What the scene is built from.
+#[derive(Clone, Copy)]
+pub struct SceneInput<'a> {
+    /// The mission.
+    pub snapshot: &'a Snapshot,
+    /// Its ground.
+    pub ground: &'a Ground,
+    /// In mission units.
+    pub time: f64,
+    /// The run that is shown, if one is.
+    pub run: Option<&'a mission::Execution>,
+    /// What is selected in all panels.
+    pub selection: &'a Selection,
+    /// What the pointer is over in some panel.
+    pub hovered: &'a Selection,
+    /// A search that is looked at.
+    pub growth: &'a Growth,
+    /// The colours.
+    pub palette: &'a ScenePalette,
+    /// What is shown.
+    pub options: &'a SceneOptions,
+    /// What a tool in hand has and would do.
+    pub sketch: &'a Sketch,
+    /// Obstacles that have appeared in the run that is watched, with centres and radii in metres.
+    pub appeared: &'a [([f64; 2], f64)],
+}
+
+/// What a tool has so far, to be drawn on the ground.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sketch {
+    /// Lines along the ground.
+    pub lines: Vec<[Vec2; 2]>,
+    /// Straight lines through the air, and whether nothing is in their way.
+    pub sights: Vec<(Vec3, Vec3, bool)>,
+    /// Places marked by small rings.
+    pub marks: Vec<Vec2>,
+    /// A place where the view is blocked.
+    pub blocked: Option<Vec3>,
+    /// A disc.
+    pub disc: Option<(Vec2, f32)>,
+}
+
+/// The height of the posts at locations, in metres.
+pub const POST_M: f32 = 7.0;
+const FENCE_M: f32 = 2.0;
+
+/// Builds the scene.
+pub fn build(input: &SceneInput<'_>) -> Shapes {
+    let mut shapes = Shapes::default();
+    let world = &input.snapshot.program.world;
+    if input.options.obstacles {
+        obstacles(&mut shapes, world, input);
+    }
+    for &(center_m, radius_m) in input.appeared {
+        let outline = circle_outline(place(center_m), radius_m as f32);
+        let rim = (input.palette.warning, 3.0);
+        shapes.fence(input.ground, &outline, FENCE_M, faded(input.palette.warning, 0.5), rim);
+    }
+    locations(&mut shapes, world, input);
+    if input.growth.shown().is_none() {
+        paths(&mut shapes, input);
+    }
+    encounters(&mut shapes, input);
+    driving::draw(&mut shapes, input);
+    vehicles(&mut shapes, input);
+    tree::draw(&mut shapes, input);
+    sketch(&mut shapes, input);
+    shapes
+}
+
+/// A position of the program in the renderer's precision.
+pub fn place([east, north]: [f64; 2]) -> Vec2 {
+    Vec2::new(east as f32, north as f32)
+}
+
+/// Where a vehicle is and where its nose points at `time`: on its way, or at its start.
+pub fn vehicle_pose(snapshot: &Snapshot, vehicle: usize, time: f64) -> Option<(Vec2, f32)> {
+    let motion = snapshot.motions.iter().find(|motion| motion.vehicle as usize == vehicle);
+    if let Some((motion, (position, heading))) = motion.and_then(|motion| Some((motion, motion.at(time)?))) {
+        return Some((place(position), smooth_heading(motion, time).unwrap_or(heading as f32)));
+    }
+    let world = &snapshot.program.world;
+    let start = &world.vehicles.get(vehicle)?.start.text;
+    let location = world.locations.iter().find(|location| location.name.text == *start)?;
+    // Vehicles that share a start are drawn beside each other.
+    let before = world.vehicles.iter().take(vehicle).filter(|other| other.start.text == *start).count();
+    Some((place(location.position_m) + Vec2::new(0.0, -2.0 * before as f32), 0.0))
+}
+
+/// The direction in which a moving vehicle turns its nose: it takes corners of its path over a short way, as wheels do.
+/// `None` where it stands still.
+fn smooth_heading(motion: &mission::VehicleMotion, time: f64) -> Option<f32> {
+    const HALF_WAY_M: f64 = 0.7;
+    let at = |time: f64| motion.at(time).map(|(position, _)| place(position));
+    let seconds = |frame: &mission::Keyframe| *frame.time.numer() as f64 / *frame.time.denom() as f64;
+    let after = motion.keyframes.partition_point(|frame| seconds(frame) <= time);
+    let (before, next) = (motion.keyframes.get(after.checked_sub(1)?)?, motion.keyframes.get(after)?);
+    let way_m = place(before.position_m).distance(place(next.position_m));
+    let duration = seconds(next) - seconds(before);
+    if way_m < 1e-3 || duration <= 0.0 {
+        return None;
+    }
+    let half = HALF_WAY_M * duration / f64::from(way_m);
+    let ahead = at(time + half)? - at(time - half)?;
+    (ahead.length() > 1e-3).then(|| ahead.to_angle())
+}
+
+/// How high over the ground below a vehicle flies at a place; `None` for one that drives.
+pub fn flight_height_m(ground: &Ground, vehicle: &VehicleDecl, place_m: Vec2) -> Option<f32> {
+    let model = motion::vehicle_model(&vehicle.model.text)?;
+    let motion::Drive::Flight { altitude_band_m: [low, high], ground_clearance_m, .. } = model.drive else {
+        return None;
+    };
+    let below_m = ground.height_at(place_m);
+    let cruise_m = ground.range_m[0] + f64::midpoint(low, high) as f32;
+    Some((cruise_m - below_m).max(ground_clearance_m as f32))
+}
+
+/// The outline of an obstacle in metres.
+pub fn outline(shape: &ObstacleShape) -> Vec<Vec2> {
+    match shape {
+        ObstacleShape::Circle { center_m, radius_m } => circle_outline(place(*center_m), *radius_m as f32),
+        ObstacleShape::Polygon { corners_m } => corners_m.iter().map(|&corner| place(corner)).collect(),
+    }
+}
+
+/// A light line along the ground, set off by a dark one under it.
+pub fn cased_line(
+    shapes: &mut Shapes,
+    ground: &Ground,
+    ends_m: [Vec2; 2],
+    width_px: f32,
+    color: [f32; 4],
+    under: [f32; 4],
+) {
+    shapes.draped_line(ground, ends_m, width_px + 2.6, under);
+    shapes.draped_line(ground, ends_m, width_px, color);
+}
+
+fn ring(
+    shapes: &mut Shapes,
+    input: &SceneInput<'_>,
+    center_m: Vec2,
+    radius_m: f32,
+    color: [f32; 4],
+    width: f32,
+) {
+    let corners = circle_outline(center_m, radius_m);
+    let sides = || corners.iter().zip(corners.iter().cycle().skip(1)).map(|(&from, &to)| [from, to]);
+    for side in sides() {
+        shapes.draped_line(input.ground, side, width + 2.0, input.palette.under);
+    }
+    for side in sides() {
+        shapes.draped_line(input.ground, side, width, color);
+    }
+}
+
+fn obstacles(shapes: &mut Shapes, world: &World, input: &SceneInput<'_>) {
+    let palette = input.palette;
+    for obstacle in &world.obstacles {
+        let own = Selection::Obstacle(obstacle.name.text.clone());
+        let rim = match (*input.selection == own, *input.hovered == own) {
+            (true, _) => (palette.selected, 3.0),
+            (_, true) => (palette.light, 2.5),
+            _ => (faded(palette.light, 0.75), 1.4),
+        };
+        shapes.fence(input.ground, &outline(&obstacle.shape), FENCE_M, palette.fence, rim);
+    }
+}
+
+fn locations(shapes: &mut Shapes, world: &World, input: &SceneInput<'_>) {
+    let palette = input.palette;
+    for location in &world.locations {
+        let own = Selection::Location(location.name.text.clone());
+        let (color, width) = match (*input.selection == own, *input.hovered == own) {
+            (true, _) => (palette.selected, 3.0),
+            (_, true) => (palette.light, 2.6),
+            _ => (palette.light, 1.8),
+        };
+        let foot = input.ground.drape(place(location.position_m), 0.0);
+        let top = foot + Vec3::Z * POST_M;
+        shapes.line(foot, top, width + 2.0, palette.under);
+        shapes.line(foot, top, width, color);
+        ring(shapes, input, place(location.position_m), 2.2, color, width);
+    }
+}
+
+fn paths(shapes: &mut Shapes, input: &SceneInput<'_>) {
+    let palette = input.palette;
+    let network = input.snapshot.network.as_deref();
+    let is_of = |selection: &Selection, occurrence| {
+        network.is_some_and(|network| selection.occurrence(network) == Some(occurrence))
+    };
+    for traverse in &input.snapshot.traverses {
+        let (color, width) = match () {
+            () if is_of(input.selection, traverse.occurrence) => (palette.selected, 4.0),
+            () if is_of(input.hovered, traverse.occurrence) => (palette.light, 4.0),
+            () => (palette.light, 2.6),
+        };
+        for leg in &traverse.legs {
+            if input.options.trees {
+                for [from, to] in leg.tree_m.iter() {
+                    let color = faded(palette.light, 0.4);
+                    shapes.draped_line(input.ground, [place(*from), place(*to)], 1.0, color);
+                }
+            }
+            if input.options.paths {
+                for pair in leg.points_m.windows(2) {
+                    let ends = [place(pair[0]), place(pair[1])];
+                    cased_line(shapes, input.ground, ends, width, color, palette.under);
+                }
+            }
+        }
+    }
+}
+
+fn encounters(shapes: &mut Shapes, input: &SceneInput<'_>) {
+    for encounter in &input.snapshot.encounters {
+        ring(shapes, input, place(encounter.position_m), 4.0, input.palette.warning, 3.0);
+    }
+}
+
+fn vehicles(shapes: &mut Shapes, input: &SceneInput<'_>) {
+    let SceneInput { snapshot, ground, time, palette, options, .. } = *input;
+    for (index, vehicle) in snapshot.program.world.vehicles.iter().enumerate() {
+        let Some((position, heading_rad)) = vehicle_pose(snapshot, index, time) else { continue };
+        let selected = *input.selection == Selection::Vehicle(vehicle.name.text.clone());
+        let color = palette.vehicles[index % palette.vehicles.len()];
+        trail(shapes, input, index, color);
+        let model = motion::vehicle_model(&vehicle.model.text);
+        let (length_m, width_m) =
+            model.map_or((1.0, 0.8), |model| (model.length_m as f32, model.width_m as f32));
+        // Airships are large enough to be seen as they are.
+        let height_m = flight_height_m(ground, vehicle, position);
+        let scale = if height_m.is_some() { options.vehicle_scale.sqrt() } else { options.vehicle_scale };
+        let shape = VehicleShape {
+            place_m: position,
+            heading_rad,
+            length_m: length_m * scale,
+            width_m: width_m * scale,
+            color,
+        };
+        let around = if selected { palette.selected } else { color };
+        ring(shapes, input, position, shape.length_m * 0.85, around, if selected { 3.0 } else { 1.6 });
+        match height_m {
+            Some(height_m) => {
+                let foot = ground.drape(position, 0.0);
+                shapes.line(foot, foot + Vec3::Z * height_m, 1.2, faded(palette.light, 0.5));
+                airship(shapes, &shape, foot.z + height_m);
+            }
+            None => rover(shapes, ground, &shape),
+        }
+    }
+}
+
+fn trail(shapes: &mut Shapes, input: &SceneInput<'_>, vehicle: usize, color: [f32; 4]) {
+    let motion = input.snapshot.motions.iter().find(|motion| motion.vehicle as usize == vehicle);
+    let Some((motion, (now, _))) = motion.and_then(|motion| Some((motion, motion.at(input.time)?))) else {
+        return;
+    };
+    let mut before: Option<Vec2> = None;
+    for frame in &motion.keyframes {
+        let frame_time = *frame.time.numer() as f64 / *frame.time.denom() as f64;
+        let is_done = frame_time > input.time;
+        let next = place(if is_done { now } else { frame.position_m });
+        if let Some(before) = before.filter(|before| before.distance(next) > 0.01) {
+            // The leader's trail is wider, so that those that follow in its track are seen on it.
+            let width = if vehicle == 0 { 6.0 } else { 3.0 };
+            shapes.draped_line(input.ground, [before, next], width, color);
+        }
+        before = Some(next);
+        if is_done {
+            break;
+        }
+    }
+}
+
+fn sketch(shapes: &mut Shapes, input: &SceneInput<'_>) {
+    let (palette, sketch) = (input.palette, input.sketch);
+    for &ends in &sketch.lines {
+        cased_line(shapes, input.ground, ends, 2.4, palette.selected, palette.under);
+    }
+    for &(from, to, is_clear) in &sketch.sights {
+        let color = if is_clear { palette.light } else { palette.warning };
+        shapes.line(from, to, 1.6, faded(color, 0.9));
+        for end in [from, to] {
+            let foot = input.ground.drape(end.truncate(), 0.0);
+            shapes.line(foot, end, 2.0, palette.light);
+        }
+    }
+    if let Some((center, radius_m)) = sketch.disc {
+        ring(shapes, input, center, radius_m, palette.selected, 2.4);
+    }
+    // Marks are as large on the screen as vehicles are.
+    let radius_m = 0.5 * input.options.vehicle_scale;
+    for &mark in &sketch.marks {
+        ring(shapes, input, mark, radius_m, palette.selected, 2.4);
+    }
+    if let Some(blocked) = sketch.blocked {
+        let up = Vec3::Z * radius_m * 3.0;
+        shapes.line(blocked, blocked + up, 3.0, palette.warning);
+        ring(shapes, input, blocked.truncate(), radius_m * 1.4, palette.warning, 3.0);
+    }
+}
+
+/// A colour with less opacity.
+pub fn faded([red, green, blue, opacity]: [f32; 4], part: f32) -> [f32; 4] {
+    [red, green, blue, opacity * part]
+}
