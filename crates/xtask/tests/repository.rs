@@ -13,7 +13,7 @@ use xtask::{
 };
 
 /// What each crate builds on: ARCHITECTURE.md's layers. A crate may use whatever these build on in turn.
-const LAYERS: [(&str, &[&str]); 22] = [
+const LAYERS: &[(&str, &[&str])] = &[
     ("rmpl", &[]),
     ("stn", &[]),
     ("stnu", &[]),
@@ -40,7 +40,7 @@ const LAYERS: [(&str, &[&str]); 22] = [
 ];
 
 /// Crates that compute the same everywhere: no clocks, no threads, no files, nothing from the operating system.
-const PURE: [&str; 14] = [
+const PURE: &[&str] = &[
     "rmpl",
     "stn",
     "stnu",
@@ -57,6 +57,9 @@ const PURE: [&str; 14] = [
     "report",
     "workbench",
 ];
+
+/// What pure crates are built and tested without.
+const DRAWING: [&str; 5] = ["egui", "eframe", "egui_tiles", "theme", "wgpu"];
 
 /// What pure crates leave alone.
 const IMPURE: [&str; 7] =
@@ -105,7 +108,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 
 #[test]
 fn crates_depend_only_on_the_layers_below_them() {
-    let layers: BTreeMap<&str, &[&str]> = LAYERS.into_iter().collect();
+    let layers: BTreeMap<&str, &[&str]> = LAYERS.iter().copied().collect();
     let metadata = metadata();
     let ours: BTreeSet<&str> = packages(&metadata)
         .filter(|package| package["source"].is_null())
@@ -126,6 +129,18 @@ fn crates_depend_only_on_the_layers_below_them() {
                 continue;
             }
             assert!(below.contains(on), "{name} must not depend on {on}");
+        }
+    }
+}
+
+#[test]
+fn pure_crates_are_built_without_anything_that_draws() {
+    let metadata = metadata();
+    for package in packages(&metadata).filter(|package| package["source"].is_null()) {
+        let name = package["name"].as_str().expect("packages have names");
+        for dependency in package["dependencies"].as_array().into_iter().flatten() {
+            let on = dependency["name"].as_str().expect("dependencies have names");
+            assert!(!PURE.contains(&name) || !DRAWING.contains(&on), "{name} must not depend on {on}");
         }
     }
 }
