@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use egui_tiles::Tree;
-use workbench::PanelKind;
 use workbench::host::Host;
 use workbench::state::AppState;
 use workbench::workspace::Arrangement;
+use workbench::{PanelEffect, PanelKind};
 
 use crate::default_layout::{self, Room, default_layout};
 
@@ -59,16 +59,18 @@ impl Layouts {
     /// Does what the state wants done to the present layout.
     pub fn follow(&mut self, state: &mut AppState) {
         let arrangement = state.arrangement();
-        if std::mem::take(&mut state.wants_default_layout) {
-            self.trees.insert(arrangement, default_layout(arrangement, self.room));
-        }
-        let tree = self.tree_mut(arrangement);
-        if let Some(panel) = state.unwanted_panel.take() {
-            default_layout::close_panel(tree, panel);
-        }
-        let wanted = state.also_wanted_panel.take().into_iter().chain(state.wanted_panel.take());
-        for panel in wanted {
-            default_layout::show_panel(tree, panel);
+        let layout = |effect| match effect {
+            PanelEffect::Show(_) | PanelEffect::Close(_) | PanelEffect::ResetLayout => Some(effect),
+            _ => None,
+        };
+        for effect in state.panel_effects.take(layout) {
+            match effect {
+                PanelEffect::Show(panel) => default_layout::show_panel(self.tree_mut(arrangement), panel),
+                PanelEffect::Close(panel) => default_layout::close_panel(self.tree_mut(arrangement), panel),
+                _ => {
+                    self.trees.insert(arrangement, default_layout(arrangement, self.room));
+                }
+            }
         }
     }
 

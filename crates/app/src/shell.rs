@@ -1,19 +1,16 @@
-//! The app as a whole: takes events in, applies commands, shows bars, panels and dialogs, and talks to the host.
+//! The window's content: shows bars, panels and dialogs around the session, and brings keys and commands to it.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 
 use eframe::egui_wgpu::RenderState;
 use egui::{CentralPanel, Frame, Ui};
 use egui_tiles::{Behavior, TileId, Tiles, UiResponse};
-use mission::{Request, Update};
 use panels::{Context, Panels};
 use serde_json::Value;
-use workbench::PanelKind;
-use workbench::command::{self, Command, CommandSender};
+use workbench::command::{Command, CommandSender};
 use workbench::host::{Host, Remote, RemoteError};
-use workbench::mission_file::{self, EXAMPLES};
-use workbench::outside;
-use workbench::state::{AnswerFrame, AppState, Effect, PlanSettings, Settings, Status, ToastKind};
+use workbench::state::AppState;
+use workbench::{PanelEffect, PanelKind, Session, WindowEffect};
 
 use crate::bar;
 use crate::default_layout::Room;
@@ -24,57 +21,31 @@ use crate::toasts;
 
 /// The app.
 pub struct Enroute {
-    state: AppState,
+    session: Session,
     panels: Panels,
     layouts: Layouts,
-    host: Box<dyn Host>,
     read_dropped: ReadDropped,
     egui: egui::Context,
-    posted: Option<Posted>,
-    stored: Settings,
-    drafts: outside::DraftKeeper,
-    last_secs: f64,
-    version: u64,
 }
 
 /// Begins to read a file that was dropped on the app.
 type ReadDropped = Box<dyn Fn(egui::DroppedFileHandle)>;
 
-/// What the planning core was last asked for.
-#[derive(Clone, Debug, PartialEq)]
-struct Posted {
-    revision: u64,
-    settings: PlanSettings,
-}
-
 impl Enroute {
     /// The app on a host, drawn by `renderer` (`webgpu`, `webgl2`, …; empty if unknown).
     pub fn new(egui: &egui::Context, host: Box<dyn Host>, renderer: &str) -> Self {
-        let mut state = AppState::new();
-        if let Some(settings) = outside::remembered_settings(host.as_ref()) {
-            state.settings = settings;
-        }
-        renderer.clone_into(&mut state.frame.renderer);
-        let drafts = outside::DraftKeeper::start(&mut state, host.as_ref());
-        outside::open_fragment(&mut state, &host.fragment());
+        let session = Session::new(host, renderer);
         theme::install_fonts(egui);
-        theme::apply(egui, panels::tokens(state.settings.theme), state.settings.text_scale);
-        let layouts = Layouts::remembered(host.as_ref());
-        let last_secs = host.monotonic_secs();
-        let stored = state.settings.clone();
-        Self {
-            state,
+        let layouts = Layouts::remembered(session.host());
+        let app = Self {
+            session,
             panels: Panels::new(),
             layouts,
-            host,
             read_dropped: Box::new(|_| {}),
             egui: egui.clone(),
-            posted: None,
-            stored,
-            drafts,
-            last_secs,
-            version: 1,
-        }
+        };
+        app.restyle();
+        app
     }
 
     /// The same app, whose host reads the files that are dropped on it with `read` and tells of them later, each for
@@ -87,12 +58,12 @@ impl Enroute {
 
     /// The state, to look at.
     pub fn app_state(&self) -> &AppState {
-        &self.state
+        self.session.state()
     }
 
     /// The host.
     pub fn host_mut(&mut self) -> &mut dyn Host {
-        self.host.as_mut()
+        self.session.host_mut()
     }
 
     /// Runs a command as if a panel had sent it.
@@ -102,117 +73,58 @@ impl Enroute {
 
     /// Shows one frame, filling `ui`. `render_state` is for panels that draw with wgpu.
     pub fn show(&mut self, ui: &mut Ui, render_state: Option<&RenderState>) {
-        let begun_secs = self.host.monotonic_secs();
-        self.begin_frame(begun_secs);
-        let pressed = take_pressed(ui.ctx(), &self.state, panels::editor_id());
+        for file in self.egui.input(|input| input.raw.dropped_files.clone()) {
+            (self.read_dropped)(file);
+        }
+        let next_secs = self.session.begin_frame();
+        self.wake_after(next_secs);
+        self.follow_effects();
+        let pressed = take_pressed(ui.ctx(), self.app_state(), panels::editor_id());
         self.apply(pressed);
-        if self.state.dialog.is_none() {
-            let typed = panels::typed_text(ui.ctx(), &self.state);
+        if self.app_state().dialog.is_none() {
+            let typed = panels::typed_text(ui.ctx(), self.app_state());
             self.apply(typed);
         }
 
         let mut commands = CommandSender::default();
-        self.show_everything(ui, render_state, &mut commands);
+        let layout_millis = self.show_everything(ui, render_state, &mut commands);
         self.apply(commands.take());
-        self.layouts.follow(&mut self.state);
-        if let Some(seconds) = self.drafts.follow(&mut self.state, self.host.as_mut(), begun_secs) {
-            self.egui.request_repaint_after_secs(seconds as f32);
-        }
-        self.remember();
-        let done_secs = self.host.monotonic_secs();
-        self.state.frame.cpu_millis = (done_secs - begun_secs) * 1000.0;
-        self.note_answer(done_secs);
-    }
-
-    /// Notes the first frame that shows the answer to the present text.
-    fn note_answer(&mut self, done_secs: f64) {
-        let revision = self.state.document.revision();
-        let is_shown = self.state.shown().is_some_and(|shown| shown.revision == revision);
-        let is_noted = self.state.frame.answer.is_some_and(|answer| answer.revision == revision);
-        if is_shown && !is_noted && self.state.status() != Status::Working {
-            let cpu_millis = self.state.frame.cpu_millis;
-            self.state.frame.answer = Some(AnswerFrame { revision, done_secs, cpu_millis });
-            self.version += 1;
+        self.follow_effects();
+        let next_secs = self.session.end_frame(layout_millis);
+        self.wake_after(next_secs);
+        // What is kept is kept when nobody is dragging.
+        if !self.egui.input(|input| input.pointer.any_down()) {
+            self.session.remember();
+            self.layouts.remember(self.session.host_mut());
         }
     }
 
-    fn begin_frame(&mut self, now_secs: f64) {
-        let elapsed_secs = (now_secs - self.last_secs).clamp(0.0, 0.25);
-        self.last_secs = now_secs;
-        self.state.frame.now_secs = now_secs;
-        self.state.frame.unix_millis = self.host.unix_millis();
-        while let Some(event) = self.host.poll() {
-            if let workbench::host::HostEvent::FragmentChanged(fragment) = &event {
-                outside::open_fragment(&mut self.state, fragment);
-            }
-            self.state.receive(event);
-            self.version += 1;
-        }
-        for file in self.egui.input(|input| input.raw.dropped_files.clone()) {
-            (self.read_dropped)(file);
-        }
-        let shown = self.state.shown().cloned();
-        if self.state.snapshots.lose_patience(now_secs) {
-            self.egui.request_repaint_after_secs(0.1);
-            self.state.follow_shown(shown.as_ref());
-        }
-        if self.state.search.is_playing {
-            let shown = self.state.shown().cloned();
-            if self.state.search.advance(elapsed_secs, shown.as_ref()) {
-                self.state.reveal_step();
-                self.version += 1;
-            }
-            self.egui.request_repaint_after_secs(if self.state.search.steps_per_sec > 20.0 {
-                0.0
-            } else {
-                0.05
-            });
-        }
-        if self.state.terrain.growth.is_playing {
-            let rate = self.state.playback.rate;
-            self.version += u64::from(self.state.terrain.growth.advance(elapsed_secs, rate));
-            self.egui.request_repaint_after_secs(0.02);
-        }
-        if self.state.automaton.is_playing {
-            let rate = self.state.playback.rate;
-            self.version += u64::from(self.state.automaton.advance(elapsed_secs, rate));
-            self.egui.request_repaint_after_secs(0.05);
-        }
-        if self.state.playback.is_playing {
-            self.state.playback.advance(elapsed_secs);
-            self.state.follow_run();
-            self.version += 1;
-            self.egui.request_repaint();
-        }
-        if let Some(seconds) = self.state.toasts.advance(now_secs) {
-            self.egui.request_repaint_after_secs(seconds as f32);
-        }
-        self.do_effects();
-    }
-
+    /// Returns the milliseconds that laying out a drawing took, if one was laid out.
     fn show_everything(
         &mut self,
         ui: &mut Ui,
         render_state: Option<&RenderState>,
         commands: &mut CommandSender,
-    ) {
+    ) -> Option<f64> {
         let layout_millis = Cell::new(None);
-        let host = self.host.as_ref();
-        let clock = || host.monotonic_secs();
+        let effects = RefCell::new(std::mem::take(&mut self.session.state_mut().panel_effects));
+        let state = self.session.state();
+        let clock = || self.session.host().monotonic_secs();
         let context = Context {
-            state: &self.state,
-            snapshot: self.state.looked_at(),
-            is_stale: self.state.snapshots.is_stale(self.state.document.revision()),
-            tokens: panels::tokens(self.state.settings.theme),
+            state,
+            snapshot: state.looked_at(),
+            is_stale: state.snapshots.is_stale(state.document.revision()),
+            tokens: panels::tokens(state.settings.theme),
             render_state,
-            now_secs: self.state.frame.now_secs,
+            now_secs: state.frame.now_secs,
             clock: &clock,
+            effects: &effects,
             layout_millis: &layout_millis,
         };
         bar::top::show(ui, &context, commands);
         bar::bottom::show(ui, &context, commands);
         self.layouts.fit(Room::of(ui.ctx().content_rect().size()));
-        let tree = self.layouts.tree_mut(self.state.arrangement());
+        let tree = self.layouts.tree_mut(state.arrangement());
         let mut shown = Vec::new();
         CentralPanel::default().frame(Frame::new().fill(context.tokens.background)).show(ui, |ui| {
             let mut tiles =
@@ -223,118 +135,62 @@ impl Enroute {
         });
         dialog::show(ui.ctx(), &context, commands);
         toasts::show(ui.ctx(), &context, commands);
-        if let Some(millis) = layout_millis.get() {
-            self.state.frame.layout_millis = millis;
-            self.version += 1;
-        }
-        let is_editor_shown = shown.contains(&PanelKind::Editor);
-        self.state.panels_on_screen = shown;
-        if is_editor_shown {
-            // The editor has scrolled and taken the focus as it was asked to.
-            self.state.editor.reveal = None;
-            self.state.editor.wants_focus &= self.state.dialog.is_some();
-        }
+        let state = self.session.state_mut();
+        state.panels_on_screen = shown;
+        // What no panel has taken waits for its panel.
+        state.panel_effects = effects.into_inner();
+        layout_millis.get()
     }
 
     fn apply(&mut self, commands: Vec<Command>) {
-        if commands.is_empty() {
-            return;
+        if !commands.is_empty() {
+            self.session.apply(commands);
+            self.follow_effects();
+            self.egui.request_repaint();
         }
-        for command in commands {
-            self.state.apply(command);
-        }
-        self.layouts.follow(&mut self.state);
-        self.version += 1;
-        self.do_effects();
-        self.egui.request_repaint();
     }
 
-    fn do_effects(&mut self) {
-        for effect in self.state.take_effects() {
+    /// Does what commands have left for the window and for the layout of its panels.
+    fn follow_effects(&mut self) {
+        self.layouts.follow(self.session.state_mut());
+        let leaves_focus = |effect: PanelEffect| (effect == PanelEffect::LeaveFocus).then_some(());
+        if !self.session.state_mut().panel_effects.take(leaves_focus).is_empty() {
+            self.egui.memory_mut(|memory| {
+                if let Some(focused) = memory.focused() {
+                    memory.surrender_focus(focused);
+                }
+            });
+        }
+        for effect in self.session.take_window_effects() {
             match effect {
-                Effect::Copy(text) => self.egui.copy_text(text),
-                Effect::OpenFile(kind) => self.host.open_file(kind),
-                Effect::SaveFile { name, bytes } => self.host.save_file(&name, bytes),
-                Effect::SavePicture { name, svg, size } => self.host.save_picture(&name, svg, size),
-                Effect::CopyLink => self.copy_link(),
-                Effect::Post(request) => self.host.post(request),
-                Effect::DropFocus => self.egui.memory_mut(|memory| {
-                    if let Some(focused) = memory.focused() {
-                        memory.surrender_focus(focused);
-                    }
-                }),
-                Effect::KeepReview { joins } => {
-                    outside::keep_review(self.host.as_mut(), &mut self.state, joins);
-                }
-                Effect::RecallReview => outside::recall_review(self.host.as_ref(), &mut self.state),
-                Effect::Restyle => {
-                    let Settings { theme, text_scale, .. } = self.state.settings;
-                    theme::apply(&self.egui, panels::tokens(theme), text_scale);
-                }
+                WindowEffect::Copy(text) => self.egui.copy_text(text),
+                WindowEffect::Restyle => self.restyle(),
             }
         }
-        self.post_text();
-        self.post_run();
     }
 
-    /// Asks for the present text to be worked out, unless that was asked for already.
-    fn post_text(&mut self) {
-        let wanted =
-            Posted { revision: self.state.document.revision(), settings: self.state.settings.plan.clone() };
-        if self.posted.as_ref() == Some(&wanted) {
-            return;
-        }
-        // The same text planned in another way is a new revision: answers must be told apart.
-        if self.posted.as_ref().is_some_and(|posted| posted.revision == wanted.revision) {
-            self.state.document.touch();
-        }
-        let revision = self.state.document.revision();
-        let PlanSettings { goal, search, seed, trace } = wanted.settings.clone();
-        let source = self.state.document.shared_text();
-        self.host.post(Request::Update(Update { revision, source, goal, search, seed, trace }));
-        self.posted = Some(Posted { revision, ..wanted });
+    fn restyle(&self) {
+        let settings = &self.app_state().settings;
+        theme::apply(&self.egui, panels::tokens(settings.theme), settings.text_scale);
     }
 
-    /// Asks for the run that is watched to be worked out, unless that was asked for already.
-    fn post_run(&mut self) {
-        if let Some(request) = self.state.run_to_ask_for() {
-            self.host.post(request);
+    fn wake_after(&self, seconds: Option<f64>) {
+        if let Some(seconds) = seconds {
+            self.egui.request_repaint_after_secs(seconds as f32);
         }
-    }
-
-    fn copy_link(&mut self) {
-        let fragment = outside::fragment(&self.state);
-        match self.host.link(&fragment) {
-            Some(link) => {
-                self.egui.copy_text(link);
-                self.state.toasts.add(ToastKind::Done, "The link is on the clipboard");
-            }
-            None => self.state.toasts.add(ToastKind::Failed, "Links work in the web page only"),
-        }
-    }
-
-    /// Keeps settings and layouts when they have changed and nobody is dragging.
-    fn remember(&mut self) {
-        if self.egui.input(|input| input.pointer.any_down()) {
-            return;
-        }
-        if self.stored != self.state.settings {
-            self.stored = self.state.settings.clone();
-            outside::remember_settings(self.host.as_mut(), &self.stored);
-        }
-        self.layouts.remember(self.host.as_mut());
     }
 }
 
 impl eframe::App for Enroute {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let render_state = frame.wgpu_render_state().cloned();
-        self.state.frame.whole_millis = frame.info().cpu_usage.map(|seconds| f64::from(seconds) * 1000.0);
+        self.session.state_mut().frame.whole_millis =
+            frame.info().cpu_usage.map(|seconds| f64::from(seconds) * 1000.0);
         self.show(ui, render_state.as_ref());
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        panels::tokens(self.state.settings.theme).background.to_normalized_gamma_f32()
+        panels::tokens(self.app_state().settings.theme).background.to_normalized_gamma_f32()
     }
 
     #[cfg(target_arch = "wasm32")]
@@ -345,13 +201,9 @@ impl eframe::App for Enroute {
 
 impl Remote for Enroute {
     fn open(&mut self, name: &str) -> Result<(), RemoteError> {
-        if mission_file::example(name).is_none() {
-            return Err(RemoteError::UnknownMission {
-                name: name.to_owned(),
-                known: EXAMPLES.iter().map(|example| example.name.to_owned()).collect(),
-            });
-        }
-        self.run(Command::OpenExample(name.into()));
+        self.session.open(name)?;
+        self.follow_effects();
+        self.egui.request_repaint();
         Ok(())
     }
 
@@ -360,21 +212,22 @@ impl Remote for Enroute {
     }
 
     fn source(&self) -> String {
-        self.state.document.text().to_owned()
+        self.session.source()
     }
 
     fn dispatch(&mut self, command: &str, arguments: &Value) -> Result<(), RemoteError> {
-        let command = command::from_json(&self.state, command, arguments)?;
-        self.run(command);
+        self.session.dispatch(command, arguments)?;
+        self.follow_effects();
+        self.egui.request_repaint();
         Ok(())
     }
 
     fn state(&self) -> Value {
-        outside::state_json(&self.state)
+        Remote::state(&self.session)
     }
 
     fn state_version(&self) -> u64 {
-        self.version
+        self.session.state_version()
     }
 }
 

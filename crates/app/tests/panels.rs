@@ -5,7 +5,7 @@ mod support;
 use egui::Role;
 use egui_kittest::kittest::Queryable as _;
 use serde_json::json;
-use workbench::command::{Command, all_commands};
+use workbench::command::Command;
 use workbench::host::Remote as _;
 
 /// Shows the plan's tables where there is room for all of them.
@@ -130,18 +130,6 @@ fn the_outline_lists_the_declarations_and_leads_to_them() {
     let source = app.harness.state().source();
     let at = source.find("PATH1_2").expect("a location");
     assert_eq!(app.json()["caret"]["anchor"], at);
-}
-
-#[test]
-fn command_names_are_unique_and_no_two_commands_share_a_key_where_both_work() {
-    for (index, left) in all_commands().enumerate() {
-        for right in all_commands().skip(index + 1) {
-            assert_ne!(left.id, right.id);
-            for key in left.keys {
-                assert!(!right.keys.contains(key), "{} and {} share {key:?}", left.id, right.id);
-            }
-        }
-    }
 }
 
 #[test]

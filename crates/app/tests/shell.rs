@@ -7,7 +7,7 @@ use std::rc::Rc;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use serde_json::json;
-use workbench::host::{Remote as _, RemoteError};
+use workbench::host::Remote as _;
 
 #[test]
 fn the_app_opens_with_the_enroute_mission_and_its_plan() {
@@ -124,28 +124,6 @@ fn a_closed_panel_comes_back() {
 }
 
 #[test]
-fn a_host_page_can_drive_the_app_and_is_told_what_is_wrong_with_a_call() {
-    let mut app = support::start();
-    app.settle();
-    let enroute = app.harness.state_mut();
-    enroute.set_source("scenario S[0,10] = { delay[5,5] }");
-    enroute.dispatch("view.workspace", &json!({ "name": "teach" })).expect("a workspace");
-    assert_eq!(enroute.source(), "scenario S[0,10] = { delay[5,5] }");
-    assert!(matches!(enroute.open("nowhere"), Err(RemoteError::UnknownMission { .. })));
-    assert!(matches!(enroute.dispatch("no.such", &json!(null)), Err(RemoteError::UnknownCommand { .. })));
-    assert!(matches!(
-        enroute.dispatch("view.workspace", &json!({ "name": "kitchen" })),
-        Err(RemoteError::BadArguments { .. })
-    ));
-    app.settle();
-    let state = app.json();
-    assert_eq!(state["workspace"], "teach");
-    assert_eq!(state["status"], "plan");
-    assert_eq!(state["plan"]["windows"]["delay#1.end"], json!([5, 5]));
-    assert_eq!(state["revision"], state["shownRevision"]);
-}
-
-#[test]
 fn a_shorter_window_of_the_path_leaves_no_plan_and_undo_brings_it_back() {
     let mut app = support::start();
     app.settle();
@@ -161,37 +139,6 @@ fn a_shorter_window_of_the_path_leaves_no_plan_and_undo_brings_it_back() {
 }
 
 #[test]
-fn an_error_in_the_text_keeps_the_last_good_network_and_says_so() {
-    let mut app = support::start();
-    app.settle();
-    let nodes = app.json()["tpn"]["nodes"].clone();
-    let source = app.harness.state().source();
-    app.harness.state_mut().set_source(&source.replace("choose {", "choose"));
-    app.settle();
-    let state = app.json();
-    assert_eq!(state["status"], "broken");
-    assert_eq!(state["isStale"], true);
-    assert_eq!(state["tpn"]["nodes"], nodes);
-    assert!(!state["diagnostics"].as_array().expect("a list").is_empty());
-}
-
-#[test]
-fn time_plays_to_the_end_of_the_plan_and_stops() {
-    let mut app = support::start();
-    app.settle();
-    app.harness.state_mut().dispatch("play.toggle", &json!(null)).expect("there is a plan");
-    assert_eq!(app.json()["isPlaying"], true);
-    for _ in 0..200 {
-        app.world.now_secs.set(app.world.now_secs.get() + 0.2);
-        app.harness.step();
-    }
-    let state = app.json();
-    assert_eq!(state["isPlaying"], false);
-    assert_eq!(state["time"], state["endTime"]);
-    assert_eq!(state["endTime"], 660.0);
-}
-
-#[test]
 fn saving_hands_the_text_to_the_host() {
     let mut app = support::start();
     app.settle();
@@ -201,14 +148,4 @@ fn saving_hands_the_text_to_the_host() {
     let (name, bytes) = saved.first().expect("a file");
     assert_eq!(name, "enroute.rmpl");
     assert_eq!(bytes, app.harness.state().source().as_bytes());
-}
-
-#[test]
-fn the_address_opens_a_mission_in_a_workspace() {
-    let world = std::rc::Rc::<support::World>::default();
-    "mission=threats&workspace=review".clone_into(&mut world.fragment.borrow_mut());
-    let mut app = support::start_in(world, |builder| builder);
-    app.settle();
-    assert_eq!(app.json()["mission"], "threats");
-    assert_eq!(app.json()["workspace"], "review");
 }

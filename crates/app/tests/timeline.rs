@@ -121,23 +121,6 @@ fn the_keyboard_moves_and_releases_events() {
 }
 
 #[test]
-fn pins_stay_when_the_text_changes_elsewhere_and_go_when_their_time_is_over() {
-    let mut app = reviewing();
-    let pin = json!({ "event": "Group-Enroute#1.start", "time": 40 });
-    app.harness.state_mut().dispatch("plan.pin", &pin).expect("an event");
-    app.settle();
-    let source = app.harness.state().source();
-    app.harness.state_mut().set_source(&source.replace("[0,2]", "[0,3]"));
-    app.settle();
-    assert_eq!(app.json()["pinned"]["events"], json!({ "Group-Enroute#1.start": 40.0 }));
-    // The drive of at least 405 must now end by 420.
-    app.harness.state_mut().set_source(&source.replace("PATH1=OK [450,450]", "PATH1=OK [410,410]"));
-    app.settle();
-    assert_eq!(app.json()["status"], "plan");
-    assert_eq!(app.json()["pinned"], Value::Null);
-}
-
-#[test]
 fn dragging_a_bound_rewrites_its_number_as_one_step_of_the_history() {
     let mut app = reviewing();
     let scale = points_per_unit(&mut app);

@@ -1,14 +1,14 @@
 //! What a panel is: what it reads, and how it is shown.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 
 use mission::Snapshot;
 use theme::Tokens;
-use workbench::PanelKind;
 use workbench::command::{CommandSender, ViewAction};
 use workbench::state::AppState;
 use workbench::state::search::Focus;
+use workbench::{PanelEffect, PanelEffects, PanelKind};
 
 /// What a panel reads.
 #[derive(Clone, Copy)]
@@ -27,6 +27,8 @@ pub struct Context<'a> {
     pub now_secs: f64,
     /// The host's clock itself, for measuring.
     pub clock: &'a dyn Fn() -> f64,
+    /// What panels are to do, each once: a panel takes what is meant for it.
+    pub effects: &'a RefCell<PanelEffects>,
     /// Where a panel that lays out its drawing anew says how long that took.
     pub layout_millis: &'a Cell<Option<f64>>,
 }
@@ -53,14 +55,17 @@ impl Context<'_> {
         Some(Focus::of(view.recording.network(), view.recording.trace(), &view.step))
     }
 
-    /// The view action for `panel` that has not been followed yet. `followed` is the panel's memory of the last one.
-    pub fn view_action(&self, panel: PanelKind, followed: &mut u64) -> Option<ViewAction> {
-        let request = self.state.view_request.filter(|request| request.panel == panel)?;
-        if request.sequence == *followed {
-            return None;
-        }
-        *followed = request.sequence;
-        Some(request.action)
+    /// What `panel` is to do with its view, if anything; it is the panel's to do now.
+    pub fn view_action(&self, panel: PanelKind) -> Option<ViewAction> {
+        self.take_last(|effect| match effect {
+            PanelEffect::View(of, action) if of == panel => Some(action),
+            _ => None,
+        })
+    }
+
+    /// Takes the effects that `wanted` makes something of; the last of them counts.
+    pub fn take_last<T>(&self, wanted: impl FnMut(PanelEffect) -> Option<T>) -> Option<T> {
+        self.effects.borrow_mut().take(wanted).pop()
     }
 }
 

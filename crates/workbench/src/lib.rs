@@ -10,10 +10,15 @@ mod dialog;
 pub mod host;
 pub mod mission_file;
 pub mod outside;
+mod panel_effect;
 mod panel_kind;
+mod session;
 pub mod state;
 pub mod time_text;
+pub mod transport;
 pub mod workspace;
 
 pub use dialog::Dialog;
+pub use panel_effect::{PanelEffect, PanelEffects};
 pub use panel_kind::PanelKind;
+pub use session::{Session, WindowEffect};

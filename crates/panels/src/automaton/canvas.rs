@@ -16,7 +16,6 @@ use crate::network::view::View;
 #[derive(Default)]
 pub(super) struct Canvas {
     view: View,
-    followed_action: u64,
     /// What was pressed last.
     pressed: Option<AutomatonItem>,
 }
@@ -86,7 +85,7 @@ impl Canvas {
                 self.view.zoom_at(panel, pointer, factor);
             }
         }
-        match context.view_action(PanelKind::Automaton, &mut self.followed_action) {
+        match context.view_action(PanelKind::Automaton) {
             None | Some(ViewAction::TopView | ViewAction::Follow) => {}
             Some(ViewAction::ZoomIn) => self.view.zoom_at(panel, panel.center(), KEY_ZOOM),
             Some(ViewAction::ZoomOut) => self.view.zoom_at(panel, panel.center(), 1.0 / KEY_ZOOM),

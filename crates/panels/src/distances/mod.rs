@@ -28,7 +28,6 @@ pub struct DistancesPanel {
     shows_matrix: bool,
     view: View,
     drawn: Option<Drawn>,
-    followed_action: u64,
 }
 
 /// The graph that was made last, and of what.
@@ -187,7 +186,7 @@ impl DistancesPanel {
             }
             WidgetInfo::labeled(Role::Image, true, name)
         });
-        let action = context.view_action(PanelKind::Distances, &mut self.followed_action);
+        let action = context.view_action(PanelKind::Distances);
         move_view(&mut self.view, ui, panel, &response, action, &drawn.arranged);
         let focus = context.focus().unwrap_or_default();
         let painter = ui.painter_at(panel);

@@ -10,12 +10,12 @@ use mission::Problem;
 use rmpl::{Severity, Span};
 use theme::icon::{self, Icon};
 use theme::{Tokens, space};
-use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, EditorCommand};
 use workbench::state::TextCommand;
 use workbench::state::document::Document;
 use workbench::state::folding::{self, Rows};
 use workbench::state::language::SyntaxRole;
+use workbench::{PanelEffect, PanelKind};
 
 use crate::Context;
 use crate::editor::hover::HoverCache;
@@ -124,7 +124,11 @@ impl TextArea {
             origin: origin + egui::vec2(gutter_width, 0.0),
             rows,
         };
-        if let Some(reveal) = context.state.editor.reveal {
+        let reveal = context.take_last(|effect| match effect {
+            PanelEffect::Reveal(reveal) => Some(reveal),
+            _ => None,
+        });
+        if let Some(reveal) = reveal {
             area = self.scroll_to(context, area, reveal, &geometry_of(Pos2::ZERO), available);
         }
         let shown = area.show_viewport(ui, |ui, viewport| {
@@ -199,8 +203,10 @@ impl TextArea {
     }
 
     fn follow_focus(ui: &Ui, context: &Context<'_>, response: &Response) {
-        let wants_focus = context.state.editor.wants_focus && context.state.dialog.is_none();
-        if wants_focus || crate::is_pressed(response) {
+        let is_given = context.take_last(|effect| {
+            (effect == PanelEffect::FocusEditor && context.state.dialog.is_none()).then_some(())
+        });
+        if is_given.is_some() || crate::is_pressed(response) {
             response.request_focus();
         }
         if response.has_focus() {

@@ -23,10 +23,10 @@ use egui::{CursorIcon, Key, PointerButton, Rect, Response, Role, Sense, Ui, Widg
 use layout::{Item, OverlayCurve, OverlayKind, Point, Progress};
 use mission::Snapshot;
 use tpn::{BlockId, Network, Plan};
-use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, ViewAction};
 use workbench::state::settings::NetworkView;
 use workbench::state::{Selection, Status, Views};
+use workbench::{PanelEffect, PanelKind};
 
 use self::data::{Drawn, block_key, fits, is_collapsible};
 use self::highlight::{Highlight, selection_of};
@@ -44,8 +44,6 @@ pub struct NetworkPanel {
     /// Names of collapsed blocks.
     collapsed: BTreeSet<String>,
     search: Search,
-    followed_action: u64,
-    followed_picture: u64,
     /// The selection that was last brought into view.
     followed_selection: Selection,
     /// The step of the search that was last brought into view.
@@ -194,7 +192,7 @@ impl NetworkPanel {
 
     /// Saves the drawing once for every time that was asked for.
     fn save_picture(
-        &mut self,
+        &self,
         context: &Context<'_>,
         network: &Network,
         plan: Option<&Plan>,
@@ -202,9 +200,11 @@ impl NetworkPanel {
         options: &NetworkView,
         commands: &mut CommandSender,
     ) {
-        let Some((count, format)) = context.state.picture_request else { return };
-        if count != self.followed_picture {
-            self.followed_picture = count;
+        let formats = context.effects.borrow_mut().take(|effect| match effect {
+            PanelEffect::SaveDrawing(format) => Some(format),
+            _ => None,
+        });
+        for format in formats {
             commands.send(export::save(format, context, &self.drawn, network, plan, progress, options));
         }
     }
@@ -247,7 +247,7 @@ impl NetworkPanel {
         if response.has_focus() && context.state.selection.is_none() {
             self.view.pan(arrow_keys(ui) * 48.0);
         }
-        let action = context.view_action(PanelKind::Network, &mut self.followed_action);
+        let action = context.view_action(PanelKind::Network);
         self.follow_action(action, panel, context, network);
         self.follow_selection(panel, context, network);
         self.follow_step(panel, context, network);

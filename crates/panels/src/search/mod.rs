@@ -31,7 +31,6 @@ use tree::{TreeDrawing, TreeIndex};
 #[derive(Default)]
 pub struct SearchPanel {
     sides: [Side; 2],
-    followed_action: u64,
     /// What this panel last said the pointer is over.
     told_hover: Selection,
 }
@@ -88,7 +87,7 @@ impl Panel for SearchPanel {
         if let Some(drawn) = &self.sides[side].drawn {
             keys::follow(ui, context, drawn.recording.trace(), &drawn.index, commands);
         }
-        let action = context.view_action(PanelKind::Search, &mut self.followed_action);
+        let action = context.view_action(PanelKind::Search);
         let room = ui.available_rect_before_wrap().intersect(panel);
         let details = DETAILS.min((room.height() - LEAST_TREE).max(room.height() * 0.3));
         let (upper, lower) = room.split_top_bottom_at_y(room.bottom() - details);

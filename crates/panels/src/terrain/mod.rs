@@ -58,7 +58,6 @@ pub struct TerrainPanel {
     pressed_m: Option<Vec2>,
     /// How many drags there were: each is one step of the history.
     drag_count: u64,
-    followed_action: u64,
     /// The path that was clicked last: its traverse, its leg and the place.
     clicked: Option<(OccurrenceId, usize, Vec2)>,
     /// The plates with names in the last frame.

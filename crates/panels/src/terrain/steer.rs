@@ -19,7 +19,7 @@ const NEAR_M: f32 = 45.0;
 impl TerrainPanel {
     /// Follows view actions, flights and vehicles, and keeps the eye over the ground.
     pub(super) fn move_camera(&mut self, response: &Response, context: &Context<'_>, snapshot: &Snapshot) {
-        if let Some(action) = context.view_action(PanelKind::Terrain, &mut self.followed_action) {
+        if let Some(action) = context.view_action(PanelKind::Terrain) {
             self.follow_action(action, response.rect.aspect_ratio(), context, snapshot);
         }
         let (Some(mut camera), Some(shown)) = (self.camera, &self.ground) else { return };

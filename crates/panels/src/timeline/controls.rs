@@ -10,6 +10,7 @@ use workbench::command::{Command, CommandSender, ViewAction};
 use workbench::state::PinCommand;
 use workbench::state::settings::Grouping;
 use workbench::time_text;
+use workbench::transport::TransportCommand;
 
 use super::handle;
 use crate::Context;
@@ -97,9 +98,9 @@ pub(crate) fn playing(ui: &mut Ui, context: &Context<'_>, commands: &mut Command
     let (sign, name) = if playback.is_playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
     let buttons = [
         (Icon::ToStart, "To the start", Command::Seek(0.0)),
-        (Icon::StepBack, "Previous event", Command::StepTime(false)),
-        (sign, name, Command::TogglePlaying),
-        (Icon::StepForward, "Next event", Command::StepTime(true)),
+        (Icon::StepBack, "Previous event", Command::Transport(TransportCommand::Step(false))),
+        (sign, name, Command::Transport(TransportCommand::TogglePlaying)),
+        (Icon::StepForward, "Next event", Command::Transport(TransportCommand::Step(true))),
         (Icon::ToEnd, "To the end", Command::Seek(playback.end)),
     ];
     for (sign, name, command) in buttons {

@@ -44,7 +44,6 @@ pub struct TimelinePanel {
     view: Option<TimeView>,
     /// Whether the view keeps showing everything; ends when the user moves it.
     is_fitted: bool,
-    followed: u64,
     prepared: Option<Prepared>,
     /// Keys of the rows that are closed.
     closed: BTreeSet<SmolStr>,
@@ -82,7 +81,6 @@ impl Default for TimelinePanel {
         Self {
             view: None,
             is_fitted: true,
-            followed: 0,
             prepared: None,
             closed: BTreeSet::new(),
             names_width: NAMES_WIDTH.0,
@@ -313,7 +311,7 @@ impl TimelinePanel {
         horizon: f64,
         view: &mut TimeView,
     ) {
-        let Some(action) = context.view_action(PanelKind::Timeline, &mut self.followed) else { return };
+        let Some(action) = context.view_action(PanelKind::Timeline) else { return };
         self.is_fitted = false;
         match action {
             ViewAction::ZoomIn => view.zoom(axis, axis.center().x, 1.4, horizon),

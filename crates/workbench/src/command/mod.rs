@@ -23,6 +23,7 @@ use crate::state::search::SearchCommand;
 use crate::state::settings::ThemeChoice;
 use crate::state::terrain::TerrainCommand;
 use crate::state::{EditKind, PinCommand, Selection, TextCommand, ToastKind, Views};
+use crate::transport::TransportCommand;
 use crate::workspace::Workspace;
 
 pub use registry::{Availability, Build, CommandSpec, Group, Scope, by_id, from_json, matching, score};
@@ -75,12 +76,10 @@ pub enum Command {
     /// Something that concerns the terrain.
     Terrain(TerrainCommand),
 
+    /// Plays, stops, steps: drives whatever the keys drive now.
+    Transport(TransportCommand),
     /// Goes to a time, in mission units from the start.
     Seek(f64),
-    /// Starts or stops time.
-    TogglePlaying,
-    /// Goes to the next (`true`) or the previous (`false`) moment at which something happens.
-    StepTime(bool),
     /// Sets how fast time runs; 1 is normal.
     SetRate(f64),
 

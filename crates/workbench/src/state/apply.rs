@@ -6,19 +6,16 @@ use mission::{Request, Response, Snapshot};
 use rmpl::Span;
 use smol_str::SmolStr;
 
-use crate::PanelKind;
 use crate::command::Command;
 use crate::host::{FileKind, HostEvent};
 use crate::mission_file;
-use crate::state::automaton::AutomatonCommand;
 use crate::state::chance::ChanceCommand;
-use crate::state::editor::Reveal;
-use crate::state::growth::GrowthCommand;
 use crate::state::program_chance::ProgramChanceCommand;
 use crate::state::search::{self, SearchCommand};
-use crate::state::terrain::{TerrainCommand, TerrainState};
-use crate::state::{AppState, PinCommand, Pins, Selection, ToastKind, ViewRequest, playback};
+use crate::state::terrain::TerrainState;
+use crate::state::{AppState, PinCommand, Pins, Selection, ToastKind, playback};
 use crate::workspace::Workspace;
+use crate::{PanelEffect, PanelKind};
 
 /// Something that the host is to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,8 +53,6 @@ pub enum Effect {
     RecallReview,
     /// The appearance changed.
     Restyle,
-    /// Take the keyboard from the widget that has it, so that plain keys go to the active panel.
-    DropFocus,
 }
 
 impl AppState {
@@ -106,19 +101,7 @@ impl AppState {
 
             Command::Terrain(command) => self.apply_to_terrain(command),
             Command::Seek(time) => self.playback.seek(time),
-            Command::TogglePlaying if self.steps_growth() => {
-                self.apply_to_terrain(TerrainCommand::Growth(GrowthCommand::TogglePlaying));
-            }
-            Command::StepTime(forwards) if self.steps_growth() => {
-                let step = GrowthCommand::Step(if forwards { 1 } else { -1 });
-                self.apply_to_terrain(TerrainCommand::Growth(step));
-            }
-            Command::TogglePlaying if self.automaton.program().is_some() => {
-                self.automaton.apply(AutomatonCommand::TogglePlaying);
-            }
-            Command::StepTime(forwards) if self.automaton.program().is_some() => {
-                self.automaton.apply(AutomatonCommand::Step(if forwards { 1 } else { -1 }));
-            }
+            Command::Transport(command) => self.apply_to_transport(command),
             Command::Automaton(command) => self.automaton.apply(command),
             Command::Execution(command) => self.apply_to_run(command),
             Command::Chance(ChanceCommand::Start) if self.automaton.program().is_some() => {
@@ -129,21 +112,13 @@ impl AppState {
             }
             Command::Chance(command) => self.apply_to_chance(command),
             Command::ProgramChance(command) => self.apply_to_program_chance(command),
-            Command::TogglePlaying if self.steps_search() => {
-                self.apply_to_search(SearchCommand::TogglePlaying);
-            }
-            Command::StepTime(forwards) if self.steps_search() => {
-                self.apply_to_search(SearchCommand::Step(if forwards { 1 } else { -1 }));
-            }
-            Command::TogglePlaying => self.playback.toggle(),
-            Command::StepTime(forwards) => self.step_time(forwards),
             Command::Search(command) => self.apply_to_search(command),
             Command::TurnPanel(forwards) => self.turn_panel(forwards),
-            Command::SetRate(rate) => self.playback.rate = rate.clamp(0.125, 64.0),
+            Command::SetRate(rate) => self.set_rate(rate),
 
             Command::Review(command) => self.apply_to_review(command),
             Command::Compare(command) => {
-                self.wanted_panel = Some(PanelKind::Compare);
+                self.show_panel(PanelKind::Compare);
                 self.apply_to_compare(&command);
             }
             Command::WriteReport => self.write_report(),
@@ -171,17 +146,17 @@ impl AppState {
                     Workspace::Author | Workspace::Execute => {}
                 }
                 if workspace == Workspace::Execute && !self.language.is_control() {
-                    self.wanted_panel = Some(PanelKind::Execution);
+                    self.show_panel(PanelKind::Execution);
                     self.active_panel = PanelKind::Timeline;
                 }
                 self.fit_time();
             }
-            Command::ResetWorkspace => self.wants_default_layout = true,
+            Command::ResetWorkspace => self.panel_effects.push(PanelEffect::ResetLayout),
             Command::ShowPanel(panel) => {
-                self.wanted_panel = Some(panel);
+                self.show_panel(panel);
                 self.active_panel = panel;
             }
-            Command::ClosePanel(panel) => self.unwanted_panel = Some(panel),
+            Command::ClosePanel(panel) => self.panel_effects.push(PanelEffect::Close(panel)),
             Command::Activate(panel) => self.active_panel = panel,
             Command::View(action) => {
                 let active = self.active_panel;
@@ -206,9 +181,8 @@ impl AppState {
             Command::DismissToast(index) => self.toasts.dismiss(index),
             Command::Copy(text) => self.effects.push(Effect::Copy(text)),
             Command::SaveNetwork(format) => {
-                let count = self.picture_request.map_or(1, |(count, _)| count + 1);
-                self.picture_request = Some((count, format));
-                self.wanted_panel = Some(PanelKind::Network);
+                self.panel_effects.push(PanelEffect::SaveDrawing(format));
+                self.show_panel(PanelKind::Network);
             }
             Command::SaveFile { name, bytes } => self.effects.push(Effect::SaveFile { name, bytes }),
             Command::SavePicture { name, svg, size } => {
@@ -269,27 +243,21 @@ impl AppState {
         self.follow_review();
     }
 
-    /// Whether the keys that step and play go to the search instead of time.
-    pub fn steps_search(&self) -> bool {
-        let shows_time = matches!(self.active_panel, PanelKind::Timeline | PanelKind::Terrain);
-        self.active_panel == PanelKind::Search || self.search.step().is_some() && !shows_time
-    }
-
-    fn apply_to_search(&mut self, command: SearchCommand) {
+    pub(crate) fn apply_to_search(&mut self, command: SearchCommand) {
         let shown = self.snapshots.shown().cloned();
         self.search.apply(command, shown.as_ref());
         self.reveal_step();
     }
 
     /// Shows in the editor what a new step is about; the caret stays where it is.
-    pub fn reveal_step(&mut self) {
+    pub(crate) fn reveal_step(&mut self) {
         if self.snapshots.is_stale(self.document.revision()) {
             return;
         }
         let Some(view) = self.search.shown() else { return };
         let focus = search::Focus::of(view.recording.network(), view.recording.trace(), &view.step);
         if let Some(&span) = focus.spans.first() {
-            self.editor.reveal = Some(Reveal { span, center: true });
+            self.scroll_to(span, true);
         }
     }
 
@@ -332,10 +300,9 @@ impl AppState {
     fn focus_panel(&mut self, panel: PanelKind) {
         self.active_panel = panel;
         if panel == PanelKind::Editor {
-            self.editor.wants_focus = true;
+            self.focus_editor();
         } else {
-            self.editor.wants_focus = false;
-            self.effects.push(Effect::DropFocus);
+            self.panel_effects.push(PanelEffect::LeaveFocus);
         }
     }
 
@@ -347,7 +314,7 @@ impl AppState {
     }
 
     /// Adapts selection and time if another snapshot than `before` is shown now.
-    pub fn follow_shown(&mut self, before: Option<&Arc<Snapshot>>) {
+    pub(crate) fn follow_shown(&mut self, before: Option<&Arc<Snapshot>>) {
         let Some(after) = self.snapshots.shown().cloned() else { return };
         if before.is_some_and(|before| Arc::ptr_eq(before, &after)) {
             return;
@@ -404,7 +371,7 @@ impl AppState {
         self.time_range = None;
         self.playback = playback::Playback { rate: self.playback.rate, ..Default::default() };
         self.settings.plan.goal = mission::Goal::Default;
-        self.editor.reveal = Some(Reveal { span: Span::new(0, 0), center: false });
+        self.scroll_to(Span::new(0, 0), false);
         self.dialog = None;
     }
 
@@ -413,11 +380,11 @@ impl AppState {
         let is_control = rmpl::control::is_control_text(source);
         if is_control {
             self.workspace = Workspace::Execute;
-            self.wanted_panel = Some(PanelKind::Automaton);
-            self.also_wanted_panel = Some(PanelKind::Editor);
+            self.show_panel(PanelKind::Editor);
+            self.show_panel(PanelKind::Automaton);
             self.active_panel = PanelKind::Automaton;
         } else if self.workspace == Workspace::Execute && !self.language.is_control() {
-            self.wanted_panel = Some(PanelKind::Execution);
+            self.show_panel(PanelKind::Execution);
         } else if self.workspace == Workspace::Execute {
             self.workspace = Workspace::Author;
             self.active_panel = PanelKind::Editor;
@@ -461,31 +428,8 @@ impl AppState {
         self.document.mark_saved();
     }
 
-    fn step_time(&mut self, forwards: bool) {
-        let now = self.playback.time;
-        let times: Vec<f64> = match self.execution.run() {
-            Some(run) if self.is_executing() => {
-                run.log.iter().map(|entry| playback::number(entry.time)).collect()
-            }
-            _ => {
-                let Some(plan) = self.shown().and_then(|shown| shown.plan()) else { return };
-                plan.windows.iter().flatten().map(|window| playback::number(window.earliest)).collect()
-            }
-        };
-        let times = times.into_iter();
-        let next = if forwards {
-            times.filter(|&time| time > now).reduce(f64::min)
-        } else {
-            times.filter(|&time| time < now).reduce(f64::max)
-        };
-        if let Some(time) = next {
-            self.playback.seek(time);
-        }
-    }
-
     pub(super) fn request_view(&mut self, panel: PanelKind, action: crate::command::ViewAction) {
-        let sequence = self.view_request.map_or(1, |request| request.sequence + 1);
-        self.view_request = Some(ViewRequest { sequence, panel, action });
+        self.panel_effects.push(PanelEffect::View(panel, action));
     }
 
     fn escape(&mut self) {
@@ -496,7 +440,7 @@ impl AppState {
             return;
         }
         if self.editor.find.take().is_some() {
-            self.editor.wants_focus = true;
+            self.focus_editor();
         } else if self.escape_from_terrain() {
             // The tool was put away, or what it had.
         } else if self.search.step().is_some() {

@@ -8,7 +8,7 @@ use rmpl::editor;
 use crate::PanelKind;
 use crate::command::EditorCommand;
 use crate::state::document::Caret;
-use crate::state::editor::{Find, Reveal};
+use crate::state::editor::Find;
 use crate::state::folding::Folding;
 use crate::state::{AppState, EditKind, Effect, Selection, TextCommand, ToastKind};
 
@@ -31,7 +31,7 @@ impl AppState {
         self.editor.active_secs = self.frame.now_secs;
         self.editor.composition.clear();
         let head = self.document.caret().head as u32;
-        self.editor.reveal = Some(Reveal { span: Span::new(head, head), center: false });
+        self.scroll_to(Span::new(head, head), false);
         if matches!(
             command,
             TextCommand::Move { .. } | TextCommand::Select { .. } | TextCommand::SelectWord(_)
@@ -61,29 +61,29 @@ impl AppState {
         let span = self.shown().filter(|_| is_current).and_then(|shown| selection.span(shown));
         self.selection = selection;
         if let Some(span) = span {
-            self.editor.reveal = Some(Reveal { span, center: true });
+            self.scroll_to(span, true);
         }
     }
 
     pub(super) fn reveal(&mut self, span: Span) {
         self.document.set_caret(Caret::selecting(span.start as usize, span.end as usize));
-        self.editor.reveal = Some(Reveal { span, center: true });
+        self.scroll_to(span, true);
         self.editor.active_secs = self.frame.now_secs;
-        self.wanted_panel = Some(PanelKind::Editor);
+        self.show_panel(PanelKind::Editor);
     }
 
     pub(super) fn apply_to_editor(&mut self, command: EditorCommand) {
         match command {
             EditorCommand::Focus => {
-                self.wanted_panel = Some(PanelKind::Editor);
-                self.editor.wants_focus = true;
+                self.show_panel(PanelKind::Editor);
+                self.focus_editor();
             }
             EditorCommand::Compose(text) => self.editor.composition = text,
             EditorCommand::Find { replacing } => self.open_find(replacing),
             EditorCommand::SetFind(find) => self.editor.find = Some(find),
             EditorCommand::CloseFind => {
                 self.editor.find = None;
-                self.editor.wants_focus = true;
+                self.focus_editor();
             }
             EditorCommand::FindNext => self.go_to_match(true),
             EditorCommand::FindPrevious => self.go_to_match(false),
@@ -93,7 +93,7 @@ impl AppState {
                 let range =
                     self.document.line_range(line.saturating_sub(1).min(self.document.line_count() - 1));
                 self.reveal(Span::new(range.start as u32, range.start as u32));
-                self.editor.wants_focus = true;
+                self.focus_editor();
             }
             EditorCommand::GoToProblem { forwards } => self.go_to_problem(forwards),
             EditorCommand::CopySelection { cut } => self.copy_selection(cut),
@@ -131,7 +131,7 @@ impl AppState {
         find.replacing |= replacing;
         find.wants_focus = true;
         self.editor.find = Some(find);
-        self.wanted_panel = Some(PanelKind::Editor);
+        self.show_panel(PanelKind::Editor);
     }
 
     fn go_to_match(&mut self, forwards: bool) {
@@ -182,7 +182,7 @@ impl AppState {
         if let Some(&span) = next {
             self.reveal(span);
             self.select_at(span.start);
-            self.editor.wants_focus = true;
+            self.focus_editor();
         }
     }
 

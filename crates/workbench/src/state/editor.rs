@@ -16,10 +16,6 @@ pub struct EditorState {
     pub folding: Folding,
     /// Text that an input method is composing at the caret; it is not part of the document yet.
     pub composition: String,
-    /// A place that the editor is to scroll to, once.
-    pub reveal: Option<Reveal>,
-    /// Whether the editor is to take the keyboard focus.
-    pub wants_focus: bool,
     /// When the caret last moved or the text last changed, in seconds on the host's clock: the caret blinks from then.
     pub active_secs: f64,
 }

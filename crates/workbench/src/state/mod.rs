@@ -32,6 +32,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use mission::{MapKey, Snapshot};
+use rmpl::Span;
 use smol_str::SmolStr;
 
 pub use apply::Effect;
@@ -47,11 +48,10 @@ pub use snapshots::{Snapshots, Status};
 pub use toast::{Toast, ToastKind, Toasts};
 pub use typing::{Motion, TextCommand};
 
-use crate::Dialog;
-use crate::PanelKind;
-use crate::command::ViewAction;
 use crate::mission_file;
+use crate::state::editor::Reveal;
 use crate::workspace::{Arrangement, Workspace};
+use crate::{Dialog, PanelEffect, PanelEffects, PanelKind};
 
 /// The state of the app. Only commands change it ([`AppState::apply`]).
 #[derive(Debug)]
@@ -106,33 +106,12 @@ pub struct AppState {
     pub active_panel: PanelKind,
     /// The panels that were on screen in the last frame, in the order of the layout.
     pub panels_on_screen: Vec<PanelKind>,
-    /// The last view action, for its panel to follow once.
-    pub view_request: Option<ViewRequest>,
-    /// The network's drawing is to be saved: how often that was asked for, and in which format last.
-    pub picture_request: Option<(u64, crate::command::PictureFormat)>,
-    /// A panel that is to be brought back or to the front of its tabs.
-    pub wanted_panel: Option<PanelKind>,
-    /// Another one, beside it.
-    pub also_wanted_panel: Option<PanelKind>,
-    /// A panel that is to be closed.
-    pub unwanted_panel: Option<PanelKind>,
-    /// Whether the layout of the present workspace is to go back to its default.
-    pub wants_default_layout: bool,
+    /// What panels and their layout are to do.
+    pub panel_effects: PanelEffects,
     /// How the last frame went.
     pub frame: FrameInfo,
     /// What the host is to do.
     pub(crate) effects: Vec<Effect>,
-}
-
-/// A view action for one panel. A panel follows a request once: when `sequence` differs from the last it followed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ViewRequest {
-    /// Grows with every request.
-    pub sequence: u64,
-    /// Who is to follow it.
-    pub panel: PanelKind,
-    /// What to do.
-    pub action: ViewAction,
 }
 
 /// How the last frame went.
@@ -197,12 +176,7 @@ impl AppState {
             dialog: None,
             active_panel: PanelKind::Editor,
             panels_on_screen: Vec::new(),
-            view_request: None,
-            picture_request: None,
-            wanted_panel: None,
-            also_wanted_panel: None,
-            unwanted_panel: None,
-            wants_default_layout: false,
+            panel_effects: PanelEffects::default(),
             frame: FrameInfo::default(),
             effects: vec![Effect::RecallReview],
         }
@@ -226,8 +200,23 @@ impl AppState {
         }
     }
 
+    /// Asks the layout to bring a panel back, or to the front of its tabs.
+    pub(crate) fn show_panel(&mut self, panel: PanelKind) {
+        self.panel_effects.push(PanelEffect::Show(panel));
+    }
+
+    /// Asks the editor to scroll to a place; with `center` to the middle, even when the place can be seen.
+    pub(crate) fn scroll_to(&mut self, span: Span, center: bool) {
+        self.panel_effects.push(PanelEffect::Reveal(Reveal { span, center }));
+    }
+
+    /// Gives the editor the keyboard.
+    pub(crate) fn focus_editor(&mut self) {
+        self.panel_effects.push(PanelEffect::FocusEditor);
+    }
+
     /// Takes what the host is to do.
-    pub fn take_effects(&mut self) -> Vec<Effect> {
+    pub(crate) fn take_effects(&mut self) -> Vec<Effect> {
         std::mem::take(&mut self.effects)
     }
 }

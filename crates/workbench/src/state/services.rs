@@ -102,7 +102,7 @@ impl AppState {
             return;
         }
         self.editor.popup = Some(Popup { kind: PopupKind::Fixes, items, chosen: 0, span: caret });
-        self.editor.wants_focus = true;
+        self.focus_editor();
     }
 
     pub(super) fn list_references(&mut self) {
@@ -129,7 +129,7 @@ impl AppState {
             return;
         }
         self.editor.popup = Some(Popup { kind: PopupKind::References, items, chosen: 0, span: caret });
-        self.editor.wants_focus = true;
+        self.focus_editor();
     }
 
     pub(super) fn go_to_definition(&mut self) {
@@ -137,7 +137,7 @@ impl AppState {
         match self.language.parse().and_then(|parse| editor::definition(parse, head)) {
             Some(span) => {
                 self.reveal(span);
-                self.editor.wants_focus = true;
+                self.focus_editor();
             }
             None => self.toasts.add(ToastKind::Info, "This is not declared in the text"),
         }
@@ -158,7 +158,7 @@ impl AppState {
             PopupAction::Edit(edits) => self.document.edit(&edits, EditKind::Single, None),
             PopupAction::Reveal(span) => self.reveal(span),
         }
-        self.editor.wants_focus = true;
+        self.focus_editor();
     }
 
     pub(super) fn ask_for_name(&mut self) {
@@ -185,7 +185,7 @@ impl AppState {
             }
             Err(problem) => self.toasts.add(ToastKind::Failed, format!("Cannot rename: {problem}")),
         }
-        self.editor.wants_focus = true;
+        self.focus_editor();
     }
 
     pub(super) fn format(&mut self) {

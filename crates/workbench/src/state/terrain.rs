@@ -11,7 +11,6 @@ use terrain::Terrain;
 use crate::PanelKind;
 use crate::command::ViewAction;
 use crate::state::document::{Caret, EditKind};
-use crate::state::editor::Reveal;
 use crate::state::growth::{Growth, GrowthCommand, GrowthInput};
 use crate::state::placing::{self, NewThing, VehicleStart};
 use crate::state::{AppState, Selection, Settings, Snapshots, ToastKind};
@@ -96,7 +95,7 @@ pub enum TerrainCommand {
 }
 
 impl AppState {
-    pub(super) fn apply_to_terrain(&mut self, command: TerrainCommand) {
+    pub(crate) fn apply_to_terrain(&mut self, command: TerrainCommand) {
         match command {
             TerrainCommand::Take(tool) => {
                 let is_in_hand = self.terrain.tool == tool;
@@ -159,11 +158,6 @@ impl AppState {
         self.document.touch();
     }
 
-    /// Whether the keys that step and play go to the growth of a search tree.
-    pub(super) fn steps_growth(&self) -> bool {
-        self.terrain.growth.shown().is_some() && self.active_panel == PanelKind::Terrain
-    }
-
     /// Adapts what the terrain shows to the snapshot that is shown now.
     pub(super) fn follow_with_terrain(&mut self) {
         let input = growth_input(&self.snapshots, &self.maps, &self.selection, &self.settings);
@@ -182,7 +176,7 @@ impl AppState {
     }
 
     fn turn_to_terrain(&mut self) {
-        self.wanted_panel = Some(PanelKind::Terrain);
+        self.show_panel(PanelKind::Terrain);
         self.active_panel = PanelKind::Terrain;
     }
 
@@ -197,7 +191,7 @@ impl AppState {
         if let Some(start) = self.document.text().find(&declared.text) {
             let name = name_span(start, &declared.text);
             self.document.set_caret(Caret::selecting(name.start as usize, name.end as usize));
-            self.editor.reveal = Some(Reveal { span: name, center: true });
+            self.scroll_to(name, true);
         }
         self.selection = declared.selection;
         if !again {

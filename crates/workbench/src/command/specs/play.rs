@@ -1,11 +1,11 @@
-//! Time.
+//! Playing and stepping.
 
 use super::available::with_steps;
 use super::{PLAIN, keys, plain, when};
 use crate::command::Command;
 use crate::command::chord::Key;
 use crate::command::registry::{CommandSpec, Group, Scope};
-use crate::state::search::SearchCommand;
+use crate::transport::TransportCommand;
 
 /// In the order of the menus.
 pub(super) const COMMANDS: &[CommandSpec] = &[
@@ -16,7 +16,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
             Group::Play,
             &[keys(PLAIN, Key::Space)],
             Scope::NotTyping,
-            |_| Command::TogglePlaying,
+            |_| transport(TransportCommand::TogglePlaying),
         ),
         with_steps,
     ),
@@ -27,7 +27,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
             Group::Play,
             &[keys(PLAIN, Key::Period)],
             Scope::NotTyping,
-            |_| Command::StepTime(true),
+            |_| transport(TransportCommand::Step(true)),
         ),
         with_steps,
     ),
@@ -38,49 +38,30 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
             Group::Play,
             &[keys(PLAIN, Key::Comma)],
             Scope::NotTyping,
-            |_| Command::StepTime(false),
+            |_| transport(TransportCommand::Step(false)),
         ),
         with_steps,
     ),
     when(
-        plain(
-            "play.start",
-            "To the start",
-            Group::Play,
-            &[keys(PLAIN, Key::Home)],
-            Scope::NotTyping,
-            |state| {
-                if state.steps_search() { search(SearchCommand::GoTo(0)) } else { Command::Seek(0.0) }
-            },
-        ),
-        with_steps,
-    ),
-    when(
-        plain("play.end", "To the end", Group::Play, &[keys(PLAIN, Key::End)], Scope::NotTyping, |state| {
-            if state.steps_search() {
-                search(SearchCommand::GoTo(usize::MAX))
-            } else {
-                Command::Seek(state.playback.end)
-            }
+        plain("play.start", "To the start", Group::Play, &[keys(PLAIN, Key::Home)], Scope::NotTyping, |_| {
+            transport(TransportCommand::Start)
         }),
         with_steps,
     ),
-    plain("play.faster", "Faster", Group::Play, &[], Scope::Everywhere, |state| {
-        if state.steps_search() {
-            search(SearchCommand::SetSpeed(state.search.steps_per_sec * 2.0))
-        } else {
-            Command::SetRate(state.playback.rate * 2.0)
-        }
+    when(
+        plain("play.end", "To the end", Group::Play, &[keys(PLAIN, Key::End)], Scope::NotTyping, |_| {
+            transport(TransportCommand::End)
+        }),
+        with_steps,
+    ),
+    plain("play.faster", "Faster", Group::Play, &[], Scope::Everywhere, |_| {
+        transport(TransportCommand::Speed(2.0))
     }),
-    plain("play.slower", "Slower", Group::Play, &[], Scope::Everywhere, |state| {
-        if state.steps_search() {
-            search(SearchCommand::SetSpeed(state.search.steps_per_sec / 2.0))
-        } else {
-            Command::SetRate(state.playback.rate / 2.0)
-        }
+    plain("play.slower", "Slower", Group::Play, &[], Scope::Everywhere, |_| {
+        transport(TransportCommand::Speed(0.5))
     }),
 ];
 
-fn search(command: SearchCommand) -> Command {
-    Command::Search(command)
+const fn transport(command: TransportCommand) -> Command {
+    Command::Transport(command)
 }

@@ -145,7 +145,7 @@ impl AppState {
     }
 
     /// What the planning core is to execute, if it was not asked already.
-    pub fn run_to_ask_for(&mut self) -> Option<Request> {
+    pub(crate) fn run_to_ask_for(&mut self) -> Option<Request> {
         let update = self.update_shown().filter(|_| self.workspace == Workspace::Execute)?;
         let wanted = (update.revision, self.execution.script.clone());
         if self.execution.asked.as_ref() == Some(&wanted) {
@@ -209,7 +209,7 @@ impl AppState {
     }
 
     /// Works out what the time shown shows of the run, if that has changed.
-    pub fn follow_run(&mut self) {
+    pub(crate) fn follow_run(&mut self) {
         if !self.is_executing() {
             return;
         }
@@ -329,7 +329,7 @@ impl AppState {
             self.settings.plan.seed = seed;
         }
         self.workspace = Workspace::Execute;
-        self.wanted_panel = Some(crate::PanelKind::Execution);
+        self.show_panel(crate::PanelKind::Execution);
         self.execution.script = script;
         // Even a run that is shown already is compared with the log.
         self.execution.asked = None;

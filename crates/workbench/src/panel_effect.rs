@@ -1,0 +1,109 @@
+//! The one channel from commands to what is on screen: what panels and their layout are to do, once, in order.
+
+use crate::PanelKind;
+use crate::command::{PictureFormat, ViewAction};
+use crate::state::editor::Reveal;
+
+/// Something that a panel, or the layout of the panels, is to do once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PanelEffect {
+    /// The layout brings a panel back, or to the front of its tabs.
+    Show(PanelKind),
+    /// The layout closes a panel.
+    Close(PanelKind),
+    /// The layout of the present workspace goes back to its default.
+    ResetLayout,
+    /// A panel moves its view.
+    View(PanelKind, ViewAction),
+    /// The network's drawing is saved.
+    SaveDrawing(PictureFormat),
+    /// The editor scrolls to a place.
+    Reveal(Reveal),
+    /// The editor takes the keyboard, when no dialog is open.
+    FocusEditor,
+    /// Whatever has the keyboard gives it up, so that plain keys go to the active panel.
+    LeaveFocus,
+}
+
+/// What is still to be done, oldest first. What is meant for a panel waits until that panel is on screen and takes it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PanelEffects {
+    waiting: Vec<PanelEffect>,
+}
+
+impl PanelEffects {
+    /// Adds an effect. It replaces the earlier ones that it makes pointless: only the last place is revealed, only the
+    /// last view of a panel counts, and the keyboard goes where it was last sent.
+    pub fn push(&mut self, effect: PanelEffect) {
+        self.waiting.retain(|earlier| !replaces(effect, *earlier));
+        self.waiting.push(effect);
+    }
+
+    /// Takes out everything that `wanted` makes something of, in order.
+    pub fn take<T>(&mut self, mut wanted: impl FnMut(PanelEffect) -> Option<T>) -> Vec<T> {
+        let mut taken = Vec::new();
+        self.waiting.retain(|&effect| {
+            let made = wanted(effect);
+            let waits = made.is_none();
+            taken.extend(made);
+            waits
+        });
+        taken
+    }
+
+    /// What waits, oldest first.
+    pub fn waiting(&self) -> &[PanelEffect] {
+        &self.waiting
+    }
+}
+
+/// Whether `newer` makes `earlier` pointless.
+fn replaces(newer: PanelEffect, earlier: PanelEffect) -> bool {
+    use PanelEffect::{FocusEditor, LeaveFocus, ResetLayout, Reveal, View};
+    match (newer, earlier) {
+        (Reveal(_), Reveal(_))
+        | (ResetLayout, ResetLayout)
+        | (FocusEditor | LeaveFocus, FocusEditor | LeaveFocus) => true,
+        (View(newer, _), View(earlier, _)) => newer == earlier,
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn effects_are_taken_once_and_in_order_and_the_others_wait() {
+        let mut effects = PanelEffects::default();
+        effects.push(PanelEffect::Show(PanelKind::Editor));
+        effects.push(PanelEffect::SaveDrawing(PictureFormat::Svg));
+        effects.push(PanelEffect::Show(PanelKind::Automaton));
+        effects.push(PanelEffect::SaveDrawing(PictureFormat::Svg));
+        let shown = |effect| match effect {
+            PanelEffect::Show(panel) => Some(panel),
+            _ => None,
+        };
+        assert_eq!(effects.take(shown), [PanelKind::Editor, PanelKind::Automaton]);
+        assert_eq!(effects.take(shown), []);
+        assert_eq!(effects.waiting(), [PanelEffect::SaveDrawing(PictureFormat::Svg); 2]);
+    }
+
+    #[test]
+    fn only_the_last_view_of_a_panel_counts_and_the_keyboard_goes_where_it_was_last_sent() {
+        let mut effects = PanelEffects::default();
+        effects.push(PanelEffect::View(PanelKind::Network, ViewAction::Fit));
+        effects.push(PanelEffect::View(PanelKind::Terrain, ViewAction::Fit));
+        effects.push(PanelEffect::FocusEditor);
+        effects.push(PanelEffect::View(PanelKind::Network, ViewAction::ZoomIn));
+        effects.push(PanelEffect::LeaveFocus);
+        assert_eq!(
+            effects.waiting(),
+            [
+                PanelEffect::View(PanelKind::Terrain, ViewAction::Fit),
+                PanelEffect::View(PanelKind::Network, ViewAction::ZoomIn),
+                PanelEffect::LeaveFocus,
+            ]
+        );
+    }
+}

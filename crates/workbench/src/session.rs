@@ -1,0 +1,259 @@
+//! The workbench at work: the state, the host that it runs on, and what goes to and fro between them.
+//!
+//! A window around it calls [`Session::begin_frame`], sends commands by [`Session::apply`], shows the state, and ends
+//! by [`Session::end_frame`]; without a window, the same calls run the whole app.
+
+use mission::{Request, Update};
+use serde_json::Value;
+
+use crate::command::{self, Command};
+use crate::host::{Host, HostEvent, Remote, RemoteError};
+use crate::mission_file::{self, EXAMPLES};
+use crate::outside::{self, DraftKeeper};
+use crate::state::{AnswerFrame, AppState, Effect, PlanSettings, Settings, Status, ToastKind};
+
+/// The state with its host.
+pub struct Session {
+    state: AppState,
+    host: Box<dyn Host>,
+    posted: Option<Posted>,
+    stored: Settings,
+    drafts: DraftKeeper,
+    window_effects: Vec<WindowEffect>,
+    last_secs: f64,
+    version: u64,
+}
+
+/// Something that only the window around a session can do.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum WindowEffect {
+    /// Put text on the clipboard.
+    Copy(String),
+    /// The appearance changed.
+    Restyle,
+}
+
+/// What the planning core was last asked for.
+#[derive(Clone, Debug, PartialEq)]
+struct Posted {
+    revision: u64,
+    settings: PlanSettings,
+}
+
+/// Longest time that goes by at once, in seconds: a page that was hidden goes on where it was.
+const LONGEST_STEP_SECS: f64 = 0.25;
+
+impl Session {
+    /// A session on a host, drawn by `renderer` (`webgpu`, `webgl2`, …; empty if unknown): with the settings and the
+    /// draft that the host keeps, and with what its address names.
+    pub fn new(host: Box<dyn Host>, renderer: &str) -> Self {
+        let mut state = AppState::new();
+        if let Some(settings) = outside::remembered_settings(host.as_ref()) {
+            state.settings = settings;
+        }
+        renderer.clone_into(&mut state.frame.renderer);
+        let drafts = DraftKeeper::start(&mut state, host.as_ref());
+        outside::open_fragment(&mut state, &host.fragment());
+        let stored = state.settings.clone();
+        Self {
+            last_secs: host.monotonic_secs(),
+            state,
+            host,
+            posted: None,
+            stored,
+            drafts,
+            window_effects: Vec::new(),
+            version: 1,
+        }
+    }
+
+    /// The state, to look at.
+    pub fn state(&self) -> &AppState {
+        &self.state
+    }
+
+    /// The state, for what a front end notes of itself: what is on screen and how its frames went.
+    pub fn state_mut(&mut self) -> &mut AppState {
+        &mut self.state
+    }
+
+    /// The host.
+    pub fn host(&self) -> &dyn Host {
+        self.host.as_ref()
+    }
+
+    /// The host.
+    pub fn host_mut(&mut self) -> &mut dyn Host {
+        self.host.as_mut()
+    }
+
+    /// Takes in what happened outside and lets time go by. Returns the seconds after which the next frame is due, if
+    /// one is.
+    pub fn begin_frame(&mut self) -> Option<f64> {
+        let now_secs = self.host.monotonic_secs();
+        let elapsed_secs = (now_secs - self.last_secs).clamp(0.0, LONGEST_STEP_SECS);
+        self.last_secs = now_secs;
+        self.state.frame.now_secs = now_secs;
+        self.state.frame.unix_millis = self.host.unix_millis();
+        while let Some(event) = self.host.poll() {
+            if let HostEvent::FragmentChanged(fragment) = &event {
+                outside::open_fragment(&mut self.state, fragment);
+            }
+            self.state.receive(event);
+            self.version += 1;
+        }
+        let shown = self.state.shown().cloned();
+        let is_replaced = self.state.snapshots.lose_patience(now_secs);
+        if is_replaced {
+            self.state.follow_shown(shown.as_ref());
+        }
+        let advanced = self.state.advance(elapsed_secs);
+        self.version += u64::from(advanced.is_changed);
+        let toast_secs = self.state.toasts.advance(now_secs);
+        self.do_effects();
+        [is_replaced.then_some(0.1), advanced.next_secs, toast_secs].into_iter().flatten().reduce(f64::min)
+    }
+
+    /// Does what commands ask for, in order.
+    pub fn apply(&mut self, commands: Vec<Command>) {
+        if commands.is_empty() {
+            return;
+        }
+        for command in commands {
+            self.state.apply(command);
+        }
+        self.version += 1;
+        self.do_effects();
+    }
+
+    /// Takes what the window is to do.
+    pub fn take_window_effects(&mut self) -> Vec<WindowEffect> {
+        std::mem::take(&mut self.window_effects)
+    }
+
+    /// The state was shown, and laying out a drawing took so long, if one was laid out. Returns the seconds after
+    /// which the next frame is due, if one is.
+    pub fn end_frame(&mut self, layout_millis: Option<f64>) -> Option<f64> {
+        if let Some(millis) = layout_millis {
+            self.state.frame.layout_millis = millis;
+            self.version += 1;
+        }
+        let begun_secs = self.state.frame.now_secs;
+        let next_secs = self.drafts.follow(&mut self.state, self.host.as_mut(), begun_secs);
+        let done_secs = self.host.monotonic_secs();
+        self.state.frame.cpu_millis = (done_secs - begun_secs) * 1000.0;
+        self.note_answer(done_secs);
+        next_secs
+    }
+
+    /// Keeps the settings if they have changed.
+    pub fn remember(&mut self) {
+        if self.stored != self.state.settings {
+            self.stored = self.state.settings.clone();
+            outside::remember_settings(self.host.as_mut(), &self.stored);
+        }
+    }
+
+    /// Notes the first frame that shows the answer to the present text.
+    fn note_answer(&mut self, done_secs: f64) {
+        let revision = self.state.document.revision();
+        let is_shown = self.state.shown().is_some_and(|shown| shown.revision == revision);
+        let is_noted = self.state.frame.answer.is_some_and(|answer| answer.revision == revision);
+        if is_shown && !is_noted && self.state.status() != Status::Working {
+            let cpu_millis = self.state.frame.cpu_millis;
+            self.state.frame.answer = Some(AnswerFrame { revision, done_secs, cpu_millis });
+            self.version += 1;
+        }
+    }
+
+    fn do_effects(&mut self) {
+        for effect in self.state.take_effects() {
+            match effect {
+                Effect::Copy(text) => self.window_effects.push(WindowEffect::Copy(text)),
+                Effect::OpenFile(kind) => self.host.open_file(kind),
+                Effect::SaveFile { name, bytes } => self.host.save_file(&name, bytes),
+                Effect::SavePicture { name, svg, size } => self.host.save_picture(&name, svg, size),
+                Effect::CopyLink => self.copy_link(),
+                Effect::Post(request) => self.host.post(request),
+                Effect::KeepReview { joins } => {
+                    outside::keep_review(self.host.as_mut(), &mut self.state, joins);
+                }
+                Effect::RecallReview => outside::recall_review(self.host.as_ref(), &mut self.state),
+                Effect::Restyle => self.window_effects.push(WindowEffect::Restyle),
+            }
+        }
+        self.post_text();
+        self.post_run();
+    }
+
+    /// Asks for the present text to be worked out, unless that was asked for already.
+    fn post_text(&mut self) {
+        let wanted =
+            Posted { revision: self.state.document.revision(), settings: self.state.settings.plan.clone() };
+        if self.posted.as_ref() == Some(&wanted) {
+            return;
+        }
+        // The same text planned in another way is a new revision: answers must be told apart.
+        if self.posted.as_ref().is_some_and(|posted| posted.revision == wanted.revision) {
+            self.state.document.touch();
+        }
+        let revision = self.state.document.revision();
+        let PlanSettings { goal, search, seed, trace } = wanted.settings.clone();
+        let source = self.state.document.shared_text();
+        self.host.post(Request::Update(Update { revision, source, goal, search, seed, trace }));
+        self.posted = Some(Posted { revision, ..wanted });
+    }
+
+    /// Asks for the run that is watched to be worked out, unless that was asked for already.
+    fn post_run(&mut self) {
+        if let Some(request) = self.state.run_to_ask_for() {
+            self.host.post(request);
+        }
+    }
+
+    fn copy_link(&mut self) {
+        let fragment = outside::fragment(&self.state);
+        match self.host.link(&fragment) {
+            Some(link) => {
+                self.window_effects.push(WindowEffect::Copy(link));
+                self.state.toasts.add(ToastKind::Done, "The link is on the clipboard");
+            }
+            None => self.state.toasts.add(ToastKind::Failed, "Links work in the web page only"),
+        }
+    }
+}
+
+impl Remote for Session {
+    fn open(&mut self, name: &str) -> Result<(), RemoteError> {
+        if mission_file::example(name).is_none() {
+            return Err(RemoteError::UnknownMission {
+                name: name.to_owned(),
+                known: EXAMPLES.iter().map(|example| example.name.to_owned()).collect(),
+            });
+        }
+        self.apply(vec![Command::OpenExample(name.into())]);
+        Ok(())
+    }
+
+    fn set_source(&mut self, text: &str) {
+        self.apply(vec![Command::SetSource(text.to_owned())]);
+    }
+
+    fn source(&self) -> String {
+        self.state.document.text().to_owned()
+    }
+
+    fn dispatch(&mut self, command: &str, arguments: &Value) -> Result<(), RemoteError> {
+        let command = command::from_json(&self.state, command, arguments)?;
+        self.apply(vec![command]);
+        Ok(())
+    }
+
+    fn state(&self) -> Value {
+        outside::state_json(&self.state)
+    }
+
+    fn state_version(&self) -> u64 {
+        self.version
+    }
+}

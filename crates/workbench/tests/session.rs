@@ -1,0 +1,96 @@
+//! The workbench as a host page drives it, without a window.
+
+mod support;
+
+use serde_json::{Value, json};
+use workbench::command::all_commands;
+use workbench::host::{Remote as _, RemoteError};
+
+#[test]
+fn a_host_page_can_drive_the_app_and_is_told_what_is_wrong_with_a_call() {
+    let mut app = support::start();
+    let enroute = &mut app.session;
+    enroute.set_source("scenario S[0,10] = { delay[5,5] }");
+    enroute.dispatch("view.workspace", &json!({ "name": "teach" })).expect("a workspace");
+    assert_eq!(enroute.source(), "scenario S[0,10] = { delay[5,5] }");
+    assert!(matches!(enroute.open("nowhere"), Err(RemoteError::UnknownMission { .. })));
+    assert!(matches!(enroute.dispatch("no.such", &json!(null)), Err(RemoteError::UnknownCommand { .. })));
+    assert!(matches!(
+        enroute.dispatch("view.workspace", &json!({ "name": "kitchen" })),
+        Err(RemoteError::BadArguments { .. })
+    ));
+    app.settle();
+    let state = app.json();
+    assert_eq!(state["workspace"], "teach");
+    assert_eq!(state["status"], "plan");
+    assert_eq!(state["plan"]["windows"]["delay#1.end"], json!([5, 5]));
+    assert_eq!(state["revision"], state["shownRevision"]);
+}
+
+#[test]
+fn an_error_in_the_text_keeps_the_last_good_network_and_says_so() {
+    let mut app = support::start();
+    let nodes = app.json()["tpn"]["nodes"].clone();
+    let source = app.session.source();
+    app.session.set_source(&source.replace("choose {", "choose"));
+    app.settle();
+    let state = app.json();
+    assert_eq!(state["status"], "broken");
+    assert_eq!(state["isStale"], true);
+    assert_eq!(state["tpn"]["nodes"], nodes);
+    assert!(!state["diagnostics"].as_array().expect("a list").is_empty());
+}
+
+#[test]
+fn time_plays_to_the_end_of_the_plan_and_stops() {
+    let mut app = support::start();
+    app.session.dispatch("play.toggle", &json!(null)).expect("there is a plan");
+    assert_eq!(app.json()["isPlaying"], true);
+    for _ in 0..200 {
+        app.world.now_secs.set(app.world.now_secs.get() + 0.2);
+        app.step();
+    }
+    let state = app.json();
+    assert_eq!(state["isPlaying"], false);
+    assert_eq!(state["time"], state["endTime"]);
+    assert_eq!(state["endTime"], 660.0);
+}
+
+#[test]
+fn the_address_opens_a_mission_in_a_workspace() {
+    let world = std::rc::Rc::<support::World>::default();
+    "mission=threats&workspace=review".clone_into(&mut world.fragment.borrow_mut());
+    let mut app = support::start_in(world);
+    app.settle();
+    assert_eq!(app.json()["mission"], "threats");
+    assert_eq!(app.json()["workspace"], "review");
+}
+
+#[test]
+fn pins_stay_when_the_text_changes_elsewhere_and_go_when_their_time_is_over() {
+    let mut app = support::start();
+    let pin = json!({ "event": "Group-Enroute#1.start", "time": 40 });
+    app.session.dispatch("plan.pin", &pin).expect("an event");
+    app.settle();
+    let source = app.session.source();
+    app.session.set_source(&source.replace("[0,2]", "[0,3]"));
+    app.settle();
+    assert_eq!(app.json()["pinned"]["events"], json!({ "Group-Enroute#1.start": 40.0 }));
+    // The drive of at least 405 must now end by 420.
+    app.session.set_source(&source.replace("PATH1=OK [450,450]", "PATH1=OK [410,410]"));
+    app.settle();
+    assert_eq!(app.json()["status"], "plan");
+    assert_eq!(app.json()["pinned"], Value::Null);
+}
+
+#[test]
+fn command_names_are_unique_and_no_two_commands_share_a_key_where_both_work() {
+    for (index, left) in all_commands().enumerate() {
+        for right in all_commands().skip(index + 1) {
+            assert_ne!(left.id, right.id);
+            for key in left.keys {
+                assert!(!right.keys.contains(key), "{} and {} share {key:?}", left.id, right.id);
+            }
+        }
+    }
+}
