@@ -32,6 +32,20 @@ const TRIES: u32 = 2;
 /// A short path between two waypoints: the shortest of a few found by RRT-Connect and shortened. The result depends on
 /// nothing but the arguments, so a caller can keep it under them. Another seed may find a shorter path, or one where
 /// this seed failed.
+///
+/// ```
+/// use terrain::{CellState, ConfigurationSpace, GridFrame, Obstacle, Occupancy};
+///
+/// // 40 × 40 metres with a round obstacle in the middle, for a vehicle of half a metre.
+/// let mut ground = Occupancy::free(GridFrame::new(40, 40, 1.0));
+/// ground.mark(&Obstacle::Circle { center_m: [20.0, 20.0].into(), radius_m: 8.0 }, CellState::Obstacle);
+/// let space = ConfigurationSpace::new(ground, 0.5);
+/// let query = motion::Query { start_m: [2.0, 20.0].into(), goal_m: [38.0, 20.0].into() };
+/// let leg = motion::plan_leg(&space, query, 1, &mut |_| false).expect("there is room around it");
+/// assert!(leg.path.length_m() > 36.0);
+/// // The same seed finds the same path.
+/// assert_eq!(motion::plan_leg(&space, query, 1, &mut |_| false), Ok(leg));
+/// ```
 pub fn plan_leg(
     space: &ConfigurationSpace,
     query: Query,

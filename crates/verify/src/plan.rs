@@ -24,10 +24,7 @@ use crate::{Rule, Verdict, Violation, node_name};
 ///     serde_json::json!({
 ///         "choices": {}, "activities": ["Drive#1"],
 ///         "causal_links": [], "conflict_order": [], "orderings_added": [],
-///         "windows": {
-///             "scenario#1.start": [0, 0], "Drive#1.start": [0, 0],
-///             "Drive#1.end": [20, latest], "scenario#1.end": [20, 60],
-///         },
+///         "windows": { "Drive#1.start": [0, 0], "Drive#1.end": [20, latest] },
 ///     })
 /// };
 /// let plan = tpn::plan_json::plan_from_json(&network, &stated(30))?;
