@@ -1,6 +1,6 @@
 //! Elevation maps, their file formats, obstacles, slope and configuration space.
 //!
-//! * [`Terrain`] is a map of heights; [`asset`] makes the ones that example missions name, and [`format`] reads files.
+//! * [`Terrain`] is a map of heights; [`asset`] makes the ones that example missions name, and [`mod@format`] reads files.
 //! * [`Occupancy`] says which cells of a map a kind of vehicle can't stand on, and why.
 //! * [`ConfigurationSpace`] answers exactly whether a vehicle of some radius can be at a point or drive along a
 //!   segment, and proves when a place can't be reached.

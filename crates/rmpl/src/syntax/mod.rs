@@ -1,6 +1,6 @@
 //! The concrete syntax of the infix notation (SPEC 1.1, 1.2): kinds, the lexer, and the lossless tree.
 //!
-//! Nothing here knows what a text means; see [`crate::parser`] for the grammar and [`crate::lower`] for meaning.
+//! Nothing here knows what a text means; see `crate::parser` for the grammar and `crate::lower` for meaning.
 
 mod kind;
 mod lexer;
