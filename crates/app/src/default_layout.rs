@@ -4,9 +4,9 @@ use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use workbench::PanelKind;
 use workbench::workspace::{Arrangement, Workspace};
 
-/// How much room there is for panels.
+/// The size class of a window: how many panels it has room for at a time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Room {
+pub enum SizeClass {
     /// Enough for five or six at a time.
     #[default]
     Wide,
@@ -14,7 +14,7 @@ pub enum Room {
     Narrow,
 }
 
-impl Room {
+impl SizeClass {
     /// That of a window of this size in points.
     pub fn of(size: egui::Vec2) -> Self {
         if size.x < 1_160.0 || size.y < 640.0 { Self::Narrow } else { Self::Wide }
@@ -22,16 +22,16 @@ impl Room {
 }
 
 /// Where its panels stand before the user moves them.
-pub fn default_layout(arrangement: Arrangement, room: Room) -> Tree<PanelKind> {
+pub fn default_layout(arrangement: Arrangement, size: SizeClass) -> Tree<PanelKind> {
     let mut tiles = Tiles::default();
-    let root = match (arrangement, room) {
-        (Arrangement::Of(workspace), Room::Wide) => wide_layout(workspace, &mut tiles),
-        (Arrangement::Of(workspace), Room::Narrow) => narrow_layout(workspace, &mut tiles),
-        (Arrangement::Program, Room::Narrow) => {
+    let root = match (arrangement, size) {
+        (Arrangement::Of(workspace), SizeClass::Wide) => wide_layout(workspace, &mut tiles),
+        (Arrangement::Of(workspace), SizeClass::Narrow) => narrow_layout(workspace, &mut tiles),
+        (Arrangement::Program, SizeClass::Narrow) => {
             use PanelKind::{Automaton, Editor, Outline, Problems};
             tabs(&mut tiles, &[Automaton, Editor, Outline, Problems])
         }
-        (Arrangement::Program, Room::Wide) => {
+        (Arrangement::Program, SizeClass::Wide) => {
             let text = tabs(&mut tiles, &[PanelKind::Editor, PanelKind::Outline, PanelKind::Problems]);
             let automaton = tabs(&mut tiles, &[PanelKind::Automaton]);
             split(&mut tiles, LinearDir::Horizontal, &[(text, 0.29), (automaton, 0.71)])

@@ -8,13 +8,13 @@ use workbench::state::AppState;
 use workbench::workspace::Arrangement;
 use workbench::{PanelEffect, PanelKind};
 
-use crate::default_layout::{self, Room, default_layout};
+use crate::default_layout::{self, SizeClass, default_layout};
 
 /// One layout per workspace, and one for control programs.
 pub struct Layouts {
     trees: BTreeMap<Arrangement, Tree<PanelKind>>,
     stored: BTreeMap<Arrangement, String>,
-    room: Room,
+    size: SizeClass,
 }
 
 fn key(arrangement: Arrangement) -> String {
@@ -29,31 +29,31 @@ impl Layouts {
         for arrangement in Arrangement::ALL {
             let text = host.stored(&key(arrangement));
             let tree = text.as_deref().and_then(default_layout::from_text);
-            let tree = tree.unwrap_or_else(|| default_layout(arrangement, Room::default()));
+            let tree = tree.unwrap_or_else(|| default_layout(arrangement, SizeClass::default()));
             stored.insert(arrangement, default_layout::to_text(&tree).unwrap_or_default());
             trees.insert(arrangement, tree);
         }
-        Self { trees, stored, room: Room::default() }
+        Self { trees, stored, size: SizeClass::default() }
     }
 
-    /// Adapts to the room there is: layouts that the user has not changed become those that fit it.
-    pub fn fit(&mut self, room: Room) {
-        if self.room == room {
+    /// Adapts to the window's size class: layouts that the user has not changed become those that fit it.
+    pub fn fit(&mut self, size: SizeClass) {
+        if self.size == size {
             return;
         }
         for (&arrangement, tree) in &mut self.trees {
-            if *tree == default_layout(arrangement, self.room) {
-                *tree = default_layout(arrangement, room);
+            if *tree == default_layout(arrangement, self.size) {
+                *tree = default_layout(arrangement, size);
                 self.stored.insert(arrangement, default_layout::to_text(tree).unwrap_or_default());
             }
         }
-        self.room = room;
+        self.size = size;
     }
 
     /// The layout of a workspace.
     pub fn tree_mut(&mut self, arrangement: Arrangement) -> &mut Tree<PanelKind> {
-        let room = self.room;
-        self.trees.entry(arrangement).or_insert_with(|| default_layout(arrangement, room))
+        let size = self.size;
+        self.trees.entry(arrangement).or_insert_with(|| default_layout(arrangement, size))
     }
 
     /// Does what the state wants done to the present layout.
@@ -68,7 +68,7 @@ impl Layouts {
                 PanelEffect::Show(panel) => default_layout::show_panel(self.tree_mut(arrangement), panel),
                 PanelEffect::Close(panel) => default_layout::close_panel(self.tree_mut(arrangement), panel),
                 _ => {
-                    self.trees.insert(arrangement, default_layout(arrangement, self.room));
+                    self.trees.insert(arrangement, default_layout(arrangement, self.size));
                 }
             }
         }

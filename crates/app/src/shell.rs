@@ -13,7 +13,7 @@ use workbench::state::AppState;
 use workbench::{PanelEffect, PanelKind, Session, WindowEffect};
 
 use crate::bar;
-use crate::default_layout::Room;
+use crate::default_layout::SizeClass;
 use crate::dialog;
 use crate::layouts::Layouts;
 use crate::pressed::take_pressed;
@@ -123,14 +123,14 @@ impl Enroute {
         };
         bar::top::show(ui, &context, commands);
         bar::bottom::show(ui, &context, commands);
-        self.layouts.fit(Room::of(ui.ctx().content_rect().size()));
+        self.layouts.fit(SizeClass::of(ui.ctx().content_rect().size()));
         let tree = self.layouts.tree_mut(state.arrangement());
         let mut shown = Vec::new();
         CentralPanel::default().frame(Frame::new().fill(context.tokens.background)).show(ui, |ui| {
             let mut tiles =
                 PanelTiles { panels: &mut self.panels, context: &context, commands, shown: Vec::new() };
             tree.ui(&mut tiles, ui);
-            panels::walk::follow(ui, tiles.context, tiles.commands);
+            panels::keyboard_navigation::follow(ui, tiles.context, tiles.commands);
             shown = tiles.shown;
         });
         dialog::show(ui.ctx(), &context, commands);

@@ -6,6 +6,7 @@ mod distances;
 mod editor;
 mod empty;
 mod execution;
+pub mod keyboard_navigation;
 mod network;
 mod outline;
 mod panel;
@@ -17,7 +18,6 @@ mod robustness;
 mod search;
 mod terrain;
 mod timeline;
-pub mod walk;
 
 use workbench::state::settings::ThemeChoice;
 

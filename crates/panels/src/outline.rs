@@ -8,7 +8,7 @@ use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, EditorCommand};
 use workbench::state::TextCommand;
 
-use crate::{Context, Panel, show_empty, walk};
+use crate::{Context, Panel, keyboard_navigation, show_empty};
 
 /// The outline.
 #[derive(Default)]
@@ -34,7 +34,7 @@ impl Panel for OutlinePanel {
             return;
         }
         let caret = context.state.document.caret().head as u32;
-        if let Some(steps) = walk::arrows(ui, context, PanelKind::Outline) {
+        if let Some(steps) = keyboard_navigation::arrows(ui, context, PanelKind::Outline) {
             let here = items.iter().position(|item| item.whole.touches(caret));
             let next = here.map_or(0, |here| here.saturating_add_signed(steps).min(items.len() - 1));
             let span = items[next].span;

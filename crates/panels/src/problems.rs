@@ -10,7 +10,7 @@ use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, EditorCommand};
 use workbench::state::{EditKind, TextCommand};
 
-use crate::{Context, Panel, show_empty, walk};
+use crate::{Context, Panel, keyboard_navigation, show_empty};
 
 /// The list of problems.
 #[derive(Default)]
@@ -31,7 +31,7 @@ impl Panel for ProblemsPanel {
         // Answers belong to the text they were given for; fixes of an older one would land in the wrong place.
         let is_current = latest.is_some_and(|it| it.revision == context.state.document.revision());
         let selected = selected_span(context);
-        if let Some(steps) = walk::arrows(ui, context, PanelKind::Problems) {
+        if let Some(steps) = keyboard_navigation::arrows(ui, context, PanelKind::Problems) {
             let last = problems.len() - 1;
             let next = self.open.map_or(0, |open| open.saturating_add_signed(steps).min(last));
             self.open = Some(next);

@@ -9,7 +9,7 @@ use theme::{size, space, strong};
 use workbench::command::{Command, CommandSender};
 use workbench::state::automaton::AutomatonCommand;
 use workbench::state::chance::ChanceCommand;
-use workbench::state::program_chance::{MOST_RUNS, MOST_STEPS_OF_RUN, ProgramChanceCommand};
+use workbench::state::program_chance::{MAX_RUNS, MAX_STEPS_OF_RUN, ProgramChanceCommand};
 
 use super::components::percent;
 use super::title;
@@ -48,11 +48,11 @@ fn ask(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let muted = |text: &str| RichText::new(text).color(context.tokens.text_muted);
     ui.horizontal_wrapped(|ui| {
         let label = ui.label(muted("Runs")).id;
-        ui.add(DragValue::new(&mut settings.runs).range(1..=MOST_RUNS).speed(10.0)).labelled_by(label);
+        ui.add(DragValue::new(&mut settings.runs).range(1..=MAX_RUNS).speed(10.0)).labelled_by(label);
         let label = ui.label(muted("Seed")).id;
         ui.add(DragValue::new(&mut settings.seed).speed(0.1)).labelled_by(label);
         let label = ui.label(muted("Steps at most")).id;
-        let steps = DragValue::new(&mut settings.most_steps).range(1..=MOST_STEPS_OF_RUN);
+        let steps = DragValue::new(&mut settings.most_steps).range(1..=MAX_STEPS_OF_RUN);
         ui.add(steps).labelled_by(label).on_hover_text("A run that takes more has not reached its end");
     });
     let injected = state.injected();

@@ -14,7 +14,7 @@ use workbench::state::selection::node_name;
 use crate::Context;
 
 /// Larger networks are not shown as a matrix: nobody could read it.
-const MOST_EVENTS: usize = 32;
+const MAX_EVENTS: usize = 32;
 
 /// What the matrix is made of.
 #[derive(Clone, Copy)]
@@ -42,8 +42,8 @@ pub fn show(ui: &mut egui::Ui, context: &Context<'_>, parts: &Parts<'_>, command
         })
     };
     let named: Vec<NodeId> = parts.nodes.iter().filter(is_named).copied().collect();
-    if named.is_empty() || named.len() > MOST_EVENTS {
-        let text = format!("{} events are selected; a matrix shows up to {MOST_EVENTS}.", named.len());
+    if named.is_empty() || named.len() > MAX_EVENTS {
+        let text = format!("{} events are selected; a matrix shows up to {MAX_EVENTS}.", named.len());
         crate::show_empty(ui, context, &text);
         return;
     }

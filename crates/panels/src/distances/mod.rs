@@ -41,9 +41,9 @@ struct Drawn {
 }
 
 /// Larger graphs are not drawn: nobody could read them.
-const MOST_VERTICES: usize = 60;
+const MAX_VERTICES: usize = 60;
 /// Nor are graphs of more events made, to find how many vertices they would have.
-const MOST_EVENTS: usize = 2_000;
+const MAX_EVENTS: usize = 2_000;
 const WHEEL_ZOOM: f64 = 0.0022;
 const KEY_ZOOM: f64 = 1.3;
 
@@ -70,7 +70,7 @@ impl Panel for DistancesPanel {
         let Some(drawn) = &self.drawn else { return };
         if drawn.graph.vertices.is_empty() {
             let text = format!(
-                "The graph has too many events to be read: {} are selected, and it shows up to {MOST_VERTICES} points in time.",
+                "The graph has too many events to be read: {} are selected, and it shows up to {MAX_VERTICES} points in time.",
                 selected.0.len()
             );
             show_empty(ui, context, &text);
@@ -149,7 +149,7 @@ impl DistancesPanel {
         }
         let (nodes, arcs) = selected;
         let mut graph = DistanceGraph::default();
-        if nodes.len() <= MOST_EVENTS {
+        if nodes.len() <= MAX_EVENTS {
             graph = DistanceGraph::new(&Selected {
                 network,
                 nodes,
@@ -159,7 +159,7 @@ impl DistancesPanel {
                 cycle,
             });
         }
-        if graph.vertices.len() > MOST_VERTICES {
+        if graph.vertices.len() > MAX_VERTICES {
             graph = DistanceGraph::default();
         }
         let widths: Vec<f64> = graph.vertices.iter().map(paint::width).collect();

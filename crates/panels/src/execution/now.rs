@@ -16,7 +16,7 @@ use crate::Context;
 use crate::plan::{section, selectable_row};
 
 /// So many of the things to come are listed.
-const MOST_LISTED: usize = 5;
+const MAX_LISTED: usize = 5;
 
 /// Says in one line how the run stands, and what last broke the plan.
 pub(super) fn banner(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>) {
@@ -89,11 +89,11 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, command
         return;
     }
     section(ui, context, "Waited for", "when it can begin");
-    for pending in moment.to_come.iter().take(MOST_LISTED) {
+    for pending in moment.to_come.iter().take(MAX_LISTED) {
         let window = time_text::interval(pending.window.earliest, pending.window.latest);
         row(ui, context, shown, pending, &window, commands);
     }
-    let rest = moment.to_come.len().saturating_sub(MOST_LISTED);
+    let rest = moment.to_come.len().saturating_sub(MAX_LISTED);
     if rest > 0 {
         ui.label(RichText::new(format!("and {rest} more")).small().color(context.tokens.text_muted));
     }

@@ -11,7 +11,7 @@ use workbench::state::settings::WindowSort;
 use workbench::time_text;
 
 use crate::plan::section;
-use crate::{Context, walk};
+use crate::{Context, keyboard_navigation};
 
 /// The table, with what was typed into its filter.
 #[derive(Default)]
@@ -40,7 +40,9 @@ impl WindowTable {
         commands: &mut CommandSender,
     ) {
         let mut rows = self.rows(context, network, plan);
-        if let Some(steps) = walk::arrows(ui, context, PanelKind::Plan).filter(|_| !rows.is_empty()) {
+        if let Some(steps) =
+            keyboard_navigation::arrows(ui, context, PanelKind::Plan).filter(|_| !rows.is_empty())
+        {
             sort(&mut rows, context, network);
             let is_here = |row: &&Row| is_selected(context, network, row);
             let here = rows.iter().position(|row| is_here(&row));

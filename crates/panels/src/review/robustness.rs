@@ -10,7 +10,7 @@ use crate::Context;
 /// The command that makes the runs.
 const COMMAND: &str = "execute.sample";
 /// Events that are named.
-const MOST_EVENTS: usize = 5;
+const MAX_EVENTS: usize = 5;
 
 /// What the heading says.
 pub(super) fn note(figures: Option<&Robustness>) -> String {
@@ -68,14 +68,14 @@ pub(super) fn show(
             tally.succeeded_by_replanning
         ),
     );
-    for (event, breaks) in tally.worst_events().into_iter().take(MOST_EVENTS) {
+    for (event, breaks) in tally.worst_events().into_iter().take(MAX_EVENTS) {
         let text = format!(
             "{event} could not be kept {} times; {} of these ended the mission. {}",
             breaks.violations, breaks.stops, breaks.example
         );
         row::quiet(ui, context, &text);
     }
-    for (event, mean, most) in tally.tightest_events().into_iter().take(MOST_EVENTS) {
+    for (event, mean, most) in tally.tightest_events().into_iter().take(MAX_EVENTS) {
         let text =
             format!("{event} used {} of its slack on average, {} at most", percent(mean), percent(most));
         row::quiet(ui, context, &text);

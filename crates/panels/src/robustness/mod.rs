@@ -5,7 +5,7 @@ use mission::Robustness;
 use mission::robustness::{Others, Traverses};
 use theme::{size, space, strong};
 use workbench::command::{Command, CommandSender};
-use workbench::state::chance::{ChanceCommand, MOST_RUNS};
+use workbench::state::chance::{ChanceCommand, MAX_RUNS};
 
 use crate::plan::section;
 use crate::{Context, Panel, show_empty};
@@ -15,7 +15,7 @@ use crate::{Context, Panel, show_empty};
 pub struct RobustnessPanel;
 
 /// So many events are listed.
-const MOST_LISTED: usize = 8;
+const MAX_LISTED: usize = 8;
 
 impl Panel for RobustnessPanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
@@ -45,7 +45,7 @@ fn ask(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let mut settings = chance.settings.clone();
     ui.horizontal_wrapped(|ui| {
         let runs = ui.label(RichText::new("Runs").color(context.tokens.text_muted)).id;
-        ui.add(DragValue::new(&mut settings.runs).range(1..=MOST_RUNS).speed(10.0)).labelled_by(runs);
+        ui.add(DragValue::new(&mut settings.runs).range(1..=MAX_RUNS).speed(10.0)).labelled_by(runs);
         let seed = ui.label(RichText::new("Seed").color(context.tokens.text_muted)).id;
         ui.add(DragValue::new(&mut settings.seed)).labelled_by(seed);
         if chance.is_running() {
@@ -154,7 +154,7 @@ fn show_result(ui: &mut Ui, context: &Context<'_>, robustness: &Robustness) {
         section(ui, context, "What breaks the plan", "");
         Grid::new("breaks").num_columns(3).striped(true).show(ui, |ui| {
             heading(ui, context, ["Event", "plan broken", "run stopped"]);
-            for (name, breaks) in tally.worst_events().into_iter().take(MOST_LISTED) {
+            for (name, breaks) in tally.worst_events().into_iter().take(MAX_LISTED) {
                 ui.add(egui::Label::new(name.as_str()).truncate()).on_hover_text(&breaks.example);
                 ui.label(format!("{} ×", breaks.violations));
                 ui.label(format!("{} ×", breaks.stops));
@@ -165,7 +165,7 @@ fn show_result(ui: &mut Ui, context: &Context<'_>, robustness: &Robustness) {
     section(ui, context, "Slack used", "how far into its window each event came, 100 % is the latest moment");
     Grid::new("slack").num_columns(3).striped(true).show(ui, |ui| {
         heading(ui, context, ["Event", "mean", "most"]);
-        for (name, mean, most) in tally.tightest_events().into_iter().take(MOST_LISTED) {
+        for (name, mean, most) in tally.tightest_events().into_iter().take(MAX_LISTED) {
             ui.add(egui::Label::new(name.as_str()).truncate());
             ui.label(format!("{:.0} %", mean * 100.0));
             ui.label(format!("{:.0} %", most * 100.0));

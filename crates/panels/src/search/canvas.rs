@@ -72,7 +72,7 @@ pub struct Pointed {
 
 /// The designed size of a cell, and the most and least that one is made.
 const CELL: egui::Vec2 = vec2(34.0, 46.0);
-const MOST_CELL: egui::Vec2 = vec2(110.0, 58.0);
+const MAX_CELL: egui::Vec2 = vec2(110.0, 58.0);
 /// A tree in which states would be nearer to each other downwards is not shown as a whole unless that is asked for.
 const LEAST_DOWN: f32 = 5.0;
 const LEAST_CELL: egui::Vec2 = vec2(0.002, 0.002);
@@ -160,7 +160,7 @@ impl View {
                 self.look_at_goal(rect, tree);
                 return;
             }
-            self.cell = vec2(across, down).min(MOST_CELL).max(LEAST_CELL);
+            self.cell = vec2(across, down).min(MAX_CELL).max(LEAST_CELL);
             // A tree of one row stands near the top.
             self.scroll = vec2(-(tree.drawing.width + 0.4) * self.cell.x / 2.0, MARGIN.y);
         }

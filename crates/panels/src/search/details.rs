@@ -16,7 +16,7 @@ use super::tree::TreeIndex;
 use crate::Context;
 
 /// More changed windows than this are counted, not listed.
-const MOST_CHANGES: usize = 60;
+const MAX_CHANGES: usize = 60;
 
 /// Shows the details of `state`, or of the step that is looked at.
 pub fn show(
@@ -112,7 +112,7 @@ fn show_changes(ui: &mut Ui, context: &Context<'_>, recording: &Recording, comma
     }
     ui.add_space(3.0);
     ui.label(RichText::new("Windows that this step changed").small().color(tokens.text_muted));
-    for change in named.iter().take(MOST_CHANGES) {
+    for change in named.iter().take(MAX_CHANGES) {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
             let name = node_name(network, change.node);
@@ -126,8 +126,8 @@ fn show_changes(ui: &mut Ui, context: &Context<'_>, recording: &Recording, comma
             ui.label(RichText::new(after).small().color(tokens.text));
         });
     }
-    if named.len() > MOST_CHANGES {
-        let text = format!("and {} more", named.len() - MOST_CHANGES);
+    if named.len() > MAX_CHANGES {
+        let text = format!("and {} more", named.len() - MAX_CHANGES);
         ui.label(RichText::new(text).small().color(tokens.text_muted));
     }
 }

@@ -30,7 +30,7 @@ pub enum ChanceCommand {
 /// The runs that are made unless the user wants more or fewer.
 const USUAL_RUNS: u64 = 1000;
 /// More runs than this are for the command line, which shares them out.
-pub const MOST_RUNS: u64 = 100_000;
+pub const MAX_RUNS: u64 = 100_000;
 
 impl Default for ChanceState {
     fn default() -> Self {
@@ -62,7 +62,7 @@ impl AppState {
             ChanceCommand::Stop => self.chance.running = None,
             ChanceCommand::Set(settings) => {
                 self.chance.settings = *settings;
-                self.chance.settings.runs = self.chance.settings.runs.clamp(1, MOST_RUNS);
+                self.chance.settings.runs = self.chance.settings.runs.clamp(1, MAX_RUNS);
                 self.chance.running = None;
             }
         }

@@ -92,7 +92,7 @@ impl Folding {
         &self.rows
     }
 
-    /// Folds or unfolds the piece that begins in a line. Answers whether there is one.
+    /// Folds or unfolds the piece that begins in a line. Returns whether there is one.
     pub fn toggle(&mut self, line: usize, document: &Document, parse: &Parse) -> bool {
         let is_region = regions(document, parse).iter().any(|region| region.first_line == line);
         if is_region {

@@ -50,9 +50,9 @@ pub enum ProgramChanceCommand {
 }
 
 /// More runs than this are for the command line.
-pub const MOST_RUNS: u64 = 1_000_000;
+pub const MAX_RUNS: u64 = 1_000_000;
 /// No run is longer: a program that reaches its end does so in fewer steps.
-pub const MOST_STEPS_OF_RUN: u32 = 400;
+pub const MAX_STEPS_OF_RUN: u32 = 400;
 
 impl Default for ProgramChanceSettings {
     fn default() -> Self {
@@ -101,8 +101,8 @@ impl AppState {
             }
             ProgramChanceCommand::Stop => self.automaton.chance.is_running = false,
             ProgramChanceCommand::Set(mut settings) => {
-                settings.runs = settings.runs.clamp(1, MOST_RUNS);
-                settings.most_steps = settings.most_steps.clamp(1, MOST_STEPS_OF_RUN);
+                settings.runs = settings.runs.clamp(1, MAX_RUNS);
+                settings.most_steps = settings.most_steps.clamp(1, MAX_STEPS_OF_RUN);
                 self.automaton.chance.settings = settings;
             }
             ProgramChanceCommand::StepThrough(number) => {

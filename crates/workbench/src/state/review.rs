@@ -80,7 +80,7 @@ struct Current {
 }
 
 /// Reviews that are kept, so that undoing finds them again.
-const MOST_DONE: usize = 6;
+const MAX_DONE: usize = 6;
 
 /// How the sign-off of a mission stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -212,7 +212,7 @@ impl AppState {
         let search = self.settings.plan.search;
         self.review.done.retain(|it| it.review.content_hash != review.content_hash || it.search != search);
         self.review.done.insert(0, Done { search, review });
-        self.review.done.truncate(MOST_DONE);
+        self.review.done.truncate(MAX_DONE);
         if std::mem::take(&mut self.review.wants_report) && self.current_review().is_some() {
             self.write_report();
         }

@@ -14,7 +14,7 @@ use crate::state::{AppState, EditKind, TextCommand, ToastKind};
 const OPENERS: [char; 4] = ['=', '(', '[', ':'];
 
 /// Entries that a list shows at most; the rest is reached by typing on.
-const MOST_ITEMS: usize = 100;
+const MAX_ITEMS: usize = 100;
 
 impl AppState {
     /// Opens, narrows or closes the list at the caret after a key.
@@ -52,7 +52,7 @@ impl AppState {
         let items: Vec<PopupItem> = found
             .items
             .into_iter()
-            .take(MOST_ITEMS)
+            .take(MAX_ITEMS)
             .map(|item| PopupItem {
                 label: item.label,
                 detail: item.detail,

@@ -55,7 +55,7 @@ impl Snapshots {
         self.latest = Some(snapshot);
     }
 
-    /// Shows a compiled network whose plan takes long. Answers whether what is shown has changed.
+    /// Shows a compiled network whose plan takes long. Returns whether what is shown has changed.
     pub fn lose_patience(&mut self, now_secs: f64) -> bool {
         let Some(latest) = &self.latest else { return false };
         let is_waiting = latest.stage == Stage::Compiled

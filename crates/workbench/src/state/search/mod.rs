@@ -342,7 +342,7 @@ impl SearchState {
         Some(target)
     }
 
-    /// Lets `seconds` go by. Answers whether another step is shown.
+    /// Lets `seconds` go by. Returns whether another step is shown.
     pub fn advance(&mut self, seconds: f64, snapshot: Option<&Arc<Snapshot>>) -> bool {
         if !self.is_playing {
             return false;

@@ -1,4 +1,4 @@
-//! The arrow keys in panels: from what is selected to its neighbour in the panel that the user is in.
+//! Keyboard navigation by the arrow keys: from what is selected to its neighbour in the panel that the user is in.
 //!
 //! Lists go through their rows, the network along its arcs, the timeline through its activities, and the terrain through
 //! what stands on it. The search tree has keys of its own.
@@ -11,9 +11,9 @@ use workbench::state::Selection;
 
 use crate::Context;
 
-/// A way on a drawing.
+/// A direction on a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Way {
+enum Direction {
     Left,
     Right,
     Up,
@@ -26,30 +26,33 @@ pub fn arrows(ui: &Ui, context: &Context<'_>, panel: PanelKind) -> Option<isize>
         return None;
     }
     match pressed(ui)? {
-        Way::Down | Way::Right => Some(1),
-        Way::Up | Way::Left => Some(-1),
+        Direction::Down | Direction::Right => Some(1),
+        Direction::Up | Direction::Left => Some(-1),
     }
 }
 
 /// Follows the arrow keys in the network, the timeline and the terrain.
 pub fn follow(ui: &Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let panel = context.state.active_panel;
-    let walks = matches!(panel, PanelKind::Network | PanelKind::Timeline | PanelKind::Terrain);
+    let navigates = matches!(panel, PanelKind::Network | PanelKind::Timeline | PanelKind::Terrain);
     let is_shown = context.state.panels_on_screen.contains(&panel);
-    if !walks || !is_shown || !is_free(ui, context) || context.state.selection.is_none() && has_focus(ui) {
+    if !navigates || !is_shown || !is_free(ui, context) || context.state.selection.is_none() && has_focus(ui)
+    {
         return;
     }
-    let Some(way) = pressed(ui) else { return };
+    let Some(direction) = pressed(ui) else { return };
     let selection = &context.state.selection;
     let found = match panel {
-        PanelKind::Terrain => context.snapshot.and_then(|it| next_thing(&it.program.world, selection, way)),
+        PanelKind::Terrain => {
+            context.snapshot.and_then(|it| next_thing(&it.program.world, selection, direction))
+        }
         PanelKind::Timeline => {
-            context.plan().and_then(|(network, plan)| next_activity(network, plan, selection, way))
+            context.plan().and_then(|(network, plan)| next_activity(network, plan, selection, direction))
         }
         _ => {
             let network = context.snapshot.and_then(|snapshot| snapshot.network.as_deref());
             let plan = context.plan().map(|(_, plan)| plan);
-            network.and_then(|network| next_node(network, plan, selection, way))
+            network.and_then(|network| next_node(network, plan, selection, direction))
         }
     };
     if let Some(found) = found {
@@ -69,28 +72,37 @@ fn is_free(ui: &Ui, context: &Context<'_>) -> bool {
     }
 }
 
-fn pressed(ui: &Ui) -> Option<Way> {
+fn pressed(ui: &Ui) -> Option<Direction> {
     let keys = [
-        (Key::ArrowLeft, Way::Left),
-        (Key::ArrowRight, Way::Right),
-        (Key::ArrowUp, Way::Up),
-        (Key::ArrowDown, Way::Down),
+        (Key::ArrowLeft, Direction::Left),
+        (Key::ArrowRight, Direction::Right),
+        (Key::ArrowUp, Direction::Up),
+        (Key::ArrowDown, Direction::Down),
     ];
     let is_pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
-    keys.into_iter().find(|(key, _)| is_pressed(*key)).map(|(_, way)| way)
+    keys.into_iter().find(|(key, _)| is_pressed(*key)).map(|(_, direction)| direction)
 }
 
 /// The vehicle, place or obstacle before or after the selected one.
-fn next_thing(world: &rmpl::program::World, selection: &Selection, way: Way) -> Option<Selection> {
+fn next_thing(
+    world: &rmpl::program::World,
+    selection: &Selection,
+    direction: Direction,
+) -> Option<Selection> {
     let vehicles = world.vehicles.iter().map(|it| Selection::Vehicle(it.name.text.clone()));
     let locations = world.locations.iter().map(|it| Selection::Location(it.name.text.clone()));
     let obstacles = world.obstacles.iter().map(|it| Selection::Obstacle(it.name.text.clone()));
     let all: Vec<Selection> = vehicles.chain(locations).chain(obstacles).collect();
-    neighbour(&all, selection, way)
+    neighbour(&all, selection, direction)
 }
 
 /// The activity above or below the selected one, as the timeline lists them.
-fn next_activity(network: &Network, plan: &Plan, selection: &Selection, way: Way) -> Option<Selection> {
+fn next_activity(
+    network: &Network,
+    plan: &Plan,
+    selection: &Selection,
+    direction: Direction,
+) -> Option<Selection> {
     let window = |node: NodeId| plan.windows.get(node.index()).copied().flatten();
     let all: Vec<Selection> = network
         .occurrences
@@ -106,38 +118,45 @@ fn next_activity(network: &Network, plan: &Plan, selection: &Selection, way: Way
         .map(|(id, _)| Selection::Occurrence(OccurrenceId::from_index(id)))
         .collect();
     let here = selection.occurrence(network).map_or(Selection::None, Selection::Occurrence);
-    neighbour(&all, &here, way)
+    neighbour(&all, &here, direction)
 }
 
-fn neighbour(all: &[Selection], selection: &Selection, way: Way) -> Option<Selection> {
+fn neighbour(all: &[Selection], selection: &Selection, direction: Direction) -> Option<Selection> {
     let here = all.iter().position(|it| it == selection);
-    let next = match (here, way) {
+    let next = match (here, direction) {
         (None, _) => 0,
-        (Some(here), Way::Right | Way::Down) => here + 1,
-        (Some(here), Way::Left | Way::Up) => here.checked_sub(1)?,
+        (Some(here), Direction::Right | Direction::Down) => here + 1,
+        (Some(here), Direction::Left | Direction::Up) => here.checked_sub(1)?,
     };
     all.get(next).cloned()
 }
 
 /// The event that an arc leads to or comes from, or the one beside it; what the plan selects goes first.
-fn next_node(network: &Network, plan: Option<&Plan>, selection: &Selection, way: Way) -> Option<Selection> {
-    let Some(here) = node_of(network, selection, way) else { return Some(Selection::Node(network.start)) };
-    let found = match way {
-        Way::Right => onwards(network, plan, here, true),
-        Way::Left => onwards(network, plan, here, false),
-        Way::Up | Way::Down => beside(network, here, way == Way::Down),
+fn next_node(
+    network: &Network,
+    plan: Option<&Plan>,
+    selection: &Selection,
+    direction: Direction,
+) -> Option<Selection> {
+    let Some(here) = node_of(network, selection, direction) else {
+        return Some(Selection::Node(network.start));
+    };
+    let found = match direction {
+        Direction::Right => onwards(network, plan, here, true),
+        Direction::Left => onwards(network, plan, here, false),
+        Direction::Up | Direction::Down => beside(network, here, direction == Direction::Down),
     }?;
     let decision = network.nodes.get(found.index()).and_then(|node| node.decision);
     Some(decision.map_or(Selection::Node(found), Selection::Decision))
 }
 
-fn node_of(network: &Network, selection: &Selection, way: Way) -> Option<NodeId> {
+fn node_of(network: &Network, selection: &Selection, direction: Direction) -> Option<NodeId> {
     match selection {
         Selection::Node(node) => Some(*node),
         Selection::Decision(id) => Some(network.decisions.get(id.index())?.node),
         Selection::Arc(arc) => {
             let arc = network.arcs.get(arc.index())?;
-            Some(if way == Way::Right { arc.from } else { arc.to })
+            Some(if direction == Direction::Right { arc.from } else { arc.to })
         }
         Selection::Alternative(id, alternative) => {
             let arc = network.decisions.get(id.index())?.alternatives.get(*alternative as usize)?;
@@ -145,7 +164,7 @@ fn node_of(network: &Network, selection: &Selection, way: Way) -> Option<NodeId>
         }
         _ => {
             let occurrence = network.occurrences.get(selection.occurrence(network)?.index())?;
-            Some(if way == Way::Right { occurrence.end } else { occurrence.start })
+            Some(if direction == Direction::Right { occurrence.end } else { occurrence.start })
         }
     }
 }
