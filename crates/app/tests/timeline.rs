@@ -4,10 +4,10 @@ mod support;
 
 use egui::{Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use layout::timeline::Grouping;
 use serde_json::{Value, json};
 use workbench::command::Command;
 use workbench::host::Remote as _;
-use workbench::state::settings::Grouping;
 
 fn reviewing() -> support::App {
     // High enough for all rows, whatever else the workspace shows.

@@ -5,8 +5,9 @@
 
 use std::time::{Duration, Instant};
 
-use layout::geometry::flatten;
-use layout::{NetworkDrawing, Options, Point, Rect, Shape, approximate_text_width};
+use display::geometry::flatten;
+use display::{Point, Rect, approximate_text_width};
+use layout::{NetworkDrawing, Options, Shape};
 use tpn::generate::{Recipe, Tightness, mission};
 use tpn::{Network, Top};
 

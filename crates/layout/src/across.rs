@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use display::geometry::curve_bounds;
+use display::{Piece, Point, Rect, SpatialIndex};
 use tpn::{ArcId, Network, NodeId};
 
 use crate::drawing::{ArcShape, NO_SLOT, NetworkDrawing, Route, Shape, TextShape};
-use crate::geometry::{Piece, Point, Rect, curve_bounds};
-use crate::index::SpatialIndex;
 use crate::metrics::{TEXT_LIFT, WORD_GAP, whole};
 use crate::overlay::free_curve;
 use crate::text::{ArcTexts, one_row_size};
@@ -47,7 +47,7 @@ pub(crate) fn add_arcs_across(
     if missing.is_empty() {
         return;
     }
-    let index = SpatialIndex::new(drawing);
+    let index = drawing.indexed();
     let mut taken = Taken { index: &index, cells: BTreeMap::new() };
     for id in missing {
         add_arc(network, texts, id, &mut taken, drawing);
@@ -57,7 +57,7 @@ pub(crate) fn add_arcs_across(
 
 /// The room that is taken: what the index knows, and the texts placed since.
 struct Taken<'a> {
-    index: &'a SpatialIndex,
+    index: &'a SpatialIndex<Shape>,
     cells: BTreeMap<(i64, i64), Vec<Rect>>,
 }
 

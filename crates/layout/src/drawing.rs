@@ -1,13 +1,13 @@
-//! The display list of a network: what to paint where, and the way back from a place to what is there.
+//! The layout of a network: what is where, and the way back from a place to what is there.
 //!
-//! It knows nothing of colours or of who paints; the page and the SVG export read the same list.
+//! It knows nothing of lines and colours: [`crate::list`] makes the display list of it.
 
+use display::geometry::distance_point_curve;
+use display::{Piece, Point, Rect, SpatialIndex};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 use tpn::{ArcId, ArcKind, BlockId, LabelId, NodeId, OccurrenceId, Role};
 
-use crate::geometry::{Piece, Point, Rect, distance_point_curve};
-use crate::index::SpatialIndex;
 use crate::metrics::TextRole;
 
 /// A network as shapes. Nodes and arcs are in the order of their ids; blocks come parents first.
@@ -31,7 +31,7 @@ pub struct NetworkDrawing {
     pub(crate) arc_slots: Vec<u32>,
     /// Where every node is, or, if it is hidden, the box that hides it.
     pub(crate) anchors: Vec<Point>,
-    pub(crate) index: SpatialIndex,
+    pub(crate) index: SpatialIndex<Shape>,
 }
 
 /// An event.
@@ -105,14 +105,18 @@ pub struct Slide {
     pub limits: (f64, f64),
 }
 
+impl Slide {
+    /// The same without the arc.
+    pub(crate) const fn along_row(self) -> display::Slide {
+        display::Slide { row: self.row, limits: self.limits }
+    }
+}
+
 impl TextShape {
     /// Where the text is when its row is moved, as far as it may be, between `left` and `right`.
     pub fn rect_in_view(&self, left: f64, right: f64) -> Rect {
         let Some(slide) = self.slide else { return self.rect };
-        let (row, width) = slide.row;
-        let wanted = row.min(right - width).max(left).clamp(slide.limits.0, slide.limits.1);
-        let moved = wanted - row;
-        Rect { min: self.rect.min.shifted(moved, 0.0), max: self.rect.max.shifted(moved, 0.0) }
+        slide.along_row().moved(self.rect, left, right)
     }
 }
 
@@ -227,12 +231,27 @@ impl NetworkDrawing {
         self.index.visit(area, least_size, visit);
     }
 
+    /// The index of all shapes by place.
+    pub(crate) fn indexed(&self) -> SpatialIndex<Shape> {
+        let counts = [self.blocks.len(), self.connectors.len(), self.arcs.len(), self.nodes.len()];
+        let mut shapes = Vec::with_capacity(counts.iter().sum::<usize>() + self.texts.len());
+        let mut add = |count: usize, shape: fn(u32) -> Shape| {
+            shapes.extend((0..count as u32).map(|at| (self.shape_bounds(shape(at)), shape(at))));
+        };
+        add(counts[0], Shape::Block);
+        add(counts[1], Shape::Connector);
+        add(counts[2], Shape::Arc);
+        add(counts[3], Shape::Node);
+        add(self.texts.len(), Shape::Text);
+        SpatialIndex::new(self.bounds, shapes)
+    }
+
     /// The rectangle of a shape.
     pub fn shape_bounds(&self, shape: Shape) -> Rect {
         match shape {
             Shape::Block(at) => self.blocks.get(at as usize).map_or(Rect::default(), |block| block.rect),
             Shape::Connector(at) => self.connectors.get(at as usize).map_or(Rect::default(), |connector| {
-                crate::geometry::curve_bounds(connector.start, &[connector.piece])
+                display::geometry::curve_bounds(connector.start, &[connector.piece])
             }),
             Shape::Arc(at) => self.arcs.get(at as usize).map_or(Rect::default(), |arc| arc.bounds),
             Shape::Node(at) => self

@@ -1,12 +1,12 @@
 //! The shapes of a part that has been placed: curves, arches, boxes, outlines, and texts beside them.
 
+use display::geometry::{Piece, Point, Rect, curve_bounds};
+use display::list::ARROW_LENGTH;
 use tpn::{ArcId, NodeId, OccurrenceId};
 
 use crate::drawing::{ArcShape, BlockForm, BlockShape, Connector, Item, Route, Slide, TextShape};
-use crate::geometry::{Piece, Point, Rect, curve_bounds};
 use crate::metrics::{
-    ARCH_CORNER, ARCH_FOOT, ARROW_LENGTH, COLLAPSED_HEIGHT, OUTLINE_PAD, TEXT_LIFT, TEXT_PAD, TextRole,
-    WORD_GAP,
+    ARCH_CORNER, ARCH_FOOT, COLLAPSED_HEIGHT, OUTLINE_PAD, TEXT_LIFT, TEXT_PAD, TextRole, WORD_GAP,
 };
 use crate::overlay::reversed;
 use crate::place::{Frame, Placer};

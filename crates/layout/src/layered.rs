@@ -3,7 +3,8 @@
 //! Only what is left of an imported network after everything in series or side by side has been taken out comes here.
 //! Columns by longest path, order by a few barycentre sweeps, heights by least squares (pool adjacent violators).
 
-use crate::geometry::{Piece, Point};
+use display::geometry::{Piece, Point};
+
 use crate::metrics::{GUTTER, LANE_GAP, TEXT_PAD};
 use crate::size::{Size, Sizes};
 use crate::tree::Core;

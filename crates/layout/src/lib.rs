@@ -1,59 +1,58 @@
-//! Coordinates for drawings of plan networks and automata.
+//! Drawings of plan networks, automata, timelines and maps: where everything is, and the display list of it.
 //!
 //! Drawings are computed, never stored: the same network gives the same drawing everywhere, in time linear in its
-//! size. They are display lists without colours; the page paints them and [`svg`] exports them.
+//! size. Each is built once, by a function of [`list`], into a display list; the screen, files and reports are made from
+//! that.
 
 pub mod automaton;
 pub mod drawing;
-pub mod geometry;
-pub mod look;
+pub mod list;
 pub mod machine;
 pub mod metrics;
 pub mod options;
 pub mod overlay;
-pub mod palette;
 pub mod progress;
-pub mod svg;
+pub mod style;
 pub mod text;
 pub mod threads;
+pub mod timeline;
 
 mod across;
 mod emit;
-mod index;
 mod layered;
 mod place;
 mod recover;
 mod size;
 mod tree;
 
-pub use automaton::{AutomatonDrawing, AutomatonItem, automaton, automaton_svg};
+pub use automaton::{AutomatonDrawing, AutomatonItem, automaton};
 pub use drawing::{
     ArcShape, BlockForm, BlockShape, Connector, Item, NetworkDrawing, NodeShape, Route, Shape, Slide,
     TextShape,
 };
-pub use geometry::{Piece, Point, Rect};
-pub use look::Parts;
+pub use list::automaton::{AutomatonState, automaton_list};
+pub use list::network::{NetworkState, network_list};
 pub use machine::{MachineArc, MachineArcShape, MachineDrawing, machine};
-pub use metrics::{TextRole, approximate_text_width};
+pub use metrics::TextRole;
 pub use options::Options;
 pub use overlay::{OverlayCurve, OverlayKind};
-pub use palette::Palette;
 pub use progress::Progress;
-pub use svg::{SvgOptions, svg};
+pub use style::Parts;
 pub use tree::block_children;
 
+use display::{Measure, Rect};
 use smol_str::{SmolStr, format_smolstr};
 use tpn::{Network, NodeId, Role};
 
-use crate::text::{ArcTexts, Measure, text_width};
+use crate::text::{ArcTexts, text_width};
 
 /// Draws a network from left to right, as time flows.
 ///
 /// With blocks it follows the program: sequences on a line, branches below each other, and bounds over what they span,
 /// without crossings. Without blocks the same structure is recovered from the graph as far as there is any.
-/// `measure` gives the width of a text at [`metrics::TEXT_SIZE`]. Linear in the network, but for the irregular rest of
+/// `measure` gives the width of a text at [`display::text::TEXT_SIZE`]. Linear in the network, but for the irregular rest of
 /// a network without blocks.
-pub fn network(network: &Network, options: &Options, measure: Measure<'_>) -> NetworkDrawing {
+pub fn network(network: &Network, options: &Options, measure: &dyn Measure) -> NetworkDrawing {
     if network.nodes.is_empty() {
         return NetworkDrawing::default();
     }
@@ -66,7 +65,7 @@ pub fn network(network: &Network, options: &Options, measure: Measure<'_>) -> Ne
     across::add_arcs_across(network, &tree, &texts, &collapsed_ends, &mut drawing);
     write_node_names(network, measure, &mut drawing);
     drawing.bounds = place::content_bounds(&drawing);
-    drawing.index = index::SpatialIndex::new(&drawing);
+    drawing.index = drawing.indexed();
     drawing
 }
 
@@ -84,7 +83,7 @@ pub fn node_name(network: &Network, node: NodeId) -> SmolStr {
 }
 
 /// Writes the names into the circles, smaller where they are long.
-fn write_node_names(network: &Network, measure: Measure<'_>, drawing: &mut NetworkDrawing) {
+fn write_node_names(network: &Network, measure: &dyn Measure, drawing: &mut NetworkDrawing) {
     let role = TextRole::Node;
     for node in &drawing.nodes {
         let text = node_name(network, node.id);

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::geometry::{Piece, Point, Rect};
+use display::geometry::{Piece, Point, Rect};
 
 /// An arc from one mode to another, by their places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -48,7 +48,7 @@ const APART: f64 = 9.0;
 /// How far an arc rises over the modes that it passes, for each of them.
 const RISE: f64 = 12.0;
 /// Up to so many modes, all orders of a row are tried.
-const MOST_ORDERED: usize = 7;
+const MAX_ORDERED: usize = 7;
 
 /// Draws a state machine whose modes have boxes of these widths.
 ///
@@ -81,7 +81,7 @@ pub fn machine(widths: &[f64], arcs: &[MachineArc]) -> MachineDrawing {
     let shapes: Vec<MachineArcShape> = arcs.iter().map(|arc| drawn.arc(*arc)).collect();
     let mut bounds = placed.iter().copied().reduce(Rect::union).unwrap_or_default();
     for shape in &shapes {
-        for point in crate::geometry::flatten(shape.start, &shape.pieces) {
+        for point in display::geometry::flatten(shape.start, &shape.pieces) {
             bounds = bounds.union(Rect::around(point, 1.0));
         }
     }
@@ -90,7 +90,7 @@ pub fn machine(widths: &[f64], arcs: &[MachineArc]) -> MachineDrawing {
 
 /// The modes in the order that makes the arcs between them shortest; of several, the one nearest the given order.
 fn ordered(modes: Vec<usize>, arcs: &[MachineArc]) -> Vec<usize> {
-    if modes.len() > MOST_ORDERED {
+    if modes.len() > MAX_ORDERED {
         return modes;
     }
     let inside: Vec<(usize, usize)> = arcs

@@ -15,12 +15,6 @@ pub const VERTEX_RADIUS: f64 = 2.5;
 pub const DECISION_INSET: f64 = 3.0;
 /// Radius of the dot of a fork, join or merge.
 pub const STRUCTURAL_RADIUS: f64 = 4.0;
-/// Length of an arrow head.
-pub const ARROW_LENGTH: f64 = 7.0;
-/// Half the breadth of an arrow head.
-pub const ARROW_HALF_BREADTH: f64 = 3.5;
-/// The text size that `measure` answers for; other sizes are in proportion.
-pub const TEXT_SIZE: f64 = 13.0;
 
 /// Free space beside a text.
 pub(crate) const TEXT_PAD: f64 = 5.0;
@@ -111,36 +105,6 @@ pub fn node_radius(network: &Network, node: &Node) -> f64 {
         Role::Event => EVENT_RADIUS,
         Role::Structural => STRUCTURAL_RADIUS,
         Role::Decision => DECISION_RADIUS,
-    }
-}
-
-/// Advance widths of the characters from space to tilde in thousandths of the text size, in the page's own face
-/// (Ubuntu Light).
-#[rustfmt::skip]
-const CHARACTER_WIDTHS: [u16; 95] = [
-    228, 274, 392, 653, 564, 831, 648, 240, 310, 310, 472, 564, 246, 282, 246, 359,
-    564, 564, 564, 564, 564, 564, 564, 564, 564, 564, 246, 246, 564, 564, 564, 380,
-    940, 641, 630, 609, 702, 555, 520, 658, 692, 248, 487, 599, 502, 865, 709, 774,
-    592, 774, 618, 517, 548, 680, 624, 921, 608, 569, 560, 310, 359, 310, 564, 490,
-    376, 509, 583, 460, 583, 548, 376, 573, 569, 237, 237, 495, 255, 863, 569, 582,
-    583, 583, 374, 428, 387, 569, 480, 775, 499, 474, 455, 319, 262, 319, 564,
-];
-
-/// The width of `text` at [`TEXT_SIZE`] in the page's face, with some room for faces that are a little wider.
-///
-/// It needs no fonts and is the same everywhere, so pictures are too.
-pub fn approximate_text_width(text: &str) -> f32 {
-    let thousandths: u32 = text.chars().map(|character| u32::from(character_width(character))).sum();
-    thousandths as f32 / 1000.0 * 1.04 * TEXT_SIZE as f32
-}
-
-fn character_width(character: char) -> u16 {
-    let ascii = (character as u32).checked_sub(u32::from(b' ')).map(|at| at as usize);
-    match ascii.and_then(|at| CHARACTER_WIDTHS.get(at)) {
-        Some(&width) => width,
-        None if character == '·' => 246,
-        None if matches!(character, '∞' | '¬' | '≥' | '≤') || character.is_alphabetic() => 600,
-        None => 1000,
     }
 }
 

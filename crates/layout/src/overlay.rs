@@ -1,12 +1,13 @@
 //! What a plan, or its failure, adds to a drawing: curves between places on it, and texts under its nodes.
 
+use display::geometry::curve_bounds;
+use display::{Measure, Piece, Point, Rect};
 use serde::{Deserialize, Serialize};
 use tpn::{LabelId, Network, NodeId, Plan, Role};
 
 use crate::drawing::{Item, NetworkDrawing, TextShape};
-use crate::geometry::{Piece, Point, Rect, curve_bounds};
 use crate::metrics::{EVENT_RADIUS, TextRole, VERTEX_RADIUS};
-use crate::text::{Measure, bounds_label, text_width};
+use crate::text::{bounds_label, text_width};
 
 /// A curve over the drawing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -95,7 +96,7 @@ pub fn windows(
     drawing: &NetworkDrawing,
     plan: &Plan,
     window_width: f64,
-    measure: Measure<'_>,
+    measure: &dyn Measure,
 ) -> Vec<TextShape> {
     let role = TextRole::Window;
     let text = |node: &crate::drawing::NodeShape| {

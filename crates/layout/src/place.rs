@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use display::geometry::{Piece, Point, Rect};
 use tpn::{Network, NodeId};
 
 use crate::drawing::{ArcShape, BlockForm, BlockShape, NO_SLOT, NetworkDrawing, NodeShape, Route};
-use crate::geometry::{Piece, Point, Rect};
 use crate::layered::level_curve;
 use crate::metrics::{MARGIN, node_radius};
 use crate::size::{Clearance, Sizes, fan_rows, lead_in, lead_out};

@@ -1,10 +1,10 @@
 //! What of a plan has happened at a moment of its earliest schedule, for drawings that show the present.
 
+use display::geometry::{Piece, Point, first_part};
 use rmpl::{Bound, Rational};
 use tpn::{ArcId, Network, NodeId, Plan};
 
 use crate::drawing::NetworkDrawing;
-use crate::geometry::{Piece, Point, first_part};
 
 /// What has happened, and what is under way.
 #[derive(Clone, Debug, Default, PartialEq)]

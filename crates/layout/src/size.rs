@@ -1,11 +1,13 @@
 //! How much room each part of the tree needs: bottom up, in time linear in the tree.
 
+use display::Measure;
+use display::list::ARROW_LENGTH;
 use tpn::{ArcId, Network, NodeId, Role};
 
 use crate::layered::{self, CoreLayout};
 use crate::metrics::{
-    ARCH_CORNER, ARCH_FIRST, ARCH_FOOT, ARCH_GAP, ARCH_STEP, ARROW_LENGTH, BEAD_STEP, COLLAPSED_HEIGHT,
-    GUTTER, LANE_GAP, OUTLINE_PAD, SHORTEST_RUN, TEXT_LIFT, TEXT_PAD, TextRole, VERTEX_RADIUS, node_radius,
+    ARCH_CORNER, ARCH_FIRST, ARCH_FOOT, ARCH_GAP, ARCH_STEP, BEAD_STEP, COLLAPSED_HEIGHT, GUTTER, LANE_GAP,
+    OUTLINE_PAD, SHORTEST_RUN, TEXT_LIFT, TEXT_PAD, TextRole, VERTEX_RADIUS, node_radius,
 };
 use crate::options::Options;
 use crate::text::{ArcTexts, Run, cut_to_width, one_row_size, sizes_above_and_below, text_width};
@@ -82,7 +84,7 @@ impl<'a> Sizes<'a> {
         tree: &'a Tree,
         texts: &'a ArcTexts,
         options: &Options,
-        measure: crate::text::Measure<'_>,
+        measure: &dyn Measure,
     ) -> Self {
         let ArchRanks { ranks: arch_ranks, counts: arches } = arch_ranks(network, tree);
         let clearances = clearances(network, options, tree, &arches);
@@ -379,12 +381,7 @@ fn clearances(network: &Network, options: &Options, tree: &Tree, arches: &[(u32,
     clearances
 }
 
-fn captions(
-    network: &Network,
-    tree: &Tree,
-    options: &Options,
-    measure: crate::text::Measure<'_>,
-) -> Vec<Caption> {
+fn captions(network: &Network, tree: &Tree, options: &Options, measure: &dyn Measure) -> Vec<Caption> {
     let mut hidden_counts = vec![0_u32; network.blocks.len()];
     for hider in tree.hidden_nodes.iter().flatten() {
         hidden_counts[hider.index()] += 1;

@@ -1,16 +1,14 @@
 //! What is written at each arc, and how much room it takes.
 
+use display::{Measure, text_width_at};
 use rmpl::program::LabelMode;
 use rmpl::{Bound, Rational};
 use smol_str::{SmolStr, format_smolstr};
 use tpn::{Arc, ArcId, ArcKind, BlockKind, LabelId, Network, OccurrenceKind};
 
 use crate::drawing::Item;
-use crate::metrics::{TEXT_SIZE, TextRole, WORD_GAP, whole};
+use crate::metrics::{TextRole, WORD_GAP, whole};
 use crate::options::Options;
-
-/// How wide a text is at [`TEXT_SIZE`].
-pub type Measure<'a> = &'a dyn Fn(&str) -> f32;
 
 /// Conditions go on the line of the bounds up to this width, or that of the name above if it is wider.
 const EASY_LINE_WIDTH: f64 = 130.0;
@@ -39,7 +37,7 @@ pub(crate) struct TextSize {
 }
 
 impl ArcTexts {
-    pub(crate) fn new(network: &Network, options: &Options, measure: Measure<'_>) -> Self {
+    pub(crate) fn new(network: &Network, options: &Options, measure: &dyn Measure) -> Self {
         let mut texts = Self { runs: Vec::new(), starts: Vec::with_capacity(network.arcs.len() + 1) };
         for (at, arc) in network.arcs.iter().enumerate() {
             texts.starts.push(texts.runs.len() as u32);
@@ -54,7 +52,7 @@ impl ArcTexts {
         &self.runs[self.starts[arc.index()] as usize..self.starts[arc.index() + 1] as usize]
     }
 
-    fn add_arc(&mut self, network: &Network, options: &Options, measure: Measure<'_>, id: ArcId, arc: &Arc) {
+    fn add_arc(&mut self, network: &Network, options: &Options, measure: &dyn Measure, id: ArcId, arc: &Arc) {
         let first = self.runs.len();
         let push = |runs: &mut Vec<Run>, text: SmolStr, role: TextRole, line: i32, owner: Item| {
             let width = text_width(&text, role, measure);
@@ -118,21 +116,13 @@ fn row_size<'a>(runs: impl Iterator<Item = &'a Run>) -> TextSize {
 }
 
 /// The width of `text` in its role.
-pub(crate) fn text_width(text: &str, role: TextRole, measure: Measure<'_>) -> f64 {
-    whole(f64::from(measure(text)) * role.size() / TEXT_SIZE) + 1.0
+pub(crate) fn text_width(text: &str, role: TextRole, measure: &dyn Measure) -> f64 {
+    whole(text_width_at(text, role.size(), measure)) + 1.0
 }
 
 /// `text`, or as much of it as fits with an ellipsis.
-pub(crate) fn cut_to_width(text: &str, role: TextRole, longest: f64, measure: Measure<'_>) -> SmolStr {
-    let mut width = text_width(text, role, measure);
-    let mut kept = text.chars().count();
-    let mut cut = SmolStr::new(text);
-    while width > longest && kept > 1 {
-        kept = ((kept as f64 * longest / width) as usize).clamp(1, kept - 1);
-        cut = text.chars().take(kept).chain(['…']).collect();
-        width = text_width(&cut, role, measure);
-    }
-    cut
+pub(crate) fn cut_to_width(text: &str, role: TextRole, longest: f64, measure: &dyn Measure) -> SmolStr {
+    display::cut_to_width(text, longest, |text| text_width(text, role, measure))
 }
 
 /// The bounds as the papers print them: `[405,486]`, `[0,∞]`.

@@ -1,7 +1,8 @@
 //! Drawings of automata: what is inside lies inside, and nothing lies over anything else.
 
+use display::{Rect, Theme, approximate_text_width, svg};
 use hca::{Automaton, Element, LocationId, Vocabulary, compile_text};
-use layout::{AutomatonDrawing, AutomatonItem, Palette, Rect, approximate_text_width, automaton_svg};
+use layout::{AutomatonDrawing, AutomatonItem, AutomatonState, automaton_list};
 
 const ORBIT: &str = include_str!("../../../tests/conformance/h01_orbit_nominal.rmpl");
 
@@ -123,8 +124,11 @@ fn marked_locations_stand_out_in_the_exported_picture() {
     let drawing = drawn(&automaton);
     let marking = automaton.start();
     assert!(marking.contains(LocationId(0)));
-    let plain = automaton_svg(&drawing, None, &Palette::LIGHT, "OrbitInsert");
-    let marked = automaton_svg(&drawing, Some(&marking), &Palette::LIGHT, "OrbitInsert");
+    let drawn = |state: &AutomatonState<'_>| {
+        svg(&[&automaton_list(&drawing, &automaton, state)], Theme::Light, "OrbitInsert")
+    };
+    let plain = drawn(&AutomatonState::default());
+    let marked = drawn(&AutomatonState { marking: Some(&marking), ..AutomatonState::default() });
     let strong = "stroke-width=\"2.6\"";
     assert_eq!((plain.matches(strong).count(), marked.matches(strong).count()), (0, 5));
 }

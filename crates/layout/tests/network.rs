@@ -2,11 +2,12 @@
 
 mod drawings;
 
+use display::{Point, Rect, Theme, svg};
 use drawings::{
     assert_nothing_overlaps, crossings, draw, draw_with, enroute, network_of, random_mission,
     segment_meets_rect, segments,
 };
-use layout::{BlockForm, Item, NetworkDrawing, Options, Point, Rect, Shape, TextRole};
+use layout::{BlockForm, Item, NetworkDrawing, NetworkState, Options, Shape, TextRole, network_list};
 use rmpl::Rational;
 use tpn::generate::{Recipe, Tightness, mission};
 use tpn::{BlockId, BlockKind, EventEnd, Network, NodeId, OccurrenceId};
@@ -72,16 +73,8 @@ fn bounds_of_an_activity_arch_over_everything_in_it() {
 fn the_picture_of_enroute_has_not_changed() {
     let network = enroute();
     let drawing = draw(&network);
-    let options = layout::SvgOptions {
-        palette: &layout::Palette::LIGHT,
-        plan: None,
-        overlays: &[],
-        notes: &[],
-        parts: layout::Parts::default(),
-        progress: None,
-        title: "Enroute",
-    };
-    insta::assert_snapshot!(layout::svg(&drawing, &network, &options));
+    let list = network_list(&drawing, &network, &NetworkState::default());
+    insta::assert_snapshot!(svg(&[&list], Theme::Light, "Enroute"));
 }
 
 #[test]

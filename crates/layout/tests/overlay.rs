@@ -2,9 +2,10 @@
 
 mod drawings;
 
+use display::{Theme, approximate_text_width, svg};
 use drawings::{draw, enroute, segment_meets_rect};
 use layout::overlay::{causal_links, negative_cycle, orderings, windows};
-use layout::{Item, Options, Palette, SvgOptions, approximate_text_width};
+use layout::{Item, NetworkState, Options, network_list};
 use rmpl::{Bound, Rational};
 use tpn::{CausalLink, LabelId, Network, Ordering, Plan, Window};
 
@@ -125,26 +126,19 @@ fn the_exported_picture_shows_the_plan_and_the_theme() {
     let drawing = draw(&network);
     let plan = plan(&network);
     let overlays = causal_links(&drawing, &network, &plan);
-    let export = |palette: &Palette, plan: Option<&Plan>| {
-        let options = SvgOptions {
-            palette,
-            plan,
-            overlays: &overlays,
-            notes: &[],
-            parts: layout::Parts { structure: false, ..layout::Parts::default() },
-            progress: None,
-            title: "A < B",
-        };
-        layout::svg(&drawing, &network, &options)
+    let export = |theme: Theme, plan: Option<&Plan>| {
+        let parts = layout::Parts { structure: false, ..layout::Parts::default() };
+        let state = NetworkState { plan, overlays: &overlays, parts, ..NetworkState::default() };
+        svg(&[&network_list(&drawing, &network, &state)], theme, "A < B")
     };
-    let light = export(&Palette::LIGHT, Some(&plan));
+    let light = export(Theme::Light, Some(&plan));
     assert!(light.starts_with("<svg ") && light.ends_with("</svg>\n"));
     assert!(light.contains("<title>A &lt; B</title>"));
     assert_eq!(light.matches("<circle").count(), network.nodes.len() + network.decisions.len());
     let grey = "stroke=\"#a3aeba\"";
     assert!(light.contains(grey), "what is not selected is grey");
-    assert!(!export(&Palette::LIGHT, None).contains(grey));
-    assert!(export(&Palette::DARK, Some(&plan)).contains("fill=\"#13171d\""));
+    assert!(!export(Theme::Light, None).contains(grey));
+    assert!(export(Theme::Dark, Some(&plan)).contains("fill=\"#13171d\""));
     assert!(light.contains("stroke-dasharray"), "the causal link is dashed");
 }
 
@@ -154,7 +148,7 @@ fn an_ordering_between_rows_runs_over_no_text() {
     let drawing = draw(&network);
     let plan = plan(&network);
     for curve in orderings(&drawing, &network, &plan) {
-        let line = layout::geometry::flatten(curve.start, &curve.pieces);
+        let line = display::geometry::flatten(curve.start, &curve.pieces);
         for ends in line.windows(2) {
             let over = drawing.texts.iter().find(|text| {
                 !matches!(text.owner, Item::Node(_)) && segment_meets_rect(ends[0], ends[1], text.rect)

@@ -9,6 +9,7 @@ mod execution;
 pub mod keyboard_navigation;
 mod network;
 mod outline;
+mod painter;
 mod panel;
 mod plan;
 mod problems;

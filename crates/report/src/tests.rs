@@ -114,7 +114,7 @@ fn the_report_needs_nothing_from_elsewhere_and_no_scripts() {
     for drawing in ["Timeline of the plan", "Temporal plan network", "Map with the paths of the plan"] {
         assert!(page.contains(&format!("<title>{drawing}</title>")), "{drawing}");
     }
-    assert!(page.contains("<polyline") && page.contains("@page") && page.contains("@media print"));
+    assert!(page.contains("<path d=") && page.contains("@page") && page.contains("@media print"));
 }
 
 #[test]

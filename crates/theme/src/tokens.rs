@@ -5,6 +5,7 @@
 #![expect(clippy::disallowed_methods, reason = "this is the one place where colours are made")]
 #![expect(clippy::mistyped_literal_suffixes, reason = "the digits stand in pairs: red, green, blue")]
 
+use display::{ColorRole, Theme};
 use egui::Color32;
 
 /// The colours of one theme.
@@ -139,6 +140,48 @@ impl Tokens {
         let scaled = part.clamp(0.0, 1.0) * 3.0;
         let index = (scaled as usize).min(2);
         STOPS[index].lerp_to_gamma(STOPS[index + 1], scaled - index as f32)
+    }
+
+    /// The colour of a role in a display list.
+    pub fn role(&self, role: ColorRole) -> Color32 {
+        match role {
+            ColorRole::Surface => self.surface,
+            ColorRole::Sunken => self.sunken,
+            ColorRole::Raised => self.raised,
+            ColorRole::Hover => self.hover,
+            ColorRole::Line => self.line,
+            ColorRole::LineStrong => self.line_strong,
+            ColorRole::Text => self.text,
+            ColorRole::TextMuted => self.text_muted,
+            ColorRole::TextFaint => self.text_faint,
+            ColorRole::Accent => self.accent,
+            ColorRole::AccentSoft => self.accent_soft,
+            ColorRole::Selection => self.selection,
+            ColorRole::GoodSoft => self.soft[0],
+            ColorRole::Warning => self.warning,
+            ColorRole::Error => self.error,
+            ColorRole::Path => self.path,
+            ColorRole::PathUnselected => self.path_unselected,
+            ColorRole::NodeFill => self.node_fill,
+            ColorRole::Decision => self.decision,
+            ColorRole::Tell => self.tell,
+            ColorRole::Ask => self.ask,
+            ColorRole::Link => self.link,
+            ColorRole::Ordering => self.ordering,
+            ColorRole::Threat => self.threat,
+            ColorRole::Slack => self.slack,
+            ColorRole::Now => self.now,
+            ColorRole::Series(number) => self.series(usize::from(number)),
+            ColorRole::Relief(_) => {
+                let [red, green, blue] = self.exported().rgb(role);
+                Color32::from_rgb(red, green, blue)
+            }
+        }
+    }
+
+    /// The theme that pictures and files in these colours have.
+    pub const fn exported(&self) -> Theme {
+        if self.is_dark { Theme::Dark } else { Theme::Light }
     }
 
     /// `color` mixed into the surface: `part` 0 is the surface, 1 the colour.
@@ -325,6 +368,45 @@ mod tests {
             }
             assert!(contrast(tokens.text, tokens.selection) >= 4.5);
             assert!(contrast(tokens.text_on_accent, tokens.accent) >= 4.5);
+        }
+    }
+
+    #[test]
+    fn files_have_the_colours_of_the_screen() {
+        let roles = [
+            ColorRole::Surface,
+            ColorRole::Sunken,
+            ColorRole::Raised,
+            ColorRole::Hover,
+            ColorRole::Line,
+            ColorRole::LineStrong,
+            ColorRole::Text,
+            ColorRole::TextMuted,
+            ColorRole::TextFaint,
+            ColorRole::Accent,
+            ColorRole::AccentSoft,
+            ColorRole::Selection,
+            ColorRole::GoodSoft,
+            ColorRole::Warning,
+            ColorRole::Error,
+            ColorRole::Path,
+            ColorRole::PathUnselected,
+            ColorRole::NodeFill,
+            ColorRole::Decision,
+            ColorRole::Tell,
+            ColorRole::Ask,
+            ColorRole::Link,
+            ColorRole::Ordering,
+            ColorRole::Threat,
+            ColorRole::Slack,
+            ColorRole::Now,
+            ColorRole::Relief(200),
+        ];
+        for tokens in [&DARK, &LIGHT] {
+            for role in roles.into_iter().chain((0..9).map(ColorRole::Series)) {
+                let [red, green, blue, _] = tokens.role(role).to_array();
+                assert_eq!([red, green, blue], tokens.exported().rgb(role), "{role:?}");
+            }
         }
     }
 

@@ -60,8 +60,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 }
 
 fn drawing(automaton: &Automaton) -> String {
-    let drawing = layout::automaton(automaton, &layout::approximate_text_width);
-    layout::automaton_svg(&drawing, None, &layout::Palette::LIGHT, "Control program")
+    let drawing = layout::automaton(automaton, &display::approximate_text_width);
+    let list = layout::automaton_list(&drawing, automaton, &layout::AutomatonState::default());
+    display::svg(&[&list], display::Theme::Light, "Control program")
 }
 
 fn element_name(automaton: &Automaton, element: Element) -> String {

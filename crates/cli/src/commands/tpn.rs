@@ -83,15 +83,7 @@ fn plan_schema(loaded: &Loaded, network: &Network) -> anyhow::Result<serde_json:
 }
 
 fn drawing(network: &Network) -> String {
-    let drawing = layout::network(network, &layout::Options::default(), &layout::approximate_text_width);
-    let options = layout::SvgOptions {
-        palette: &layout::Palette::LIGHT,
-        plan: None,
-        overlays: &[],
-        notes: &[],
-        parts: layout::Parts::default(),
-        progress: None,
-        title: "Temporal plan network",
-    };
-    layout::svg(&drawing, network, &options)
+    let drawing = layout::network(network, &layout::Options::default(), &display::approximate_text_width);
+    let list = layout::network_list(&drawing, network, &layout::NetworkState::default());
+    display::svg(&[&list], display::Theme::Light, "Temporal plan network")
 }

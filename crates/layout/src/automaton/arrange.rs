@@ -1,16 +1,15 @@
 //! Sizes from the inside out, then places from the outside in; composites are numbered parents first, so both are one
 //! loop.
 
-use hca::{
-    Automaton, Composite, CompositeId, CompositeKind, Element, LocationId, LocationKind, TransitionId,
-};
+use hca::{Automaton, Composite, CompositeId, CompositeKind, Element, LocationId, TransitionId};
 use smol_str::{SmolStr, format_smolstr};
 
 use super::{AutomatonDrawing, AutomatonItem, AutomatonText, CompositeShape, LocationShape, TransitionShape};
-use crate::geometry::{Piece, Point, Rect};
 use crate::layered::level_curve;
-use crate::metrics::{ARROW_LENGTH, GUTTER, MARGIN, TEXT_LIFT, TEXT_PAD, TextRole};
-use crate::text::{Measure, cut_to_width, text_width};
+use crate::metrics::{GUTTER, MARGIN, TEXT_LIFT, TEXT_PAD, TextRole};
+use crate::text::{cut_to_width, text_width};
+use display::list::ARROW_LENGTH;
+use display::{Measure, Piece, Point, Rect};
 
 /// Inside the box of a composite.
 const PADDING: f64 = 12.0;
@@ -48,7 +47,7 @@ struct Arranger<'a> {
     drawing: AutomatonDrawing,
 }
 
-pub(super) fn arrange(automaton: &Automaton, measure: Measure<'_>) -> AutomatonDrawing {
+pub(super) fn arrange(automaton: &Automaton, measure: &dyn Measure) -> AutomatonDrawing {
     let cut = |text: &str, role: TextRole| {
         let text = cut_to_width(text, role, LONGEST_TEXT, measure);
         Text { width: text_width(&text, role, measure), text }
@@ -316,11 +315,6 @@ impl<'a> Arranger<'a> {
         let (text, owner) = (text.text.clone(), AutomatonItem::Transition(id));
         self.drawing.texts.push(AutomatonText { text, role: TextRole::Bounds, rect, owner });
     }
-}
-
-/// Whether a location only waits for its guards.
-pub(super) fn is_waiting(kind: LocationKind) -> bool {
-    !matches!(kind, LocationKind::Assert)
 }
 
 fn row(sizes: impl Iterator<Item = Size>) -> Size {

@@ -4,17 +4,14 @@
 //! its right. Linear in the automaton, but for cutting long texts.
 
 mod arrange;
-mod picture;
 
+use display::geometry::distance_point_curve;
+use display::{Measure, Piece, Point, Rect};
 use hca::{Automaton, CompositeId, CompositeKind, LocationId, LocationKind, TransitionId};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
-use crate::geometry::{Piece, Point, Rect, distance_point_curve};
 use crate::metrics::TextRole;
-use crate::text::Measure;
-
-pub use picture::automaton_svg;
 
 /// An automaton as shapes. Composites are in the order of their ids: outer ones first.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -95,7 +92,7 @@ pub enum AutomatonItem {
 }
 
 /// Draws an automaton; `measure` as for [`crate::network`].
-pub fn automaton(automaton: &Automaton, measure: Measure<'_>) -> AutomatonDrawing {
+pub fn automaton(automaton: &Automaton, measure: &dyn Measure) -> AutomatonDrawing {
     arrange::arrange(automaton, measure)
 }
 

@@ -1,8 +1,9 @@
 //! Missions drawn for tests: as networks, as random programs, and with geometry checked the slow way.
 #![allow(dead_code, reason = "each test binary uses its part")]
 
-use layout::geometry::flatten;
-use layout::{Item, NetworkDrawing, Options, Point, Rect, approximate_text_width};
+use display::geometry::flatten;
+use display::{Point, Rect, approximate_text_width};
+use layout::{Item, NetworkDrawing, Options};
 use tpn::generate::Rng;
 use tpn::{Network, Top};
 

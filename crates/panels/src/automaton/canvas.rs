@@ -7,10 +7,10 @@ use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, ViewAction};
 use workbench::state::TextCommand;
 
-use super::shapes::Scene;
-use super::{Shown, log, marks};
+use super::{Drawn, Shown, legend, log, marks};
 use crate::Context;
 use crate::network::view::View;
+use crate::painter::DisplayPainter;
 
 /// Where the drawing is scrolled to.
 #[derive(Default)]
@@ -37,7 +37,7 @@ impl Canvas {
         ui: &mut Ui,
         context: &Context<'_>,
         shown: Shown<'_>,
-        drawing: &AutomatonDrawing,
+        drawn: &mut Drawn,
         commands: &mut CommandSender,
     ) {
         let (panel, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
@@ -48,11 +48,13 @@ impl Canvas {
             log::marked_text(shown.automaton, shown.moment)
         );
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
-        self.navigate(&response, panel, drawing, context);
+        self.navigate(&response, panel, &drawn.drawing, context);
         let marked = marks::marked(shown.automaton, context.state.document.caret(), self.pressed);
         let painter = ui.painter_at(panel);
-        Scene { painter: &painter, panel, view: &self.view, tokens: context.tokens, shown, marked: &marked }
-            .paint(drawing);
+        DisplayPainter::new(&painter, panel, self.view.placement(panel), context.tokens)
+            .paint(&[drawn.list(shown.moment, marked)], Vec::new());
+        legend::legend(&painter, panel, context.tokens);
+        let drawing = &drawn.drawing;
         let on_button = self.buttons(ui, panel, shown, drawing);
         let pointed = response
             .hover_pos()
@@ -156,7 +158,7 @@ impl Canvas {
 }
 
 /// The legend stands below the drawing.
-fn with_legend(mut bounds: layout::Rect) -> layout::Rect {
+fn with_legend(mut bounds: display::Rect) -> display::Rect {
     bounds.max.y += LEGEND_HEIGHT;
     bounds
 }

@@ -1,12 +1,10 @@
 //! One component's state machine: modes coloured by how likely they are, commanded transitions, faults dashed.
 
-use egui::{
-    Align2, FontId, Pos2, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
-};
-use layout::geometry::{distance_point_curve, flatten};
-use layout::look::arrow_head;
-use layout::machine::MODE_HEIGHT;
-use layout::{MachineArc, MachineDrawing, Piece, Point};
+use display::DisplayList;
+use display::geometry::distance_point_curve;
+use egui::{FontId, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use layout::list::machine::{ModeState, NAME_SIZE, machine_list};
+use layout::{MachineArc, MachineDrawing};
 use num_traits::ToPrimitive as _;
 use plant::{Component, ComponentId, Model};
 use theme::{Tokens, strong_family};
@@ -15,6 +13,7 @@ use workbench::state::automaton::{AutomatonCommand, PlantMoment};
 
 use super::components::percent;
 use crate::Context;
+use crate::painter::{DisplayPainter, Placement};
 
 /// A component's state machine, laid out.
 pub(super) struct Machine {
@@ -37,15 +36,11 @@ pub(super) struct Standing {
     pub(super) injected: Option<u8>,
 }
 
-const NAME_SIZE: f32 = 12.0;
-const PERCENT_SIZE: f32 = 9.5;
 /// A mode is at least so wide: it has to hold a percentage.
 const LEAST_WIDTH: f32 = 46.0;
 const MODE_PADDING: f32 = 9.0;
 /// How far from the pointer an arc may be to be pointed at, in points.
 const REACH: f64 = 5.0;
-/// How much of the accent the most certain mode has in its fill.
-const STRONGEST_FILL: f32 = 0.5;
 
 impl Machine {
     /// Lays a component out.
@@ -92,11 +87,11 @@ impl Machine {
         let scale = (ui.available_width() / self.width().max(1.0)).min(1.0);
         let size = vec2(ui.available_width(), self.height() * scale + 2.0);
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-        let placed = Placed::new(rect, &self.drawing, scale);
-        self.paint_arcs(ui, context.tokens, &placed, standing);
+        let placed = placement(rect, &self.drawing, scale);
+        DisplayPainter::new(ui.painter(), ui.clip_rect(), placed, context.tokens)
+            .paint(&[&self.list(component, standing)], Vec::new());
         for (mode, shape) in (0_u8..).zip(&self.drawing.modes) {
-            let rect = Rect::from_min_max(placed.screen(shape.min), placed.screen(shape.max));
-            paint_mode(ui, context.tokens, rect, component, standing, mode, scale);
+            let rect = placed.screen_rect(*shape);
             let id = ui.scope_id().with(("mode", standing.id.0, mode));
             let response = ui.interact(rect, id, Sense::click());
             act(ui, context.tokens, &response, component, standing, mode, commands);
@@ -107,39 +102,30 @@ impl Machine {
         }
     }
 
-    fn paint_arcs(&self, ui: &Ui, tokens: &Tokens, placed: &Placed, standing: &Standing) {
+    /// The display list of the machine as things stand.
+    fn list(&self, component: &Component, standing: &Standing) -> DisplayList {
+        let modes: Vec<ModeState> = (0_u8..)
+            .zip(&component.modes)
+            .map(|(mode, data)| ModeState {
+                name: data.name.as_str().into(),
+                likelihood: standing.likelihood(mode),
+                percent: percent(standing.likelihood(mode)).into(),
+                is_estimate: standing.estimate == mode,
+                is_true: standing.truth == mode,
+                is_injected: standing.injected == Some(mode),
+            })
+            .collect();
         let taken = standing.before.filter(|before| *before != standing.estimate);
-        for (arc, shape) in self.arcs.iter().zip(&self.drawing.arcs) {
-            let is_taken = taken.is_some_and(|from| {
-                (arc.from, arc.to) == (usize::from(from), usize::from(standing.estimate))
-            });
-            let color = match (is_taken, arc.is_fault) {
-                (true, true) => tokens.error,
-                (true, false) => tokens.accent,
-                (false, true) => tokens.warning,
-                (false, false) => tokens.text_muted,
-            };
-            let stroke = Stroke::new(if is_taken { 2.2 } else { 1.1 }, color);
-            let points: Vec<Pos2> =
-                flatten(shape.start, &shape.pieces).into_iter().map(|point| placed.screen(point)).collect();
-            if arc.is_fault {
-                ui.painter().extend(Shape::dashed_line(&points, stroke, 3.0, 2.5));
-            } else {
-                ui.painter().add(Shape::line(points, stroke));
-            }
-            if let Some((last, others)) = shape.pieces.split_last() {
-                let start = others.last().map_or(shape.start, |piece: &Piece| piece.end());
-                let corners = arrow_head(last.end(), last.before_end(start)).map(|at| placed.screen(at));
-                ui.painter().add(Shape::convex_polygon(corners.to_vec(), color, Stroke::NONE));
-            }
-        }
+        let taken = taken.map(|from| (usize::from(from), usize::from(standing.estimate)));
+        machine_list(&self.drawing, &self.arcs, &modes, taken)
     }
 
-    fn arc_at(&self, placed: &Placed, at: Pos2) -> Option<&str> {
-        let at = placed.drawing(at);
-        let near = self.drawing.arcs.iter().zip(&self.texts).map(|(shape, text)| {
-            (distance_point_curve(at, shape.start, &shape.pieces) * f64::from(placed.scale), text)
-        });
+    fn arc_at(&self, placed: &Placement, at: Pos2) -> Option<&str> {
+        let at = placed.drawing_point(at);
+        let near =
+            self.drawing.arcs.iter().zip(&self.texts).map(|(shape, text)| {
+                (distance_point_curve(at, shape.start, &shape.pieces) * placed.zoom, text)
+            });
         let nearest = near.min_by(|left, right| left.0.total_cmp(&right.0))?;
         (nearest.0 <= REACH).then_some(nearest.1.as_str())
     }
@@ -189,74 +175,17 @@ impl Standing {
     }
 }
 
-/// Where the drawing lies on the screen.
-struct Placed {
-    corner: Pos2,
-    origin: Point,
-    scale: f32,
-}
-
-impl Placed {
-    fn new(rect: Rect, drawing: &MachineDrawing, scale: f32) -> Self {
-        let left = (rect.width() - drawing.bounds.width() as f32 * scale) / 2.0;
-        let corner = pos2((rect.left() + left).round() + 0.5, rect.top() + 0.5);
-        Self { corner, origin: drawing.bounds.min, scale }
-    }
-
-    fn screen(&self, point: Point) -> Pos2 {
-        let (x, y) = (point.x - self.origin.x, point.y - self.origin.y);
-        self.corner + vec2(x as f32, y as f32) * self.scale
-    }
-
-    fn drawing(&self, at: Pos2) -> Point {
-        let moved = (at - self.corner) / self.scale;
-        self.origin.shifted(f64::from(moved.x), f64::from(moved.y))
-    }
+/// Where the drawing lies in `rect`: in its middle.
+fn placement(rect: Rect, drawing: &MachineDrawing, scale: f32) -> Placement {
+    let left = (rect.width() - drawing.bounds.width() as f32 * scale) / 2.0;
+    let at = pos2((rect.left() + left).round() + 0.5, rect.top() + 0.5);
+    Placement { point: drawing.bounds.min, at, zoom: f64::from(scale) }
 }
 
 fn width(ui: &Ui, name: &str) -> f64 {
-    let font = FontId::new(NAME_SIZE, strong_family());
+    let font = FontId::new(NAME_SIZE as f32, strong_family());
     let text = ui.painter().layout_no_wrap(name.to_owned(), font, ui.visuals().text_color());
     f64::from((text.size().x + 2.0 * MODE_PADDING).max(LEAST_WIDTH).ceil())
-}
-
-fn paint_mode(
-    ui: &Ui,
-    tokens: &Tokens,
-    rect: Rect,
-    component: &Component,
-    standing: &Standing,
-    mode: u8,
-    scale: f32,
-) {
-    let Some(data) = component.modes.get(usize::from(mode)) else { return };
-    let likelihood = standing.likelihood(mode);
-    let is_estimate = standing.estimate == mode;
-    let painter = ui.painter();
-    let corner = MODE_HEIGHT as f32 * scale / 2.0;
-    let fill = tokens.surface.lerp_to_gamma(tokens.accent, STRONGEST_FILL * likelihood as f32);
-    let stroke = match (standing.injected == Some(mode), is_estimate) {
-        (true, _) => Stroke::new(2.0, tokens.error),
-        (false, true) => Stroke::new(2.0, tokens.accent),
-        (false, false) => Stroke::new(1.0, tokens.line_strong),
-    };
-    painter.rect(rect, corner, fill, stroke, StrokeKind::Inside);
-    let color = if likelihood > 0.0 { tokens.text } else { tokens.text_muted };
-    let family = if is_estimate { strong_family() } else { egui::FontFamily::Proportional };
-    let font = FontId::new(NAME_SIZE * scale, family);
-    let is_open = likelihood > 0.0 && likelihood < 1.0;
-    let lift = if is_open { 5.0 * scale } else { 0.0 };
-    painter.text(rect.center() - vec2(0.0, lift), Align2::CENTER_CENTER, &data.name, font, color);
-    if is_open {
-        let font = FontId::proportional(PERCENT_SIZE * scale);
-        let at = rect.center() + vec2(0.0, 6.5 * scale);
-        painter.text(at, Align2::CENTER_CENTER, percent(likelihood), font, color);
-    }
-    if standing.truth == mode {
-        let color = if is_estimate { tokens.text } else { tokens.warning };
-        let at = rect.right_top() + vec2(-5.0, 4.0) * scale;
-        painter.circle(at, 4.0 * scale, color, Stroke::new(1.5, tokens.raised));
-    }
 }
 
 /// Lets a mode be pointed at, pressed, and heard.

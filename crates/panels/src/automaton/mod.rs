@@ -8,14 +8,15 @@ mod components;
 mod controls;
 mod evidence;
 mod known;
+mod legend;
 mod log;
 mod machine;
 mod marks;
-mod shapes;
 
+use display::{DisplayList, approximate_text_width};
 use egui::{Frame, Margin, RichText, ScrollArea, Ui, Vec2, vec2};
-use hca::Automaton;
-use layout::{AutomatonDrawing, approximate_text_width};
+use hca::{Automaton, CompositeId, Marking, TransitionId};
+use layout::{AutomatonDrawing, AutomatonItem, AutomatonState};
 use plant::Model;
 use theme::space;
 use workbench::command::CommandSender;
@@ -57,6 +58,40 @@ const LEAST_ROOM: Vec2 = vec2(760.0, 320.0);
 struct Drawn {
     automaton: Automaton,
     drawing: AutomatonDrawing,
+    /// The display list that was built last, and for what.
+    listed: Option<(Listed, DisplayList)>,
+}
+
+/// What a display list of an automaton was built for.
+#[derive(PartialEq)]
+struct Listed {
+    marking: Marking,
+    fired: Vec<TransitionId>,
+    preempted: Vec<CompositeId>,
+    selected: Vec<AutomatonItem>,
+}
+
+impl Drawn {
+    /// The display list at a moment with what is selected; built when either changes.
+    fn list(&mut self, moment: &Moment, selected: Vec<AutomatonItem>) -> &DisplayList {
+        let (fired, preempted) = moment
+            .taken
+            .as_ref()
+            .map_or_else(Default::default, |taken| (taken.fired.clone(), taken.preempted.clone()));
+        let wanted = Listed { marking: moment.marking.clone(), fired, preempted, selected };
+        let kept = self.listed.take().filter(|(listed, _)| *listed == wanted);
+        let (_, list) = self.listed.insert(kept.unwrap_or_else(|| {
+            let state = AutomatonState {
+                marking: Some(&wanted.marking),
+                fired: &wanted.fired,
+                preempted: &wanted.preempted,
+                selected: &wanted.selected,
+            };
+            let list = layout::automaton_list(&self.drawing, &self.automaton, &state).indexed();
+            (wanted, list)
+        }));
+        list
+    }
 }
 
 /// What the parts of the panel show.
@@ -157,8 +192,8 @@ impl AutomatonPanel {
         shown: Shown<'_>,
         commands: &mut CommandSender,
     ) {
-        if let Some(drawn) = &self.drawn {
-            self.canvas.show(ui, context, shown, &drawn.drawing, commands);
+        if let Some(drawn) = &mut self.drawn {
+            self.canvas.show(ui, context, shown, drawn, commands);
         }
     }
 
@@ -207,7 +242,7 @@ impl AutomatonPanel {
             return;
         }
         let drawing = layout::automaton(automaton, &approximate_text_width);
-        self.drawn = Some(Drawn { automaton: automaton.clone(), drawing });
+        self.drawn = Some(Drawn { automaton: automaton.clone(), drawing, listed: None });
     }
 }
 

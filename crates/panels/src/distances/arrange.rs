@@ -1,7 +1,7 @@
 //! Where the vertices of a distance graph stand: in columns, each after those that come before it, and ordered within
 //! them so that edges cross little, after Sugiyama, Tagawa and Toda (1981).
 
-use layout::{Point, Rect};
+use display::{Point, Rect};
 
 use super::graph::{DistanceGraph, Edge};
 

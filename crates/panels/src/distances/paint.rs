@@ -1,9 +1,9 @@
 //! Paints a distance graph: names in boxes, bounds as curves with their weights, the negative cycle over all.
 
+use display::Point;
+use display::text::TEXT_SIZE;
 use egui::{Align2, Color32, FontId, Pos2, Rect, Shape, Stroke, StrokeKind, vec2};
 use kirk::Constraint;
-use layout::Point;
-use layout::metrics::TEXT_SIZE;
 use rmpl::Rational;
 use theme::{Tokens, size};
 use tpn::Network;
@@ -60,7 +60,7 @@ pub fn width(vertex: &Vertex) -> f64 {
         return 2.0 * DOT;
     }
     // Measured in another size than the one that is drawn; the shape of letters is the same.
-    f64::from(layout::approximate_text_width(&vertex.name)) * f64::from(size::BODY) / TEXT_SIZE + 18.0
+    f64::from(display::approximate_text_width(&vertex.name)) * f64::from(size::BODY) / TEXT_SIZE + 18.0
 }
 
 impl Scene<'_> {

@@ -3,27 +3,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use display::{DisplayList, Piece, Point, approximate_text_width};
 use layout::overlay::{causal_links, negative_cycle, orderings, threats, windows};
-use layout::threads;
-use layout::{NetworkDrawing, Options, OverlayCurve, Piece, Point, TextShape, approximate_text_width};
+use layout::{NetworkDrawing, NetworkState, Options, OverlayCurve, TextShape};
 use mission::{Planning, Snapshot};
-use smol_str::SmolStr;
 use tpn::{BlockId, BlockKind, Network, NodeId, Plan};
 use workbench::state::search::View;
 use workbench::state::selection::node_name;
+use workbench::state::settings::NetworkView;
 
 use super::marks::{Mark, marks};
-
-/// The band of a parallel branch.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Lane {
-    /// Where it is.
-    pub(super) rect: layout::Rect,
-    /// Its name.
-    pub(super) name: SmolStr,
-    /// Which of its fork's branches it is, from 1.
-    pub(super) number: usize,
-}
 
 /// A drawing with what lies over it.
 #[derive(Default)]
@@ -43,8 +32,6 @@ pub(super) struct Drawn {
     pub(super) cycle: Vec<OverlayCurve>,
     /// Pairs of conditions that leave no plan because they cannot be kept apart.
     pub(super) threats: Vec<OverlayCurve>,
-    /// The bands of the parallel branches.
-    pub(super) lanes: Vec<Lane>,
     /// Problems at their places.
     pub(super) marks: Vec<Mark>,
     /// The revision and stage of the problems.
@@ -59,6 +46,20 @@ pub(super) struct Drawn {
     pub(super) outline: Vec<(Point, Point)>,
     /// Grows whenever the drawing changes.
     pub(super) version: u64,
+    /// Grows whenever what lies over it changes.
+    laid_over: u64,
+    /// The display list, and what it was built for.
+    pub(super) list: DisplayList,
+    listed: Option<Listed>,
+}
+
+/// What a display list was built for: the drawing, what lies over it, whether there is a plan, and what is shown.
+#[derive(PartialEq)]
+struct Listed {
+    version: u64,
+    laid_over: u64,
+    has_plan: bool,
+    options: NetworkView,
 }
 
 impl Drawn {
@@ -80,7 +81,6 @@ impl Drawn {
             self.drawing = layout::network(network, &options, &approximate_text_width);
             self.sliding = sliding_texts(&self.drawing);
             self.outline = outline(&self.drawing, network);
-            self.lanes = lanes(&self.drawing, network);
             self.network = Some(Arc::clone(network));
             self.collapsed.clone_from(collapsed);
             self.version += 1;
@@ -105,6 +105,7 @@ impl Drawn {
             Some((pins, pinned)) => {
                 if is_new || !same_planning || !same_step || self.pins != Some(pins) {
                     self.pins = Some(pins);
+                    self.laid_over += 1;
                     let plan = step.map(|view| view.plan.as_ref()).or(pinned).or_else(|| snapshot.plan());
                     let plan = plan.filter(|plan| fits(plan, network));
                     let width = Options::default().window_width;
@@ -124,7 +125,25 @@ impl Drawn {
         is_new
     }
 
+    /// Builds the display list, unless it is that of the same content. `plan` is the one that was followed.
+    pub(super) fn list(&mut self, network: &Network, plan: Option<&Plan>, options: &NetworkView) {
+        let (version, laid_over) = (self.version, self.laid_over);
+        let wanted = Listed { version, laid_over, has_plan: plan.is_some(), options: options.clone() };
+        if self.listed.as_ref() == Some(&wanted) {
+            return;
+        }
+        let links = options.links.then_some(&self.links);
+        let orderings = options.orderings.then_some(&self.orderings);
+        let curves = links.into_iter().chain(orderings).chain([&self.cycle, &self.threats]);
+        let overlays: Vec<OverlayCurve> = curves.flatten().cloned().collect();
+        let notes = if options.windows { self.windows.as_slice() } else { &[] };
+        let state = NetworkState { plan, overlays: &overlays, notes, parts: options.parts() };
+        self.list = layout::network_list(&self.drawing, network, &state).indexed();
+        self.listed = Some(wanted);
+    }
+
     fn lay_over(&mut self, network: &Network, snapshot: &Snapshot, step: Option<&View>) {
+        self.laid_over += 1;
         self.links.clear();
         self.orderings.clear();
         self.threats.clear();
@@ -170,18 +189,6 @@ fn unresolved_threats(snapshot: &Snapshot) -> Vec<[tpn::LabelId; 2]> {
             Some([conditions.next()?, conditions.next()?])
         })
         .collect()
-}
-
-fn lanes(drawing: &NetworkDrawing, network: &Network) -> Vec<Lane> {
-    let shapes = drawing.blocks.iter().filter(|it| it.form == layout::BlockForm::Lane);
-    let shapes: BTreeMap<_, _> = shapes.filter_map(|lane| Some((lane.block?, lane.rect))).collect();
-    let threads = threads::threads(network);
-    let named = threads.iter().enumerate().filter_map(|(at, thread)| {
-        let rect = *shapes.get(&thread.block?)?;
-        let name = threads::thread_name(network, &threads[at..]).unwrap_or_default();
-        Some(Lane { rect, name, number: thread.path.last().copied().unwrap_or(0) as usize })
-    });
-    named.collect()
 }
 
 /// The names of the outermost activities inside the mission.

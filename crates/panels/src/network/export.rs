@@ -1,6 +1,8 @@
 //! The drawing as a file: the same display list that is painted, as an SVG, from which a PNG is made.
 
-use layout::{Palette, Progress, SvgOptions};
+use display::DisplayList;
+use layout::list::network::progress_list;
+use layout::{NetworkState, Progress};
 use tpn::{Network, Plan};
 use workbench::command::{Command, PictureFormat};
 use workbench::state::settings::NetworkView;
@@ -9,9 +11,9 @@ use super::data::Drawn;
 use crate::Context;
 
 /// Longer sides than this are more than browsers draw.
-const LONGEST_SIDE: f64 = 16_000.0;
+const MAX_SIDE: f64 = 16_000.0;
 /// More pixels than this are more than browsers draw.
-const MOST_PIXELS: f64 = 120e6;
+const MAX_PIXELS: f64 = 120e6;
 /// Pixels per unit of the drawing, where that is not too large.
 const FINEST: f64 = 2.0;
 
@@ -40,8 +42,8 @@ pub(super) fn save(
 
 /// As fine as can be without being more than browsers draw.
 pub(super) fn pixels_per_unit(width: f64, height: f64) -> f64 {
-    let by_side = LONGEST_SIDE / width.max(height).max(1.0);
-    let by_area = (MOST_PIXELS / (width * height).max(1.0)).sqrt();
+    let by_side = MAX_SIDE / width.max(height).max(1.0);
+    let by_area = (MAX_PIXELS / (width * height).max(1.0)).sqrt();
     FINEST.min(by_side).min(by_area)
 }
 
@@ -53,21 +55,11 @@ fn svg(
     progress: Option<&Progress>,
     view: &NetworkView,
 ) -> String {
-    let links = view.links.then_some(&drawn.links);
-    let orderings = view.orderings.then_some(&drawn.orderings);
-    let curves = links.into_iter().chain(orderings).chain([&drawn.cycle, &drawn.threats]);
-    let overlays: Vec<_> = curves.flatten().cloned().collect();
-    let palette = if context.tokens.is_dark { &Palette::DARK } else { &Palette::LIGHT };
-    let options = SvgOptions {
-        palette,
-        plan,
-        overlays: &overlays,
-        notes: if view.windows { &drawn.windows } else { &[] },
-        parts: view.parts(),
-        progress,
-        title: &format!("Network of {}", context.state.mission),
-    };
-    layout::svg(&drawn.drawing, network, &options)
+    let state = NetworkState { plan, parts: view.parts(), ..NetworkState::default() };
+    let progress = progress.map(|it| progress_list(&drawn.drawing, network, &state, it, None));
+    let lists: Vec<&DisplayList> = std::iter::once(&drawn.list).chain(&progress).collect();
+    let title = format!("Network of {}", context.state.mission);
+    display::svg(&lists, context.tokens.exported(), &title)
 }
 
 #[cfg(test)]
@@ -79,8 +71,8 @@ mod tests {
         assert_eq!(pixels_per_unit(800.0, 300.0), 2.0);
         for (width, height) in [(400_000.0, 3_000.0), (30_000.0, 20_000.0), (10.0, 90_000.0)] {
             let scale = pixels_per_unit(width, height);
-            assert!(width.max(height) * scale <= LONGEST_SIDE + 1.0);
-            assert!(width * height * scale * scale <= MOST_PIXELS + 1.0);
+            assert!(width.max(height) * scale <= MAX_SIDE + 1.0);
+            assert!(width * height * scale * scale <= MAX_PIXELS + 1.0);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Which shapes show a selection, and what a place of the drawing selects.
 
-use layout::{Item, NetworkDrawing, Rect};
+use display::Rect;
+use layout::{Item, NetworkDrawing};
 use tpn::{ArcId, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind};
 use workbench::state::Selection;
 use workbench::state::search::Focus;

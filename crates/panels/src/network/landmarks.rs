@@ -60,7 +60,7 @@ fn in_view(panel: Rect, view: &View, drawn: &Drawn, network: &Network) -> Vec<(R
     let area = view.visible(panel);
     let inset = 16.0 / view.zoom();
     let mut found: Vec<(Rect, Selection)> = Vec::new();
-    let mut add = |rect: layout::Rect, selection: Selection| {
+    let mut add = |rect: display::Rect, selection: Selection| {
         let rect = view.screen_rect(panel, rect).intersect(panel);
         let is_new = found.last().is_none_or(|(_, last)| *last != selection);
         if rect.height() >= LEAST_HEIGHT && rect.width() > 0.0 && is_new {
@@ -82,7 +82,7 @@ fn in_view(panel: Rect, view: &View, drawn: &Drawn, network: &Network) -> Vec<(R
         layout::Shape::Node(at) => {
             let node = &drawing.nodes[at as usize];
             if let selection @ Selection::Decision(_) = selection_of(Item::Node(node.id), network) {
-                add(layout::Rect::around(node.center, node.radius), selection);
+                add(display::Rect::around(node.center, node.radius), selection);
             }
         }
         layout::Shape::Arc(at) => arches.extend(drawn.sliding.get(&at)),

@@ -1,7 +1,8 @@
 //! Problems of the text as marks on the drawing, which may belong to an older text than they do.
 
+use display::Point;
 use egui::{Align2, FontId, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
-use layout::{NetworkDrawing, Point};
+use layout::NetworkDrawing;
 use mission::Snapshot;
 use rmpl::{Severity, Span};
 use theme::Tokens;
@@ -196,7 +197,7 @@ fn place_on(drawing: &NetworkDrawing, network: &Network, arc: ArcId) -> Point {
     let Some(shape) = drawing.arc(arc) else {
         return network.arcs.get(arc.index()).map_or(Point::default(), |arc| drawing.anchor(arc.from));
     };
-    let most = layout::geometry::first_part(shape.start, drawing.pieces(shape), 0.8);
+    let most = display::geometry::first_part(shape.start, drawing.pieces(shape), 0.8);
     most.last().map_or(shape.start, |piece| piece.end())
 }
 

@@ -1,7 +1,8 @@
 //! The overview in the corner: all of the drawing, and the part that is seen.
 
+use display::Point;
 use egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
-use layout::{BlockForm, Point};
+use layout::BlockForm;
 use theme::Tokens;
 
 use super::data::Drawn;
@@ -73,7 +74,7 @@ pub(super) fn point_at(place: Rect, drawn: &Drawn, position: Pos2) -> Point {
 }
 
 /// The activities as one mesh; those that fall onto the same two pixels are drawn once.
-fn lines(drawn: &Drawn, bounds: layout::Rect, inner: Rect, color: Color32) -> Mesh {
+fn lines(drawn: &Drawn, bounds: display::Rect, inner: Rect, color: Color32) -> Mesh {
     let mut mesh = Mesh::default();
     let mut last = (i32::MIN, i32::MIN);
     for (from, to) in &drawn.outline {

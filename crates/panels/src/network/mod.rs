@@ -8,7 +8,6 @@ mod describe;
 mod export;
 mod highlight;
 mod landmarks;
-mod level;
 mod marks;
 mod minimap;
 mod paint;
@@ -19,8 +18,9 @@ pub(crate) mod view;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use display::Point;
 use egui::{CursorIcon, Key, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo, vec2};
-use layout::{Item, OverlayCurve, OverlayKind, Point, Progress};
+use layout::{Item, OverlayCurve, OverlayKind, Progress};
 use mission::Snapshot;
 use tpn::{BlockId, Network, Plan};
 use workbench::command::{Command, CommandSender, ViewAction};
@@ -35,6 +35,7 @@ use self::search::Search;
 use self::toolbar::Asked;
 use self::view::View;
 use super::{Context, Panel, show_empty};
+use crate::painter::DisplayPainter;
 
 /// The network panel.
 #[derive(Default)]
@@ -127,6 +128,7 @@ impl NetworkPanel {
         commands: &mut CommandSender,
     ) {
         let plan = context.plan().map(|(_, plan)| plan).filter(|plan| fits(plan, network));
+        self.drawn.list(network, plan, options);
         let now = context.state.playback.time;
         let is_timed = options.now && now > 0.0 && context.step().is_none();
         let progress = plan.filter(|_| is_timed).map(|plan| Progress::at(network, plan, now));
@@ -159,21 +161,17 @@ impl NetworkPanel {
         let marks = options.problems.then(|| marks::Groups::new(panel, &self.view, &self.drawn.marks));
         let marked: Vec<Rect> = marks.iter().flat_map(marks::Groups::rects).collect();
         let scene = Scene {
-            painter: &painter,
-            panel,
-            view: &self.view,
             drawn: &self.drawn,
             network,
             plan,
             options,
-            tokens: context.tokens,
             selected: &selected,
             hovered: &hovered,
             focus: focus.as_ref(),
             progress: progress.as_ref(),
-            marks: &marked,
         };
-        scene.paint();
+        scene
+            .paint(&DisplayPainter::new(&painter, panel, self.view.placement(panel), context.tokens), marked);
         if let Some(groups) = &marks {
             marks::show(ui, panel, groups, &self.drawn.marks, context.tokens, commands);
         }
@@ -408,7 +406,7 @@ fn distance(curve: &OverlayCurve, point: Point, reach: f64) -> f64 {
     if !curve.bounds.expanded(reach).contains(point) {
         return f64::INFINITY;
     }
-    layout::geometry::distance_point_curve(point, curve.start, &curve.pieces)
+    display::geometry::distance_point_curve(point, curve.start, &curve.pieces)
 }
 
 fn overlay_selection(curve: &OverlayCurve, plan: &Plan) -> Option<Selection> {

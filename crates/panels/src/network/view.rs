@@ -1,7 +1,9 @@
 //! Which part of the drawing is seen, and how large.
 
+use display::Point;
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
-use layout::Point;
+
+use crate::painter::Placement;
 
 /// A view of the drawing: the point in the middle, and points of the screen per unit of the drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,26 +38,29 @@ impl View {
         self.is_fitted
     }
 
+    /// Where the drawing lies on the screen.
+    pub(crate) fn placement(&self, panel: Rect) -> Placement {
+        Placement { point: self.center, at: panel.center(), zoom: self.zoom }
+    }
+
     /// Where a point of the drawing is on the screen.
     pub(crate) fn screen_point(&self, panel: Rect, point: Point) -> Pos2 {
-        let offset = ((point.x - self.center.x) * self.zoom, (point.y - self.center.y) * self.zoom);
-        panel.center() + vec2(offset.0 as f32, offset.1 as f32)
+        self.placement(panel).screen_point(point)
     }
 
     /// Where a rectangle of the drawing is on the screen.
-    pub(crate) fn screen_rect(&self, panel: Rect, rect: layout::Rect) -> Rect {
-        Rect::from_min_max(self.screen_point(panel, rect.min), self.screen_point(panel, rect.max))
+    pub(crate) fn screen_rect(&self, panel: Rect, rect: display::Rect) -> Rect {
+        self.placement(panel).screen_rect(rect)
     }
 
     /// What point of the drawing is at a place of the screen.
     pub(crate) fn drawing_point(&self, panel: Rect, position: Pos2) -> Point {
-        let offset = position - panel.center();
-        self.center.shifted(f64::from(offset.x) / self.zoom, f64::from(offset.y) / self.zoom)
+        self.placement(panel).drawing_point(position)
     }
 
     /// The part of the drawing that is seen.
-    pub(crate) fn visible(&self, panel: Rect) -> layout::Rect {
-        layout::Rect { min: self.drawing_point(panel, panel.min), max: self.drawing_point(panel, panel.max) }
+    pub(crate) fn visible(&self, panel: Rect) -> display::Rect {
+        self.placement(panel).drawing_rect(panel)
     }
 
     /// Moves the drawing by a distance on the screen.
@@ -82,13 +87,13 @@ impl View {
     }
 
     /// Shows all of `bounds`, and keeps doing so until the user moves the view.
-    pub(crate) fn fit(&mut self, panel: Rect, bounds: layout::Rect) {
+    pub(crate) fn fit(&mut self, panel: Rect, bounds: display::Rect) {
         self.show(panel, bounds, LARGEST_FIT);
         self.is_fitted = true;
     }
 
     /// Shows `area` as large as it goes, up to `largest`.
-    pub(crate) fn show(&mut self, panel: Rect, area: layout::Rect, largest: f64) {
+    pub(crate) fn show(&mut self, panel: Rect, area: display::Rect, largest: f64) {
         let room = panel.shrink(FIT_MARGIN).size().max(vec2(1.0, 1.0));
         let across = f64::from(room.x) / area.width().max(1.0);
         let down = f64::from(room.y) / area.height().max(1.0);
@@ -105,7 +110,7 @@ impl View {
 }
 
 /// The place of the screen with these coordinates inside `outer`, for a point of `bounds`; used by the overview.
-pub(crate) fn scaled(bounds: layout::Rect, outer: Rect, point: Point) -> Pos2 {
+pub(crate) fn scaled(bounds: display::Rect, outer: Rect, point: Point) -> Pos2 {
     let across = ((point.x - bounds.min.x) / bounds.width().max(1.0)) as f32;
     let down = ((point.y - bounds.min.y) / bounds.height().max(1.0)) as f32;
     pos2(outer.left() + across * outer.width(), outer.top() + down * outer.height())
@@ -130,7 +135,7 @@ mod tests {
     #[test]
     fn a_fitted_drawing_lies_inside_the_panel_with_its_middle_in_the_middle() {
         let mut view = View::default();
-        let bounds = layout::Rect::new(-30.0, -500.0, 4000.0, 700.0);
+        let bounds = display::Rect::new(-30.0, -500.0, 4000.0, 700.0);
         view.fit(PANEL, bounds);
         let shown = view.screen_rect(PANEL, bounds);
         assert!(PANEL.contains_rect(shown) && (shown.center() - PANEL.center()).length() < 0.01);

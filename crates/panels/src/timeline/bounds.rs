@@ -3,12 +3,12 @@
 use std::ops::Range;
 
 use egui::{CursorIcon, Rect, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use layout::timeline::Bar;
 use rmpl::{Edit, Rational, Span};
 use workbench::command::{Command, CommandSender};
 use workbench::state::EditKind;
 use workbench::state::playback::{bound, number};
 
-use super::chart::Bar;
 use super::handle::round_time;
 use super::paint::{Painting, note};
 

@@ -1,6 +1,8 @@
 //! The row of buttons above the timeline: playing, the time, what is shown, zoom.
 
 use egui::{Button, ComboBox, Frame, Margin, RichText, Ui};
+
+use layout::timeline::Grouping;
 use rmpl::program::TimeUnit;
 use theme::icon::{self, Icon};
 use theme::space;
@@ -8,7 +10,6 @@ use tpn::{Network, OccurrenceKind};
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, ViewAction};
 use workbench::state::PinCommand;
-use workbench::state::settings::Grouping;
 use workbench::time_text;
 use workbench::transport::TransportCommand;
 
@@ -53,7 +54,7 @@ fn range(ui: &mut Ui, context: &Context<'_>, network: &Network, commands: &mut C
     let (Some([from, to]), Some((_, plan))) = (context.state.time_range, context.plan()) else { return };
     let mut counts = [0_usize; 2];
     for occurrence in network.occurrences.iter().filter(|it| it.kind == OccurrenceKind::Primitive) {
-        let Some([start, end]) = super::chart::times(plan, [occurrence.start, occurrence.end]) else {
+        let Some([start, end]) = layout::timeline::times(plan, [occurrence.start, occurrence.end]) else {
             continue;
         };
         counts[0] += usize::from(start[0] <= to && end[1] >= from);

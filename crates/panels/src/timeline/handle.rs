@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use egui::{
     CursorIcon, EventFilter, Key, Rect, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
+use layout::timeline::Bar;
 use rmpl::Rational;
 use tpn::{EventEnd, EventRef, NodeId};
 use workbench::command::{Command, CommandSender};
@@ -13,7 +14,6 @@ use workbench::state::pins::event_name;
 use workbench::state::playback::{bound, number};
 use workbench::time_text;
 
-use super::chart::Bar;
 use super::paint::{Painting, note};
 use super::view::TimeView;
 use crate::Context;

@@ -1,126 +1,39 @@
-//! Causal links and orderings between bars: drawn, and pointed at.
+//! Causal links and orderings between bars: what is pointed at, and what is chosen.
 
-use egui::epaint::CubicBezierShape;
-use egui::{Color32, Painter, Pos2, Shape, Stroke, pos2, vec2};
+use display::Point;
+use display::geometry::distance_point_curve;
+use egui::Pos2;
+use layout::list::timeline::LinkCurve;
+use layout::timeline::{Link, LinkKind};
 use workbench::state::Selection;
 
-use super::chart::{Link, LinkKind};
-use super::paint::{Painting, ROW_HEIGHT};
+use super::paint::Painting;
 
-/// With more links in view than this, they are drawn thin and faint, but for those of the selection.
-const MANY: usize = 60;
-/// With more than this, only those of the selection are drawn.
-const TOO_MANY: usize = 1500;
 /// How near the pointer must be.
-const REACH: f32 = 5.0;
+const REACH: f64 = 5.0;
 
-/// The links in view, as curves.
-pub(super) struct Links<'a> {
-    curves: Vec<(&'a Link, [Pos2; 4])>,
+/// The link under the pointer.
+pub(super) fn at<'a>(curves: &[LinkCurve<'a>], pointer: Pos2) -> Option<&'a Link> {
+    let pointer = Point::new(f64::from(pointer.x), f64::from(pointer.y));
+    let distance = |curve: &LinkCurve<'_>| distance_point_curve(pointer, curve.start, &[curve.piece]);
+    let nearest = curves.iter().map(|curve| (distance(curve), curve.link));
+    nearest.filter(|(distance, _)| *distance <= REACH).min_by(|a, b| a.0.total_cmp(&b.0)).map(|it| it.1)
 }
 
-impl<'a> Links<'a> {
-    /// The links of a chart that can be seen.
-    pub(super) fn in_view(painting: &Painting<'a>) -> Self {
-        let first = ((painting.visible.top() - painting.track.top()) / ROW_HEIGHT).floor().max(0.0) as usize;
-        let last = ((painting.visible.bottom() - painting.track.top()) / ROW_HEIGHT).ceil().max(0.0) as usize;
-        let mut curves = Vec::new();
-        for link in &painting.chart.links {
-            let (top, bottom) = (link.from.0.min(link.to.0), link.from.0.max(link.to.0));
-            if bottom < first || top > last {
-                continue;
-            }
-            let curve = curve_of(painting, link);
-            let (left, right) = curve
-                .iter()
-                .fold((f32::MAX, f32::MIN), |(left, right), point| (left.min(point.x), right.max(point.x)));
-            if right >= painting.visible.left() && left <= painting.visible.right() {
-                curves.push((link, curve));
-            }
-        }
-        Self { curves }
-    }
-
-    /// The link under the pointer.
-    pub(super) fn at(&self, pointer: Pos2) -> Option<&'a Link> {
-        let nearest = self.curves.iter().map(|(link, curve)| (distance(*curve, pointer), *link));
-        nearest.filter(|(distance, _)| *distance <= REACH).min_by(|a, b| a.0.total_cmp(&b.0)).map(|it| it.1)
-    }
-
-    /// Draws the links.
-    pub(super) fn paint(&self, painting: &Painting<'_>, painter: &Painter) {
-        let state = painting.context.state;
-        let is_crowded = self.curves.len() > MANY;
-        for (link, curve) in &self.curves {
-            let selection = link.kind.selection();
-            let touches = |chosen: &Selection| {
-                let owners = [link.from.1, link.to.1].map(|bar| painting.chart.bars[bar].occurrence);
-                *chosen == selection
-                    || owners.into_iter().flatten().any(|owner| *chosen == Selection::Occurrence(owner))
-            };
-            let is_chosen = touches(&state.selection) || touches(&state.hovered);
-            if self.curves.len() > TOO_MANY && !is_chosen {
-                continue;
-            }
-            let (color, dash) = match link.kind {
-                LinkKind::Causal(_) => (painting.context.tokens.link, [5.0, 3.0]),
-                LinkKind::Ordering(_) => (painting.context.tokens.ordering, [2.0, 3.0]),
-            };
-            if is_crowded && !is_chosen {
-                let stroke = Stroke::new(1.0, color.gamma_multiply(0.25));
-                let shape = CubicBezierShape::from_points_stroke(*curve, false, Color32::TRANSPARENT, stroke);
-                painter.add(Shape::CubicBezier(shape));
-            } else {
-                dashed(painter, *curve, Stroke::new(if is_chosen { 2.5 } else { 1.4 }, color), dash);
-            }
-        }
+/// What a click on a link selects.
+pub(super) fn selection(kind: LinkKind) -> Selection {
+    match kind {
+        LinkKind::Causal(link) => Selection::Link(link),
+        LinkKind::Ordering(ordering) => Selection::Ordering(ordering),
     }
 }
 
-/// From the bar that carries or comes first to the other, sideways out and in.
-fn curve_of(painting: &Painting<'_>, link: &Link) -> [Pos2; 4] {
-    let [from, to] =
-        [link.from, link.to].map(|(row, bar)| (painting.row(row).center().y, &painting.chart.bars[bar]));
-    let (from, to) = match link.kind {
-        LinkKind::Causal(_) => {
-            let x = painting.x(to.1.start[0]) + 3.0;
-            (pos2(x, from.0), pos2(x, to.0))
-        }
-        LinkKind::Ordering(_) => {
-            (pos2(painting.x(from.1.end[0]), from.0), pos2(painting.x(to.1.start[0]), to.0))
-        }
+/// Whether a link, or a bar at one of its ends, is selected or pointed at.
+pub(super) fn is_chosen(painting: &Painting<'_>, link: &Link) -> bool {
+    let (state, own) = (painting.context.state, selection(link.kind));
+    let touches = |chosen: &Selection| {
+        let owners = [link.from.1, link.to.1].map(|bar| painting.chart.bars[bar].occurrence);
+        *chosen == own || owners.into_iter().flatten().any(|owner| *chosen == Selection::Occurrence(owner))
     };
-    let bow = vec2(((to.y - from.y).abs() * 0.3).clamp(14.0, 46.0), 0.0);
-    let first = if (to.x - from.x).abs() < 40.0 { from - bow } else { from + bow };
-    [from, first, to - bow, to]
-}
-
-fn at([a, b, c, d]: [Pos2; 4], part: f32) -> Pos2 {
-    let rest = 1.0 - part;
-    let weights =
-        [rest * rest * rest, 3.0 * rest * rest * part, 3.0 * rest * part * part, part * part * part];
-    let sum = a.to_vec2() * weights[0]
-        + b.to_vec2() * weights[1]
-        + c.to_vec2() * weights[2]
-        + d.to_vec2() * weights[3];
-    sum.to_pos2()
-}
-
-fn distance(curve: [Pos2; 4], pointer: Pos2) -> f32 {
-    let steps = 16;
-    let points = (0..=steps).map(|step| at(curve, step as f32 / steps as f32)).collect::<Vec<_>>();
-    let to_segment = |pair: &[Pos2]| {
-        let along = pair[1] - pair[0];
-        let part = (pointer - pair[0]).dot(along) / along.length_sq().max(1e-6);
-        (pair[0] + along * part.clamp(0.0, 1.0)).distance(pointer)
-    };
-    points.windows(2).map(to_segment).fold(f32::MAX, f32::min)
-}
-
-fn dashed(painter: &Painter, curve: [Pos2; 4], stroke: Stroke, [dash, gap]: [f32; 2]) {
-    let shape = CubicBezierShape::from_points_stroke(curve, false, Color32::TRANSPARENT, stroke);
-    painter.extend(Shape::dashed_line(&shape.flatten(Some(0.3)), stroke, dash, gap));
-    let tip = curve[3];
-    let head = vec![tip, tip + vec2(-6.0, -3.5), tip + vec2(-6.0, 3.5)];
-    painter.add(Shape::convex_polygon(head, stroke.color, Stroke::NONE));
+    touches(&state.selection) || touches(&state.hovered)
 }

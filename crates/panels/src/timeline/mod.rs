@@ -1,26 +1,25 @@
 //! The timeline: activities and conditions as bars with their flexible starts and ends, and time as it plays.
 //!
-//! `chart` says which bars there are, `group` in which rows; both are prepared once for a plan. `paint` and `link` draw
-//! what is in view, `handle` drags events inside their windows, `bounds` drags bounds in the text.
+//! Which bars there are and in which rows is prepared once for a plan; what is in view of them is a display list. `handle`
+//! drags events inside their windows, `bounds` drags bounds in the text.
 
+mod bar;
 mod bounds;
-mod chart;
 pub(crate) mod controls;
-mod group;
 mod handle;
-mod hatch;
 mod link;
 mod overview;
 mod paint;
-pub(crate) mod ticks;
 mod view;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use egui::{
     CursorIcon, PointerButton, Rect, Response, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
+use layout::list::timeline::{LinkCurve, Standing, TimelineState, timeline_list};
+use layout::timeline::{Bar, Chart, Row, RowKind, times};
 use mission::Snapshot;
 use smol_str::SmolStr;
 use tpn::{LabelId, Network, Plan};
@@ -31,10 +30,9 @@ use workbench::state::settings::TimelineView;
 use workbench::time_text;
 
 use self::bounds::BoundDrag;
-use self::chart::{Bar, Chart, RowKind};
 use self::handle::Pinned;
-use self::link::Links;
 use self::overview::Silhouette;
+pub(crate) use self::paint::drawn;
 use self::paint::{Painting, ROW_HEIGHT};
 use self::view::TimeView;
 use crate::{Context, Panel, show_empty};
@@ -124,7 +122,7 @@ impl TimelinePanel {
         if !is_current {
             // Pinned events only narrow windows: rows are those of the plan without them.
             let free = if step.is_none() { snapshot.plan().unwrap_or(plan) } else { plan };
-            let mut chart = Chart::new(snapshot, network, free, view, &self.closed);
+            let mut chart = Chart::new(&snapshot.program, network, free, view.chart(), &self.closed);
             let silhouette = Silhouette::new(&chart);
             chart.retime(plan);
             let (snapshot, closed, view) = (Arc::clone(snapshot), self.closed.clone(), view.clone());
@@ -157,7 +155,7 @@ impl TimelinePanel {
         self.follow_request(context, (network, plan), axis, horizon, &mut view);
         self.follow_axis(ui, axis, view, commands);
         let unit = context.snapshot.map_or("", |it| time_text::unit(it.program.options.time_unit));
-        paint::axis(ui, context, axis, &view, unit);
+        paint::axis(ui, context, axis, &view, (unit, rect.left()));
 
         let below = Rect::from_min_max(pos2(rect.left(), axis.bottom()), rect.max);
         let mut lower = ui.new_child(UiBuilder::new().max_rect(below));
@@ -171,18 +169,15 @@ impl TimelinePanel {
             let (area, _) = ui.allocate_exact_size(vec2(below.width(), height), Sense::hover());
             let track = Rect::from_min_max(pos2(axis.left(), area.top()), pos2(axis.right(), area.bottom()));
             let visible = track.intersect(below);
-            let painting =
-                Painting { context, network, chart, view: &view, track, visible, names_left: area.left() };
-            let links = if context.state.settings.views.timeline.links {
-                Some(Links::in_view(&painting))
-            } else {
-                None
-            };
+            let place = paint::place(&view, track, visible, area.left());
+            let painting = Painting { context, network, chart, view: &view, track, visible, place };
+            let links =
+                if context.state.settings.views.timeline.links { place.links(chart) } else { Vec::new() };
             let mut moved = view;
-            self.navigate(ui, &painting, horizon, links.as_ref(), &mut moved, commands);
+            self.navigate(ui, &painting, horizon, &links, &mut moved, commands);
             let first = (viewport.top() / ROW_HEIGHT).floor().max(0.0) as usize;
             let last = ((viewport.bottom() / ROW_HEIGHT).ceil().max(0.0) as usize).min(chart.rows.len());
-            self.show_rows(ui, &painting, plan, first..last, links.as_ref(), commands);
+            self.show_rows(ui, &painting, plan, first..last, &links, commands);
             self.follow_selection(ui, &painting);
             view = moved;
         });
@@ -201,27 +196,24 @@ impl TimelinePanel {
         painting: &Painting<'_>,
         plan: &Plan,
         rows: std::ops::Range<usize>,
-        links: Option<&Links<'_>>,
+        links: &[LinkCurve<'_>],
         commands: &mut CommandSender,
     ) {
         let state = painting.context.state;
         let pinned: Pinned = state.pins.all().into_iter().collect();
-        painting.grid(ui);
-        let painter = painting.on_track(ui);
+        let (mut of_rows, mut of_bars) = (Vec::new(), BTreeMap::new());
         let mut handles = Vec::new();
         let mut chosen = None;
-        for index in rows {
-            let row = painting.row(index);
+        for index in rows.clone() {
             let shown = &painting.chart.rows[index];
             let bars = shown.bars.clone().map(|at| (at, &painting.chart.bars[at]));
             let is_row_selected = shown.kind == RowKind::Single
                 && bars.clone().any(|(_, bar)| is_chosen(bar, &state.selection, painting.network));
             let is_row_hovered = self.show_row(ui, painting, plan, index, is_row_selected, commands);
-            painting.row_ground(ui, shown, row, is_row_selected, is_row_hovered);
-            painting.name(ui, shown, row, is_row_selected);
+            of_rows.push(Standing { is_selected: is_row_selected, is_hovered: is_row_hovered });
             let mut painted_to = f32::MIN;
             for (at, bar) in bars {
-                let place = painting.bar_rect(bar, row);
+                let place = painting.bar_rect(bar, index);
                 let whole = if bar.is_narrowed() { place.expand2(vec2(1e4, 0.0)) } else { place };
                 // Bars that fall onto the same point of the screen are drawn once.
                 let is_seen = whole.intersects(painting.visible.expand2(vec2(4.0, 40.0)));
@@ -237,17 +229,28 @@ impl TimelinePanel {
                 } else {
                     show_bar(ui, painting, plan, (index, at), is_selected, commands)
                 };
-                painting.bar(&painter, bar, row, is_selected, is_hovered);
+                of_bars.insert(at, Standing { is_selected, is_hovered });
                 handles.push((index, bar, is_selected || is_hovered));
                 if is_selected && chosen.is_none() {
                     chosen = Some((index, bar));
                 }
             }
         }
-        if let Some(links) = links {
-            links.paint(painting, &painter);
-        }
-        painting.now(ui);
+        let links: Vec<_> =
+            links.iter().map(|curve| (*curve, link::is_chosen(painting, curve.link))).collect();
+        let first = rows.start;
+        let shown = TimelineState {
+            now: Some(state.playback.time),
+            is_executing: state.is_executing(),
+            range: state.time_range,
+            row: &|index| of_rows.get(index - first).copied().unwrap_or_default(),
+            bar: &|at| of_bars.get(&at).copied().unwrap_or_default(),
+            links: &links,
+            note: None,
+        };
+        let list = timeline_list(painting.chart, painting.network, &painting.place, rows.clone(), &shown);
+        paint::show(ui, painting.context, &list);
+        rows.for_each(|index| painting.sign(ui, index));
         // Handles come last, so that they are over the bars that they belong to.
         for (index, bar, is_prominent) in handles {
             handle::show(ui, painting, &pinned, (index, bar), is_prominent, commands);
@@ -261,7 +264,7 @@ impl TimelinePanel {
         handle::show_held(ui, painting, &pinned);
     }
 
-    /// A row as something to click; opens and closes it where it has others below. Answers whether it is pointed at.
+    /// A row as something to click; opens and closes it where it has others below. Returns whether it is pointed at.
     fn show_row(
         &mut self,
         ui: &Ui,
@@ -281,7 +284,7 @@ impl TimelinePanel {
         }
         let Some(key) = &shown.key else { return is_hovered };
         let area = match shown.kind {
-            RowKind::Single => paint::arrow_rect(shown, row),
+            RowKind::Single => painting.sign_rect(index),
             _ => Rect::from_min_max(row.min, pos2(painting.track.left(), row.bottom())),
         };
         let response = ui.interact(area, ui.scope_id().with(("open", key)), Sense::click());
@@ -324,7 +327,7 @@ impl TimelinePanel {
             ViewAction::FitSelection => {
                 let selected = context.state.selection.occurrence(network);
                 let occurrence = selected.and_then(|id| network.occurrences.get(id.index()));
-                let times = occurrence.and_then(|it| chart::times(plan, [it.start, it.end]));
+                let times = occurrence.and_then(|it| times(plan, [it.start, it.end]));
                 let range = times.map(|[start, end]| [start[0], end[1].min(horizon)]);
                 if let Some([from, to]) = context.state.time_range.or(range) {
                     *view = TimeView::range(from, to, axis.width());
@@ -379,7 +382,7 @@ impl TimelinePanel {
         ui: &Ui,
         painting: &Painting<'_>,
         horizon: f64,
-        links: Option<&Links<'_>>,
+        links: &[LinkCurve<'_>],
         view: &mut TimeView,
         commands: &mut CommandSender,
     ) {
@@ -393,16 +396,16 @@ impl TimelinePanel {
             view.pan(response.drag_delta().x);
             ui.scroll_with_delta(vec2(0.0, response.drag_delta().y));
         }
-        let pointed = response.hover_pos().and_then(|at| links?.at(at));
+        let pointed = response.hover_pos().and_then(|at| link::at(links, at));
         if response.clicked() {
-            let selection = pointed.map_or(Selection::None, |link| link.kind.selection());
+            let selection = pointed.map_or(Selection::None, |link| link::selection(link.kind));
             commands.send(Command::Select(selection));
         }
         if response.double_clicked() {
             commands.send(Command::ViewOf(PanelKind::Timeline, ViewAction::Fit));
         }
-        if let Some(link) = pointed {
-            let name = link.kind.selection().name(Some(painting.network));
+        if let Some(pointed) = pointed {
+            let name = link::selection(pointed.kind).name(Some(painting.network));
             response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text_at_pointer(name);
         }
         let pointer =
@@ -428,7 +431,7 @@ impl TimelinePanel {
             return;
         }
         self.followed_selection = selection.clone();
-        let is_of = |row: &chart::Row| {
+        let is_of = |row: &Row| {
             let mut bars = row.bars.clone().map(|at| &painting.chart.bars[at]);
             bars.any(|bar| is_chosen(bar, selection, painting.network))
         };
@@ -469,7 +472,7 @@ fn show_bar(
     commands: &mut CommandSender,
 ) -> bool {
     let bar = &painting.chart.bars[at];
-    let area = painting.bar_rect(bar, painting.row(row)).expand2(vec2(0.0, 3.0)).intersect(painting.visible);
+    let area = painting.bar_rect(bar, row).expand2(vec2(0.0, 3.0)).intersect(painting.visible);
     if area.width() < LEAST_TARGET || !area.is_positive() {
         return false;
     }
@@ -487,14 +490,19 @@ fn respond(
     commands: &mut CommandSender,
 ) -> bool {
     let context = painting.context;
-    let selection = bar.selection(painting.network);
+    let selection = bar::selection(bar, painting.network);
     response.widget_info(|| {
         let owner = bar.occurrence.and_then(|it| painting.network.occurrences.get(it.index()));
         let name = match (bar.label, owner) {
             (Some(_), Some(owner)) if owner.name != bar.name => format!("{} of {}", bar.name, owner.name),
             _ => bar.name.to_string(),
         };
-        WidgetInfo::selected(egui::Role::Button, true, is_selected, format!("{name}: {}", bar.words(plan)))
+        WidgetInfo::selected(
+            egui::Role::Button,
+            true,
+            is_selected,
+            format!("{name}: {}", bar::words(bar, plan)),
+        )
     });
     if response.hovered() && context.state.hovered != selection {
         commands.send(Command::Hover(selection.clone()));
@@ -507,7 +515,7 @@ fn respond(
     let is_hovered = response.hovered() || is_chosen(bar, &context.state.hovered, painting.network);
     response.clone().on_hover_ui_at_pointer(|ui| {
         ui.label(theme::strong(selection.name(Some(painting.network))));
-        ui.label(bar.words(plan));
+        ui.label(bar::words(bar, plan));
         for &label in &bar.labels {
             if let Some(label) = painting.network.labels.get(label.index()) {
                 let verb = if label.mode == rmpl::program::LabelMode::Ask { "requires" } else { "asserts" };

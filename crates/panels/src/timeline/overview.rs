@@ -2,8 +2,8 @@
 //! part is in view. Pressing or dragging in it goes there.
 
 use egui::{Mesh, Rect, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use layout::timeline::{BarKind, Chart};
 
-use super::chart::{BarKind, Chart};
 use super::view::TimeView;
 use crate::Context;
 

@@ -24,12 +24,6 @@ impl TimeView {
         Self { start: start - margin, scale: f64::from(width.max(1.0)) / span }
     }
 
-    /// Where a time is in `rect`; infinity is beyond the right edge.
-    pub(crate) fn x(&self, rect: Rect, time: f64) -> f32 {
-        let x = f64::from(rect.left()) + (time - self.start) * self.scale;
-        x.clamp(f64::from(rect.left()) - 1e5, f64::from(rect.right()) + 1e5) as f32
-    }
-
     /// The time at `x` in `rect`.
     pub(crate) fn time(&self, rect: Rect, x: f32) -> f64 {
         self.start + f64::from(x - rect.left()) / self.scale
@@ -60,6 +54,5 @@ mod tests {
         let before = view.time(rect, 400.0);
         view.zoom(rect, 400.0, 3.0, 660.0);
         assert!((view.time(rect, 400.0) - before).abs() < 1e-9);
-        assert!((f64::from(view.x(rect, before)) - 400.0).abs() < 1e-3);
     }
 }

@@ -1,5 +1,6 @@
 //! What is remembered between runs: appearance, how to plan, and what each panel shows.
 
+use layout::timeline::{ChartOptions, Grouping};
 use mission::{Goal, SearchKind};
 use serde::{Deserialize, Serialize};
 
@@ -161,45 +162,16 @@ pub struct TimelineView {
     pub grouping: Grouping,
 }
 
+impl TimelineView {
+    /// What of it a chart shows.
+    pub const fn chart(&self) -> ChartOptions {
+        ChartOptions { conditions: self.conditions, delays: self.delays, grouping: self.grouping }
+    }
+}
+
 impl Default for TimelineView {
     fn default() -> Self {
         Self { links: true, conditions: true, delays: false, grouping: Grouping::default() }
-    }
-}
-
-/// By what the bars of the timeline are grouped.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Grouping {
-    /// By the activities that they are part of.
-    #[default]
-    Structure,
-    /// By the parallel branches of the program.
-    Thread,
-    /// By the vehicles that they occupy.
-    Vehicle,
-}
-
-impl Grouping {
-    /// All of them, as the timeline lists them.
-    pub const ALL: [Self; 3] = [Self::Structure, Self::Thread, Self::Vehicle];
-
-    /// Its name on screen.
-    pub const fn title(self) -> &'static str {
-        match self {
-            Self::Structure => "By activity",
-            Self::Thread => "By thread",
-            Self::Vehicle => "By vehicle",
-        }
-    }
-
-    /// Its name in commands.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Structure => "structure",
-            Self::Thread => "thread",
-            Self::Vehicle => "vehicle",
-        }
     }
 }
 

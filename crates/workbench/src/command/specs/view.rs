@@ -1,5 +1,6 @@
 //! Panels, zoom, appearance.
 
+use layout::timeline::Grouping;
 use serde_json::Value;
 
 use super::arguments::{panel_argument, text_argument};
@@ -8,7 +9,6 @@ use super::{CTRL, PLAIN, SHIFT, called, keys, plain, when};
 use crate::command::chord::Key;
 use crate::command::registry::{CommandSpec, Group, Scope};
 use crate::command::{Command, ViewAction};
-use crate::state::settings::Grouping;
 use crate::state::settings::ThemeChoice;
 use crate::workspace::Workspace;
 

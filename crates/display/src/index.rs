@@ -4,40 +4,42 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::drawing::{NetworkDrawing, Shape};
 use crate::geometry::Rect;
 
 /// Shapes by place.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct SpatialIndex {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SpatialIndex<T> {
     bounds: Rect,
-    grids: Vec<Grid>,
+    grids: Vec<Grid<T>>,
 }
 
 /// Shapes of about one size, by the cell that holds their upper left corner.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Grid {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Grid<T> {
     /// Cells are squares of this size, and no shape of the grid is larger.
     cell_size: f64,
     columns: u32,
     rows: u32,
     /// Where each cell's shapes begin in `shapes`; one more than there are cells.
     starts: Vec<u32>,
-    shapes: Vec<(Rect, Shape)>,
+    shapes: Vec<(Rect, T)>,
 }
 
 /// Cell size of the finest grid.
 const FINEST_CELL: f64 = 64.0;
 
-impl SpatialIndex {
-    /// Indexes all shapes of `drawing`.
-    pub(crate) fn new(drawing: &NetworkDrawing) -> Self {
-        let shapes = all_shapes(drawing);
-        let bounds = drawing.bounds;
+impl<T> Default for SpatialIndex<T> {
+    fn default() -> Self {
+        Self { bounds: Rect::default(), grids: Vec::new() }
+    }
+}
+
+impl<T: Copy> SpatialIndex<T> {
+    /// Indexes shapes by their rectangles, which lie in `bounds`; those that stick out are found by the part inside.
+    pub fn new(bounds: Rect, shapes: Vec<(Rect, T)>) -> Self {
         let finest = finest_cell(bounds, shapes.len());
-        let mut levels: Vec<Vec<(Rect, Shape)>> = Vec::new();
-        for shape in shapes {
-            let rect = drawing.shape_bounds(shape);
+        let mut levels: Vec<Vec<(Rect, T)>> = Vec::new();
+        for (rect, shape) in shapes {
             let level = level_of(rect, finest);
             if levels.len() <= level {
                 levels.resize_with(level + 1, Vec::new);
@@ -54,15 +56,15 @@ impl SpatialIndex {
     }
 
     /// Calls `visit` for every shape that touches `area` and is at least `least_size` wide or high.
-    pub(crate) fn visit(&self, area: Rect, least_size: f64, visit: &mut dyn FnMut(Shape)) {
+    pub fn visit(&self, area: Rect, least_size: f64, visit: &mut dyn FnMut(T)) {
         for grid in self.grids.iter().filter(|grid| grid.cell_size >= least_size && !grid.shapes.is_empty()) {
             grid.visit(self.bounds, area, least_size, visit);
         }
     }
 }
 
-impl Grid {
-    fn new(bounds: Rect, cell_size: f64, shapes: &[(Rect, Shape)]) -> Self {
+impl<T: Copy> Grid<T> {
+    fn new(bounds: Rect, cell_size: f64, shapes: &[(Rect, T)]) -> Self {
         let columns = (bounds.width() / cell_size).max(0.0) as u32 + 1;
         let rows = (bounds.height() / cell_size).max(0.0) as u32 + 1;
         let mut grid = Self { cell_size, columns, rows, starts: Vec::new(), shapes: Vec::new() };
@@ -96,7 +98,7 @@ impl Grid {
         self.row(bounds, rect.min.y) * self.columns + self.column(bounds, rect.min.x)
     }
 
-    fn visit(&self, bounds: Rect, area: Rect, least_size: f64, visit: &mut dyn FnMut(Shape)) {
+    fn visit(&self, bounds: Rect, area: Rect, least_size: f64, visit: &mut dyn FnMut(T)) {
         // A shape that begins up to one cell to the left or above may reach into the area.
         let (left, right) =
             (self.column(bounds, area.min.x - self.cell_size), self.column(bounds, area.max.x));
@@ -132,15 +134,4 @@ fn level_of(rect: Rect, finest: f64) -> usize {
         level += 1;
     }
     level
-}
-
-fn all_shapes(drawing: &NetworkDrawing) -> Vec<Shape> {
-    let counts = [drawing.blocks.len(), drawing.connectors.len(), drawing.arcs.len(), drawing.nodes.len()];
-    let mut shapes = Vec::with_capacity(counts.iter().sum::<usize>() + drawing.texts.len());
-    shapes.extend((0..counts[0] as u32).map(Shape::Block));
-    shapes.extend((0..counts[1] as u32).map(Shape::Connector));
-    shapes.extend((0..counts[2] as u32).map(Shape::Arc));
-    shapes.extend((0..counts[3] as u32).map(Shape::Node));
-    shapes.extend((0..drawing.texts.len() as u32).map(Shape::Text));
-    shapes
 }

@@ -2,24 +2,23 @@
 
 use std::collections::BTreeMap;
 
-use layout::threads::{thread_name, threads};
-use mission::Snapshot;
-use rmpl::program::LabelMode;
+use rmpl::program::{LabelMode, Program};
 use smol_str::{SmolStr, format_smolstr};
 use tpn::{LabelId, Network, OccurrenceId, OccurrenceKind, Plan};
-use workbench::state::settings::{Grouping, TimelineView};
 
 use super::chart::{Bar, BarKind, Item, RowKind, times};
+use super::{ChartOptions, Grouping};
+use crate::threads::{thread_name, threads};
 
 /// The rows of a plan from top to bottom, parents before children.
-pub(super) fn items(snapshot: &Snapshot, network: &Network, plan: &Plan, view: &TimelineView) -> Vec<Item> {
-    let bars = Bars::new(network, plan, view);
-    let mut items = match view.grouping {
+pub(super) fn items(program: &Program, network: &Network, plan: &Plan, options: ChartOptions) -> Vec<Item> {
+    let bars = Bars::new(network, plan, options);
+    let mut items = match options.grouping {
         Grouping::Thread if network.root.is_some() => by_thread(network, &bars),
-        Grouping::Vehicle => by_vehicle(snapshot, network, &bars),
+        Grouping::Vehicle => by_vehicle(program, network, &bars),
         Grouping::Structure | Grouping::Thread => by_structure(network, &bars),
     };
-    if view.conditions {
+    if options.conditions {
         items.extend(conditions(network, plan));
     }
     items
@@ -31,7 +30,7 @@ struct Bars {
 }
 
 impl Bars {
-    fn new(network: &Network, plan: &Plan, view: &TimelineView) -> Self {
+    fn new(network: &Network, plan: &Plan, options: ChartOptions) -> Self {
         let mut labels: Vec<Vec<LabelId>> = vec![Vec::new(); network.occurrences.len()];
         for (index, label) in network.labels.iter().enumerate() {
             if let Some(of_owner) = label.owner.and_then(|owner| labels.get_mut(owner.index())) {
@@ -42,7 +41,7 @@ impl Bars {
             let kind = match occurrence.kind {
                 OccurrenceKind::Activity => BarKind::Composite,
                 OccurrenceKind::Primitive => BarKind::Activity,
-                OccurrenceKind::Delay if view.delays => BarKind::Delay,
+                OccurrenceKind::Delay if options.delays => BarKind::Delay,
                 _ => return None,
             };
             let events = [occurrence.start, occurrence.end];
@@ -113,12 +112,11 @@ fn by_thread(network: &Network, bars: &Bars) -> Vec<Item> {
     items
 }
 
-fn by_vehicle(snapshot: &Snapshot, network: &Network, bars: &Bars) -> Vec<Item> {
-    let vehicles = &snapshot.program.world.vehicles;
+fn by_vehicle(program: &Program, network: &Network, bars: &Bars) -> Vec<Item> {
+    let vehicles = &program.world.vehicles;
     let at: BTreeMap<&str, usize> =
         vehicles.iter().enumerate().map(|(at, vehicle)| (vehicle.name.text.as_str(), at)).collect();
-    let moved: BTreeMap<&str, Vec<usize>> = snapshot
-        .program
+    let moved: BTreeMap<&str, Vec<usize>> = program
         .primitives
         .iter()
         .filter_map(|it| Some((it.name.text.as_str(), it.moves.as_ref()?)))

@@ -49,6 +49,9 @@ impl LevelLines {
 
     /// Paints them.
     pub(super) fn paint(self, painter: &Painter) {
+        if self.0.is_empty() {
+            return;
+        }
         painter.add(Shape::mesh(self.0));
     }
 }

@@ -2,13 +2,13 @@
 
 /// The marks of an axis.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Ticks {
+pub struct Ticks {
     /// The times of the labelled marks, ascending.
-    pub(crate) marks: Vec<f64>,
+    pub marks: Vec<f64>,
     /// From one labelled mark to the next.
-    pub(crate) step: f64,
+    pub step: f64,
     /// Into how many parts small marks divide a step.
-    pub(crate) parts: u32,
+    pub parts: u32,
 }
 
 /// Least distance of two labelled marks, in points, for short numbers.
@@ -18,11 +18,11 @@ const DIGIT_WIDTH: f32 = 8.0;
 /// Between two labels, in points.
 const GAP: f32 = 22.0;
 /// More marks than this are never needed on a screen.
-const MOST_MARKS: i64 = 400;
+const MAX_MARKS: i64 = 400;
 
 impl Ticks {
     /// Marks at round numbers from `from` to `to` on `width` points, so far apart that their labels cannot touch.
-    pub(crate) fn new(from: f64, to: f64, width: f32) -> Self {
+    pub fn new(from: f64, to: f64, width: f32) -> Self {
         let span = (to - from).max(f64::MIN_POSITIVE);
         let mut distance = LEAST_DISTANCE;
         // Finer steps need more decimals, which need more room.
@@ -37,13 +37,13 @@ impl Ticks {
         }
         let (step, parts) = round_step(span * f64::from(distance / width.max(1.0)));
         let first = (from / step).ceil();
-        let count = (((to / step).floor() - first) as i64 + 1).clamp(0, MOST_MARKS);
+        let count = (((to / step).floor() - first) as i64 + 1).clamp(0, MAX_MARKS);
         let marks = (0..count).map(|index| (first + index as f64) * step).collect();
         Self { marks, step, parts }
     }
 
     /// What is written at a mark: as many decimals as the step needs, thousands apart.
-    pub(crate) fn label(&self, mark: f64) -> String {
+    pub fn label(&self, mark: f64) -> String {
         label(mark, self.step)
     }
 }

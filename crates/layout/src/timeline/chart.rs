@@ -4,49 +4,46 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use mission::Snapshot;
+use rmpl::program::Program;
+use rmpl::{Bound, Rational};
 use smol_str::SmolStr;
 use tpn::{CausalLink, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind, Ordering, Plan, Window};
-use workbench::state::Selection;
-use workbench::state::playback::{bound, number};
-use workbench::state::settings::TimelineView;
-use workbench::time_text;
 
-use super::group;
+use super::{ChartOptions, group};
 
 /// Rows of bars, and the links between them.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Chart {
+pub struct Chart {
     /// From top to bottom.
-    pub(super) rows: Vec<Row>,
+    pub rows: Vec<Row>,
     /// Row by row.
-    pub(super) bars: Vec<Bar>,
+    pub bars: Vec<Bar>,
     /// Causal links and orderings between bars.
-    pub(super) links: Vec<Link>,
+    pub links: Vec<Link>,
     /// The last time that is certain to matter: every finite bound of every bar.
-    pub(super) horizon: f64,
+    pub horizon: f64,
 }
 
 /// A row.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Row {
+pub struct Row {
     /// What it is.
-    pub(super) kind: RowKind,
+    pub kind: RowKind,
     /// What is written on its left.
-    pub(super) name: SmolStr,
+    pub name: SmolStr,
     /// How far that is indented.
-    pub(super) depth: u32,
+    pub depth: u32,
     /// Under which name it can be closed, if it has rows below it.
-    pub(super) key: Option<SmolStr>,
+    pub key: Option<SmolStr>,
     /// Whether the rows below it are hidden; their bars are then in this row.
-    pub(super) is_closed: bool,
+    pub is_closed: bool,
     /// Its bars.
-    pub(super) bars: Range<usize>,
+    pub bars: Range<usize>,
 }
 
 /// What a row is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum RowKind {
+pub enum RowKind {
     /// The heading of a thread, of a vehicle, or of the conditions.
     Heading,
     /// One activity or delay.
@@ -57,30 +54,30 @@ pub(super) enum RowKind {
 
 /// An activity, condition or delay over time.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Bar {
+pub struct Bar {
     /// What it is.
-    pub(super) kind: BarKind,
+    pub kind: BarKind,
     /// Whose bar it is.
-    pub(super) occurrence: Option<OccurrenceId>,
+    pub occurrence: Option<OccurrenceId>,
     /// The condition that it is, on a track.
-    pub(super) label: Option<LabelId>,
+    pub label: Option<LabelId>,
     /// Its first and its last event.
-    pub(super) events: [NodeId; 2],
+    pub events: [NodeId; 2],
     /// Its name: of the occurrence, or of the condition.
-    pub(super) name: SmolStr,
+    pub name: SmolStr,
     /// When it can start, earliest and latest, in mission units.
-    pub(super) start: [f64; 2],
+    pub start: [f64; 2],
     /// When it can end; the latest may be infinite.
-    pub(super) end: [f64; 2],
+    pub end: [f64; 2],
     /// The same without pinned events.
-    pub(super) free: [[f64; 2]; 2],
+    pub free: [[f64; 2]; 2],
     /// What it requires and asserts.
-    pub(super) labels: Vec<LabelId>,
+    pub labels: Vec<LabelId>,
 }
 
 /// What a bar is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum BarKind {
+pub enum BarKind {
     /// Has others inside.
     Composite,
     /// A primitive activity.
@@ -95,18 +92,18 @@ pub(super) enum BarKind {
 
 /// A line between two bars.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Link {
+pub struct Link {
     /// What it stands for.
-    pub(super) kind: LinkKind,
+    pub kind: LinkKind,
     /// The row and the bar that it comes from.
-    pub(super) from: (usize, usize),
+    pub from: (usize, usize),
     /// The row and the bar that it leads to.
-    pub(super) to: (usize, usize),
+    pub to: (usize, usize),
 }
 
 /// What a line between bars stands for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum LinkKind {
+pub enum LinkKind {
     /// An assertion carries a requirement.
     Causal(CausalLink),
     /// One interval was put before another.
@@ -130,40 +127,19 @@ pub(super) struct Item {
 
 impl Bar {
     /// The part in which it is going on for certain, if there is one.
-    pub(super) fn certain(&self) -> Option<[f64; 2]> {
+    pub fn certain(&self) -> Option<[f64; 2]> {
         (self.start[1] < self.end[0]).then_some([self.start[1], self.end[0]])
     }
 
     /// Whether pinned events have narrowed its windows.
-    pub(super) fn is_narrowed(&self) -> bool {
+    pub fn is_narrowed(&self) -> bool {
         self.free != [self.start, self.end]
     }
 
-    /// What a click on it selects.
-    pub(super) fn selection(&self, network: &Network) -> Selection {
-        match (self.occurrence, self.label) {
-            (Some(occurrence), _) if self.is_whole(network) => Selection::Occurrence(occurrence),
-            (_, Some(label)) => Selection::Label(label),
-            (_, None) => Selection::None,
-        }
-    }
-
     /// Whether it stands for all of its occurrence, and not for a condition of an activity that has its own bar.
-    pub(super) fn is_whole(&self, network: &Network) -> bool {
+    pub fn is_whole(&self, network: &Network) -> bool {
         let occurrence = self.occurrence.and_then(|id| network.occurrences.get(id.index()));
         self.label.is_none() || occurrence.is_some_and(|it| it.kind == OccurrenceKind::Assertion)
-    }
-
-    /// Its windows in words.
-    pub(super) fn words(&self, plan: &Plan) -> String {
-        let interval = |node: NodeId| {
-            plan.windows
-                .get(node.index())
-                .copied()
-                .flatten()
-                .map_or_else(String::new, |window| time_text::interval(window.earliest, window.latest))
-        };
-        format!("starts {}, ends {}", interval(self.events[0]), interval(self.events[1]))
     }
 
     /// Puts its windows to those of `plan`.
@@ -175,18 +151,18 @@ impl Bar {
 }
 
 impl Chart {
-    /// The chart of the plan of `snapshot` or of a step of its search, without pinned events.
-    pub(super) fn new(
-        snapshot: &Snapshot,
+    /// The chart of a plan, with the rows below those of these keys closed. Linear in network and plan, but for sorting.
+    pub fn new(
+        program: &Program,
         network: &Network,
         plan: &Plan,
-        view: &TimelineView,
+        options: ChartOptions,
         closed: &BTreeSet<SmolStr>,
     ) -> Self {
         let mut chart = Self::default();
         let mut hidden_from: Option<(u32, usize)> = None;
         let mut gathered: Vec<Vec<Bar>> = Vec::new();
-        for item in group::items(snapshot, network, plan, view) {
+        for item in group::items(program, network, plan, options) {
             if let Some((_, row)) = hidden_from.filter(|&(depth, _)| item.depth > depth) {
                 gathered[row].extend(item.bars.into_iter().filter(|bar| bar.kind != BarKind::Composite));
                 continue;
@@ -209,7 +185,7 @@ impl Chart {
     }
 
     /// Puts all windows to those of `plan`, which selects the same; in time linear in the bars.
-    pub(super) fn retime(&mut self, plan: &Plan) {
+    pub fn retime(&mut self, plan: &Plan) {
         for bar in &mut self.bars {
             bar.retime(plan);
         }
@@ -249,18 +225,8 @@ impl Chart {
     }
 }
 
-impl LinkKind {
-    /// What a click on it selects.
-    pub(super) fn selection(self) -> Selection {
-        match self {
-            Self::Causal(link) => Selection::Link(link),
-            Self::Ordering(ordering) => Selection::Ordering(ordering),
-        }
-    }
-}
-
 /// The windows of two events, in mission units; `None` if the plan lacks one.
-pub(super) fn times(plan: &Plan, events: [NodeId; 2]) -> Option<[[f64; 2]; 2]> {
+pub fn times(plan: &Plan, events: [NodeId; 2]) -> Option<[[f64; 2]; 2]> {
     let window = |node: NodeId| plan.windows.get(node.index()).copied().flatten();
     let pair = |window: Window| [number(window.earliest), bound(window.latest)];
     Some([pair(window(events[0])?), pair(window(events[1])?)])
@@ -271,4 +237,14 @@ fn horizon(bars: &[Bar]) -> f64 {
         .flat_map(|bar| [bar.start[1], bar.end[0], bar.end[1]])
         .filter(|time| time.is_finite())
         .fold(1.0, f64::max)
+}
+
+/// A rational as a float, for drawing only.
+fn number(value: Rational) -> f64 {
+    *value.numer() as f64 / *value.denom() as f64
+}
+
+/// A bound as a float, for drawing only.
+fn bound(value: Bound) -> f64 {
+    value.finite().map_or(f64::INFINITY, number)
 }

@@ -1,0 +1,57 @@
+//! A plan over time as data: rows, the bars in them, when they can be, and where an axis has its marks.
+
+mod chart;
+mod group;
+mod ticks;
+
+use serde::{Deserialize, Serialize};
+
+pub use chart::{Bar, BarKind, Chart, Link, LinkKind, Row, RowKind, times};
+pub use ticks::Ticks;
+
+/// What a chart shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ChartOptions {
+    /// Conditions as tracks, one for each state variable.
+    pub conditions: bool,
+    /// Delays as bars of their own.
+    pub delays: bool,
+    /// By what the bars are grouped.
+    pub grouping: Grouping,
+}
+
+/// By what the bars of the timeline are grouped.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Grouping {
+    /// By the activities that they are part of.
+    #[default]
+    Structure,
+    /// By the parallel branches of the program.
+    Thread,
+    /// By the vehicles that they occupy.
+    Vehicle,
+}
+
+impl Grouping {
+    /// All of them, as the timeline lists them.
+    pub const ALL: [Self; 3] = [Self::Structure, Self::Thread, Self::Vehicle];
+
+    /// Its name on screen.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Structure => "By activity",
+            Self::Thread => "By thread",
+            Self::Vehicle => "By vehicle",
+        }
+    }
+
+    /// Its name in commands.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Structure => "structure",
+            Self::Thread => "thread",
+            Self::Vehicle => "vehicle",
+        }
+    }
+}

@@ -1,0 +1,251 @@
+//! Display lists: everything that a drawing has is in its list, in its role, and the screen's frame and a report's give
+//! the same shapes.
+
+mod drawings;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use display::{ColorRole, DisplayList, Fill, Rect, Shape, Target, TargetKind, Theme, approximate_text_width};
+use drawings::{draw, enroute, network_of, overlapping};
+use layout::list::map::{MapFrame, MapPath, extent_m, map_list, path_stroke};
+use layout::list::timeline::{ROW_HEIGHT, Standing, TimelineState, Track, axis_list, timeline_list};
+use layout::timeline::{Chart, ChartOptions, Grouping};
+use layout::{Item, NetworkDrawing, NetworkState, network_list};
+use rmpl::{Bound, Rational};
+use tpn::generate::{Recipe, Tightness, mission};
+use tpn::{Network, Plan, Window};
+
+/// A plan that selects everything, with windows by the longest ways from the start.
+fn plan_of(network: &Network) -> Plan {
+    let mut earliest = vec![Rational::default(); network.nodes.len()];
+    for _ in &network.nodes {
+        for arc in &network.arcs {
+            let reached = earliest[arc.from.index()] + arc.lower;
+            earliest[arc.to.index()] = earliest[arc.to.index()].max(reached);
+        }
+    }
+    let late = |earliest: Rational| Bound::Finite(earliest + Rational::from_integer(30));
+    let window = |earliest| Some(Window { earliest, latest: late(earliest) });
+    Plan {
+        choices: Vec::new(),
+        selected_nodes: vec![true; network.nodes.len()],
+        selected_arcs: vec![true; network.arcs.len()],
+        causal_links: Vec::new(),
+        conflict_order: Vec::new(),
+        orderings_added: Vec::new(),
+        windows: earliest.into_iter().map(window).collect(),
+    }
+}
+
+fn targets(list: &DisplayList) -> BTreeMap<Target, usize> {
+    let mut found = BTreeMap::new();
+    for target in list.items().iter().filter_map(|item| item.target) {
+        *found.entry(target).or_default() += 1;
+    }
+    found
+}
+
+fn of_kind(list: &DisplayList, kind: TargetKind) -> BTreeSet<u32> {
+    targets(list).into_keys().filter(|target| target.kind == kind).map(|target| target.id).collect()
+}
+
+fn networks() -> Vec<Network> {
+    let generated =
+        |nodes, seed| network_of(&mission(Recipe { nodes, tightness: Tightness::Feasible, seed }));
+    vec![enroute(), generated(200, 1), generated(2_000, 2)]
+}
+
+#[test]
+fn every_node_arc_and_label_is_in_the_list_of_a_network() {
+    for network in networks() {
+        let drawing = draw(&network);
+        let list = network_list(&drawing, &network, &NetworkState::default());
+        let all = |count: usize| (0..count as u32).collect::<BTreeSet<_>>();
+        assert_eq!(of_kind(&list, TargetKind::Node), all(network.nodes.len()));
+        assert_eq!(of_kind(&list, TargetKind::Arc), all(network.arcs.len()));
+        let written = |drawing: &NetworkDrawing| {
+            let labels = drawing.texts.iter().filter_map(|text| match text.owner {
+                Item::Label(label) => Some(label.0),
+                _ => None,
+            });
+            labels.collect::<BTreeSet<_>>()
+        };
+        assert_eq!(of_kind(&list, TargetKind::Label), written(&drawing));
+    }
+}
+
+#[test]
+fn labels_of_a_list_lie_inside_its_frame_and_over_no_other() {
+    for network in networks() {
+        let list = network_list(&draw(&network), &network, &NetworkState::default());
+        let texts: Vec<_> = list
+            .items()
+            .iter()
+            .filter(|item| item.detail.holds(1.0))
+            .filter_map(|item| match item.shape {
+                Shape::Text(place) => Some(list.text(place)),
+                _ => None,
+            })
+            .collect();
+        let rects: Vec<Rect> = texts.iter().map(|text| text.rect).collect();
+        assert!(rects.iter().all(|it| list.frame.contains(it.min) && list.frame.contains(it.max)));
+        if let Some(&(one, other)) = overlapping(&rects).first() {
+            panic!("{:?} lies over {:?}", texts[one], texts[other]);
+        }
+        assert!(texts.iter().all(|text| text.size >= 5.0), "all can be read at the designed size");
+    }
+}
+
+#[test]
+fn the_roles_of_a_network_say_what_the_plan_selects() {
+    let network = enroute();
+    let drawing = draw(&network);
+    let mut plan = plan_of(&network);
+    plan.selected_arcs[0] = false;
+    let state = NetworkState { plan: Some(&plan), ..NetworkState::default() };
+    let list = network_list(&drawing, &network, &state);
+    let role_of_arc = |id: u32| {
+        let found = list.items().iter().find(|item| {
+            item.target == Some(Target { kind: TargetKind::Arc, id })
+                && matches!(item.shape, Shape::Path { .. })
+        });
+        found.and_then(|item| item.stroke).expect("a line").color.role
+    };
+    assert_eq!(role_of_arc(0), ColorRole::PathUnselected);
+    assert!((1..network.arcs.len() as u32).all(|arc| role_of_arc(arc) == ColorRole::Path));
+    let asks = list.items().iter().filter_map(|item| match (item.shape, item.target?) {
+        (Shape::Text(place), Target { kind: TargetKind::Label, .. }) => Some(list.text(place)),
+        _ => None,
+    });
+    for text in asks {
+        let wanted = if text.text.starts_with("Ask") { ColorRole::Ask } else { ColorRole::Tell };
+        assert!([wanted, ColorRole::TextFaint].contains(&text.color.role), "{text:?}");
+    }
+}
+
+#[test]
+fn a_network_s_file_has_a_size_in_proportion_to_its_list() {
+    for network in networks() {
+        let list = network_list(&draw(&network), &network, &NetworkState::default());
+        let written = display::svg(&[&list], Theme::Dark, "t");
+        assert_eq!(written, display::svg(&[&list], Theme::Dark, "t"), "the same list, the same file");
+        assert!(written.len() < 400 * list.items().len() + 1_000, "{} items", list.items().len());
+    }
+}
+
+const TIMED: &str = "MODE, PATH1: ON | OFF | OK;
+primitive Drive() = { MODE=ON [3,9] };
+primitive Wait(); primitive Talk();
+scenario S = { Drive()[4,9]; { Wait()[2,30]; { Talk()[5,6]; Wait()[1,1] } }; Talk()[3,3] }";
+
+fn chart_of(network: &Network, plan: &Plan, text: &str) -> Chart {
+    let options = ChartOptions { conditions: true, delays: true, grouping: Grouping::Structure };
+    Chart::new(&rmpl::parse(text).program(), network, plan, options, &BTreeSet::new())
+}
+
+fn track(chart: &Chart, frame: Rect, names: f64, notes: f64) -> Track {
+    let (left, right) = (frame.min.x + names, frame.max.x - notes);
+    let visible = Rect::new(left, frame.min.y, right, frame.max.y);
+    let scale = (right - left) / chart.horizon;
+    Track { frame, left, right, top: frame.min.y, start: 0.0, scale, visible }
+}
+
+fn rows_of(chart: &Chart, network: &Network, track: &Track) -> DisplayList {
+    let links: Vec<_> = track.links(chart).into_iter().map(|curve| (curve, false)).collect();
+    let state = TimelineState {
+        now: None,
+        is_executing: false,
+        range: None,
+        row: &|_| Standing::default(),
+        bar: &|_| Standing::default(),
+        links: &links,
+        note: None,
+    };
+    timeline_list(chart, network, track, 0..chart.rows.len(), &state)
+}
+
+#[test]
+fn a_timeline_has_the_same_bars_in_a_panel_and_on_paper() {
+    for text in [TIMED, include_str!("../../../assets/missions/enroute.rmpl")] {
+        let network = network_of(text);
+        let plan = plan_of(&network);
+        let chart = chart_of(&network, &plan, text);
+        let height = ROW_HEIGHT * chart.rows.len() as f64 + 20.0;
+        let panel = track(&chart, Rect::new(300.0, 80.0, 1_700.0, 80.0 + height), 190.0, 8.0);
+        let paper = track(&chart, Rect::new(0.0, 0.0, 940.0, height), 230.0, 110.0);
+        let [in_panel, on_paper] = [panel, paper].map(|track| rows_of(&chart, &network, &track));
+        assert_eq!(targets(&in_panel), targets(&on_paper));
+        let bars = of_kind(&in_panel, TargetKind::Occurrence);
+        let drawn = chart.bars.iter().filter(|bar| bar.label.is_none()).filter_map(|bar| bar.occurrence);
+        assert_eq!(bars.intersection(&drawn.clone().map(|it| it.0).collect()).count(), drawn.count());
+        for list in [&in_panel, &on_paper] {
+            let inside = list.frame.expanded(1.0);
+            let boxes = list.items().iter().filter(|item| matches!(item.shape, Shape::Rectangle { .. }));
+            assert!(
+                boxes.map(|item| list.bounds_of(item)).all(|it| inside.contains(it.min)),
+                "nothing is cut"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_may_happen_is_hatched_and_what_is_certain_is_solid() {
+    let network = network_of(TIMED);
+    let plan = plan_of(&network);
+    let chart = chart_of(&network, &plan, TIMED);
+    let list = rows_of(&chart, &network, &track(&chart, Rect::new(0.0, 0.0, 900.0, 400.0), 200.0, 8.0));
+    let hatched: f64 = list
+        .items()
+        .iter()
+        .filter(|item| matches!(item.fill, Some(Fill::Hatched(_))))
+        .map(|item| list.bounds_of(item).width())
+        .sum();
+    assert!(hatched > 0.0, "windows are wide open");
+    for bar in &chart.bars {
+        if let Some([from, to]) = bar.certain() {
+            assert!(bar.start[0] <= from && from < to && to <= bar.end[1]);
+        }
+    }
+}
+
+#[test]
+fn numbers_of_an_axis_do_not_touch() {
+    for horizon in [7.0, 660.0, 1_234_567.0] {
+        let chart = Chart { horizon, ..Chart::default() };
+        let track = track(&chart, Rect::new(0.0, 0.0, 940.0, 24.0), 200.0, 20.0);
+        let list = axis_list(&track, Rect::new(200.0, 0.0, 920.0, 24.0), "min", Some(1.0));
+        let numbers = list.texts().iter().filter(|text| text.text != "min");
+        let places: Vec<Rect> = numbers
+            .map(|text| {
+                let width = display::text_width_at(&text.text, text.size, &approximate_text_width);
+                let middle = text.rect.center().x;
+                Rect::new(middle - width / 2.0, 0.0, middle + width / 2.0, 10.0)
+            })
+            .collect();
+        assert!(places.len() > 2, "{horizon}: {places:?}");
+        assert!(overlapping(&places).is_empty(), "{horizon}: {places:?}");
+    }
+}
+
+#[test]
+fn everything_of_a_world_is_on_its_map() {
+    let text = include_str!("../../../assets/missions/enroute.rmpl");
+    let world = rmpl::parse(text).program().world;
+    let [low, high] = extent_m(&world, std::iter::empty()).expect("places");
+    let frame = MapFrame::with_side(low, high, 640.0);
+    let points_m = world.locations.iter().map(|it| it.position_m).collect();
+    let paths = [MapPath { name: "tour <1>", points_m, stroke: path_stroke(0) }];
+    let list = map_list(&world, &paths, &frame, Some(&|_| 200));
+    let all = |count: usize| (0..count as u32).collect::<BTreeSet<_>>();
+    assert_eq!(of_kind(&list, TargetKind::Place), all(world.locations.len()));
+    assert_eq!(of_kind(&list, TargetKind::Obstacle), all(world.obstacles.len()));
+    assert_eq!(of_kind(&list, TargetKind::Path), all(1));
+    let seen = list.frame.expanded(2.0);
+    for item in list.items().iter().filter(|item| item.target.is_some_and(|it| it.kind != TargetKind::Path)) {
+        let bounds = list.bounds_of(item);
+        assert!(seen.contains(bounds.min) && seen.contains(bounds.max), "{item:?} sticks out");
+    }
+    let written = display::svg(&[&list], Theme::Light, "Map");
+    assert!(written.contains("<title>tour &lt;1&gt;</title>"));
+}

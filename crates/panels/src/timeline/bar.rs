@@ -1,0 +1,27 @@
+//! What a bar stands for: what a click on it selects, and its windows in words.
+
+use layout::timeline::Bar;
+use tpn::{Network, NodeId, Plan};
+use workbench::state::Selection;
+use workbench::time_text;
+
+/// What a click on a bar selects.
+pub(super) fn selection(bar: &Bar, network: &Network) -> Selection {
+    match (bar.occurrence, bar.label) {
+        (Some(occurrence), _) if bar.is_whole(network) => Selection::Occurrence(occurrence),
+        (_, Some(label)) => Selection::Label(label),
+        (_, None) => Selection::None,
+    }
+}
+
+/// Its windows in words.
+pub(super) fn words(bar: &Bar, plan: &Plan) -> String {
+    let interval = |node: NodeId| {
+        plan.windows
+            .get(node.index())
+            .copied()
+            .flatten()
+            .map_or_else(String::new, |window| time_text::interval(window.earliest, window.latest))
+    };
+    format!("starts {}, ends {}", interval(bar.events[0]), interval(bar.events[1]))
+}
