@@ -36,7 +36,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("app", &["panels"]),
     ("page", &["app"]),
     ("worker", &["mission"]),
-    ("cli", &["mission", "layout", "report"]),
+    ("cli", &["mission", "layout", "report", "stnu"]),
     ("xtask", &[]),
 ];
 

@@ -1,4 +1,7 @@
-//! `enroute stn`: consistency and windows of a plain simple temporal network.
+//! `enroute stn`: consistency and windows of a simple temporal network, and, where nature ends some of its durations,
+//! whether it is controllable.
+
+mod controllability;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -15,7 +18,8 @@ use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_pr
 /// The file is not a network in the format.
 const E_STN: Code = Code("E-STN");
 
-/// Checks a plain STN file: windows relative to its first time point, or a negative cycle.
+/// Checks an STN file: windows relative to its first time point, or a negative cycle. With contingent links
+/// (`.plainStnu`, or `GraphML` of the CSTNU Tool) also whether it is dynamically controllable.
 #[derive(clap::Args)]
 pub struct Args {
     /// The file; `-` is standard input.
@@ -28,16 +32,15 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let source = read_text(&args.file)?;
+    if stnu::Document::is_uncertain(&source) {
+        return match stnu::Document::parse(&source) {
+            Ok(network) => answer_uncertain(args, &network),
+            Err(error) => refuse(args, &source, error.line, error.message),
+        };
+    }
     let network = match stn::parse(&source) {
         Ok(network) => network,
-        Err(error) => {
-            let problems = Problem::all(&[diagnostic(&source, &error)], &source);
-            match args.format {
-                Format::Text => print_problems(&args.file.display().to_string(), &source, &problems)?,
-                Format::Json => print_json(&document("stn", &problems, json!({})))?,
-            }
-            return Ok(exit(WRONG));
-        }
+        Err(ParseError { line, message }) => return refuse(args, &source, line, message),
     };
     let (mut stn, consistent) = network.to_stn();
     match consistent {
@@ -68,14 +71,74 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
 }
 
+/// As for plain networks, with contingent links as ordinary bounds, and whether the network is controllable.
+fn answer_uncertain(args: &Args, uncertain: &stnu::Document) -> anyhow::Result<ExitCode> {
+    let network = controllability::ordinary(uncertain)?;
+    let (mut stn, consistent) = network.to_stn();
+    match consistent {
+        Ok(()) => {}
+        Err(Inconsistency::NegativeCycle) => {
+            match args.format {
+                Format::Text => {
+                    print_text(&format!("{}not controllable\n", cycle_text(&network, &stn)))?;
+                }
+                Format::Json => {
+                    let cycle: Vec<Value> =
+                        stn.cycle().iter().map(|edge| edge_json(&network, edge)).collect();
+                    let body = json!({
+                        "consistent": false,
+                        "windows": null,
+                        "cycle": cycle,
+                        "controllable": false,
+                        "relaxations": null,
+                    });
+                    print_json(&document("stn", &[], body))?;
+                }
+            }
+            return Ok(exit(NO));
+        }
+        Err(Inconsistency::Overflow) => return Err(anyhow!("a time does not fit into 64 bits")),
+    }
+    let windows = if network.names.is_empty() { Vec::new() } else { stn.windows(PointId(0))? };
+    let answer = controllability::check(uncertain)?;
+    let (is_controllable, cycle, relaxations) = controllability::json(uncertain, &answer);
+    match args.format {
+        Format::Text => {
+            let controllable = controllability::text(uncertain, &answer);
+            print_text(&format!("{}{controllable}", windows_text(&network, &windows)))?;
+        }
+        Format::Json => {
+            let body = json!({
+                "consistent": true,
+                "windows": windows_json(&network, &windows),
+                "cycle": cycle,
+                "controllable": is_controllable,
+                "relaxations": relaxations,
+            });
+            print_json(&document("stn", &[], body))?;
+        }
+    }
+    Ok(exit(if is_controllable { YES } else { NO }))
+}
+
+/// Says what is wrong with a file.
+fn refuse(args: &Args, source: &str, line: usize, message: String) -> anyhow::Result<ExitCode> {
+    let problems = Problem::all(&[diagnostic(source, line, message)], source);
+    match args.format {
+        Format::Text => print_problems(&args.file.display().to_string(), source, &problems)?,
+        Format::Json => print_json(&document("stn", &problems, json!({})))?,
+    }
+    Ok(exit(WRONG))
+}
+
 /// The parser's complaint, on the line it is about.
-fn diagnostic(source: &str, error: &ParseError) -> Diagnostic {
+fn diagnostic(source: &str, line: usize, message: String) -> Diagnostic {
     let mut start = 0;
-    for line in source.split_inclusive('\n').take(error.line.saturating_sub(1)) {
+    for line in source.split_inclusive('\n').take(line.saturating_sub(1)) {
         start += line.len();
     }
     let length = source.get(start..).and_then(|rest| rest.lines().next()).map_or(0, str::len);
-    Diagnostic::error(E_STN, Span::new(start as u32, (start + length) as u32), error.message.clone())
+    Diagnostic::error(E_STN, Span::new(start as u32, (start + length) as u32), message)
 }
 
 fn windows_text(network: &Document, windows: &[Window]) -> String {
