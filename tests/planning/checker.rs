@@ -3,8 +3,8 @@
 
 use acceptance::mission::{all_plans, network, sound};
 use acceptance::random::small_mission;
+use exact::Time;
 use kirk::Search;
-use rmpl::Rational;
 use tpn::generate::Rng;
 
 /// Random missions, each plan changed in one random way that matters.
@@ -30,7 +30,8 @@ fn random_plans_with_one_thing_changed_are_refused() {
                 _ => {
                     let window = wrong.windows.iter_mut().flatten().nth(rng.below(4) as usize);
                     let Some(window) = window else { continue };
-                    window.earliest += Rational::new(1, 7);
+                    let later = Time::new(1, 7).and_then(|seventh| window.earliest.checked_add(seventh));
+                    window.earliest = later.expect("a small time");
                 }
             }
             assert!(sound(&network, &wrong).is_err(), "seed {seed}");

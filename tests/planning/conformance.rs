@@ -7,11 +7,11 @@ use std::path::Path;
 use acceptance::cases::{cases, expect_as_listed, folder, program, read};
 use acceptance::distances::{FAR, Matrix, Scale, of_arcs};
 use acceptance::mission::{all_plans, compile, error_codes, first_plan, network};
+use exact::{Bound, Time};
 use kirk::Search;
 use rmpl::program::LabelMode;
-use rmpl::{Bound, Rational};
+use serde::Deserialize as _;
 use serde_json::{Value, json};
-use tpn::number::{bound_from_json, bound_to_json, time_from_json, time_to_json};
 use tpn::plan_json::{Names, node_name, plan_to_json};
 use tpn::{Choice, DecisionId, LabelId, Network, NodeId, Plan, Top};
 
@@ -47,7 +47,7 @@ fn every_planning_case_has_exactly_its_plans_with_both_searches() {
     for (name, case) in cases("tpn-plan") {
         let mut network = network(&program(&case));
         if let Some(gap) = case.pointer("/options/threat_gap") {
-            network.threat_gap = time_from_json(gap).expect("an exact gap");
+            network.threat_gap = Time::deserialize(gap).expect("an exact gap");
         }
         let expect = &case["expect"];
         for search in [Search::Chronological, Search::ConflictDirected] {
@@ -110,8 +110,8 @@ fn every_compilation_case_has_its_distances_and_labels() {
         let top = match case["bounds"].as_array().map(Vec::as_slice) {
             Some([lower, upper]) => Top::Activity {
                 name: activity.into(),
-                lower: time_from_json(lower).expect("a time"),
-                upper: bound_from_json(upper).expect("a bound"),
+                lower: Time::deserialize(lower).expect("a time"),
+                upper: Bound::deserialize(upper).expect("a bound"),
             },
             _ => Top::activity(activity),
         };
@@ -168,7 +168,7 @@ fn check_choice(name: &str, network: &Network, expect: &Value) {
 fn interval_json(scale: Scale, matrix: &Matrix, from: NodeId, to: NodeId) -> Value {
     let side = |distance: i64, infinite: &str, sign: i64| match distance {
         FAR.. => Value::from(infinite),
-        distance => time_to_json(scale.unscaled(sign * distance)),
+        distance => json!(scale.unscaled(sign * distance)),
     };
     json!([
         side(matrix.get(to.index(), from.index()), "-inf", -1),
@@ -212,7 +212,7 @@ fn check_paper_network(network: &Network, paper: &Value) {
                     format!("{mode}({})", label.text)
                 })
                 .collect();
-            let text = format!("{} {} {}", time_to_json(arc.lower), bound_to_json(arc.upper), json!(labels));
+            let text = format!("{} {} {}", json!(arc.lower), json!(arc.upper), json!(labels));
             (u64::from(arc.from.0), u64::from(arc.to.0), text)
         })
         .collect();
@@ -293,7 +293,7 @@ fn check_update(name: &str, network: &Network, plan: &Plan, update: &Value) {
     let mut points = stn::Stn::new(network.nodes.len());
     constrain(network, plan, scale, &mut points);
     let point = |event: &str| stn::PointId(events.event(event).expect("an event").0);
-    let time = |value: &Value| scale.time(time_from_json(value).expect("a time"));
+    let time = |value: &Value| scale.time(Time::deserialize(value).expect("a time"));
     let executed: Vec<(stn::PointId, i64)> = (update["executed"].as_object().expect("times").iter())
         .map(|(event, at)| (point(event), time(at)))
         .collect();
@@ -318,16 +318,15 @@ fn check_update(name: &str, network: &Network, plan: &Plan, update: &Value) {
     assert_eq!(update["consistent"], true, "{name}");
     for (event, window) in update["windows"].as_object().expect("windows") {
         let found = after[point(event).0 as usize];
-        let bound = |time: Option<i64>| {
-            time.map_or_else(|| Value::from("inf"), |time| time_to_json(scale.unscaled(time)))
-        };
+        let bound =
+            |time: Option<i64>| time.map_or_else(|| Value::from("inf"), |time| json!(scale.unscaled(time)));
         assert_eq!(json!([bound(found.earliest), bound(found.latest)]), *window, "{name}: {event}");
     }
 }
 
 fn constrain(network: &Network, plan: &Plan, scale: Scale, points: &mut stn::Stn) {
     let id = |node: NodeId| stn::PointId(node.0);
-    let mut add = |from: NodeId, to: NodeId, lower: Rational, upper: Bound| {
+    let mut add = |from: NodeId, to: NodeId, lower: Time, upper: Bound| {
         points.insert(id(to), id(from), -scale.time(lower), 0).expect("a plan is consistent");
         if let Some(upper) = scale.bound(upper) {
             points.insert(id(from), id(to), upper, 0).expect("a plan is consistent");
@@ -337,7 +336,7 @@ fn constrain(network: &Network, plan: &Plan, scale: Scale, points: &mut stn::Stn
         add(arc.from, arc.to, arc.lower, arc.upper);
     }
     let arc = |label: LabelId| &network.arcs[network.labels[label.index()].arc.index()];
-    let zero = Rational::from_integer(0);
+    let zero = Time::ZERO;
     for link in &plan.causal_links {
         add(arc(link.tell).from, arc(link.ask).from, zero, Bound::Infinite);
         add(arc(link.ask).to, arc(link.tell).to, zero, Bound::Infinite);

@@ -83,7 +83,7 @@ fn a_choice_between_delays_has_one_plan_for_each() {
         .collect();
     ends.sort();
     let mut expected: Vec<String> =
-        [1, 101, 201].iter().map(|&time| format!("{:?}", rmpl::Rational::from_integer(time))).collect();
+        [1, 101, 201].iter().map(|&time| format!("{:?}", exact::Time::from(time))).collect();
     expected.sort();
     assert_eq!(ends, expected);
     assert_eq!(document.to_json()["node-13"]["htn-node"], json!("hem-14"));
@@ -114,13 +114,13 @@ fn infinity_is_read_in_every_spelling() {
             "c": {{"tpn-type": "temporal-constraint", "value": [2.5, {upper}], "end-node": "b"}}}}"#
         );
         let network = Document::parse(&text).expect("a network").network;
-        assert_eq!(network.arcs[0].lower, rmpl::Rational::new(5, 2));
-        assert_eq!(network.arcs[0].upper, rmpl::Bound::Infinite);
+        assert_eq!(Some(network.arcs[0].lower), exact::Time::new(5, 2));
+        assert_eq!(network.arcs[0].upper, exact::Bound::Infinite);
     }
     let edn = "{:network-id :n :n {:tpn-type :network :begin-node :a} :a {:tpn-type :state :activities #{:x}}
         :b {:tpn-type :state} :x {:tpn-type :activity :command \"X\" :end-node :b :constraints #{:c}}
         :c {:tpn-type :temporal-constraint :value [0 :infinity] :end-node :b}}";
-    assert_eq!(Document::parse(edn).expect("EDN").network.arcs[0].upper, rmpl::Bound::Infinite);
+    assert_eq!(Document::parse(edn).expect("EDN").network.arcs[0].upper, exact::Bound::Infinite);
 }
 
 /// Seeds of missions to send through a format.

@@ -2,8 +2,8 @@
 //! with the smallest mission that shows it. Known answers are worked out by hand in the comments.
 
 use acceptance::mission::{all_plans, compile, error_codes, first_plan, network, warning_codes};
+use exact::{Bound, Time};
 use kirk::Search;
-use rmpl::{Bound, Rational};
 use serde_json::{Value, json};
 use tpn::plan_json::plan_to_json;
 use tpn::{ArcKind, Network, Role, Top};
@@ -365,10 +365,7 @@ fn maintaining_labels_a_single_arc_or_spans_a_composite() {
     assert_eq!((labels(&single), single.arcs.len()), (vec!["Ask(c)@A#1".to_owned()], 1));
     let composite = network("scenario S = { do { A()[1,2]; B()[3,4] } maintaining c }");
     let span = &composite.arcs[composite.labels[0].arc.index()];
-    assert_eq!(
-        (span.kind, span.lower, span.upper),
-        (ArcKind::Span, Rational::from_integer(0), Bound::Infinite)
-    );
+    assert_eq!((span.kind, span.lower, span.upper), (ArcKind::Span, Time::ZERO, Bound::Infinite));
     assert_eq!(labels(&composite), ["Ask(c)@do#1"]);
     let instance = network("Sub() = { A(); B() }\nscenario S = { do Sub() watching c }");
     assert_eq!(labels(&instance), ["Tell(not(c))@Sub#1"]);

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use acceptance::mission::{PlanKey, all_plans, key, network};
 use acceptance::random::small_mission;
+use exact::{Bound, Rational, Time};
 use kirk::Search;
-use rmpl::{Bound, Rational};
 use tpn::generate::{Recipe, Tightness, mission};
 use tpn::{Network, Plan};
 
@@ -56,21 +56,21 @@ fn scaling_all_times_scales_all_windows() {
     let mut with_plan = 0;
     for seed in SEEDS {
         let one = network(&small_mission(seed));
-        for factor in [Rational::from_integer(60), Rational::new(1, 7)] {
+        for factor in [Rational::from(60), Rational::new(1, 7).expect("a seventh")] {
             let mut scaled = one.clone();
             for arc in &mut scaled.arcs {
-                arc.lower *= factor;
+                arc.lower = scaled_time(arc.lower, factor);
                 arc.upper = scale(arc.upper, factor);
             }
-            scaled.threat_gap *= factor;
+            scaled.threat_gap = scaled_time(scaled.threat_gap, factor);
             let plans = all_plans(&one, Search::Chronological).plans;
             let scaled_plans = all_plans(&scaled, Search::Chronological).plans;
             assert_eq!(plans.len(), scaled_plans.len(), "seed {seed}, factor {factor}");
             for (plan, scaled_plan) in plans.iter().zip(&scaled_plans) {
                 assert_eq!(key(&one, plan, &same), key(&scaled, scaled_plan, &same), "seed {seed}");
                 for (window, scaled_window) in plan.windows.iter().zip(&scaled_plan.windows) {
-                    let expected =
-                        window.map(|window| (window.earliest * factor, scale(window.latest, factor)));
+                    let expected = window
+                        .map(|window| (scaled_time(window.earliest, factor), scale(window.latest, factor)));
                     assert_eq!(
                         scaled_window.map(|window| (window.earliest, window.latest)),
                         expected,
@@ -85,10 +85,11 @@ fn scaling_all_times_scales_all_windows() {
 }
 
 fn scale(bound: Bound, factor: Rational) -> Bound {
-    match bound {
-        Bound::Finite(time) => Bound::Finite(time * factor),
-        Bound::Infinite => Bound::Infinite,
-    }
+    bound.finite().map_or(Bound::Infinite, |time| Bound::Finite(scaled_time(time, factor)))
+}
+
+fn scaled_time(time: Time, factor: Rational) -> Time {
+    time.checked_mul(factor).expect("a small time")
 }
 
 /// The branches of the scenario in reverse order. Occurrences are then counted in another order, so only what has no
@@ -104,7 +105,7 @@ fn reordering_parallel_branches_changes_no_answer() {
         let Some(reordered) = reverse_threads(&text) else { continue };
         let summary = |text: &str| {
             let mut network = network(text);
-            network.threat_gap = Rational::from_integer(0);
+            network.threat_gap = Time::ZERO;
             let plans = all_plans(&network, Search::ConflictDirected).plans;
             let outline = |plan: &Plan| {
                 format!("{:?}, {} links", plan.windows[network.end.index()], plan.causal_links.len())

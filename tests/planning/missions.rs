@@ -5,8 +5,9 @@ use std::collections::BTreeSet;
 
 use acceptance::cases::{NOT_BUILT, all, cases, expect_as_listed, program};
 use acceptance::mission::compile;
+use exact::Bound;
 use kirk::{Options, Outcome, Search, Status, Unlimited};
-use rmpl::{Bound, Severity};
+use rmpl::Severity;
 use serde_json::Value;
 use tpn::plan_json::plan_to_json;
 use tpn::{Network, Plan, Top};

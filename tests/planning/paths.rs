@@ -1,8 +1,9 @@
 //! Paths in the network (SPEC 7.3), by the worked example there.
 
 use acceptance::mission::{first_plan, network};
+use exact::{Rational, Time};
 use kirk::Search;
-use rmpl::Rational;
+use serde::Deserialize as _;
 use serde_json::{Value, json};
 use tpn::path::{PathError, PathLeg, TraversePath, insert_paths};
 use tpn::plan_json::plan_to_json;
@@ -30,15 +31,19 @@ fn spec_path(network: &Network, lengths: &[&[f64]], may_stop: bool) -> TraverseP
     TraversePath {
         occurrence: traverse(network, "Group-Traverse-Path#1"),
         legs: legs(lengths),
-        speed_mps: (Rational::new(45, 1000), Rational::new(5, 100)),
+        speed_mps: (Rational::new(45, 1000).expect("a speed"), Rational::new(5, 100).expect("a speed")),
         may_stop,
     }
 }
 
+fn nearest_thousandth(time: Time) -> i64 {
+    let half = Time::new(1, 2000).and_then(|half| time.checked_add(half));
+    half.and_then(|time| time.whole_parts(1000)).expect("a small time")
+}
+
 /// A time of a window, rounded to thousandths of a minute for comparison with the printed table.
 fn thousandths(value: &Value) -> i64 {
-    let time = tpn::number::time_from_json(value).expect("an exact time");
-    (time * Rational::from_integer(1000)).round().to_integer()
+    nearest_thousandth(Time::deserialize(value).expect("an exact time"))
 }
 
 #[test]
@@ -51,10 +56,7 @@ fn the_worked_example_has_its_waypoint_windows() {
         .filter(|arc| arc.kind == ArcKind::Path)
         .map(|arc| {
             let upper = arc.upper.finite().expect("it may not stop");
-            (
-                thousandths(&tpn::number::time_to_json(arc.lower)),
-                thousandths(&tpn::number::time_to_json(upper)),
-            )
+            (nearest_thousandth(arc.lower), nearest_thousandth(upper))
         })
         .collect();
     assert_eq!(durations, [(100_000, 111_111), (166_667, 185_185), (138_333, 153_704)]);
@@ -102,7 +104,7 @@ fn every_id_of_the_network_stays_valid() {
             .arcs
             .iter()
             .filter(|arc| arc.kind == ArcKind::Path)
-            .all(|arc| arc.upper == rmpl::Bound::Infinite)
+            .all(|arc| arc.upper == exact::Bound::Infinite)
     );
 }
 
@@ -122,13 +124,13 @@ fn seconds_are_thousandths_of_a_millisecond_count() {
     let path = TraversePath {
         occurrence: traverse(&before, "Drive#1"),
         legs: legs(&[&[10.0]]),
-        speed_mps: (Rational::from_integer(0), Rational::from_integer(3)),
+        speed_mps: (Rational::ZERO, Rational::from(3)),
         may_stop: false,
     };
     let after = insert_paths(&before, &[path], 1).expect("a path");
     let arc = after.arcs.last().expect("an arc");
     // 10 / 3 s, rounded up to the millisecond; at speed zero there is no greatest duration.
-    assert_eq!((arc.lower, arc.upper), (Rational::new(3334, 1000), rmpl::Bound::Infinite));
+    assert_eq!((arc.lower, arc.upper), (Time::new(3334, 1000).expect("a fraction"), exact::Bound::Infinite));
 }
 
 #[test]
@@ -142,7 +144,7 @@ fn a_slope_that_slows_the_rover_down_makes_its_segment_longer_in_time() {
         .filter(|arc| arc.kind == ArcKind::Path)
         .map(|arc| (arc.lower, arc.upper.finite().expect("it may not stop")))
         .map(|(lower, upper)| {
-            let thousandths = |time: Rational| (time * Rational::from_integer(1000)).round().to_integer();
+            let thousandths = nearest_thousandth;
             (thousandths(lower), thousandths(upper))
         })
         .collect();
@@ -163,6 +165,6 @@ fn what_is_no_path_is_refused() {
         refused(TraversePath { legs: legs(&[&[f64::NAN]]), ..good.clone() }),
         PathError::Length(_)
     ));
-    let still = (Rational::from_integer(0), Rational::from_integer(0));
+    let still = (Rational::ZERO, Rational::ZERO);
     assert!(matches!(refused(TraversePath { speed_mps: still, ..good }), PathError::Speed(..)));
 }

@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use acceptance::mission::{compile, try_plans};
 use acceptance::random::{crowded_mission, small_mission};
 use acceptance::reference::{Found, search};
+use exact::{Bound, Time};
 use kirk::Search;
-use rmpl::{Bound, Rational};
 use tpn::{LabelId, Network, Plan, Top};
 
 /// Missions of any kind that the reference finishes.
@@ -18,8 +18,7 @@ const CROWDED_MISSIONS: u64 = 30_000;
 /// The reference gives up on missions with more steps than this, and another one takes their place.
 const MOST_STEPS: u64 = 1_500;
 /// What ordered intervals are kept apart by: it decides what touching means (SPEC 5.3).
-const GAPS: [Rational; 4] =
-    [Rational::new_raw(1, 1), Rational::new_raw(0, 1), Rational::new_raw(2, 1), Rational::new_raw(1, 2)];
+const GAPS: [&str; 4] = ["1", "0", "2", "0.5"];
 
 #[test]
 fn both_searches_find_exactly_the_plans_that_exist() {
@@ -106,7 +105,7 @@ fn compare_all(count: u64, mission: fn(u64) -> String) -> Tally {
                 while compared < count / 2 {
                     // Half the missions have the language's gap, the others have each a third.
                     let gap = GAPS[if seed % 4 < 2 { 0 } else { 1 + (seed / 4 % 3) as usize }];
-                    match compare(&mission(seed), gap) {
+                    match compare(&mission(seed), gap.parse().expect("a time")) {
                         Ok(Some(answer)) => {
                             tally.add(&answer);
                             compared += 1;
@@ -145,7 +144,7 @@ struct Compared {
 }
 
 /// What the mission is like, if the reference finishes and both searches agree with it.
-fn compare(text: &str, gap: Rational) -> Result<Option<Compared>, String> {
+fn compare(text: &str, gap: Time) -> Result<Option<Compared>, String> {
     let (network, diagnostics) = compile(text, &Top::Scenario(None));
     let mut network = network.ok_or_else(|| format!("does not compile: {diagnostics:?}\n{text}"))?;
     network.threat_gap = gap;

@@ -1,6 +1,6 @@
 //! All-pairs distances over exact integers, the textbook way: the yardstick of the tests.
 
-use rmpl::{Bound, Rational};
+use exact::{Bound, Time};
 use tpn::{ArcId, Network};
 
 /// No path.
@@ -72,7 +72,7 @@ impl Scale {
         let times = network.arcs.iter().flat_map(|arc| [Some(arc.lower), arc.upper.finite()]);
         let mut scale = 1;
         for time in times.flatten().chain([network.threat_gap]) {
-            let denominator = *time.denom();
+            let denominator = time.denominator();
             let mut multiple = scale;
             while multiple % denominator != 0 {
                 multiple += scale;
@@ -83,8 +83,8 @@ impl Scale {
     }
 
     /// A time, scaled.
-    pub fn time(self, time: Rational) -> i64 {
-        time.numer() * (self.0 / time.denom())
+    pub fn time(self, time: Time) -> i64 {
+        time.numerator() * (self.0 / time.denominator())
     }
 
     /// A bound, scaled.
@@ -93,8 +93,8 @@ impl Scale {
     }
 
     /// Back to a time.
-    pub fn unscaled(self, scaled: i64) -> Rational {
-        Rational::new(scaled, self.0)
+    pub fn unscaled(self, scaled: i64) -> Time {
+        Time::new(scaled, self.0).expect("the scale is positive")
     }
 }
 

@@ -1,8 +1,8 @@
 //! An exhaustive planner written from SPEC 5 alone: every choice, every link, every ordering, over all-pairs distances.
 //! It shares no code with the planner or the checker, and is only for networks of a few dozen nodes.
 
+use exact::{Bound, Time};
 use rmpl::program::LabelMode;
-use rmpl::{Bound, Rational};
 use tpn::{ArcId, CausalLink, Choice, DecisionId, LabelId, Network, NodeId, Ordering};
 
 use crate::distances::{FAR, Matrix, Scale, of_arcs};
@@ -17,7 +17,7 @@ pub struct Found {
     /// Every conflicting pair, sorted by the textually earlier interval, then the other.
     pub conflicts: Vec<Ordering>,
     /// By node; `None` if not selected.
-    pub windows: Vec<Option<(Rational, Bound)>>,
+    pub windows: Vec<Option<(Time, Bound)>>,
 }
 
 /// What the exhaustive search found.

@@ -69,7 +69,7 @@ fn drag_event(app: &mut support::App) -> Vec<Duration> {
     let (network, plan) = (shown.network.as_deref().expect("a network"), shown.plan().expect("a plan"));
     let slack = |node: &tpn::NodeId| {
         let window = plan.windows[node.index()];
-        window.and_then(|it| Some(it.latest.finite()? - it.earliest)).unwrap_or_default()
+        window.and_then(|it| it.latest.finite()?.checked_sub(it.earliest)).unwrap_or_default()
     };
     let nodes = (0..network.nodes.len()).map(tpn::NodeId::from_index);
     let node = nodes.max_by_key(slack).expect("an event");
@@ -81,7 +81,8 @@ fn drag_event(app: &mut support::App) -> Vec<Duration> {
         if step == 0 {
             state.run(Command::Pins(PinCommand::Grab(node)));
         }
-        state.run(Command::Pins(PinCommand::MoveTo(earliest + rmpl::Rational::from(step))));
+        state
+            .run(Command::Pins(PinCommand::MoveTo(earliest.checked_add(step.into()).expect("a small time"))));
         times.push(begun.elapsed());
     }
     app.harness.state_mut().run(Command::Pins(PinCommand::ReleaseAll));

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::Context as _;
+use exact::{Bound, Time};
 use mission::{Goal, Problem};
 use rmpl::program::Program;
-use rmpl::{Bound, Rational};
 use tpn::Network;
 
 use crate::input::read_text;
@@ -78,7 +78,7 @@ impl Target {
         if let Some(name) = &self.activity {
             let (lower, upper) = match &self.bounds {
                 Some(bounds) => parse_bounds(bounds)?,
-                None => (Rational::default(), Bound::Infinite),
+                None => (Time::ZERO, Bound::Infinite),
             };
             return Ok(Goal::Activity { name: name.into(), lower, upper });
         }
@@ -92,49 +92,21 @@ fn is_network(name: &str, source: &str) -> bool {
     is_named_so || (name == "-" && source.trim_start().starts_with('{'))
 }
 
-fn parse_bounds(text: &str) -> anyhow::Result<(Rational, Bound)> {
+fn parse_bounds(text: &str) -> anyhow::Result<(Time, Bound)> {
     let explain = || format!("--bounds wants two times such as 450,540 or 0,inf, not `{text}`");
     let (lower, upper) = text.split_once(',').with_context(explain)?;
-    let lower = parse_time(lower).with_context(explain)?;
-    let upper = match upper.trim() {
-        "inf" | "∞" => Bound::Infinite,
-        finite => Bound::Finite(parse_time(finite).with_context(explain)?),
-    };
+    let lower: Time = lower.parse().with_context(explain)?;
+    let upper: Bound = upper.parse().with_context(explain)?;
     anyhow::ensure!(
-        lower >= Rational::default() && Bound::Finite(lower) <= upper,
+        !lower.is_negative() && Bound::Finite(lower) <= upper,
         "--bounds wants 0 ≤ L ≤ U, not `{text}`"
     );
     Ok((lower, upper))
 }
 
-/// A time: a decimal such as 409.5, or a fraction such as 1000/3.
-pub fn parse_time(text: &str) -> Option<Rational> {
-    let text = text.trim();
-    if let Some((numerator, denominator)) = text.split_once('/') {
-        let denominator: i64 = denominator.parse().ok().filter(|&denominator| denominator != 0)?;
-        return Some(Rational::new(numerator.parse().ok()?, denominator));
-    }
-    let (whole, fraction) = text.split_once('.').unwrap_or((text, ""));
-    if !fraction.bytes().all(|byte| byte.is_ascii_digit()) || fraction.len() > 15 {
-        return None;
-    }
-    let scale = 10_i64.pow(fraction.len() as u32);
-    let digits: i64 = format!("{whole}{fraction}").parse().ok()?;
-    Some(Rational::new(digits, scale))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn times_are_read_exactly() {
-        assert_eq!(parse_time("409.5"), Some(Rational::new(819, 2)));
-        assert_eq!(parse_time("1000/3"), Some(Rational::new(1000, 3)));
-        assert_eq!(parse_time("-2"), Some(Rational::from(-2)));
-        assert_eq!(parse_time("-0.5"), Some(Rational::new(-1, 2)));
-        for wrong in ["", "a", "1/0", "1.x", "1e3"] {
-            assert_eq!(parse_time(wrong), None, "{wrong}");
-        }
-    }
+/// The value of `--threat-gap`.
+pub fn parse_threat_gap(text: &str) -> anyhow::Result<Time> {
+    let gap: Time = text.parse().with_context(|| format!("--threat-gap wants a time, not `{text}`"))?;
+    anyhow::ensure!(!gap.is_negative(), "--threat-gap must not be negative");
+    Ok(gap)
 }

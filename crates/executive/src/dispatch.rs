@@ -17,7 +17,10 @@ pub struct Dispatcher {
     place: Vec<(usize, i64)>,
     /// The component of each leader, by point; meaningless for other points.
     component_of_leader: Vec<usize>,
+    /// Of the leaders.
     windows: Vec<(i64, i64)>,
+    /// How long after its leader the last member of each component comes.
+    lengths: Vec<i64>,
     time: Vec<Option<i64>>,
     /// Edges by their ends: positions in the form's list.
     out: Vec<Vec<usize>>,
@@ -27,13 +30,18 @@ pub struct Dispatcher {
 /// No upper bound.
 pub const NEVER: i64 = i64::MAX;
 
-/// An event came outside its window.
+/// Why an event cannot have come at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OutOfWindow {
-    /// The window's beginning, in ticks.
-    pub earliest: i64,
-    /// Its end, or [`NEVER`].
-    pub latest: i64,
+pub enum SettleError {
+    /// It came outside its window.
+    OutOfWindow {
+        /// The window's beginning, in ticks.
+        earliest: i64,
+        /// Its end, or [`NEVER`].
+        latest: i64,
+    },
+    /// This event, which follows, could only come at a time that does not fit.
+    Overflow(PointId),
 }
 
 impl Dispatcher {
@@ -48,11 +56,13 @@ impl Dispatcher {
         let mut place = vec![(0, 0); points.len()];
         let mut component_of_leader = vec![0; points.len()];
         let mut windows = Vec::with_capacity(form.components.len());
+        let mut lengths = Vec::with_capacity(form.components.len());
         for (index, component) in form.components.iter().enumerate() {
             component_of_leader[component.leader.index()] = index;
             for &(point, offset) in &component.members {
                 place[point.index()] = (index, offset);
             }
+            lengths.push(component.members.iter().map(|&(_, offset)| offset).max().unwrap_or(0));
             let origin = plan.origin();
             windows.push((-distances.get(component.leader, origin), distances.get(origin, component.leader)));
         }
@@ -63,7 +73,7 @@ impl Dispatcher {
             into[component_of_leader[edge.to.index()]].push(position);
         }
         let time = vec![None; form.components.len()];
-        Ok(Self { form, place, component_of_leader, windows, time, out, into })
+        Ok(Self { form, place, component_of_leader, windows, lengths, time, out, into })
     }
 
     /// The form that is dispatched.
@@ -78,7 +88,7 @@ impl Dispatcher {
             (time + offset, time + offset)
         } else {
             let (earliest, latest) = self.windows[component];
-            (earliest + offset, if latest == NEVER { NEVER } else { latest + offset })
+            (earliest + offset, if latest == NEVER { NEVER } else { latest.saturating_add(offset) })
         }
     }
 
@@ -108,13 +118,15 @@ impl Dispatcher {
     }
 
     /// Settles the time of a point, and tells the neighbours.
-    pub fn settle(&mut self, point: PointId, ticks: i64) -> Result<(), OutOfWindow> {
+    pub fn settle(&mut self, point: PointId, ticks: i64) -> Result<(), SettleError> {
         let (earliest, latest) = self.window(point);
         if ticks < earliest || ticks > latest {
-            return Err(OutOfWindow { earliest, latest });
+            return Err(SettleError::OutOfWindow { earliest, latest });
         }
         let (component, offset) = self.place[point.index()];
-        let time = ticks - offset;
+        let time =
+            ticks.checked_sub(offset).filter(|time| time.checked_add(self.lengths[component]).is_some());
+        let time = time.ok_or(SettleError::Overflow(point))?;
         if self.time[component].replace(time).is_some() {
             return Ok(());
         }
@@ -125,8 +137,12 @@ impl Dispatcher {
         }
         for &position in &self.into[component] {
             let edge = self.form.edges[position];
-            let window = &mut self.windows[self.component_of_leader[edge.from.index()]];
-            window.0 = window.0.max(time.saturating_sub(edge.weight));
+            let other = self.component_of_leader[edge.from.index()];
+            let earliest = time.checked_sub(edge.weight);
+            let fits = |earliest: &i64| earliest.checked_add(self.lengths[other]).is_some();
+            let earliest = earliest.filter(fits).ok_or(SettleError::Overflow(edge.from))?;
+            let window = &mut self.windows[other];
+            window.0 = window.0.max(earliest);
         }
         Ok(())
     }

@@ -1,22 +1,22 @@
 //! A network with what has happened so far, for planning again (SPEC 6.2): executed events keep their times, all
 //! others come later, and the world's news replace what the program said.
 
-use rmpl::{Bound, Rational};
+use exact::{Bound, Time};
 use tpn::{Arc, ArcId, ArcKind, EventRef, Network, NodeId, OccurrenceId, Role};
 
 /// What has happened and what is known at a moment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Facts {
     /// The present.
-    pub now: Rational,
+    pub now: Time,
     /// Nodes of the program's network that have happened.
-    pub happened: Vec<(NodeId, Rational)>,
+    pub happened: Vec<(NodeId, Time)>,
     /// Path vertices that were passed; they are appended to the network, so they are known by their event.
-    pub passed: Vec<(EventRef, Rational)>,
+    pub passed: Vec<(EventRef, Time)>,
     /// Occurrences that take this long.
-    pub durations: Vec<(OccurrenceId, Rational)>,
+    pub durations: Vec<(OccurrenceId, Time)>,
     /// Conditions that begin at this time.
-    pub begins: Vec<(OccurrenceId, Rational)>,
+    pub begins: Vec<(OccurrenceId, Time)>,
 }
 
 /// A lower bound that binds nothing: no mission is longer.
@@ -58,7 +58,7 @@ impl Facts {
                 Some(time) => add_back_arc(&mut changed, node, time, time),
                 // A vertex that was not reported lies between others that are held.
                 None if is_vertex => {}
-                None => add_back_arc(&mut changed, node, self.now, Rational::from(LONG)),
+                None => add_back_arc(&mut changed, node, self.now, Time::from(LONG)),
             }
         }
         for &(occurrence, time) in &self.begins {
@@ -72,14 +72,16 @@ impl Facts {
 }
 
 /// Holds `node` to come between `earliest` and `latest` after the start.
-fn add_back_arc(network: &mut Network, node: NodeId, earliest: Rational, latest: Rational) {
+fn add_back_arc(network: &mut Network, node: NodeId, earliest: Time, latest: Time) {
+    // Nothing comes before the start, and what is not negative has an opposite that fits.
+    let back = |time: Time| time.max(Time::ZERO).checked_neg().unwrap_or_default();
     let id = ArcId::from_index(network.arcs.len());
     let start = network.start;
     network.arcs.push(Arc {
         from: node,
         to: start,
-        lower: -latest,
-        upper: Bound::Finite(-earliest),
+        lower: back(latest),
+        upper: Bound::Finite(back(earliest)),
         kind: ArcKind::Span,
         labels: Vec::new(),
         occurrence: None,
@@ -90,7 +92,7 @@ fn add_back_arc(network: &mut Network, node: NodeId, earliest: Rational, latest:
     network.nodes[start.index()].in_arcs.push(id);
 }
 
-fn set_duration(network: &mut Network, occurrence: OccurrenceId, duration: Rational) {
+fn set_duration(network: &mut Network, occurrence: OccurrenceId, duration: Time) {
     if let Some(arc) = network.occurrences[occurrence.index()].arc {
         let arc = &mut network.arcs[arc.index()];
         (arc.lower, arc.upper) = (duration, Bound::Finite(duration));
@@ -98,7 +100,7 @@ fn set_duration(network: &mut Network, occurrence: OccurrenceId, duration: Ratio
     // How it divides among the segments of a path is not known.
     for arc in network.arcs.iter_mut().filter(|arc| arc.kind == ArcKind::Path) {
         if arc.occurrence == Some(occurrence) {
-            (arc.lower, arc.upper) = (Rational::default(), Bound::Infinite);
+            (arc.lower, arc.upper) = (Time::ZERO, Bound::Infinite);
         }
     }
 }
@@ -112,7 +114,7 @@ fn free_start(network: &mut Network, occurrence: OccurrenceId) {
             let arc = &mut network.arcs[arc.index()];
             match arc.kind {
                 ArcKind::Delay => {
-                    arc.lower = Rational::default();
+                    arc.lower = Time::ZERO;
                     arc.upper = Bound::Infinite;
                 }
                 ArcKind::Glue if !seen.contains(&arc.from) => {

@@ -3,7 +3,6 @@
 //! Nothing here reads a clock: time is the mission's, exact, and moves from event to event.
 
 pub mod dispatch;
-pub mod exact;
 pub mod facts;
 pub mod log;
 pub mod model_based;

@@ -1,6 +1,6 @@
 //! What happened in a run, in order. A log with its mission, seed and disturbances replays exactly.
 
-use rmpl::Rational;
+use exact::Time;
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
@@ -8,8 +8,7 @@ use smol_str::SmolStr;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
     /// When, in mission units.
-    #[serde(with = "crate::exact")]
-    pub time: Rational,
+    pub time: Time,
     /// What.
     #[serde(flatten)]
     pub happening: Happening,

@@ -1,6 +1,6 @@
 //! Who carries an activity out: between its start, which the plan decides, and its end, which is reported.
 
-use rmpl::Rational;
+use exact::{Overflow, Time};
 use tpn::{EventRef, Network, OccurrenceId};
 
 use crate::log::Entry;
@@ -13,7 +13,7 @@ pub struct Performance {
     /// What will be seen of it until then, in order of time. Of an activity that is stopped the rest is not seen.
     pub entries: Vec<Entry>,
     /// After how long a traverse passes the vertices of its path, in order; one that is not listed is passed as planned.
-    pub passes: Vec<(EventRef, Rational)>,
+    pub passes: Vec<(EventRef, Time)>,
 }
 
 /// When an activity will be over.
@@ -23,9 +23,9 @@ pub enum Ends {
     #[default]
     AsPlanned,
     /// After this long, in mission units.
-    After(Rational),
+    After(Time),
     /// As soon as the plan wants it after this long: a vehicle that is early waits.
-    NotBefore(Rational),
+    NotBefore(Time),
     /// Never; the reason, such as `the program did not reach its end in 40 steps`.
     Never(String),
 }
@@ -33,12 +33,17 @@ pub enum Ends {
 /// Carries activities out. Whatever it does must follow from its own inputs: a run is worked out as often as it is
 /// looked at.
 pub trait Performer {
-    /// Starts an activity at `start`, in mission units. Not called for one whose duration the world decides.
-    fn start(&mut self, network: &Network, occurrence: OccurrenceId, start: Rational) -> Performance;
+    /// Starts an activity at `start`, in mission units; an error if a time of it does not fit. Not called for one whose duration the world decides.
+    fn start(
+        &mut self,
+        network: &Network,
+        occurrence: OccurrenceId,
+        start: Time,
+    ) -> Result<Performance, Overflow>;
 
     /// All durations that it gives are multiples of this, which is above 0.
-    fn granularity(&self) -> Rational {
-        Rational::from(1)
+    fn granularity(&self) -> Time {
+        Time::ONE
     }
 }
 
@@ -47,7 +52,7 @@ pub trait Performer {
 pub struct AsPlanned;
 
 impl Performer for AsPlanned {
-    fn start(&mut self, _: &Network, _: OccurrenceId, _: Rational) -> Performance {
-        Performance::default()
+    fn start(&mut self, _: &Network, _: OccurrenceId, _: Time) -> Result<Performance, Overflow> {
+        Ok(Performance::default())
     }
 }

@@ -7,8 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use num_traits::ToPrimitive as _;
-use rmpl::Rational;
+use exact::Time;
 use stn::{Checkpoint, INFINITE, Window};
 use tpn::{Network, NodeId, Plan};
 
@@ -47,7 +46,8 @@ impl PinnedPlan {
     pub fn new(network: &Network, plan: &Plan) -> Result<Self, PlanError> {
         let mut constraints = PlanNetwork::new(network, plan)?;
         let mut finer = constraints.clone();
-        if finer.refine_for(network, plan, &[Rational::new(1, 10)]).is_ok() {
+        let tenth = Time::ONE.checked_div(10).unwrap_or_default();
+        if finer.refine_for(network, plan, &[tenth]).is_ok() {
             constraints = finer;
         }
         let plan_only = constraints.stn.checkpoint();
@@ -79,15 +79,15 @@ impl PinnedPlan {
 
     /// Pins the grabbed event to the moment of its window that is nearest to `time`, and narrows all other windows.
     /// Answers the moment; `None` if nothing is grabbed.
-    pub fn move_to(&mut self, time: Rational) -> Option<Rational> {
+    pub fn move_to(&mut self, time: Time) -> Option<Time> {
         let grabbed = self.grabbed.as_ref()?;
-        let wanted = self.nearest_tick(time);
+        let wanted = self.constraints.scale().nearest_tick(time);
         let latest = grabbed.window.latest.unwrap_or(i64::MAX / 4);
         let ticks = wanted.min(latest).max(grabbed.window.earliest.unwrap_or(0));
         let rows = grabbed.others.iter().zip(&grabbed.from).zip(&grabbed.to);
         let narrowed = rows.map(|((&other, &from), &to)| Window {
-            earliest: later(other.earliest, reached(ticks, to, -1)),
-            latest: sooner(other.latest, reached(ticks, from, 1)),
+            earliest: later(other.earliest, finite(to).and_then(|to| ticks.checked_sub(to))),
+            latest: sooner(other.latest, finite(from).and_then(|from| ticks.checked_add(from))),
         });
         self.windows.clear();
         self.windows.extend(narrowed);
@@ -126,7 +126,7 @@ impl PinnedPlan {
     }
 
     /// The pinned events and their times, in the order of the events.
-    pub fn pins(&self) -> impl Iterator<Item = (NodeId, Rational)> + '_ {
+    pub fn pins(&self) -> impl Iterator<Item = (NodeId, Time)> + '_ {
         self.pins.iter().map(|(&node, &ticks)| (node, self.constraints.time(ticks)))
     }
 
@@ -142,13 +142,6 @@ impl PinnedPlan {
             self.windows.get(point.index()).map(|&window| self.constraints.window(window))
         };
         (0..num_nodes).map(|index| window(NodeId::from_index(index))).collect()
-    }
-
-    fn nearest_tick(&self, time: Rational) -> i64 {
-        let ticks_per_unit = *self.constraints.time(1).denom();
-        let denominator = i128::from(*time.denom());
-        let doubled = 2 * i128::from(*time.numer()) * i128::from(ticks_per_unit) + denominator;
-        doubled.div_euclid(2 * denominator).to_i64().unwrap_or(i64::MAX / 4)
     }
 
     /// Makes the constraint network hold exactly the plan and the pins.
@@ -174,9 +167,8 @@ impl PinnedPlan {
     }
 }
 
-/// `time` moved by a distance to one side; `None` if there is no bound.
-fn reached(time: i64, distance: i64, side: i64) -> Option<i64> {
-    if distance == INFINITE { None } else { time.checked_add(side * distance) }
+fn finite(distance: i64) -> Option<i64> {
+    (distance != INFINITE).then_some(distance)
 }
 
 fn later(one: Option<i64>, other: Option<i64>) -> Option<i64> {

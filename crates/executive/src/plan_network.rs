@@ -1,8 +1,7 @@
 //! The simple temporal network of a plan: the arcs it selects and what planning added, in exact integers.
 
-use num_traits::ToPrimitive as _;
-use rmpl::{Bound, Rational};
-use stn::{Inconsistency, Overflow, PointId, Stn, Window};
+use exact::{Bound, Scale, Time};
+use stn::{Inconsistency, PointId, Stn, Window};
 use tpn::{ArcId, Network, NodeId, Plan};
 
 /// A plan's events as time points, with their constraints.
@@ -14,8 +13,7 @@ pub struct PlanNetwork {
     points: Vec<Option<PointId>>,
     /// The node of each point.
     nodes: Vec<NodeId>,
-    /// Integer ticks in one unit of the mission.
-    ticks_per_unit: i64,
+    scale: Scale,
     origin: PointId,
 }
 
@@ -23,18 +21,30 @@ pub struct PlanNetwork {
 pub const ADDED: u32 = u32::MAX;
 
 /// Why a plan cannot be executed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// Its constraints contradict each other: it is no plan.
     #[error("the plan's constraints contradict each other")]
     Inconsistent,
     /// Its times do not fit.
-    #[error("a time does not fit into 64 bits")]
+    #[error("a time of the plan does not fit into 64 bits")]
     Overflow,
+    /// What the world makes of it does not fit.
+    #[error("{event} would come at a time that does not fit into 64 bits")]
+    TooLate {
+        /// The event.
+        event: String,
+    },
 }
 
-impl From<Overflow> for PlanError {
-    fn from(_: Overflow) -> Self {
+impl From<stn::Overflow> for PlanError {
+    fn from(_: stn::Overflow) -> Self {
+        Self::Overflow
+    }
+}
+
+impl From<exact::Overflow> for PlanError {
+    fn from(_: exact::Overflow) -> Self {
         Self::Overflow
     }
 }
@@ -59,10 +69,12 @@ impl PlanNetwork {
                 nodes.push(NodeId::from_index(index));
             }
         }
-        let ticks_per_unit = common_denominator(network).ok_or(PlanError::Overflow)?;
+        let uppers = network.arcs.iter().filter_map(|arc| arc.upper.finite());
+        let lowers = network.arcs.iter().map(|arc| arc.lower);
+        let scale = Scale::common(lowers.chain(uppers).chain([network.threat_gap]))?;
         let stn = Stn::new(nodes.len());
         let origin = points[network.start.index()].ok_or(PlanError::Inconsistent)?;
-        let mut made = Self { stn, points, nodes, ticks_per_unit, origin };
+        let mut made = Self { stn, points, nodes, scale, origin };
         made.add_arcs(network, plan)?;
         made.add_decisions(network, plan)?;
         Ok(made)
@@ -70,11 +82,8 @@ impl PlanNetwork {
 
     fn add_arcs(&mut self, network: &Network, plan: &Plan) -> Result<(), PlanError> {
         for (index, arc) in network.arcs.iter().enumerate().filter(|&(index, _)| plan.selected_arcs[index]) {
-            let lower = self.ticks(arc.lower).ok_or(PlanError::Overflow)?;
-            let upper = match arc.upper {
-                Bound::Finite(upper) => Some(self.ticks(upper).ok_or(PlanError::Overflow)?),
-                Bound::Infinite => None,
-            };
+            let lower = self.scale.ticks(arc.lower)?;
+            let upper = self.scale.bound_ticks(arc.upper)?;
             let (Some(from), Some(to)) = (self.point(arc.from), self.point(arc.to)) else {
                 return Err(PlanError::Inconsistent);
             };
@@ -89,8 +98,8 @@ impl PlanNetwork {
             let arc = &network.arcs[network.labels[label.index()].arc.index()];
             (arc.from, arc.to)
         };
-        let mut before = |first: NodeId, then: NodeId, gap: Rational| {
-            let gap = self.ticks(gap).ok_or(PlanError::Overflow)?;
+        let mut before = |first: NodeId, then: NodeId, gap: Time| {
+            let gap = self.scale.ticks(gap)?;
             let (Some(first), Some(then)) = (self.point(first), self.point(then)) else {
                 return Err(PlanError::Inconsistent);
             };
@@ -98,8 +107,8 @@ impl PlanNetwork {
         };
         for link in &plan.causal_links {
             let ((tell_start, tell_end), (ask_start, ask_end)) = (ends(link.tell), ends(link.ask));
-            before(tell_start, ask_start, Rational::default())?;
-            before(ask_end, tell_end, Rational::default())?;
+            before(tell_start, ask_start, Time::ZERO)?;
+            before(ask_end, tell_end, Time::ZERO)?;
         }
         for ordering in &plan.orderings_added {
             before(ends(ordering.first).1, ends(ordering.then).0, network.threat_gap)?;
@@ -127,32 +136,21 @@ impl PlanNetwork {
         self.origin
     }
 
-    /// A time in ticks; times between two ticks are not representable, and give `None`, as do those that are too large.
-    pub fn ticks(&self, time: Rational) -> Option<i64> {
-        let scaled = i128::from(*time.numer()) * i128::from(self.ticks_per_unit);
-        let denominator = i128::from(*time.denom());
-        (scaled % denominator == 0).then(|| (scaled / denominator).to_i64()).flatten()
+    /// The ticks of its times.
+    pub const fn scale(&self) -> Scale {
+        self.scale
     }
 
     /// A number of ticks as a time.
-    pub fn time(&self, ticks: i64) -> Rational {
-        Rational::new(ticks, self.ticks_per_unit)
+    pub fn time(&self, ticks: i64) -> Time {
+        self.scale.time(ticks)
     }
 
     /// Makes ticks so fine that `time` is a whole number of them.
-    pub fn refine_for(
-        &mut self,
-        network: &Network,
-        plan: &Plan,
-        times: &[Rational],
-    ) -> Result<(), PlanError> {
-        let mut ticks_per_unit = self.ticks_per_unit;
-        for time in times {
-            ticks_per_unit =
-                least_common_multiple(ticks_per_unit, *time.denom()).ok_or(PlanError::Overflow)?;
-        }
-        if ticks_per_unit != self.ticks_per_unit {
-            self.ticks_per_unit = ticks_per_unit;
+    pub fn refine_for(&mut self, network: &Network, plan: &Plan, times: &[Time]) -> Result<(), PlanError> {
+        let scale = times.iter().try_fold(self.scale, |scale, &time| scale.refined(time))?;
+        if scale != self.scale {
+            self.scale = scale;
             self.stn = Stn::new(self.nodes.len());
             self.add_arcs(network, plan)?;
             self.add_decisions(network, plan)?;
@@ -167,23 +165,4 @@ impl PlanNetwork {
             latest: window.latest.map_or(Bound::Infinite, |latest| Bound::Finite(self.time(latest))),
         }
     }
-}
-
-fn common_denominator(network: &Network) -> Option<i64> {
-    let mut common = *network.threat_gap.denom();
-    for arc in &network.arcs {
-        common = least_common_multiple(common, *arc.lower.denom())?;
-        if let Bound::Finite(upper) = arc.upper {
-            common = least_common_multiple(common, *upper.denom())?;
-        }
-    }
-    Some(common)
-}
-
-fn least_common_multiple(left: i64, right: i64) -> Option<i64> {
-    let (mut a, mut b) = (left, right);
-    while b != 0 {
-        (a, b) = (b, a % b);
-    }
-    (left / a).checked_mul(right)
 }

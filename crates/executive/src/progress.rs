@@ -1,6 +1,6 @@
 //! What remains possible of a plan once some of its events have happened (SPEC 6.2).
 
-use rmpl::{Bound, Rational};
+use exact::{Bound, Time};
 use stn::{Execution, ExecutionWindows};
 use tpn::{Network, NodeId, Plan, Window};
 
@@ -10,9 +10,9 @@ use crate::plan_network::{ADDED, PlanError, PlanNetwork};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Observations {
     /// Events that happened, and when.
-    pub executed: Vec<(NodeId, Rational)>,
+    pub executed: Vec<(NodeId, Time)>,
     /// The present.
-    pub now: Rational,
+    pub now: Time,
 }
 
 /// What remains possible.
@@ -30,7 +30,7 @@ pub enum Progress {
 /// reported (its window is a single moment that has come), and one that must have come before something reported.
 pub fn progress(network: &Network, plan: &Plan, observed: &Observations) -> Result<Progress, PlanError> {
     let mut made = PlanNetwork::new(network, plan)?;
-    let mut times: Vec<Rational> = observed.executed.iter().map(|&(_, time)| time).collect();
+    let mut times: Vec<Time> = observed.executed.iter().map(|&(_, time)| time).collect();
     times.push(observed.now);
     made.refine_for(network, plan, &times)?;
     let mut executed = Vec::new();
@@ -39,9 +39,9 @@ pub fn progress(network: &Network, plan: &Plan, observed: &Observations) -> Resu
             let name = tpn::plan_json::node_name(network, node);
             return Ok(Progress::Violated(vec![format!("{name} is no event of this plan")]));
         };
-        executed.push((point, made.ticks(time).ok_or(PlanError::Overflow)?));
+        executed.push((point, made.scale().ticks(time)?));
     }
-    let now = made.ticks(observed.now).ok_or(PlanError::Overflow)?;
+    let now = made.scale().ticks(observed.now)?;
     let origin = made.origin();
     let known = Execution { origin, executed: &executed, pending: &[], now };
     let windows = match stn::execution_windows(&mut made.stn, known, ADDED)? {

@@ -7,11 +7,12 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
-use rmpl::Rational;
+use exact::{Overflow, Time};
 use smol_str::SmolStr;
 use stn::PointId;
 use tpn::{EventEnd, EventRef, Network, NodeId, OccurrenceId, OccurrenceKind, Plan};
 
+use crate::dispatch::SettleError;
 use crate::facts::Facts;
 use crate::log::{Ending, Entry, Happening};
 use crate::performance::{AsPlanned, Ends, Performer};
@@ -55,7 +56,7 @@ pub fn run(
     world: &World,
     replanner: &mut dyn Replanner,
 ) -> Result<RunOutcome, PlanError> {
-    let stage = Stage::new(Arc::clone(network), plan, &world.times(network))?;
+    let stage = Stage::new(Arc::clone(network), plan, &world.times(network)?)?;
     run_stage(stage, num_program_nodes, world, &mut AsPlanned, replanner)
 }
 
@@ -72,7 +73,7 @@ pub fn run_stage(
         num_program_nodes,
         world,
         performer,
-        now: Rational::default(),
+        now: Time::ZERO,
         log: Vec::new(),
         coming: VecDeque::new(),
         performed: BTreeMap::new(),
@@ -91,14 +92,14 @@ struct Run<'a> {
     num_program_nodes: usize,
     world: &'a World,
     performer: &'a mut dyn Performer,
-    now: Rational,
+    now: Time,
     log: Vec<Entry>,
     /// What is known to be seen of the activities under way, in order of time.
     coming: VecDeque<(OccurrenceId, Entry)>,
     /// When the activities that were started will be over.
     performed: BTreeMap<OccurrenceId, Ends>,
     /// After how long from their traverse's start path vertices are passed.
-    passes: Vec<(EventRef, Rational)>,
+    passes: Vec<(EventRef, Time)>,
     /// What the world has made known against the plan, kept over all replans.
     news: Facts,
     /// The plans that were given up.
@@ -108,7 +109,7 @@ struct Run<'a> {
 /// What comes next.
 struct Next {
     point: PointId,
-    time: Rational,
+    time: Time,
     violation: Option<Violation>,
 }
 
@@ -124,8 +125,8 @@ struct Violation {
 #[derive(Clone, Copy)]
 enum News {
     None,
-    Duration(OccurrenceId, Rational),
-    Begins(OccurrenceId, Rational),
+    Duration(OccurrenceId, Time),
+    Begins(OccurrenceId, Time),
 }
 
 /// When the world lets something happen.
@@ -133,9 +134,9 @@ enum ByWorld {
     /// Whenever the plan says.
     Free,
     /// Just then, and what is learnt if the plan did not allow for it.
-    At(Rational, News),
+    At(Time, News),
     /// Not at all, which is known from this time on; why, and what is learnt.
-    Gone(Rational, String, News),
+    Gone(Time, String, News),
     /// Not at all, which is known only when its time is over; why.
     Never(String),
 }
@@ -143,7 +144,7 @@ enum ByWorld {
 impl Run<'_> {
     fn run_to_end(&mut self, replanner: &mut dyn Replanner) -> Result<Ending, PlanError> {
         loop {
-            let Some(next) = self.next() else {
+            let Some(next) = self.next()? else {
                 let is_over = self.stage.times[self.stage.network.end.index()].is_some();
                 if is_over {
                     self.write(Happening::Finished);
@@ -155,7 +156,7 @@ impl Run<'_> {
             self.advance(next.time);
             let violation = match next.violation {
                 Some(violation) => Some(violation),
-                None => self.happen(next.point).err(),
+                None => self.happen(next.point)?,
             };
             let Some(violation) = violation else { continue };
             let Violation { name, reason, news, is_final } = violation;
@@ -173,7 +174,7 @@ impl Run<'_> {
     }
 
     /// Time goes on; what is seen of the activities under way is written down.
-    fn advance(&mut self, time: Rational) {
+    fn advance(&mut self, time: Time) {
         while let Some((occurrence, entry)) = self.coming.pop_front_if(|(_, entry)| entry.time <= time) {
             let end = self.stage.network.occurrences[occurrence.index()].end;
             if self.stage.times[end.index()].is_none() {
@@ -199,9 +200,9 @@ impl Run<'_> {
     }
 
     /// The earliest thing that happens or goes wrong next; of several at one time the one that is first in the plan.
-    fn next(&self) -> Option<Next> {
+    fn next(&self) -> Result<Option<Next>, PlanError> {
         let mut best: Option<Next> = None;
-        let driven = self.driven();
+        let driven = self.driven()?;
         for point in self.stage.made.all_points() {
             let node = self.stage.made.node(point);
             if self.stage.times[node.index()].is_some() {
@@ -212,7 +213,7 @@ impl Run<'_> {
                 continue;
             }
             // What the world reports comes whether it is its turn or not.
-            let is_driven = self.is_driven(point);
+            let is_driven = self.is_driven(point)?;
             if !is_driven && !self.stage.is_next(node) {
                 continue;
             }
@@ -221,72 +222,85 @@ impl Run<'_> {
             if !is_settled && waits && !is_driven {
                 continue;
             }
-            let Some(next) = self.candidate(point, node) else { continue };
+            let Some(next) = self.candidate(point, node)? else { continue };
             if best.as_ref().is_none_or(|best| next.time < best.time) {
                 best = Some(next);
             }
         }
-        best
+        Ok(best)
     }
 
     /// The components of which some member's time is not for the executive to choose, with the earliest such member's
     /// place in it: members that come with it or after it wait for its report.
-    fn driven(&self) -> BTreeMap<usize, i64> {
+    fn driven(&self) -> Result<BTreeMap<usize, i64>, PlanError> {
         let mut driven = BTreeMap::new();
         for point in self.stage.made.all_points() {
-            if !self.stage.dispatcher.is_settled(point) && self.is_driven(point) {
+            if !self.stage.dispatcher.is_settled(point) && self.is_driven(point)? {
                 let (component, offset) = self.stage.dispatcher.component(point);
                 let first = driven.entry(component).or_insert(offset);
                 *first = offset.min(*first);
             }
         }
-        driven
+        Ok(driven)
     }
 
     /// Whether the world has decided when a point happens, or that it does not.
-    fn is_driven(&self, point: PointId) -> bool {
+    fn is_driven(&self, point: PointId) -> Result<bool, PlanError> {
         let planned = self.stage.window(point).0.max(self.now);
-        let events = &self.stage.network.nodes[self.stage.made.node(point).index()].events;
-        events.iter().any(|&event| {
-            let decided = self.by_world(event, planned);
-            decided.is_some_and(|decided| !matches!(decided, ByWorld::Free))
-        })
+        let node = self.stage.made.node(point);
+        for &event in &self.stage.network.nodes[node.index()].events {
+            let decided = self.by_world(event, planned).map_err(|_| self.too_large(node))?;
+            if decided.is_some_and(|decided| !matches!(decided, ByWorld::Free)) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// What happens to a node would happen at a time that does not fit.
+    fn too_large(&self, node: NodeId) -> PlanError {
+        PlanError::TooLate { event: self.stage.name(node) }
     }
 
     /// When a point would happen, by the plan and by the world.
-    fn candidate(&self, point: PointId, node: NodeId) -> Option<Next> {
+    fn candidate(&self, point: PointId, node: NodeId) -> Result<Option<Next>, PlanError> {
         let (earliest, latest) = self.stage.window(point);
         let mut time = earliest.max(self.now);
         let mut known = News::None;
-        let violation = |time: Rational, reason: String, news: News| {
+        let violation = |time: Time, reason: String, news: News| {
             let name = self.stage.name(node).into();
-            Some(Next { point, time, violation: Some(Violation { name, reason, news, is_final: false }) })
+            Next { point, time, violation: Some(Violation { name, reason, news, is_final: false }) }
         };
         for &event in &self.stage.network.nodes[node.index()].events {
-            match self.by_world(event, time)? {
+            let decided = self.by_world(event, time).map_err(|_| self.too_large(node))?;
+            let Some(decided) = decided else { return Ok(None) };
+            match decided {
                 ByWorld::Free => {}
                 ByWorld::At(at, news) => (time, known) = (at, news),
-                ByWorld::Gone(at, reason, news) => return violation(at.max(self.now), reason, news),
+                ByWorld::Gone(at, reason, news) => {
+                    return Ok(Some(violation(at.max(self.now), reason, news)));
+                }
                 ByWorld::Never(reason) => {
-                    let latest = latest?.max(self.now);
+                    let Some(latest) = latest else { return Ok(None) };
+                    let latest = latest.max(self.now);
                     let mut next = violation(latest, self.too_late(node, latest, Some(&reason)), News::None);
-                    if let Some(violation) = next.as_mut().and_then(|next| next.violation.as_mut()) {
+                    if let Some(violation) = &mut next.violation {
                         violation.is_final = true;
                     }
-                    return next;
+                    return Ok(Some(next));
                 }
             }
         }
         if time < earliest {
-            return violation(time, self.too_early(node, time, earliest), known);
+            return Ok(Some(violation(time, self.too_early(node, time, earliest), known)));
         }
         if let Some(latest) = latest.filter(|&latest| time > latest) {
-            return violation(latest.max(self.now), self.too_late(node, latest, None), known);
+            return Ok(Some(violation(latest.max(self.now), self.too_late(node, latest, None), known)));
         }
-        Some(Next { point, time, violation: None })
+        Ok(Some(Next { point, time, violation: None }))
     }
 
-    fn too_early(&self, node: NodeId, time: Rational, earliest: Rational) -> String {
+    fn too_early(&self, node: NodeId, time: Time, earliest: Time) -> String {
         let (name, time, earliest) = (self.stage.name(node), shown(time), shown(earliest));
         let events = &self.stage.network.nodes[node.index()].events;
         let withdrawn = events.iter().find_map(|&event| {
@@ -302,39 +316,45 @@ impl Run<'_> {
         }
     }
 
-    fn too_late(&self, node: NodeId, latest: Rational, reason: Option<&str>) -> String {
+    fn too_late(&self, node: NodeId, latest: Time, reason: Option<&str>) -> String {
         let (name, latest) = (self.stage.name(node), shown(latest));
         let because = reason.map_or_else(String::new, |reason| format!(": {reason}"));
         format!("{name} had to come by {latest} and did not{because}")
     }
 
     /// When the world lets an event happen, given when the plan would. `None` while that is not known yet.
-    fn by_world(&self, event: EventRef, planned: Rational) -> Option<ByWorld> {
+    fn by_world(&self, event: EventRef, planned: Time) -> Result<Option<ByWorld>, Overflow> {
         let occurrence = self.stage.occurrence(event);
         let started = self.stage.times[occurrence.start.index()];
-        match (occurrence.kind, event.end) {
+        let decided = match (occurrence.kind, event.end) {
             (OccurrenceKind::Primitive, EventEnd::PathVertex { .. }) => {
                 let Some(&(_, after)) = self.passes.iter().find(|(vertex, _)| *vertex == event) else {
-                    return Some(ByWorld::Free);
+                    return Ok(Some(ByWorld::Free));
                 };
+                let Some(started) = started else { return Ok(None) };
                 let news = match self.performed.get(&event.occurrence) {
                     Some(Ends::After(all) | Ends::NotBefore(all)) => News::Duration(event.occurrence, *all),
                     _ => News::None,
                 };
-                Some(ByWorld::At((started? + after).max(planned), news))
+                ByWorld::At(started.checked_add(after).ok_or(Overflow)?.max(planned), news)
             }
             (OccurrenceKind::Primitive, EventEnd::End) => {
-                let given = self.world.duration(&self.stage.network, occurrence);
-                let duration = match (given, self.performed.get(&event.occurrence)) {
+                let given = self.world.duration(&self.stage.network, occurrence)?;
+                let performed = self.performed.get(&event.occurrence);
+                let duration = match (given, performed) {
                     (Some(given), _) => given,
                     (None, Some(Ends::After(duration))) => *duration,
-                    (None, Some(Ends::NotBefore(duration))) => (planned - started?).max(*duration),
-                    (None, Some(Ends::Never(reason))) => return Some(ByWorld::Never(reason.clone())),
-                    (None, Some(Ends::AsPlanned) | None) => return Some(ByWorld::Free),
+                    (None, Some(Ends::NotBefore(duration))) => {
+                        let Some(started) = started else { return Ok(None) };
+                        planned.checked_sub(started).ok_or(Overflow)?.max(*duration)
+                    }
+                    (None, Some(Ends::Never(reason))) => return Ok(Some(ByWorld::Never(reason.clone()))),
+                    (None, Some(Ends::AsPlanned) | None) => return Ok(Some(ByWorld::Free)),
                 };
                 // An activity that was given up in a replan has no more say.
-                let started = started?;
-                Some(ByWorld::At(started + duration, News::Duration(event.occurrence, duration)))
+                let Some(started) = started else { return Ok(None) };
+                let at = started.checked_add(duration).ok_or(Overflow)?;
+                ByWorld::At(at, News::Duration(event.occurrence, duration))
             }
             (OccurrenceKind::Assertion, EventEnd::Start) => {
                 let begins = self.world.begins_at(occurrence).filter(|&at| at > planned);
@@ -343,72 +363,73 @@ impl Run<'_> {
                     && !self.is_known_gone(event.occurrence)
                 {
                     // It never begins: for planning it is over as soon as it would have begun.
-                    let gone = News::Duration(event.occurrence, Rational::default());
+                    let gone = News::Duration(event.occurrence, Time::ZERO);
                     let reason =
                         format!("{} was withdrawn at {} and will not come", occurrence.name, shown(at));
-                    return Some(ByWorld::Gone(at, reason, gone));
+                    return Ok(Some(ByWorld::Gone(at, reason, gone)));
                 }
-                Some(begins.map_or(ByWorld::Free, |at| ByWorld::At(at, News::Begins(event.occurrence, at))))
+                begins.map_or(ByWorld::Free, |at| ByWorld::At(at, News::Begins(event.occurrence, at)))
             }
             (OccurrenceKind::Assertion, EventEnd::End) => {
-                let started = started?;
+                let Some(started) = started else { return Ok(None) };
                 match self.world.withdrawn_at(occurrence) {
                     Some(at) if at >= started && at < planned => {
-                        Some(ByWorld::At(at, News::Duration(event.occurrence, at - started)))
+                        let held = at.checked_sub(started).ok_or(Overflow)?;
+                        ByWorld::At(at, News::Duration(event.occurrence, held))
                     }
-                    _ => Some(ByWorld::Free),
+                    _ => ByWorld::Free,
                 }
             }
-            _ => Some(ByWorld::Free),
-        }
+            _ => ByWorld::Free,
+        };
+        Ok(Some(decided))
     }
 
     fn is_known_gone(&self, occurrence: OccurrenceId) -> bool {
-        self.news
-            .durations
-            .iter()
-            .any(|&(known, duration)| known == occurrence && duration == Rational::default())
+        self.news.durations.iter().any(|&(known, duration)| known == occurrence && duration.is_zero())
     }
 
-    /// A point happens now.
-    fn happen(&mut self, point: PointId) -> Result<(), Violation> {
+    /// A point happens now, if it can.
+    fn happen(&mut self, point: PointId) -> Result<Option<Violation>, PlanError> {
         let node = self.stage.made.node(point);
-        let name = self.stage.name(node);
-        let none = |reason: String| Violation {
-            name: name.as_str().into(),
-            reason,
-            news: News::None,
-            is_final: false,
-        };
-        let Some(ticks) = self.stage.made.ticks(self.now) else {
-            return Err(none(format!("the plan's time is too coarse for {}", shown(self.now))));
-        };
-        if self.stage.dispatcher.settle(point, ticks).is_err() {
-            return Err(none(format!("{name} could not come at {}", shown(self.now))));
+        // Ticks are fine enough for all times that the world and the performer bring.
+        let ticks = self.stage.made.scale().ticks(self.now).map_err(|_| self.too_large(node))?;
+        match self.stage.dispatcher.settle(point, ticks) {
+            Ok(()) => {}
+            Err(SettleError::Overflow(point)) => return Err(self.too_large(self.stage.made.node(point))),
+            Err(SettleError::OutOfWindow { .. }) => {
+                let name = self.stage.name(node);
+                let reason = format!("{name} could not come at {}", shown(self.now));
+                let (name, news) = (name.into(), News::None);
+                return Ok(Some(Violation { name, reason, news, is_final: false }));
+            }
         }
         self.stage.times[node.index()] = Some(self.now);
         for event in self.stage.network.nodes[node.index()].events.clone() {
             let name = self.stage.network.event_name(event).into();
             self.write(Happening::Executed { name });
-            self.begin(event);
+            self.begin(event)?;
         }
-        Ok(())
+        Ok(None)
     }
 
     /// Calls the activity whose start has just happened.
-    fn begin(&mut self, event: EventRef) {
+    fn begin(&mut self, event: EventRef) -> Result<(), PlanError> {
         let occurrence = self.stage.occurrence(event);
         let is_start = occurrence.kind == OccurrenceKind::Primitive && event.end == EventEnd::Start;
-        if !is_start || self.world.duration(&self.stage.network, occurrence).is_some() {
-            return;
+        let too_late = |_: Overflow| PlanError::TooLate { event: format!("{}.end", occurrence.name) };
+        if !is_start || self.world.duration(&self.stage.network, occurrence).map_err(too_late)?.is_some() {
+            return Ok(());
         }
-        let performance = self.performer.start(&self.stage.network, event.occurrence, self.now);
+        let performance =
+            self.performer.start(&self.stage.network, event.occurrence, self.now).map_err(too_late)?;
         self.performed.insert(event.occurrence, performance.ends);
         self.passes.extend(performance.passes);
         for entry in performance.entries {
             let at = self.coming.partition_point(|(_, before)| before.time <= entry.time);
             self.coming.insert(at, (event.occurrence, entry));
         }
+        Ok(())
     }
 
     /// Plans again from now; an answer says why there is no plan.
@@ -431,7 +452,7 @@ impl Run<'_> {
         };
         let changes = changed_choices(&network, &self.stage.plan, &plan);
         self.write(Happening::Replanned { changes });
-        let mut grid = self.world.times(&network);
+        let mut grid = self.world.times(&network)?;
         grid.push(self.performer.granularity());
         grid.push(self.now);
         let mut stage = Stage::new(network, plan, &grid)?;
@@ -441,7 +462,7 @@ impl Run<'_> {
             let index = stage.network.nodes.iter().position(|node| node.events.contains(&event))?;
             Some((time, NodeId::from_index(index)))
         });
-        let past: Vec<(Rational, NodeId)> = happened.chain(passed).collect();
+        let past: Vec<(Time, NodeId)> = happened.chain(passed).collect();
         let kept = stage.enter_past(past);
         let before = std::mem::replace(&mut self.stage, stage);
         self.plans.push(before.close());
@@ -453,8 +474,8 @@ impl Run<'_> {
     }
 }
 
-fn shown(time: Rational) -> String {
-    rmpl::rational::readable(time)
+fn shown(time: Time) -> String {
+    time.readable()
 }
 
 fn changed_choices(network: &Network, old: &Plan, new: &Plan) -> Vec<String> {

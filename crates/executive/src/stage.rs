@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use rmpl::Rational;
+use exact::Time;
 use stn::PointId;
 use tpn::{EventRef, Network, NodeId, Occurrence, Plan};
 
@@ -19,26 +19,26 @@ pub struct Stage {
     pub(crate) made: PlanNetwork,
     pub(crate) dispatcher: Dispatcher,
     /// When each node happened.
-    pub(crate) times: Vec<Option<Rational>>,
+    pub(crate) times: Vec<Option<Time>>,
     /// When this plan was made.
-    pub(crate) from: Rational,
+    pub(crate) from: Time,
     /// The nodes that each selected node follows along the plan's arcs and links.
     before: Vec<Vec<NodeId>>,
 }
 
 impl Stage {
     /// Makes `plan` ready. `grid` are the times, or their common divisors, that are not the network's own.
-    pub fn new(network: Arc<Network>, plan: Plan, grid: &[Rational]) -> Result<Self, PlanError> {
+    pub fn new(network: Arc<Network>, plan: Plan, grid: &[Time]) -> Result<Self, PlanError> {
         let mut made = PlanNetwork::new(&network, &plan)?;
         made.refine_for(&network, &plan, grid)?;
         let dispatcher = Dispatcher::new(&mut made)?;
         let times = vec![None; network.nodes.len()];
         let before = before(&network, &plan);
-        Ok(Self { network, plan, made, dispatcher, times, from: Rational::default(), before })
+        Ok(Self { network, plan, made, dispatcher, times, from: Time::ZERO, before })
     }
 
     /// The window of a point in mission units; no latest time if it is not bounded.
-    pub(crate) fn window(&self, point: PointId) -> (Rational, Option<Rational>) {
+    pub(crate) fn window(&self, point: PointId) -> (Time, Option<Time>) {
         let (earliest, latest) = self.dispatcher.window(point);
         (self.made.time(earliest), (latest != NEVER).then(|| self.made.time(latest)))
     }
@@ -58,11 +58,11 @@ impl Stage {
     }
 
     /// Enters what happened before this plan was made. Fails for a plan that does not keep it, with the node.
-    pub(crate) fn enter_past(&mut self, mut past: Vec<(Rational, NodeId)>) -> Result<(), NodeId> {
+    pub(crate) fn enter_past(&mut self, mut past: Vec<(Time, NodeId)>) -> Result<(), NodeId> {
         past.sort();
         for (time, node) in past {
             self.times[node.index()] = Some(time);
-            let point = self.made.point(node).zip(self.made.ticks(time));
+            let point = self.made.point(node).zip(self.made.scale().ticks(time).ok());
             let settled = point.map(|(point, ticks)| self.dispatcher.settle(point, ticks));
             if !matches!(settled, Some(Ok(()))) {
                 return Err(node);
@@ -120,11 +120,11 @@ fn leads_to(before: &[Vec<NodeId>], from: NodeId, to: NodeId) -> bool {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExecutedPlan {
     /// When it was made.
-    pub from: Rational,
+    pub from: Time,
     /// Its network, with the facts known then.
     pub network: Arc<Network>,
     /// The plan.
     pub plan: Plan,
     /// When each node happened, those before `from` included; `None` for those that did not while this plan held.
-    pub times: Vec<Option<Rational>>,
+    pub times: Vec<Option<Time>>,
 }

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use rmpl::Rational;
+use exact::{Overflow, Rational, Time};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 use tpn::{Network, Occurrence, OccurrenceKind};
@@ -17,15 +17,13 @@ pub enum Disturbance {
         /// The occurrence, such as `Group-Transmit#1`.
         activity: SmolStr,
         /// Its duration.
-        #[serde(with = "crate::exact")]
-        duration: Rational,
+        duration: Time,
     },
     /// A vehicle drives at a share of its greatest speed: its traverses take longer by that much.
     Slow {
         /// The traverse, such as `Group-Traverse-Path#1`.
         activity: SmolStr,
         /// The share, above 0 and at most 1.
-        #[serde(with = "crate::exact")]
         factor: Rational,
     },
     /// A condition ends at this time, if it holds then; one that has not begun by then never does.
@@ -33,8 +31,7 @@ pub enum Disturbance {
         /// The assertion, such as `Tell(PATH1=OK)#1`.
         condition: SmolStr,
         /// When it ends.
-        #[serde(with = "crate::exact")]
-        at: Rational,
+        at: Time,
     },
     /// A component of the plant fails, or comes into another mode, while an activity's control program runs.
     Fault {
@@ -52,14 +49,12 @@ pub enum Disturbance {
         /// The assertion.
         condition: SmolStr,
         /// When it begins.
-        #[serde(with = "crate::exact")]
-        at: Rational,
+        at: Time,
     },
     /// Something stands in the world from a time on that is not on the map. Vehicles see it when it is in their range.
     Obstacle {
         /// Since when.
-        #[serde(with = "crate::exact")]
-        at: Rational,
+        at: Time,
         /// Metres east.
         x: f64,
         /// Metres north.
@@ -72,14 +67,11 @@ pub enum Disturbance {
         /// Its name.
         vehicle: SmolStr,
         /// The share, from 0 to 1.
-        #[serde(with = "crate::exact")]
         factor: Rational,
         /// Since when.
-        #[serde(with = "crate::exact")]
-        from: Rational,
+        from: Time,
         /// Until when.
-        #[serde(with = "crate::exact")]
-        until: Rational,
+        until: Time,
     },
 }
 
@@ -115,10 +107,10 @@ pub struct Script {
 /// The world of one run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct World {
-    durations: BTreeMap<SmolStr, Rational>,
+    durations: BTreeMap<SmolStr, Time>,
     slow: BTreeMap<SmolStr, Rational>,
-    withdrawn: BTreeMap<SmolStr, Rational>,
-    late: BTreeMap<SmolStr, Rational>,
+    withdrawn: BTreeMap<SmolStr, Time>,
+    late: BTreeMap<SmolStr, Time>,
 }
 
 impl World {
@@ -128,45 +120,56 @@ impl World {
         let mut world = Self::default();
         for disturbance in disturbances {
             match disturbance.clone() {
-                Disturbance::Duration { activity, duration } => world.durations.insert(activity, duration),
-                Disturbance::Slow { activity, factor } => world.slow.insert(activity, factor),
-                Disturbance::Withdrawn { condition, at } => world.withdrawn.insert(condition, at),
-                Disturbance::Late { condition, at } => world.late.insert(condition, at),
+                Disturbance::Duration { activity, duration } => {
+                    world.durations.insert(activity, duration);
+                }
+                Disturbance::Slow { activity, factor } => {
+                    world.slow.insert(activity, factor);
+                }
+                Disturbance::Withdrawn { condition, at } => {
+                    world.withdrawn.insert(condition, at);
+                }
+                Disturbance::Late { condition, at } => {
+                    world.late.insert(condition, at);
+                }
                 // What vehicles meet is for whoever drives them, what components do for whoever runs their programs.
                 Disturbance::Obstacle { .. }
                 | Disturbance::VehicleSlow { .. }
-                | Disturbance::Fault { .. } => None,
-            };
+                | Disturbance::Fault { .. } => {}
+            }
         }
         world
     }
 
     /// How long an occurrence really takes, where that is not for the executive to decide.
-    pub fn duration(&self, network: &Network, occurrence: &Occurrence) -> Option<Rational> {
+    pub fn duration(&self, network: &Network, occurrence: &Occurrence) -> Result<Option<Time>, Overflow> {
         if occurrence.kind != OccurrenceKind::Primitive {
-            return None;
+            return Ok(None);
         }
         if let Some(&duration) = self.durations.get(&occurrence.name) {
-            return Some(duration);
+            return Ok(Some(duration));
         }
-        let factor = self.slow.get(&occurrence.name).filter(|&&factor| factor > Rational::default())?;
-        Some(least_drive(network, occurrence) / factor)
+        let Some(factor) = self.slow.get(&occurrence.name).filter(|factor| factor.is_positive()) else {
+            return Ok(None);
+        };
+        least_drive(network, occurrence)?.checked_div(*factor).map(Some).ok_or(Overflow)
     }
 
     /// All times and durations that it brings into a run of `network`: ticks must be fine enough for them.
-    pub fn times(&self, network: &Network) -> Vec<Rational> {
+    pub fn times(&self, network: &Network) -> Result<Vec<Time>, Overflow> {
         let absolute = self.durations.values().chain(self.withdrawn.values()).chain(self.late.values());
         let slow = network.occurrences.iter().filter(|occurrence| self.slow.contains_key(&occurrence.name));
-        absolute.copied().chain(slow.filter_map(|occurrence| self.duration(network, occurrence))).collect()
+        let slow = slow.filter_map(|occurrence| self.duration(network, occurrence).transpose());
+        absolute.map(|&time| Ok(time)).chain(slow).collect()
     }
 
     /// When a condition is withdrawn.
-    pub fn withdrawn_at(&self, occurrence: &Occurrence) -> Option<Rational> {
+    pub fn withdrawn_at(&self, occurrence: &Occurrence) -> Option<Time> {
         self.withdrawn.get(&occurrence.name).copied()
     }
 
     /// Before when a condition does not begin.
-    pub fn begins_at(&self, occurrence: &Occurrence) -> Option<Rational> {
+    pub fn begins_at(&self, occurrence: &Occurrence) -> Option<Time> {
         self.late.get(&occurrence.name).copied()
     }
 
@@ -182,16 +185,16 @@ impl World {
 }
 
 /// The least time for a traverse: its path at full speed, or its lower bound where it has none.
-pub fn least_drive(network: &Network, occurrence: &Occurrence) -> Rational {
-    let own = occurrence.arc.map_or_else(Rational::default, |arc| network.arcs[arc.index()].lower);
-    let pieces: Rational = network
+pub fn least_drive(network: &Network, occurrence: &Occurrence) -> Result<Time, Overflow> {
+    let own = occurrence.arc.map_or(Time::ZERO, |arc| network.arcs[arc.index()].lower);
+    let pieces = network
         .arcs
         .iter()
         .filter(|arc| arc.kind == tpn::ArcKind::Path)
         .filter(|arc| {
             arc.occurrence.is_some_and(|id| network.occurrences[id.index()].name == occurrence.name)
         })
-        .map(|arc| arc.lower)
-        .sum();
-    if pieces > Rational::default() { pieces } else { own }
+        .map(|arc| arc.lower);
+    let pieces = Time::checked_sum(pieces).ok_or(Overflow)?;
+    Ok(if pieces.is_positive() { pieces } else { own })
 }

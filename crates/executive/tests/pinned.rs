@@ -1,7 +1,7 @@
 //! Pinning events of random plans: the windows that remain are those of a network with the pins as constraints.
 
+use exact::{Bound, Time};
 use executive::{PinnedPlan, PlanNetwork};
-use rmpl::{Bound, Rational};
 use tpn::generate::{Recipe, Rng, Tightness};
 use tpn::{Network, NodeId, Plan, Top, Window};
 
@@ -14,13 +14,13 @@ fn planned(source: &str) -> (Network, Plan) {
 }
 
 /// The windows of the plan with these pins, computed anew.
-fn recomputed(network: &Network, plan: &Plan, pins: &[(NodeId, Rational)]) -> Vec<Option<Window>> {
+fn recomputed(network: &Network, plan: &Plan, pins: &[(NodeId, Time)]) -> Vec<Option<Window>> {
     let mut constraints = PlanNetwork::new(network, plan).expect("the plan is consistent");
-    let times: Vec<Rational> = pins.iter().map(|pin| pin.1).collect();
+    let times: Vec<Time> = pins.iter().map(|pin| pin.1).collect();
     constraints.refine_for(network, plan, &times).expect("its times fit");
     for &(node, time) in pins {
         let (origin, point) = (constraints.origin(), constraints.point(node).expect("it is selected"));
-        let ticks = constraints.ticks(time).expect("it is a whole number of ticks");
+        let ticks = constraints.scale().ticks(time).expect("it is a whole number of ticks");
         constraints.stn.constrain(origin, point, ticks, Some(ticks), 0).expect("the pin is consistent");
     }
     let windows = constraints.stn.windows(constraints.origin()).expect("its times fit");
@@ -43,7 +43,7 @@ fn moving_pinned_events_leaves_the_windows_of_the_plan_with_the_pins_as_constrai
             let node = selected[rng.below(selected.len() as u64) as usize];
             let window = pinned.grab(node).expect("it is selected");
             for _ in 0..3 {
-                let wanted = Rational::new(rng.between(-10, 4_000), 7);
+                let wanted = Time::new(rng.between(-10, 4_000), 7).expect("a fraction");
                 let time = pinned.move_to(wanted).expect("it is grabbed");
                 assert!(time >= window.earliest, "seed {seed}");
                 assert!(window.latest.finite().is_none_or(|latest| time <= latest), "seed {seed}");
@@ -75,15 +75,15 @@ fn a_grabbed_event_can_be_put_back_where_it_was() {
     let mut pinned = PinnedPlan::new(&network, &plan).expect("the plan is consistent");
     let (start, end) = (event(&network, "Drive#1.start"), event(&network, "Drive#1.end"));
     pinned.grab(start);
-    pinned.move_to(Rational::from(12));
+    pinned.move_to(Time::from(12));
     pinned.drop_grabbed();
     let window = pinned.windows(network.nodes.len())[end.index()].expect("it is selected");
-    assert_eq!(window, Window { earliest: Rational::from(22), latest: Bound::Finite(Rational::from(32)) });
+    assert_eq!(window, Window { earliest: Time::from(22), latest: Bound::Finite(Time::from(32)) });
 
     pinned.grab(start);
-    assert_eq!(pinned.move_to(Rational::from(-3)), Some(Rational::from(0)));
+    assert_eq!(pinned.move_to(Time::from(-3)), Some(Time::ZERO));
     assert!(pinned.put_back());
-    assert_eq!(pinned.pins().collect::<Vec<_>>(), [(start, Rational::from(12))]);
+    assert_eq!(pinned.pins().collect::<Vec<_>>(), [(start, Time::from(12))]);
     assert_eq!(pinned.windows(network.nodes.len())[end.index()], Some(window));
     assert!(!pinned.put_back(), "nothing is grabbed any more");
     pinned.release(start);

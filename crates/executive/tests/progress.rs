@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use exact::{Bound, Time};
 use executive::{Dispatcher, Observations, PlanNetwork, Progress, progress};
 use kirk::{Options, Unlimited};
-use rmpl::{Bound, Rational};
 use serde_json::Value;
 use tpn::compile::{Top, compile};
 use tpn::{Network, NodeId, Plan};
@@ -42,7 +42,7 @@ fn windows_after_partial_execution_are_those_of_the_suite() {
     let case: Value = serde_json::from_str(&suite("x01_execution_windows.json")).expect("JSON");
     for update in case["expect"]["updates"].as_array().expect("updates") {
         let (network, plan) = planned(&suite(update["program"].as_str().expect("a program")));
-        let time = |value: &Value| Rational::from_integer(value.as_i64().expect("a whole number"));
+        let time = |value: &Value| Time::from(value.as_i64().expect("a whole number"));
         let executed = update["executed"].as_object().expect("times").iter();
         let executed = executed.map(|(event, value)| (node(&network, event), time(value))).collect();
         let observed = Observations { executed, now: time(&update["now"]) };
@@ -67,11 +67,11 @@ fn windows_after_partial_execution_are_those_of_the_suite() {
 #[test]
 fn observations_between_the_units_of_the_mission_are_exact() {
     let (network, plan) = planned("primitive A()[1,3]; primitive B()[2,5]; scenario S[4,6] = { A(); B() }");
-    let half = Rational::new(5, 2);
+    let half = Time::new(5, 2).expect("a fraction");
     let observed = Observations { executed: vec![(node(&network, "A#1.end"), half)], now: half };
     let Ok(Progress::Consistent(windows)) = progress(&network, &plan, &observed) else {
         panic!("consistent")
     };
     let end = windows[node(&network, "B#1.end").index()].expect("selected");
-    assert_eq!((end.earliest, end.latest), (Rational::new(9, 2), Bound::Finite(6.into())));
+    assert_eq!((end.earliest, end.latest), (Time::new(9, 2).expect("a fraction"), Bound::Finite(6.into())));
 }

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use exact::Time;
 use executive::{Disturbance, Ending, Facts, Happening, Replanner, RunOutcome, World, run};
-use rmpl::Rational;
 use tpn::generate::{Recipe, Rng, Tightness};
 use tpn::{Network, OccurrenceKind, Plan, Top};
 
@@ -48,10 +48,11 @@ fn random_disturbances(network: &Network, rng: &mut Rng) -> Vec<Disturbance> {
             continue;
         }
         let name = occurrence.name.clone();
-        let time = Rational::from(rng.between(0, 60));
+        let time = Time::from(rng.between(0, 60));
         match occurrence.kind {
             OccurrenceKind::Primitive => {
-                disturbances.push(Disturbance::Duration { activity: name, duration: time / 3 });
+                let duration = time.checked_div(3).expect("a small time");
+                disturbances.push(Disturbance::Duration { activity: name, duration });
             }
             OccurrenceKind::Assertion if rng.chance(50) => {
                 disturbances.push(Disturbance::Withdrawn { condition: name, at: time });
@@ -146,7 +147,7 @@ fn the_same_disturbances_give_the_same_log() {
 fn a_window_withdrawn_while_the_rovers_wait_sends_them_the_other_way() {
     let source = include_str!("../../../tests/conformance/t03_enroute_both_paths.rmpl");
     let network = compiled(&source.replace("delay[10,inf]", "delay[40,inf]"));
-    let withdrawn = Disturbance::Withdrawn { condition: "Tell(PATH1=OK)#1".into(), at: Rational::from(30) };
+    let withdrawn = Disturbance::Withdrawn { condition: "Tell(PATH1=OK)#1".into(), at: Time::from(30) };
     let (outcome, facts) = execute(&network, &[withdrawn]);
     assert_eq!(outcome.ending, Ending::Finished);
     assert_eq!(facts.len(), 1);
@@ -156,13 +157,13 @@ fn a_window_withdrawn_while_the_rovers_wait_sends_them_the_other_way() {
         _ => None,
     });
     let change = "D1 takes Group-Traverse-Path#2 instead of Group-Traverse-Path#1";
-    assert_eq!(changes, Some((Rational::from(30), vec![change.to_owned()])));
+    assert_eq!(changes, Some((Time::from(30), vec![change.to_owned()])));
 }
 
 #[test]
 fn an_activity_in_a_choice_that_ends_late_but_within_its_window_breaks_nothing() {
     let network = compiled("scenario S[0,90] = { choose { Dig()[10,60], Rest()[70,80] }; Pack()[5,10] }");
-    let late = Disturbance::Duration { activity: "Dig#1".into(), duration: Rational::from(30) };
+    let late = Disturbance::Duration { activity: "Dig#1".into(), duration: Time::from(30) };
     let (outcome, facts) = execute(&network, &[late]);
     assert_eq!(outcome.ending, Ending::Finished);
     assert!(facts.is_empty(), "{:?}", outcome.log);
@@ -170,9 +171,9 @@ fn an_activity_in_a_choice_that_ends_late_but_within_its_window_breaks_nothing()
         let is_it = |entry: &&executive::Entry| matches!(&entry.happening, Happening::Executed { name: it } if it == name);
         outcome.log.iter().find(is_it).map(|entry| entry.time)
     };
-    assert_eq!(time("Dig#1.end"), Some(Rational::from(30)));
-    assert_eq!(time("Pack#1.start"), Some(Rational::from(30)));
-    assert_eq!(time("scenario#1.end"), Some(Rational::from(35)));
+    assert_eq!(time("Dig#1.end"), Some(Time::from(30)));
+    assert_eq!(time("Pack#1.start"), Some(Time::from(30)));
+    assert_eq!(time("scenario#1.end"), Some(Time::from(35)));
 }
 
 /// SPEC 6.2: the rovers may arrive later than at the earliest moment, and everything behind waits for their report.
@@ -180,7 +181,7 @@ fn an_activity_in_a_choice_that_ends_late_but_within_its_window_breaks_nothing()
 fn what_follows_an_activity_at_once_waits_for_the_report_of_its_end() {
     let source = include_str!("../../../tests/conformance/t01_enroute_scenario.rmpl");
     let network = compiled(source);
-    let duration = Rational::from(430);
+    let duration = Time::from(430);
     let longer = Disturbance::Duration { activity: "Group-Traverse-Path#1".into(), duration };
     let (outcome, facts) = execute(&network, &[longer]);
     assert_eq!(outcome.ending, Ending::Finished, "{:?}", outcome.log);

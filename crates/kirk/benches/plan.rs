@@ -39,9 +39,9 @@ fn replan(nodes: usize) {
         let mut planner = Planner::new(network, None);
         planner.plan(&options, &mut ExpansionLimit(20_000));
         for change in 1..6 {
-            let one = rmpl::Rational::from_integer(change % 2);
+            let one = exact::Time::from(change % 2);
             let start = Instant::now();
-            let wider = upper.checked_add(rmpl::Bound::Finite(one)).unwrap_or(upper);
+            let wider = upper.checked_add(exact::Bound::Finite(one)).unwrap_or(upper);
             planner.set_bounds(tpn::ArcId::from_index(position), lower, wider);
             std::hint::black_box(planner.plan(&options, &mut ExpansionLimit(20_000)));
             if change == 1 { &mut wider_than_ever } else { &mut within }.push(start.elapsed());

@@ -1,6 +1,7 @@
 //! Why there is no plan, as data (SPEC 5.4, failure report).
 
-use rmpl::{Bound, Fix, Rational, Span};
+use exact::{Bound, Time};
+use rmpl::{Fix, Span};
 use serde::{Deserialize, Serialize};
 use tpn::{ArcId, Choice, LabelId};
 
@@ -81,7 +82,7 @@ pub struct Relaxation {
     /// The bound as it is.
     pub old: Bound,
     /// The bound that gives a plan: the closest one in whole units of the mission's common denominator.
-    pub new: Rational,
+    pub new: Time,
     /// The bounds in the text, where they are written.
     pub span: Option<Span>,
     /// The new bounds, `[lower, upper]`.
@@ -111,10 +112,7 @@ impl Relaxation {
         let (side, offset) = if self.is_lower { (lower, 0) } else { (upper, comma + 1) };
         let start = span.start as usize + 1 + offset + (side.len() - side.trim_start().len());
         let end = start + side.trim().len();
-        let edit = rmpl::Edit {
-            span: Span::new(start as u32, end as u32),
-            text: rmpl::rational::decimal(self.new)?,
-        };
+        let edit = rmpl::Edit { span: Span::new(start as u32, end as u32), text: self.new.decimal()? };
         Some(Fix { label: self.label.clone(), edits: vec![edit] })
     }
 }

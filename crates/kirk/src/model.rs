@@ -1,7 +1,7 @@
 //! A network prepared for planning: times as integers, flat adjacency, contexts of arcs, and conditions by variable.
 
+use exact::{Bound, Time};
 use rmpl::program::LabelMode;
-use rmpl::{Bound, Rational};
 use stn::{Overflow, PointId};
 use tpn::{BlockKind, Network};
 
@@ -78,7 +78,7 @@ pub(crate) struct ModelDecision {
 
 impl Model {
     /// Prepares `network`, with `threat_gap` instead of its own if given.
-    pub(crate) fn new(network: &Network, threat_gap: Option<Rational>) -> Result<Self, Overflow> {
+    pub(crate) fn new(network: &Network, threat_gap: Option<Time>) -> Result<Self, Overflow> {
         let gap = threat_gap.unwrap_or(network.threat_gap);
         let scale = common_denominator(network, gap)?;
         let mut arcs = Vec::with_capacity(network.arcs.len());
@@ -149,7 +149,7 @@ impl Model {
     }
 
     /// A time in the model's units, if it is a whole number of them.
-    pub(crate) fn units(&self, time: Rational) -> Result<i64, Overflow> {
+    pub(crate) fn units(&self, time: Time) -> Result<i64, Overflow> {
         scaled(time, self.scale)
     }
 
@@ -164,8 +164,8 @@ impl Model {
     }
 
     /// Exact time from integer units.
-    pub(crate) fn time(&self, units: i64) -> Rational {
-        if self.scale == 1 { Rational::from_integer(units) } else { Rational::new(units, self.scale) }
+    pub(crate) fn time(&self, units: i64) -> Time {
+        if self.scale == 1 { Time::from(units) } else { Time::new(units, self.scale).unwrap_or_default() }
     }
 
     /// The start and end node of a labelled interval.
@@ -300,11 +300,11 @@ fn join(twin: &mut [u32], earlier: u32, later: u32) {
     twin[later as usize] = representative(twin, later);
 }
 
-fn common_denominator(network: &Network, gap: Rational) -> Result<i64, Overflow> {
+fn common_denominator(network: &Network, gap: Time) -> Result<i64, Overflow> {
     let uppers = network.arcs.iter().filter_map(|arc| arc.upper.finite());
     let mut times = network.arcs.iter().map(|arc| arc.lower).chain(uppers).chain([gap]);
     times.try_fold(1_i64, |common, time| {
-        let denominator = *time.denom();
+        let denominator = time.denominator();
         if denominator == 1 || common % denominator == 0 {
             return Ok(common);
         }
@@ -319,14 +319,14 @@ pub(crate) fn greatest_common_divisor(mut left: i64, mut right: i64) -> i64 {
     left
 }
 
-fn scaled(time: Rational, scale: i64) -> Result<i64, Overflow> {
-    if scale == 1 && *time.denom() == 1 {
-        return Ok(*time.numer());
+fn scaled(time: Time, scale: i64) -> Result<i64, Overflow> {
+    if scale == 1 && time.denominator() == 1 {
+        return Ok(time.numerator());
     }
-    if scale % *time.denom() != 0 {
+    if scale % time.denominator() != 0 {
         return Err(Overflow);
     }
-    time.numer().checked_mul(scale / *time.denom()).ok_or(Overflow)
+    time.numerator().checked_mul(scale / time.denominator()).ok_or(Overflow)
 }
 
 fn scaled_bound(bound: Bound, scale: i64) -> Result<i64, Overflow> {

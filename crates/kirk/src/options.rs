@@ -1,6 +1,6 @@
 //! What planning is asked for, when it must stop, and what it answers.
 
-use rmpl::Rational;
+use exact::Time;
 use serde::{Deserialize, Serialize};
 use tpn::Plan;
 
@@ -26,7 +26,7 @@ pub struct Options {
     /// How to search.
     pub search: Search,
     /// The least gap between ordered intervals; the network's own if `None` (SPEC 5.3).
-    pub threat_gap: Option<Rational>,
+    pub threat_gap: Option<Time>,
     /// Every distinct plan instead of the first one.
     pub all: bool,
     /// How many plans to stop at, if `all`.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use rmpl::{Bound, Rational};
+use exact::{Bound, Time};
 use stn::Overflow;
 use tpn::{ArcId, Network};
 
@@ -20,7 +20,7 @@ use crate::search::Choices;
 #[derive(Clone, Debug)]
 pub struct Planner {
     network: Network,
-    threat_gap: Option<Rational>,
+    threat_gap: Option<Time>,
     /// `None` where times do not fit.
     model: Option<Model>,
     last: Option<Searched>,
@@ -50,7 +50,7 @@ impl Searched {
 
 impl Planner {
     /// Prepares `network`.
-    pub fn new(network: Network, threat_gap: Option<Rational>) -> Self {
+    pub fn new(network: Network, threat_gap: Option<Time>) -> Self {
         let model = Model::new(&network, threat_gap).ok();
         Self { network, threat_gap, model, last: None }
     }
@@ -62,7 +62,7 @@ impl Planner {
 
     /// Changes the bounds of an arc. Cheap if the new ones are whole numbers of the network's common unit; otherwise
     /// the network is prepared anew. Unknown arcs are ignored.
-    pub fn set_bounds(&mut self, arc: ArcId, lower: Rational, upper: Bound) {
+    pub fn set_bounds(&mut self, arc: ArcId, lower: Time, upper: Bound) {
         let Some(changed) = self.network.arcs.get_mut(arc.index()) else { return };
         let is_structural = crate::wording::is_structural(changed.kind);
         (changed.lower, changed.upper) = (lower, upper);
@@ -107,7 +107,7 @@ impl Planner {
     }
 
     /// Changes the prepared network in place, if it can be.
-    fn keep_model(&mut self, arc: ArcId, lower: Rational, upper: Bound) -> Result<bool, Overflow> {
+    fn keep_model(&mut self, arc: ArcId, lower: Time, upper: Bound) -> Result<bool, Overflow> {
         let Some(model) = &mut self.model else { return Ok(false) };
         let (lower, upper) = (model.units(lower)?, model.bound_units(upper)?);
         if lower < 0 {

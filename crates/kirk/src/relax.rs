@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use rmpl::{Bound, Rational, Span};
+use exact::{Bound, Time};
+use rmpl::Span;
 use stn::Overflow;
 use tpn::{ArcId, Network};
 
@@ -46,8 +47,7 @@ fn candidates(network: &Network, failure: &Failure) -> Vec<(Vec<ArcId>, bool)> {
                 _ => continue,
             };
             let bounds = &network.arcs[arc.index()];
-            if wording::is_structural(bounds.kind) || (is_lower && bounds.lower == Rational::from_integer(0))
-            {
+            if wording::is_structural(bounds.kind) || (is_lower && bounds.lower == Time::ZERO) {
                 continue;
             }
             let alone = bounds.span.is_none().then_some(arc);
@@ -167,8 +167,9 @@ fn relaxation(network: &Network, model: &Model, arcs: &[ArcId], is_lower: bool, 
 }
 
 /// The change relative to the bound.
-fn cost(relaxation: &Relaxation) -> Rational {
-    let old = relaxation.old.finite().unwrap_or_default();
-    let change = if relaxation.is_lower { old - relaxation.new } else { relaxation.new - old };
-    change / old.max(Rational::from_integer(1))
+fn cost(relaxation: &Relaxation) -> Bound {
+    let (old, new) = (relaxation.old.finite().unwrap_or_default(), relaxation.new);
+    let change = if relaxation.is_lower { old.checked_sub(new) } else { new.checked_sub(old) };
+    let relative = change.and_then(|change| change.checked_ratio(old.max(Time::ONE)));
+    relative.map_or(Bound::Infinite, |relative| Bound::Finite(Time::from_units(relative)))
 }

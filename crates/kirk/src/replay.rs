@@ -3,7 +3,7 @@
 //! Nothing but the trace is kept: the state after each step is computed from the events of the states that lead to it,
 //! and windows are propagated again. A step costs time linear in those events, not in the length of the search.
 
-use rmpl::{Bound, Rational};
+use exact::{Bound, Time};
 use serde::{Deserialize, Serialize};
 use stn::{Overflow, PointId, Stn};
 use tpn::{ArcId, CausalLink, Choice, DecisionId, LabelId, Network, NodeId, Ordering, Window};
@@ -62,7 +62,7 @@ struct Frame {
 
 impl Replay {
     /// `None` if the network's times do not fit, which the search would have reported.
-    pub fn new(network: &Network, threat_gap: Option<Rational>, trace: &Trace) -> Option<Self> {
+    pub fn new(network: &Network, threat_gap: Option<Time>, trace: &Trace) -> Option<Self> {
         let model = Model::new(network, threat_gap).ok()?;
         let states = trace.tree.len();
         let mut event_start = vec![0_u32; states + 1];

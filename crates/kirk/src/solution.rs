@@ -1,6 +1,6 @@
 //! A solution of the search as a plan: exact windows, links and orders.
 
-use rmpl::Bound;
+use exact::Bound;
 use stn::Overflow;
 use tpn::{CausalLink, Choice, DecisionId, LabelId, Ordering, Plan, Window};
 

@@ -3,7 +3,7 @@
 //! A trace is small: events name ids, and windows and selections are computed again by [`crate::Replay`]. It is bounded:
 //! at the limit the recorded search ends, [`Trace::is_truncated`] says so, and the answer is found without a record.
 
-use rmpl::Rational;
+use exact::Time;
 use serde::{Deserialize, Serialize};
 use tpn::{ArcId, CausalLink, DecisionId, LabelId, Network, NodeId, Ordering};
 
@@ -137,7 +137,7 @@ pub struct CycleMember {
     /// Where it ends; the next step starts there.
     pub to: NodeId,
     /// In time units.
-    pub weight: Rational,
+    pub weight: Time,
 }
 
 /// A state of the search.

@@ -97,10 +97,7 @@ fn member_json(network: &Network, member: &CycleMember) -> Value {
             json!({ "first": network.label_name(order.first), "then": network.label_name(order.then) })
         }
     };
-    let weight = rmpl::rational::decimal(member.weight)
-        .and_then(|decimal| decimal.parse::<serde_json::Number>().ok())
-        .map_or_else(|| json!(rmpl::rational::display(member.weight)), Value::Number);
-    json!({ "from": member.from.0, "to": member.to.0, "weight": weight, "constraint": constraint })
+    json!({ "from": member.from.0, "to": member.to.0, "weight": member.weight, "constraint": constraint })
 }
 
 fn status_name(status: TreeStatus) -> &'static str {

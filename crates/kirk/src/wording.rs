@@ -1,8 +1,7 @@
 //! Reasons in the author's terms.
 
-use rmpl::Rational;
+use exact::Time;
 use rmpl::program::LabelMode;
-use rmpl::rational::display;
 use tpn::{Arc, ArcKind, Choice, LabelId, Network, OccurrenceKind};
 
 use crate::failure::{FailureKind, Member};
@@ -100,17 +99,17 @@ impl Told<'_> {
         let mut allows: Vec<(String, &'static str)> = Vec::new();
         // What would have to wait.
         let mut waiting: Option<LabelId> = None;
-        let (mut needed, mut allowed) = (Rational::from_integer(0), Rational::from_integer(0));
+        let (mut needed, mut allowed) = (Some(Time::ZERO), Some(Time::ZERO));
         for member in self.cycle {
             match member.constraint {
                 Constraint::Lower(arc) => {
-                    needed -= member.weight;
+                    needed = needed.and_then(|needed| needed.checked_sub(member.weight));
                     if is_telling(self.network, member) {
                         push_new(&mut needs, arc.0, arc_name(self.network, &self.network.arcs[arc.index()]));
                     }
                 }
                 Constraint::Upper(arc) => {
-                    allowed += member.weight;
+                    allowed = allowed.and_then(|allowed| allowed.checked_add(member.weight));
                     let arc = &self.network.arcs[arc.index()];
                     if is_telling(self.network, member) {
                         let name = arc_name(self.network, arc);
@@ -121,14 +120,18 @@ impl Told<'_> {
                 }
                 Constraint::Order(order) => {
                     waiting = Some(order.then);
-                    needed -= member.weight;
-                    if member.weight != Rational::from_integer(0) {
-                        push_new(&mut needs, u32::MAX, format!("a gap of {}", display(-member.weight)));
+                    needed = needed.and_then(|needed| needed.checked_sub(member.weight));
+                    if member.weight != Time::ZERO {
+                        push_new(
+                            &mut needs,
+                            u32::MAX,
+                            format!("a gap of {}", shown(member.weight.checked_neg())),
+                        );
                     }
                 }
                 Constraint::Link(link) => {
                     waiting = waiting.or(Some(link.ask));
-                    allowed += member.weight;
+                    allowed = allowed.and_then(|allowed| allowed.checked_add(member.weight));
                 }
             }
         }
@@ -139,7 +142,7 @@ impl Told<'_> {
         let needs: Vec<String> = needs.into_iter().map(|(_, name)| name).collect();
         let verb = if needs.len() == 1 { "needs" } else { "need" };
         let needs = if needs.is_empty() { "keeping them apart".to_owned() } else { joined(&needs) };
-        let (needed, allowed) = (display(needed), display(allowed));
+        let (needed, allowed) = (shown(needed), shown(allowed));
         Some(match allows.as_slice() {
             [] => match waiting {
                 Some(label) => {
@@ -160,6 +163,11 @@ impl Told<'_> {
     }
 }
 
+/// A time as people read it, where it fits.
+fn shown(time: Option<Time>) -> String {
+    time.map_or_else(|| "a time beyond 64 bits".to_owned(), |time| time.to_string())
+}
+
 /// Whether a bound says something to the author: glue does not.
 pub(crate) fn is_telling(network: &Network, member: &CycleMember) -> bool {
     let arc = match member.constraint {
@@ -168,8 +176,7 @@ pub(crate) fn is_telling(network: &Network, member: &CycleMember) -> bool {
     };
     let is_structural = is_structural(arc.kind);
     // A duration of zero at least says nothing; one of zero at most does, where it is written.
-    !is_structural
-        && (matches!(member.constraint, Constraint::Upper(_)) || member.weight != Rational::from_integer(0))
+    !is_structural && (matches!(member.constraint, Constraint::Upper(_)) || member.weight != Time::ZERO)
 }
 
 /// Whether the bounds of an arc are rules of the language, which no author wrote.

@@ -6,8 +6,8 @@ mod support;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
+use exact::Time;
 use kirk::{Options, Search, Status, Unlimited};
-use rmpl::Rational;
 use support::{NamedPlan, named, network, options};
 use tpn::generate::Rng;
 
@@ -67,8 +67,7 @@ fn enclosed_conflicts_are_planned_as_the_search_alone_plans_them() {
         let mut rng = Rng::new(seed);
         let text = mission(&mut rng);
         let network = network(&text);
-        let gap =
-            [Rational::from_integer(1), Rational::new(1, 2), Rational::from_integer(2)][seed as usize % 3];
+        let gap = [Time::ONE, Time::new(1, 2).expect("a half"), Time::from(2)][seed as usize % 3];
         let all = |search| {
             let options = Options { threat_gap: Some(gap), ..options(search, true) };
             let outcome = kirk::plan(&network, &options, &mut Unlimited);

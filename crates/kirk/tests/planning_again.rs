@@ -2,8 +2,8 @@
 
 mod support;
 
+use exact::{Bound, Time};
 use kirk::{ExpansionLimit, Planner, Search, Status, Unlimited};
-use rmpl::{Bound, Rational};
 use support::{network, options, plan};
 use tpn::ArcId;
 use tpn::generate::{Recipe, Rng, Tightness, mission};
@@ -23,8 +23,9 @@ fn planning_again_gives_the_plan_of_a_search_from_scratch_whatever_was_asked_bef
                     else {
                         continue;
                     };
-                    let more = Rational::from_integer(random.between(-2, 2));
-                    planner.set_bounds(arc, bounds.lower, Bound::Finite((upper + more).max(bounds.lower)));
+                    let more = Time::from(random.between(-2, 2));
+                    let upper = upper.checked_add(more).expect("a small time").max(bounds.lower);
+                    planner.set_bounds(arc, bounds.lower, Bound::Finite(upper));
                     let options = support::options(search, false);
                     let fresh = kirk::plan(planner.network(), &options, &mut ExpansionLimit(2_000));
                     let again = planner.plan(&options, &mut ExpansionLimit(2_000));
@@ -47,8 +48,9 @@ fn planning_again_after_a_change_answers_as_planning_anew() {
         let mut random = Rng::new(seed);
         for change in 0..12 {
             let arc = ArcId::from_index(random.below(original.arcs.len() as u64) as usize);
-            let lower = Rational::new(random.between(0, 12), random.between(1, 2));
-            let upper = Bound::Finite(lower + Rational::from_integer(random.between(0, 30)));
+            let lower = Time::new(random.between(0, 12), random.between(1, 2)).expect("a fraction");
+            let longer = lower.checked_add(random.between(0, 30).into()).expect("a small time");
+            let upper = Bound::Finite(longer);
             planner.set_bounds(arc, lower, upper);
             let anew = plan(planner.network(), Search::ConflictDirected, false);
             let again = planner.plan(&options(Search::ConflictDirected, false), &mut Unlimited);

@@ -97,8 +97,8 @@ fn a_failed_step_shows_its_contradiction_and_the_state_before_it() {
     let failed = failed.expect("the first alternative is too long");
     let step = Replay::new(&network, None, &trace).expect("small numbers").at(&trace, failed);
     assert_eq!(step.choices.len(), 1);
-    let total: rmpl::Rational = step.cycle.iter().map(|member| member.weight).sum();
-    assert_eq!(total, (-10).into(), "30 does not fit into 20");
+    let total = exact::Time::checked_sum(step.cycle.iter().map(|member| member.weight));
+    assert_eq!(total, Some((-10).into()), "30 does not fit into 20");
     assert!(step.windows[network.start.index()].is_some());
     let because = trace.events.iter().any(|entry| matches!(entry.event, Event::Backtrack { .. }));
     assert!(!because, "the next alternative of the same choice needs no backtracking");

@@ -88,14 +88,16 @@ fn time_scales() {
         let recipe = Recipe { nodes: 40, tightness: Tightness::Boundary, seed };
         let original = network(&mission(recipe));
         let mut scaled = original.clone();
-        let factor = rmpl::Rational::new(7, 3);
+        let longer = |time: exact::Time| {
+            time.checked_mul(7).and_then(|time| time.checked_div(3)).expect("a small time")
+        };
         for arc in &mut scaled.arcs {
-            arc.lower *= factor;
-            if let rmpl::Bound::Finite(upper) = &mut arc.upper {
-                *upper *= factor;
+            arc.lower = longer(arc.lower);
+            if let exact::Bound::Finite(upper) = &mut arc.upper {
+                *upper = longer(*upper);
             }
         }
-        scaled.threat_gap *= factor;
+        scaled.threat_gap = longer(scaled.threat_gap);
         let expected = plan(&original, Search::ConflictDirected, false);
         let found = plan(&scaled, Search::ConflictDirected, false);
         assert_eq!(found.plans.len(), expected.plans.len(), "{recipe:?}");
@@ -107,12 +109,8 @@ fn time_scales() {
                     assert_eq!(found.is_some(), expected.is_some(), "{recipe:?}");
                     continue;
                 };
-                assert_eq!(found.earliest, expected.earliest * factor, "{recipe:?}");
-                assert_eq!(
-                    found.latest.finite(),
-                    expected.latest.finite().map(|latest| latest * factor),
-                    "{recipe:?}"
-                );
+                assert_eq!(found.earliest, longer(expected.earliest), "{recipe:?}");
+                assert_eq!(found.latest.finite(), expected.latest.finite().map(longer), "{recipe:?}");
             }
         }
     }

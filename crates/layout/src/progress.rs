@@ -1,7 +1,7 @@
 //! What of a plan has happened at a moment of its earliest schedule, for drawings that show the present.
 
 use display::geometry::{Piece, Point, first_part};
-use rmpl::{Bound, Rational};
+use exact::{Bound, Time};
 use tpn::{ArcId, Network, NodeId, Plan};
 
 use crate::drawing::NetworkDrawing;
@@ -21,13 +21,13 @@ impl Progress {
     /// network.
     pub fn at(network: &Network, plan: &Plan, now: f64) -> Self {
         let time =
-            |node: NodeId| plan.windows.get(node.index()).copied().flatten().map(|it| number(it.earliest));
+            |node: NodeId| plan.windows.get(node.index()).copied().flatten().map(|it| it.earliest.to_f64());
         let nodes = (0..network.nodes.len()).map(NodeId::from_index);
         let done = nodes.filter(|&node| time(node).is_some_and(|time| time <= now)).collect();
         let part = |(index, arc): (usize, &tpn::Arc)| {
             let is_selected = plan.selected_arcs.get(index) == Some(&true);
             // Connections without a duration of their own are never under way.
-            let lasts = arc.upper != Bound::Finite(Rational::default());
+            let lasts = arc.upper != Bound::Finite(Time::ZERO);
             let (from, to) = time(arc.from).zip(time(arc.to)).filter(|_| is_selected && lasts)?;
             (from <= now && now < to).then(|| (ArcId::from_index(index), (now - from) / (to - from)))
         };
@@ -39,8 +39,4 @@ impl Progress {
 pub fn elapsed(drawing: &NetworkDrawing, arc: ArcId, fraction: f64) -> Option<(Point, Vec<Piece>)> {
     let shape = drawing.arc(arc)?;
     Some((shape.start, first_part(shape.start, drawing.pieces(shape), fraction)))
-}
-
-fn number(value: Rational) -> f64 {
-    *value.numer() as f64 / *value.denom() as f64
 }

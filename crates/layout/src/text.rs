@@ -1,8 +1,8 @@
 //! What is written at each arc, and how much room it takes.
 
 use display::{Measure, text_width_at};
+use exact::{Bound, Time};
 use rmpl::program::LabelMode;
-use rmpl::{Bound, Rational};
 use smol_str::{SmolStr, format_smolstr};
 use tpn::{Arc, ArcId, ArcKind, BlockKind, LabelId, Network, OccurrenceKind};
 
@@ -126,12 +126,10 @@ pub(crate) fn cut_to_width(text: &str, role: TextRole, longest: f64, measure: &d
 }
 
 /// The bounds as the papers print them: `[405,486]`, `[0,∞]`.
-pub fn bounds_label(lower: Rational, upper: Bound) -> SmolStr {
+pub fn bounds_label(lower: Time, upper: Bound) -> SmolStr {
     match upper {
-        Bound::Finite(upper) => {
-            format_smolstr!("[{},{}]", rmpl::rational::display(lower), rmpl::rational::display(upper))
-        }
-        Bound::Infinite => format_smolstr!("[{},∞]", rmpl::rational::display(lower)),
+        Bound::Finite(upper) => format_smolstr!("[{lower},{upper}]"),
+        Bound::Infinite => format_smolstr!("[{lower},∞]"),
     }
 }
 
@@ -146,7 +144,7 @@ pub fn label_text(network: &Network, label: LabelId) -> (SmolStr, TextRole) {
 
 fn bounds_text(arc: &Arc, options: &Options) -> Option<(SmolStr, TextRole)> {
     let text = bounds_label(arc.lower, arc.upper);
-    let at_once = arc.lower == Rational::default() && arc.upper == Bound::ZERO;
+    let at_once = arc.lower.is_zero() && arc.upper == Bound::ZERO;
     if at_once && arc.occurrence.is_none() {
         return options.zero_bounds.then_some((text, TextRole::ZeroBounds));
     }

@@ -7,24 +7,24 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use display::{ColorRole, DisplayList, Fill, Rect, Shape, Target, TargetKind, Theme, approximate_text_width};
 use drawings::{draw, enroute, network_of, overlapping};
+use exact::{Bound, Time};
 use layout::list::map::{MapFrame, MapPath, extent_m, map_list, path_stroke};
 use layout::list::timeline::{ROW_HEIGHT, Standing, TimelineState, Track, axis_list, timeline_list};
 use layout::timeline::{Chart, ChartOptions, Grouping};
 use layout::{Item, NetworkDrawing, NetworkState, network_list};
-use rmpl::{Bound, Rational};
 use tpn::generate::{Recipe, Tightness, mission};
 use tpn::{Network, Plan, Window};
 
 /// A plan that selects everything, with windows by the longest ways from the start.
 fn plan_of(network: &Network) -> Plan {
-    let mut earliest = vec![Rational::default(); network.nodes.len()];
+    let mut earliest = vec![Time::ZERO; network.nodes.len()];
     for _ in &network.nodes {
         for arc in &network.arcs {
             let reached = earliest[arc.from.index()] + arc.lower;
             earliest[arc.to.index()] = earliest[arc.to.index()].max(reached);
         }
     }
-    let late = |earliest: Rational| Bound::Finite(earliest + Rational::from_integer(30));
+    let late = |earliest: Time| Bound::Finite(earliest.checked_add(30.into()).expect("a small time"));
     let window = |earliest| Some(Window { earliest, latest: late(earliest) });
     Plan {
         choices: Vec::new(),

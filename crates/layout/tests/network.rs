@@ -7,8 +7,8 @@ use drawings::{
     assert_nothing_overlaps, crossings, draw, draw_with, enroute, network_of, random_mission,
     segment_meets_rect, segments,
 };
+use exact::Rational;
 use layout::{BlockForm, Item, NetworkDrawing, NetworkState, Options, Shape, TextRole, network_list};
-use rmpl::Rational;
 use tpn::generate::{Recipe, Tightness, mission};
 use tpn::{BlockId, BlockKind, EventEnd, Network, NodeId, OccurrenceId};
 
@@ -341,7 +341,7 @@ fn the_path_of_a_traverse_is_strung_above_its_arc() {
     let path = TraversePath {
         occurrence: OccurrenceId::from_index(traverse),
         legs: vec![leg(10.0, 7), leg(5.0, 4)],
-        speed_mps: (Rational::new(1, 10), Rational::new(1, 2)),
+        speed_mps: (Rational::new(1, 10).expect("a tenth"), Rational::new(1, 2).expect("a half")),
         may_stop: false,
     };
     let with_path = insert_paths(&network, &[path], 60).expect("the path is sound");

@@ -4,9 +4,9 @@ mod drawings;
 
 use display::{Theme, approximate_text_width, svg};
 use drawings::{draw, enroute, segment_meets_rect};
+use exact::{Bound, Time};
 use layout::overlay::{causal_links, negative_cycle, orderings, windows};
 use layout::{Item, NetworkState, Options, network_list};
-use rmpl::{Bound, Rational};
 use tpn::{CausalLink, LabelId, Network, Ordering, Plan, Window};
 
 fn label(network: &Network, name: &str) -> LabelId {
@@ -35,10 +35,7 @@ fn plan(network: &Network) -> Plan {
             then: label(network, "Tell(PROCEED=OK)@Tell(PROCEED=OK)#1"),
         }],
         windows: vec![
-            Some(Window {
-                earliest: Rational::from_integer(460),
-                latest: Bound::Finite(Rational::from_integer(600)),
-            });
+            Some(Window { earliest: Time::from(460), latest: Bound::Finite(Time::from(600)) });
             network.nodes.len()
         ],
     }
@@ -113,7 +110,7 @@ fn a_window_wider_than_its_room_is_written_smaller() {
     let network = enroute();
     let drawing = draw(&network);
     let mut plan = plan(&network);
-    let earliest = Rational::new(123_456_789, 7);
+    let earliest = Time::new(123_456_789, 7).expect("a fraction");
     plan.windows.fill(Some(Window { earliest, latest: Bound::Finite(earliest) }));
     let width = Options::default().window_width;
     let notes = windows(&drawing, &plan, width, &approximate_text_width);

@@ -5,8 +5,8 @@ mod drawings;
 use drawings::{
     assert_nothing_overlaps, crossings, draw, enroute, network_of, random_mission, without_blocks,
 };
+use exact::{Bound, Time};
 use layout::{NetworkDrawing, Route};
-use rmpl::{Bound, Rational};
 use tpn::generate::{Recipe, Rng, Tightness, mission};
 use tpn::{Arc, ArcId, ArcKind, Network, Node, NodeId, Role};
 
@@ -17,8 +17,8 @@ fn bare(node_count: usize, arcs: &[(u32, u32, ArcKind)]) -> Network {
     let arcs = arcs.iter().enumerate().map(|(at, &(from, to, kind))| {
         nodes[from as usize].out_arcs.push(ArcId::from_index(at));
         nodes[to as usize].in_arcs.push(ArcId::from_index(at));
-        let lower = Rational::from_integer(at as i64);
-        let upper = Bound::Finite(Rational::from_integer(10 * at as i64));
+        let lower = Time::from(at as i64);
+        let upper = Bound::Finite(Time::from(10 * at as i64));
         Arc {
             from: NodeId(from),
             to: NodeId(to),
@@ -43,7 +43,7 @@ fn bare(node_count: usize, arcs: &[(u32, u32, ArcKind)]) -> Network {
         root: None,
         start: NodeId(0),
         end: NodeId(node_count as u32 - 1),
-        threat_gap: Rational::from_integer(1),
+        threat_gap: Time::ONE,
     }
 }
 

@@ -1,8 +1,8 @@
 //! The parallel branches of a program, and what has happened of a plan.
 
+use exact::{Bound, Time};
 use layout::Progress;
 use layout::threads::{thread_name, threads};
-use rmpl::{Bound, Rational};
 use tpn::{Network, Plan, Top, Window};
 
 const MISSION: &str = "primitive A(); primitive B(); primitive C(); primitive D();
@@ -32,10 +32,10 @@ fn threads_are_numbered_as_they_are_nested_and_named_for_what_comes_first_in_the
 
 /// A plan of a network without choices, by the longest ways from its start.
 fn as_early_as_can_be(network: &Network) -> Plan {
-    let mut earliest = vec![Rational::default(); network.nodes.len()];
+    let mut earliest = vec![Time::ZERO; network.nodes.len()];
     for _ in &network.nodes {
         for arc in &network.arcs {
-            let reached = earliest[arc.from.index()] + arc.lower;
+            let reached = earliest[arc.from.index()].checked_add(arc.lower).expect("a small time");
             earliest[arc.to.index()] = earliest[arc.to.index()].max(reached);
         }
     }

@@ -5,8 +5,8 @@
 
 use std::sync::Arc;
 
+use exact::Time;
 use motion::{Formation, Path};
-use rmpl::Rational;
 use terrain::ConfigurationSpace;
 use tpn::OccurrenceId;
 
@@ -27,13 +27,13 @@ pub struct Drive {
     /// The leader's path.
     pub path: Path,
     /// Departure, in mission units.
-    pub start: Rational,
+    pub start: Time,
     /// Arrival.
-    pub end: Rational,
+    pub end: Time,
 }
 
 /// Times are rounded to this fraction of a unit: positions between keyframes are interpolated anyway.
-const TICKS_PER_UNIT: f64 = 1000.0;
+const PARTS_PER_UNIT: u32 = 1000;
 /// Followers are placed this often along the leader's path, in metres.
 const FOLLOWER_STEP_M: f64 = 0.4;
 /// A place is left out where driving evenly past it comes this near to it, in metres.
@@ -161,13 +161,13 @@ fn even_stretches(track: &[Place]) -> Vec<Place> {
 /// The share of a drive in which a vehicle that comes from elsewhere joins the others.
 const JOINING: f64 = 0.1;
 
-fn keyframes(track: &[Place], from: Option<[f64; 2]>, start: Rational, end: Rational) -> Vec<Keyframe> {
+fn keyframes(track: &[Place], from: Option<[f64; 2]>, start: Time, end: Time) -> Vec<Keyframe> {
     let mut places: Vec<Place> = track.to_vec();
     if let Some(position_m) = from {
         places.retain(|place| place.share >= JOINING);
         places.insert(0, Place { share: 0.0, position_m });
     }
-    let (begin, length) = (ratio(start), ratio(end) - ratio(start));
+    let (begin, length) = (start.to_f64(), end.to_f64() - start.to_f64());
     let mut heading_rad = 0.0;
     let mut frames = Vec::with_capacity(places.len());
     for (index, place) in places.iter().enumerate() {
@@ -184,7 +184,7 @@ fn keyframes(track: &[Place], from: Option<[f64; 2]>, start: Rational, end: Rati
             end
         } else {
             let exact = begin + place.share * length;
-            Rational::new((exact * TICKS_PER_UNIT).round() as i64, TICKS_PER_UNIT as i64).clamp(start, end)
+            Time::from_f64_nearest(exact, PARTS_PER_UNIT).unwrap_or(start).clamp(start, end)
         };
         frames.push(Keyframe { time, position_m: place.position_m, heading_rad });
     }
@@ -194,10 +194,6 @@ fn keyframes(track: &[Place], from: Option<[f64; 2]>, start: Rational, end: Rati
 /// Whether two places are so far apart that the way between them shows a heading.
 fn is_apart(a: &Place, b: &Place) -> bool {
     segment_length_m(a.position_m, b.position_m) > 1e-3
-}
-
-fn ratio(time: Rational) -> f64 {
-    *time.numer() as f64 / *time.denom() as f64
 }
 
 fn mix(from: [f64; 2], to: [f64; 2], part: f64) -> [f64; 2] {

@@ -1,9 +1,8 @@
 //! Vehicles of different traverses that come too near each other, with time and place.
 
 use motion::TimedPoint;
-use num_traits::ToPrimitive as _;
 use rmpl::program::World;
-use rmpl::{Code, Diagnostic, Rational};
+use rmpl::{Code, Diagnostic};
 use tpn::Network;
 
 use crate::driving::Drive;
@@ -21,7 +20,7 @@ pub fn encounters(drives: &[Drive], motions: &[VehicleMotion], world: &World) ->
     let together = |a: u32, b: u32| {
         drives.iter().any(|drive| drive.vehicles.contains(&a) && drive.vehicles.contains(&b))
     };
-    let last = drives.iter().map(|drive| units(drive.end)).fold(0.0, f64::max);
+    let last = drives.iter().map(|drive| drive.end.to_f64()).fold(0.0, f64::max);
     let tracks: Vec<Vec<TimedPoint>> = motions.iter().map(|motion| track(motion, last)).collect();
     let mut found = Vec::new();
     for (index, (first, first_track)) in motions.iter().zip(&tracks).enumerate() {
@@ -64,7 +63,7 @@ pub fn warnings(
         .filter_map(|encounter| {
             let [first, second] = encounter.vehicles;
             let under_way = |drive: &&Drive| {
-                drive.vehicles.contains(&second) && units(drive.start) <= encounter.time
+                drive.vehicles.contains(&second) && drive.start.to_f64() <= encounter.time
             };
             let drive = drives.iter().rev().find(under_way).or_else(|| {
                 drives.iter().find(|drive| drive.vehicles.contains(&second))
@@ -89,15 +88,12 @@ pub fn warnings(
 /// The positions of a vehicle from the mission's start till all have stopped.
 fn track(motion: &VehicleMotion, last: f64) -> Vec<TimedPoint> {
     let frames = motion.keyframes.iter();
-    let mut points: Vec<TimedPoint> =
-        frames.map(|frame| TimedPoint { time_s: units(frame.time), position_m: frame.position_m }).collect();
+    let mut points: Vec<TimedPoint> = frames
+        .map(|frame| TimedPoint { time_s: frame.time.to_f64(), position_m: frame.position_m })
+        .collect();
     if let (Some(&first), Some(&end)) = (points.first(), points.last()) {
         points.insert(0, TimedPoint { time_s: 0.0, ..first });
         points.push(TimedPoint { time_s: last.max(end.time_s), ..end });
     }
     points
-}
-
-fn units(time: Rational) -> f64 {
-    time.to_f64().unwrap_or(0.0)
 }

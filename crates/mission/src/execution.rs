@@ -6,13 +6,13 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
+use exact::{Bound, Time};
 use executive::{
     AsPlanned, Disturbance, Ending, Entry, Facts, Performer, PlanError, Replanner, RunOutcome, Script, Stage,
     World, run_stage,
 };
 use kirk::Status;
 use rmpl::program::Program;
-use rmpl::{Bound, Rational};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 use tpn::{Network, Plan, Window};
@@ -47,13 +47,13 @@ pub struct Execution {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Executed {
     /// When it was made.
-    pub from: Rational,
+    pub from: Time,
     /// Its network, with its paths; what was known by then of durations is in it, what had happened is in `times`.
     pub network: Arc<Network>,
     /// The plan.
     pub plan: Plan,
     /// When each node happened, up to the end of the run.
-    pub times: Vec<Option<Rational>>,
+    pub times: Vec<Option<Time>>,
     /// Its traverses.
     pub traverses: Vec<Traverse>,
     /// Where the vehicles are over time: as it happened, and as planned for what did not happen.
@@ -92,9 +92,13 @@ pub fn execute(
         None => &mut as_planned,
     };
     let mut performer = ProgramPerformer::new(&programs, disturbances, None, others);
-    let mut grid = world.times(&planned.network);
-    grid.push(performer.granularity());
-    let ran = Stage::new(Arc::clone(&planned.network), plan, &grid).and_then(|stage| {
+    let granularity = performer.granularity();
+    let grid = world.times(&planned.network).map_err(PlanError::from);
+    let stage = grid.and_then(|mut grid| {
+        grid.push(granularity);
+        Stage::new(Arc::clone(&planned.network), plan, &grid)
+    });
+    let ran = stage.and_then(|stage| {
         let mut replanner =
             WithPaths { problem, grounds, paths, replanned: Vec::new(), courses: Some(&courses) };
         let num_program_nodes = problem.network.nodes.len();
@@ -141,7 +145,7 @@ impl Execution {
             .zip(all_planned)
             .map(|(executed, planned)| {
                 let shared = executed.times.len().min(last_times.len());
-                let times: Vec<Option<Rational>> = executed
+                let times: Vec<Option<Time>> = executed
                     .times
                     .iter()
                     .enumerate()
@@ -160,19 +164,15 @@ impl Execution {
 
     /// The plan that was followed at `time`, and its number from 0.
     pub fn plan_at(&self, time: f64) -> Option<(usize, &Executed)> {
-        let is_made = |plan: &&Executed| number(plan.from) <= time + 1e-9;
+        let is_made = |plan: &&Executed| plan.from.to_f64() <= time + 1e-9;
         let at = self.plans.iter().take_while(is_made).count().max(1) - 1;
         Some((at, self.plans.get(at)?))
     }
 
     /// When the last entry of the log was written.
-    pub fn end(&self) -> Rational {
+    pub fn end(&self) -> Time {
         self.log.last().map(|entry| entry.time).unwrap_or_default()
     }
-}
-
-fn number(time: Rational) -> f64 {
-    *time.numer() as f64 / *time.denom() as f64
 }
 
 /// A network without the arcs by which facts hold events in the past: nothing else leads back to the start.
@@ -192,7 +192,7 @@ fn without_facts(network: &Arc<Network>, mut plan: Plan) -> (Arc<Network>, Plan)
 }
 
 /// The plan with the windows of what happened closed to when it did.
-fn with_times(plan: &Plan, times: &[Option<Rational>]) -> Plan {
+fn with_times(plan: &Plan, times: &[Option<Time>]) -> Plan {
     let mut plan = plan.clone();
     for (window, time) in plan.windows.iter_mut().zip(times) {
         if let (Some(_), Some(time)) = (&window, *time) {

@@ -3,7 +3,6 @@
 use rmpl::program::World;
 use serde_json::{Value, json};
 use tpn::Network;
-use tpn::number::{bound_to_json, time_to_json};
 
 use crate::snapshot::{Encounter, Traverse};
 
@@ -20,7 +19,7 @@ fn traverse_json(traverse: &Traverse, network: &Network, world: &World) -> Value
             "length_m": figures.length_m,
             "min_clearance_m": figures.min_clearance_m.is_finite().then_some(figures.min_clearance_m),
             "max_slope_deg": figures.max_slope_deg,
-            "duration": [time_to_json(figures.least_duration), bound_to_json(figures.greatest_duration)],
+            "duration": [figures.least_duration, figures.greatest_duration],
         })
     });
     let occurrence = network.occurrences.get(traverse.occurrence.index());

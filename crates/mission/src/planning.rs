@@ -6,12 +6,12 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use exact::{Bound, Rational, Time};
 use executive::Facts;
 use kirk::{Constraint, CycleMember, Options, Outcome, Stats, Status};
 use motion::{SegmentTiming, SpeedLimits};
-use num_traits::ToPrimitive as _;
+use rmpl::Diagnostic;
 use rmpl::program::{Program, World};
-use rmpl::{Bound, Diagnostic, Rational};
 use terrain::{ConfigurationSpace, Terrain};
 use tpn::path::{PathLeg, TraversePath};
 use tpn::{ArcId, ArcKind, Network, OccurrenceId, Plan};
@@ -175,14 +175,13 @@ fn traverse_path(route: &Route, legs: &[Leg], map: &Terrain) -> Option<TraverseP
         occurrence: route.occurrence,
         legs: legs.filter(|leg| !leg.segment_lengths_m.is_empty()).collect(),
         speed_mps: route.speed_mps,
-        may_stop: route.speed_mps.0 == Rational::default(),
+        may_stop: route.speed_mps.0.is_zero(),
     };
     (!path.legs.is_empty()).then_some(path)
 }
 
 fn timings(route: &Route, leg: &Leg, map: &Terrain) -> Vec<SegmentTiming> {
-    let [least_mps, greatest_mps] =
-        [route.speed_mps.0, route.speed_mps.1].map(|speed| speed.to_f64().unwrap_or(0.0));
+    let [least_mps, greatest_mps] = [route.speed_mps.0, route.speed_mps.1].map(Rational::to_f64);
     let path = motion::Path::new(leg.points_m.clone());
     motion::time_path(&path, map, route.model, SpeedLimits { least_mps, greatest_mps })
 }
@@ -197,10 +196,10 @@ fn out_of_bounds(problem: &Problem<'_>, route: &Route, legs: &[Leg], map: &Terra
     let unit = problem.program.options.time_unit;
     let path = traverse_path(route, legs, map)?;
     let segments = tpn::path::segment_bounds(&path, unit.seconds()).ok()?;
-    let least: Rational = segments.iter().map(|segment| segment.least).sum();
-    let most = segments.iter().try_fold(Rational::default(), |sum, it| Some(sum + it.greatest.finite()?));
+    let least = Time::checked_sum(segments.iter().map(|segment| segment.least))?;
+    let most = segments.iter().try_fold(Time::ZERO, |sum, it| sum.checked_add(it.greatest.finite()?));
     let length_m: f64 = path.legs.iter().flat_map(|leg| &leg.segment_lengths_m).sum();
-    let shown = |time: Rational| format!("{:.1}", time.to_f64().unwrap_or(0.0));
+    let shown = |time: Time| format!("{:.1}", time.to_f64());
     let reason = match (upper, most) {
         (Bound::Finite(upper), _) if least > upper => format!(
             "within its bounds: its path of {length_m:.0} m takes at least {}, and at most {} is allowed",
@@ -231,12 +230,13 @@ fn figures(
     let bounds = tpn::path::segment_bounds(&path, unit_seconds).unwrap_or_default();
     let of_leg = |(index, leg): (usize, &Leg)| {
         let own = || bounds.iter().filter(move |segment| segment.leg as usize == index + 1);
-        let greatest = own().try_fold(Rational::default(), |sum, it| Some(sum + it.greatest.finite()?));
+        let least = Time::checked_sum(own().map(|segment| segment.least));
+        let greatest = own().try_fold(Time::ZERO, |sum, it| sum.checked_add(it.greatest.finite()?));
         PathFigures {
             length_m: path.legs.get(index).map_or(0.0, |leg| leg.segment_lengths_m.iter().sum()),
             min_clearance_m: traverse::clearance_m(&space.exact, &leg.points_m),
             max_slope_deg: traverse::steepest_slope_rad(map, &leg.points_m).to_degrees(),
-            least_duration: own().map(|segment| segment.least).sum(),
+            least_duration: least.unwrap_or_default(),
             greatest_duration: greatest.map_or(Bound::Infinite, Bound::Finite),
         }
     };
@@ -250,7 +250,7 @@ fn block(network: &mut Network, occurrence: OccurrenceId) {
         (traverse.start, traverse.end, traverse.span)
     };
     for units in [0, 1] {
-        let duration = Rational::from(units);
+        let duration = Time::from(units);
         let id = ArcId::from_index(network.arcs.len());
         network.arcs.push(tpn::Arc {
             from: start,
@@ -393,7 +393,7 @@ pub(crate) fn drive(
 }
 
 /// The latest time anything of the plan can happen, as far as it is bounded, for time axes.
-pub fn horizon(plan: &Plan) -> Rational {
+pub fn horizon(plan: &Plan) -> Time {
     plan.windows
         .iter()
         .flatten()

@@ -7,12 +7,12 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
+use exact::{Bound, Overflow, Time};
 use executive::model_based::{Estimation, Mind, Options, Run, StepInput, StepRecord, System};
 use executive::{Disturbance, Ends, Entry, Happening, Performance, Performer};
 use plant::{Belief, Model, Random, State};
 use rmpl::program::{Name, Program};
-use rmpl::rational::readable;
-use rmpl::{Bound, Code, Diagnostic, Rational};
+use rmpl::{Code, Diagnostic};
 use smol_str::SmolStr;
 use tpn::{Network, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Plan};
 
@@ -24,7 +24,7 @@ use crate::review::distances::Distances;
 pub struct Programs {
     systems: BTreeMap<SmolStr, Arc<System>>,
     /// How long a step takes, in mission units.
-    step: Rational,
+    step: Time,
 }
 
 /// A program is given up after this many steps, even if its activity may last forever.
@@ -93,7 +93,7 @@ impl Programs {
     }
 
     /// How long a step takes, in mission units.
-    pub const fn step(&self) -> Rational {
+    pub const fn step(&self) -> Time {
         self.step
     }
 
@@ -140,9 +140,8 @@ pub fn overlaps(program: &Program, network: &Network, plan: &Plan) -> Vec<Diagno
     let gaps: Vec<(NodeId, NodeId)> =
         pairs.iter().flat_map(|[a, b]| [(a.end, b.start), (b.end, a.start)]).collect();
     let gaps = distances.between(&gaps);
-    let may_overlap = |gaps: &[Option<TimeRange>]| {
-        gaps.iter().all(|gap| gap.is_none_or(|gap| gap.least < Rational::default()))
-    };
+    let may_overlap =
+        |gaps: &[Option<TimeRange>]| gaps.iter().all(|gap| gap.is_none_or(|gap| gap.least.is_negative()));
     (pairs.iter().zip(gaps.chunks(2)))
         .filter(|(_, gaps)| may_overlap(gaps))
         .filter_map(|([first, second], _)| {
@@ -197,7 +196,7 @@ pub struct ProgramPerformer<'run> {
     /// The plant as the last program left it, and what was believed of it.
     plant: Option<(State, Belief)>,
     /// Which activity controls the plant, and until when; no time if it never stops.
-    control: Option<(SmolStr, Option<Rational>)>,
+    control: Option<(SmolStr, Option<Time>)>,
 }
 
 impl<'run> ProgramPerformer<'run> {
@@ -211,21 +210,30 @@ impl<'run> ProgramPerformer<'run> {
         Self { programs, disturbances, chance: seed.map(Random::new), others, plant: None, control: None }
     }
 
-    fn run(&mut self, system: &System, network: &Network, id: OccurrenceId, start: Rational) -> Performance {
+    fn run(
+        &mut self,
+        system: &System,
+        network: &Network,
+        id: OccurrenceId,
+        start: Time,
+    ) -> Result<Performance, Overflow> {
         let occurrence = &network.occurrences[id.index()];
         let name = occurrence.name.clone();
         if let Some((other, until)) = &self.control
             && until.is_none_or(|until| until > start)
         {
-            let until = until.map_or_else(String::new, |until| format!(" until {}", readable(until)));
+            let until = until.map_or_else(String::new, |until| format!(" until {}", until.readable()));
             let reason = format!("the program of {other} commands the plant{until}");
-            return Performance { ends: Ends::Never(reason), ..Performance::default() };
+            return Ok(Performance { ends: Ends::Never(reason), ..Performance::default() });
         }
         let step = self.programs.step;
         let upper = occurrence.arc.and_then(|arc| network.arcs.get(arc.index()));
         let most_steps = match upper.map(|arc| arc.upper) {
             // One step more than there is time for shows whether it would have ended later.
-            Some(Bound::Finite(upper)) => ((upper / step).floor().to_integer() + 1).clamp(1, MOST_STEPS),
+            Some(Bound::Finite(upper)) => {
+                let steps = upper.checked_ratio(step).ok_or(Overflow)?.floor();
+                steps.saturating_add(1).clamp(1, MOST_STEPS)
+            }
             _ => MOST_STEPS,
         };
         let options = Options { seed: self.chance.as_mut().map(Random::next_bits), ..Options::default() };
@@ -243,7 +251,8 @@ impl<'run> ProgramPerformer<'run> {
             match run.step(&input) {
                 Ok(record) => {
                     let happening = Happening::Progress { name: name.clone(), text: text(system, record) };
-                    entries.push(Entry { time: start + step * steps, happening });
+                    let time = step.checked_mul(steps).and_then(|after| start.checked_add(after));
+                    entries.push(Entry { time: time.ok_or(Overflow)?, happening });
                 }
                 Err(error) => {
                     trouble = Some(format!("step {steps} of the program cannot be taken: {error}"));
@@ -253,13 +262,16 @@ impl<'run> ProgramPerformer<'run> {
         }
         let ends = match trouble {
             Some(trouble) => Ends::Never(trouble),
-            None if run.is_done() => Ends::After(step * steps),
+            None if run.is_done() => Ends::After(step.checked_mul(steps).ok_or(Overflow)?),
             None => Ends::Never(format!("its program did not reach its end in {steps} steps")),
         };
         self.plant = Some((run.true_state().clone(), run.belief().clone()));
-        let until = if let Ends::After(duration) = &ends { Some(start + *duration) } else { None };
+        let until = match &ends {
+            Ends::After(duration) => Some(start.checked_add(*duration).ok_or(Overflow)?),
+            _ => None,
+        };
         self.control = Some((name, until));
-        Performance { ends, entries, ..Performance::default() }
+        Ok(Performance { ends, entries, ..Performance::default() })
     }
 
     /// The faults of one step.
@@ -279,7 +291,12 @@ impl<'run> ProgramPerformer<'run> {
 }
 
 impl Performer for ProgramPerformer<'_> {
-    fn start(&mut self, network: &Network, occurrence: OccurrenceId, start: Rational) -> Performance {
+    fn start(
+        &mut self,
+        network: &Network,
+        occurrence: OccurrenceId,
+        start: Time,
+    ) -> Result<Performance, Overflow> {
         let activity = network.occurrences.get(occurrence.index()).map_or("", |it| it.activity.as_str());
         match self.programs.system(activity).cloned() {
             Some(system) => self.run(&system, network, occurrence, start),
@@ -287,19 +304,14 @@ impl Performer for ProgramPerformer<'_> {
         }
     }
 
-    fn granularity(&self) -> Rational {
+    fn granularity(&self) -> Time {
         let others = self.others.granularity();
-        if self.programs.is_empty() { others } else { common_part(self.programs.step, others) }
+        if self.programs.is_empty() {
+            return others;
+        }
+        // A part too small to be kept is found out when the plan is made ready.
+        self.programs.step.common_part(others).unwrap_or(others)
     }
-}
-
-/// The greatest time of which both are multiples.
-fn common_part(one: Rational, other: Rational) -> Rational {
-    let (mut a, mut b) = (one, other);
-    while b > Rational::default() {
-        (a, b) = (b, a - b * (a / b).floor());
-    }
-    a
 }
 
 /// What a step did, in words: commands, then what is estimated to have changed.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use rmpl::{Bound, Rational};
+use exact::{Bound, Time};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
@@ -102,7 +102,7 @@ pub enum Goal {
         /// Its name.
         name: SmolStr,
         /// Least duration.
-        lower: Rational,
+        lower: Time,
         /// Greatest duration.
         upper: Bound,
     },

@@ -5,8 +5,8 @@
 
 use std::collections::BTreeMap;
 
+use exact::Time;
 use executive::model_based::wilson_interval;
-use rmpl::Rational;
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
@@ -105,11 +105,6 @@ pub enum Distribution {
     Normal(Time, Time),
 }
 
-/// An exact time in JSON.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(transparent)]
-pub struct Time(#[serde(with = "executive::exact")] pub Rational);
-
 /// Something that may happen to a condition.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -206,7 +201,7 @@ impl Tally {
             mine.sum_permille += used.sum_permille;
             mine.most_permille = mine.most_permille.max(used.most_permille);
         }
-        self.end_sum += other.end_sum;
+        self.end_sum = self.end_sum.saturating_add(other.end_sum);
         self.end_least = self.end_least.into_iter().chain(other.end_least).min();
         self.end_most = self.end_most.into_iter().chain(other.end_most).max();
     }

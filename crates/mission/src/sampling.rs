@@ -3,13 +3,13 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
+use exact::{Bound, Overflow, Time};
 use executive::{
     AsPlanned, Disturbance, Ending, Entry, Happening, Performer, PlanError, RunOutcome, Stage, World,
 };
 use motion::Path;
 use plant::Random;
 use rmpl::program::{LabelMode, Program};
-use rmpl::{Bound, Rational};
 use smol_str::SmolStr;
 use tpn::{Network, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Plan};
 
@@ -18,19 +18,18 @@ use crate::ground::Grounds;
 use crate::planning::{Planned, Problem};
 use crate::programs::{ProgramPerformer, Programs};
 use crate::robustness::{
-    Breaks, Distribution, Faults, Incident, Others, RobustnessSettings, Rocks, Tally, Time, Traverses,
-    Uncertainty,
+    Breaks, Distribution, Faults, Incident, Others, RobustnessSettings, Rocks, Tally, Traverses, Uncertainty,
 };
 use crate::simulation::{self, Courses, Driving};
 use crate::traverse::Paths;
 
 /// Draws are multiples of this part of a unit.
-const PER_UNIT: i64 = 1000;
+const PER_UNIT: u32 = 1000;
 
 /// A plan made ready for many runs with chance.
 pub struct Sampler {
     stage: Stage,
-    windows: Vec<(SmolStr, NodeId, Rational, Rational)>,
+    windows: Vec<(SmolStr, NodeId, Time, Time)>,
     durations: Vec<(SmolStr, Distribution)>,
     late: Vec<(SmolStr, Incident)>,
     withdrawn: Vec<(SmolStr, Incident)>,
@@ -59,10 +58,11 @@ impl Sampler {
         let durations = durations(network, uncertainty, &programs, courses.as_ref());
         let late = incidents(network, &uncertainty.late);
         let withdrawn = incidents(network, &uncertainty.withdrawn);
-        let mut grid = vec![Rational::new(1, PER_UNIT), programs.step()];
+        let part = Time::ONE.checked_div(PER_UNIT).unwrap_or_default();
+        let mut grid = vec![part, programs.step()];
         grid.extend(courses.as_ref().map(|_| simulation::granularity(program)));
         let incidents = late.iter().chain(&withdrawn).map(|(_, incident)| incident.at);
-        grid.extend(durations.iter().map(|&(_, it)| it).chain(incidents).map(least));
+        grid.extend(durations.iter().map(|&(_, it)| it).chain(incidents).map(Distribution::least));
         let stage = Stage::new(Arc::clone(network), plan.clone(), &grid);
         let windows = windows(network, plan);
         Some(stage.map(|stage| Self {
@@ -88,7 +88,7 @@ impl Sampler {
         paths: &mut Paths,
         tally: &mut Tally,
     ) -> Result<(), PlanError> {
-        let disturbances = self.draw(settings.seed, number);
+        let disturbances = self.draw(settings.seed, number)?;
         let world = World::new(&disturbances);
         // Faults are drawn apart from the rest, so that they do not change it.
         let seed = Random::new(run_seed(settings.seed, number) ^ FAULTS).next_bits();
@@ -111,25 +111,24 @@ impl Sampler {
             (grounds, paths),
             courses.as_ref(),
         )?;
-        self.count(&ran, number, tally);
-        Ok(())
+        self.count(&ran, number, tally)
     }
 
     /// What goes otherwise than planned in run `number`.
-    pub fn draw(&self, seed: u64, number: u64) -> Vec<Disturbance> {
+    pub fn draw(&self, seed: u64, number: u64) -> Result<Vec<Disturbance>, PlanError> {
         let mut random = Random::new(run_seed(seed, number));
         let mut drawn = Vec::new();
         for (activity, distribution) in &self.durations {
-            let duration = distribution.draw(&mut random);
+            let duration = distribution.draw(&mut random)?;
             drawn.push(Disturbance::Duration { activity: activity.clone(), duration });
         }
         for (condition, incident) in &self.late {
-            if let Some(at) = incident.draw(&mut random) {
+            if let Some(at) = incident.draw(&mut random)? {
                 drawn.push(Disturbance::Late { condition: condition.clone(), at });
             }
         }
         for (condition, incident) in &self.withdrawn {
-            if let Some(at) = incident.draw(&mut random) {
+            if let Some(at) = incident.draw(&mut random)? {
                 drawn.push(Disturbance::Withdrawn { condition: condition.clone(), at });
             }
         }
@@ -137,31 +136,34 @@ impl Sampler {
         for (path, place_ends_m) in ways {
             drawn.extend(self.rocks.draw(path, place_ends_m, &mut random));
         }
-        drawn
+        Ok(drawn)
     }
 
-    fn count(&self, ran: &Ran, number: u64, tally: &mut Tally) {
+    fn count(&self, ran: &Ran, number: u64, tally: &mut Tally) -> Result<(), PlanError> {
         let outcome = &ran.outcome;
         tally.runs += 1;
         if outcome.ending == Ending::Finished {
             tally.succeeded += 1;
             tally.succeeded_by_replanning += u64::from(outcome.plans.len() > 1);
-            let end = outcome.log.last().map_or(0, |entry| thousandths(entry.time));
-            tally.end_sum += end;
+            let end = outcome.log.last().map_or(Some(0), |entry| entry.time.whole_parts(PER_UNIT));
+            let end = end.ok_or(PlanError::Overflow)?;
+            tally.end_sum = tally.end_sum.checked_add(end).ok_or(PlanError::Overflow)?;
             tally.end_least = tally.end_least.into_iter().chain([end]).min();
             tally.end_most = tally.end_most.into_iter().chain([end]).max();
         }
         count_breaks(outcome, number, tally);
-        let Some(first) = outcome.plans.first() else { return };
+        let Some(first) = outcome.plans.first() else { return Ok(()) };
         for (event, node, earliest, latest) in &self.windows {
             let Some(time) = first.times[node.index()] else { continue };
-            let share = (float(time) - float(*earliest)) / (float(*latest) - float(*earliest));
+            let (earliest, latest) = (earliest.to_f64(), latest.to_f64());
+            let share = (time.to_f64() - earliest) / (latest - earliest);
             let used = ((share * 1000.0).floor() as i64).clamp(0, 1000) as u64;
             let slack = tally.slack.entry(event.clone()).or_default();
             slack.count += 1;
             slack.sum_permille += used;
             slack.most_permille = slack.most_permille.max(used);
         }
+        Ok(())
     }
 }
 
@@ -191,12 +193,8 @@ fn count_breaks(outcome: &RunOutcome, number: u64, tally: &mut Tally) {
     }
 }
 
-fn thousandths(time: Rational) -> i64 {
-    (time * PER_UNIT).floor().to_integer()
-}
-
 /// The starts and ends of activities and conditions whose windows are neither a moment nor without an end.
-fn windows(network: &Network, plan: &Plan) -> Vec<(SmolStr, NodeId, Rational, Rational)> {
+fn windows(network: &Network, plan: &Plan) -> Vec<(SmolStr, NodeId, Time, Time)> {
     let mut found = Vec::new();
     for (index, node) in network.nodes.iter().enumerate() {
         let Some(window) = plan.windows[index] else { continue };
@@ -248,8 +246,8 @@ fn by_bounds(network: &Network, id: OccurrenceId) -> Option<Distribution> {
     let occurrence = network.occurrences.get(id.index())?;
     let arc = network.arcs.get(occurrence.arc?.index())?;
     let Bound::Finite(upper) = arc.upper else { return None };
-    let lower = arc.lower.max(executive::world::least_drive(network, occurrence));
-    (lower < upper && !is_watched(network, id)).then_some(Distribution::Uniform(Time(lower), Time(upper)))
+    let lower = arc.lower.max(executive::world::least_drive(network, occurrence).ok()?);
+    (lower < upper && !is_watched(network, id)).then_some(Distribution::Uniform(lower, upper))
 }
 
 /// Whether an activity is the body of a `watching`, or inside one: then it asserts that its condition is false.
@@ -329,11 +327,11 @@ impl Uncertainty {
 }
 
 impl Incident {
-    fn draw(&self, random: &mut Random) -> Option<Rational> {
+    fn draw(&self, random: &mut Random) -> Result<Option<Time>, Overflow> {
         // Both are always drawn, so that a probability can be changed without changing the rest of a run.
         let chance = unit(random);
-        let at = self.at.draw(random);
-        (chance < self.probability).then_some(at)
+        let at = self.at.draw(random)?;
+        Ok((chance < self.probability).then_some(at))
     }
 }
 
@@ -359,7 +357,7 @@ impl Rocks {
             let (east, north) = (to[0] - from[0], to[1] - from[1]);
             let length = (east * east + north * north).sqrt().max(1e-9);
             let (x, y) = (place[0] - north / length * aside_m, place[1] + east / length * aside_m);
-            rocks.push(Disturbance::Obstacle { at: Rational::default(), x, y, radius });
+            rocks.push(Disturbance::Obstacle { at: Time::ZERO, x, y, radius });
         }
         rocks
     }
@@ -370,28 +368,27 @@ fn unit(random: &mut Random) -> f64 {
     (random.next_bits() >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-fn least(distribution: Distribution) -> Rational {
-    match distribution {
-        Distribution::Fixed(Time(least))
-        | Distribution::Uniform(Time(least), _)
-        | Distribution::Triangular(Time(least), ..) => least,
-        Distribution::Normal(..) => Rational::default(),
-    }
-}
-
 impl Distribution {
-    /// Draws a time.
-    pub fn draw(&self, random: &mut Random) -> Rational {
-        let least = least(*self);
-        let part = Rational::new(1, PER_UNIT);
-        match *self {
-            Self::Fixed(Time(time)) => time,
-            Self::Uniform(_, Time(most)) => {
-                let steps = thousandths(most - least).max(0) as u64;
-                least + part * random.below(steps + 1) as i64
+    /// What it draws is this and whole parts of a unit.
+    fn least(self) -> Time {
+        match self {
+            Self::Fixed(least) | Self::Uniform(least, _) | Self::Triangular(least, ..) => least,
+            Self::Normal(..) => Time::ZERO,
+        }
+    }
+
+    /// Draws a time; an error if it does not fit.
+    pub fn draw(self, random: &mut Random) -> Result<Time, Overflow> {
+        let least = self.least();
+        let after = |time: Time| time.checked_sub(least).ok_or(Overflow);
+        let offset = match self {
+            Self::Fixed(_) => Some(Time::ZERO),
+            Self::Uniform(_, most) => {
+                let steps = after(most)?.whole_parts(PER_UNIT).ok_or(Overflow)?.max(0) as u64;
+                Time::new(random.below(steps.saturating_add(1)) as i64, i64::from(PER_UNIT))
             }
-            Self::Triangular(_, Time(likely), Time(most)) => {
-                let (width, peak) = (float(most - least), float(likely - least));
+            Self::Triangular(_, likely, most) => {
+                let (width, peak) = (after(most)?.to_f64(), after(likely)?.to_f64());
                 let share = unit(random);
                 let offset = if width <= 0.0 {
                     0.0
@@ -400,35 +397,28 @@ impl Distribution {
                 } else {
                     width - ((1.0 - share) * width * (width - peak)).sqrt()
                 };
-                least + part * rounded(offset)
+                Time::from_f64_nearest(offset, PER_UNIT)
             }
-            Self::Normal(Time(mean), Time(deviation)) => {
+            Self::Normal(mean, deviation) => {
                 let (radius, angle) = (1.0 - unit(random), unit(random));
                 let normal =
                     (-2.0 * libm::log(radius)).sqrt() * libm::cos(2.0 * std::f64::consts::PI * angle);
-                part * rounded(float(mean) + float(deviation) * normal).max(0)
+                let drawn = mean.to_f64() + deviation.to_f64() * normal;
+                Time::from_f64_nearest(drawn, PER_UNIT).map(|drawn| drawn.max(Time::ZERO))
             }
-        }
+        };
+        offset.and_then(|offset| least.checked_add(offset)).ok_or(Overflow)
     }
 
     /// Whether it can be drawn from: in order, and not below 0.
     pub fn is_sound(&self) -> bool {
-        let zero = Rational::default();
         match *self {
-            Self::Fixed(Time(time)) => time >= zero,
-            Self::Uniform(Time(least), Time(most)) => zero <= least && least <= most,
-            Self::Triangular(Time(least), Time(likely), Time(most)) => {
-                zero <= least && least <= likely && likely <= most
+            Self::Fixed(time) => !time.is_negative(),
+            Self::Uniform(least, most) => !least.is_negative() && least <= most,
+            Self::Triangular(least, likely, most) => {
+                !least.is_negative() && least <= likely && likely <= most
             }
-            Self::Normal(Time(mean), Time(deviation)) => mean >= zero && deviation >= zero,
+            Self::Normal(mean, deviation) => !mean.is_negative() && !deviation.is_negative(),
         }
     }
-}
-
-fn float(time: Rational) -> f64 {
-    *time.numer() as f64 / *time.denom() as f64
-}
-
-fn rounded(units: f64) -> i64 {
-    (units * PER_UNIT as f64).round() as i64
 }

@@ -12,14 +12,13 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use exact::{Overflow, Time};
 use executive::{Disturbance, Ends, Entry, Happening, Performance, Performer};
 use motion::FineWorld;
-use num_traits::ToPrimitive as _;
-use rmpl::Rational;
 use rmpl::program::Program;
 use serde::{Deserialize, Serialize};
 use terrain::{Obstacle, Terrain};
-use tpn::{Network, OccurrenceId};
+use tpn::{EventRef, Network, OccurrenceId};
 
 use self::trip::Trip;
 use crate::driving::Drive;
@@ -34,9 +33,9 @@ pub struct SimulatedDrive {
     /// The activity.
     pub occurrence: OccurrenceId,
     /// When it started, in mission units.
-    pub start: Rational,
+    pub start: Time,
     /// How long it took until the last vehicle was there; absent if it never was.
-    pub duration: Option<Rational>,
+    pub duration: Option<Time>,
     /// The vehicles, the leader first.
     pub vehicles: Vec<SimulatedVehicle>,
     /// How often another way was looked for.
@@ -128,8 +127,9 @@ impl Courses {
 }
 
 /// What all durations of drives are multiples of, in mission units.
-pub(crate) fn granularity(program: &Program) -> Rational {
-    Rational::new(1, program.options.time_unit.seconds() * TICKS_PER_SECOND)
+pub(crate) fn granularity(program: &Program) -> Time {
+    let parts = program.options.time_unit.seconds() * i64::from(TICKS_PER_SECOND);
+    Time::ONE.checked_div(parts).unwrap_or_default()
 }
 
 /// Drives traverses when the executive starts them.
@@ -150,7 +150,7 @@ pub(crate) struct Driving<'run> {
 /// Rocks that a laser sees are at least this large, in metres: smaller ones are below its plane.
 const LEAST_ROCK_M: f64 = 0.4;
 /// Durations are whole multiples of this fraction of a second.
-const TICKS_PER_SECOND: i64 = 10;
+const TICKS_PER_SECOND: u32 = 10;
 impl<'run> Driving<'run> {
     /// For one run of `problem` on `map`.
     pub(crate) fn new(
@@ -174,9 +174,14 @@ impl<'run> Driving<'run> {
 }
 
 impl Performer for Driving<'_> {
-    fn start(&mut self, network: &Network, occurrence: OccurrenceId, start: Rational) -> Performance {
+    fn start(
+        &mut self,
+        network: &Network,
+        occurrence: OccurrenceId,
+        start: Time,
+    ) -> Result<Performance, Overflow> {
         let courses = self.courses.borrow();
-        let Some(course) = courses.known.get(&occurrence).cloned() else { return Performance::default() };
+        let Some(course) = courses.known.get(&occurrence).cloned() else { return Ok(Performance::default()) };
         let name = network.occurrences[occurrence.index()].name.clone();
         let mut trip = Trip::new(self, &course, network, start);
         let reached = trip.drive();
@@ -185,9 +190,12 @@ impl Performer for Driving<'_> {
         }
         let Trip { frames, entries, passes, reroutes, least_clearance_m, convoy, .. } = trip;
         let time_s = convoy.time_s();
-        let ticks = |seconds: f64| (seconds * TICKS_PER_SECOND as f64).ceil() as i64;
-        let per_unit = self.problem.program.options.time_unit.seconds() * TICKS_PER_SECOND;
-        let units = |seconds: f64| Rational::new(ticks(seconds), per_unit);
+        let unit_seconds = self.problem.program.options.time_unit.seconds();
+        let units = |seconds: f64| {
+            let seconds = Time::from_f64_up(seconds, TICKS_PER_SECOND);
+            seconds.and_then(|seconds| seconds.checked_div(unit_seconds)).ok_or(Overflow)
+        };
+        let duration = units(time_s)?;
         let vehicles = course.drive.vehicles.iter().zip(frames);
         for (index, &vehicle) in course.drive.vehicles.iter().enumerate() {
             let state = convoy.state(index);
@@ -196,30 +204,31 @@ impl Performer for Driving<'_> {
         self.drives.push(SimulatedDrive {
             occurrence,
             start,
-            duration: reached.is_ok().then(|| units(time_s)),
+            duration: reached.is_ok().then_some(duration),
             vehicles: vehicles.map(|(&vehicle, frames)| SimulatedVehicle { vehicle, frames }).collect(),
             reroutes,
             least_clearance_m,
         });
-        let entry = |(seconds, text): (f64, String)| Entry {
-            time: start + units(seconds),
-            happening: Happening::Progress { name: name.clone(), text },
+        let entry = |(seconds, text): (f64, String)| {
+            let time = start.checked_add(units(seconds)?).ok_or(Overflow)?;
+            Ok(Entry { time, happening: Happening::Progress { name: name.clone(), text } })
         };
-        Performance {
-            ends: reached.map_or_else(Ends::Never, |()| Ends::NotBefore(units(time_s))),
-            entries: entries.into_iter().map(entry).collect(),
-            passes: passes.into_iter().map(|(event, seconds)| (event, units(seconds))).collect(),
-        }
+        let pass = |(event, seconds): (EventRef, f64)| Ok((event, units(seconds)?));
+        Ok(Performance {
+            ends: reached.map_or_else(Ends::Never, |()| Ends::NotBefore(duration)),
+            entries: entries.into_iter().map(entry).collect::<Result<_, _>>()?,
+            passes: passes.into_iter().map(pass).collect::<Result<_, _>>()?,
+        })
     }
 
-    fn granularity(&self) -> Rational {
+    fn granularity(&self) -> Time {
         granularity(self.problem.program)
     }
 }
 
 /// Puts what was driven in place of even drives between the planned times.
 pub(crate) fn put_into(motions: &mut [VehicleMotion], drives: &[SimulatedDrive]) {
-    const TICKS_PER_UNIT: f64 = 60_000.0;
+    const PARTS_PER_UNIT: u32 = 60_000;
     for drive in drives {
         for simulated in &drive.vehicles {
             let Some(motion) = motions.iter_mut().find(|motion| motion.vehicle == simulated.vehicle) else {
@@ -229,20 +238,16 @@ pub(crate) fn put_into(motions: &mut [VehicleMotion], drives: &[SimulatedDrive])
                 continue;
             };
             let is_within = |frame: &Keyframe| {
-                let time = number(frame.time);
+                let time = frame.time.to_f64();
                 time >= first.time - 1e-6 && time <= last.time + 1e-6
             };
             motion.keyframes.retain(|frame| !is_within(frame));
             motion.keyframes.extend(simulated.frames.iter().map(|frame| Keyframe {
-                time: Rational::new((frame.time * TICKS_PER_UNIT).round() as i64, TICKS_PER_UNIT as i64),
+                time: Time::from_f64_nearest(frame.time, PARTS_PER_UNIT).unwrap_or(drive.start),
                 position_m: frame.position_m,
                 heading_rad: frame.heading_rad,
             }));
             motion.keyframes.sort_by_key(|frame| frame.time);
         }
     }
-}
-
-fn number(value: Rational) -> f64 {
-    value.to_f64().unwrap_or(0.0)
 }

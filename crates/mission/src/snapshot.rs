@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
+use exact::{Bound, Time};
 use motion::GrowthTrace;
 use rmpl::program::Program;
-use rmpl::{Bound, Rational};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 use tpn::{Network, OccurrenceId};
@@ -116,7 +116,7 @@ pub struct PathFigures {
     /// The steepest slope in degrees.
     pub max_slope_deg: f64,
     /// Least duration in mission units, from length, slope and the greatest speed.
-    pub least_duration: Rational,
+    pub least_duration: Time,
     /// Greatest duration, from length and the least speed.
     pub greatest_duration: Bound,
 }
@@ -149,7 +149,7 @@ pub struct VehicleMotion {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Keyframe {
     /// In mission time units from the start.
-    pub time: Rational,
+    pub time: Time,
     /// In metres.
     pub position_m: [f64; 2],
     /// Direction of travel in radians, counter-clockwise from east.
@@ -192,7 +192,7 @@ impl Snapshot {
 impl VehicleMotion {
     /// Where the vehicle is at `time`, in mission units, and its heading in radians; `None` without keyframes.
     pub fn at(&self, time: f64) -> Option<([f64; 2], f64)> {
-        let seconds = |frame: &Keyframe| *frame.time.numer() as f64 / *frame.time.denom() as f64;
+        let seconds = |frame: &Keyframe| frame.time.to_f64();
         let after = self.keyframes.partition_point(|frame| seconds(frame) <= time);
         let before = self.keyframes.get(after.saturating_sub(1))?;
         let Some(next) = self.keyframes.get(after).filter(|_| after > 0) else {

@@ -3,9 +3,10 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
+use exact::Rational;
 use motion::{Path, PlannerKind, Query, SearchResult, ShortcutSettings, VehicleModel};
+use rmpl::Span;
 use rmpl::program::{Moves, Program, World};
-use rmpl::{Rational, Span};
 use smol_str::SmolStr;
 use terrain::{ConfigurationSpace, Terrain};
 use tpn::{Network, OccurrenceId, OccurrenceKind, Plan};
@@ -109,8 +110,8 @@ fn route(
     }
     waypoints.extend(named);
     waypoints.dedup_by(|next, before| next.position_m == before.position_m);
-    let own_speed_mps = Rational::new((own_mps * 1000.0).round() as i64, 1000);
-    let speed_mps = moves.speed_mps.unwrap_or((Rational::default(), own_speed_mps));
+    let own_speed_mps = Rational::from_f64_nearest(own_mps, 1000)?;
+    let speed_mps = moves.speed_mps.unwrap_or((Rational::ZERO, own_speed_mps));
     Some(Route { occurrence: id, vehicles, model, speed_mps, waypoints })
 }
 

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use exact::{Bound, Time};
 use mission::{Core, Goal, Request, Response, Snapshot, Stage, Surroundings, Update};
-use rmpl::{Bound, Rational};
 use tpn::NodeId;
 
 /// Keeps the answers.
@@ -56,7 +56,7 @@ fn answer(source: &str) -> Arc<Snapshot> {
     ask(&mut Core::default(), &mut Collected::default(), source)
 }
 
-fn window(snapshot: &Snapshot, event: &str) -> (Rational, Bound) {
+fn window(snapshot: &Snapshot, event: &str) -> (Time, Bound) {
     let network = snapshot.network.as_ref().expect("it compiles");
     let plan = snapshot.plan().expect("there is a plan");
     let node = (0..network.nodes.len())
@@ -75,7 +75,7 @@ fn the_mission_has_the_windows_of_the_paper_with_its_paths_inserted() {
     let planning = snapshot.planning.as_ref().expect("it is planned");
     assert!(planning.verdict.as_ref().is_some_and(|verdict| verdict.valid), "{:?}", planning.verdict);
     assert!(planning.undrivable.is_empty(), "{:?}", planning.undrivable);
-    let finite = |low: i64, high: i64| (Rational::from(low), Bound::Finite(Rational::from(high)));
+    let finite = |low: i64, high: i64| (Time::from(low), Bound::Finite(Time::from(high)));
     for (event, expected) in [
         ("Group-Enroute#1.start", finite(10, 55)),
         ("Group-Traverse-Path#1.end", finite(415, 460)),

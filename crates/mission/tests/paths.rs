@@ -3,10 +3,10 @@
 
 use std::sync::Arc;
 
+use exact::{Bound, Time};
 use mission::planning::{self, Planned, Problem};
 use mission::{Goal, Grounds, Paths};
 use rmpl::program::{Program, World};
-use rmpl::{Bound, Rational};
 use terrain::{CellState, Occupancy, Terrain};
 use tpn::ArcKind;
 
@@ -169,7 +169,7 @@ fn vertices_of_the_network_are_those_of_the_path_and_their_times_follow_from_len
     for (arc, segment) in arcs.iter().zip(&segments) {
         let length_m = map.draped_length_m(segment[0], segment[1]);
         // Speeds of 0.005 to 0.025 m/s, in minutes, rounded up to the millisecond.
-        let minutes = |bound: Rational| *bound.numer() as f64 / *bound.denom() as f64;
+        let minutes = |bound: Time| bound.to_f64();
         let (least, greatest) = (length_m / 0.025 / 60.0, length_m / 0.005 / 60.0);
         let over = minutes(arc.lower) - least;
         assert!((-1e-9..1.0 / 60_000.0 + 1e-9).contains(&over), "{over} over {least}");
@@ -177,8 +177,10 @@ fn vertices_of_the_network_are_those_of_the_path_and_their_times_follow_from_len
         let over = minutes(upper) - greatest;
         assert!((-1e-9..1.0 / 60_000.0 + 1e-9).contains(&over), "{over} over {greatest}");
     }
-    let sum: Rational = arcs.iter().map(|arc| arc.lower).sum();
-    assert_eq!(sum, traverse.leg_figures.iter().map(|figures| figures.least_duration).sum());
+    let sum = Time::checked_sum(arcs.iter().map(|arc| arc.lower));
+    let figures = traverse.leg_figures.iter().map(|figures| figures.least_duration);
+    assert_eq!(sum, Time::checked_sum(figures));
+    assert!(sum.is_some());
 }
 
 /// A ramp of the given rise per metre toward the east, 60 m wide, as an ESRI ASCII grid.
@@ -208,11 +210,11 @@ fn a_slope_makes_a_traverse_take_longer_and_a_steep_one_cannot_be_driven() {
         planner.plan(source, 1)
     };
     let least = |grade: f64| climb(grade).planned.traverses[0].leg_figures[0].least_duration;
-    assert_eq!(least(0.0), Rational::from(50));
+    assert_eq!(least(0.0), Time::from(50));
     // 40 m up a grade of 0.182, half of the greatest: a little longer, and at 0.6 m/s instead of 0.8.
     let time = least(0.182);
     let expected = 40.0 * (1.0 + 0.182_f64 * 0.182).sqrt() / 0.6;
-    let time = *time.numer() as f64 / *time.denom() as f64;
+    let time = time.to_f64();
     assert!((time - expected).abs() < 0.1, "{time} instead of {expected}");
     let steep = climb(0.6).planned;
     assert!(steep.planning.outcome.plans.is_empty());

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
+use exact::Time;
 use executive::{Disturbance, Ending, Happening};
 use mission::execution::{self, Ran};
 use mission::planning::{self, Problem};
 use mission::{Goal, Grounds, Paths};
-use rmpl::Rational;
 use tpn::Network;
 
 const ORBIT: &str = include_str!("../../../assets/missions/orbit.rmpl");
@@ -38,7 +38,7 @@ fn execute(source: &str, disturbances: &[Disturbance]) -> (Arc<Network>, Ran) {
 }
 
 /// When an event happened in the last plan.
-fn time(ran: &Ran, event: &str) -> Option<Rational> {
+fn time(ran: &Ran, event: &str) -> Option<Time> {
     ran.outcome.log.iter().find_map(|entry| match &entry.happening {
         Happening::Executed { name } if name == event => Some(entry.time),
         _ => None,
@@ -60,7 +60,7 @@ fn the_program_s_end_ends_its_activity() {
     let (_, ran) = execute(ORBIT, &[]);
     assert_eq!(ran.outcome.ending, Ending::Finished, "{:?}", ran.outcome.log.last());
     let (start, end) = (time(&ran, "Insert#1.start"), time(&ran, "Insert#1.end"));
-    assert_eq!(end.zip(start).map(|(end, start)| end - start), Some(Rational::from(8)));
+    assert_eq!(end.zip(start).and_then(|(end, start)| end.checked_sub(start)), Some(Time::from(8)));
     let commands: Vec<&str> = ran
         .outcome
         .log
@@ -87,7 +87,7 @@ fn a_fault_brings_the_backup_engine_and_the_activity_takes_longer() {
     let (_, ran) = execute(ORBIT, &[fault()]);
     assert_eq!(ran.outcome.ending, Ending::Finished, "{:?}", ran.outcome.log.last());
     let (start, end) = (time(&ran, "Insert#1.start"), time(&ran, "Insert#1.end"));
-    assert_eq!(end.zip(start).map(|(end, start)| end - start), Some(Rational::from(12)));
+    assert_eq!(end.zip(start).and_then(|(end, start)| end.checked_sub(start)), Some(Time::from(12)));
     let fires = |entry: &executive::Entry| matches!(&entry.happening, Happening::Progress { text, .. } if text.contains("EngineB.fire"));
     assert!(ran.outcome.log.iter().any(fires));
 }
@@ -101,7 +101,10 @@ fn a_program_that_outlasts_its_activity_breaks_the_plan() {
         _ => None,
     });
     let start = time(&ran, "Insert#1.start").expect("it was started");
-    assert_eq!(violation, Some(("Insert#1.end".to_owned(), start + 10)));
+    assert_eq!(
+        violation,
+        Some(("Insert#1.end".to_owned(), start.checked_add(10.into()).expect("a small time")))
+    );
 }
 
 #[test]
@@ -120,7 +123,7 @@ fn a_program_that_never_ends_stops_the_mission_when_its_time_is_over() {
     let start = time(&ran, "Insert#1.start").expect("it was started");
     let said = ran.outcome.log.iter().any(|entry| match &entry.happening {
         Happening::Violation { reason, .. } => {
-            entry.time == start + 16 && reason.contains("did not reach its end")
+            start.checked_add(16.into()) == Some(entry.time) && reason.contains("did not reach its end")
         }
         _ => false,
     });
@@ -136,7 +139,7 @@ fn a_later_program_finds_the_plant_as_the_earlier_one_left_it() {
     assert_eq!(ran.outcome.ending, Ending::Finished, "{:?}", ran.outcome.log);
     let (start, end) = (time(&ran, "Insert2#1.start"), time(&ran, "Insert2#1.end"));
     // Drivers and valves are as the first program left them, so two steps are enough: standby, and fire again.
-    assert_eq!(end.zip(start).map(|(end, start)| end - start), Some(Rational::from(4)));
+    assert_eq!(end.zip(start).and_then(|(end, start)| end.checked_sub(start)), Some(Time::from(4)));
 }
 
 #[test]

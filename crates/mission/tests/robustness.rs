@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
+use exact::Time;
 use mission::planning::{self, Planned, Problem};
-use mission::robustness::{Distribution, Faults, Incident, Others, Rocks, Time, Traverses};
+use mission::robustness::{Distribution, Faults, Incident, Others, Rocks, Traverses};
 use mission::sampling::Sampler;
 use mission::{Goal, Grounds, Paths, RobustnessSettings, Tally, Uncertainty};
-use rmpl::Rational;
 use rmpl::program::Program;
 use tpn::Network;
 
@@ -79,7 +79,7 @@ fn shards_add_up_to_what_one_machine_finds() {
     let uncertainty = Uncertainty {
         withdrawn: [(
             "Tell(PATH1=OK)".into(),
-            Incident { probability: 0.5, at: Distribution::Uniform(time(0), time(20)) },
+            Incident { probability: 0.5, at: Distribution::Uniform(Time::from(0), Time::from(20)) },
         )]
         .into(),
         ..Uncertainty::default()
@@ -134,17 +134,17 @@ fn draws_keep_to_their_distribution() {
     let mut mean = |distribution: Distribution| {
         let draws: Vec<f64> = (0..4000)
             .map(|_| {
-                let time = distribution.draw(&mut random);
-                *time.numer() as f64 / *time.denom() as f64
+                let time = distribution.draw(&mut random).expect("a small time");
+                time.to_f64()
             })
             .collect();
         assert!(draws.iter().all(|&draw| draw >= 0.0));
         draws.iter().sum::<f64>() / draws.len() as f64
     };
-    assert!((mean(Distribution::Uniform(time(10), time(20))) - 15.0).abs() < 0.2);
-    assert!((mean(Distribution::Triangular(time(0), time(3), time(12))) - 5.0).abs() < 0.2);
-    assert!((mean(Distribution::Normal(time(30), time(4))) - 30.0).abs() < 0.3);
-    assert!((mean(Distribution::Fixed(time(9))) - 9.0).abs() < 1e-9);
+    assert!((mean(Distribution::Uniform(Time::from(10), Time::from(20))) - 15.0).abs() < 0.2);
+    assert!((mean(Distribution::Triangular(Time::from(0), Time::from(3), Time::from(12))) - 5.0).abs() < 0.2);
+    assert!((mean(Distribution::Normal(Time::from(30), Time::from(4))) - 30.0).abs() < 0.3);
+    assert!((mean(Distribution::Fixed(Time::from(9))) - 9.0).abs() < 1e-9);
 }
 
 #[test]
@@ -155,15 +155,15 @@ fn uncertainty_is_read_from_json() {
         "others": "planned"
     }"#;
     let uncertainty: Uncertainty = serde_json::from_str(text).expect("it is well formed");
-    let expected = Distribution::Triangular(time(10), Time(Rational::new(23, 2)), Time(Rational::new(40, 3)));
+    let expected = Distribution::Triangular(
+        Time::from(10),
+        Time::new(23, 2).expect("a fraction"),
+        Time::new(40, 3).expect("a fraction"),
+    );
     assert_eq!(uncertainty.durations["Work"], expected);
     assert_eq!(uncertainty.others, Others::Planned);
     let mission = Mission::read(WORK);
     assert_eq!(uncertainty.unknown_names(&mission.network), ["LIGHT"], "an assertion is called Tell(LIGHT)");
-}
-
-const fn time(units: i64) -> Time {
-    Time(Rational::new_raw(units, 1))
 }
 
 const DETOUR: &str = include_str!("../../../assets/missions/detour.rmpl");

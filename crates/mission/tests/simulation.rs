@@ -3,11 +3,11 @@
 
 use std::sync::Arc;
 
+use exact::Time;
 use executive::{Disturbance, Ending, Happening, Script};
 use mission::execution::{self, Execution};
 use mission::planning::{self, Problem};
 use mission::{Goal, Grounds, Paths, SimulatedDrive};
-use rmpl::Rational;
 
 const ENROUTE: &str = include_str!("../../../assets/missions/enroute.rmpl");
 const DETOUR: &str = include_str!("../../../assets/missions/detour.rmpl");
@@ -36,8 +36,8 @@ fn run(source: &str, disturbances: &[Disturbance]) -> Execution {
     Execution::new(1, script, &program, &planned, ran)
 }
 
-fn minutes(time: Rational) -> f64 {
-    *time.numer() as f64 / *time.denom() as f64
+fn minutes(time: Time) -> f64 {
+    time.to_f64()
 }
 
 fn duration(drive: &SimulatedDrive) -> f64 {
@@ -55,7 +55,7 @@ fn obstacle(at: i64, [x, y]: [f64; 2], radius: f64) -> Disturbance {
 fn stand(vehicle: &str, from: i64, until: i64) -> Disturbance {
     Disturbance::VehicleSlow {
         vehicle: vehicle.into(),
-        factor: Rational::default(),
+        factor: exact::Rational::ZERO,
         from: from.into(),
         until: until.into(),
     }

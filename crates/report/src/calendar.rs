@@ -1,7 +1,7 @@
 //! Calendar dates of mission times.
 
+use exact::Time;
 use jiff::{SignedDuration, Timestamp, civil, tz::TimeZone};
-use rmpl::Rational;
 use rmpl::program::TimeUnit;
 
 /// A time in milliseconds since the start of 1970, to the second, as `2026-01-02T03:04:05Z`; empty beyond the calendar.
@@ -30,9 +30,8 @@ impl Calendar {
     }
 
     /// When a mission time is, to the millisecond before; `None` beyond the calendar.
-    pub fn at(&self, time: Rational) -> Option<Timestamp> {
-        let millis = i128::from(*time.numer()) * i128::from(self.unit.seconds()) * 1000;
-        let millis = i64::try_from(millis.div_euclid(i128::from(*time.denom()))).ok()?;
+    pub fn at(&self, time: Time) -> Option<Timestamp> {
+        let millis = time.whole_parts(u32::try_from(self.unit.seconds()).ok()?.checked_mul(1000)?)?;
         self.epoch.checked_add(SignedDuration::from_millis(millis)).ok()
     }
 

@@ -3,8 +3,6 @@
 
 use mission::Snapshot;
 use mission::review::schedule::{Scheduled, scheduled, slack};
-use mission::review::short_time;
-use rmpl::{Bound, rational};
 use serde_json::{Map, Value, json};
 use tpn::{Network, Occurrence, OccurrenceKind};
 
@@ -38,9 +36,9 @@ pub fn csv(snapshot: &Snapshot) -> Option<String> {
             kind_name(occurrence.kind).to_owned(),
             occurrence.activity.to_string(),
             arguments.join(" "),
-            rational::display(row.start.earliest),
+            row.start.earliest.to_string(),
             row.start.latest.to_string(),
-            rational::display(row.end.earliest),
+            row.end.earliest.to_string(),
             row.end.latest.to_string(),
             slack(row.start).to_string(),
             slack(row.end).to_string(),
@@ -93,10 +91,10 @@ pub fn icalendar(snapshot: &Snapshot, calendar: &Calendar, content_hash: &str) -
         let (start, end) = (calendar.at(row.start.earliest)?, calendar.at(row.end.earliest)?);
         let description = format!(
             "Starts from {} to {}, ends from {} to {} after the start of the mission",
-            short_time(Bound::Finite(row.start.earliest)),
-            short_time(row.start.latest),
-            short_time(Bound::Finite(row.end.earliest)),
-            short_time(row.end.latest)
+            row.start.earliest.readable(),
+            row.start.latest.readable(),
+            row.end.earliest.readable(),
+            row.end.latest.readable()
         );
         write("BEGIN:VEVENT");
         write(&format!("UID:{}-{}@enroute", row.occurrence.0, content_hash));

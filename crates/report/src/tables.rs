@@ -1,8 +1,8 @@
 //! The tables of a report: one for each section of the review.
 
+use exact::Bound;
 use mission::Robustness;
-use mission::review::{Alternative, EventReview, Line, Record, Review, Section, Status, short_time};
-use rmpl::Bound;
+use mission::review::{Alternative, EventReview, Line, Record, Review, Section, Status};
 
 use crate::escape::escaped;
 use crate::html::readable_time;
@@ -117,7 +117,7 @@ fn place(line: &Line) -> String {
 }
 
 fn time(time: Bound) -> String {
-    escaped(&short_time(time).replace("inf", "∞"))
+    escaped(&time.readable().replace("inf", "∞"))
 }
 
 fn lines(lines: &[&Line]) -> String {

@@ -14,7 +14,6 @@ mod lower;
 pub mod parse;
 mod parser;
 pub mod program;
-pub mod rational;
 pub mod span;
 pub mod syntax;
 
@@ -23,5 +22,4 @@ pub use diagnostics::explain;
 pub use explanation::Explanation;
 pub use format::{format, format_edit};
 pub use parse::{Parse, parse};
-pub use rational::{Bound, Rational};
 pub use span::{LineColumn, LineIndex, Span};

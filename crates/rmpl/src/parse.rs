@@ -6,6 +6,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use exact::{Rational, Time};
 use rustc_hash::FxHashSet;
 
 use crate::analysis::local::local_diagnostics;
@@ -14,7 +15,6 @@ use crate::diagnostic::{Diagnostic, Edit, Severity};
 use crate::lower::{Item, Lowering, OptionValue};
 use crate::parser::{Scratch, parse_declaration};
 use crate::program::{Program, TimeUnit};
-use crate::rational::Rational;
 use crate::span::Span;
 use crate::syntax::{DeclarationTree, SyntaxNode};
 
@@ -277,9 +277,9 @@ fn add(program: &mut Program, item: Item) {
         Item::Activity(decl) => program.activities.push(decl),
         Item::Scenario(decl) => program.scenarios.push(decl),
         Item::Option(decl) => match (decl.name.text.as_str(), decl.value) {
-            ("threat_gap", OptionValue::Number(gap)) => program.options.threat_gap = gap,
-            ("control_step", OptionValue::Number(step)) if step > Rational::ZERO => {
-                program.options.control_step = step;
+            ("threat_gap", OptionValue::Number(gap)) => program.options.threat_gap = Time::from_units(gap),
+            ("control_step", OptionValue::Number(step)) if step.is_positive() => {
+                program.options.control_step = Time::from_units(step);
             }
             ("strict", OptionValue::Number(value)) => program.options.strict = value == Rational::ONE,
             ("time_unit", OptionValue::Name(unit)) if unit == "second" => {

@@ -3,10 +3,10 @@
 //! It is made from the syntax tree and holds only well-formed pieces; what was broken is left out and has a diagnostic.
 //! Calls are not expanded and bounds not evaluated here: both depend on the scenario and happen in `tpn`.
 
+use exact::{Rational, Time};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
-use crate::rational::Rational;
 use crate::span::Span;
 
 /// A name and where it is written.
@@ -270,23 +270,18 @@ pub struct Condition {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Options {
     /// Least gap between conflicting intervals that planning orders (SPEC 5.3).
-    pub threat_gap: Rational,
+    pub threat_gap: Time,
     /// Whether undeclared primitives are errors.
     pub strict: bool,
     /// The unit of time of the mission's bounds.
     pub time_unit: TimeUnit,
     /// How long one step of a control program takes, in mission units; above 0.
-    pub control_step: Rational,
+    pub control_step: Time,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self {
-            threat_gap: Rational::ONE,
-            strict: false,
-            time_unit: TimeUnit::Minute,
-            control_step: Rational::ONE,
-        }
+        Self { threat_gap: Time::ONE, strict: false, time_unit: TimeUnit::Minute, control_step: Time::ONE }
     }
 }
 

@@ -2,9 +2,10 @@
 
 mod fixture;
 
+use exact::{Bound, Time};
 use fixture::fixture;
 use rmpl::editor::{self, Evaluation, EventWindow, Invocation};
-use rmpl::{Bound, Rational, parse};
+use rmpl::parse;
 
 /// All of `wanted` are offered at the cursor, and none of `unwanted`.
 #[track_caller]
@@ -112,8 +113,8 @@ fn day() -> Evaluation {
         invocations: vec![Invocation {
             activity: "Survey".into(),
             occurrence: "Survey#1".into(),
-            lower: Rational::from_integer(450),
-            upper: Bound::Finite(Rational::from_integer(540)),
+            lower: Time::from(450),
+            upper: Bound::Finite(Time::from(540)),
         }],
         windows: Vec::new(),
     }
@@ -154,8 +155,8 @@ fn a_call_shows_the_windows_of_the_current_plan() {
     let window = EventWindow {
         span: rmpl::Span::new(at, at + 3),
         event: "A#1.start".into(),
-        earliest: Rational::from_integer(10),
-        latest: Bound::Finite(Rational::from_integer(55)),
+        earliest: Time::from(10),
+        latest: Bound::Finite(Time::from(55)),
     };
     let evaluation = Evaluation { invocations: Vec::new(), windows: vec![window] };
     check_hover(text, &evaluation, "A#1.start in [10,55]");

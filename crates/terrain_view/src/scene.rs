@@ -140,7 +140,7 @@ pub fn vehicle_pose(snapshot: &Snapshot, vehicle: usize, time: f64) -> Option<(V
 fn smooth_heading(motion: &mission::VehicleMotion, time: f64) -> Option<f32> {
     const HALF_WAY_M: f64 = 0.7;
     let at = |time: f64| motion.at(time).map(|(position, _)| place(position));
-    let seconds = |frame: &mission::Keyframe| *frame.time.numer() as f64 / *frame.time.denom() as f64;
+    let seconds = |frame: &mission::Keyframe| frame.time.to_f64();
     let after = motion.keyframes.partition_point(|frame| seconds(frame) <= time);
     let (before, next) = (motion.keyframes.get(after.checked_sub(1)?)?, motion.keyframes.get(after)?);
     let way_m = place(before.position_m).distance(place(next.position_m));
@@ -308,7 +308,7 @@ fn trail(shapes: &mut Shapes, input: &SceneInput<'_>, vehicle: usize, color: [f3
     };
     let mut before: Option<Vec2> = None;
     for frame in &motion.keyframes {
-        let frame_time = *frame.time.numer() as f64 / *frame.time.denom() as f64;
+        let frame_time = frame.time.to_f64();
         let is_done = frame_time > input.time;
         let next = place(if is_done { now } else { frame.position_m });
         if let Some(before) = before.filter(|before| before.distance(next) > 0.01) {

@@ -8,7 +8,6 @@ pub mod generate;
 pub mod interchange;
 pub mod network;
 pub mod network_json;
-pub mod number;
 pub mod path;
 pub mod plan;
 pub mod plan_json;

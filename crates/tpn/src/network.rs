@@ -3,8 +3,9 @@
 //! Ids are indices into the vectors of [`Network`]. A network is built once and then only read; path insertion makes a
 //! new one (SPEC 7.3).
 
+use exact::{Bound, Time};
+use rmpl::Span;
 use rmpl::program::LabelMode;
-use rmpl::{Bound, Rational, Span};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
@@ -73,7 +74,7 @@ pub struct Network {
     /// The last event.
     pub end: NodeId,
     /// The least gap between conflicting intervals that planning orders (SPEC 5.3).
-    pub threat_gap: Rational,
+    pub threat_gap: Time,
 }
 
 /// An event.
@@ -138,7 +139,7 @@ pub struct Arc {
     /// The later event.
     pub to: NodeId,
     /// Least duration; finite and not negative for arcs of a program.
-    pub lower: Rational,
+    pub lower: Time,
     /// Greatest duration.
     pub upper: Bound,
     /// What it stands for.

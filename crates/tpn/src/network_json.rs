@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use exact::{Bound, Time};
 use rmpl::program::LabelMode;
-use rmpl::{Bound, Rational};
+use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
 use smol_str::SmolStr;
 
@@ -11,7 +12,6 @@ use crate::network::{
     Arc, ArcId, ArcKind, Decision, DecisionId, EventEnd, EventRef, Label, LabelId, Network, Node, NodeId,
     Occurrence, OccurrenceId, OccurrenceKind, Role, Variable,
 };
-use crate::number::{bound_from_json, bound_to_json, time_from_json, time_to_json};
 use crate::text::kind_name;
 use crate::vocabulary::Vocabulary;
 
@@ -61,7 +61,7 @@ pub fn network_to_json(network: &Network) -> Value {
         "end": network.end.0,
         "occurrences": occurrences,
         "variables": network.variables,
-        "threat_gap": time_to_json(network.threat_gap),
+        "threat_gap": network.threat_gap,
     })
 }
 
@@ -80,8 +80,8 @@ fn arc_to_json(network: &Network, id: usize, arc: &Arc) -> Value {
         "id": id,
         "from": arc.from.0,
         "to": arc.to.0,
-        "lower": time_to_json(arc.lower),
-        "upper": bound_to_json(arc.upper),
+        "lower": arc.lower,
+        "upper": arc.upper,
         "kind": kind_name(arc.kind),
         "labels": labels,
     }));
@@ -119,8 +119,8 @@ pub fn network_from_json(document: &Value) -> Result<Network, NetworkError> {
     let start = reader.node_id(document.get("start"), "start")?;
     let end = reader.node_id(document.get("end"), "end")?;
     let threat_gap = match document.get("threat_gap") {
-        Some(gap) => time_from_json(gap).ok_or_else(|| error("threat_gap", "is no exact time"))?,
-        None => Rational::from_integer(1),
+        Some(gap) => Time::deserialize(gap).map_err(|_| error("threat_gap", "is no exact time"))?,
+        None => Time::ONE,
     };
     Ok(Network {
         nodes: reader.nodes,
@@ -246,12 +246,10 @@ impl Reader {
             return Err(error(&place, "ids count arcs from 0, in order"));
         }
         let (from, to) = (self.node_id(value.get("from"), &place)?, self.node_id(value.get("to"), &place)?);
-        let lower =
-            value.get("lower").and_then(time_from_json).ok_or_else(|| error(&place, "`lower` is no time"))?;
-        let upper = value
-            .get("upper")
-            .and_then(bound_from_json)
-            .ok_or_else(|| error(&place, "`upper` is no bound"))?;
+        let lower = value.get("lower").and_then(|lower| Time::deserialize(lower).ok());
+        let lower = lower.ok_or_else(|| error(&place, "`lower` is no time"))?;
+        let upper = value.get("upper").and_then(|upper| Bound::deserialize(upper).ok());
+        let upper = upper.ok_or_else(|| error(&place, "`upper` is no bound"))?;
         if Bound::Finite(lower) > upper {
             return Err(error(&place, "`lower` is greater than `upper`"));
         }

@@ -2,7 +2,7 @@
 //!
 //! Where the path comes from is no concern of this module: lengths and speeds are plain numbers.
 
-use rmpl::{Bound, Rational};
+use exact::{Bound, Rational, Time};
 
 use crate::network::{Arc, ArcId, ArcKind, EventEnd, EventRef, Network, Node, NodeId, OccurrenceId, Role};
 
@@ -73,7 +73,7 @@ pub struct SegmentBounds {
     /// The vertex that ends it, from 1 within its leg.
     pub vertex: u32,
     /// Least duration in mission units.
-    pub least: Rational,
+    pub least: Time,
     /// Greatest duration.
     pub greatest: Bound,
 }
@@ -81,12 +81,10 @@ pub struct SegmentBounds {
 /// The times of a path's segments in order, exactly as [`insert_paths`] puts them into a network.
 pub fn segment_bounds(path: &TraversePath, unit_seconds: i64) -> Result<Vec<SegmentBounds>, PathError> {
     let (least_mps, greatest_mps) = path.speed_mps;
-    let zero = Rational::from_integer(0);
-    if greatest_mps <= zero || least_mps < zero || least_mps > greatest_mps {
-        let [least, greatest] = [least_mps, greatest_mps].map(rmpl::rational::display);
-        return Err(PathError::Speed(least, greatest));
+    if !greatest_mps.is_positive() || least_mps.is_negative() || least_mps > greatest_mps {
+        return Err(PathError::Speed(least_mps.to_string(), greatest_mps.to_string()));
     }
-    let has_slowest = !path.may_stop && least_mps > zero;
+    let has_slowest = !path.may_stop && least_mps.is_positive();
     let mut bounds = Vec::new();
     for (leg, number) in path.legs.iter().zip(1..) {
         let speeds = leg.slope_speeds_mps.iter().copied().chain(std::iter::repeat(None));
@@ -142,7 +140,7 @@ fn insert_path(network: &mut Network, path: &TraversePath, unit_seconds: i64) ->
 
 /// The time for `length_m` at `speed_mps` in units of `unit_seconds`, exact and then rounded up to the millisecond.
 /// `None` if the length is no finite non-negative number or the result does not fit.
-pub fn duration(length_m: f64, speed_mps: Rational, unit_seconds: i64) -> Option<Rational> {
+pub fn duration(length_m: f64, speed_mps: Rational, unit_seconds: i64) -> Option<Time> {
     if !length_m.is_finite() || length_m < 0.0 || unit_seconds <= 0 {
         return None;
     }
@@ -152,8 +150,8 @@ pub fn duration(length_m: f64, speed_mps: Rational, unit_seconds: i64) -> Option
     let fraction = i128::from(bits & ((1 << 52) - 1));
     let (mantissa, exponent) =
         if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
-    let millis_times_speed = mantissa.checked_mul(1000)?.checked_mul(i128::from(*speed_mps.denom()))?;
-    let speed = i128::from(*speed_mps.numer());
+    let millis_times_speed = mantissa.checked_mul(1000)?.checked_mul(i128::from(speed_mps.denominator()))?;
+    let speed = i128::from(speed_mps.numerator());
     let millis = if exponent >= 0 {
         let factor = 1_i128.checked_shl(exponent.unsigned_abs()).filter(|&factor| factor > 0)?;
         divide_up(millis_times_speed.checked_mul(factor)?, speed)?
@@ -169,16 +167,15 @@ pub fn duration(length_m: f64, speed_mps: Rational, unit_seconds: i64) -> Option
             }
         }
     };
-    Some(Rational::new(i64::try_from(millis).ok()?, unit_seconds.checked_mul(1000)?))
+    Time::new(i64::try_from(millis).ok()?, unit_seconds.checked_mul(1000)?)
 }
 
 /// The time for `length_m` at a speed that was itself computed, rounded up to the millisecond. Division of doubles is the
 /// same on every machine.
-fn slope_duration(length_m: f64, speed_mps: f64, unit_seconds: i64) -> Option<Rational> {
-    let millis = (1000.0 * length_m / speed_mps).ceil();
-    // Beyond this a double no longer counts single milliseconds.
-    let is_exact = (0.0..9e15).contains(&millis);
-    is_exact.then(|| Some(Rational::new(millis as i64, unit_seconds.checked_mul(1000)?)))?
+fn slope_duration(length_m: f64, speed_mps: f64, unit_seconds: i64) -> Option<Time> {
+    let millis =
+        Time::from_f64_up(1000.0 * length_m / speed_mps, 1).filter(|millis| !millis.is_negative())?;
+    millis.checked_div(unit_seconds.checked_mul(1000)?)
 }
 
 fn divide_up(dividend: i128, divisor: i128) -> Option<i128> {
@@ -192,20 +189,20 @@ fn divide_up(dividend: i128, divisor: i128) -> Option<i128> {
 mod tests {
     use super::*;
 
-    fn minutes(length_m: f64, speed: (i64, i64)) -> Option<Rational> {
-        duration(length_m, Rational::new(speed.0, speed.1), 60)
+    fn minutes(length_m: f64, speed: (i64, i64)) -> Option<Time> {
+        duration(length_m, Rational::new(speed.0, speed.1)?, 60)
     }
 
     #[test]
     fn a_segment_takes_its_length_over_speed_rounded_up_to_the_millisecond() {
-        assert_eq!(minutes(300.0, (5, 100)), Some(Rational::from_integer(100)));
+        assert_eq!(minutes(300.0, (5, 100)), Some(Time::from(100)));
         // 500 m at 0.045 m/s are 11,111,111.1 ms.
-        assert_eq!(minutes(500.0, (45, 1000)), Some(Rational::new(11_111_112, 60_000)));
-        assert_eq!(minutes(415.0, (5, 100)), Some(Rational::new(8_300_000, 60_000)));
-        assert_eq!(minutes(0.0, (1, 1)), Some(Rational::from_integer(0)));
+        assert_eq!(minutes(500.0, (45, 1000)), Time::new(11_111_112, 60_000));
+        assert_eq!(minutes(415.0, (5, 100)), Time::new(8_300_000, 60_000));
+        assert_eq!(minutes(0.0, (1, 1)), Some(Time::ZERO));
         // One ten-thousandth of a millimetre still takes a millisecond.
-        assert_eq!(duration(1e-7, Rational::from_integer(1), 1), Some(Rational::new(1, 1000)));
-        assert_eq!(duration(1e-300, Rational::from_integer(1), 1), Some(Rational::new(1, 1000)));
+        assert_eq!(duration(1e-7, Rational::ONE, 1), Time::new(1, 1000));
+        assert_eq!(duration(1e-300, Rational::ONE, 1), Time::new(1, 1000));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! The planner makes it and the checker reads it; neither's code is here.
 
-use rmpl::{Bound, Rational};
+use exact::{Bound, Time};
 use serde::{Deserialize, Serialize};
 
 use crate::network::{DecisionId, LabelId};
@@ -57,7 +57,7 @@ pub struct Ordering {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Window {
     /// At the earliest.
-    pub earliest: Rational,
+    pub earliest: Time,
     /// At the latest.
     pub latest: Bound,
 }

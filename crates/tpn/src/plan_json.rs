@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use rmpl::Rational;
+use exact::{Bound, Time};
+use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
 
 use crate::network::{DecisionId, EventRef, LabelId, Network, NodeId, OccurrenceKind};
-use crate::number::{bound_from_json, bound_to_json, time_from_json, time_to_json};
 use crate::plan::{CausalLink, Choice, Ordering, Plan, Window};
 use crate::selection::closure;
 
@@ -41,9 +41,7 @@ pub fn plan_to_json(network: &Network, plan: &Plan) -> Value {
     let windows: Map<String, Value> = (network.nodes.iter().zip(&plan.windows))
         .filter_map(|(node, window)| Some((node, (*window)?)))
         .flat_map(|(node, window)| node.events.iter().map(move |&event| (event, window)))
-        .map(|(event, window)| {
-            (network.event_name(event), json!([time_to_json(window.earliest), bound_to_json(window.latest)]))
-        })
+        .map(|(event, window)| (network.event_name(event), json!([window.earliest, window.latest])))
         .collect();
     json!({
         "choices": choices,
@@ -140,13 +138,13 @@ pub fn stated_activities(plan: &Value) -> Option<Vec<String>> {
 }
 
 /// Event times by name, as `enroute execute` and schedules give them, as times by node.
-pub fn times_from_json(network: &Network, times: &Value) -> Result<Vec<Option<Rational>>, PlanError> {
+pub fn times_from_json(network: &Network, times: &Value) -> Result<Vec<Option<Time>>, PlanError> {
     let names = Names::new(network);
     let mut by_node = vec![None; network.nodes.len()];
     let Value::Object(times) = times else { return Err(shape("times are an object from events to numbers")) };
     for (event, time) in times {
-        let read =
-            time_from_json(time).ok_or_else(|| shape(&format!("the time of `{event}` is not exact")))?;
+        let read = Time::deserialize(time)
+            .map_err(|reason| shape(&format!("the time of `{event}` is not exact: {reason}")))?;
         by_node[names.event(event)?.index()] = Some(read);
     }
     Ok(by_node)
@@ -204,7 +202,7 @@ pub fn node_name(network: &Network, node: NodeId) -> String {
 
 fn read_window(value: &Value) -> Option<Window> {
     let [earliest, latest] = value.as_array()?.as_slice() else { return None };
-    Some(Window { earliest: time_from_json(earliest)?, latest: bound_from_json(latest)? })
+    Some(Window { earliest: Time::deserialize(earliest).ok()?, latest: Bound::deserialize(latest).ok()? })
 }
 
 fn members<'value>(

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use rmpl::Bound;
+use exact::Bound;
 use rmpl::program::LabelMode;
 
 use crate::network::{Arc, ArcId, ArcKind, Network, NodeId, Role};

@@ -15,7 +15,7 @@ pub(crate) struct Interval {
 /// The interval of a label.
 pub(crate) fn interval(network: &Network, label: LabelId) -> Interval {
     let arc = &network.arcs[network.labels[label.index()].arc.index()];
-    let is_instant = rmpl::Bound::Finite(arc.lower) == rmpl::Bound::ZERO && arc.upper == rmpl::Bound::ZERO;
+    let is_instant = exact::Bound::Finite(arc.lower) == exact::Bound::ZERO && arc.upper == exact::Bound::ZERO;
     Interval { label, start: arc.from, end: arc.to, is_instant }
 }
 

@@ -2,8 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use exact::{Bound, Time};
+use num_integer::Integer as _;
 use rmpl::program::LabelMode;
-use rmpl::{Bound, Rational};
 use tpn::{ArcId, CausalLink, LabelId, Network, NodeId, Ordering, Plan, Window};
 
 use crate::distance::{Distances, Edge};
@@ -119,8 +120,7 @@ impl Constraints {
         let bounds = network.arcs.iter().flat_map(|arc| [Some(arc.lower), arc.upper.finite()]);
         let mut scale: i128 = 1;
         for time in bounds.flatten().chain([network.threat_gap]) {
-            let denominator = i128::from(*time.denom());
-            scale = (scale / greatest_common_divisor(scale, denominator)).checked_mul(denominator)?;
+            scale = scale.lcm(&i128::from(time.denominator()));
             // Bounds have 63 bits and sums have as many terms as there are nodes; this leaves room for both.
             if scale > 1 << 40 {
                 return None;
@@ -152,8 +152,8 @@ impl Constraints {
         Some(made)
     }
 
-    fn scaled(&self, time: Rational) -> i128 {
-        i128::from(*time.numer()) * (self.scale / i128::from(*time.denom()))
+    fn scaled(&self, time: Time) -> i128 {
+        i128::from(time.numerator()) * (self.scale / i128::from(time.denominator()))
     }
 
     fn add(&mut self, from: NodeId, to: NodeId, lower: i128, upper: Option<i128>, reason: Reason) {
@@ -327,13 +327,7 @@ impl<'plan> Checker<'plan> {
 
     /// The exact window of a node; `None` if nothing bounds it from below or the numbers do not fit.
     fn window(&self, index: usize) -> Option<Window> {
-        let time = |scaled: i128| {
-            let divisor = greatest_common_divisor(scaled.abs(), self.scale);
-            Some(Rational::new_raw(
-                i64::try_from(scaled / divisor).ok()?,
-                i64::try_from(self.scale / divisor).ok()?,
-            ))
-        };
+        let time = |scaled: i128| Time::from_wide(scaled, self.scale);
         let earliest = time(self.earliest[index]?)?;
         let latest = match self.latest[index] {
             Some(latest) => Bound::Finite(time(latest)?),
@@ -348,12 +342,4 @@ fn show(window: Option<Window>) -> String {
         Some(window) => format!("[{},{}]", Bound::Finite(window.earliest), window.latest),
         None => "absent".to_owned(),
     }
-}
-
-fn greatest_common_divisor(left: i128, right: i128) -> i128 {
-    let (mut left, mut right) = (left, right);
-    while right != 0 {
-        (left, right) = (right, left % right);
-    }
-    left.max(1)
 }

@@ -1,16 +1,14 @@
 //! The check of a schedule (SPEC 5.5): one time for each selected event. It needs no links and no orderings.
 
+use exact::{Bound, Time};
 use rmpl::program::LabelMode;
-use rmpl::{Bound, Rational};
 use tpn::{LabelId, Network, NodeId, Plan};
-
-use num_traits::CheckedSub as _;
 
 use crate::labels::{self, Interval, interval};
 use crate::{Rule, Verdict, Violation, node_name, selection};
 
 /// The earliest time of every selected event of `plan`, from its windows: a schedule, if the plan is valid.
-pub fn earliest_schedule(plan: &Plan) -> Vec<Option<Rational>> {
+pub fn earliest_schedule(plan: &Plan) -> Vec<Option<Time>> {
     plan.windows.iter().map(|window| window.map(|window| window.earliest)).collect()
 }
 
@@ -19,7 +17,7 @@ pub fn earliest_schedule(plan: &Plan) -> Vec<Option<Rational>> {
 /// A `[0,0]` interval holds at one instant, which must lie outside conflicting intervals, their start included. With a
 /// threat gap of zero the rule is that of planning (SPEC 5.3): of two conflicting intervals one ends no later than the
 /// other starts, instants and intervals without length included.
-pub fn check_schedule(network: &Network, plan: &Plan, times: &[Option<Rational>]) -> Verdict {
+pub fn check_schedule(network: &Network, plan: &Plan, times: &[Option<Time>]) -> Verdict {
     if let Err(verdict) = selection::check_form(network, plan) {
         return verdict;
     }
@@ -50,11 +48,11 @@ pub fn check_schedule(network: &Network, plan: &Plan, times: &[Option<Rational>]
 struct Schedule<'schedule> {
     network: &'schedule Network,
     plan: &'schedule Plan,
-    times: &'schedule [Option<Rational>],
+    times: &'schedule [Option<Time>],
 }
 
 impl Schedule<'_> {
-    fn time(&self, node: NodeId) -> Rational {
+    fn time(&self, node: NodeId) -> Time {
         self.times[node.index()].unwrap_or_default()
     }
 
@@ -64,7 +62,7 @@ impl Schedule<'_> {
                 continue;
             }
             let names = vec![node_name(self.network, arc.from), node_name(self.network, arc.to)];
-            let message = match self.time(arc.to).checked_sub(&self.time(arc.from)) {
+            let message = match self.time(arc.to).checked_sub(self.time(arc.from)) {
                 None => format!("the time from {} to {} is too long to be exact", names[0], names[1]),
                 Some(duration) if duration < arc.lower || Bound::Finite(duration) > arc.upper => format!(
                     "from {} to {} is {}, outside [{},{}]",
@@ -119,7 +117,7 @@ impl Schedule<'_> {
         }
         let times = |interval: Interval| (self.time(interval.start), self.time(interval.end));
         let ((from, to), (start, end)) = (times(one), times(other));
-        if self.network.threat_gap == Rational::from_integer(0) {
+        if self.network.threat_gap.is_zero() {
             return to > start && end > from;
         }
         match (one.is_instant, other.is_instant) {

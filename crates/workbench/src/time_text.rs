@@ -1,11 +1,11 @@
 //! Times as people read them.
 
+use exact::{Bound, Time};
 use rmpl::program::TimeUnit;
-use rmpl::{Bound, Rational};
 
 /// A time in mission units, exact: a decimal where there is one, otherwise a fraction.
-pub fn time(value: Rational) -> String {
-    rmpl::rational::decimal(value).unwrap_or_else(|| format!("{}/{}", value.numer(), value.denom()))
+pub fn time(value: Time) -> String {
+    value.to_string()
 }
 
 /// A bound; infinity is `∞`.
@@ -14,12 +14,12 @@ pub fn bound(value: Bound) -> String {
 }
 
 /// A time short enough for a table: exact if that is short, otherwise rounded and marked by `≈`.
-pub fn short(value: Rational) -> String {
+pub fn short(value: Time) -> String {
     let exact = time(value);
     if exact.len() <= LONGEST_EXACT {
         return exact;
     }
-    format!("≈ {:.2}", *value.numer() as f64 / *value.denom() as f64)
+    format!("≈ {:.2}", value.to_f64())
 }
 
 /// A bound short enough for a table.
@@ -31,13 +31,16 @@ pub fn short_bound(value: Bound) -> String {
 const LONGEST_EXACT: usize = 8;
 
 /// `earliest` to `latest`, as intervals are written; each short enough for a table.
-pub fn interval(earliest: Rational, latest: Bound) -> String {
+pub fn interval(earliest: Time, latest: Bound) -> String {
     format!("[{}, {}]", short(earliest), short_bound(latest))
 }
 
 /// What is between the two, short enough for a table; `∞` if the latest is.
-pub fn slack(earliest: Rational, latest: Bound) -> String {
-    latest.finite().map_or_else(|| "∞".to_owned(), |latest| short(latest - earliest))
+pub fn slack(earliest: Time, latest: Bound) -> String {
+    match latest.checked_sub(earliest) {
+        Some(slack) => short_bound(slack),
+        None => format!("≈ {:.2}", latest.to_f64() - earliest.to_f64()),
+    }
 }
 
 /// The short name of a unit.
@@ -65,12 +68,12 @@ mod tests {
 
     #[test]
     fn exact_times_are_decimals_where_possible_and_fractions_otherwise() {
-        assert_eq!(time(Rational::new(819, 2)), "409.5");
-        assert_eq!(time(Rational::new(1, 3)), "1/3");
+        assert_eq!(time(Time::new(819, 2).unwrap()), "409.5");
+        assert_eq!(time(Time::new(1, 3).unwrap()), "1/3");
         assert_eq!(bound(Bound::Infinite), "∞");
-        assert_eq!(short(Rational::new(1_580_809, 15_000)), "≈ 105.39");
-        assert_eq!(short(Rational::new(819, 2)), "409.5");
-        assert_eq!(slack(Rational::from(10), Bound::Finite(Rational::from(55))), "45");
+        assert_eq!(short(Time::new(1_580_809, 15_000).unwrap()), "≈ 105.39");
+        assert_eq!(short(Time::new(819, 2).unwrap()), "409.5");
+        assert_eq!(slack(Time::from(10), Bound::Finite(Time::from(55))), "45");
     }
 
     #[test]

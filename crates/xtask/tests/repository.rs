@@ -14,7 +14,8 @@ use xtask::{
 
 /// What each crate builds on: ARCHITECTURE.md's layers. A crate may use whatever these build on in turn.
 const LAYERS: &[(&str, &[&str])] = &[
-    ("rmpl", &[]),
+    ("exact", &[]),
+    ("rmpl", &["exact"]),
     ("stn", &[]),
     ("stnu", &[]),
     ("terrain", &[]),
@@ -42,6 +43,7 @@ const LAYERS: &[(&str, &[&str])] = &[
 
 /// Crates that compute the same everywhere: no clocks, no threads, no files, nothing from the operating system.
 const PURE: &[&str] = &[
+    "exact",
     "rmpl",
     "stn",
     "stnu",

@@ -5,7 +5,7 @@
 //! them alike: a merge after a choice exists when the choice does, and a pair of conditions that the arcs put in an
 //! order in any case is left out.
 
-use rmpl::Bound;
+use exact::Bound;
 use rmpl::program::LabelMode;
 use serde::Serialize;
 use tpn::{ArcKind, Network};
@@ -138,7 +138,7 @@ impl Instance {
 /// Whether the arcs alone put `first` before `second`; touching is enough, unless it is a point.
 fn is_ordered(network: &Network, label: &tpn::Label, first: Interval, second: Interval) -> bool {
     let arc = &network.arcs[label.arc.index()];
-    if arc.upper == Bound::Finite(rmpl::Rational::from_integer(0)) {
+    if arc.upper == Bound::Finite(exact::Time::ZERO) {
         return false;
     }
     let mut seen = vec![false; network.nodes.len()];
@@ -154,9 +154,9 @@ fn is_ordered(network: &Network, label: &tpn::Label, first: Interval, second: In
     false
 }
 
-fn whole(time: rmpl::Rational) -> i32 {
+fn whole(time: exact::Time) -> i32 {
     assert!(time.is_integer(), "generated missions have whole bounds");
-    i32::try_from(*time.numer()).expect("generated missions are short")
+    i32::try_from(time.numerator()).expect("generated missions are short")
 }
 
 /// The literals: 0 and one per alternative.

@@ -13,11 +13,11 @@ use serde::Deserialize;
 use tpn::Network;
 use tpn::compile::{Top, compile};
 use tpn::generate::{Recipe, Tightness, mission};
+use instance::Instance;
 
 use crate::stopwatch::Stopwatch;
 use crate::table::{Table, figure, median, millis, quantile, ratio};
 use crate::tools::{Absent, Tools, answer, source_path};
-use instance::Instance;
 
 /// How long a solver may take for one mission.
 const LIMIT: Duration = Duration::from_secs(20);
@@ -208,8 +208,8 @@ fn again(network: &Network, tries: u32) -> Option<Answer> {
     let mut change = 0;
     let mut step = || {
         change += 1;
-        let one = rmpl::Rational::from_integer(change % 2);
-        let wider = upper.checked_add(rmpl::Bound::Finite(one)).unwrap_or(upper);
+        let one = exact::Time::from(change % 2);
+        let wider = upper.checked_add(exact::Bound::Finite(one)).unwrap_or(upper);
         let start = Stopwatch::start();
         planner.set_bounds(tpn::ArcId::from_index(position), lower, wider);
         let outcome = std::hint::black_box(planner.plan(&options, &mut ExpansionLimit(20_000)));

@@ -9,7 +9,6 @@ use mission::review::Record;
 use mission::{Goal, Problem};
 use serde_json::{Value, json};
 use tpn::Window;
-use tpn::number::{bound_to_json, time_to_json};
 
 use crate::input::read_text;
 use crate::load::Target;
@@ -148,5 +147,5 @@ fn body(before: &Side, after: &Side, comparison: &Comparison) -> Value {
 }
 
 fn window_json(window: Window) -> Value {
-    json!([time_to_json(window.earliest), bound_to_json(window.latest)])
+    json!([window.earliest, window.latest])
 }

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context as _;
+use exact::Time;
 use executive::{Observations, Progress};
-use rmpl::Rational;
-use rmpl::rational::display;
+use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
 use tpn::{Network, Plan, Window};
 
@@ -70,14 +70,14 @@ fn report_errors(args: &Args, loaded: &Loaded) -> anyhow::Result<()> {
 
 fn observations(network: &Network, document: &Value) -> anyhow::Result<Observations> {
     let times = tpn::plan_json::times_from_json(network, document.get("executed").unwrap_or(&json!({})))?;
-    let executed: Vec<(tpn::NodeId, Rational)> = times
+    let executed: Vec<(tpn::NodeId, Time)> = times
         .iter()
         .enumerate()
         .filter_map(|(index, time)| Some((tpn::NodeId::from_index(index), (*time)?)))
         .collect();
     let latest = executed.iter().map(|&(_, time)| time).max().unwrap_or_default();
     let now = match document.get("now") {
-        Some(now) => tpn::number::time_from_json(now).context("`now` is no time")?,
+        Some(now) => Time::deserialize(now).context("`now` is no time")?,
         None => latest,
     };
     Ok(Observations { executed, now })
@@ -99,10 +99,7 @@ fn progress_json(network: &Network, progress: &Progress) -> Value {
         Progress::Consistent(windows) => {
             let windows: Map<String, Value> = named_windows(network, windows)
                 .into_iter()
-                .map(|(name, window)| {
-                    let earliest = tpn::number::time_to_json(window.earliest);
-                    (name, json!([earliest, tpn::number::bound_to_json(window.latest)]))
-                })
+                .map(|(name, window)| (name, json!([window.earliest, window.latest])))
                 .collect();
             json!({ "consistent": true, "windows": windows, "violations": [] })
         }
@@ -120,7 +117,7 @@ fn progress_text(network: &Network, plan: &Plan, progress: &Progress) -> String 
                 .iter()
                 .map(|(name, window)| {
                     let changed = if before.get(name) == Some(window) { "" } else { "  changed" };
-                    format!("{name:<widest$}  [{}, {}]{changed}\n", display(window.earliest), window.latest)
+                    format!("{name:<widest$}  [{}, {}]{changed}\n", window.earliest, window.latest)
                 })
                 .collect()
         }

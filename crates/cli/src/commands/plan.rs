@@ -7,17 +7,18 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
 use clap::ValueEnum;
+use exact::{Bound, Time};
 use kirk::{Failure, Options, Outcome, Search, Stats, Status};
 use mission::paths_json::{encounters_json, traverses_json};
 use mission::planning::{self, Planned};
 use mission::{Paths, Problem};
+use rmpl::LineIndex;
 use rmpl::program::Program;
-use rmpl::{Bound, LineIndex};
 use serde_json::{Value, json};
 use tpn::Network;
 
 use crate::ground::ground;
-use crate::load::{Loaded, Target, parse_time};
+use crate::load::{Loaded, Target, parse_threat_gap};
 use crate::output::{
     Format, LIMIT, NO, WRONG, YES, any_error, document, exit, print_json, print_problems, print_text,
 };
@@ -111,15 +112,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 
 impl Args {
     fn options(&self) -> anyhow::Result<Options> {
-        let threat_gap = match &self.threat_gap {
-            Some(text) => {
-                let gap =
-                    parse_time(text).with_context(|| format!("--threat-gap wants a time, not `{text}`"))?;
-                anyhow::ensure!(gap >= rmpl::Rational::default(), "--threat-gap must not be negative");
-                Some(gap)
-            }
-            None => None,
-        };
+        let threat_gap = self.threat_gap.as_deref().map(parse_threat_gap).transpose()?;
         Ok(Options {
             search: match self.search {
                 SearchName::Chronological => Search::Chronological,
@@ -330,7 +323,7 @@ fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
         let (first, then) = (network.label_name(order.first), network.label_name(order.then));
         text.push_str(&format!("order     {first} before {then}{added}\n"));
     }
-    let mut rows: Vec<(rmpl::Rational, rmpl::Bound, String)> = Vec::new();
+    let mut rows: Vec<(Time, Bound, String)> = Vec::new();
     for (node, window) in network.nodes.iter().zip(&plan.windows) {
         let Some(window) = window else { continue };
         for &event in &node.events {
@@ -340,24 +333,9 @@ fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
     rows.sort();
     let widest = rows.iter().map(|(_, _, name)| name.chars().count()).max().unwrap_or(0);
     for (earliest, latest, name) in rows {
-        text.push_str(&format!(
-            "  {name:<widest$}  [{}, {}]\n",
-            short(Bound::Finite(earliest)),
-            short(latest)
-        ));
+        text.push_str(&format!("  {name:<widest$}  [{}, {}]\n", earliest.readable(), latest.readable()));
     }
     text
-}
-
-/// A time for people: exact where that is short, otherwise to the thousandth and marked as such.
-fn short(time: Bound) -> String {
-    let exact = time.to_string();
-    match time {
-        Bound::Finite(time) if exact.contains('/') || exact.len() > 9 => {
-            format!("~{:.3}", *time.numer() as f64 / *time.denom() as f64)
-        }
-        _ => exact,
-    }
 }
 
 fn failure_text(failure: &Failure, loaded: &Loaded) -> String {

@@ -6,7 +6,6 @@ use std::process::ExitCode;
 use anyhow::Context as _;
 use mission::review::{Line, Record, Review, Section, Status, TimeRange, review};
 use serde_json::{Value, json};
-use tpn::number::{bound_to_json, time_to_json};
 
 use crate::input::read_text;
 use crate::load::Target;
@@ -97,7 +96,7 @@ fn line_json(line: &Line, more: Value) -> Value {
 }
 
 fn range_json(range: TimeRange) -> Value {
-    json!([time_to_json(range.least), bound_to_json(range.greatest)])
+    json!([range.least, range.greatest])
 }
 
 fn review_json(review: &Review) -> Value {
@@ -128,8 +127,8 @@ fn review_json(review: &Review) -> Value {
         }))).collect::<Vec<_>>(),
         "events": review.events.iter().map(|it| line_json(&it.line, json!({
             "event": it.name,
-            "window": [time_to_json(it.window.earliest), bound_to_json(it.window.latest)],
-            "slack": bound_to_json(it.slack),
+            "window": [it.window.earliest, it.window.latest],
+            "slack": it.slack,
         }))).collect::<Vec<_>>(),
         "traverses": review.traverses.iter().map(|it| line_json(&it.line, json!({
             "activity": it.name,

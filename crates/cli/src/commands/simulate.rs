@@ -10,10 +10,8 @@ use mission::execution::{self, Ran};
 use mission::planning::{self, Problem};
 use mission::{DriveFrame, Paths, SimulatedDrive};
 use rmpl::program::Program;
-use rmpl::rational::display;
 use serde_json::{Value, json};
 use tpn::Network;
-use tpn::number::time_to_json;
 
 use crate::ground::ground;
 use crate::input::read_json;
@@ -103,8 +101,8 @@ fn drive_json(drive: &SimulatedDrive, network: &Network, program: &Program) -> V
     };
     json!({
         "activity": network.occurrences[drive.occurrence.index()].name,
-        "start": time_to_json(drive.start),
-        "duration": drive.duration.map(time_to_json),
+        "start": drive.start,
+        "duration": drive.duration,
         "reroutes": drive.reroutes,
         "least_clearance_m": drive.least_clearance_m.is_finite().then_some(drive.least_clearance_m),
         "vehicles": drive.vehicles.iter().map(|vehicle| json!({
@@ -115,12 +113,7 @@ fn drive_json(drive: &SimulatedDrive, network: &Network, program: &Program) -> V
 }
 
 fn line(entry: &Entry) -> String {
-    let time = display(entry.time);
-    let time = if time.contains('/') || time.len() > 8 {
-        format!("{:.3}", *entry.time.numer() as f64 / *entry.time.denom() as f64)
-    } else {
-        time
-    };
+    let time = entry.time.readable();
     let text = match &entry.happening {
         Happening::Executed { name } => name.to_string(),
         Happening::Progress { name, text } => format!("  {name}: {text}"),

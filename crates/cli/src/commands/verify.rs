@@ -4,7 +4,6 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use anyhow::Context as _;
 use mission::Paths;
 use mission::planning;
 use serde_json::{Value, json};
@@ -13,7 +12,7 @@ use tpn::{EventEnd, Network};
 
 use crate::ground::ground;
 use crate::input::read_json;
-use crate::load::{Loaded, Target, parse_time};
+use crate::load::{Loaded, Target, parse_threat_gap};
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
 
 /// Checks a plan against a mission or a network, from the definitions.
@@ -38,8 +37,7 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut loaded = args.target.load()?;
     if let (Some(text), Some(network)) = (&args.threat_gap, &mut loaded.network) {
-        network.threat_gap =
-            parse_time(text).with_context(|| format!("--threat-gap wants a time, not `{text}`"))?;
+        network.threat_gap = parse_threat_gap(text)?;
     }
     let stated: Value = read_json(&args.plan)?;
     let Some(network) = &loaded.network else {

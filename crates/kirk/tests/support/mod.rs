@@ -3,8 +3,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use exact::Bound;
 use kirk::{Options, Outcome, Search, Unlimited};
-use rmpl::Bound;
 use tpn::compile::{Top, compile};
 use tpn::{Network, Plan};
 

@@ -5,7 +5,6 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use rmpl::program::Program;
-use rmpl::{Bound, Rational};
 use smol_str::SmolStr;
 use tpn::{CausalLink, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind, Ordering, Plan, Window};
 
@@ -228,7 +227,7 @@ impl Chart {
 /// The windows of two events, in mission units; `None` if the plan lacks one.
 pub fn times(plan: &Plan, events: [NodeId; 2]) -> Option<[[f64; 2]; 2]> {
     let window = |node: NodeId| plan.windows.get(node.index()).copied().flatten();
-    let pair = |window: Window| [number(window.earliest), bound(window.latest)];
+    let pair = |window: Window| [window.earliest.to_f64(), window.latest.to_f64()];
     Some([pair(window(events[0])?), pair(window(events[1])?)])
 }
 
@@ -237,14 +236,4 @@ fn horizon(bars: &[Bar]) -> f64 {
         .flat_map(|bar| [bar.start[1], bar.end[0], bar.end[1]])
         .filter(|time| time.is_finite())
         .fold(1.0, f64::max)
-}
-
-/// A rational as a float, for drawing only.
-fn number(value: Rational) -> f64 {
-    *value.numer() as f64 / *value.denom() as f64
-}
-
-/// A bound as a float, for drawing only.
-fn bound(value: Bound) -> f64 {
-    value.finite().map_or(f64::INFINITY, number)
 }

@@ -5,14 +5,11 @@
 mod differences;
 mod side;
 
-use rmpl::Bound;
 use serde::{Deserialize, Serialize};
 use tpn::Window;
 
 pub use differences::compare;
 pub use side::{Item, Side, SideError, Taken, Way};
-
-use crate::review::short_time;
 
 /// What differs, and both plans side by side.
 #[derive(Clone, Debug, PartialEq)]
@@ -171,9 +168,7 @@ impl Difference {
 
 /// The windows of a start and an end, for people.
 pub fn windows_text([start, end]: [Window; 2]) -> String {
-    let interval = |window: Window| {
-        format!("[{}, {}]", short_time(Bound::Finite(window.earliest)), short_time(window.latest))
-    };
+    let interval = |window: Window| format!("[{}, {}]", window.earliest.readable(), window.latest.readable());
     format!("starts {}, ends {}", interval(start), interval(end)).replace("inf", "∞")
 }
 

@@ -2,8 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use exact::{Bound, Time};
+use serde::Deserialize as _;
 use serde_json::Value;
-use tpn::number::{bound_from_json, time_from_json};
 use tpn::{Network, OccurrenceKind, Ordering, Window};
 
 use super::Subject;
@@ -189,7 +190,7 @@ fn items(plan: &Value) -> Result<BTreeMap<String, Item>, SideError> {
 
 fn read_window(value: &Value) -> Option<Window> {
     let [earliest, latest] = value.as_array()?.as_slice() else { return None };
-    Some(Window { earliest: time_from_json(earliest)?, latest: bound_from_json(latest)? })
+    Some(Window { earliest: Time::deserialize(earliest).ok()?, latest: Bound::deserialize(latest).ok()? })
 }
 
 fn members<'value>(

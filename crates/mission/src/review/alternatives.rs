@@ -1,8 +1,9 @@
 //! Why the alternatives of a choice were not taken: each is planned once more with that alternative, and the answer is
 //! the reason.
 
+use exact::{Bound, Time};
 use kirk::{Failure, Options, Outcome, Stats, Status};
-use rmpl::{Bound, Rational, Span};
+use rmpl::Span;
 use serde::{Deserialize, Serialize};
 use tpn::{Choice, DecisionId, Network, Plan};
 
@@ -146,7 +147,7 @@ impl<'input> Examiner<'input> {
         for choice in earlier.copied().chain([other]) {
             let arcs = self.network.decisions[choice.decision.index()].alternatives.iter();
             for (_, arc) in arcs.enumerate().filter(|&(number, _)| number != choice.alternative as usize) {
-                network.arcs[arc.index()].lower = Rational::from(1);
+                network.arcs[arc.index()].lower = Time::ONE;
                 network.arcs[arc.index()].upper = Bound::ZERO;
             }
         }

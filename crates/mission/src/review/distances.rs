@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use exact::Bound;
 use executive::PlanNetwork;
-use rmpl::Bound;
 use stn::INFINITE;
 use tpn::{Network, NodeId, Plan};
 

@@ -37,7 +37,7 @@ pub fn content_hash(source: &str, map: Option<&MapKey>, goal: &Goal, seed: u64) 
         Goal::Activity { name, lower, upper } => {
             part(b"activity");
             part(name.as_bytes());
-            part(format!("{} {upper}", rmpl::rational::display(*lower)).as_bytes());
+            part(format!("{lower} {upper}").as_bytes());
         }
     }
     part(&seed.to_le_bytes());

@@ -11,7 +11,8 @@ mod plan_lines;
 pub mod record;
 pub mod schedule;
 
-use rmpl::{Bound, Rational, Span};
+use exact::{Bound, Time};
+use rmpl::Span;
 use serde::{Deserialize, Serialize};
 use tpn::{NodeId, OccurrenceId, Window};
 
@@ -166,22 +167,14 @@ pub struct TraverseReview {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TimeRange {
     /// In every schedule at least this.
-    pub least: Rational,
+    pub least: Time,
     /// In every schedule at most this.
     pub greatest: Bound,
 }
 
 impl std::fmt::Display for TimeRange {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "[{}, {}]", short_time(Bound::Finite(self.least)), short_time(self.greatest))
-    }
-}
-
-/// A time for people: exact where three decimals are enough, otherwise rounded to the thousandth and marked by `~`.
-pub fn short_time(time: Bound) -> String {
-    match time {
-        Bound::Finite(time) => rmpl::rational::readable(time).replace("≈ ", "~"),
-        Bound::Infinite => time.to_string(),
+        write!(f, "[{}, {}]", self.least.readable(), self.greatest.readable())
     }
 }
 

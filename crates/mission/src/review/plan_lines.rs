@@ -1,17 +1,15 @@
 //! The lines about a plan: its choices, links, conflicts, events and traverses.
 
+use exact::Bound;
+use rmpl::Span;
 use rmpl::program::TimeUnit;
-use rmpl::{Bound, Span};
 use tpn::{EventEnd, LabelId, Network, NodeId, Plan};
 
 use super::alternatives::{Alternative, Examiner};
 use super::distances::Distances;
 use super::lines::Places;
 use super::schedule::slack;
-use super::{
-    ChoiceReview, ConflictReview, EventReview, Fate, LinkReview, Status, TimeRange, TraverseReview,
-    short_time,
-};
+use super::{ChoiceReview, ConflictReview, EventReview, Fate, LinkReview, Status, TimeRange, TraverseReview};
 use crate::snapshot::{Planning, Snapshot};
 
 /// Vehicles that pass obstacles nearer than this, in metres, deserve a look.
@@ -122,14 +120,14 @@ impl<'input> PlanLines<'input> {
             let Some(window) = self.plan.windows.get(index).copied().flatten() else { continue };
             for &event in &node.events {
                 let name = self.network.event_name(event);
-                let earliest = short_time(Bound::Finite(window.earliest));
+                let earliest = window.earliest.readable();
                 let text = match window.latest {
                     Bound::Infinite => format!("{name} may happen at any time from {earliest} on"),
                     Bound::Finite(latest) if latest == window.earliest => {
                         format!("{name} happens at {earliest}, without slack")
                     }
                     latest @ Bound::Finite(_) => {
-                        format!("{name} may happen from {earliest} to {}", short_time(latest))
+                        format!("{name} may happen from {earliest} to {}", latest.readable())
                     }
                 };
                 let span = self.network.occurrences[event.occurrence.index()].span;
@@ -211,11 +209,11 @@ impl<'input> PlanLines<'input> {
             TimeUnit::Minute => "min",
             TimeUnit::Second => "s",
         };
-        let least = short_time(Bound::Finite(range.least));
+        let least = range.least.readable();
         match range.greatest {
             Bound::Infinite => format!("at least {least} {unit}"),
             Bound::Finite(greatest) if greatest == range.least => format!("{least} {unit}"),
-            greatest @ Bound::Finite(_) => format!("{least} to {} {unit}", short_time(greatest)),
+            greatest @ Bound::Finite(_) => format!("{least} to {} {unit}", greatest.readable()),
         }
     }
 

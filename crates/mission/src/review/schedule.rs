@@ -1,6 +1,6 @@
 //! A plan's activities with their times, as schedules for people and other tools list them.
 
-use rmpl::Bound;
+use exact::Bound;
 use tpn::{Network, OccurrenceId, OccurrenceKind, Plan, Window};
 
 /// An activity, assertion or delay that a plan selects.
@@ -33,8 +33,5 @@ pub fn scheduled(network: &Network, plan: &Plan) -> Vec<Scheduled> {
 
 /// How much later than its earliest time an event with this window may happen.
 pub fn slack(window: Window) -> Bound {
-    match window.latest {
-        Bound::Finite(latest) => Bound::Finite(latest - window.earliest),
-        Bound::Infinite => Bound::Infinite,
-    }
+    window.latest.checked_sub(window.earliest).unwrap_or(Bound::Infinite)
 }

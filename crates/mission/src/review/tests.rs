@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use rmpl::{Bound, Rational};
+use exact::{Bound, Time};
 
 use super::{Fate, Review, Section, Status, TimeRange, content_hash, review};
 use crate::{Core, Goal, Request, Response, SearchKind, Snapshot, Surroundings, Update};
@@ -44,7 +44,7 @@ fn reviewed(source: &str) -> Review {
 }
 
 fn range(least: i64, greatest: i64) -> TimeRange {
-    TimeRange { least: Rational::from(least), greatest: Bound::Finite(Rational::from(greatest)) }
+    TimeRange { least: Time::from(least), greatest: Bound::Finite(Time::from(greatest)) }
 }
 
 #[test]

@@ -1,16 +1,16 @@
 //! One traverse as it is driven, from its start until its last vehicle is there or none can go on.
 
+use exact::{Rational, Time};
 use executive::Disturbance;
 use motion::{
     Convoy, ConvoyMember, DriveEvent, DriveLimits, DriverSettings, FineWorld, LaserScan, Path, PlannerKind,
     Query, ShortcutSettings, Surroundings, VehicleModel,
 };
-use rmpl::Rational;
 use terrain::{CellState, ConfigurationSpace, Obstacle, Terrain};
 use tpn::{ArcKind, EventEnd, EventRef, Network, OccurrenceId};
 
 use super::way::{nearest_free, rest_of, until};
-use super::{Course, DriveFrame, Driving, SimulatedVehicle, number};
+use super::{Course, DriveFrame, Driving, SimulatedVehicle};
 use crate::driving;
 use crate::traverse;
 
@@ -58,15 +58,10 @@ pub(super) struct Trip<'a> {
 }
 
 impl<'a> Trip<'a> {
-    pub(super) fn new(
-        driving: &'a Driving<'_>,
-        course: &'a Course,
-        network: &Network,
-        start: Rational,
-    ) -> Self {
+    pub(super) fn new(driving: &'a Driving<'_>, course: &'a Course, network: &Network, start: Time) -> Self {
         let world = &driving.problem.program.world;
         let unit_s = driving.problem.program.options.time_unit.seconds() as f64;
-        let start = number(start);
+        let start = start.to_f64();
         let drive = &course.drive;
         let declared = |vehicle: u32| world.vehicles.get(vehicle as usize);
         let model = |vehicle: &u32| {
@@ -74,7 +69,7 @@ impl<'a> Trip<'a> {
             named.unwrap_or(course.route.model)
         };
         let models: Vec<&'static VehicleModel> = drive.vehicles.iter().map(model).collect();
-        let speeds_mps = [course.route.speed_mps.0, course.route.speed_mps.1].map(number);
+        let speeds_mps = [course.route.speed_mps.0, course.route.speed_mps.1].map(Rational::to_f64);
         let members: Vec<ConvoyMember> = drive
             .vehicles
             .iter()
@@ -100,7 +95,7 @@ impl<'a> Trip<'a> {
                 }
             })
             .collect();
-        let seconds = |time: Rational| (number(time) - start) * unit_s;
+        let seconds = |time: Time| (time.to_f64() - start) * unit_s;
         let mut coming: Vec<(f64, Obstacle)> = Vec::new();
         let mut slow = Vec::new();
         for disturbance in driving.disturbances {
@@ -113,7 +108,7 @@ impl<'a> Trip<'a> {
                     if let Some(index) = drive.vehicles.iter().position(is_named) {
                         slow.push((
                             index,
-                            number(*factor).clamp(0.0, 1.0),
+                            factor.to_f64().clamp(0.0, 1.0),
                             [seconds(*from), seconds(*until)],
                         ));
                     }
@@ -363,11 +358,10 @@ impl<'a> Trip<'a> {
 /// The time that a traverse is to take in its plan's earliest schedule, in mission units, as far as its own bounds say.
 fn wanted_units(network: &Network, occurrence: OccurrenceId) -> f64 {
     let own = network.occurrences[occurrence.index()].arc.map(|arc| network.arcs[arc.index()].lower);
-    let path: Rational = network
+    let path = network
         .arcs
         .iter()
         .filter(|arc| arc.kind == ArcKind::Path && arc.occurrence == Some(occurrence))
-        .map(|arc| arc.lower)
-        .sum();
-    number(own.unwrap_or_default().max(path))
+        .map(|arc| arc.lower);
+    own.into_iter().chain(Time::checked_sum(path)).max().unwrap_or_default().to_f64()
 }

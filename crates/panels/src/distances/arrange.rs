@@ -103,19 +103,14 @@ fn pairs(graph: &DistanceGraph) -> Vec<(usize, usize)> {
     let mut pairs: Vec<(usize, usize)> = graph
         .edges
         .iter()
-        .map(|edge| {
-            if edge.weight > rmpl::Rational::default() { (edge.from, edge.to) } else { (edge.to, edge.from) }
-        })
+        .map(|edge| if edge.weight > exact::Time::ZERO { (edge.from, edge.to) } else { (edge.to, edge.from) })
         .collect();
     pairs.sort_unstable();
     pairs.dedup();
     // Both directions are one pair; that of the bound from above counts.
     let known = pairs.clone();
     let has_upper = |&(from, to): &(usize, usize)| {
-        graph
-            .edges
-            .iter()
-            .any(|edge| (edge.from, edge.to) == (from, to) && edge.weight > rmpl::Rational::default())
+        graph.edges.iter().any(|edge| (edge.from, edge.to) == (from, to) && edge.weight > exact::Time::ZERO)
     };
     pairs.retain(|&(from, to)| {
         let is_twice = known.binary_search(&(to, from)).is_ok();
@@ -291,8 +286,8 @@ fn beside(way: &[Point], lane: f64) -> Vec<Point> {
 
 #[cfg(test)]
 mod tests {
+    use exact::Time;
     use kirk::Constraint;
-    use rmpl::Rational;
     use tpn::ArcId;
 
     use super::*;
@@ -304,7 +299,7 @@ mod tests {
             let edge = |from, to, weight: i64, constraint| Edge {
                 from,
                 to,
-                weight: Rational::from(weight),
+                weight: Time::from(weight),
                 constraint,
                 is_in_cycle: false,
             };
@@ -330,7 +325,7 @@ mod tests {
         );
         let widths = [80.0; 6];
         let arranged = arrange(&graph, &widths);
-        for edge in graph.edges.iter().filter(|edge| edge.weight > Rational::default()) {
+        for edge in graph.edges.iter().filter(|edge| edge.weight > Time::ZERO) {
             assert!(arranged.places[edge.from].x < arranged.places[edge.to].x);
         }
         for (index, one) in arranged.places.iter().enumerate() {

@@ -5,8 +5,8 @@
 
 use std::collections::BTreeMap;
 
+use exact::{Bound, Time};
 use kirk::{Constraint, CycleMember};
-use rmpl::{Bound, Rational};
 use tpn::{ArcId, CausalLink, EventEnd, Network, NodeId, Ordering};
 use workbench::state::selection::node_name;
 
@@ -53,7 +53,7 @@ pub struct Edge {
     /// By position.
     pub to: usize,
     /// In time units.
-    pub weight: Rational,
+    pub weight: Time,
     /// Why.
     pub constraint: Constraint,
     /// Whether it is part of the contradiction.
@@ -66,7 +66,7 @@ impl DistanceGraph {
         let network = selected.network;
         let mut groups = Groups::new(network.nodes.len());
         for arc in selected.arcs.iter().filter_map(|arc| network.arcs.get(arc.index())) {
-            if arc.lower == Rational::default() && arc.upper == Bound::ZERO {
+            if arc.lower == Time::ZERO && arc.upper == Bound::ZERO {
                 groups.join(arc.from.index(), arc.to.index());
             }
         }
@@ -128,7 +128,7 @@ impl DistanceGraph {
             for before in &incoming {
                 for after in outgoing.iter().filter(|after| after.to != before.from) {
                     let is_in_cycle = before.is_in_cycle && after.is_in_cycle;
-                    let weight = before.weight + after.weight;
+                    let Some(weight) = before.weight.checked_add(after.weight) else { continue };
                     self.edges.push(Edge { from: before.from, to: after.to, weight, is_in_cycle, ..*before });
                 }
             }
@@ -153,7 +153,7 @@ impl DistanceGraph {
 struct Between {
     from: NodeId,
     to: NodeId,
-    weight: Rational,
+    weight: Time,
     constraint: Constraint,
 }
 
@@ -167,7 +167,9 @@ fn bounds(selected: &Selected<'_>) -> Vec<Between> {
             all.push(Between { from: arc.from, to: arc.to, weight, constraint: Constraint::Upper(id) });
         }
         let constraint = Constraint::Lower(id);
-        all.push(Between { from: arc.to, to: arc.from, weight: -arc.lower, constraint });
+        if let Some(weight) = arc.lower.checked_neg() {
+            all.push(Between { from: arc.to, to: arc.from, weight, constraint });
+        }
     }
     let ends = |label: tpn::LabelId| {
         let arc = network.arcs.get(network.labels.get(label.index())?.arc.index())?;
@@ -178,12 +180,12 @@ fn bounds(selected: &Selected<'_>) -> Vec<Between> {
             continue;
         };
         for (from, to) in [(ask_start, tell_start), (tell_end, ask_end)] {
-            all.push(Between { from, to, weight: Rational::default(), constraint: Constraint::Link(link) });
+            all.push(Between { from, to, weight: Time::ZERO, constraint: Constraint::Link(link) });
         }
     }
     for &order in selected.orders {
-        if let Some(((_, first_end), (then_start, _))) = ends(order.first).zip(ends(order.then)) {
-            let weight = -network.threat_gap;
+        let ends = ends(order.first).zip(ends(order.then)).zip(network.threat_gap.checked_neg());
+        if let Some((((_, first_end), (then_start, _)), weight)) = ends {
             let constraint = Constraint::Order(order);
             all.push(Between { from: then_start, to: first_end, weight, constraint });
         }

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use egui::RichText;
+use exact::Bound;
 use kirk::{Constraint, CycleMember};
-use rmpl::Bound;
 use theme::{size, space};
 use tpn::{ArcId, Network, NodeId, Plan};
 use workbench::command::{Command, CommandSender};
@@ -110,8 +110,8 @@ fn distances(parts: &Parts<'_>) -> BTreeMap<(NodeId, NodeId), Bound> {
         if closing != Some(Constraint::Upper(id)) {
             shorten(arc.from, arc.to, arc.upper);
         }
-        if closing != Some(Constraint::Lower(id)) {
-            shorten(arc.to, arc.from, Bound::Finite(-arc.lower));
+        if let Some(weight) = arc.lower.checked_neg().filter(|_| closing != Some(Constraint::Lower(id))) {
+            shorten(arc.to, arc.from, Bound::Finite(weight));
         }
     }
     let ends = |label: tpn::LabelId| {
@@ -126,7 +126,9 @@ fn distances(parts: &Parts<'_>) -> BTreeMap<(NodeId, NodeId), Bound> {
     for &order in
         parts.plan.orderings_added.iter().filter(|&&order| closing != Some(Constraint::Order(order)))
     {
-        shorten(ends(order.then).0, ends(order.first).1, Bound::Finite(-network.threat_gap));
+        if let Some(weight) = network.threat_gap.checked_neg() {
+            shorten(ends(order.then).0, ends(order.first).1, Bound::Finite(weight));
+        }
     }
     for middle in 0..count {
         for from in 0..count {
@@ -165,7 +167,7 @@ fn closing(parts: &Parts<'_>) -> Option<Constraint> {
 
 #[cfg(test)]
 mod tests {
-    use rmpl::Rational;
+    use exact::Time;
 
     use super::*;
 
@@ -192,10 +194,10 @@ mod tests {
             NodeId::from_index(found.expect("the event exists"))
         };
         let bounds = |from: &str, to: &str| {
-            let back = distances[&(node(to), node(from))].finite().map(|back| -back);
+            let back = distances[&(node(to), node(from))].finite().and_then(Time::checked_neg);
             (back, distances[&(node(from), node(to))])
         };
-        let expected = |low: i64, high: i64| (Some(Rational::from(low)), Bound::Finite(Rational::from(high)));
+        let expected = |low: i64, high: i64| (Some(Time::from(low)), Bound::Finite(Time::from(high)));
         assert_eq!(bounds("Group-Traverse-Path#1.start", "Group-Traverse-Path#1.end"), expected(405, 450));
         assert_eq!(bounds("Group-Wait#1.end", "Tell(PROCEED=OK)#1.start"), expected(1, 185));
         assert_eq!(bounds("Group-Enroute#1.end", "scenario#1.end"), expected(66, 340));

@@ -113,10 +113,10 @@ impl DistancesPanel {
                     };
                     ui.label(RichText::new(text).small().color(tokens.text_muted));
                 } else {
-                    let total: rmpl::Rational = cycle.iter().map(|member| member.weight).sum();
+                    let total = exact::Time::checked_sum(cycle.iter().map(|member| member.weight));
                     let weights: Vec<String> =
                         cycle.iter().map(|member| workbench::time_text::time(member.weight)).collect();
-                    let total = workbench::time_text::time(total);
+                    let total = total.map_or_else(|| "…".to_owned(), workbench::time_text::time);
                     let text =
                         format!("✗ Negative cycle: {} = {total}", weights.join(" + ").replace("+ -", "− "));
                     let names: Vec<String> = cycle

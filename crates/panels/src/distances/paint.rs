@@ -3,8 +3,8 @@
 use display::Point;
 use display::text::TEXT_SIZE;
 use egui::{Align2, Color32, FontId, Pos2, Rect, Shape, Stroke, StrokeKind, vec2};
+use exact::Time;
 use kirk::Constraint;
-use rmpl::Rational;
 use theme::{Tokens, size};
 use tpn::Network;
 use workbench::state::Selection;
@@ -270,7 +270,7 @@ impl Scene<'_> {
         let font = FontId::proportional((font_size * 2.0).floor() / 2.0);
         let galley = self.painter.layout_no_wrap(text, font, color);
         // Forward and backward edges lie side by side: their weights stand at different places along them.
-        let first = if edge.weight > Rational::default() { 0.42 } else { 0.58 };
+        let first = if edge.weight > Time::ZERO { 0.42 } else { 0.58 };
         for along in [first, 0.5, 0.34, 0.66, 0.26, 0.74, 0.18, 0.82] {
             let place = Align2::CENTER_CENTER.anchor_size(at_fraction(&points, along), galley.size());
             let fits = taken.iter().all(|other| !other.intersects(place));

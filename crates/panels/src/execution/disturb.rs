@@ -1,8 +1,8 @@
 //! Disturbances by hand: what can still go otherwise than planned, and what was made to.
 
 use egui::{Align, DragValue, Layout, RichText, Ui};
+use exact::Time;
 use executive::Disturbance;
-use rmpl::Rational;
 use theme::icon::{self, Icon};
 use tpn::{OccurrenceId, OccurrenceKind};
 use workbench::command::{Command, CommandSender};
@@ -84,14 +84,16 @@ impl Disturb {
                 button(ui, "Withdraw", &|| ExecutionCommand::Withdraw(occurrence.name.clone()));
                 if pending.since.is_none() {
                     button(ui, "Later", &|| {
-                        let at = pending.window.earliest + amount;
+                        let at = pending.window.earliest;
+                        let at = at.checked_add(amount).unwrap_or(at);
                         let condition = occurrence.name.clone();
                         ExecutionCommand::Disturb(Disturbance::Late { condition, at })
                     });
                 }
             } else {
                 button(ui, "Longer", &|| {
-                    let duration = usual_duration(shown, id) + amount;
+                    let usual = usual_duration(shown, id);
+                    let duration = usual.checked_add(amount).unwrap_or(usual);
                     let activity = occurrence.name.clone();
                     ExecutionCommand::Disturb(Disturbance::Duration { activity, duration })
                 });
@@ -101,11 +103,11 @@ impl Disturb {
 }
 
 /// How long an activity takes as things stand: in this run if it comes to its end, otherwise at least.
-fn usual_duration(shown: Shown<'_>, id: OccurrenceId) -> Rational {
-    let Some(occurrence) = shown.network.occurrences.get(id.index()) else { return Rational::default() };
+fn usual_duration(shown: Shown<'_>, id: OccurrenceId) -> Time {
+    let Some(occurrence) = shown.network.occurrences.get(id.index()) else { return Time::ZERO };
     let took = shown.run.plans.last().and_then(|last| {
         let at = |node: tpn::NodeId| last.times.get(node.index()).copied().flatten();
-        Some(at(occurrence.end)? - at(occurrence.start)?)
+        at(occurrence.end)?.checked_sub(at(occurrence.start)?)
     });
     took.or_else(|| Some(shown.network.arcs.get(occurrence.arc?.index())?.lower)).unwrap_or_default()
 }

@@ -1,6 +1,7 @@
 //! Disturbances of what drives: a vehicle slows down or stops, and something stands in the way.
 
 use egui::{DragValue, RichText, Ui};
+use exact::Rational;
 use workbench::command::{Command, CommandSender};
 use workbench::state::execution::{ExecutionCommand, exact_time};
 use workbench::state::terrain::{TerrainCommand, Tool};
@@ -49,7 +50,8 @@ impl Vehicles {
                     let name = format!("{text} {}", vehicle.name.text);
                     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
                     if response.clicked() {
-                        let (vehicle, factor) = (vehicle.name.text.clone(), exact_time(percent / 100.0));
+                        let vehicle = vehicle.name.text.clone();
+                        let factor = Rational::from_f64_up(percent / 100.0 - 1e-9, 1000).unwrap_or_default();
                         let slower = ExecutionCommand::SlowDown { vehicle, factor, duration };
                         commands.send(Command::Execution(slower));
                     }

@@ -1,8 +1,8 @@
 //! What the tooltip says of an item, and what a screen reader says of the whole.
 
+use exact::Bound;
 use layout::Item;
 use layout::text::bounds_label;
-use rmpl::{Bound, rational};
 use tpn::{ArcKind, Network, Plan, Role};
 use workbench::state::selection::node_name;
 
@@ -85,9 +85,10 @@ fn describe_node(id: tpn::NodeId, network: &Network, plan: Option<&Plan>) -> Opt
     match plan.and_then(|plan| plan.windows.get(id.index())) {
         Some(Some(window)) => {
             lines.push(format!("window {}", bounds_label(window.earliest, window.latest)));
-            lines.push(match window.latest {
-                Bound::Finite(latest) => format!("slack {}", rational::display(latest - window.earliest)),
-                Bound::Infinite => "slack ∞".to_owned(),
+            lines.push(match window.latest.checked_sub(window.earliest) {
+                Some(Bound::Finite(slack)) => format!("slack {slack}"),
+                Some(Bound::Infinite) => "slack ∞".to_owned(),
+                None => "slack beyond 64 bits".to_owned(),
             });
         }
         Some(None) => lines.push("not selected by the plan".to_owned()),

@@ -126,9 +126,8 @@ fn show_cycle(ui: &mut Ui, context: &Context<'_>, network: &Network, reason: &Re
     egui::CollapsingHeader::new(RichText::new("The contradiction, step by step").small())
         .id_salt("cycle")
         .show(ui, |ui| {
-            let mut total = rmpl::Rational::from(0);
+            let total = exact::Time::checked_sum(reason.cycle.iter().map(|member| member.weight));
             for member in &reason.cycle {
-                total += member.weight;
                 let step = format!(
                     "{} is at most {} after {}",
                     workbench::state::selection::node_name(network, member.to),
@@ -139,7 +138,7 @@ fn show_cycle(ui: &mut Ui, context: &Context<'_>, network: &Network, reason: &Re
             }
             let sum = format!(
                 "Around the circle this adds up to {}, less than zero.",
-                workbench::time_text::time(total)
+                total.map_or_else(|| "a time beyond 64 bits".to_owned(), workbench::time_text::time)
             );
             ui.label(RichText::new(sum).small().color(tokens.threat));
         });

@@ -1,7 +1,7 @@
 //! The table of windows: every event of the plan, sortable and searchable.
 
 use egui::{Align2, RichText, Role, Sense, TextEdit, TextStyle, Ui, WidgetInfo};
-use rmpl::{Bound, Rational};
+use exact::{Bound, Time};
 use theme::space;
 use tpn::{EventEnd, EventRef, Network, NodeId, Plan};
 use workbench::PanelKind;
@@ -23,7 +23,7 @@ pub(crate) struct WindowTable {
 struct Row {
     node: NodeId,
     event: EventRef,
-    earliest: Rational,
+    earliest: Time,
     latest: Bound,
 }
 
@@ -137,7 +137,7 @@ fn sort(rows: &mut [Row], context: &Context<'_>, network: &Network) {
 }
 
 fn slack(row: &Row) -> Bound {
-    row.latest.finite().map_or(Bound::Infinite, |latest| Bound::Finite(latest - row.earliest))
+    row.latest.checked_sub(row.earliest).unwrap_or(Bound::Infinite)
 }
 
 fn show_header(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {

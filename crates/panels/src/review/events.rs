@@ -1,8 +1,8 @@
 //! The windows and the slack of every event, the tightest first, with the slack as a bar.
 
 use egui::{Align2, Pos2, Rect, Role, Sense, TextStyle, Ui, WidgetInfo};
-use mission::review::{EventReview, Section, short_time};
-use rmpl::Bound;
+use exact::Bound;
+use mission::review::{EventReview, Section};
 use theme::space;
 use workbench::command::CommandSender;
 use workbench::state::playback::bound;
@@ -112,5 +112,5 @@ fn window_text(event: &EventReview) -> String {
 }
 
 fn time_text(time: Bound) -> String {
-    short_time(time).replace("inf", "∞").replace('~', "≈ ")
+    time.readable().replace("inf", "∞")
 }

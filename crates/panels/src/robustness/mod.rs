@@ -95,7 +95,7 @@ fn driving(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut mission::Uncert
 
 /// How likely each condition is to be withdrawn while it should hold.
 fn conditions(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut mission::Uncertainty) {
-    use mission::robustness::{Distribution, Incident, Time};
+    use mission::robustness::{Distribution, Incident};
     let Some(snapshot) = context.state.shown() else { return };
     let Some((network, plan)) = snapshot.network.as_deref().zip(snapshot.plan()) else { return };
     Grid::new("conditions").num_columns(2).show(ui, |ui| {
@@ -109,7 +109,7 @@ fn conditions(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut mission::Unc
             let label = ui.label(format!("{} is withdrawn", occurrence.name)).id;
             let field = DragValue::new(&mut percent).range(0.0..=100.0).suffix(" %").max_decimals(1);
             if ui.add(field).labelled_by(label).changed() {
-                let at = Distribution::Uniform(Time(start.earliest), Time(end.earliest));
+                let at = Distribution::Uniform(start.earliest, end.earliest);
                 let incident = Incident { probability: percent / 100.0, at };
                 if percent > 0.0 {
                     uncertainty.withdrawn.insert(occurrence.name.clone(), incident);

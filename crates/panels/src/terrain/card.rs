@@ -140,10 +140,10 @@ fn time_rows(context: &Context<'_>, traverse: &Traverse) -> Vec<(&'static str, S
     let unit = unit(context);
     let name = time_text::unit(unit);
     let mut rows = vec![
-        ("Duration", format!("{} {name}", time_text::short(end - start))),
+        ("Duration", format!("{} {name}", time_text::slack(start, exact::Bound::Finite(end)))),
         ("From and to", format!("{} to {} {name}", time_text::short(start), time_text::short(end))),
     ];
-    let seconds = workbench::state::playback::number(end - start) * unit.seconds() as f64;
+    let seconds = (end.to_f64() - start.to_f64()) * unit.seconds() as f64;
     if seconds > 0.0 {
         rows.push(("Mean speed", format!("{:.2} cm/s", 100.0 * traverse.length_m / seconds)));
     }

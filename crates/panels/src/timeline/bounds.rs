@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use egui::{CursorIcon, Rect, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use exact::Time;
 use layout::timeline::Bar;
-use rmpl::{Edit, Rational, Span};
+use rmpl::{Edit, Span};
 use workbench::command::{Command, CommandSender};
 use workbench::state::EditKind;
 use workbench::state::playback::{bound, number};
@@ -122,7 +123,7 @@ impl BoundDrag {
         let wanted = painting.view.time(painting.track, x) - self.from;
         let wanted = if self.is_upper { wanted.max(self.other) } else { wanted.min(self.other) };
         let value = round_time(painting.view, wanted.max(0.0));
-        let Some(text) = rmpl::rational::decimal(value).filter(|text| *text != self.text) else { return };
+        let Some(text) = value.decimal().filter(|text| *text != self.text) else { return };
         let source = painting.context.state.document.text();
         if source.get(self.place.clone()) != Some(self.text.as_str()) {
             return;
@@ -136,7 +137,7 @@ impl BoundDrag {
 }
 
 /// Where one side of `[lower, upper]` at `span` is written, and its value, if it is a plain number.
-fn literal(source: &str, span: Span, is_upper: bool) -> Option<(Range<usize>, Rational)> {
+fn literal(source: &str, span: Span, is_upper: bool) -> Option<(Range<usize>, Time)> {
     let text = source.get(span.range())?;
     let inside = text.strip_prefix('[')?.strip_suffix(']')?;
     let comma = inside.find(',')?;
@@ -146,14 +147,9 @@ fn literal(source: &str, span: Span, is_upper: bool) -> Option<(Range<usize>, Ra
     Some((start..start + digits.len(), plain_number(digits)?))
 }
 
-fn plain_number(text: &str) -> Option<Rational> {
-    let (whole, decimals) = text.split_once('.').unwrap_or((text, ""));
-    let all_digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
-    if whole.is_empty() || !all_digits(whole) || !all_digits(decimals) || decimals.len() > 9 {
-        return None;
-    }
-    let numerator: i64 = format!("{whole}{decimals}").parse().ok()?;
-    Some(Rational::new(numerator, 10_i64.pow(decimals.len() as u32)))
+fn plain_number(text: &str) -> Option<Time> {
+    let is_plain = text.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
+    text.parse().ok().filter(|_| is_plain)
 }
 
 #[cfg(test)]
@@ -164,8 +160,8 @@ mod tests {
     fn only_plain_numbers_can_be_dragged() {
         let source = "Drive()[ 4.5 , 20];";
         let span = Span::new(7, 18);
-        assert_eq!(literal(source, span, false), Some((9..12, Rational::new(9, 2))));
-        assert_eq!(literal(source, span, true), Some((15..17, Rational::from(20))));
+        assert_eq!(literal(source, span, false), Some((9..12, Time::new(9, 2).unwrap())));
+        assert_eq!(literal(source, span, true), Some((15..17, Time::from(20))));
         assert_eq!(literal("[l*50%,inf]", Span::new(0, 11), false), None);
         assert_eq!(literal("[l*50%,inf]", Span::new(0, 11), true), None);
         assert_eq!(literal("Drive()", Span::new(0, 7), false), None);

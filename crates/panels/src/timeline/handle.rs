@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use egui::{
     CursorIcon, EventFilter, Key, Rect, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
+use exact::Time;
 use layout::timeline::Bar;
-use rmpl::Rational;
 use tpn::{EventEnd, EventRef, NodeId};
 use workbench::command::{Command, CommandSender};
 use workbench::state::PinCommand;
@@ -19,7 +19,7 @@ use super::view::TimeView;
 use crate::Context;
 
 /// The pinned events of a frame.
-pub(super) type Pinned = BTreeMap<NodeId, Rational>;
+pub(super) type Pinned = BTreeMap<NodeId, Time>;
 
 /// Half the width of a handle, in points; the other half of a neighbour's is its own.
 const HALF_WIDTH: f32 = 7.0;
@@ -104,14 +104,14 @@ pub(super) fn show_held(ui: &Ui, painting: &Painting<'_>, pinned: &Pinned) {
 }
 
 /// A time in the view as a round number: no finer than what a point of the screen can tell apart.
-pub(super) fn round_time(view: &TimeView, time: f64) -> Rational {
+pub(super) fn round_time(view: &TimeView, time: f64) -> Time {
     let exponent = (1.0 / view.scale).log10().floor().clamp(-3.0, 9.0) as i32;
     if exponent >= 0 {
         let step = 10_f64.powi(exponent);
-        return Rational::from(((time / step).round() * step).clamp(-1e15, 1e15) as i64);
+        let round = (time / step).round() * step;
+        return Time::from_f64_nearest(round.clamp(-1e15, 1e15), 1).unwrap_or_default();
     }
-    let parts = 10_i64.pow(exponent.unsigned_abs());
-    Rational::new((time * parts as f64).round().clamp(-1e15, 1e15) as i64, parts)
+    Time::from_f64_nearest(time.clamp(-1e12, 1e12), 10_u32.pow(exponent.unsigned_abs())).unwrap_or_default()
 }
 
 fn in_words(window: [f64; 2], is_pinned: bool) -> String {
@@ -215,9 +215,9 @@ mod tests {
     #[test]
     fn dragged_times_are_as_round_as_the_zoom_allows() {
         let at = |scale: f64, time: f64| round_time(&TimeView { start: 0.0, scale }, time);
-        assert_eq!(at(0.9, 432.4), Rational::from(432));
-        assert_eq!(at(0.04, 1_234.5), Rational::from(1_230));
-        assert_eq!(at(20.0, 12.345), Rational::new(1_235, 100));
-        assert_eq!(at(3.0, 12.345), Rational::new(123, 10));
+        assert_eq!(at(0.9, 432.4), Time::from(432));
+        assert_eq!(at(0.04, 1_234.5), Time::from(1_230));
+        assert_eq!(at(20.0, 12.345), Time::new(1_235, 100).unwrap());
+        assert_eq!(at(3.0, 12.345), Time::new(123, 10).unwrap());
     }
 }

@@ -8,8 +8,6 @@ use layout::list::timeline::{
 };
 use layout::timeline::{Bar, Chart, ChartOptions, Grouping, RowKind};
 use mission::Snapshot;
-use mission::review::short_time;
-use rmpl::Bound;
 use rmpl::program::TimeUnit;
 use smol_str::{SmolStr, format_smolstr};
 
@@ -50,7 +48,7 @@ pub(crate) fn timeline(snapshot: &Snapshot) -> Option<String> {
         let Some(bar) = bar.filter(|_| row.kind == RowKind::Single) else { return SmolStr::default() };
         let times = bar.events.map(|event| {
             let window = plan.windows.get(event.index()).copied().flatten();
-            window.map_or_else(String::new, |window| short_time(Bound::Finite(window.earliest)))
+            window.map_or_else(String::new, |window| window.earliest.readable())
         });
         format_smolstr!("{}–{}", times[0], times[1])
     };

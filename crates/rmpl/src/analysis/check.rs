@@ -1,15 +1,15 @@
 //! What one declaration says wrongly in view of the rest of the file.
 
-use crate::diagnostic::{Diagnostic, Severity};
-use crate::diagnostics::{arity, bounds, duplicate, similar, support, traverse, undefined, unused, value};
-use crate::lower::Item;
-use crate::program::LabelMode;
-use crate::rational::Bound;
+use exact::Bound;
 
 use super::index::{DeclarationKey, Facts, Index, Namespace, Told};
 use super::names::{Names, Symbol};
 use super::structure;
 use super::summary::{Call, Definition, Literal, Summary, Use, UseKind};
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::diagnostics::{arity, bounds, duplicate, similar, support, traverse, undefined, unused, value};
+use crate::lower::Item;
+use crate::program::LabelMode;
 
 /// The outcome of checking one declaration.
 #[derive(Clone, Debug, Default)]

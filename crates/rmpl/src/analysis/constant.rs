@@ -1,11 +1,8 @@
 //! Bounds that are constants, evaluated exactly (SPEC 1.5).
 
-use num_traits::{
-    CheckedAdd as _, CheckedDiv as _, CheckedMul as _, CheckedSub as _, Signed as _, Zero as _,
-};
+use exact::{Bound, BoundError, Time};
 
 use crate::program::{BinaryOp, Bounds, Expr, ExprKind};
-use crate::rational::{Bound, Rational};
 
 /// Why an expression has no value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +16,7 @@ pub(crate) enum ConstantError {
 }
 
 /// The bounds of a statement when both are constants and make sense together.
-pub(crate) fn interval(bounds: &Bounds) -> Option<(Rational, Bound)> {
+pub(crate) fn interval(bounds: &Bounds) -> Option<(Time, Bound)> {
     let lower = evaluate(&bounds.lower).ok()?.finite()?;
     let upper = evaluate(&bounds.upper).ok()?;
     (!lower.is_negative() && Bound::Finite(lower) <= upper).then_some((lower, upper))
@@ -36,16 +33,12 @@ pub(crate) fn evaluate_with(
     lookup: &dyn Fn(&str) -> Option<Bound>,
 ) -> Result<Bound, ConstantError> {
     match &expr.kind {
-        ExprKind::Number(number) => Ok(Bound::Finite(*number)),
+        ExprKind::Number(number) => Ok(Bound::Finite(Time::from_units(*number))),
         ExprKind::Infinity => Ok(Bound::Infinite),
         ExprKind::Name(name) => lookup(name).ok_or(ConstantError::NotConstant),
-        ExprKind::Percent(inner) => match evaluate_with(inner, lookup)? {
-            Bound::Infinite => Ok(Bound::Infinite),
-            Bound::Finite(whole) => {
-                let hundredth = whole.checked_div(&Rational::from_integer(100));
-                hundredth.map(Bound::Finite).ok_or(ConstantError::TooLarge)
-            }
-        },
+        ExprKind::Percent(inner) => {
+            combine(BinaryOp::Divide, evaluate_with(inner, lookup)?, Bound::Finite(Time::from(100)))
+        }
         ExprKind::Binary(operator, left, right) => {
             combine(*operator, evaluate_with(left, lookup)?, evaluate_with(right, lookup)?)
         }
@@ -53,27 +46,16 @@ pub(crate) fn evaluate_with(
 }
 
 fn combine(operator: BinaryOp, left: Bound, right: Bound) -> Result<Bound, ConstantError> {
-    use Bound::{Finite, Infinite};
-    let exact = |value: Option<Rational>| value.map(Finite).ok_or(ConstantError::TooLarge);
-    match (operator, left, right) {
-        (BinaryOp::Add, Finite(left), Finite(right)) => exact(left.checked_add(&right)),
-        (BinaryOp::Add, ..)
-        | (BinaryOp::Subtract, Infinite, Finite(_))
-        | (BinaryOp::Multiply, Infinite, Infinite) => Ok(Infinite),
-        (BinaryOp::Subtract, Finite(left), Finite(right)) => exact(left.checked_sub(&right)),
-        (BinaryOp::Multiply, Finite(left), Finite(right)) => exact(left.checked_mul(&right)),
-        (BinaryOp::Multiply, Infinite, Finite(factor)) | (BinaryOp::Multiply, Finite(factor), Infinite) => {
-            if factor.is_zero() {
-                Ok(Bound::ZERO)
-            } else if factor.is_negative() {
-                Err(ConstantError::Undefined)
-            } else {
-                Ok(Infinite)
-            }
-        }
-        (BinaryOp::Divide, _, Finite(divisor)) if divisor.is_zero() => Err(ConstantError::Undefined),
-        (BinaryOp::Divide, Finite(left), Finite(right)) => exact(left.checked_div(&right)),
-        (BinaryOp::Divide, Infinite, Finite(divisor)) if !divisor.is_negative() => Ok(Infinite),
-        (BinaryOp::Subtract | BinaryOp::Divide, ..) => Err(ConstantError::Undefined),
-    }
+    let value = match operator {
+        BinaryOp::Add => left.plus(right),
+        BinaryOp::Subtract => left.minus(right),
+        BinaryOp::Multiply => left.times(right),
+        // Where infinity is written as a divisor, something else was meant.
+        BinaryOp::Divide if right == Bound::Infinite => return Err(ConstantError::Undefined),
+        BinaryOp::Divide => left.over(right),
+    };
+    value.map_err(|error| match error {
+        BoundError::Overflow => ConstantError::TooLarge,
+        _ => ConstantError::Undefined,
+    })
 }

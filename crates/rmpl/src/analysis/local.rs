@@ -1,18 +1,16 @@
 //! What one declaration says wrongly by itself, whatever the rest of the file says.
 
-use num_traits::Signed as _;
+use exact::{Bound, Rational};
 
+use super::constant::{self, ConstantError};
 use crate::diagnostic::Diagnostic;
 use crate::diagnostics::{bounds, choice, duplicate, mixed, option, unknown_name, value};
 use crate::lower::{Item, OptionDecl, OptionValue};
 use crate::program::{
     Bounds, Expr, ExprKind, HeaderBound, HeaderBounds, Name, ObstacleShape, Statement, StatementKind,
 };
-use crate::rational::{Bound, Rational};
 use crate::span::Span;
 use crate::syntax::{Element, SyntaxKind, SyntaxNode};
-
-use super::constant::{self, ConstantError};
 
 /// The vehicle models of SPEC 1.8.
 pub(crate) const VEHICLE_MODELS: [&str; 3] = ["ATRV", "ATRV-Jr", "Blimp"];

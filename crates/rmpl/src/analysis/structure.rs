@@ -1,23 +1,21 @@
 //! What follows from two rules that surprise authors (SPEC 3.3): parallel branches start at the same instant, and a
 //! sequence never idles.
 
-use num_traits::{CheckedAdd as _, Zero as _};
-
-use crate::diagnostic::Diagnostic;
-use crate::diagnostics::{slack, together, window};
-use crate::lower::Item;
-use crate::program::{Condition, HeaderBound, HeaderBounds, LabelMode, Statement, StatementKind};
-use crate::rational::{Bound, Rational};
-use crate::span::Span;
+use exact::{Bound, Time};
 
 use super::check::Meaning;
 use super::constant;
 use super::index::Namespace;
+use crate::diagnostic::Diagnostic;
+use crate::diagnostics::{slack, together, window};
+use crate::lower::Item;
+use crate::program::{Condition, HeaderBound, HeaderBounds, LabelMode, Statement, StatementKind};
+use crate::span::Span;
 
 /// Least and greatest duration.
-type Interval = (Rational, Bound);
+type Interval = (Time, Bound);
 
-const ANY: Interval = (Rational::ZERO, Bound::Infinite);
+const ANY: Interval = (Time::ZERO, Bound::Infinite);
 
 /// Oddities of the structure of an activity or a scenario.
 pub(super) fn structure(item: &Item, meaning: Meaning<'_>) -> Vec<Diagnostic> {
@@ -26,7 +24,7 @@ pub(super) fn structure(item: &Item, meaning: Meaning<'_>) -> Vec<Diagnostic> {
         Item::Activity(decl) => {
             let body = structure.duration(&decl.body);
             if let HeaderBounds::Sides { lower, upper, span } = &decl.bounds {
-                let lower = limit(lower).and_then(Bound::finite).unwrap_or(Rational::ZERO);
+                let lower = limit(lower).and_then(Bound::finite).unwrap_or(Time::ZERO);
                 let upper = limit(upper).unwrap_or(Bound::Infinite);
                 structure.compare(&decl.body, body, (lower, upper), *span, false);
             }
@@ -63,9 +61,9 @@ impl Structure<'_> {
         let own = match &statement.kind {
             StatementKind::Sequence(parts) => {
                 is_leaf = false;
-                parts.iter().fold((Rational::ZERO, Bound::ZERO), |sum, part| {
+                parts.iter().fold((Time::ZERO, Bound::ZERO), |sum, part| {
                     let part = self.duration(part);
-                    let lower = sum.0.checked_add(&part.0);
+                    let lower = sum.0.checked_add(part.0);
                     let upper = sum.1.checked_add(part.1);
                     lower.zip(upper).unwrap_or(ANY)
                 })
@@ -74,12 +72,12 @@ impl Structure<'_> {
                 is_leaf = false;
                 self.together(branches);
                 let least = branches.iter().map(|branch| self.duration(branch).0).max();
-                (least.unwrap_or(Rational::ZERO), Bound::Infinite)
+                (least.unwrap_or(Time::ZERO), Bound::Infinite)
             }
             StatementKind::Choose(alternatives) => {
                 is_leaf = false;
                 let each: Vec<Interval> = alternatives.iter().map(|part| self.duration(part)).collect();
-                let lower = each.iter().map(|part| part.0).min().unwrap_or(Rational::ZERO);
+                let lower = each.iter().map(|part| part.0).min().unwrap_or(Time::ZERO);
                 (lower, each.iter().map(|part| part.1).max().unwrap_or(Bound::Infinite))
             }
             StatementKind::Maintaining(body, _)
@@ -94,7 +92,7 @@ impl Structure<'_> {
             }
             StatementKind::Condition(_, condition) => {
                 let called = self.called(condition);
-                let instant = statement.bounds.is_none().then_some((Rational::ZERO, Bound::ZERO));
+                let instant = statement.bounds.is_none().then_some((Time::ZERO, Bound::ZERO));
                 is_leaf = true;
                 called.or(instant).unwrap_or(ANY)
             }
@@ -168,7 +166,7 @@ impl Structure<'_> {
     /// same instant.
     fn starting(&self, statement: &Statement, out: &mut Vec<(LabelMode, Condition)>) -> bool {
         let is_instant = match &statement.bounds {
-            Some(bounds) => constant::interval(bounds) == Some((Rational::zero(), Bound::ZERO)),
+            Some(bounds) => constant::interval(bounds) == Some((Time::ZERO, Bound::ZERO)),
             None => matches!(statement.kind, StatementKind::Condition(..)),
         };
         match &statement.kind {

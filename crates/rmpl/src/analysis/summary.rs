@@ -1,19 +1,19 @@
 //! What one declaration declares and uses, in interned names and relative offsets.
 
-use rustc_hash::FxHasher;
-use smol_str::SmolStr;
 use std::hash::{Hash as _, Hasher as _};
 
-use crate::lower::{Item, OptionValue};
-use crate::program::{
-    Argument, ArgumentValue, Condition, HeaderBound, HeaderBounds, LabelMode, Name, Statement, StatementKind,
-};
-use crate::rational::{Bound, Rational};
-use crate::span::Span;
+use exact::{Bound, Rational, Time};
+use rustc_hash::FxHasher;
+use smol_str::SmolStr;
 
 use super::constant;
 use super::index::Namespace;
 use super::names::{Names, Symbol};
+use crate::lower::{Item, OptionValue};
+use crate::program::{
+    Argument, ArgumentValue, Condition, HeaderBound, HeaderBounds, LabelMode, Name, Statement, StatementKind,
+};
+use crate::span::Span;
 
 /// What a declaration declares and uses.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -36,7 +36,7 @@ pub(crate) struct Definition {
     pub(crate) span: Span,
     pub(crate) arity: u32,
     /// Constant bounds of its header.
-    pub(crate) bounds: Option<(Rational, Bound)>,
+    pub(crate) bounds: Option<(Time, Bound)>,
     /// The domain of a variable.
     pub(crate) values: Vec<Symbol>,
     pub(crate) is_activity: bool,
@@ -56,7 +56,7 @@ pub(crate) struct Call {
     pub(crate) arguments: u32,
     /// A parameter of the surrounding activity is handed on.
     pub(crate) has_formal_argument: bool,
-    pub(crate) bounds: Option<((Rational, Bound), Span)>,
+    pub(crate) bounds: Option<((Time, Bound), Span)>,
     pub(crate) is_bare: bool,
 }
 
@@ -177,7 +177,7 @@ impl Collector<'_> {
         namespace: Namespace,
         name: &Name,
         arity: usize,
-        bounds: Option<(Rational, Bound)>,
+        bounds: Option<(Time, Bound)>,
         values: Vec<Symbol>,
     ) {
         let symbol = self.names.intern(&name.text);
@@ -291,17 +291,17 @@ impl Collector<'_> {
     }
 }
 
-fn header_interval(bounds: &HeaderBounds) -> Option<(Rational, Bound)> {
+fn header_interval(bounds: &HeaderBounds) -> Option<(Time, Bound)> {
     let HeaderBounds::Sides { lower, upper, .. } = bounds else { return None };
     let lower = match lower {
-        HeaderBound::Parameter(_) => Rational::ZERO,
+        HeaderBound::Parameter(_) => Time::ZERO,
         HeaderBound::Limit(limit) => constant::evaluate(limit).ok()?.finite()?,
     };
     let upper = match upper {
         HeaderBound::Parameter(_) => Bound::Infinite,
         HeaderBound::Limit(limit) => constant::evaluate(limit).ok()?,
     };
-    (lower >= Rational::ZERO && Bound::Finite(lower) <= upper).then_some((lower, upper))
+    (lower >= Time::ZERO && Bound::Finite(lower) <= upper).then_some((lower, upper))
 }
 
 impl Summary {

@@ -1,8 +1,9 @@
 //! `E-BOUNDS`: bounds that no duration satisfies (SPEC 1.5).
 
+use exact::{Bound, Time};
+
 use crate::diagnostic::{Code, Diagnostic, Edit, Fix, Severity};
 use crate::explanation::Explanation;
-use crate::rational::{Bound, Rational, display};
 use crate::span::Span;
 
 /// The code.
@@ -23,8 +24,8 @@ scenario Day[0,60] = { Drive() }",
 scenario Day[0,60] = { Drive() }",
 };
 
-pub(crate) fn negative(value: Rational, span: Span) -> Diagnostic {
-    Diagnostic::error(CODE, span, format!("a bound cannot be negative, and this is {}", display(value)))
+pub(crate) fn negative(value: Time, span: Span) -> Diagnostic {
+    Diagnostic::error(CODE, span, format!("a bound cannot be negative, and this is {}", value))
 }
 
 pub(crate) fn undefined(span: Span) -> Diagnostic {
@@ -55,11 +56,11 @@ pub(crate) fn reversed(lower: (Bound, Span), upper: (Bound, Span), span: Span) -
 /// The bounds of a call exclude those of the declaration.
 pub(crate) fn disjoint(
     name: &str,
-    written: (Rational, Bound),
-    declared: (Rational, Bound),
+    written: (Time, Bound),
+    declared: (Time, Bound),
     span: Span,
 ) -> Diagnostic {
-    let show = |(lower, upper): (Rational, Bound)| format!("[{},{upper}]", display(lower));
+    let show = |(lower, upper): (Time, Bound)| format!("[{},{upper}]", lower);
     let message =
         format!("`{name}` is declared to last {}, which {} excludes", show(declared), show(written));
     Diagnostic::error(CODE, span, message).with_hint("both hold for the call: make them overlap")

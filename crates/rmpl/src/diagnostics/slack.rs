@@ -1,9 +1,10 @@
 //! `W-SLACK`: a bound that can never bind.
 
+use exact::{Bound, Time};
+
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;
 use crate::parser::replacement;
-use crate::rational::{Bound, Rational, display};
 use crate::span::Span;
 
 /// The code.
@@ -24,7 +25,7 @@ scenario Day[0,60] = { Drive()[25,40] }",
 };
 
 /// Bounds at `span` around something that lasts `own` anyway.
-pub(crate) fn never_binds(own: (Rational, Bound), span: Span) -> Diagnostic {
-    let message = format!("these bounds exclude nothing: this lasts [{},{}] anyway", display(own.0), own.1);
+pub(crate) fn never_binds(own: (Time, Bound), span: Span) -> Diagnostic {
+    let message = format!("these bounds exclude nothing: this lasts [{},{}] anyway", own.0, own.1);
     Diagnostic::warning(CODE, span, message).with_fix(replacement("Remove the bounds", span, ""))
 }

@@ -1,10 +1,11 @@
 //! `W-WINDOW`: bounds that the parts cannot meet, because a sequence never idles (SPEC 3.3).
 
+use exact::{Bound, Time};
+
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;
 use crate::parser::insertion;
 use crate::program::{Statement, StatementKind};
-use crate::rational::{Bound, Rational, display};
 use crate::span::Span;
 
 /// The code.
@@ -27,8 +28,7 @@ scenario Day[10,20] = { Drive(); delay[0,inf]; Drill() }",
 };
 
 /// The parts of `statement` can take at most `most`, and `least` is asked for.
-pub(crate) fn too_short(most: Bound, least: Rational, statement: &Statement, span: Span) -> Diagnostic {
-    let least = display(least);
+pub(crate) fn too_short(most: Bound, least: Time, statement: &Statement, span: Span) -> Diagnostic {
     let is_sequence = matches!(&statement.kind, StatementKind::Sequence(parts) if parts.len() > 1);
     let message = if is_sequence {
         format!(
@@ -50,7 +50,7 @@ pub(crate) fn too_short(most: Bound, least: Rational, statement: &Statement, spa
 }
 
 /// The parts take at least `least`, and `most` is allowed.
-pub(crate) fn too_long(least: Rational, most: Bound, span: Span) -> Diagnostic {
-    let message = format!("this takes at least {}, and is to be over after {most}", display(least));
+pub(crate) fn too_long(least: Time, most: Bound, span: Span) -> Diagnostic {
+    let message = format!("this takes at least {}, and is to be over after {most}", least);
     Diagnostic::warning(CODE, span, message)
 }

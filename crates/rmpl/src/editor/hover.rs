@@ -1,16 +1,15 @@
 //! What is known about the thing under the pointer.
 
+use exact::{Bound, Time};
 use smol_str::SmolStr;
-
-use crate::analysis::constant::evaluate_with;
-use crate::lower::bounds::expression;
-use crate::parse::Parse;
-use crate::rational::{Bound, Rational, display};
-use crate::span::Span;
-use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
 
 use super::definition::references_of;
 use super::name::{NameKind, NameUse, name_at};
+use crate::analysis::constant::evaluate_with;
+use crate::lower::bounds::expression;
+use crate::parse::Parse;
+use crate::span::Span;
+use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
 
 /// What compiling and planning found out about the text, as far as it is known. Without it, hovering shows what the
 /// text alone says.
@@ -30,7 +29,7 @@ pub struct Invocation {
     /// The occurrence, such as `Group-Enroute#1`.
     pub occurrence: SmolStr,
     /// The lower bound of the call: the value of the header's first name.
-    pub lower: Rational,
+    pub lower: Time,
     /// The upper bound of the call: the value of the header's second name.
     pub upper: Bound,
 }
@@ -43,7 +42,7 @@ pub struct EventWindow {
     /// The event, such as `Group-Wait#1.start`.
     pub event: SmolStr,
     /// The earliest time.
-    pub earliest: Rational,
+    pub earliest: Time,
     /// The latest time.
     pub latest: Bound,
 }
@@ -124,7 +123,7 @@ fn hover_bound(parse: &Parse, offset: u32, evaluation: &Evaluation) -> Option<Ho
             &Invocation {
                 activity: SmolStr::default(),
                 occurrence: SmolStr::default(),
-                lower: Rational::ZERO,
+                lower: Time::ZERO,
                 upper: Bound::Infinite,
             },
         ) {
@@ -175,7 +174,7 @@ fn describe(parse: &Parse, name: &NameUse, evaluation: &Evaluation) -> String {
     if name.kind == NameKind::Activity {
         let lines: Vec<String> = calls
             .take(MOST_LINES)
-            .map(|call| format!("- {}: [{},{}]", call.occurrence, display(call.lower), call.upper))
+            .map(|call| format!("- {}: [{},{}]", call.occurrence, call.lower, call.upper))
             .collect();
         if !lines.is_empty() {
             parts.push(lines.join("\n"));
@@ -195,7 +194,7 @@ fn windows_at(evaluation: &Evaluation, span: Span) -> Vec<String> {
     let smallest = around.iter().map(|window| window.span.end - window.span.start).min();
     let own = around.into_iter().filter(|window| Some(window.span.end - window.span.start) == smallest);
     own.take(MOST_LINES)
-        .map(|window| format!("- {} in [{},{}]", window.event, display(window.earliest), window.latest))
+        .map(|window| format!("- {} in [{},{}]", window.event, window.earliest, window.latest))
         .collect()
 }
 

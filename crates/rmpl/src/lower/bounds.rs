@@ -5,8 +5,6 @@ use smol_str::SmolStr;
 use crate::program::{BinaryOp, Bounds, Expr, ExprKind, HeaderBound, HeaderBounds};
 use crate::syntax::{Element, SyntaxKind, SyntaxNode};
 
-use super::rational;
-
 /// The bounds behind a construct, if they stand directly in `node` and are whole.
 pub(super) fn bounds_in(node: SyntaxNode<'_>) -> Option<Bounds> {
     let bounds = node.child(SyntaxKind::Bounds)?;
@@ -41,7 +39,7 @@ pub(crate) fn expression(node: SyntaxNode<'_>) -> Option<Expr> {
         SyntaxKind::Operand => {
             let token = node.own_tokens().next()?;
             match token.kind {
-                SyntaxKind::Number => ExprKind::Number(rational(token.text)?),
+                SyntaxKind::Number => ExprKind::Number(token.text.parse().ok()?),
                 SyntaxKind::Infinity => ExprKind::Infinity,
                 _ => ExprKind::Name(SmolStr::new(token.text)),
             }

@@ -1,17 +1,17 @@
 //! Declarations.
 
+use exact::Rational;
 use smol_str::SmolStr;
 
+use super::bounds::{bounds_in, header_bounds_in};
+use super::statement::signed;
+use super::{Lowering, OptionDecl, OptionValue, name_of, names};
 use crate::program::{
     ActivityDecl, ControlDecl, LocationDecl, Moves, Name, ObstacleDecl, ObstacleShape, PrimitiveDecl,
     ScenarioDecl, TerrainDecl, VariableDecl, VehicleDecl,
 };
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode};
-
-use super::bounds::{bounds_in, header_bounds_in};
-use super::statement::signed;
-use super::{Lowering, OptionDecl, OptionValue, name_of, names, rational};
 
 /// Metres per cell of a terrain that does not say (SPEC 1.8).
 const DEFAULT_CELL_M: f64 = 0.6;
@@ -87,21 +87,21 @@ pub(super) fn option(node: SyntaxNode<'_>) -> Option<OptionDecl> {
     let name = name_of(tokens.next().filter(|token| token.kind == SyntaxKind::Name)?);
     let value = tokens.find(|token| matches!(token.kind, SyntaxKind::Number | SyntaxKind::Name))?;
     let meaning = match value.kind {
-        SyntaxKind::Number => OptionValue::Number(rational(value.text)?),
+        SyntaxKind::Number => OptionValue::Number(value.text.parse().ok()?),
         _ => OptionValue::Name(SmolStr::new(value.text)),
     };
     Some(OptionDecl { name, value: meaning, value_span: value.span })
 }
 
 /// The numbers in `node`: whether each is negative, its magnitude, and where it stands with its sign.
-fn numbers(node: SyntaxNode<'_>) -> Vec<(bool, crate::rational::Rational, Span)> {
+fn numbers(node: SyntaxNode<'_>) -> Vec<(bool, Rational, Span)> {
     let mut found = Vec::new();
     let mut minus: Option<Span> = None;
     for token in node.own_tokens() {
         match token.kind {
             SyntaxKind::Minus => minus = Some(token.span),
             SyntaxKind::Number => {
-                if let Some(magnitude) = rational(token.text) {
+                if let Ok(magnitude) = token.text.parse() {
                     let span = minus.map_or(token.span, |sign| sign.cover(token.span));
                     found.push((minus.is_some(), magnitude, span));
                 }

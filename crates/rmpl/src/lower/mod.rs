@@ -4,13 +4,13 @@ pub(crate) mod bounds;
 mod declaration;
 mod statement;
 
+use exact::Rational;
 use smol_str::SmolStr;
 
 use crate::program::{
     ActivityDecl, ControlDecl, LocationDecl, Name, ObstacleDecl, PrimitiveDecl, ScenarioDecl, TerrainDecl,
     VariableDecl, VehicleDecl,
 };
-use crate::rational::Rational;
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken, is_dash};
 
@@ -84,18 +84,4 @@ fn name_of(token: SyntaxToken<'_>) -> Name {
 /// The names that stand directly in `node`, in textual order.
 fn names(node: SyntaxNode<'_>) -> impl Iterator<Item = Name> {
     node.own_tokens().filter(|token| token.kind == SyntaxKind::Name).map(name_of)
-}
-
-/// An unsigned number, exactly; `None` when it has too many digits.
-pub(crate) fn rational(text: &str) -> Option<Rational> {
-    let (whole, fraction) = text.split_once('.').unwrap_or((text, ""));
-    let mut numerator: i64 = 0;
-    for digit in whole.bytes().chain(fraction.bytes()) {
-        numerator = numerator.checked_mul(10)?.checked_add(i64::from(digit.wrapping_sub(b'0')))?;
-    }
-    if fraction.is_empty() {
-        return Some(Rational::from_integer(numerator));
-    }
-    let denominator = 10_i64.checked_pow(u32::try_from(fraction.len()).ok()?)?;
-    Some(Rational::new(numerator, denominator))
 }

@@ -1,14 +1,13 @@
 //! Statements and conditions.
 
+use exact::Rational;
 use smol_str::SmolStr;
 
+use super::bounds::bounds_in;
+use super::{Lowering, name_of};
 use crate::program::{Argument, ArgumentValue, Condition, LabelMode, Name, Statement, StatementKind};
-use crate::rational::Rational;
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode};
-
-use super::bounds::bounds_in;
-use super::{Lowering, name_of, rational};
 
 impl Lowering<'_> {
     /// A `{ … }`: the sequence or the parallel it contains.
@@ -131,8 +130,8 @@ fn argument(node: SyntaxNode<'_>) -> Option<Argument> {
     let negative = node.token(SyntaxKind::Minus).is_some();
     let token = node.own_tokens().find(|token| token.kind != SyntaxKind::Minus)?;
     let value = if token.kind == SyntaxKind::Number {
-        let magnitude = rational(token.text)?;
-        ArgumentValue::Number(if negative { -magnitude } else { magnitude })
+        let magnitude: Rational = token.text.parse().ok()?;
+        ArgumentValue::Number(if negative { magnitude.checked_neg()? } else { magnitude })
     } else {
         ArgumentValue::Name(SmolStr::new(token.text))
     };
@@ -168,6 +167,6 @@ fn condition(node: SyntaxNode<'_>) -> Option<Condition> {
 
 /// A number with its sign, in metres.
 pub(super) fn signed(negative: bool, magnitude: Rational) -> f64 {
-    let magnitude = *magnitude.numer() as f64 / *magnitude.denom() as f64;
+    let magnitude = magnitude.to_f64();
     if negative { -magnitude } else { magnitude }
 }

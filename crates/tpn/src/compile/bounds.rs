@@ -1,8 +1,8 @@
 //! Exact evaluation of the bounds of a program (SPEC 1.5); every overflow is an error, nothing is rounded.
 
-use num_traits::{CheckedAdd as _, CheckedDiv as _, CheckedMul as _, CheckedSub as _, Zero as _};
+use exact::{Bound, Time};
 use rmpl::program::{BinaryOp, Bounds, Expr, ExprKind};
-use rmpl::{Bound, Code, Diagnostic, Rational, Span};
+use rmpl::{Code, Diagnostic, Span};
 
 /// Bounds are not as SPEC 1.5 requires.
 pub(super) const E_BOUNDS: Code = Code("E-BOUNDS");
@@ -12,15 +12,15 @@ pub(super) const E_NAME: Code = Code("E-NAME");
 /// A least and a greatest duration: `0 ≤ lower ≤ upper`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Interval {
-    pub(super) lower: Rational,
+    pub(super) lower: Time,
     pub(super) upper: Bound,
 }
 
 impl Interval {
     /// No constraint but the order of the events.
-    pub(super) const ANY: Self = Self { lower: Rational::new_raw(0, 1), upper: Bound::Infinite };
+    pub(super) const ANY: Self = Self { lower: Time::ZERO, upper: Bound::Infinite };
     /// At the same time.
-    pub(super) const ZERO: Self = Self { lower: Rational::new_raw(0, 1), upper: Bound::ZERO };
+    pub(super) const ZERO: Self = Self { lower: Time::ZERO, upper: Bound::ZERO };
 
     /// What both allow, if there is anything.
     pub(super) fn intersect(self, other: Self) -> Option<Self> {
@@ -51,7 +51,7 @@ pub(super) fn checked_interval(lower: Bound, upper: Bound, span: Span) -> Result
         return Err(Diagnostic::error(E_BOUNDS, span, "the lower bound is infinite: nothing could ever end")
             .with_hint("only the upper bound may be `inf`"));
     };
-    if least < Rational::zero() {
+    if least.is_negative() {
         let message = format!("the lower bound {lower} is negative: an end cannot come before its start");
         return Err(Diagnostic::error(E_BOUNDS, span, message));
     }
@@ -78,7 +78,7 @@ pub(super) fn is_constant(bounds: &Bounds) -> bool {
 /// The value of `expr`.
 pub(super) fn value(expr: &Expr, lookup: &dyn Fn(&str) -> Option<Bound>) -> Result<Bound, Diagnostic> {
     match &expr.kind {
-        ExprKind::Number(number) => Ok(Bound::Finite(*number)),
+        ExprKind::Number(number) => Ok(Bound::Finite(Time::from_units(*number))),
         ExprKind::Infinity => Ok(Bound::Infinite),
         ExprKind::Name(name) => lookup(name).ok_or_else(|| {
             Diagnostic::error(E_NAME, expr.span, format!("`{name}` names no bound here")).with_hint(
@@ -87,8 +87,8 @@ pub(super) fn value(expr: &Expr, lookup: &dyn Fn(&str) -> Option<Bound>) -> Resu
             )
         }),
         ExprKind::Percent(inner) => {
-            let hundredth = Bound::Finite(Rational::new_raw(1, 100));
-            arithmetic(BinaryOp::Multiply, value(inner, lookup)?, hundredth, expr.span)
+            let hundred = Bound::Finite(Time::from(100));
+            arithmetic(BinaryOp::Divide, value(inner, lookup)?, hundred, expr.span)
         }
         ExprKind::Binary(op, left, right) => {
             arithmetic(*op, value(left, lookup)?, value(right, lookup)?, expr.span)
@@ -97,45 +97,11 @@ pub(super) fn value(expr: &Expr, lookup: &dyn Fn(&str) -> Option<Bound>) -> Resu
 }
 
 fn arithmetic(op: BinaryOp, left: Bound, right: Bound, span: Span) -> Result<Bound, Diagnostic> {
-    let error = |message: &str| Err(Diagnostic::error(E_BOUNDS, span, message));
-    let zero = Rational::zero();
-    match (left, right) {
-        (Bound::Finite(left), Bound::Finite(right)) => {
-            if op == BinaryOp::Divide && right.is_zero() {
-                return error("division by zero");
-            }
-            let exact = match op {
-                BinaryOp::Add => left.checked_add(&right),
-                BinaryOp::Subtract => left.checked_sub(&right),
-                BinaryOp::Multiply => left.checked_mul(&right),
-                BinaryOp::Divide => left.checked_div(&right),
-            };
-            exact.map_or_else(
-                || error("the exact value of this expression does not fit into 64 bits"),
-                |exact| Ok(Bound::Finite(exact)),
-            )
-        }
-        (Bound::Infinite, Bound::Finite(finite)) | (Bound::Finite(finite), Bound::Infinite)
-            if op == BinaryOp::Multiply =>
-        {
-            match finite.cmp(&zero) {
-                std::cmp::Ordering::Less => error("infinity times a negative number is no bound"),
-                std::cmp::Ordering::Equal => Ok(Bound::ZERO),
-                std::cmp::Ordering::Greater => Ok(Bound::Infinite),
-            }
-        }
-        (Bound::Infinite, Bound::Finite(finite)) if op == BinaryOp::Divide => {
-            if finite > zero {
-                Ok(Bound::Infinite)
-            } else {
-                error("infinity can only be divided by a positive number")
-            }
-        }
-        (Bound::Finite(_), Bound::Infinite) if op == BinaryOp::Divide => Ok(Bound::ZERO),
-        (Bound::Infinite, Bound::Infinite) if op == BinaryOp::Divide => {
-            error("infinity divided by infinity is no bound")
-        }
-        (_, Bound::Infinite) if op == BinaryOp::Subtract => error("subtracting infinity leaves no bound"),
-        _ => Ok(Bound::Infinite),
-    }
+    let value = match op {
+        BinaryOp::Add => left.plus(right),
+        BinaryOp::Subtract => left.minus(right),
+        BinaryOp::Multiply => left.times(right),
+        BinaryOp::Divide => left.over(right),
+    };
+    value.map_err(|error| Diagnostic::error(E_BOUNDS, span, error.to_string()))
 }

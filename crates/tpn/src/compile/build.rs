@@ -1,7 +1,8 @@
 //! The network while it grows: nodes, arcs reserved before their ends are known, and the last pass that links them.
 
+use exact::Time;
+use rmpl::Span;
 use rmpl::program::LabelMode;
-use rmpl::{Rational, Span};
 use smol_str::SmolStr;
 
 use super::bounds::Interval;
@@ -177,7 +178,7 @@ impl Builder {
         vocabulary: &Vocabulary<'_>,
         root: BlockId,
         (start, end): (NodeId, NodeId),
-        threat_gap: Rational,
+        threat_gap: Time,
     ) -> Network {
         self.drafts.sort_by_key(|draft| draft.arc);
         let facts: Vec<Fact> = self.drafts.iter().map(|draft| draft.fact.clone()).collect();

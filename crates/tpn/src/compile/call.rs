@@ -1,8 +1,9 @@
 //! Calls: instances of defined activities with their header bounds (SPEC 1.4), and primitives.
 
+use exact::Bound;
 use rmpl::diagnostics::recursion;
 use rmpl::program::{ActivityDecl, ArgumentValue, Bounds, HeaderBound, HeaderBounds, Name};
-use rmpl::{Bound, Diagnostic, Span};
+use rmpl::{Diagnostic, Span};
 use smol_str::SmolStr;
 
 use super::bounds::{self, Interval};

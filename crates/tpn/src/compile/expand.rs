@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use exact::{Bound, Time};
 use rmpl::program::{
     ActivityDecl, Bounds, LabelMode, PrimitiveDecl, Program, ScenarioDecl, Statement, StatementKind,
 };
-use rmpl::{Bound, Diagnostic, Rational, Span};
+use rmpl::{Diagnostic, Span};
 use smol_str::SmolStr;
 
 use super::bounds::{self, Interval};
@@ -127,7 +128,7 @@ impl<'program> Expander<'program> {
     pub(super) fn top_activity(
         &mut self,
         name: &SmolStr,
-        lower: Rational,
+        lower: Time,
         upper: Bound,
     ) -> Result<Root, Diagnostic> {
         let activity = self.activities.get(name.as_str()).copied();

@@ -15,10 +15,10 @@ mod statics;
 
 use std::collections::BTreeSet;
 
-use num_traits::Zero as _;
+use exact::{Bound, Time};
 use rmpl::diagnostics::recursion;
 use rmpl::program::{Program, ScenarioDecl};
-use rmpl::{Bound, Code, Diagnostic, Rational, Severity, Span};
+use rmpl::{Code, Diagnostic, Severity, Span};
 use smol_str::SmolStr;
 
 use crate::network::Network;
@@ -41,7 +41,7 @@ pub enum Top {
         /// Its name.
         name: SmolStr,
         /// The invocation's least duration.
-        lower: Rational,
+        lower: Time,
         /// The invocation's greatest duration.
         upper: Bound,
     },
@@ -50,7 +50,7 @@ pub enum Top {
 impl Top {
     /// The activity of this name, whatever it takes.
     pub fn activity(name: impl Into<SmolStr>) -> Self {
-        Self::Activity { name: name.into(), lower: Rational::zero(), upper: Bound::Infinite }
+        Self::Activity { name: name.into(), lower: Time::ZERO, upper: Bound::Infinite }
     }
 }
 

@@ -70,7 +70,7 @@ impl<'program> Vocabulary<'program> {
     ) -> Result<Fact, Diagnostic> {
         let text = |name: &SmolStr| match substitute(name) {
             Some(ArgumentValue::Name(argument)) => argument,
-            Some(ArgumentValue::Number(number)) => rmpl::rational::display(number).into(),
+            Some(ArgumentValue::Number(number)) => number.to_string().into(),
             None => name.clone(),
         };
         let negated = condition.negated;

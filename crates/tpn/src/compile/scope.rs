@@ -1,8 +1,8 @@
 //! What the names of an expanded body mean: the arguments and bound parameters of the activity instance around it.
 
+use exact::{Bound, Time};
 use rmpl::program::{Argument, ArgumentValue, Name};
-use rmpl::{Bound, rational};
-use smol_str::SmolStr;
+use smol_str::{SmolStr, format_smolstr};
 
 use crate::network::OccurrenceId;
 
@@ -42,7 +42,7 @@ impl Scope {
             return Some(*bound);
         }
         match self.argument(name) {
-            Some(ArgumentValue::Number(number)) => Some(Bound::Finite(number)),
+            Some(ArgumentValue::Number(number)) => Some(Bound::Finite(Time::from_units(number))),
             _ => None,
         }
     }
@@ -69,6 +69,6 @@ impl Scope {
 pub(super) fn argument_text(argument: &ArgumentValue) -> SmolStr {
     match argument {
         ArgumentValue::Name(name) => name.clone(),
-        ArgumentValue::Number(number) => rational::display(*number).into(),
+        ArgumentValue::Number(number) => format_smolstr!("{number}"),
     }
 }

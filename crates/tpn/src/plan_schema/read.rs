@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use exact::{Bound, Time};
 use rmpl::program::LabelMode;
-use rmpl::{Bound, Rational};
+use serde::Deserialize as _;
 use serde_json::{Map, Value};
 use smol_str::SmolStr;
 
@@ -12,7 +13,6 @@ use crate::network::{
     Arc, ArcId, ArcKind, Decision, DecisionId, EventEnd, EventRef, Label, LabelId, Network, Node, NodeId,
     Occurrence, OccurrenceId, OccurrenceKind, Role,
 };
-use crate::number::{bound_from_json, time_from_json};
 use crate::vocabulary::Vocabulary;
 
 /// Reads the network that `network-id` names.
@@ -60,7 +60,7 @@ struct Reader<'file> {
 }
 
 /// An interval that is being read.
-type Bounds = (Rational, Bound);
+type Bounds = (Time, Bound);
 
 impl<'file> Reader<'file> {
     fn new(objects: &'file Map<String, Value>) -> Self {
@@ -93,15 +93,15 @@ impl<'file> Reader<'file> {
     }
 
     /// What this program writes into the network object beside the standard keys: variables, and the threat gap.
-    fn read_declarations(&mut self, network: &str) -> Result<Rational, PlanSchemaError> {
+    fn read_declarations(&mut self, network: &str) -> Result<Time, PlanSchemaError> {
         let object = self.object(network, network)?;
         if let Some(variables) = object.get("variables")
             && let Ok(variables) = serde_json::from_value(variables.clone())
         {
             self.vocabulary = Vocabulary { is_complete: true, variables };
         }
-        let gap = object.get("threat-gap").and_then(time_from_json);
-        Ok(gap.unwrap_or(Rational::from_integer(1)))
+        let gap = object.get("threat-gap").and_then(|gap| Time::deserialize(gap).ok());
+        Ok(gap.unwrap_or(Time::ONE))
     }
 
     fn object(&self, from: &str, uid: &str) -> Result<&'file Value, PlanSchemaError> {
@@ -197,7 +197,7 @@ impl<'file> Reader<'file> {
         let arcs = self.out_arcs(uid)?;
         let carrier = self.before.get(uid).copied();
         if let Some(before) = carrier {
-            self.add_arc(before, node, ArcKind::Glue, (Rational::from_integer(0), Bound::ZERO), None);
+            self.add_arc(before, node, ArcKind::Glue, (Time::ZERO, Bound::ZERO), None);
         }
         let decision = (kind(object) == "c-begin" && !arcs.is_empty()).then(|| {
             self.nodes[node.index()].decision = Some(DecisionId::from_index(self.decisions.len()));
@@ -250,8 +250,7 @@ impl<'file> Reader<'file> {
     ) -> Result<ArcId, PlanSchemaError> {
         let object = self.object(from_uid, uid)?;
         let to_uid = self.reference(uid, "end-node")?;
-        let (zero, any) =
-            ((Rational::from_integer(0), Bound::ZERO), (Rational::from_integer(0), Bound::Infinite));
+        let (zero, any) = ((Time::ZERO, Bound::ZERO), (Time::ZERO, Bound::Infinite));
         let to_kind = kind(self.object(uid, &to_uid)?).to_owned();
         let is_null = kind(object) == "null-activity";
         let is_guard = is_null && object.get("conditions").is_some();
@@ -315,11 +314,9 @@ impl<'file> Reader<'file> {
             |problem: &str| PlanSchemaError::Bounds { uid: uid.to_owned(), problem: problem.to_owned() };
         let value = object.get("value").and_then(Value::as_array).map(Vec::as_slice);
         let Some([lower, upper]) = value else { return Err(error("`value` is not a pair of bounds")) };
-        let lower = bound_from_json(lower)
-            .and_then(Bound::finite)
-            .ok_or_else(|| error("the lower bound is no time"))?;
-        let upper = bound_from_json(upper).ok_or_else(|| error("the upper bound is no time"))?;
-        if lower < Rational::from_integer(0) || Bound::Finite(lower) > upper {
+        let lower = Time::deserialize(lower).map_err(|_| error("the lower bound is no time"))?;
+        let upper = Bound::deserialize(upper).map_err(|_| error("the upper bound is no time"))?;
+        if lower.is_negative() || Bound::Finite(lower) > upper {
             return Err(error("a duration is at least 0, and its lower bound not above its upper one"));
         }
         Ok(Some(((lower, upper), self.reference(uid, "end-node")?)))

@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use rmpl::Bound;
+use exact::Bound;
 use rmpl::program::LabelMode;
 use serde_json::{Map, Value, json};
 
 use crate::network::{ArcId, ArcKind, BlockKind, Network, NodeId};
-use crate::number::time_to_json;
 
 /// Writes `network` in plan-schema JSON.
 ///
@@ -22,7 +21,7 @@ pub fn write(network: &Network) -> Value {
         "begin-node": writer.begin_uid(network.start),
         "end-node": end_uid(network.end),
         "variables": network.variables,
-        "threat-gap": time_to_json(network.threat_gap),
+        "threat-gap": network.threat_gap,
     });
     for index in 0..network.nodes.len() {
         writer.node(NodeId::from_index(index));
@@ -82,7 +81,7 @@ impl Writer<'_> {
 
     fn arc(&mut self, id: ArcId) {
         let arc = &self.network.arcs[id.index()];
-        let bounds = json!([time_to_json(arc.lower), upper(arc.upper)]);
+        let bounds = json!([arc.lower, upper(arc.upper)]);
         let constraint_uid = format!("tc-{}", id.0);
         if is_span(arc.kind) {
             let mut constraint = json!({
@@ -199,7 +198,7 @@ fn is_span(kind: ArcKind) -> bool {
 }
 
 fn upper(bound: Bound) -> Value {
-    bound.finite().map_or_else(|| "Infinity".into(), time_to_json)
+    bound.finite().map_or_else(|| "Infinity".into(), |time| json!(time))
 }
 
 fn block_ends(network: &Network) -> BTreeMap<NodeId, NodeId> {

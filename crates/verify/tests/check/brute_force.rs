@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use rmpl::Bound;
+use exact::Bound;
 use rmpl::program::LabelMode;
 use tpn::{Label, LabelId, Network, NodeId, Plan, ValueSet, Window};
 

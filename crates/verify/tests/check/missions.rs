@@ -1,6 +1,6 @@
 //! Networks from texts, and plans of them written out by hand. Nothing here plans.
 
-use rmpl::{Bound, Rational};
+use exact::{Bound, Time};
 use tpn::plan_json::Names;
 use tpn::{CausalLink, Choice, DecisionId, LabelId, Network, NodeId, Ordering, Plan, Top, Window};
 
@@ -84,7 +84,7 @@ pub fn closure(network: &Network, choices: &[Choice]) -> (Vec<bool>, Vec<bool>) 
 pub struct Constraint {
     pub from: NodeId,
     pub to: NodeId,
-    pub lower: Rational,
+    pub lower: Time,
     pub upper: Bound,
 }
 
@@ -95,7 +95,7 @@ pub fn constraints(network: &Network, plan: &Plan) -> Vec<Constraint> {
         found.push(Constraint { from: arc.from, to: arc.to, lower: arc.lower, upper: arc.upper });
     }
     let arc = |label: LabelId| &network.arcs[network.labels[label.index()].arc.index()];
-    let mut at_least = |from: NodeId, to: NodeId, lower: Rational| {
+    let mut at_least = |from: NodeId, to: NodeId, lower: Time| {
         found.push(Constraint { from, to, lower, upper: Bound::Infinite });
     };
     for link in &plan.causal_links {
@@ -111,8 +111,8 @@ pub fn constraints(network: &Network, plan: &Plan) -> Vec<Constraint> {
 /// The windows of the selected nodes by Floyd and Warshall's algorithm; none where the constraints contradict.
 pub fn windows(network: &Network, plan: &Plan) -> Vec<Option<Window>> {
     let count = network.nodes.len();
-    let mut distance: Vec<Vec<Option<Rational>>> = vec![vec![None; count]; count];
-    let shorten = |entry: &mut Option<Rational>, through: Rational| {
+    let mut distance: Vec<Vec<Option<Time>>> = vec![vec![None; count]; count];
+    let shorten = |entry: &mut Option<Time>, through: Time| {
         *entry = Some(entry.map_or(through, |known| known.min(through)));
     };
     for (node, row) in distance.iter_mut().enumerate() {
@@ -120,7 +120,7 @@ pub fn windows(network: &Network, plan: &Plan) -> Vec<Option<Window>> {
     }
     for constraint in constraints(network, plan) {
         let (from, to) = (constraint.from.index(), constraint.to.index());
-        shorten(&mut distance[to][from], -constraint.lower);
+        shorten(&mut distance[to][from], constraint.lower.checked_neg().expect("a small time"));
         if let Bound::Finite(upper) = constraint.upper {
             shorten(&mut distance[from][to], upper);
         }
@@ -129,7 +129,8 @@ pub fn windows(network: &Network, plan: &Plan) -> Vec<Option<Window>> {
         for from in 0..count {
             for to in 0..count {
                 if let (Some(there), Some(on)) = (distance[from][middle], distance[middle][to]) {
-                    shorten(&mut distance[from][to], there + on);
+                    let through = there.checked_add(on).expect("a small time");
+                    shorten(&mut distance[from][to], through);
                 }
             }
         }
@@ -137,7 +138,7 @@ pub fn windows(network: &Network, plan: &Plan) -> Vec<Option<Window>> {
     let is_consistent = (0..count).all(|node| distance[node][node] == Some(time(0)));
     let start = network.start.index();
     let window = |node: usize| {
-        let earliest = -distance[node][start]?;
+        let earliest = distance[node][start]?.checked_neg()?;
         let latest = distance[start][node].map_or(Bound::Infinite, Bound::Finite);
         (is_consistent && plan.selected_nodes[node]).then_some(Window { earliest, latest })
     };
@@ -145,12 +146,12 @@ pub fn windows(network: &Network, plan: &Plan) -> Vec<Option<Window>> {
 }
 
 /// A whole number of time units.
-pub fn time(units: i64) -> Rational {
-    Rational::from_integer(units)
+pub fn time(units: i64) -> Time {
+    Time::from(units)
 }
 
 /// A time that must be a whole number of units.
-pub fn units(time: Rational) -> i64 {
+pub fn units(time: Time) -> i64 {
     assert!(time.is_integer(), "{time} is not whole");
-    time.to_integer()
+    time.numerator()
 }

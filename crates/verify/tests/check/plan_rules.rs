@@ -1,6 +1,6 @@
 //! Each rule of the check of plans (SPEC 5.5): a plan that keeps it, and what is said of plans that break it.
 
-use rmpl::{Bound, Rational};
+use exact::{Bound, Time};
 use serde_json::json;
 use tpn::plan_json::{PlanError, plan_from_json, plan_to_json};
 use tpn::{CausalLink, Choice, DecisionId, LabelId, Network, NodeId, Ordering, Plan, Window};
@@ -441,7 +441,7 @@ fn intervals_may_touch_and_instants_only_without_a_gap() {
 
 #[test]
 fn an_added_ordering_keeps_the_gap_of_the_mission() {
-    for (gap, earliest) in [("0", time(4)), ("1", time(5)), ("2.5", Rational::new(13, 2))] {
+    for (gap, earliest) in [("0", time(4)), ("1", time(5)), ("2.5", Time::new(13, 2).expect("a fraction"))] {
         let network = network(&format!("option threat_gap = {gap}; {TEXT}"));
         let good = plan(&network, GOOD);
         assert_eq!(violations(&network, &good), []);
@@ -455,13 +455,16 @@ fn every_window_is_checked_at_both_sides() {
     let (network, good) = good();
     for node in 0..network.nodes.len() {
         let Some(window) = good.windows[node] else { continue };
-        let third = Rational::new(1, 3);
+        let moved = |time: Time, thirds: i64| {
+            let moved = Time::new(thirds, 3).and_then(|thirds| time.checked_add(thirds));
+            moved.expect("a small time")
+        };
         let Bound::Finite(latest) = window.latest else { panic!("the horizon bounds every event") };
         let wrong_windows = [
-            Window { earliest: window.earliest - third, ..window },
-            Window { earliest: window.earliest + third, ..window },
-            Window { latest: Bound::Finite(latest - third), ..window },
-            Window { latest: Bound::Finite(latest + third), ..window },
+            Window { earliest: moved(window.earliest, -1), ..window },
+            Window { earliest: moved(window.earliest, 1), ..window },
+            Window { latest: Bound::Finite(moved(latest, -1)), ..window },
+            Window { latest: Bound::Finite(moved(latest, 1)), ..window },
             Window { latest: Bound::Infinite, ..window },
         ];
         let name = network.nodes[node].events.first().map(|&event| network.event_name(event));
@@ -501,7 +504,7 @@ fn bounds_that_cannot_be_checked_exactly_are_refused() {
     for (arc, prime) in
         [999_999_937, 999_999_929, 999_999_893, 999_999_883, 999_999_797].into_iter().enumerate()
     {
-        network.arcs[arc].lower = Rational::new(1, prime);
+        network.arcs[arc].lower = Time::new(1, prime).expect("a fraction");
     }
     only(&violations(&network, &plan), Rule::Form, &[], "too large");
 }

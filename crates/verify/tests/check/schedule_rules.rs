@@ -1,6 +1,6 @@
 //! Each rule of the check of schedules (SPEC 5.5): times that keep it, and what is said of times that break it.
 
-use rmpl::Rational;
+use exact::Time;
 use tpn::{Network, Plan};
 use verify::{Rule, Violation, check_schedule, earliest_schedule};
 
@@ -165,7 +165,7 @@ fn instants(gap: i64, at: i64, [from, to]: [i64; 2], other: i64) -> Vec<Violatio
     );
     let network = network(&text);
     let plan = plan(&network, Sketch::default());
-    let mut times: Vec<Option<Rational>> = vec![Some(time(0)); network.nodes.len()];
+    let mut times: Vec<Option<Time>> = vec![Some(time(0)); network.nodes.len()];
     for (name, units) in [
         ("delay#1.end", at),
         ("Tell(c)#1.start", at),

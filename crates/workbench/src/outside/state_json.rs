@@ -207,7 +207,7 @@ fn execution_json(state: &AppState) -> Value {
         "waitedFor": names(&moment.to_come),
         "deadline": moment.deadline.map(|(event, latest)| json!({
             "event": network.event_name(event),
-            "time": tpn::number::time_to_json(latest),
+            "time": latest,
         })),
         "disturbances": state.execution.disturbances(),
         "log": log,

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
+use exact::Time;
 use executive::PinnedPlan;
 use mission::{Planning, Snapshot};
-use rmpl::Rational;
 use tpn::{Network, NodeId, OccurrenceKind, Plan};
 
 use crate::state::selection::node_name;
@@ -15,11 +15,11 @@ pub enum PinCommand {
     /// Takes hold of an event of the plan.
     Grab(NodeId),
     /// Moves the event that is held to a time, as far as its window goes.
-    MoveTo(Rational),
+    MoveTo(Time),
     /// Lets go of it; it stays where it was moved to.
     Drop,
     /// Pins an event to a time, as far as its window goes.
-    Pin(NodeId, Rational),
+    Pin(NodeId, Time),
     /// Takes away the pin of an event.
     Release(NodeId),
     /// Takes away all pins.
@@ -50,7 +50,7 @@ impl Pins {
     }
 
     /// The pinned events and their times.
-    pub fn all(&self) -> Vec<(NodeId, Rational)> {
+    pub fn all(&self) -> Vec<(NodeId, Time)> {
         self.pinned.as_ref().map(|pinned| pinned.pins().collect()).unwrap_or_default()
     }
 

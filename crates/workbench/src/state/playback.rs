@@ -1,6 +1,6 @@
 //! The time that timeline, map and network show, and how it runs.
 
-use rmpl::{Bound, Rational};
+use exact::{Bound, Time};
 use tpn::Plan;
 
 /// A moment of the plan, in mission time units from its start.
@@ -62,11 +62,11 @@ impl Playback {
 }
 
 /// A rational as a float, for drawing only.
-pub fn number(value: Rational) -> f64 {
-    *value.numer() as f64 / *value.denom() as f64
+pub fn number(value: Time) -> f64 {
+    value.to_f64()
 }
 
 /// A bound as a float, for drawing only.
 pub fn bound(value: Bound) -> f64 {
-    value.finite().map_or(f64::INFINITY, number)
+    value.to_f64()
 }

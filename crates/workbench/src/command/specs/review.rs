@@ -114,7 +114,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
             let node = network.and_then(|network| event_by_name(network, name));
             let node = node.ok_or_else(|| format!("there is no event \"{name}\""))?;
             // Pins are resolved to a tenth of a unit at least; thousandths are finer than any drag.
-            let time = rmpl::Rational::new((time * 1000.0).round() as i64, 1000);
+            let time = exact::Time::from_f64_nearest(time, 1000).ok_or("that is no time")?;
             Ok(Command::Pins(PinCommand::Pin(node, time)))
         }),
         with_plan,

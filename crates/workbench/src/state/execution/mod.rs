@@ -8,9 +8,9 @@ mod moment;
 
 use std::sync::Arc;
 
+use exact::{Rational, Time};
 use executive::{Disturbance, Entry, Script};
 use mission::{Execution, Request, Response, Snapshot, Update};
-use rmpl::Rational;
 use serde_json::{Value, json};
 
 use super::terrain::Tool;
@@ -66,7 +66,7 @@ pub enum ExecutionCommand {
         /// The share of its traverse's greatest speed that is left, from 0 to 1.
         factor: Rational,
         /// For how long, in mission units.
-        duration: Rational,
+        duration: Time,
     },
     /// A disturbance, by its place in the script, did not happen.
     TakeBack(usize),
@@ -268,7 +268,8 @@ impl AppState {
             }
             ExecutionCommand::SlowDown { vehicle, factor, duration } => {
                 let from = self.settle_time();
-                self.disturb(Disturbance::VehicleSlow { vehicle, factor, from, until: from + duration });
+                let until = from.checked_add(duration).unwrap_or(from);
+                self.disturb(Disturbance::VehicleSlow { vehicle, factor, from, until });
             }
             ExecutionCommand::TakeBack(index) => {
                 if index < self.execution.script.disturbances.len() {
@@ -287,7 +288,7 @@ impl AppState {
     }
 
     /// The time shown as an exact one, to which the clock is set: rounded up, so that nothing shown is in the future.
-    fn settle_time(&mut self) -> Rational {
+    fn settle_time(&mut self) -> Time {
         let time = exact_time(self.playback.time);
         self.playback.seek(playback::number(time));
         time
@@ -340,12 +341,12 @@ impl AppState {
 }
 
 /// A time of the clock as an exact time, not before it.
-pub fn exact_time(time: f64) -> Rational {
-    Rational::new((time * 1000.0 - 1e-6).ceil() as i64, 1000)
+pub fn exact_time(time: f64) -> Time {
+    Time::from_f64_up(time - 1e-9, 1000).unwrap_or_default()
 }
 
 /// Whether `at` is not after the time shown.
-pub fn has_come(at: Rational, time: f64) -> bool {
+pub fn has_come(at: Time, time: f64) -> bool {
     playback::number(at) <= time + 1e-9
 }
 
@@ -355,7 +356,7 @@ pub fn disturbance_text(disturbance: &Disturbance) -> String {
     match disturbance {
         Disturbance::Duration { activity, duration } => format!("{activity} takes {}", time(*duration)),
         Disturbance::Slow { activity, factor } => {
-            format!("{activity} drives at {} of its speed", time(*factor))
+            format!("{activity} drives at {factor} of its speed")
         }
         Disturbance::Fault { activity, step, component, mode } => {
             format!("{component} comes into {mode} in step {step} of {activity}")
@@ -366,11 +367,11 @@ pub fn disturbance_text(disturbance: &Disturbance) -> String {
                 time(*at)
             )
         }
-        Disturbance::VehicleSlow { vehicle, factor, from, until } if *factor == Rational::default() => {
+        Disturbance::VehicleSlow { vehicle, factor, from, until } if factor.is_zero() => {
             format!("{vehicle} stands from {} to {}", time(*from), time(*until))
         }
         Disturbance::VehicleSlow { vehicle, factor, from, until } => {
-            let (factor, from, until) = (time(*factor), time(*from), time(*until));
+            let (from, until) = (time(*from), time(*until));
             format!("{vehicle} drives at {factor} of its speed from {from} to {until}")
         }
         Disturbance::Withdrawn { condition, at } => format!("{condition} is withdrawn at {}", time(*at)),

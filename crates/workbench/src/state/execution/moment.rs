@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
+use exact::{Bound, Time};
 use executive::{Observations, Progress};
 use kirk::{Outcome, Stats, Status};
 use mission::{Executed, Planning, Snapshot};
-use rmpl::{Bound, Rational};
 use tpn::{EventEnd, EventRef, Network, NodeId, OccurrenceId, OccurrenceKind, Plan, Window};
 
 use super::has_come;
@@ -22,7 +22,7 @@ pub struct Moment {
     /// Activities and conditions that have not begun, those that may begin first in front.
     pub to_come: Vec<Pending>,
     /// The event that must happen first, and by when.
-    pub deadline: Option<(EventRef, Rational)>,
+    pub deadline: Option<(EventRef, Time)>,
 }
 
 /// Something that is to begin or to end.
@@ -31,7 +31,7 @@ pub struct Pending {
     /// What.
     pub occurrence: OccurrenceId,
     /// When it began, if it has.
-    pub since: Option<Rational>,
+    pub since: Option<Time>,
     /// When it can begin, or end if it has begun.
     pub window: Window,
 }
@@ -104,7 +104,7 @@ fn moment(network: &Network, executed: &Executed, windows: &[Option<Window>], ti
             continue;
         }
         // A condition that was withdrawn before it came is over as soon as it would have begun: nobody waits for it.
-        let is_gone = |arc: &tpn::Arc| arc.upper == Bound::Finite(Rational::default());
+        let is_gone = |arc: &tpn::Arc| arc.upper == Bound::Finite(Time::ZERO);
         let arc = occurrence.arc.and_then(|arc| network.arcs.get(arc.index()));
         if !is_activity && arc.is_some_and(is_gone) {
             continue;

@@ -1,7 +1,6 @@
 //! The steps of a search in words.
 
 use kirk::{Constraint, CycleMember, Event, TreeChoice};
-use rmpl::Bound;
 use tpn::{LabelId, Network};
 
 use crate::state::selection::{alternative_text, node_name};
@@ -32,14 +31,16 @@ pub fn event(network: &Network, event: &Event) -> String {
         Event::AddArc { arc } => {
             let Some(arc) = network.arcs.get(arc.index()) else { return String::new() };
             let (from, to) = (node_name(network, arc.from), node_name(network, arc.to));
-            format!("Add {from} → {to} [{}, {}].", Bound::Finite(arc.lower), arc.upper)
+            format!("Add {from} → {to} [{}, {}].", arc.lower, arc.upper)
         }
         Event::Propagate { moved: 0 } => "Propagate: nothing has to move.".to_owned(),
         Event::Propagate { moved: 1 } => "Propagate: one event moves.".to_owned(),
         Event::Propagate { moved } => format!("Propagate: {moved} events move."),
         Event::Inconsistent { cycle } => {
-            let total: rmpl::Rational = cycle.iter().map(|member| member.weight).sum();
-            format!("Dead end: a negative cycle of {}.", Bound::Finite(total))
+            match exact::Time::checked_sum(cycle.iter().map(|member| member.weight)) {
+                Some(total) => format!("Dead end: a negative cycle of {total}."),
+                None => "Dead end: a negative cycle.".to_owned(),
+            }
         }
         Event::Unclosable { ask } => format!("Dead end: nothing can carry {}.", label(*ask)),
         Event::TryLink { link } => format!("Let {} carry {}.", label(link.tell), label(link.ask)),
@@ -69,5 +70,5 @@ pub fn cycle_step(network: &Network, member: &CycleMember) -> String {
         Constraint::Link(_) => "causal link",
         Constraint::Order(_) => "ordering",
     };
-    format!("{from} → {to}: {} ({why})", Bound::Finite(member.weight))
+    format!("{from} → {to}: {} ({why})", member.weight)
 }
