@@ -64,3 +64,51 @@ fn parts_of_many_runs_add_up_to_the_whole() {
     let twice = enroute(&["robustness", "--merge", names[0], names[0]]);
     assert_eq!(twice.status.code(), Some(2), "a part that is there twice is refused");
 }
+
+#[test]
+fn a_duration_near_the_greatest_number_never_comes_to_an_end_before_it_began() {
+    let simulate = |program: &str, duration: &str| {
+        let mission = file("huge.rmpl", program);
+        let script = format!(
+            r#"{{"disturbances": [{{"kind": "duration", "activity": "Dig#1", "duration": {duration}}}]}}"#
+        );
+        enroute(&["simulate", &mission, "--disturb", &file("huge.json", &script)])
+    };
+    // From the start it still fits, and is later than the plan allows.
+    let early = simulate(
+        "primitive Dig()[1,20]; primitive Pack()[1,5]; scenario S[0,100] = { Dig(); Pack() }",
+        "9223372036854775800",
+    );
+    assert_eq!(early.status.code(), Some(1), "{early:?}");
+    assert!(text(&early).contains("VIOLATION  Dig#1.end had to come by 20 and did not"), "{early:?}");
+    // From 415 it does not: an error that names the event.
+    let late = simulate(
+        "primitive Dig()[1,20]; primitive Pack()[1,5]; scenario S[0,900] = { delay[415,415]; Dig(); Pack() }",
+        "9223372036854775800",
+    );
+    assert_eq!(late.status.code(), Some(2), "{late:?}");
+    let message = String::from_utf8_lossy(&late.stderr).into_owned();
+    assert!(message.contains("Dig#1.end would come at a time that does not fit into 64 bits"), "{message}");
+    // One more does not fit by itself.
+    let beyond = simulate("primitive Dig()[1,20]; scenario S[0,100] = { Dig() }", "9223372036854775808");
+    assert_eq!(beyond.status.code(), Some(2), "{beyond:?}");
+    assert!(String::from_utf8_lossy(&beyond.stderr).contains("does not fit into 64 bits"), "{beyond:?}");
+}
+
+#[test]
+fn disturbances_that_mean_nothing_are_refused_where_they_are_read() {
+    let mission = file("dig.rmpl", "primitive Dig()[1,20]; scenario S[0,100] = { Dig(); c [5,5] }");
+    for (disturbance, reason) in [
+        (r#"{"kind": "duration", "activity": "Dig#1", "duration": -1}"#, "a duration is not negative"),
+        (r#"{"kind": "duration", "activity": "Dig#1", "duration": "soon"}"#, "`soon` is no number"),
+        (r#"{"kind": "slow", "activity": "Dig#1", "factor": 0}"#, "above 0 and at most 1"),
+        (r#"{"kind": "late", "condition": "Tell(c)#1", "at": "-1/2"}"#, "before the mission starts"),
+        (r#"{"kind": "obstacle", "at": 0, "x": 1, "y": 1, "radius": 0}"#, "a radius above 0"),
+    ] {
+        let script = file("nothing.json", &format!(r#"{{"disturbances": [{disturbance}]}}"#));
+        let output = enroute(&["simulate", &mission, "--disturb", &script]);
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(message.contains(reason), "{message}");
+    }
+}

@@ -4,7 +4,8 @@
 use std::collections::BTreeMap;
 
 use exact::{Overflow, Rational, Time};
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
 use smol_str::SmolStr;
 use tpn::{Network, Occurrence, OccurrenceKind};
 
@@ -87,6 +88,33 @@ impl Disturbance {
         }
     }
 
+    /// What is wrong with its numbers, if something is: times and durations are not negative, and shares are shares.
+    pub fn problem(&self) -> Option<&'static str> {
+        let is_share = |share: Rational| !share.is_negative() && share <= Rational::ONE;
+        match self {
+            Self::Duration { duration, .. } if duration.is_negative() => Some("a duration is not negative"),
+            Self::Slow { factor, .. } if !is_share(*factor) || factor.is_zero() => {
+                Some("the share of the greatest speed is above 0 and at most 1")
+            }
+            Self::VehicleSlow { factor, .. } if !is_share(*factor) => {
+                Some("the share of the greatest speed is from 0 to 1")
+            }
+            Self::VehicleSlow { from, until, .. } if from > until => {
+                Some("it is over before it begins: `until` is less than `from`")
+            }
+            Self::Withdrawn { at, .. }
+            | Self::Late { at, .. }
+            | Self::Obstacle { at, .. }
+            | Self::VehicleSlow { from: at, .. }
+                if at.is_negative() =>
+            {
+                Some("nothing happens before the mission starts, at 0")
+            }
+            Self::Obstacle { radius, .. } if *radius <= 0.0 => Some("an obstacle has a radius above 0"),
+            _ => None,
+        }
+    }
+
     /// The vehicle that it is about, if it is about one.
     pub const fn vehicle(&self) -> Option<&SmolStr> {
         match self {
@@ -101,7 +129,19 @@ impl Disturbance {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Script {
     /// In any order; of two of a kind about one thing the later counts.
+    #[serde(deserialize_with = "sound")]
     pub disturbances: Vec<Disturbance>,
+}
+
+/// Reads disturbances and refuses those that mean nothing.
+fn sound<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Disturbance>, D::Error> {
+    let disturbances = Vec::<Disturbance>::deserialize(deserializer)?;
+    for (disturbance, number) in disturbances.iter().zip(1..) {
+        if let Some(problem) = disturbance.problem() {
+            return Err(D::Error::custom(format!("disturbance {number}: {problem}")));
+        }
+    }
+    Ok(disturbances)
 }
 
 /// The world of one run.

@@ -20,7 +20,7 @@ fn plan_of(network: &Network) -> Plan {
     let mut earliest = vec![Time::ZERO; network.nodes.len()];
     for _ in &network.nodes {
         for arc in &network.arcs {
-            let reached = earliest[arc.from.index()] + arc.lower;
+            let reached = earliest[arc.from.index()].checked_add(arc.lower).expect("a small time");
             earliest[arc.to.index()] = earliest[arc.to.index()].max(reached);
         }
     }
