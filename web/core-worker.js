@@ -6,8 +6,9 @@ let superseded = null;
 let panicMessage = null;
 
 // What the core calls while it works.
-const surroundings = {
+const host = {
   isSuperseded: () => superseded !== null && Atomics.load(superseded, 0) !== 0,
+  alive: () => self.postMessage({ kind: "alive" }),
   answer: (bytes) => self.postMessage({ kind: "answer", payload: bytes }, [bytes.buffer]),
 };
 
@@ -25,7 +26,7 @@ function fail(error) {
 // Requests that arrive before the module is there wait for it, in order.
 const started = init().then(() => {
   self.postMessage({ kind: "ready" });
-  return new PlanningCore(surroundings);
+  return new PlanningCore(host);
 });
 started.catch(fail);
 

@@ -1,44 +1,38 @@
 // The planning core in a web worker, as the front end sees it. When to send and when to give up is decided there.
 
-// How long the core may go on with a text that was replaced: where it can look whether it was, and where it cannot.
+// How long the core may go on with a job that is not wanted: where it can look whether it is, and where it cannot.
 const PATIENCE_MILLIS = { looking: 2000, blind: 300 };
 
 /**
- * Starts a core. `tell(kind, payload)` hears "ready", "answer" with bytes, "finished", "overdue", and "failed" with
- * what is known about it; after "failed" nothing more comes.
+ * Starts a core. `tell(kind, payload)` hears "ready", "alive", "answer" with bytes, "finished", and "failed" with what
+ * is known about it; after "failed" nothing more comes.
  */
 export function startCore(tell) {
   const worker = new Worker(new URL("core-worker.js", import.meta.url), { type: "module", name: "planning core" });
   // Shared memory needs a page that is isolated from others; without it a core is stopped instead of asked to stop.
   const superseded = globalThis.crossOriginIsolated ? new Int32Array(new SharedArrayBuffer(4)) : null;
-  let overdue;
 
-  worker.onmessage = ({ data: { kind, payload } }) => {
-    if (kind === "finished" || kind === "failed") clearTimeout(overdue);
-    tell(kind, payload);
-  };
+  worker.onmessage = ({ data: { kind, payload } }) => tell(kind, payload);
   worker.onerror = (event) => {
     event.preventDefault();
-    clearTimeout(overdue);
     tell("failed", event.message || "the planning core could not be loaded");
   };
   worker.postMessage({ superseded });
 
   return {
+    /** How long the core may go on after `supersede()`. */
+    patienceMillis: superseded ? PATIENCE_MILLIS.looking : PATIENCE_MILLIS.blind,
     /** Hands a request over; the bytes are the core's from here on. */
     send(bytes) {
       if (superseded) Atomics.store(superseded, 0, 0);
       worker.postMessage({ request: bytes }, [bytes.buffer]);
     },
-    /** Says that the request under way is not wanted any more; "overdue" follows if it does not end soon. */
+    /** Says that the request under way is not wanted any more. */
     supersede() {
       if (superseded) Atomics.store(superseded, 0, 1);
-      clearTimeout(overdue);
-      overdue = setTimeout(() => tell("overdue"), superseded ? PATIENCE_MILLIS.looking : PATIENCE_MILLIS.blind);
     },
     /** Ends it at once, whatever it does. */
     stop() {
-      clearTimeout(overdue);
       worker.onmessage = null;
       worker.onerror = null;
       worker.terminate();

@@ -14,22 +14,19 @@ use std::{
         mpsc::{Receiver, Sender, channel},
     },
     thread,
-    time::{Instant, SystemTime},
+    time::{Duration, Instant, SystemTime},
 };
 
 use egui::Context;
 use etcetera::BaseStrategy as _;
-use mission::{Core, Request, Response, Surroundings};
-use workbench::core_queue::{CoreQueue, revision};
+use mission::{Core, CoreHost, Job, Link, LinkEvent, Request, Response, Transport};
 use workbench::host::{FileKind, Host, HostEvent, StorageError};
 
 /// A window's surroundings.
 pub struct NativeHost {
-    queue: CoreQueue,
-    to_core: Sender<Request>,
+    link: Link<CoreThreads>,
     from_outside: Receiver<News>,
     outside: Sender<News>,
-    superseded: Arc<AtomicBool>,
     wake: Context,
     folder: Option<PathBuf>,
     begun: Instant,
@@ -37,11 +34,26 @@ pub struct NativeHost {
 
 /// What threads tell the window.
 enum News {
-    Answer(Response),
-    Finished,
-    Stopped(String),
+    /// What a core says, by its number.
+    Core(u32, mission::News),
     Happened(HostEvent),
 }
+
+/// Starts threads with a core each, one at a time. A thread cannot be ended: one that is not wanted any more is told so,
+/// and is not listened to.
+struct CoreThreads {
+    running: Option<CoreThread>,
+    outside: Sender<News>,
+    wake: Context,
+}
+
+struct CoreThread {
+    requests: Sender<Request>,
+    superseded: Arc<AtomicBool>,
+}
+
+/// A core that was interrupted has so long to look up from its work before another one takes over.
+const PATIENCE_SECS: f64 = 10.0;
 
 impl NativeHost {
     /// Starts the core; `wake` is asked for a frame whenever there is news.
@@ -57,28 +69,15 @@ impl NativeHost {
 
     fn start_in(wake: Context, folder: Option<PathBuf>) -> Self {
         let (outside, from_outside) = channel();
-        let superseded = Arc::new(AtomicBool::new(false));
-        let to_core = start_core(outside.clone(), Arc::clone(&superseded), wake.clone());
-        Self {
-            queue: CoreQueue::default(),
-            to_core,
-            from_outside,
-            outside,
-            superseded,
-            wake,
-            folder,
-            begun: Instant::now(),
-        }
+        let threads = CoreThreads { running: None, outside: outside.clone(), wake: wake.clone() };
+        Self { link: Link::start(threads, 0.0), from_outside, outside, wake, folder, begun: Instant::now() }
     }
 
-    /// Sends what can be sent, and lets the core know whether it works in vain.
-    fn push_on(&mut self) {
-        if let Some(request) = self.queue.start_next() {
-            self.superseded.store(false, Ordering::Relaxed);
-            // The core's thread ends only when this sender is dropped.
-            let _ = self.to_core.send(request.clone());
-        } else if self.queue.is_superseded() {
-            self.superseded.store(true, Ordering::Relaxed);
+    /// Asks for a frame when the link has something to do by itself.
+    fn wake_when_due(&self) {
+        if let Some(due_secs) = self.link.due_secs() {
+            let wait_secs = (due_secs - self.monotonic_secs()).max(0.0);
+            self.wake.request_repaint_after(Duration::from_secs_f64(wait_secs));
         }
     }
 
@@ -127,29 +126,28 @@ impl Background {
 
 impl Host for NativeHost {
     fn post(&mut self, request: Request) {
-        self.queue.post(request);
-        self.push_on();
+        self.link.tick(self.begun.elapsed().as_secs_f64());
+        self.link.post(request);
+        self.wake_when_due();
     }
 
     fn poll(&mut self) -> Option<HostEvent> {
-        while let Ok(news) = self.from_outside.try_recv() {
-            match news {
-                News::Answer(response) => return Some(HostEvent::Answer(response)),
-                News::Happened(event) => return Some(event),
-                News::Finished => {
-                    self.queue.finished();
-                    self.push_on();
+        loop {
+            self.link.tick(self.begun.elapsed().as_secs_f64());
+            match self.link.next_event() {
+                Some(LinkEvent::Answer { response, .. }) => return Some(HostEvent::Answer(response)),
+                Some(LinkEvent::Failed { revision, message, .. }) => {
+                    return Some(HostEvent::CoreFailed { revision, message });
                 }
-                News::Stopped(message) => {
-                    let given_up = self.queue.restarted();
-                    self.push_on();
-                    return Some(HostEvent::CoreFailed {
-                        revision: given_up.as_ref().and_then(revision),
-                        message,
-                    });
-                }
+                None => {}
+            }
+            match self.from_outside.try_recv() {
+                Ok(News::Core(core, news)) => self.link.hear(core, news),
+                Ok(News::Happened(event)) => return Some(event),
+                Err(_) => break,
             }
         }
+        self.wake_when_due();
         None
     }
 
@@ -230,43 +228,68 @@ fn save_asking(suggested_name: String, bytes: &[u8]) -> Option<HostEvent> {
     Some(HostEvent::FileFailed { name: name_of(&path), reason })
 }
 
-/// Starts the thread that plans; it ends when the sender it returns is dropped.
-fn start_core(outside: Sender<News>, superseded: Arc<AtomicBool>, wake: Context) -> Sender<Request> {
-    let (to_core, requests) = channel::<Request>();
-    thread::spawn(move || {
-        let mut surroundings = Thread { outside, superseded, wake, begun: Instant::now() };
-        let mut core = Core::default();
-        for request in requests {
-            let outcome = catch_unwind(AssertUnwindSafe(|| core.handle(request, &mut surroundings)));
-            surroundings.tell(match outcome {
-                Ok(()) => News::Finished,
-                Err(cause) => {
-                    // What the panic left behind is not to be trusted.
-                    core = Core::default();
-                    News::Stopped(panic_message(cause.as_ref()))
-                }
-            });
+impl Transport for CoreThreads {
+    fn start(&mut self, core: u32) {
+        let (outside, wake) = (self.outside.clone(), self.wake.clone());
+        let superseded = Arc::new(AtomicBool::new(false));
+        let host =
+            ThreadHost { core, outside, superseded: Arc::clone(&superseded), wake, begun: Instant::now() };
+        let (requests, received) = channel();
+        thread::spawn(move || run_core(&received, host));
+        self.running = Some(CoreThread { requests, superseded });
+    }
+
+    fn send(&mut self, job: &Job) -> Result<(), String> {
+        let Some(running) = &self.running else { return Ok(()) };
+        running.superseded.store(false, Ordering::Relaxed);
+        running.requests.send(job.request.clone()).map_err(|_| "the planning core has stopped".to_owned())
+    }
+
+    fn interrupt(&mut self) {
+        if let Some(running) = &self.running {
+            running.superseded.store(true, Ordering::Relaxed);
         }
-    });
-    to_core
+    }
+
+    fn terminate(&mut self) {
+        self.interrupt();
+        self.running = None;
+    }
+
+    fn patience_secs(&self) -> f64 {
+        PATIENCE_SECS
+    }
 }
 
-struct Thread {
+/// Does jobs until nobody can ask for more, or one of them panics: what a panic leaves behind is not to be trusted.
+fn run_core(requests: &Receiver<Request>, mut host: ThreadHost) {
+    let mut core = Core::default();
+    host.tell(mission::News::Ready);
+    for request in requests {
+        match catch_unwind(AssertUnwindSafe(|| core.handle(request, &mut host))) {
+            Ok(()) => host.tell(mission::News::Finished),
+            Err(cause) => return host.tell(mission::News::Failed(panic_message(cause.as_ref()))),
+        }
+    }
+}
+
+struct ThreadHost {
+    core: u32,
     outside: Sender<News>,
     superseded: Arc<AtomicBool>,
     wake: Context,
     begun: Instant,
 }
 
-impl Thread {
-    fn tell(&self, news: News) {
+impl ThreadHost {
+    fn tell(&self, news: mission::News) {
         // Nobody listens any more when the window was closed meanwhile.
-        let _ = self.outside.send(news);
+        let _ = self.outside.send(News::Core(self.core, news));
         self.wake.request_repaint();
     }
 }
 
-impl Surroundings for Thread {
+impl CoreHost for ThreadHost {
     fn now_millis(&self) -> f64 {
         self.begun.elapsed().as_secs_f64() * 1e3
     }
@@ -276,7 +299,7 @@ impl Surroundings for Thread {
     }
 
     fn answer(&mut self, response: Response) {
-        self.tell(News::Answer(response));
+        self.tell(mission::News::Answer(response));
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use mission::{Core, Goal, Request, Response, SearchKind, Snapshot, Surroundings, Update};
+use mission::{Core, CoreHost, Goal, Request, Response, SearchKind, Snapshot, Update};
 use terrain::Terrain;
 
 use crate::ground::map_file;
@@ -71,7 +71,7 @@ struct Answers {
     rejected: Option<String>,
 }
 
-impl Surroundings for Answers {
+impl CoreHost for Answers {
     fn now_millis(&self) -> f64 {
         self.begun.elapsed().as_secs_f64() * 1000.0
     }

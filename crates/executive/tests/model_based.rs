@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use executive::model_based::{
     Knowledge, Options, ProgramTally, Run, StepInput, StepRecord, System, Trials, run_seed, sample,
@@ -17,7 +18,7 @@ fn text(name: &str) -> String {
     std::fs::read_to_string(folder().join(name)).expect(name)
 }
 
-fn orbit() -> System {
+fn orbit() -> Arc<System> {
     let compilation = System::compile(&text("h01_orbit_nominal.rmpl"), Some(&text("orbit_plant.rmpl")));
     assert_eq!(compilation.program_diagnostics, []);
     assert_eq!(compilation.model_diagnostics, []);
@@ -35,7 +36,7 @@ fn input(system: &System, step: u32, faults: &[(u32, &str, &str)]) -> StepInput 
     input
 }
 
-fn run_with<'system>(system: &'system System, faults: &[(u32, &str, &str)], most: u32) -> Run<'system> {
+fn run_with(system: &Arc<System>, faults: &[(u32, &str, &str)], most: u32) -> Run {
     let mut run = Run::new(system, Options::default());
     for step in 1..=most {
         if run.is_done() {
@@ -248,7 +249,11 @@ fn chance_ends_orbit_insertion_as_often_as_the_engines_allow() {
     assert_eq!(tally(&system, &BTreeMap::new(), 0..400), result, "seeded");
 }
 
-fn tally(system: &System, inputs: &BTreeMap<u32, StepInput>, numbers: std::ops::Range<u64>) -> ProgramTally {
+fn tally(
+    system: &Arc<System>,
+    inputs: &BTreeMap<u32, StepInput>,
+    numbers: std::ops::Range<u64>,
+) -> ProgramTally {
     let trials = Trials { options: Options::default(), seed: 11, most_steps: 30, inputs };
     sample(system, &trials, numbers, &mut || true).expect("runs")
 }

@@ -1,6 +1,7 @@
 //! From a control program to its automaton (SPEC 8.2). Linear in the size of the expanded program.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use rmpl::control::{
     Constraint, ConstraintKind, ControlFile, Expression, ExpressionKind, Guard, Name, ParsedControl,
@@ -22,7 +23,7 @@ pub struct Compilation {
     /// The text read.
     pub parsed: ParsedControl,
     /// The automaton of its main definition; `None` when there are errors.
-    pub automaton: Option<Automaton>,
+    pub automaton: Option<Arc<Automaton>>,
     /// All that is wrong, in textual order.
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -53,7 +54,7 @@ pub fn compile_text(text: &str, vocabulary: &Vocabulary) -> Compilation {
 }
 
 /// Compiles the main definition of a file that parsed without errors.
-pub fn compile(file: &ControlFile, vocabulary: &Vocabulary) -> (Option<Automaton>, Vec<Diagnostic>) {
+pub fn compile(file: &ControlFile, vocabulary: &Vocabulary) -> (Option<Arc<Automaton>>, Vec<Diagnostic>) {
     let (Some(program), diagnostics) = expand_main(file) else { return (None, expand_main(file).1) };
     let mut compiler = Compiler::new(vocabulary, diagnostics);
     compiler.collect(&program);
@@ -69,7 +70,7 @@ pub fn compile(file: &ControlFile, vocabulary: &Vocabulary) -> (Option<Automaton
         }
     }
     automaton.watched_by = watched_by(&automaton.composites);
-    (diagnostics.is_empty().then_some(automaton), diagnostics)
+    (diagnostics.is_empty().then(|| Arc::new(automaton)), diagnostics)
 }
 
 fn watched_by(composites: &[Composite]) -> Vec<Vec<CompositeId>> {

@@ -9,6 +9,7 @@ pub mod condition;
 pub mod dot;
 pub mod knowledge;
 pub mod marking;
+mod spans;
 pub mod step;
 pub mod trace;
 pub mod vocabulary;

@@ -3,9 +3,10 @@
 use std::ops::Range;
 
 use crate::automaton::LocationId;
+use serde::{Deserialize, Serialize};
 
 /// A set of primitive locations of one automaton.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Marking {
     words: Vec<u64>,
 }

@@ -1,5 +1,7 @@
 //! Taking steps (SPEC 8.3). No memory is allocated between steps.
 
+use std::sync::Arc;
+
 use crate::automaton::{Automaton, CompositeId, CompositeKind, LocationId, TestId, TransitionId};
 use crate::knowledge::Estimate;
 use crate::marking::{Marking, bits};
@@ -39,8 +41,8 @@ struct Chain {
 
 /// A marking of an automaton and the room to compute the next one.
 #[derive(Clone, Debug)]
-pub struct Stepper<'automaton> {
-    automaton: &'automaton Automaton,
+pub struct Stepper {
+    automaton: Arc<Automaton>,
     marking: Marking,
     alive: Marking,
     next: Marking,
@@ -53,9 +55,9 @@ pub struct Stepper<'automaton> {
     has_program_variables: bool,
 }
 
-impl<'automaton> Stepper<'automaton> {
+impl Stepper {
     /// Starts in the automaton's start marking.
-    pub fn new(automaton: &'automaton Automaton) -> Self {
+    pub fn new(automaton: &Arc<Automaton>) -> Self {
         let range_of = |element: &crate::Element| match element {
             crate::Element::Location(location) => location.0..location.0 + 1,
             crate::Element::Composite(id) => {
@@ -81,7 +83,6 @@ impl<'automaton> Stepper<'automaton> {
         chains.reverse();
         let empty = Marking::empty(automaton.locations.len());
         Self {
-            automaton,
             marking: automaton.start(),
             alive: empty.clone(),
             next: empty,
@@ -90,12 +91,13 @@ impl<'automaton> Stepper<'automaton> {
             chains,
             overlay: Estimate::unknown(automaton.variables.len()),
             has_program_variables: automaton.variables.iter().any(|variable| variable.is_program_variable),
+            automaton: Arc::clone(automaton),
         }
     }
 
     /// The automaton that is stepped.
-    pub const fn automaton(&self) -> &'automaton Automaton {
-        self.automaton
+    pub const fn automaton(&self) -> &Arc<Automaton> {
+        &self.automaton
     }
 
     /// The current marking.
@@ -159,7 +161,6 @@ impl<'automaton> Stepper<'automaton> {
     }
 
     fn advance(&mut self, states: &[Estimate], observer: &mut impl StepObserver) {
-        let automaton = self.automaton;
         self.preempt(states, observer);
         self.next.clear();
         for at in 0..self.alive.words().len() {
@@ -173,7 +174,7 @@ impl<'automaton> Stepper<'automaton> {
                 continue;
             }
             let watched_by =
-                automaton.watched_by.get(chain.composite.0 as usize).map_or(&[][..], Vec::as_slice);
+                self.automaton.watched_by.get(chain.composite.0 as usize).map_or(&[][..], Vec::as_slice);
             if watched_by.iter().any(|outer| self.dropped.get(outer.0 as usize) == Some(&true)) {
                 continue;
             }
@@ -181,10 +182,12 @@ impl<'automaton> Stepper<'automaton> {
             for child in (0..chain.children.len().saturating_sub(1)).rev() {
                 let Some(range) = chain.children.get(child) else { continue };
                 if self.marking.intersects(range) && !self.next.intersects(range) {
-                    let following = automaton
+                    let following = self
+                        .automaton
                         .composite(chain.composite)
                         .and_then(|sequence| sequence.children.get(child + 1));
-                    for &location in following.map_or(&[][..], |following| automaton.start_of(following)) {
+                    for &location in following.map_or(&[][..], |following| self.automaton.start_of(following))
+                    {
                         self.next.insert(location);
                     }
                     observer.continued(chain.composite, child);
@@ -197,7 +200,7 @@ impl<'automaton> Stepper<'automaton> {
     fn preempt(&mut self, states: &[Estimate], observer: &mut impl StepObserver) {
         self.alive.copy_from(&self.marking);
         for watch in &self.watches {
-            let fails = self.marking.intersects(&watch.range) && !holds(self.automaton, watch.test, states);
+            let fails = self.marking.intersects(&watch.range) && !holds(&self.automaton, watch.test, states);
             if let Some(dropped) = self.dropped.get_mut(watch.composite.0 as usize) {
                 *dropped = fails;
             }
@@ -209,7 +212,7 @@ impl<'automaton> Stepper<'automaton> {
     }
 
     fn leave_or_stay(&mut self, id: LocationId, states: &[Estimate], observer: &mut impl StepObserver) {
-        let automaton = self.automaton;
+        let automaton = &*self.automaton;
         let Some(location) = automaton.location(id) else { return };
         if let Some(assertion) = &location.assertion
             && !holds(automaton, assertion.test, states)

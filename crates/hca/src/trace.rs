@@ -1,5 +1,7 @@
 //! A run of an automaton on given estimates, step by step.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
@@ -42,7 +44,7 @@ impl StepObserver for TraceStep {
 
 impl TraceStep {
     /// What is to be seen at the start of step `step`.
-    pub fn at(stepper: &Stepper<'_>, step: u32) -> Self {
+    pub fn at(stepper: &Stepper, step: u32) -> Self {
         let automaton = stepper.automaton();
         let marking = stepper.marking();
         Self {
@@ -65,7 +67,7 @@ pub struct Trace {
 }
 
 /// Runs from the start until the program ends or the estimates are used up.
-pub fn trace(automaton: &Automaton, estimates: &[Estimate]) -> Trace {
+pub fn trace(automaton: &Arc<Automaton>, estimates: &[Estimate]) -> Trace {
     let mut stepper = Stepper::new(automaton);
     let mut trace = Trace::default();
     for estimate in estimates {

@@ -1,12 +1,14 @@
 //! Drawings of automata: what is inside lies inside, and nothing lies over anything else.
 
+use std::sync::Arc;
+
 use display::{Rect, Theme, approximate_text_width, svg};
 use hca::{Automaton, Element, LocationId, Vocabulary, compile_text};
 use layout::{AutomatonDrawing, AutomatonItem, AutomatonState, automaton_list};
 
 const ORBIT: &str = include_str!("../../../tests/conformance/h01_orbit_nominal.rmpl");
 
-fn compiled(text: &str) -> Automaton {
+fn compiled(text: &str) -> Arc<Automaton> {
     let compilation = compile_text(text, &Vocabulary::default());
     compilation.automaton.unwrap_or_else(|| panic!("{:#?}", compilation.diagnostics))
 }

@@ -4,7 +4,7 @@ use kirk::{Options, Search, Stats, Status, Trace};
 use serde::{Deserialize, Serialize};
 use tpn::Network;
 
-use crate::core::Surroundings;
+use crate::core::CoreHost;
 
 /// The two searches of a revision's network, with the paths that its plan needs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -43,10 +43,10 @@ pub fn search(
     network: &Network,
     revision: u64,
     trace_events: usize,
-    surroundings: &mut dyn Surroundings,
+    host: &mut dyn CoreHost,
 ) -> Option<BothSearches> {
-    let first = searched(network, Search::Chronological, trace_events, surroundings)?;
-    let second = searched(network, Search::ConflictDirected, trace_events, surroundings)?;
+    let first = searched(network, Search::Chronological, trace_events, host)?;
+    let second = searched(network, Search::ConflictDirected, trace_events, host)?;
     Some(BothSearches { revision, searches: [first, second] })
 }
 
@@ -54,7 +54,7 @@ fn searched(
     network: &Network,
     search: Search,
     trace_events: usize,
-    surroundings: &mut dyn Surroundings,
+    host: &mut dyn CoreHost,
 ) -> Option<Searched> {
     let options = Options {
         search,
@@ -65,10 +65,10 @@ fn searched(
     };
     let nodes = network.nodes.len().max(1) as u64;
     let most = (MOST_WORK / nodes).clamp(LEAST_ALTERNATIVES, MOST_ALTERNATIVES);
-    let begun = surroundings.now_millis();
+    let begun = host.now_millis();
     let mut is_superseded = false;
     let outcome = kirk::plan(network, &options, &mut |stats: &Stats| {
-        is_superseded |= surroundings.is_superseded();
+        is_superseded |= host.is_superseded();
         is_superseded || stats.expanded >= most
     });
     if is_superseded {
@@ -78,7 +78,7 @@ fn searched(
         search,
         status: outcome.status,
         stats: outcome.stats,
-        millis: surroundings.now_millis() - begun,
+        millis: host.now_millis() - begun,
         trace: outcome.trace.unwrap_or_default(),
     })
 }

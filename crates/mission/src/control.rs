@@ -1,5 +1,7 @@
 //! Reading a control program: with the plant in its own text, with one that is given, or without any.
 
+use std::sync::Arc;
+
 use executive::model_based::System;
 use hca::{Automaton, Vocabulary};
 use plant::Model;
@@ -10,11 +12,11 @@ use rmpl::{Diagnostic, Severity};
 #[derive(Clone, Debug)]
 pub enum Control {
     /// A program and the plant that it controls.
-    Bound(Box<System>),
+    Bound(Arc<System>),
     /// A program alone: what is known of its variables must come from elsewhere.
-    Unbound(Box<Automaton>),
+    Unbound(Arc<Automaton>),
     /// A plant without a program.
-    Plant(Box<Model>),
+    Plant(Arc<Model>),
     /// Neither, or with errors.
     Nothing,
 }
@@ -32,23 +34,23 @@ pub fn read_control(text: &str, plant: Option<&str>) -> (Control, Vec<Diagnostic
         (true, true) => (Control::Nothing, parsed.diagnostics),
         (true, false) => {
             let (model, found) = plant::compile(&parsed.file);
-            let control = model.map_or(Control::Nothing, |model| Control::Plant(Box::new(model)));
+            let control = model.map_or(Control::Nothing, |model| Control::Plant(Arc::new(model)));
             (control, joined(parsed.diagnostics, found))
         }
         (false, false) => {
             let compiled = System::compile(text, None);
-            let control = compiled.system.map_or(Control::Nothing, |system| Control::Bound(Box::new(system)));
+            let control = compiled.system.map_or(Control::Nothing, Control::Bound);
             (control, compiled.program_diagnostics)
         }
         (false, true) => {
             let system = plant.and_then(|plant| System::compile(text, Some(plant)).system);
-            if let Some(system) = system.filter(speaks_of_plant) {
-                return (Control::Bound(Box::new(system)), parsed.diagnostics);
+            if let Some(system) = system.filter(|system| speaks_of_plant(system)) {
+                return (Control::Bound(system), parsed.diagnostics);
             }
             let compiled = hca::compile_text(text, &Vocabulary::default());
             let is_wrong = compiled.diagnostics.iter().any(|found| found.severity == Severity::Error);
             let automaton = compiled.automaton.filter(|_| !is_wrong);
-            let control = automaton.map_or(Control::Nothing, |it| Control::Unbound(Box::new(it)));
+            let control = automaton.map_or(Control::Nothing, Control::Unbound);
             (control, compiled.diagnostics)
         }
     }
@@ -63,6 +65,50 @@ fn joined(mut diagnostics: Vec<Diagnostic>, found: Vec<Diagnostic>) -> Vec<Diagn
     diagnostics.extend(found);
     diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
     diagnostics
+}
+
+/// The control text that was read last, so that each content is compiled once.
+#[derive(Debug, Default)]
+pub(crate) struct ControlTexts {
+    read: Option<ReadText>,
+}
+
+#[derive(Debug)]
+struct ReadText {
+    text: Arc<str>,
+    /// What it comes to by itself.
+    alone: Control,
+    found: Vec<Diagnostic>,
+    /// What it comes to with a plant that is given.
+    with_plant: Option<(Arc<str>, Control)>,
+}
+
+impl ControlTexts {
+    /// What `text` comes to; a program without a plant of its own is bound to `plant`, if all its names fit.
+    pub(crate) fn read(&mut self, text: &Arc<str>, plant: Option<&Arc<str>>) -> &Control {
+        let read = self.follow(text);
+        match plant {
+            Some(plant) if matches!(read.alone, Control::Unbound(_) | Control::Nothing) => {
+                let known = read.with_plant.take().filter(|(known, _)| known == plant);
+                let bound = known.unwrap_or_else(|| (Arc::clone(plant), read_control(text, Some(plant)).0));
+                &read.with_plant.insert(bound).1
+            }
+            _ => &read.alone,
+        }
+    }
+
+    /// What is wrong with `text`.
+    pub(crate) fn diagnostics(&mut self, text: &Arc<str>) -> &[Diagnostic] {
+        &self.follow(text).found
+    }
+
+    fn follow(&mut self, text: &Arc<str>) -> &mut ReadText {
+        let known = self.read.take().filter(|known| known.text == *text);
+        self.read.insert(known.unwrap_or_else(|| {
+            let (alone, found) = read_control(text, None);
+            ReadText { text: Arc::clone(text), alone, found, with_plant: None }
+        }))
+    }
 }
 
 #[cfg(test)]

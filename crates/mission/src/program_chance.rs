@@ -8,8 +8,6 @@ use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
 use crate::control::{Control, read_control};
-use crate::core::Surroundings;
-use crate::request::Response;
 
 /// What the runs are.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -26,9 +24,6 @@ pub struct ProgramChance {
     pub injected: BTreeMap<u32, BTreeMap<SmolStr, SmolStr>>,
 }
 
-/// Runs are made for about this long before the answer says how far they got.
-const SAMPLING_MILLIS: f64 = 120.0;
-
 /// Makes runs from number `from` on, as long as `go_on` says so after each; the error says why there can be none.
 pub fn sample_program(
     source: &str,
@@ -36,17 +31,27 @@ pub fn sample_program(
     from: u64,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<ProgramTally, String> {
-    let Control::Bound(system) = read_control(source, chance.plant.as_deref()).0 else {
+    sample_control(&read_control(source, chance.plant.as_deref()).0, chance, from, go_on)
+}
+
+/// The same of a text that was read already.
+pub(crate) fn sample_control(
+    control: &Control,
+    chance: &ProgramChance,
+    from: u64,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<ProgramTally, String> {
+    let Control::Bound(system) = control else {
         return Err("there is no program with a plant that it controls".to_owned());
     };
-    let inputs = inputs(&system, &chance.injected)?;
+    let inputs = inputs(system, &chance.injected)?;
     let trials = Trials {
         options: Options::default(),
         seed: chance.seed,
         most_steps: chance.most_steps,
         inputs: &inputs,
     };
-    sample(&system, &trials, from..chance.runs, go_on).map_err(|error| error.to_string())
+    sample(system, &trials, from..chance.runs, go_on).map_err(|error| error.to_string())
 }
 
 fn inputs(
@@ -61,19 +66,6 @@ fn inputs(
         }
     }
     Ok(inputs)
-}
-
-/// Answers [`crate::Request::SampleProgram`].
-pub(crate) fn answer(
-    (revision, source): (u64, &str),
-    chance: ProgramChance,
-    from: u64,
-    surroundings: &mut dyn Surroundings,
-) {
-    let begun = surroundings.now_millis();
-    let mut go_on = || surroundings.now_millis() - begun <= SAMPLING_MILLIS && !surroundings.is_superseded();
-    let tally = sample_program(source, &chance, from, &mut go_on);
-    surroundings.answer(Response::ProgramSampled { revision, chance, from, tally });
 }
 
 #[cfg(test)]

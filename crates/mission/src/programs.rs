@@ -76,7 +76,7 @@ impl Programs {
                 }
             }
             if let Some(system) = system {
-                programs.systems.insert(primitive.name.text.clone(), Arc::new(system));
+                programs.systems.insert(primitive.name.text.clone(), system);
             }
         }
         (programs, found)
@@ -212,7 +212,7 @@ impl<'run> ProgramPerformer<'run> {
 
     fn run(
         &mut self,
-        system: &System,
+        system: &Arc<System>,
         network: &Network,
         id: OccurrenceId,
         start: Time,
@@ -237,7 +237,7 @@ impl<'run> ProgramPerformer<'run> {
             _ => MOST_STEPS,
         };
         let options = Options { seed: self.chance.as_mut().map(Random::next_bits), ..Options::default() };
-        let mind = Mind::new(&system.model, Estimation::for_model(&system.model));
+        let mind = Mind::new(Arc::clone(&system.planner), Estimation::for_model(&system.model));
         let mut run = match self.plant.take() {
             Some((state, belief)) => Run::resumed(system, options, mind, state, belief),
             None => Run::with_mind(system, options, mind),

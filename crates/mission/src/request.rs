@@ -7,13 +7,15 @@ use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
 use crate::both_searches::BothSearches;
+use crate::control_run::{ControlRun, ControlStanding};
 use crate::execution::Execution;
+use crate::path_growth::{GrowthStanding, PathGrowth};
 use crate::program_chance::ProgramChance;
 use crate::review::Review;
 use crate::robustness::{RobustnessSettings, Tally};
 use crate::snapshot::{MapKey, Snapshot};
 
-/// Asks for a mission to be worked out.
+/// Something that the core is asked to compute.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Request {
     /// Compile and plan a text; a later one supersedes an earlier one that is still under way.
@@ -47,10 +49,10 @@ pub enum Request {
         /// The first run, from 0.
         from: u64,
     },
-    /// Work a text out once more and review it: see [`crate::review`].
+    /// Review the plan of a text: see [`crate::review`].
     Review(Update),
-    /// Work out another text than the open one, to compare with: answered once, when it is done.
-    WorkOut {
+    /// Plan another text than the open one, to compare with: answered once, when it is done.
+    Evaluate {
         /// Comes back with the answer.
         token: u64,
         /// The other text.
@@ -63,11 +65,12 @@ pub enum Request {
         /// The file.
         bytes: Vec<u8>,
     },
-    /// Searches the network that was planned last in both ways, recorded and measured, for showing side by side.
-    CompareSearches {
-        /// The revision of the text; another one than that planned last is not answered.
-        revision: u64,
-    },
+    /// Searches the network of a text in both ways, recorded and measured, for showing side by side.
+    CompareSearches(Update),
+    /// Run a control program: see [`crate::control_run`].
+    RunControl(ControlRun),
+    /// Search for a path, sample by sample: see [`crate::path_growth`].
+    GrowPath(PathGrowth),
 }
 
 /// A text to compile and plan.
@@ -120,8 +123,8 @@ pub enum Response {
         /// What was found.
         review: Arc<Review>,
     },
-    /// Another text, worked out.
-    WorkedOut {
+    /// Another text, planned.
+    Evaluated {
         /// That of the request.
         token: u64,
         /// The other text's last snapshot.
@@ -165,6 +168,10 @@ pub enum Response {
         /// How they went, as many as there was time for, at least one; or why there can be none.
         tally: Result<executive::model_based::ProgramTally, String>,
     },
+    /// How a control program's run stands.
+    ControlRun(Box<ControlStanding>),
+    /// How far the search for a path has come.
+    PathGrowth(Box<GrowthStanding>),
     /// The two searches of a revision.
     Searches(Arc<BothSearches>),
     /// A map file was read; texts that name it find it from now on.

@@ -4,15 +4,17 @@ use std::sync::Arc;
 
 use exact::{Bound, Time};
 use motion::GrowthTrace;
+use rmpl::Span;
 use rmpl::program::Program;
+use rmpl::spans::Spans;
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 use tpn::{Network, OccurrenceId};
 
+use crate::content::PartKeys;
 use crate::problem::Problem;
-use crate::robustness::Robustness;
 
-/// One revision of a mission, as far as it has been worked out.
+/// One revision of a mission, as far as it has been evaluated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     /// The revision of the text this belongs to.
@@ -22,7 +24,7 @@ pub struct Snapshot {
     /// The text.
     pub source: Arc<str>,
     /// What is wrong with it, or could be.
-    pub problems: Vec<Problem>,
+    pub problems: Arc<[Problem]>,
     /// What it says, as far as it is well formed.
     pub program: Arc<Program>,
     /// The network, unless an error prevents one. Path vertices of planned traverses are part of it.
@@ -32,13 +34,13 @@ pub struct Snapshot {
     /// The ground, if the mission names one.
     pub map: Option<MapKey>,
     /// The traverses of the plan, in order of departure.
-    pub traverses: Vec<Traverse>,
+    pub traverses: Arc<[Traverse]>,
     /// Where every vehicle is over time, under the earliest schedule of the plan.
-    pub motions: Vec<VehicleMotion>,
+    pub motions: Arc<[VehicleMotion]>,
     /// Traverses whose vehicles come within their safety radius of each other.
-    pub encounters: Vec<Encounter>,
-    /// How the plan fares in many runs with chance, when that was asked for; bound to this very text and plan.
-    pub robustness: Option<Arc<Robustness>>,
+    pub encounters: Arc<[Encounter]>,
+    /// What is new in this snapshot, and what an earlier one had already.
+    pub keys: PartKeys,
     /// How long the stages took.
     pub timings: Timings,
 }
@@ -182,7 +184,52 @@ pub struct Timings {
     pub plan_millis: f64,
 }
 
+impl Planning {
+    /// Whether anything in it refers to places in the text.
+    pub(crate) fn refers_to_places(&self) -> bool {
+        self.outcome.failure.is_some()
+    }
+}
+
+impl Spans for Planning {
+    fn visit_spans(&mut self, visit: &mut dyn FnMut(&mut Span)) {
+        let Some(failure) = &mut self.outcome.failure else { return };
+        for reason in &mut failure.reasons {
+            reason.spans.visit_spans(visit);
+        }
+        for relaxation in &mut failure.relaxations {
+            relaxation.span.visit_spans(visit);
+        }
+    }
+}
+
 impl Snapshot {
+    /// A text of which nothing is known yet.
+    pub fn empty(revision: u64, source: Arc<str>) -> Self {
+        Self {
+            revision,
+            stage: Stage::Compiled,
+            source,
+            problems: Arc::default(),
+            program: Arc::default(),
+            network: None,
+            planning: None,
+            map: None,
+            traverses: Arc::default(),
+            motions: Arc::default(),
+            encounters: Arc::default(),
+            keys: PartKeys::default(),
+            timings: Timings::default(),
+        }
+    }
+
+    /// Whether both hold the same, but for the problems of their texts and where in those things are written.
+    pub fn shows_same(&self, other: &Self) -> bool {
+        let is_known =
+            self.keys != PartKeys::default() && self.keys == other.keys && self.stage == other.stage;
+        std::ptr::eq(self, other) || is_known
+    }
+
     /// The plan, if there is one.
     pub fn plan(&self) -> Option<&tpn::Plan> {
         self.planning.as_ref()?.outcome.plans.first()

@@ -50,7 +50,7 @@ pub use search::{
 pub use shortcut::{ShortcutSettings, shorten};
 pub use thin::thin;
 pub use timing::{SegmentTiming, SpeedLimits, duration_millis, time_path};
-pub use trace::{GrownVertex, GrowthStep, GrowthTrace, trace};
+pub use trace::{GrownVertex, GrowthStep, GrowthTrace, TracedSearch, trace};
 pub use trajectory::{DriveLimits, MotionState, TimedState, Trajectory, drive_path, heading_difference};
 pub use tree::{Root, Tree, Vertex};
 pub use vehicle::{Drive, VEHICLE_MODELS, VehicleModel, vehicle_model};

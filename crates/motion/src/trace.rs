@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use terrain::ConfigurationSpace;
 
-use crate::search::{Failure, Growth, Query, Search, Settings};
+use crate::search::{Failure, Growth, PlannerKind, Query, Search, Settings};
 
 /// All steps of a search. The same arguments give the same trace.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -28,7 +28,7 @@ pub struct GrowthStep {
 }
 
 /// A vertex as it was added to its tree. Vertices are numbered by tree in the order in which they appear; the root is 0.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GrownVertex {
     /// The tree, an index into [`GrowthTrace::roots_m`].
     pub tree: u32,
@@ -38,6 +38,8 @@ pub struct GrownVertex {
     pub from_m: [f64; 2],
     /// Where it is, in metres.
     pub point_m: [f64; 2],
+    /// The points on the way from its parent, without it, to the vertex; empty if the way is straight.
+    pub curve_m: Vec<[f64; 2]>,
 }
 
 impl GrowthTrace {
@@ -52,24 +54,44 @@ impl GrowthTrace {
     }
 }
 
-/// Runs a search to its end, or for `most_steps` samples, and notes what each sample did. Linear in the trees for each
-/// step of RRT*, whose vertices change parents, and in what was added for the others.
-pub fn trace(
-    space: &ConfigurationSpace,
-    query: Query,
-    settings: Settings,
-    most_steps: usize,
-) -> Result<GrowthTrace, Failure> {
-    let mut search = Search::new(space, query, settings)?;
-    let roots_m = search.trees().iter().map(|tree| tree.vertices[0].point_m).collect();
-    let mut parents: Vec<Vec<Option<u32>>> = search.trees().iter().map(|_| vec![None]).collect();
-    let mut steps = Vec::new();
-    while !search.is_finished() && steps.len() < most_steps {
-        let event = search.step(space);
+/// A search with what each of its samples did so far; it can be kept, and run on.
+#[derive(Clone, Debug)]
+pub struct TracedSearch {
+    search: Search,
+    planner: PlannerKind,
+    /// The parents of the vertices of each tree.
+    parents: Vec<Vec<Option<u32>>>,
+    trace: GrowthTrace,
+}
+
+impl TracedSearch {
+    /// Starts a search, or says at once why there is no path.
+    pub fn new(space: &ConfigurationSpace, query: Query, settings: Settings) -> Result<Self, Failure> {
+        let search = Search::new(space, query, settings)?;
+        let roots_m = search.trees().iter().map(|tree| tree.vertices[0].point_m).collect();
+        let parents = search.trees().iter().map(|_| vec![None]).collect();
+        let trace = GrowthTrace { roots_m, steps: Vec::new() };
+        Ok(Self { search, planner: settings.planner, parents, trace })
+    }
+
+    /// What the samples did so far.
+    pub const fn trace(&self) -> &GrowthTrace {
+        &self.trace
+    }
+
+    /// Whether the search is over.
+    pub fn is_finished(&self) -> bool {
+        self.search.is_finished()
+    }
+
+    /// Draws one more sample. Linear in the trees for RRT*, whose vertices change parents, and in what is added for the
+    /// others.
+    pub fn step(&mut self, space: &ConfigurationSpace) {
+        let event = self.search.step(space);
         let (mut added, mut rewired) = (Vec::new(), Vec::new());
-        for (number, (tree, known)) in search.trees().into_iter().zip(&mut parents).enumerate() {
+        for (number, (tree, known)) in self.search.trees().into_iter().zip(&mut self.parents).enumerate() {
             let number = number as u32;
-            if settings.planner == crate::PlannerKind::RrtStar {
+            if self.planner == PlannerKind::RrtStar {
                 for (index, (vertex, parent)) in tree.vertices.iter().zip(known.iter_mut()).enumerate() {
                     if let (true, Some(now)) = (vertex.parent != *parent, vertex.parent) {
                         *parent = Some(now);
@@ -77,18 +99,32 @@ pub fn trace(
                     }
                 }
             }
-            for vertex in &tree.vertices[known.len()..] {
+            for (index, vertex) in tree.vertices.iter().enumerate().skip(known.len()) {
                 let parent = vertex.parent.unwrap_or_default();
                 let from_m = tree.vertices[parent as usize].point_m;
-                added.push(GrownVertex { tree: number, parent, from_m, point_m: vertex.point_m });
+                let curve_m = tree.curves.get(index).cloned().unwrap_or_default();
+                added.push(GrownVertex { tree: number, parent, from_m, point_m: vertex.point_m, curve_m });
             }
             known.extend(tree.vertices[known.len()..].iter().map(|vertex| vertex.parent));
         }
         let is_found = matches!(event.growth, Growth::Found { .. });
-        let path_m = search.path().filter(|_| is_found).map(|path| path.points_m);
-        steps.push(GrowthStep { sample_m: event.sample_m, added, rewired, path_m });
+        let path_m = self.search.path().filter(|_| is_found).map(|path| path.points_m);
+        self.trace.steps.push(GrowthStep { sample_m: event.sample_m, added, rewired, path_m });
     }
-    Ok(GrowthTrace { roots_m, steps })
+}
+
+/// Runs a search to its end, or for `most_steps` samples, and notes what each sample did.
+pub fn trace(
+    space: &ConfigurationSpace,
+    query: Query,
+    settings: Settings,
+    most_steps: usize,
+) -> Result<GrowthTrace, Failure> {
+    let mut search = TracedSearch::new(space, query, settings)?;
+    while !search.is_finished() && search.trace.steps.len() < most_steps {
+        search.step(space);
+    }
+    Ok(search.trace)
 }
 
 #[cfg(test)]

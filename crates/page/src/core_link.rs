@@ -1,162 +1,165 @@
-//! The planning core in its web worker: sends requests one at a time, and starts the worker anew when it fails or
-//! works too long on a text that was replaced.
+//! The planning core in its web worker: carries jobs and answers as bytes. What waits, and when a worker is ended and
+//! started anew, the link of the mission crate decides.
 
 use std::{
     cell::RefCell,
     collections::VecDeque,
     rc::{Rc, Weak},
+    time::Duration,
 };
 
 use js_sys::Uint8Array;
-use mission::Request;
+use mission::wire::{self, Reader};
+use mission::{Job, Link, LinkEvent, News, Request, Transport};
 use wasm_bindgen::prelude::*;
-use workbench::{
-    core_queue::{CoreQueue, revision},
-    host::HostEvent,
-};
+use workbench::host::HostEvent;
 
 use crate::glue::{CoreWorker, Glue};
 
 /// The way to the core; clones lead to the same one.
 #[derive(Clone)]
-pub(crate) struct CoreLink(Rc<RefCell<Link>>);
+pub(crate) struct CoreLink(Rc<RefCell<Shared>>);
 
-struct Link {
-    glue: Glue,
+struct Shared {
+    link: Link<Workers>,
+    /// Reads the answers of the running core.
+    reader: Reader,
     wake: egui::Context,
-    queue: CoreQueue,
-    worker: Option<Worker>,
     events: VecDeque<HostEvent>,
-    /// Counts the workers, so that what a stopped one still said is not taken for the word of its successor.
-    workers_started: u32,
-    myself: Weak<RefCell<Link>>,
+}
+
+/// Starts and ends web workers, one at a time.
+struct Workers {
+    glue: Glue,
+    running: Option<Worker>,
+    shared: Weak<RefCell<Shared>>,
 }
 
 /// A running worker with what listens to it.
 struct Worker {
     core: CoreWorker,
-    is_ready: bool,
     _listener: Closure<dyn FnMut(String, JsValue)>,
 }
 
 impl CoreLink {
     /// Starts a core; `wake` is asked for a frame whenever there is news.
     pub(crate) fn start(glue: Glue, wake: egui::Context) -> Self {
-        let link = Rc::new_cyclic(|myself| {
-            RefCell::new(Link {
-                glue,
-                wake,
-                queue: CoreQueue::default(),
-                worker: None,
-                events: VecDeque::new(),
-                workers_started: 0,
-                myself: myself.clone(),
-            })
-        });
-        link.borrow_mut().start_worker();
-        Self(link)
+        Self(Rc::new_cyclic(|shared| {
+            let workers = Workers { glue, running: None, shared: shared.clone() };
+            let link = Link::start(workers, now_secs());
+            RefCell::new(Shared { link, reader: Reader::of_core(1), wake, events: VecDeque::new() })
+        }))
     }
 
     /// Asks the core.
     pub(crate) fn post(&self, request: Request) {
-        let mut link = self.0.borrow_mut();
-        link.queue.post(request);
-        link.push_on();
+        let mut shared = self.0.borrow_mut();
+        shared.link.tick(now_secs());
+        shared.link.post(request);
+        shared.wake_when_due();
     }
 
     /// Takes the oldest news.
     pub(crate) fn poll(&self) -> Option<HostEvent> {
-        self.0.borrow_mut().events.pop_front()
+        let mut shared = self.0.borrow_mut();
+        shared.link.tick(now_secs());
+        shared.wake_when_due();
+        while let Some(event) = shared.link.next_event() {
+            shared.events.push_back(match event {
+                LinkEvent::Answer { response, .. } => HostEvent::Answer(response),
+                LinkEvent::Failed { revision, message, .. } => HostEvent::CoreFailed { revision, message },
+            });
+        }
+        shared.events.pop_front()
     }
 
     /// Adds news from elsewhere.
     pub(crate) fn happened(&self, event: HostEvent) {
-        let mut link = self.0.borrow_mut();
-        link.events.push_back(event);
-        link.wake.request_repaint();
+        let mut shared = self.0.borrow_mut();
+        shared.events.push_back(event);
+        shared.wake.request_repaint();
     }
 }
 
-impl Link {
-    fn start_worker(&mut self) {
-        self.workers_started += 1;
-        let number = self.workers_started;
-        let link = self.myself.clone();
-        let listener = Closure::new(move |kind: String, payload: JsValue| {
-            if let Some(link) = link.upgrade() {
-                link.borrow_mut().hear(number, &kind, &payload);
-            }
-        });
-        self.worker =
-            Some(Worker { core: self.glue.start_core(&listener), is_ready: false, _listener: listener });
-    }
-
-    /// Ends the worker. Its listener may be the one that is being called, so it is let go of only afterwards.
-    fn stop_worker(&mut self) {
-        if let Some(stopped) = self.worker.take() {
-            stopped.core.stop();
-            wasm_bindgen_futures::spawn_local(async move { drop(stopped) });
-        }
-    }
-
-    /// Sends what can be sent, and tells the core if it works in vain.
-    fn push_on(&mut self) {
-        if self.worker.is_none() {
-            self.start_worker();
-        }
-        let Some(worker) = &self.worker else { return };
-        if let Some(request) = self.queue.start_next() {
-            match postcard::to_allocvec(request) {
-                Ok(bytes) => worker.core.send(Uint8Array::from(bytes.as_slice())),
-                Err(reason) => self.give_up(&format!("a request cannot be written: {reason}")),
-            }
-        } else if self.queue.is_superseded() {
-            worker.core.supersede();
-        }
-    }
-
-    fn hear(&mut self, number: u32, kind: &str, payload: &JsValue) {
-        if number != self.workers_started {
+impl Shared {
+    fn hear(&mut self, core: u32, kind: &str, payload: &JsValue) {
+        if core != self.link.core() {
             return;
         }
-        match kind {
+        self.link.tick(now_secs());
+        let news = match kind {
             "ready" => {
-                if let Some(worker) = &mut self.worker {
-                    worker.is_ready = true;
-                }
+                self.reader = Reader::of_core(core);
+                News::Ready
             }
-            "answer" => match postcard::from_bytes(&Uint8Array::new(payload).to_vec()) {
-                Ok(response) => self.events.push_back(HostEvent::Answer(response)),
-                Err(reason) => self.give_up(&format!("an answer cannot be read: {reason}")),
+            "alive" => News::Alive,
+            "answer" => match self.reader.read(&Uint8Array::new(payload).to_vec()) {
+                Ok(response) => News::Answer(response),
+                Err(reason) => News::Failed(format!("an answer cannot be read: {reason}")),
             },
-            "finished" => {
-                self.queue.finished();
-                self.push_on();
-            }
-            "overdue" => {
-                if self.queue.is_superseded() {
-                    self.stop_worker();
-                    self.queue.restarted();
-                    self.push_on();
-                }
-            }
-            _ => self.give_up(&payload.as_string().unwrap_or_else(|| kind.to_owned())),
-        }
+            "finished" => News::Finished,
+            _ => News::Failed(payload.as_string().unwrap_or_else(|| kind.to_owned())),
+        };
+        self.link.hear(core, news);
+        self.wake_when_due();
         self.wake.request_repaint();
     }
 
-    /// The core is not to be trusted any more. A new one takes over, unless this one never came up: then the next
-    /// request tries again.
-    fn give_up(&mut self, message: &str) {
-        let was_ready = self.worker.as_ref().is_some_and(|worker| worker.is_ready);
-        self.stop_worker();
-        let given_up = self.queue.restarted();
-        self.events.push_back(HostEvent::CoreFailed {
-            revision: given_up.as_ref().and_then(revision),
-            message: message.to_owned(),
-        });
-        if was_ready {
-            self.push_on();
+    /// Asks for a frame when the link has something to do by itself.
+    fn wake_when_due(&self) {
+        if let Some(due_secs) = self.link.due_secs() {
+            let wait_secs = (due_secs - now_secs()).max(0.0);
+            self.wake.request_repaint_after(Duration::from_secs_f64(wait_secs));
         }
     }
+}
+
+impl Transport for Workers {
+    fn start(&mut self, core: u32) {
+        let shared = self.shared.clone();
+        let listener = Closure::new(move |kind: String, payload: JsValue| {
+            if let Some(shared) = shared.upgrade() {
+                shared.borrow_mut().hear(core, &kind, &payload);
+            }
+        });
+        self.running = Some(Worker { core: self.glue.start_core(&listener), _listener: listener });
+    }
+
+    fn send(&mut self, job: &Job) -> Result<(), String> {
+        let bytes = wire::write_request(&job.request)
+            .map_err(|reason| format!("a request cannot be written: {reason}"))?;
+        if let Some(running) = &self.running {
+            running.core.send(Uint8Array::from(bytes.as_slice()));
+        }
+        Ok(())
+    }
+
+    fn interrupt(&mut self) {
+        if let Some(running) = &self.running {
+            running.core.supersede();
+        }
+    }
+
+    /// The worker's listener may be the one that is being called, so it is let go of only afterwards.
+    fn terminate(&mut self) {
+        if let Some(ended) = self.running.take() {
+            ended.core.stop();
+            wasm_bindgen_futures::spawn_local(async move { drop(ended) });
+        }
+    }
+
+    fn patience_secs(&self) -> f64 {
+        self.running.as_ref().map_or(0.0, |running| running.core.patience_millis() / 1e3)
+    }
+}
+
+#[wasm_bindgen]
+extern "C" {
+    /// Milliseconds since the page was opened.
+    #[wasm_bindgen(js_namespace = performance, js_name = now)]
+    fn performance_now() -> f64;
+}
+
+fn now_secs() -> f64 {
+    performance_now() / 1e3
 }

@@ -32,6 +32,10 @@ extern "C" {
     /// A planning core in a web worker.
     pub(crate) type CoreWorker;
 
+    /// How long it may go on after [`CoreWorker::supersede`], in milliseconds.
+    #[wasm_bindgen(method, getter, js_name = patienceMillis)]
+    pub(crate) fn patience_millis(this: &CoreWorker) -> f64;
+
     /// Hands a request over.
     #[wasm_bindgen(method)]
     pub(crate) fn send(this: &CoreWorker, request: Uint8Array);

@@ -22,7 +22,7 @@ pub struct ProblemsPanel {
 impl Panel for ProblemsPanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let latest = context.state.snapshots.latest();
-        let problems = latest.map(|latest| latest.problems.as_slice()).unwrap_or_default();
+        let problems = latest.map(|latest| &*latest.problems).unwrap_or_default();
         if problems.is_empty() {
             let text = if latest.is_some() { "No problems." } else { "Reading the text…" };
             show_empty(ui, context, text);

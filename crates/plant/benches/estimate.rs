@@ -2,6 +2,7 @@
 
 #![expect(clippy::print_stdout, reason = "a benchmark prints its table")]
 
+use std::sync::Arc;
 use std::{fmt::Write as _, time::Instant};
 
 use plant::{
@@ -61,7 +62,7 @@ fn circuit() -> Model {
 
 /// Breakers are switched on level by level; at the fifth step a breaker of the third level has tripped.
 fn scenario(model: &Model) -> Vec<(Commands, Observation)> {
-    let mut plant = SimulatedPlant::new(model, None);
+    let mut plant = SimulatedPlant::new(&Arc::new(model.clone()), None);
     let mut steps = Vec::new();
     for level in 0..5_u32 {
         let mut commands = model.idle();
@@ -109,7 +110,7 @@ fn engines() {
             let _ = writeln!(instances, "(DEFINSTANCE E{at} Engine INIT Standby)");
         }
         let model = model(&format!("{ENGINE}{instances}"));
-        let mut plant = SimulatedPlant::new(&model, None);
+        let mut plant = SimulatedPlant::new(&Arc::new(model.clone()), None);
         let fire = Commands(vec![3; count]);
         let (component, failed) = model.component_mode("E0", "Failed").expect("engine");
         plant.step(&fire, &std::iter::once((component, failed)).collect()).expect("step");

@@ -30,7 +30,7 @@ impl State {
 /// States with their probabilities, most likely first; equally likely ones in the order of their modes.
 ///
 /// Probabilities are weights over one common total, so that a step needs no fractions.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Belief {
     entries: Vec<(State, BigUint)>,
     total: BigUint,

@@ -6,9 +6,10 @@ use crate::domains::Domains;
 use crate::island::{Island, Places, place_bit};
 use crate::model::{Commands, ComponentId, Model, Observation, VariableId};
 use crate::successor::{EstimateError, nominal};
+use serde::{Deserialize, Serialize};
 
 /// Mode assumptions and observations that cannot hold together, none of which can be left out.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Conflict {
     /// The assumed modes.
     pub modes: Vec<(ComponentId, u8)>,

@@ -23,6 +23,7 @@ pub mod policy;
 pub mod probability;
 pub mod reconfigure;
 pub mod simulate;
+mod spans;
 pub mod successor;
 mod table;
 

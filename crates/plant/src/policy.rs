@@ -1,5 +1,7 @@
 //! Precompiled reactive policies: for every component and pair of modes, what to do first (SPEC 9.2).
 
+use std::sync::Arc;
+
 use crate::belief::State;
 use crate::consistency::Assumed;
 use crate::domains::Domains;
@@ -24,8 +26,8 @@ pub struct PlannedStep {
 
 /// The policies of a model, and its causal order.
 #[derive(Clone, Debug)]
-pub struct Planner<'model> {
-    pub(crate) model: &'model Model,
+pub struct Planner {
+    pub(crate) model: Arc<Model>,
     pub(crate) order: CausalOrder,
     /// Per component and mode, the ways to leave it.
     pub(crate) steps: Vec<Vec<Vec<PlannedStep>>>,
@@ -35,9 +37,9 @@ pub struct Planner<'model> {
     pub(crate) is_complete: bool,
 }
 
-impl<'model> Planner<'model> {
+impl Planner {
     /// Compiles the policies; takes time in proportion to components times squared modes.
-    pub fn new(model: &'model Model) -> Self {
+    pub fn new(model: &Arc<Model>) -> Self {
         let mut is_complete = true;
         let steps: Vec<Vec<Vec<PlannedStep>>> =
             model.component_ids().map(|component| steps_of(model, component, &mut is_complete)).collect();
@@ -53,7 +55,7 @@ impl<'model> Planner<'model> {
                     .collect()
             })
             .collect();
-        Self { model, order: CausalOrder::new(model), steps, policy, is_complete }
+        Self { order: CausalOrder::new(model), model: Arc::clone(model), steps, policy, is_complete }
     }
 
     /// The causal order that the policies follow.
@@ -62,8 +64,8 @@ impl<'model> Planner<'model> {
     }
 
     /// The model.
-    pub const fn model(&self) -> &'model Model {
-        self.model
+    pub const fn model(&self) -> &Arc<Model> {
+        &self.model
     }
 
     /// The first step of a shortest path of a component from one mode to another, were all conditions to hold.
@@ -77,7 +79,7 @@ impl<'model> Planner<'model> {
     pub fn modes_ensuring(&self, variable: crate::VariableId, set: u64) -> (ComponentId, u64) {
         let owner =
             self.model.variables.get(variable.0 as usize).map_or(ComponentId(0), |data| data.component);
-        (owner, ensuring(self.model, owner, self.model.variable_symbol(variable), set))
+        (owner, ensuring(&self.model, owner, self.model.variable_symbol(variable), set))
     }
 
     /// Whether a goal is in reach as far as its component and what it depends on tell.
@@ -160,7 +162,7 @@ impl<'model> Planner<'model> {
         for (variable, set) in &step.commands {
             *commands.0.get_mut(variable.0 as usize)? = values(*set).next()?;
         }
-        let does = |commands: &Commands| successor(self.model, component, state, commands) == Ok(step.to);
+        let does = |commands: &Commands| successor(&self.model, component, state, commands) == Ok(step.to);
         if does(&commands) {
             return Some(commands);
         }

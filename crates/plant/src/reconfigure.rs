@@ -90,7 +90,7 @@ enum Failure {
     Limit,
 }
 
-impl Planner<'_> {
+impl Planner {
     /// The first command set towards `goals` from `state`: goals with nothing in common upstream are pursued at once.
     pub fn next_commands(&self, state: &State, goals: &[Goal]) -> NextCommands {
         let (goals, mut unreachable) = self.consistent(goals);
@@ -128,7 +128,7 @@ impl Planner<'_> {
         let mut kept = Vec::new();
         for (component, (modes, given)) in joined {
             if modes == 0 {
-                let all: Vec<String> = given.iter().map(|goal| goal.describe(self.model)).collect();
+                let all: Vec<String> = given.iter().map(|goal| goal.describe(&self.model)).collect();
                 let reason = format!("{} contradict each other", all.join(" and "));
                 let failed = given.iter().map(|goal| Unreachable {
                     goal: *goal,
@@ -147,14 +147,14 @@ impl Planner<'_> {
 
     /// Goals whose modes' constraints cannot hold together.
     fn drop_incompatible(&self, goals: &mut Vec<Goal>, unreachable: &mut Vec<Unreachable>) {
-        let mut free = Domains::observed(self.model, &Observation::default());
+        let mut free = Domains::observed(&self.model, &Observation::default());
         for island in &self.model.islands {
             let wanted = |component: &ComponentId| {
                 let goal = goals.iter().find(|goal| goal.component == *component)?;
                 goal.modes.is_power_of_two().then(|| goal.modes.trailing_zeros() as u8)
             };
             let mut assumed =
-                Assumed { model: self.model, island, modes: island.components.iter().map(wanted).collect() };
+                Assumed { model: &self.model, island, modes: island.components.iter().map(wanted).collect() };
             let Err(places) = assumed.check(&mut free) else { continue };
             shrink(&mut assumed, &mut free, places, |_| true);
             let culprits: Vec<ComponentId> = island
@@ -166,7 +166,7 @@ impl Planner<'_> {
                 .collect();
             let all: Vec<Goal> =
                 goals.iter().filter(|goal| culprits.contains(&goal.component)).copied().collect();
-            let names: Vec<String> = all.iter().map(|goal| goal.describe(self.model)).collect();
+            let names: Vec<String> = all.iter().map(|goal| goal.describe(&self.model)).collect();
             let reason = format!("{} cannot hold together", names.join(" and "));
             unreachable.extend(all.iter().map(|goal| Unreachable {
                 goal: *goal,
@@ -250,7 +250,7 @@ impl Planner<'_> {
             }
             let reach = self.reach(&state);
             let commands = self.next(&state, goals, &reach)?;
-            state = nominal(self.model, &state, &commands).ok()?;
+            state = nominal(&self.model, &state, &commands).ok()?;
             plan.steps.push(commands);
         }
         Some(plan)
@@ -294,7 +294,7 @@ impl Planner<'_> {
                 return Err(Failure::Limit);
             }
             for (choice, commands) in choices.iter().enumerate() {
-                let Ok(next) = nominal(self.model, &nodes[at].0, commands) else { continue };
+                let Ok(next) = nominal(&self.model, &nodes[at].0, commands) else { continue };
                 if seen.insert(next.clone()) {
                     nodes.push((next, Some((at, choice))));
                 }
@@ -306,12 +306,12 @@ impl Planner<'_> {
 
     fn reason(&self, state: &State, goal: Goal, accepted: &[Goal], limit_reached: bool) -> String {
         if limit_reached {
-            return format!("no way to {} was found among {MOST_STATES} states", goal.describe(self.model));
+            return format!("no way to {} was found among {MOST_STATES} states", goal.describe(&self.model));
         }
         let reach = self.reach(state);
         if reach.get(goal.component.0 as usize).is_some_and(|reach| reach & goal.modes != 0) {
-            let others: Vec<String> = accepted.iter().map(|goal| goal.describe(self.model)).collect();
-            let what = goal.describe(self.model);
+            let others: Vec<String> = accepted.iter().map(|goal| goal.describe(&self.model)).collect();
+            let what = goal.describe(&self.model);
             return if others.is_empty() {
                 format!("{what} cannot be brought about: what it needs first rules out what it needs later")
             } else {
@@ -352,7 +352,7 @@ impl Planner<'_> {
                     "`{name}` goes from {} to {} only with {}, which is out of reach{because}",
                     mode(at),
                     mode(step.to),
-                    needed.describe(self.model)
+                    needed.describe(&self.model)
                 );
             }
             at = step.to;

@@ -1,6 +1,7 @@
 //! A plant that really has a state: it obeys commands, fails by chance or on demand, and shows observations.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use crate::belief::State;
 use crate::consistency::Assumed;
@@ -56,15 +57,15 @@ impl Random {
 
 /// The simulated plant.
 #[derive(Clone, Debug)]
-pub struct SimulatedPlant<'model> {
-    model: &'model Model,
+pub struct SimulatedPlant {
+    model: Arc<Model>,
     state: State,
 }
 
-impl<'model> SimulatedPlant<'model> {
+impl SimulatedPlant {
     /// Starts in a state, or in the model's initial one.
-    pub fn new(model: &'model Model, state: Option<State>) -> Self {
-        Self { model, state: state.unwrap_or_else(|| model.initial_state()) }
+    pub fn new(model: &Arc<Model>, state: Option<State>) -> Self {
+        Self { model: Arc::clone(model), state: state.unwrap_or_else(|| model.initial_state()) }
     }
 
     /// The true state.
@@ -78,7 +79,7 @@ impl<'model> SimulatedPlant<'model> {
         commands: &Commands,
         injected: &BTreeMap<ComponentId, u8>,
     ) -> Result<(), EstimateError> {
-        let next = nominal(self.model, &self.state, commands)?;
+        let next = nominal(&self.model, &self.state, commands)?;
         self.enter(next, injected)
     }
 
@@ -94,7 +95,7 @@ impl<'model> SimulatedPlant<'model> {
         let choices = self
             .model
             .component_ids()
-            .map(|component| distribution(self.model, component, &self.state, commands))
+            .map(|component| distribution(&self.model, component, &self.state, commands))
             .collect::<Result<Vec<_>, _>>()?;
         for _ in 0..100 {
             let drawn =
@@ -110,9 +111,9 @@ impl<'model> SimulatedPlant<'model> {
         for (&component, &mode) in injected {
             next.set_mode(component, mode);
         }
-        let mut free = Domains::observed(self.model, &Observation::default());
+        let mut free = Domains::observed(&self.model, &Observation::default());
         for island in &self.model.islands {
-            if let Err(places) = Assumed::all(self.model, island, &next.0).check(&mut free) {
+            if let Err(places) = Assumed::all(&self.model, island, &next.0).check(&mut free) {
                 let blamed = island
                     .components
                     .iter()
@@ -136,7 +137,7 @@ impl<'model> SimulatedPlant<'model> {
 
     /// What the plant shows: where the modes leave a variable open, its `SHOWS` value if that is possible.
     pub fn observation(&self) -> Observation {
-        observation_of(self.model, &self.state)
+        observation_of(&self.model, &self.state)
     }
 }
 

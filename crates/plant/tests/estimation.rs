@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use num_rational::BigRational;
 use num_traits::Zero as _;
@@ -216,7 +217,7 @@ fn exact_and_best_first_estimates_are_those_of_enumeration_on_random_models() {
         let mut random = Random::new(seed);
         let text = random_model(&mut random);
         let model = model(&text);
-        let mut plant = plant::SimulatedPlant::new(&model, None);
+        let mut plant = plant::SimulatedPlant::new(&Arc::new(model.clone()), None);
         let mut belief = Belief::certain(model.initial_state());
         for step in 0..3 {
             let mut commands = model.idle();
@@ -278,7 +279,7 @@ fn fifty_components_are_estimated_best_first() {
         text.push_str(&format!("(DEFINSTANCE E{at} Engine INIT Standby)\n"));
     }
     let model = model(&text);
-    let plant = plant::SimulatedPlant::new(&model, None);
+    let plant = plant::SimulatedPlant::new(&Arc::new(model.clone()), None);
     let observation = plant.observation();
     let mut belief = Belief::certain(model.initial_state());
     for _ in 0..3 {

@@ -1,6 +1,7 @@
 //! Reactive plans: the examples of SPEC 9.2, and random plants against breadth-first search over whole states.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 use std::{fmt::Write as _, path::Path};
 
 use plant::{Goal, Model, Planner, Random, State, compile, successor};
@@ -34,7 +35,7 @@ fn commands(
             Goal::mode(component, mode)
         })
         .collect();
-    match Planner::new(model).reconfigure(&state, &goals) {
+    match Planner::new(&Arc::new(model.clone())).reconfigure(&state, &goals) {
         Ok(plan) => Ok(plan
             .commands(model)
             .into_iter()
@@ -102,7 +103,7 @@ fn goals_with_nothing_in_common_are_commanded_in_the_same_step() {
                 .expect("goal")
         })
         .collect();
-    let next = Planner::new(&model).next_commands(&model.initial_state(), &goals);
+    let next = Planner::new(&Arc::new(model.clone())).next_commands(&model.initial_state(), &goals);
     let names = model.command_names(&next.commands);
     let expected = [("Camera", "turn-off"), ("DriverA", "on"), ("DriverB", "on")];
     assert_eq!(names, expected.map(|(name, command)| (name.to_owned(), command.to_owned())).into());
@@ -168,7 +169,7 @@ fn plans_on_random_plants_reach_their_goals_exactly_where_search_says_they_can()
     for seed in 0..150 {
         let mut random = Random::new(seed);
         let model = model(&random_model(&mut random));
-        let planner = Planner::new(&model);
+        let planner = Planner::new(&Arc::new(model.clone()));
         for _ in 0..4 {
             let state = State((0..3).map(|_| random.below(3) as u8).collect());
             let mut goals: BTreeMap<u32, u8> = BTreeMap::new();

@@ -1,7 +1,7 @@
 //! The review report: one HTML file that needs nothing else, prints well and reads without scripts.
 
-use mission::Snapshot;
 use mission::review::{Record, Review, Status};
+use mission::{Robustness, Snapshot};
 use rmpl::program::TimeUnit;
 use terrain::Terrain;
 
@@ -20,6 +20,8 @@ pub struct Document<'a> {
     pub review: &'a Review,
     /// What reviewers said and signed, if that is to stand in the report.
     pub record: Option<&'a Record>,
+    /// How its plan fares in many runs with chance, if that is known.
+    pub robustness: Option<&'a Robustness>,
     /// The seed of its paths.
     pub seed: u64,
     /// The ground, if the mission has one.
@@ -37,7 +39,7 @@ pub fn html(document: &Document<'_>) -> String {
     );
     out.push_str(&facts(document));
     out.push_str(&tables::sections(document.review));
-    out.push_str(&tables::robustness(document.snapshot.robustness.as_deref()));
+    out.push_str(&tables::robustness(document.robustness));
     if let Some(record) = document.record {
         out.push_str(&tables::record(record, &document.review.content_hash));
     }

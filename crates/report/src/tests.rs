@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use mission::review::record::{Comment, SignOff};
 use mission::review::{Record, Review, review};
-use mission::{Core, Goal, Request, Response, SearchKind, Snapshot, Surroundings, Update};
+use mission::{Core, CoreHost, Goal, Request, Response, SearchKind, Snapshot, Update};
 use rmpl::program::TimeUnit;
 use terrain::Terrain;
 
@@ -21,7 +21,7 @@ struct Answers {
     ground: Option<Arc<Terrain>>,
 }
 
-impl Surroundings for Answers {
+impl CoreHost for Answers {
     fn now_millis(&self) -> f64 {
         0.0
     }
@@ -68,6 +68,7 @@ fn report(source: &str, name: &str) -> String {
         snapshot: &planned.snapshot,
         review: &planned.review,
         record: None,
+        robustness: None,
         seed: 0,
         ground: planned.ground.as_deref(),
     })
@@ -281,6 +282,7 @@ fn a_report_names_who_signed_and_marks_what_belongs_to_another_content() {
             snapshot: &planned.snapshot,
             review: &planned.review,
             record: Some(record),
+            robustness: None,
             seed: 0,
             ground: None,
         })

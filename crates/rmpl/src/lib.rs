@@ -15,6 +15,7 @@ pub mod parse;
 mod parser;
 pub mod program;
 pub mod span;
+pub mod spans;
 pub mod syntax;
 
 pub use diagnostic::{Code, Diagnostic, Edit, Fix, Severity};

@@ -239,7 +239,7 @@ fn paths(shapes: &mut Shapes, input: &SceneInput<'_>) {
     let is_of = |selection: &Selection, occurrence| {
         network.is_some_and(|network| selection.occurrence(network) == Some(occurrence))
     };
-    for traverse in &input.snapshot.traverses {
+    for traverse in &*input.snapshot.traverses {
         let (color, width) = match () {
             () if is_of(input.selection, traverse.occurrence) => (palette.selected, 4.0),
             () if is_of(input.hovered, traverse.occurrence) => (palette.light, 4.0),
@@ -263,7 +263,7 @@ fn paths(shapes: &mut Shapes, input: &SceneInput<'_>) {
 }
 
 fn encounters(shapes: &mut Shapes, input: &SceneInput<'_>) {
-    for encounter in &input.snapshot.encounters {
+    for encounter in &*input.snapshot.encounters {
         ring(shapes, input, place(encounter.position_m), 4.0, input.palette.warning, 3.0);
     }
 }

@@ -5,7 +5,6 @@
 //! and the app around them read it.
 
 pub mod command;
-pub mod core_queue;
 mod dialog;
 pub mod host;
 pub mod mission_file;

@@ -167,6 +167,8 @@ impl Session {
     }
 
     fn do_effects(&mut self) {
+        // A text ends what was asked of the one before; what is asked of this one comes after it.
+        self.post_text();
         for effect in self.state.take_effects() {
             match effect {
                 Effect::Copy(text) => self.window_effects.push(WindowEffect::Copy(text)),
@@ -182,7 +184,6 @@ impl Session {
                 Effect::Restyle => self.window_effects.push(WindowEffect::Restyle),
             }
         }
-        self.post_text();
         self.post_run();
     }
 

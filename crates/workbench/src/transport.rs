@@ -71,7 +71,7 @@ impl AppState {
         if self.terrain.growth.shown().is_some() && self.active_panel == PanelKind::Terrain {
             return Track::Growth;
         }
-        if self.automaton.program().is_some() {
+        if self.automaton.is_control() {
             return Track::Program;
         }
         let shows_time = matches!(self.active_panel, PanelKind::Timeline | PanelKind::Terrain);
@@ -192,7 +192,11 @@ impl AppState {
             advanced.also(self.terrain.growth.advance(seconds, rate), 0.02);
         }
         if self.automaton.is_playing {
-            advanced.also(self.automaton.advance(seconds, rate), 0.05);
+            let is_changed = self.automaton.advance(seconds, rate);
+            advanced.also(is_changed, 0.05);
+            if is_changed {
+                self.ask_the_core();
+            }
         }
         if self.playback.is_playing {
             self.playback.advance(seconds);

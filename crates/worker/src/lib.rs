@@ -5,22 +5,27 @@
 use std::panic;
 
 use js_sys::Uint8Array;
-use mission::{Core, Response};
+use mission::wire::{self, Writer};
+use mission::{Core, CoreHost, Response};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
 extern "C" {
     /// What `web/core-worker.js` does for the core.
     #[derive(Clone)]
-    pub type Surroundings;
+    pub type WorkerHost;
 
     /// Whether the page waits for something newer.
     #[wasm_bindgen(method, js_name = isSuperseded)]
-    fn is_superseded(this: &Surroundings) -> bool;
+    fn is_superseded(this: &WorkerHost) -> bool;
 
     /// Takes the bytes of an answer.
     #[wasm_bindgen(method)]
-    fn answer(this: &Surroundings, answer: Uint8Array);
+    fn answer(this: &WorkerHost, answer: Uint8Array);
+
+    /// Hears that the core goes on with a long job.
+    #[wasm_bindgen(method)]
+    fn alive(this: &WorkerHost);
 
     /// Milliseconds, as exactly as the browser tells.
     #[wasm_bindgen(js_namespace = performance, js_name = now)]
@@ -34,46 +39,60 @@ extern "C" {
     fn core_panicked(message: &str);
 }
 
+/// How often a long job says that it goes on.
+const ALIVE_MILLIS: f64 = 5000.0;
+
 /// One planning core, fed by messages.
 #[wasm_bindgen]
 pub struct PlanningCore {
     core: Core,
-    surroundings: Surroundings,
+    page: Page,
 }
 
 #[wasm_bindgen]
 impl PlanningCore {
     /// A core that knows nothing yet.
     #[wasm_bindgen(constructor)]
-    pub fn new(surroundings: Surroundings) -> Self {
+    pub fn new(host: WorkerHost) -> Self {
         panic::set_hook(Box::new(|panic| core_panicked(&panic.to_string())));
-        Self { core: Core::default(), surroundings }
+        Self { core: Core::default(), page: Page { host, writer: Writer::default(), told_millis: 0.0 } }
     }
 
-    /// Works one request out, given as the bytes of a [`mission::Request`]; answers go out while it works.
+    /// Does one job, given as the bytes of a [`mission::Request`]; answers go out while it works.
     pub fn handle(&mut self, request: &[u8]) -> Result<(), JsError> {
-        let request = postcard::from_bytes(request)?;
-        self.core.handle(request, &mut Page { surroundings: &self.surroundings });
+        let request = wire::read_request(request)?;
+        self.page.told_millis = performance_now();
+        self.core.handle(request, &mut self.page);
         Ok(())
     }
 }
 
-struct Page<'a> {
-    surroundings: &'a Surroundings,
+struct Page {
+    host: WorkerHost,
+    /// Knows what the page holds.
+    writer: Writer,
+    /// When the page last heard something.
+    told_millis: f64,
 }
 
-impl mission::Surroundings for Page<'_> {
+impl CoreHost for Page {
     fn now_millis(&self) -> f64 {
         performance_now()
     }
 
     fn is_superseded(&mut self) -> bool {
-        self.surroundings.is_superseded()
+        let now_millis = performance_now();
+        if now_millis - self.told_millis > ALIVE_MILLIS {
+            self.told_millis = now_millis;
+            self.host.alive();
+        }
+        self.host.is_superseded()
     }
 
     fn answer(&mut self, response: Response) {
-        match postcard::to_allocvec(&response) {
-            Ok(bytes) => self.surroundings.answer(Uint8Array::from(bytes.as_slice())),
+        self.told_millis = performance_now();
+        match self.writer.write(response) {
+            Ok(bytes) => self.host.answer(Uint8Array::from(bytes.as_slice())),
             Err(reason) => core_panicked(&format!("an answer cannot be written: {reason}")),
         }
     }

@@ -101,7 +101,7 @@ impl Args {
         let name = file.display().to_string();
         let WorkedOut { name, snapshot, .. } = work_out_text(name, file, source, goal, seed)?;
         let side = Side::of_snapshot(&name, &snapshot);
-        Ok(Read { side, source: source.to_owned(), problems: snapshot.problems.clone() })
+        Ok(Read { side, source: source.to_owned(), problems: snapshot.problems.to_vec() })
     }
 }
 

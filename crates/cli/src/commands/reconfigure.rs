@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use anyhow::anyhow;
 use plant::{Goal, Model, Planner, Unreachable};
@@ -42,7 +43,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let (component, mode) = model.component_mode(name, mode).map_err(|error| anyhow!(error))?;
         goals.push(Goal::mode(component, mode));
     }
-    let (body, text, status) = match Planner::new(&model).reconfigure(&state, &goals) {
+    let (body, text, status) = match Planner::new(&Arc::new(model.clone())).reconfigure(&state, &goals) {
         Ok(plan) => {
             let commands = plan.commands(&model);
             let listed: Vec<Value> = commands

@@ -49,6 +49,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             snapshot,
             review: &review,
             record: record.as_ref(),
+            robustness: None,
             seed: args.seed,
             ground: ground.as_deref(),
         });

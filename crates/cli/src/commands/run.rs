@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use anyhow::{anyhow, bail};
 use executive::model_based::{
@@ -102,7 +103,7 @@ fn injections(system: &System, given: &[String]) -> anyhow::Result<BTreeMap<u32,
 
 fn chance(
     args: &Args,
-    system: &System,
+    system: &Arc<System>,
     trials: &Trials<'_>,
     runs: u64,
     problems: &[Problem],
@@ -198,14 +199,14 @@ fn step_json(system: &System, record: &StepRecord) -> Value {
     })
 }
 
-fn run_json(system: &System, run: &Run<'_>) -> Value {
+fn run_json(system: &System, run: &Run) -> Value {
     let mut steps: Vec<Value> = run.records().iter().map(|record| step_json(system, record)).collect();
     let last = run.upcoming();
     steps.push(json!({ "step": last.step, "marked": last.labels }));
     json!({ "steps": steps, "terminated": run.is_done() })
 }
 
-fn run_text(system: &System, run: &Run<'_>) -> String {
+fn run_text(system: &System, run: &Run) -> String {
     let model = &system.model;
     let listed = |names: BTreeMap<String, String>, joint: &str| {
         let names: Vec<String> =

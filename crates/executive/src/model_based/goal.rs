@@ -17,7 +17,7 @@ impl Wish {
     /// The goals to pursue from a state: of the ways already taken, then of those in reach, the first.
     ///
     /// `None` for a constraint that can never hold.
-    pub(super) fn goals(&self, planner: &Planner<'_>, state: &State) -> Option<&[Goal]> {
+    pub(super) fn goals(&self, planner: &Planner, state: &State) -> Option<&[Goal]> {
         let met = |way: &&Vec<Goal>| way.iter().all(|goal| goal.modes >> state.mode(goal.component) & 1 == 1);
         let reachable = |way: &&Vec<Goal>| way.iter().all(|goal| planner.may_reach(state, goal));
         let way = match self.ways.as_slice() {
@@ -29,11 +29,11 @@ impl Wish {
 }
 
 /// Reads a constraint once, when the program is compiled.
-pub(super) fn wish(model: &Model, constraint: &Constraint) -> Wish {
-    Wish { ways: ways(model, &Planner::new(model), constraint, true) }
+pub(super) fn wish(planner: &Planner, constraint: &Constraint) -> Wish {
+    Wish { ways: ways(planner.model(), planner, constraint, true) }
 }
 
-fn ways(model: &Model, planner: &Planner<'_>, constraint: &Constraint, wanted: bool) -> Vec<Vec<Goal>> {
+fn ways(model: &Model, planner: &Planner, constraint: &Constraint, wanted: bool) -> Vec<Vec<Goal>> {
     match &constraint.kind {
         ConstraintKind::Not(inner) => ways(model, planner, inner, !wanted),
         ConstraintKind::And(parts) if wanted => all(model, planner, parts, wanted),
@@ -80,7 +80,7 @@ fn chosen(set: u64, count: usize, wanted: bool) -> u64 {
     if wanted { set } else { full & !set }
 }
 
-fn all(model: &Model, planner: &Planner<'_>, parts: &[Constraint], wanted: bool) -> Vec<Vec<Goal>> {
+fn all(model: &Model, planner: &Planner, parts: &[Constraint], wanted: bool) -> Vec<Vec<Goal>> {
     let mut joined: Vec<Vec<Goal>> = vec![Vec::new()];
     for part in parts {
         let inner = ways(model, planner, part, wanted);

@@ -1,6 +1,7 @@
 //! What the executive thinks: belief updates and commands, remembered so that many runs share them.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use plant::{
     Belief, Commands, Conflict, EstimateError, Goal, Model, NextCommands, Observation, Planner, State,
@@ -44,23 +45,21 @@ pub(super) struct Thought {
 
 /// Estimates and plans for one model.
 #[derive(Clone, Debug)]
-pub struct Mind<'model> {
-    model: &'model Model,
-    planner: Planner<'model>,
+pub struct Mind {
+    planner: Arc<Planner>,
     estimation: Estimation,
     thoughts: BTreeMap<(Belief, Commands, Observation), Thought>,
     plans: BTreeMap<(State, Vec<Goal>), NextCommands>,
 }
 
-impl<'model> Mind<'model> {
-    /// Compiles the model's policies.
-    pub fn new(model: &'model Model, estimation: Estimation) -> Self {
-        let planner = Planner::new(model);
-        Self { model, planner, estimation, thoughts: BTreeMap::new(), plans: BTreeMap::new() }
+impl Mind {
+    /// Remembers nothing yet; the planner has the model.
+    pub fn new(planner: Arc<Planner>, estimation: Estimation) -> Self {
+        Self { planner, estimation, thoughts: BTreeMap::new(), plans: BTreeMap::new() }
     }
 
     /// The reactive planner.
-    pub const fn planner(&self) -> &Planner<'model> {
+    pub const fn planner(&self) -> &Arc<Planner> {
         &self.planner
     }
 
@@ -80,7 +79,8 @@ impl<'model> Mind<'model> {
             }
             updated => (updated?, false),
         };
-        let conflicts = conflicts(self.model, belief.most_likely(), commands, observation, MOST_CONFLICTS)?;
+        let conflicts =
+            conflicts(self.planner.model(), belief.most_likely(), commands, observation, MOST_CONFLICTS)?;
         let thought = Thought { belief: updated, is_unexplained, conflicts };
         if self.thoughts.len() >= MOST_REMEMBERED {
             self.thoughts.clear();
@@ -96,9 +96,9 @@ impl<'model> Mind<'model> {
         observation: &Observation,
     ) -> Result<Belief, EstimateError> {
         match self.estimation {
-            Estimation::Exact => update_exact(self.model, belief, commands, observation),
+            Estimation::Exact => update_exact(self.planner.model(), belief, commands, observation),
             Estimation::Best(most) => {
-                update_best(self.model, belief, commands, observation, most, MOST_NODES)
+                update_best(self.planner.model(), belief, commands, observation, most, MOST_NODES)
                     .map(|(belief, _)| belief)
             }
         }

@@ -5,6 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
+use std::sync::Arc;
 
 use plant::{EstimateError, Random};
 use serde::{Deserialize, Serialize};
@@ -91,7 +92,7 @@ impl ProgramTally {
         if self.reached == 0 { 0.0 } else { steps as f64 / self.reached as f64 }
     }
 
-    fn take(&mut self, system: &System, run: &Run<'_>, number: u64) {
+    fn take(&mut self, system: &System, run: &Run, number: u64) {
         self.runs += 1;
         if run.is_done() {
             self.reached += 1;
@@ -121,13 +122,13 @@ pub const fn run_seed(seed: u64, number: u64) -> u64 {
 
 /// Makes the runs of these numbers, as long as `go_on` says so after each; the tally says how many were made.
 pub fn sample(
-    system: &System,
+    system: &Arc<System>,
     trials: &Trials<'_>,
     numbers: Range<u64>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<ProgramTally, EstimateError> {
     let estimation = trials.options.estimation.unwrap_or_else(|| Estimation::for_model(&system.model));
-    let mut mind = Mind::new(&system.model, estimation);
+    let mut mind = Mind::new(Arc::clone(&system.planner), estimation);
     let nothing = StepInput::default();
     let mut tally = ProgramTally::default();
     for number in numbers {

@@ -1,6 +1,7 @@
 //! One run of the closed loop, step by step and back (SPEC 9.3).
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use hca::{Marking, Stepper, TraceStep};
 use plant::successor::nominal;
@@ -8,6 +9,7 @@ use plant::{
     Belief, Commands, ComponentId, Conflict, EstimateError, Goal, Observation, Random, SimulatedPlant, State,
     VariableId,
 };
+use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
 use super::mind::{Estimation, Mind};
@@ -35,7 +37,7 @@ pub struct Options {
 }
 
 /// What comes from outside in one step. The inputs of a run's steps are its log: they replay it.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StepInput {
     /// Components that are in the given modes after this step, whatever is commanded.
     pub injected: BTreeMap<ComponentId, u8>,
@@ -44,7 +46,7 @@ pub struct StepInput {
 }
 
 /// What happened in one step.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StepRecord {
     /// Marked locations, goals and labels at the step's start, and what the automaton did at its end.
     pub trace: TraceStep,
@@ -77,31 +79,31 @@ struct Standing {
     random: Option<Random>,
 }
 
-/// A run.
+/// A run. It owns what it runs, so that it can be kept and stepped on.
 #[derive(Clone, Debug)]
-pub struct Run<'system> {
-    system: &'system System,
+pub struct Run {
+    system: Arc<System>,
     options: Options,
-    mind: Mind<'system>,
-    stepper: Stepper<'system>,
-    plant: SimulatedPlant<'system>,
+    mind: Mind,
+    stepper: Stepper,
+    plant: SimulatedPlant,
     belief: Belief,
     random: Option<Random>,
     records: Vec<StepRecord>,
     before: Vec<Standing>,
 }
 
-impl<'system> Run<'system> {
+impl Run {
     /// Starts with the plant in its initial state, which is known.
-    pub fn new(system: &'system System, options: Options) -> Self {
+    pub fn new(system: &Arc<System>, options: Options) -> Self {
         let estimation = options.estimation.unwrap_or_else(|| Estimation::for_model(&system.model));
-        Self::with_mind(system, options, Mind::new(&system.model, estimation))
+        let mind = Mind::new(Arc::clone(&system.planner), estimation);
+        Self::with_mind(system, options, mind)
     }
 
     /// The same with a mind that earlier runs have furnished.
-    pub fn with_mind(system: &'system System, options: Options, mind: Mind<'system>) -> Self {
+    pub fn with_mind(system: &Arc<System>, options: Options, mind: Mind) -> Self {
         Self {
-            system,
             options,
             mind,
             stepper: Stepper::new(&system.automaton),
@@ -110,17 +112,12 @@ impl<'system> Run<'system> {
             random: options.seed.map(Random::new),
             records: Vec::new(),
             before: Vec::new(),
+            system: Arc::clone(system),
         }
     }
 
     /// Starts with the plant as an earlier run left it, and with what was believed then.
-    pub fn resumed(
-        system: &'system System,
-        options: Options,
-        mind: Mind<'system>,
-        state: State,
-        belief: Belief,
-    ) -> Self {
+    pub fn resumed(system: &Arc<System>, options: Options, mind: Mind, state: State, belief: Belief) -> Self {
         let mut run = Self::with_mind(system, options, mind);
         run.plant = SimulatedPlant::new(&system.model, Some(state));
         run.belief = belief;
@@ -128,11 +125,7 @@ impl<'system> Run<'system> {
     }
 
     /// Runs again what was logged.
-    pub fn replay(
-        system: &'system System,
-        options: Options,
-        log: &[StepInput],
-    ) -> Result<Self, EstimateError> {
+    pub fn replay(system: &Arc<System>, options: Options, log: &[StepInput]) -> Result<Self, EstimateError> {
         let mut run = Self::new(system, options);
         for input in log {
             run.step(input)?;
@@ -218,7 +211,7 @@ impl<'system> Run<'system> {
     }
 
     fn advance(&mut self, input: &StepInput) -> Result<StepRecord, EstimateError> {
-        let system = self.system;
+        let system = Arc::clone(&self.system);
         let mut trace = self.upcoming();
         let (commands, unachievable) = self.command();
         let mut failed = Vec::new();
@@ -263,7 +256,7 @@ impl<'system> Run<'system> {
 
     /// The commands towards the goals of the marked locations, from the most likely state.
     fn command(&mut self) -> (Commands, Vec<(SmolStr, String)>) {
-        let system = self.system;
+        let system = Arc::clone(&self.system);
         let state = self.belief.most_likely().clone();
         let mut goals: Vec<Goal> = Vec::new();
         let mut unachievable: Vec<(SmolStr, String)> = Vec::new();
@@ -294,7 +287,8 @@ impl<'system> Run<'system> {
         (next.commands, unachievable)
     }
 
-    pub(super) fn into_mind(self) -> Mind<'system> {
+    /// What the run has found out about its plant, for another run.
+    pub fn into_mind(self) -> Mind {
         self.mind
     }
 }

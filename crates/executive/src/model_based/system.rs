@@ -1,9 +1,10 @@
 //! A control program bound to the plant that it controls.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use hca::{Automaton, Estimate, VariableId as ProgramVariableId, Vocabulary};
-use plant::{ComponentId, Model, Observation, State, VariableId};
+use plant::{ComponentId, Model, Observation, Planner, State, VariableId};
 use rmpl::control::{
     Argument, Constraint, ConstraintKind, ControlFile, Expression, ExpressionKind, Name, expand_main, nearest,
 };
@@ -27,9 +28,11 @@ enum Binding {
 #[derive(Clone, Debug)]
 pub struct System {
     /// The program.
-    pub automaton: Automaton,
+    pub automaton: Arc<Automaton>,
     /// The plant.
-    pub model: Model,
+    pub model: Arc<Model>,
+    /// The plant's reactive planner.
+    pub planner: Arc<Planner>,
     bindings: Vec<Binding>,
     /// Per location, what it wants of the plant.
     wishes: Vec<Option<Wish>>,
@@ -39,7 +42,7 @@ pub struct System {
 #[derive(Clone, Debug)]
 pub struct SystemCompilation {
     /// Both, bound together; `None` when there are errors.
-    pub system: Option<System>,
+    pub system: Option<Arc<System>>,
     /// What is wrong with the program's text.
     pub program_diagnostics: Vec<Diagnostic>,
     /// What is wrong with the model's text; empty when the model stands in the program's text.
@@ -101,7 +104,7 @@ impl System {
     }
 
     /// Compiles the definition called `main` of a file that holds its plant, too. Spans are those of the file.
-    pub fn compile_definition(file: &ControlFile, main: &str) -> (Option<Self>, Vec<Diagnostic>) {
+    pub fn compile_definition(file: &ControlFile, main: &str) -> (Option<Arc<Self>>, Vec<Diagnostic>) {
         let mut file = file.clone();
         let Some(at) = file.definitions.iter().position(|definition| definition.name.text == main) else {
             return (None, Vec::new());
@@ -143,7 +146,7 @@ impl System {
     }
 }
 
-fn bind(file: &rmpl::control::ControlFile, model: Model) -> (Option<System>, Vec<Diagnostic>) {
+fn bind(file: &rmpl::control::ControlFile, model: Model) -> (Option<Arc<System>>, Vec<Diagnostic>) {
     let (expanded, diagnostics) = expand_main(file);
     let Some(program) = expanded else { return (None, diagnostics) };
     let mut uses = Uses::default();
@@ -177,15 +180,17 @@ fn bind(file: &rmpl::control::ControlFile, model: Model) -> (Option<System>, Vec
         mode.or_else(|| model.variable_named(name).map(Binding::Plant)).unwrap_or(Binding::Program)
     };
     let bindings = automaton.variables.iter().map(|variable| binding(&variable.name)).collect();
+    let model = Arc::new(model);
+    let planner = Arc::new(Planner::new(&model));
     let wishes = automaton
         .locations
         .iter()
         .map(|location| {
             let assertion = location.assertion.as_ref()?;
-            Some(wish(&model, &automaton.guard(assertion.test)?.constraint))
+            Some(wish(&planner, &automaton.guard(assertion.test)?.constraint))
         })
         .collect();
-    (Some(System { automaton, model, bindings, wishes }), diagnostics)
+    (Some(Arc::new(System { automaton, model, planner, bindings, wishes })), diagnostics)
 }
 
 fn undefined(name: &Name, known: &BTreeSet<SmolStr>, is_asserted: bool) -> Diagnostic {

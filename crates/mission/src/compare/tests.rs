@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde_json::json;
 
 use super::{Change, Comparison, Side, Subject, compare};
-use crate::{Core, Goal, Request, Response, SearchKind, Snapshot, Surroundings, Update};
+use crate::{Core, CoreHost, Goal, Request, Response, SearchKind, Snapshot, Update};
 
 const SCENARIO: &str = include_str!("../../../../tests/conformance/t01_enroute_scenario.rmpl");
 const BOTH: &str = include_str!("../../../../tests/conformance/t03_enroute_both_paths.rmpl");
@@ -14,7 +14,7 @@ const MISSION: &str = include_str!("../../../../assets/missions/enroute.rmpl");
 #[derive(Default)]
 struct Answers(Vec<Response>);
 
-impl Surroundings for Answers {
+impl CoreHost for Answers {
     fn now_millis(&self) -> f64 {
         0.0
     }
@@ -182,8 +182,8 @@ fn a_text_worked_out_for_comparing_leaves_the_open_plan_alone() {
     core.handle(Request::Update(update(MISSION)), &mut answers);
     let maps = |answers: &Answers| answers.0.iter().filter(|it| matches!(it, Response::Map { .. })).count();
     assert_eq!(maps(&answers), 1);
-    core.handle(Request::WorkOut { token: 7, update: update(BOTH) }, &mut answers);
-    let Some(Response::WorkedOut { token: 7, snapshot }) = answers.0.last() else {
+    core.handle(Request::Evaluate { token: 7, update: update(BOTH) }, &mut answers);
+    let Some(Response::Evaluated { token: 7, snapshot }) = answers.0.last() else {
         panic!("{:?}", answers.0.last());
     };
     assert_eq!(&*snapshot.source, BOTH);

@@ -7,9 +7,11 @@ use rmpl::program::Program;
 use terrain::Terrain;
 use tpn::Network;
 
-use super::{Core, Surroundings, compile};
+use super::{Core, CoreHost};
 use crate::execution::{self, Execution};
 use crate::planning::{self, Planned};
+use crate::program_chance::{self, ProgramChance};
+use crate::programs::Programs;
 use crate::request::{Response, Update};
 use crate::robustness::{RobustnessSettings, Tally, Uncertainty};
 use crate::sampling::Sampler;
@@ -22,18 +24,19 @@ pub(super) struct Sampled {
     sampler: Sampler,
 }
 
-/// A text worked out without telling anybody.
-struct Worked {
-    program: Arc<Program>,
+/// A text with its plan.
+pub(super) struct Evaluated {
+    pub(super) program: Arc<Program>,
+    programs: Arc<Programs>,
     network: Arc<Network>,
-    ground: Option<(MapKey, Arc<Terrain>)>,
-    planned: Planned,
+    pub(super) ground: Option<(MapKey, Arc<Terrain>)>,
+    pub(super) planned: Planned,
 }
 
 /// Runs are made for about this long before the answer says how far they got.
 const SAMPLING_MILLIS: f64 = 120.0;
 
-impl Worked {
+impl Evaluated {
     fn problem(&self, update: &Update) -> planning::Problem<'_> {
         planning::Problem {
             network: &self.network,
@@ -47,27 +50,26 @@ impl Worked {
 }
 
 impl Core {
-    pub(super) fn execute(&mut self, update: &Update, script: Script, surroundings: &mut dyn Surroundings) {
+    pub(super) fn execute(&mut self, update: &Update, script: Script, host: &mut dyn CoreHost) {
         let revision = update.revision;
-        let Some(worked) = self.work_out(update, surroundings) else { return };
-        let executed = worked.and_then(|worked| {
-            let unknown = execution::unknown(&worked.network, &worked.program, &script.disturbances);
+        let Some(evaluated) = self.evaluate(update, host) else { return };
+        let executed = evaluated.and_then(|evaluated| {
+            let unknown = execution::unknown(&evaluated.network, &evaluated.program, &script.disturbances);
             if !unknown.is_empty() {
                 return Err(format!("the mission has no {}", unknown.join(", ")));
             }
-            let programs = crate::programs::Programs::compile(&worked.program).0;
-            let unknown = programs.unknown_faults(&worked.network, &script.disturbances);
+            let unknown = evaluated.programs.unknown_faults(&evaluated.network, &script.disturbances);
             if !unknown.is_empty() {
                 return Err(format!("the mission has no {}", unknown.join(", ")));
             }
-            let problem = worked.problem(update);
+            let problem = evaluated.problem(update);
             let disturbances = &script.disturbances;
-            execution::execute(&problem, &worked.planned, disturbances, &mut self.grounds, &mut self.paths)
+            execution::execute(&problem, &evaluated.planned, disturbances, &mut self.grounds, &mut self.paths)
                 .ok_or_else(|| NO_PLAN.to_owned())?
-                .map(|ran| Execution::new(revision, script, &worked.program, &worked.planned, ran))
+                .map(|ran| Execution::new(revision, script, &evaluated.program, &evaluated.planned, ran))
                 .map_err(|error| error.to_string())
         });
-        surroundings.answer(match executed {
+        host.answer(match executed {
             Ok(execution) => Response::Execution(Arc::new(execution)),
             Err(reason) => Response::NotExecuted { revision, reason },
         });
@@ -78,32 +80,31 @@ impl Core {
         update: &Update,
         settings: RobustnessSettings,
         from: u64,
-        surroundings: &mut dyn Surroundings,
+        host: &mut dyn CoreHost,
     ) {
         let revision = update.revision;
-        let Some(worked) = self.work_out(update, surroundings) else { return };
-        let sampled =
-            worked.and_then(|worked| self.sample_worked(&worked, update, &settings, from, surroundings));
-        surroundings.answer(match sampled {
+        let Some(evaluated) = self.evaluate(update, host) else { return };
+        let sampled = evaluated.and_then(|it| self.sample_evaluated(&it, update, &settings, from, host));
+        host.answer(match sampled {
             Ok(tally) => Response::Sampled { revision, settings: Box::new(settings), from, tally },
             Err(reason) => Response::NotExecuted { revision, reason },
         });
     }
 
-    fn sample_worked(
+    fn sample_evaluated(
         &mut self,
-        worked: &Worked,
+        evaluated: &Evaluated,
         update: &Update,
         settings: &RobustnessSettings,
         from: u64,
-        surroundings: &mut dyn Surroundings,
+        host: &mut dyn CoreHost,
     ) -> Result<Tally, String> {
-        let begun = surroundings.now_millis();
+        let begun = host.now_millis();
         let is_known = self.sampler.as_ref().is_some_and(|known| {
             known.revision == update.revision && known.uncertainty == settings.uncertainty
         });
         if !is_known {
-            let sampler = Sampler::new(&worked.program, &worked.planned, &settings.uncertainty)
+            let sampler = Sampler::new(&evaluated.program, &evaluated.planned, &settings.uncertainty)
                 .ok_or_else(|| NO_PLAN.to_owned())?
                 .map_err(|error| error.to_string())?;
             let uncertainty = settings.uncertainty.clone();
@@ -111,37 +112,51 @@ impl Core {
         }
         let mut tally = Tally::default();
         let Some(Sampled { sampler, .. }) = &self.sampler else { return Ok(tally) };
-        let problem = worked.problem(update);
+        let problem = evaluated.problem(update);
         for number in from..settings.runs {
             sampler
                 .run(&problem, settings, number, &mut self.grounds, &mut self.paths, &mut tally)
                 .map_err(|error| error.to_string())?;
-            if surroundings.now_millis() - begun > SAMPLING_MILLIS || surroundings.is_superseded() {
+            if host.now_millis() - begun > SAMPLING_MILLIS || host.is_superseded() {
                 break;
             }
         }
         Ok(tally)
     }
 
-    /// Works a text out up to its plan; `None` if that was given up for a newer request, an error if it has none.
-    fn work_out(
+    /// Runs a control program many times.
+    pub(super) fn sample_program(
+        &mut self,
+        (revision, source): (u64, &Arc<str>),
+        chance: ProgramChance,
+        from: u64,
+        host: &mut dyn CoreHost,
+    ) {
+        let begun = host.now_millis();
+        let control = self.controls.read(source, chance.plant.as_ref());
+        let mut go_on = || host.now_millis() - begun <= SAMPLING_MILLIS && !host.is_superseded();
+        let tally = program_chance::sample_control(control, &chance, from, &mut go_on);
+        host.answer(Response::ProgramSampled { revision, chance, from, tally });
+    }
+
+    /// The plan of a text; `None` if that was given up for a newer request, an error if it has none.
+    pub(super) fn evaluate(
         &mut self,
         update: &Update,
-        surroundings: &mut dyn Surroundings,
-    ) -> Option<Result<Worked, String>> {
+        host: &mut dyn CoreHost,
+    ) -> Option<Result<Evaluated, String>> {
         if rmpl::control::is_control_text(&update.source) {
             return Some(Err("a control program is stepped, not executed".to_owned()));
         }
-        let parse = rmpl::parse(&update.source);
-        let program = Arc::new(parse.program());
-        let mut diagnostics = parse.diagnostics();
-        let Some(network) = compile(&program, &update.goal, &mut diagnostics) else {
+        self.read(&update.source);
+        let (Some(network), _) = self.reading.compile(&update.goal, &mut self.keys) else {
             return Some(Err("the mission has errors".to_owned()));
         };
-        let network = Arc::new(network);
+        let program = self.reading.program().value;
+        let programs = self.reading.programs();
         let (ground, _) = self.grounds.resolve(&program.world);
-        let planned = self.plan(update, &network, &program, ground.as_ref(), surroundings)?;
-        Some(Ok(Worked { program, network, ground, planned }))
+        let planned = self.plan(update, &network, ground.as_ref(), host)?.planned.clone();
+        Some(Ok(Evaluated { program, programs, network: network.value, ground, planned }))
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use exact::{Bound, Time};
 
 use super::{Fate, Review, Section, Status, TimeRange, content_hash, review};
-use crate::{Core, Goal, Request, Response, SearchKind, Snapshot, Surroundings, Update};
+use crate::{Core, CoreHost, Goal, Request, Response, SearchKind, Snapshot, Update};
 
 const SCENARIO: &str = include_str!("../../../../tests/conformance/t01_enroute_scenario.rmpl");
 const MISSION: &str = include_str!("../../../../assets/missions/enroute.rmpl");
@@ -13,7 +13,7 @@ const MISSION: &str = include_str!("../../../../assets/missions/enroute.rmpl");
 #[derive(Default)]
 struct Answers(Option<Arc<Snapshot>>);
 
-impl Surroundings for Answers {
+impl CoreHost for Answers {
     fn now_millis(&self) -> f64 {
         0.0
     }

@@ -1,10 +1,12 @@
 //! The components as cards with their state machines, and what makes them fail.
 
+use std::sync::Arc;
+
 use egui::{DragValue, Frame, Margin, Rect, RichText, Stroke, Ui, UiBuilder, vec2};
 use plant::{ComponentId, Model};
 use theme::space;
 use workbench::command::{Command, CommandSender};
-use workbench::state::automaton::{AutomatonCommand, Luck, PlantMoment};
+use workbench::state::automaton::{AutomatonCommand, FaultSeed, PlantMoment};
 
 use super::machine::{Machine, Standing};
 use super::title;
@@ -12,7 +14,7 @@ use crate::Context;
 
 /// The state machines of a model's components, laid out.
 pub(super) struct Machines {
-    model: Model,
+    model: Arc<Model>,
     machines: Vec<Machine>,
 }
 
@@ -24,14 +26,14 @@ const CARD_GAP: f32 = 6.0;
 
 impl Machines {
     /// Lays the machines of a model out.
-    pub(super) fn new(ui: &Ui, model: &Model) -> Self {
+    pub(super) fn new(ui: &Ui, model: &Arc<Model>) -> Self {
         let machines = model.components.iter().map(|component| Machine::new(ui, component)).collect();
-        Self { model: model.clone(), machines }
+        Self { model: Arc::clone(model), machines }
     }
 
     /// Whether they are those of `model`.
-    pub(super) fn are_of(&self, model: &Model) -> bool {
-        self.model == *model
+    pub(super) fn are_of(&self, model: &Arc<Model>) -> bool {
+        Arc::ptr_eq(&self.model, model)
     }
 
     /// Shows all cards, as many beside each other as there is room for.
@@ -43,7 +45,7 @@ impl Machines {
         commands: &mut CommandSender,
     ) {
         title(ui, context, "Components", "shade: how likely   ● true   dashed: fault");
-        luck(ui, context, commands);
+        chance(ui, context, commands);
         let available = ui.available_width();
         let mut row: Vec<(ComponentId, f32)> = Vec::new();
         let mut used = 0.0;
@@ -137,26 +139,26 @@ impl Machines {
     }
 }
 
-/// Whether components fail by chance, and with which luck.
-fn luck(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
-    let luck = context.state.automaton.luck();
-    let usual = Luck { seed: context.state.automaton.chance.settings.seed, run: None };
+/// Whether components fail by chance, and with which seed.
+fn chance(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let fault_seed = context.state.automaton.fault_seed();
+    let usual = FaultSeed { seed: context.state.automaton.chance.settings.seed, run: None };
     ui.horizontal_wrapped(|ui| {
-        let mut is_on = luck.is_some();
+        let mut is_on = fault_seed.is_some();
         if ui.checkbox(&mut is_on, "Components fail by chance").changed() {
-            commands.send(Command::Automaton(AutomatonCommand::SetLuck(is_on.then_some(usual))));
+            commands.send(Command::Automaton(AutomatonCommand::SetFaultSeed(is_on.then_some(usual))));
         }
-        match luck {
-            Some(Luck { mut seed, run: None }) => {
+        match fault_seed {
+            Some(FaultSeed { mut seed, run: None }) => {
                 let label = ui.label(RichText::new("Luck").color(context.tokens.text_muted)).id;
                 let field = DragValue::new(&mut seed).speed(0.1);
                 let field = ui.add(field).labelled_by(label);
                 if field.on_hover_text("With the same number, the same components fail").changed() {
-                    let luck = Some(Luck { seed, run: None });
-                    commands.send(Command::Automaton(AutomatonCommand::SetLuck(luck)));
+                    let changed = Some(FaultSeed { seed, run: None });
+                    commands.send(Command::Automaton(AutomatonCommand::SetFaultSeed(changed)));
                 }
             }
-            Some(Luck { seed, run: Some(run) }) => {
+            Some(FaultSeed { seed, run: Some(run) }) => {
                 let text = format!("as in run {} with seed {seed}", run + 1);
                 ui.label(RichText::new(text).color(context.tokens.text_muted));
             }

@@ -35,8 +35,8 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
             });
         });
     });
-    if let Some(trouble) = &context.state.automaton.trouble {
-        ui.label(RichText::new(format!("✗ The step cannot be taken: {trouble}")).color(context.tokens.error));
+    if let Some(error) = &context.state.automaton.error {
+        ui.label(RichText::new(format!("✗ The step cannot be taken: {error}")).color(context.tokens.error));
     }
 }
 

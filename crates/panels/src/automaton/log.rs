@@ -44,7 +44,7 @@ pub(super) fn show(
                     commands.send(Command::Automaton(AutomatonCommand::GoTo(at)));
                 }
                 let color = if is_shown { tokens.text } else { tokens.text_muted };
-                let cells = cells(shown, moment, state.moments().get(at + 1));
+                let cells = cells(shown, moment, state.moments().get(at + 1).map(AsRef::as_ref));
                 for (cell, _) in cells.into_iter().zip(COLUMNS).filter(|(_, column)| is_told(*column)) {
                     ui.label(RichText::new(cell).small().color(color));
                 }

@@ -74,9 +74,9 @@ mod tests {
     const TEXT: &str =
         "P ():: (DO-WATCHING (a = yes) (PARALLEL (b = yes) (WHEN-DONEXT (c = yes) (d = yes))))";
 
-    fn automaton() -> Automaton {
+    fn automaton() -> std::sync::Arc<Automaton> {
         match read_control(TEXT, None).0 {
-            Control::Unbound(automaton) => *automaton,
+            Control::Unbound(automaton) => automaton,
             _ => panic!("a program without a plant"),
         }
     }

@@ -13,6 +13,8 @@ mod log;
 mod machine;
 mod marks;
 
+use std::sync::Arc;
+
 use display::{DisplayList, approximate_text_width};
 use egui::{Frame, Margin, RichText, ScrollArea, Ui, Vec2, vec2};
 use hca::{Automaton, CompositeId, Marking, TransitionId};
@@ -56,7 +58,7 @@ const LEAST_ROOM: Vec2 = vec2(760.0, 320.0);
 
 /// The drawing of the automaton that was laid out last.
 struct Drawn {
-    automaton: Automaton,
+    automaton: Arc<Automaton>,
     drawing: AutomatonDrawing,
     /// The display list that was built last, and for what.
     listed: Option<(Listed, DisplayList)>,
@@ -98,7 +100,7 @@ impl Drawn {
 #[derive(Clone, Copy)]
 struct Shown<'a> {
     program: &'a Program,
-    automaton: &'a Automaton,
+    automaton: &'a Arc<Automaton>,
     moment: &'a Moment,
 }
 
@@ -106,6 +108,10 @@ impl Panel for AutomatonPanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let state = &context.state.automaton;
         let Some(program) = state.program() else {
+            if state.is_control() {
+                show_empty(ui, context, "The program is being compiled.");
+                return;
+            }
             show_empty(ui, context, "The text is a mission. A control program shows its automaton here.");
             return;
         };
@@ -116,7 +122,10 @@ impl Panel for AutomatonPanel {
                     context,
                     "The text describes a plant. Add a program below it to see the plant controlled.",
                 ),
-                _ => show_empty(ui, context, "The program has errors. See the problems."),
+                Program::Bound { .. } | Program::Unbound(_) => {
+                    show_empty(ui, context, "The program is being run.");
+                }
+                Program::Broken => show_empty(ui, context, "The program has errors. See the problems."),
             }
             return;
         };
@@ -232,17 +241,17 @@ impl AutomatonPanel {
         });
     }
 
-    fn machines(&mut self, ui: &Ui, model: &Model) -> &components::Machines {
+    fn machines(&mut self, ui: &Ui, model: &Arc<Model>) -> &components::Machines {
         let known = self.machines.take().filter(|machines| machines.are_of(model));
         self.machines.insert(known.unwrap_or_else(|| components::Machines::new(ui, model)))
     }
 
-    fn layout(&mut self, automaton: &Automaton) {
-        if self.drawn.as_ref().is_some_and(|drawn| drawn.automaton == *automaton) {
+    fn layout(&mut self, automaton: &Arc<Automaton>) {
+        if self.drawn.as_ref().is_some_and(|drawn| Arc::ptr_eq(&drawn.automaton, automaton)) {
             return;
         }
         let drawing = layout::automaton(automaton, &approximate_text_width);
-        self.drawn = Some(Drawn { automaton: automaton.clone(), drawing, listed: None });
+        self.drawn = Some(Drawn { automaton: Arc::clone(automaton), drawing, listed: None });
     }
 }
 

@@ -143,7 +143,7 @@ impl DistancesPanel {
         let is_current = self
             .drawn
             .as_ref()
-            .is_some_and(|drawn| Arc::ptr_eq(&drawn.snapshot, snapshot) && std::ptr::eq(drawn.plan, plan));
+            .is_some_and(|drawn| drawn.snapshot.shows_same(snapshot) && std::ptr::eq(drawn.plan, plan));
         if is_current {
             return;
         }

@@ -572,7 +572,7 @@ fn caret_rect(context: &Context<'_>, geometry: &Geometry<'_>, shown: &ShownLines
 /// The problems of the last answer, at their places in the present text.
 fn shifted_problems<'a>(context: &Context<'a>, shift: Shift) -> Vec<(&'a Problem, Span)> {
     let latest = context.state.snapshots.latest();
-    let problems = latest.map(|latest| latest.problems.as_slice()).unwrap_or_default();
+    let problems = latest.map(|latest| &*latest.problems).unwrap_or_default();
     problems.iter().filter_map(|problem| Some((problem, shift.span(problem.span)?))).collect()
 }
 

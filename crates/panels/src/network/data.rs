@@ -6,7 +6,8 @@ use std::sync::Arc;
 use display::{DisplayList, Piece, Point, approximate_text_width};
 use layout::overlay::{causal_links, negative_cycle, orderings, threats, windows};
 use layout::{NetworkDrawing, NetworkState, Options, OverlayCurve, TextShape};
-use mission::{Planning, Snapshot};
+use mission::{ContentKey, Planning, Snapshot};
+use smol_str::SmolStr;
 use tpn::{BlockId, BlockKind, Network, NodeId, Plan};
 use workbench::state::search::View;
 use workbench::state::selection::node_name;
@@ -18,6 +19,8 @@ use super::marks::{Mark, marks};
 #[derive(Default)]
 pub(super) struct Drawn {
     network: Option<Arc<Network>>,
+    /// Of the network, if it is that of a snapshot.
+    key: Option<ContentKey>,
     planning: Option<Arc<Planning>>,
     /// What the search had selected at the step that is looked at.
     step: Option<Arc<Plan>>,
@@ -75,7 +78,16 @@ impl Drawn {
         windows_of: Option<(u64, Option<&Plan>)>,
     ) -> bool {
         let same = |one: &Option<Arc<Network>>| one.as_ref().is_some_and(|one| Arc::ptr_eq(one, network));
-        let is_new = !same(&self.network) || self.collapsed != *collapsed;
+        // A network whose places in the text have moved is drawn as it was.
+        let key = same(&snapshot.network)
+            .then_some(snapshot.keys.network)
+            .filter(|&key| key != ContentKey::default());
+        let is_same = same(&self.network) || key.is_some() && self.key == key;
+        let is_new = !is_same || self.collapsed != *collapsed;
+        self.key = key;
+        if !is_new {
+            self.network = Some(Arc::clone(network));
+        }
         if is_new {
             let options = Options { collapsed: collapsed_blocks(network, collapsed), ..Options::default() };
             self.drawing = layout::network(network, &options, &approximate_text_width);

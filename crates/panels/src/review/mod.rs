@@ -84,7 +84,7 @@ impl ReviewPanel {
                 ui.push_id(section.title(), |ui| self.section(ui, list, section, commands));
             }
             if section == Section::Encounters {
-                let figures = list.context.snapshot.and_then(|snapshot| snapshot.robustness.as_deref());
+                let figures = list.context.state.robustness().map(AsRef::as_ref);
                 let note = robustness::note(figures);
                 if header(ui, list.context, &mut self.closed, "Robustness", None, &note) {
                     robustness::show(ui, list.context, figures, commands);

@@ -26,7 +26,7 @@ impl Panel for RobustnessPanel {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 4)).show(ui, |ui| {
                 ask(ui, context, commands);
-                let robustness = context.state.shown().and_then(|shown| shown.robustness.as_deref());
+                let robustness = context.state.robustness();
                 if let Some(robustness) = robustness {
                     show_result(ui, context, robustness);
                 } else {

@@ -117,7 +117,7 @@ impl TimelinePanel {
                 (None, None) => true,
                 _ => false,
             };
-            Arc::ptr_eq(&it.snapshot, snapshot) && same_step && it.view == *view && it.closed == self.closed
+            it.snapshot.shows_same(snapshot) && same_step && it.view == *view && it.closed == self.closed
         });
         if !is_current {
             // Pinned events only narrow windows: rows are those of the plan without them.

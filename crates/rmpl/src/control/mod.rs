@@ -13,6 +13,7 @@ mod lexer;
 mod read_constraint;
 mod read_model;
 mod read_program;
+mod spans;
 mod suggest;
 mod syntax;
 mod tree;

@@ -25,7 +25,7 @@ pub fn hca_json(state: &AutomatonState, revision: u64) -> Option<Value> {
         }),
         "canStep": state.can_step(),
         "isPlaying": state.is_playing,
-        "trouble": state.trouble,
+        "trouble": state.error,
         "chance": chance_json(&state.chance, revision),
         "plant": plant.map(|(model, moment)| plant_json(model, moment)),
     }))

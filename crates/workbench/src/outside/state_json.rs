@@ -216,7 +216,7 @@ fn execution_json(state: &AppState) -> Value {
 
 /// What is known of the plan's robustness; null until runs were made.
 fn robustness_json(state: &AppState) -> Value {
-    let Some(robustness) = state.shown().and_then(|shown| shown.robustness.as_deref()) else {
+    let Some(robustness) = state.robustness() else {
         return Value::Null;
     };
     let (low, high) = robustness.tally.interval();

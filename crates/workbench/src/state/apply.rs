@@ -62,7 +62,7 @@ impl AppState {
         self.language.follow(&self.document);
         self.editor.folding.follow(&mut self.document, self.language.parse());
         self.automaton.follow(&self.document, self.language.is_control());
-        self.ask_for_comparison();
+        self.ask_the_core();
         self.follow_review();
         self.follow_run();
     }
@@ -104,10 +104,10 @@ impl AppState {
             Command::Transport(command) => self.apply_to_transport(command),
             Command::Automaton(command) => self.automaton.apply(command),
             Command::Execution(command) => self.apply_to_run(command),
-            Command::Chance(ChanceCommand::Start) if self.automaton.program().is_some() => {
+            Command::Chance(ChanceCommand::Start) if self.automaton.is_control() => {
                 self.apply_to_program_chance(ProgramChanceCommand::Start);
             }
-            Command::Chance(ChanceCommand::Stop) if self.automaton.program().is_some() => {
+            Command::Chance(ChanceCommand::Stop) if self.automaton.is_control() => {
                 self.apply_to_program_chance(ProgramChanceCommand::Stop);
             }
             Command::Chance(command) => self.apply_to_chance(command),
@@ -194,7 +194,7 @@ impl AppState {
     /// Takes in something that happened outside.
     pub fn receive(&mut self, event: HostEvent) {
         self.take(event);
-        self.ask_for_comparison();
+        self.ask_the_core();
     }
 
     fn take(&mut self, event: HostEvent) {
@@ -215,19 +215,21 @@ impl AppState {
             }
             HostEvent::FragmentChanged(_) => {}
             HostEvent::Answer(Response::Review { revision, review }) => self.take_review(revision, review),
-            HostEvent::Answer(Response::WorkedOut { token, snapshot }) => {
-                self.take_worked_out(token, &snapshot);
+            HostEvent::Answer(Response::Evaluated { token, snapshot }) => {
+                self.take_evaluated(token, &snapshot);
             }
             HostEvent::Answer(answer @ (Response::Execution(_) | Response::NotExecuted { .. })) => {
                 self.take_run(answer);
             }
+            HostEvent::Answer(Response::ControlRun(standing)) => self.automaton.take(*standing),
+            HostEvent::Answer(Response::PathGrowth(standing)) => self.terrain.growth.take(*standing),
             HostEvent::Answer(answer @ Response::Sampled { .. }) => self.take_sample(answer),
             HostEvent::Answer(answer @ Response::ProgramSampled { .. }) => self.take_program_sample(answer),
             HostEvent::CoreFailed { message, revision } => {
                 self.search.give_comparison_up(revision);
                 self.give_up_review();
                 self.compare.give_up();
-                self.automaton.chance.give_up();
+                self.automaton.give_up();
                 self.toasts.add(
                     ToastKind::Failed,
                     format!(
@@ -275,11 +277,23 @@ impl AppState {
         }
     }
 
-    fn ask_for_comparison(&mut self) {
+    /// Asks the core for what the state now wants to know.
+    pub fn ask_the_core(&mut self) {
         let shown = self.snapshots.shown().cloned();
-        if let Some(revision) = self.search.ask_for_comparison(shown.as_ref(), self.document.revision()) {
-            self.effects.push(Effect::Post(Request::CompareSearches { revision }));
+        let wanted = self.search.ask_for_comparison(shown.as_ref(), self.document.revision());
+        if wanted.is_some()
+            && let Some(update) = self.update_planned()
+        {
+            self.effects.push(Effect::Post(Request::CompareSearches(update)));
         }
+        if let Some(wanted) = self.automaton.take_request(&self.document) {
+            self.effects.push(Effect::Post(Request::RunControl(wanted)));
+        }
+        let mut growth = std::mem::take(&mut self.terrain.growth);
+        if let Some(wanted) = growth.take_request(|| self.update_shown()) {
+            self.effects.push(Effect::Post(Request::GrowPath(wanted)));
+        }
+        self.terrain.growth = growth;
     }
 
     /// Turns to the next or the previous panel on screen, and gives it the keyboard.

@@ -1,15 +1,19 @@
 //! A control program as it runs: its automaton, the plant that it controls, and the steps taken so far.
 //!
-//! The run is its log: the inputs of all steps. Everything shown follows from them, so stepping back forgets nothing,
-//! and an edit of the text that leaves the names as they are takes the same steps again.
+//! The run is its log: the inputs of all steps. The core keeps the run and takes the steps; what is here are the moments
+//! that it answered. Stepping back forgets nothing, and an edit of the text that leaves the names as they are takes the
+//! same steps again, in the core; until that is done the moments before are shown.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use executive::model_based::{Options, Run, StepInput, StepRecord, System, run_seed};
-use hca::{Automaton, Estimate, Marking, Stepper, TraceStep, VariableId};
-use mission::{Control, read_control};
-use plant::{Belief, Commands, ComponentId, Model, State};
+use executive::model_based::run_seed;
+use hca::VariableId;
+use mission::{ContentKey, ControlRun, ControlStanding};
+use plant::ComponentId;
 use smol_str::SmolStr;
+
+pub use mission::control_run::{ControlProgram as Program, Input, Moment, PlantMoment};
 
 use crate::mission_file;
 use crate::state::document::Document;
@@ -18,91 +22,56 @@ use crate::state::program_chance::ProgramChanceState;
 /// The program of the text, if it is one, and its run.
 #[derive(Debug, Default)]
 pub struct AutomatonState {
-    /// The revision of the text that was compiled.
+    /// The revision of the text that is followed.
     revision: u64,
+    is_control: bool,
     program: Option<Program>,
+    /// Of the program.
+    program_key: ContentKey,
+    /// Of the run that the moments are of.
+    run_key: ContentKey,
     /// The inputs of the steps taken, those that were stepped back over included.
     log: Vec<Input>,
     /// What is to come from outside in the next step; replaces what the log says for it.
     pending: Option<Input>,
-    /// How things stand before each step of the log, and after the last.
-    moments: Vec<Moment>,
+    /// How things stand before each step, and after the last.
+    moments: Vec<Arc<Moment>>,
+    /// So many of the moments, from the first, are what the log leads to.
+    fresh: usize,
+    /// The moments that the log leads to, as far as they were answered.
+    coming: Vec<Arc<Moment>>,
     /// The moment that is looked at.
     at: usize,
+    /// The moment that is to be looked at as soon as it is known.
+    target: usize,
+    /// Counts what the core was asked, so that an answer to something earlier is known.
+    asked: u64,
+    is_waiting: bool,
+    wants_answer: bool,
     /// With it, components fail by chance.
-    luck: Option<Luck>,
+    fault_seed: Option<FaultSeed>,
     /// How likely the program is to reach its end.
     pub chance: ProgramChanceState,
     /// Why the last step could not be taken.
-    pub trouble: Option<String>,
+    pub error: Option<String>,
     /// Whether steps go by themselves.
     pub is_playing: bool,
     elapsed_secs: f64,
 }
 
-/// What the text comes to.
-#[derive(Debug)]
-pub enum Program {
-    /// A program and the plant that it controls.
-    Bound(Box<System>),
-    /// A program alone: what is known of its variables is typed in.
-    Unbound(Box<Automaton>),
-    /// A plant without a program.
-    Plant(Box<Model>),
-    /// A text with errors.
-    Broken,
-}
-
-/// What comes from outside in one step.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Input {
-    /// Faults and observations, if there is a plant.
-    pub plant: StepInput,
-    /// What is known of the program's variables, if there is none.
-    pub known: BTreeMap<u32, u32>,
-}
-
-/// The luck that components have: with the same, the same ones fail in the same steps.
+/// What decides by chance which components fail: with the same, the same ones fail in the same steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Luck {
+pub struct FaultSeed {
     /// Seeds chance.
     pub seed: u64,
     /// Which of the many runs with that seed, from 0; without it, the seed is that of the run itself.
     pub run: Option<u64>,
 }
 
-impl Luck {
+impl FaultSeed {
     fn seed_of_run(self) -> u64 {
         self.run.map_or(self.seed, |number| run_seed(self.seed, number))
     }
-}
-
-/// How things stand between two steps.
-#[derive(Clone, Debug)]
-pub struct Moment {
-    /// What is marked.
-    pub marking: Marking,
-    /// The marked locations, goals and labels of the next step.
-    pub upcoming: TraceStep,
-    /// What the automaton did in the step that led here; nothing at the start.
-    pub taken: Option<TraceStep>,
-    /// The plant, if there is one.
-    pub plant: Option<PlantMoment>,
-}
-
-/// How the plant stands between two steps.
-#[derive(Clone, Debug)]
-pub struct PlantMoment {
-    /// What is believed.
-    pub belief: Belief,
-    /// What is true.
-    pub true_state: State,
-    /// The step that led here; nothing at the start.
-    pub record: Option<StepRecord>,
-    /// The commands of the next step; nothing after the end.
-    pub next_commands: Option<Commands>,
-    /// The goals that the next step does not pursue, with the reasons.
-    pub unachievable: Vec<(SmolStr, String)>,
 }
 
 /// What can be asked of the automaton's view.
@@ -123,58 +92,119 @@ pub enum AutomatonCommand {
     /// In the next step, the value of a variable of a program without a plant is known to be this, or not known.
     Know(VariableId, Option<u32>),
     /// From the first step on, components fail by chance, or only those that were made to.
-    SetLuck(Option<Luck>),
+    SetFaultSeed(Option<FaultSeed>),
 }
 
 /// Steps a second while playing.
 const STEPS_PER_SEC: f64 = 1.5;
-/// A log does not grow longer than this: every look at it takes its steps again.
-const MOST_STEPS: usize = 400;
+/// A log does not grow longer than this.
+const MAX_STEPS: usize = 400;
 
 impl AutomatonState {
-    /// Reads the document if it has changed since.
+    /// Follows the document if it has changed since.
     pub fn follow(&mut self, document: &Document, is_control: bool) {
         if self.revision == document.revision() {
             return;
         }
-        self.revision = document.revision();
         self.chance.give_up();
+        let asked = self.asked;
         if !is_control {
-            *self = Self { revision: self.revision, ..Self::default() };
-            return;
+            *self = Self { asked, ..Self::default() };
         }
-        let before = self.program.take();
-        let program = match read_control(document.text(), Some(mission_file::PLANT)).0 {
-            Control::Bound(system) => Program::Bound(system),
-            Control::Unbound(automaton) => Program::Unbound(automaton),
-            Control::Plant(model) => Program::Plant(model),
-            Control::Nothing => Program::Broken,
-        };
-        // While a text has errors, the steps wait for it to be whole again.
-        let is_same = before.as_ref().is_none_or(|before| {
-            matches!(before, Program::Broken)
-                || matches!(program, Program::Broken)
-                || before.names() == program.names()
-        });
-        if !is_same {
-            self.forget();
-        }
-        self.program = Some(program);
-        self.replay();
+        self.revision = document.revision();
+        self.is_control = is_control;
+        self.wants_answer = is_control;
     }
 
-    /// What the text comes to; nothing if it is a mission.
+    /// What to ask the core, once whenever that has changed.
+    pub fn take_request(&mut self, document: &Document) -> Option<ControlRun> {
+        if !std::mem::take(&mut self.wants_answer) {
+            return None;
+        }
+        self.asked += 1;
+        self.is_waiting = true;
+        self.coming.clear();
+        self.coming.extend(self.moments.iter().take(self.fresh).cloned());
+        Some(ControlRun {
+            token: self.asked,
+            revision: self.revision,
+            source: document.text().into(),
+            plant: Some(mission_file::PLANT.into()),
+            seed: self.fault_seed.map(FaultSeed::seed_of_run),
+            inputs: self.log.clone(),
+            held_program: self.program_key,
+            held_run: self.run_key,
+            held: self.fresh as u32,
+        })
+    }
+
+    /// Takes what the core answered.
+    pub fn take(&mut self, standing: ControlStanding) {
+        if standing.token != self.asked || !self.is_waiting {
+            return;
+        }
+        if let Some(program) = standing.content {
+            self.program_key = standing.program;
+            // While a text has errors, the steps wait for it to be whole again.
+            let is_other =
+                self.program.replace(program).zip(self.program.as_ref()).is_some_and(|(before, after)| {
+                    !matches!(before, Program::Broken)
+                        && !matches!(after, Program::Broken)
+                        && !before.has_names_of(after)
+                });
+            if is_other && !self.log.is_empty() {
+                self.forget_steps();
+                self.wants_answer = true;
+                return;
+            }
+        }
+        self.coming.truncate(standing.first as usize);
+        self.coming.extend(standing.moments.into_iter().map(Arc::new));
+        if !standing.is_complete {
+            return;
+        }
+        self.is_waiting = false;
+        self.run_key = standing.run;
+        self.moments = std::mem::take(&mut self.coming);
+        self.fresh = self.moments.len();
+        self.error = standing.trouble;
+        if !matches!(self.program, Some(Program::Plant(_) | Program::Broken) | None) {
+            self.log.truncate(self.moments.len().saturating_sub(1));
+            self.target = self.target.min(self.log.len());
+        }
+        self.at = self.target.min(self.moments.len().saturating_sub(1));
+        self.is_playing &= self.can_step();
+    }
+
+    /// The core stopped over what it was asked.
+    pub(super) const fn give_up(&mut self) {
+        self.is_waiting = false;
+        self.is_playing = false;
+        self.chance.give_up();
+    }
+
+    /// Whether the text is a control program.
+    pub const fn is_control(&self) -> bool {
+        self.is_control
+    }
+
+    /// Whether the core takes steps, and how many moments are known of how many.
+    pub fn progress(&self) -> Option<(usize, usize)> {
+        self.is_waiting.then_some((self.coming.len(), self.log.len() + 1))
+    }
+
+    /// What the text comes to; nothing if it is a mission, or not known yet.
     pub const fn program(&self) -> Option<&Program> {
         self.program.as_ref()
     }
 
     /// How things stand at the moment that is looked at.
     pub fn moment(&self) -> Option<&Moment> {
-        self.moments.get(self.at)
+        self.moments.get(self.at).map(Arc::as_ref)
     }
 
     /// All moments, those that were stepped back over included.
-    pub fn moments(&self) -> &[Moment] {
+    pub fn moments(&self) -> &[Arc<Moment>] {
         &self.moments
     }
 
@@ -185,25 +215,26 @@ impl AutomatonState {
 
     /// What comes from outside in the step after the moment that is looked at.
     pub fn next_input(&self) -> Input {
-        let logged = self.pending.as_ref().or_else(|| self.log.get(self.at));
+        let logged = self.pending.as_ref().or_else(|| self.log.get(self.target));
         logged.cloned().unwrap_or_else(|| self.usual_input())
     }
 
     /// What came from outside in the step before the moment that is looked at.
     pub fn last_input(&self) -> Option<&Input> {
-        self.log.get(self.at.checked_sub(1)?)
+        self.log.get(self.target.checked_sub(1)?)
     }
 
     /// With it, components fail by chance.
-    pub const fn luck(&self) -> Option<Luck> {
-        self.luck
+    pub const fn fault_seed(&self) -> Option<FaultSeed> {
+        self.fault_seed
     }
 
     /// The modes that components were made to come into, by step from 1 and by component.
     pub fn injected(&self) -> BTreeMap<u32, BTreeMap<SmolStr, SmolStr>> {
         let Some(model) = self.program.as_ref().and_then(Program::model) else { return BTreeMap::new() };
-        let pending = self.pending.as_ref().map(|input| (self.at, input));
-        let logged = self.log.iter().enumerate().take(if pending.is_some() { self.at } else { usize::MAX });
+        let pending = self.pending.as_ref().map(|input| (self.target, input));
+        let logged =
+            self.log.iter().enumerate().take(if pending.is_some() { self.target } else { usize::MAX });
         let mut injected: BTreeMap<u32, BTreeMap<SmolStr, SmolStr>> = BTreeMap::new();
         for (at, input) in logged.chain(pending) {
             for (&id, &mode) in &input.plant.injected {
@@ -215,10 +246,10 @@ impl AutomatonState {
         injected
     }
 
-    /// Starts anew with this luck, and with these modes to come into by step and component.
-    pub fn show_run(&mut self, luck: Luck, injected: &BTreeMap<u32, BTreeMap<SmolStr, SmolStr>>) {
-        self.forget();
-        self.luck = Some(luck);
+    /// Starts anew with this fault seed, and with these modes to come into by step and component.
+    pub fn show_run(&mut self, seed: FaultSeed, injected: &BTreeMap<u32, BTreeMap<SmolStr, SmolStr>>) {
+        self.forget_steps();
+        self.fault_seed = Some(seed);
         if let Some(model) = self.program.as_ref().and_then(Program::model) {
             let last = injected.keys().last().copied().unwrap_or(0);
             for step in 1..=last {
@@ -231,17 +262,29 @@ impl AutomatonState {
                 self.log.push(input);
             }
         }
-        self.replay();
+        self.wants_answer = true;
     }
 
-    /// Forgets all steps: another text was opened.
+    /// Forgets everything: another text was opened.
     pub fn forget(&mut self) {
-        self.luck = None;
-        self.log.clear();
+        self.forget_steps();
+        self.fault_seed = None;
+        self.program = None;
+        self.program_key = ContentKey::default();
         self.moments.clear();
-        self.pending = None;
+        self.fresh = 0;
         self.at = 0;
-        self.trouble = None;
+    }
+
+    /// The first moment stays: no step leads to it.
+    fn forget_steps(&mut self) {
+        self.log.clear();
+        self.pending = None;
+        self.fresh = self.fresh.min(1);
+        self.moments.truncate(1);
+        self.at = 0;
+        self.target = 0;
+        self.error = None;
         self.is_playing = false;
     }
 
@@ -249,13 +292,13 @@ impl AutomatonState {
     pub fn apply(&mut self, command: AutomatonCommand) {
         match command {
             AutomatonCommand::Step(steps) => {
-                for _ in 0..steps.unsigned_abs().min(MOST_STEPS as u64) {
-                    if steps > 0 { self.step() } else { self.go_to(self.at.saturating_sub(1)) }
+                for _ in 0..steps.unsigned_abs().min(MAX_STEPS as u64) {
+                    if steps > 0 { self.step() } else { self.go_to(self.target.saturating_sub(1)) }
                 }
             }
             AutomatonCommand::GoTo(moment) => {
-                self.go_to(moment.min(self.moments.len().saturating_sub(1)));
-                while self.at < moment && self.can_step() {
+                self.go_to(moment.min(self.log.len()));
+                while self.target < moment && self.can_step() {
                     self.step();
                 }
             }
@@ -266,15 +309,10 @@ impl AutomatonState {
                 self.is_playing = !self.is_playing && self.can_step();
                 self.elapsed_secs = 0.0;
             }
-            AutomatonCommand::Reset => {
-                let luck = self.luck;
-                self.forget();
-                self.luck = luck;
-                self.replay();
-            }
-            AutomatonCommand::SetLuck(luck) => {
-                self.luck = luck;
-                self.replay();
+            AutomatonCommand::Reset => self.forget_steps(),
+            AutomatonCommand::SetFaultSeed(seed) => {
+                self.fault_seed = seed;
+                self.wants_answer = true;
             }
             AutomatonCommand::Inject(component, mode) => {
                 let mut input = self.next_input();
@@ -293,67 +331,81 @@ impl AutomatonState {
                 self.change_next(input);
             }
             AutomatonCommand::Observe(variable, value) => {
-                let Some(at) = self.at.checked_sub(1) else { return };
+                let Some(at) = self.target.checked_sub(1) else { return };
                 let Some(input) = self.log.get_mut(at) else { return };
                 match value {
                     Some(value) => input.plant.observed.insert(variable, value),
                     None => input.plant.observed.remove(&variable),
                 };
-                self.log.truncate(self.at);
+                self.log.truncate(self.target);
                 self.pending = None;
-                self.replay();
+                self.fresh = self.fresh.min(self.target);
+                self.wants_answer = true;
             }
         }
     }
 
-    /// Lets `seconds` go by. Answers whether another moment is shown.
+    /// Lets `seconds` go by. Answers whether another moment is shown, or asked for.
     pub fn advance(&mut self, seconds: f64, rate: f64) -> bool {
         if !self.is_playing {
             return false;
         }
         self.elapsed_secs += seconds * rate;
-        if self.elapsed_secs * STEPS_PER_SEC < 1.0 {
+        if self.elapsed_secs * STEPS_PER_SEC < 1.0 || self.is_waiting || self.wants_answer {
             return false;
         }
         self.elapsed_secs = 0.0;
         self.step();
-        self.is_playing = self.can_step();
+        self.is_playing = self.wants_answer || self.can_step();
         true
     }
 
-    /// Whether the program has not ended at the moment that is looked at.
+    /// Whether the program has not ended at the moment that is looked at, as far as that is known.
     pub fn can_step(&self) -> bool {
-        self.moment().is_some_and(|moment| !moment.marking.is_empty()) && self.at < MOST_STEPS
+        let goes_on = match self.moments.get(self.target) {
+            Some(moment) if self.target < self.fresh => !moment.marking.is_empty(),
+            // The core takes no more steps than there are.
+            _ => self.is_waiting || self.wants_answer,
+        };
+        goes_on && self.target < MAX_STEPS
     }
 
     fn step(&mut self) {
         if !self.can_step() {
             return;
         }
-        let is_logged = self.pending.is_none() && self.at < self.log.len();
+        let is_logged = self.pending.is_none() && self.target < self.log.len();
         if !is_logged {
             let input = self.next_input();
-            self.log.truncate(self.at);
+            self.log.truncate(self.target);
             self.log.push(input);
             self.pending = None;
-            self.replay();
+            self.fresh = self.fresh.min(self.target + 1);
+            self.wants_answer = true;
         }
-        if self.at + 1 < self.moments.len() {
-            self.at += 1;
+        self.target += 1;
+        if self.target < self.fresh {
+            self.at = self.target;
         }
     }
 
     fn go_to(&mut self, moment: usize) {
-        if moment != self.at {
+        if moment != self.target {
             self.pending = None;
+            self.target = moment;
+        }
+        if moment < self.fresh {
             self.at = moment;
         }
     }
 
     fn change_next(&mut self, input: Input) {
-        self.log.truncate(self.at);
+        self.log.truncate(self.target);
         self.pending = Some(input);
-        self.replay();
+        // What was to come afterwards will not.
+        self.fresh = self.fresh.min(self.target + 1);
+        self.moments.truncate(self.target + 1);
+        self.error = None;
     }
 
     /// What is known stays known; a fault happens once.
@@ -361,145 +413,78 @@ impl AutomatonState {
         let known = self.last_input().map(|input| input.known.clone()).unwrap_or_default();
         Input { known, ..Input::default() }
     }
-
-    /// Works out all moments from the log.
-    fn replay(&mut self) {
-        self.trouble = None;
-        self.moments = match &self.program {
-            Some(Program::Bound(system)) => {
-                let (moments, trouble) = moments_of_system(system, &self.log, self.luck);
-                self.trouble = trouble;
-                moments
-            }
-            Some(Program::Unbound(automaton)) => moments_of_automaton(automaton, &self.log),
-            // The log is kept for when the text is whole again.
-            Some(Program::Plant(_) | Program::Broken) | None => return self.moments.clear(),
-        };
-        self.log.truncate(self.moments.len().saturating_sub(1));
-        self.at = self.at.min(self.log.len());
-    }
-}
-
-impl Program {
-    /// The automaton, if there is one.
-    pub fn automaton(&self) -> Option<&Automaton> {
-        match self {
-            Self::Bound(system) => Some(&system.automaton),
-            Self::Unbound(automaton) => Some(automaton),
-            Self::Plant(_) | Self::Broken => None,
-        }
-    }
-
-    /// The plant, if there is one.
-    pub fn model(&self) -> Option<&Model> {
-        match self {
-            Self::Bound(system) => Some(&system.model),
-            Self::Plant(model) => Some(model),
-            Self::Unbound(_) | Self::Broken => None,
-        }
-    }
-
-    /// What the inputs of steps refer to by number.
-    fn names(&self) -> Vec<String> {
-        let mut names = Vec::new();
-        if let Some(model) = self.model() {
-            names.extend(model.components.iter().map(|it| format!("{} {:?}", it.name, mode_names(it))));
-            names.extend(model.variables.iter().map(|it| format!("{} {:?}", it.name, it.values)));
-        } else if let Some(automaton) = self.automaton() {
-            names.extend(automaton.variables.iter().map(|it| format!("{} {:?}", it.name, it.values)));
-        }
-        names
-    }
-}
-
-fn mode_names(component: &plant::Component) -> Vec<&str> {
-    component.modes.iter().map(|mode| mode.name.as_str()).collect()
-}
-
-fn moments_of_system(system: &System, log: &[Input], luck: Option<Luck>) -> (Vec<Moment>, Option<String>) {
-    let seed = luck.map(Luck::seed_of_run);
-    let mut run = Run::new(system, Options { seed, ..Options::default() });
-    let mut moments = vec![moment_of_run(&run)];
-    let mut trouble = None;
-    // One step more than was taken tells what will be commanded.
-    let beyond = Input::default();
-    for input in log.iter().chain([&beyond]) {
-        if run.is_done() {
-            break;
-        }
-        if let Err(error) = run.step(&input.plant) {
-            trouble = Some(error.to_string());
-            break;
-        }
-        moments.push(moment_of_run(&run));
-    }
-    for at in 1..moments.len() {
-        let Some((before, after)) = moments.get_mut(at - 1..=at).and_then(|pair| pair.split_first_mut())
-        else {
-            break;
-        };
-        let record = after.first().and_then(|after| after.plant.as_ref()?.record.as_ref());
-        if let (Some(plant), Some(record)) = (&mut before.plant, record) {
-            plant.next_commands = Some(record.commands.clone());
-            plant.unachievable.clone_from(&record.unachievable);
-        }
-    }
-    moments.truncate(log.len() + 1);
-    (moments, trouble)
-}
-
-fn moment_of_run(run: &Run<'_>) -> Moment {
-    let record = run.records().last().cloned();
-    Moment {
-        marking: run.marking().clone(),
-        upcoming: run.upcoming(),
-        taken: record.as_ref().map(|record| record.trace.clone()),
-        plant: Some(PlantMoment {
-            belief: run.belief().clone(),
-            true_state: run.true_state().clone(),
-            record,
-            next_commands: None,
-            unachievable: Vec::new(),
-        }),
-    }
-}
-
-fn moments_of_automaton(automaton: &Automaton, log: &[Input]) -> Vec<Moment> {
-    let mut stepper = Stepper::new(automaton);
-    let moment = |stepper: &Stepper<'_>, step: u32, taken: Option<TraceStep>| Moment {
-        marking: stepper.marking().clone(),
-        upcoming: TraceStep::at(stepper, step),
-        taken,
-        plant: None,
-    };
-    let mut moments = vec![moment(&stepper, 1, None)];
-    for (input, step) in log.iter().zip(1..) {
-        if stepper.is_done() {
-            break;
-        }
-        let mut estimate = Estimate::unknown(automaton.variables.len());
-        for (&variable, &value) in &input.known {
-            estimate.set(VariableId(variable), Some(value));
-        }
-        let mut taken = TraceStep::at(&stepper, step);
-        stepper.step_observed(&[estimate], &mut taken);
-        moments.push(moment(&stepper, step + 1, Some(taken)));
-    }
-    moments
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn opened(text: &str) -> AutomatonState {
-        let document = Document::new(text);
-        let mut state = AutomatonState::default();
-        state.follow(&document, true);
-        state
+    /// A state, with its document and the core that takes its steps.
+    struct Opened {
+        document: Document,
+        state: AutomatonState,
+        core: mission::Core,
     }
 
-    fn orbit_insertion() -> AutomatonState {
+    impl Opened {
+        fn apply(&mut self, command: AutomatonCommand) {
+            self.state.apply(command);
+            self.answer();
+        }
+
+        fn follow(&mut self) {
+            self.state.follow(&self.document, true);
+            self.answer();
+        }
+
+        /// Answers what is asked, as long as something is.
+        fn answer(&mut self) {
+            while let Some(wanted) = self.state.take_request(&self.document) {
+                let mut answers = Answers::default();
+                self.core.handle(mission::Request::RunControl(wanted), &mut answers);
+                for standing in answers.0 {
+                    self.state.take(standing);
+                }
+            }
+        }
+    }
+
+    impl std::ops::Deref for Opened {
+        type Target = AutomatonState;
+
+        fn deref(&self) -> &AutomatonState {
+            &self.state
+        }
+    }
+
+    #[derive(Default)]
+    struct Answers(Vec<ControlStanding>);
+
+    impl mission::CoreHost for Answers {
+        fn now_millis(&self) -> f64 {
+            0.0
+        }
+
+        fn is_superseded(&mut self) -> bool {
+            false
+        }
+
+        fn answer(&mut self, response: mission::Response) {
+            if let mission::Response::ControlRun(standing) = response {
+                self.0.push(*standing);
+            }
+        }
+    }
+
+    fn opened(text: &str) -> Opened {
+        let document = Document::new(text);
+        let mut opened =
+            Opened { document, state: AutomatonState::default(), core: mission::Core::default() };
+        opened.follow();
+        opened
+    }
+
+    fn orbit_insertion() -> Opened {
         opened(mission_file::example("orbit-insertion").expect("it is an example").source)
     }
 
@@ -574,16 +559,42 @@ mod tests {
 
     #[test]
     fn an_edit_that_keeps_the_names_keeps_the_steps() {
-        let mut document =
-            Document::new(mission_file::example("orbit-insertion").expect("an example").source);
-        let mut state = AutomatonState::default();
-        state.follow(&document, true);
+        let mut state = orbit_insertion();
         state.apply(AutomatonCommand::Step(3));
-        document.replace_all(&format!("; A note.\n{}", document.text()));
-        state.follow(&document, true);
+        let text = format!("; A note.\n{}", state.document.text());
+        state.document.replace_all(&text);
+        state.follow();
         assert_eq!((state.at(), marked(&state)), (3, vec!["a4".to_owned(), "w2".to_owned()]));
-        document.replace_all("Main ():: (WHEN-DONEXT (lamp = off) (lamp = on))");
-        state.follow(&document, true);
+        state.document.replace_all("Main ():: (WHEN-DONEXT (lamp = off) (lamp = on))");
+        state.follow();
         assert_eq!(state.at(), 0);
+    }
+
+    #[test]
+    fn what_was_known_is_shown_until_the_core_has_answered() {
+        let mut state = orbit_insertion();
+        state.apply(AutomatonCommand::Step(2));
+        let before = marked(&state);
+        state.state.apply(AutomatonCommand::Step(1));
+        assert_eq!((state.at(), marked(&state)), (2, before), "the step is asked for");
+        state.answer();
+        assert_eq!(state.at(), 3);
+    }
+
+    #[test]
+    fn an_answer_to_what_was_asked_before_is_not_taken() {
+        let mut state = orbit_insertion();
+        state.state.apply(AutomatonCommand::Step(1));
+        let earlier = state.state.take_request(&state.document).expect("it is asked for");
+        state.state.apply(AutomatonCommand::Step(1));
+        let later = state.state.take_request(&state.document).expect("it is asked for");
+        let mut answers = Answers::default();
+        state.core.handle(mission::Request::RunControl(earlier), &mut answers);
+        state.core.handle(mission::Request::RunControl(later), &mut answers);
+        let [first, second] = <[_; 2]>::try_from(answers.0).expect("each is answered once");
+        state.state.take(first);
+        assert_eq!(state.at(), 0);
+        state.state.take(second);
+        assert_eq!(state.at(), 2);
     }
 }

@@ -14,6 +14,8 @@ pub struct ChanceState {
     /// The revision that is being sampled.
     running: Option<u64>,
     tally: Tally,
+    /// What the runs made so far came to, and of which revision.
+    robustness: Option<(u64, Arc<Robustness>)>,
 }
 
 /// What can be asked about chance.
@@ -35,7 +37,7 @@ pub const MAX_RUNS: u64 = 100_000;
 impl Default for ChanceState {
     fn default() -> Self {
         let settings = RobustnessSettings { runs: USUAL_RUNS, seed: 1, uncertainty: Uncertainty::default() };
-        Self { settings, running: None, tally: Tally::default() }
+        Self { settings, running: None, tally: Tally::default(), robustness: None }
     }
 }
 
@@ -52,6 +54,12 @@ impl ChanceState {
 }
 
 impl AppState {
+    /// How the plan that is shown fares in many runs with chance, if runs were made of it.
+    pub fn robustness(&self) -> Option<&Arc<Robustness>> {
+        let (revision, robustness) = self.chance.robustness.as_ref()?;
+        self.shown().filter(|shown| shown.revision == *revision).map(|_| robustness)
+    }
+
     pub(super) fn apply_to_chance(&mut self, command: ChanceCommand) {
         match command {
             ChanceCommand::Start => {
@@ -92,8 +100,7 @@ impl AppState {
         }
         self.chance.tally.merge(&tally);
         let robustness = Robustness { settings: *settings, tally: self.chance.tally.clone() };
-        self.snapshots.set_robustness(revision, &Arc::new(robustness));
-        self.follow_run();
+        self.chance.robustness = Some((revision, Arc::new(robustness)));
         self.sample_on();
         if !self.chance.is_running() && self.chance.tally.runs >= self.chance.settings.runs {
             let text = format!("{} runs made", self.chance.tally.runs);

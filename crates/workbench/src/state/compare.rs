@@ -59,7 +59,7 @@ impl AppState {
             CompareCommand::WithSignedOff => match self.review.record().sign_offs.last().cloned() {
                 Some(signed) => {
                     let name = format!("signed off by {} on {}", signed.name, day_of(&signed.time));
-                    self.work_out_reference(name, &signed.source, signed.goal, signed.seed);
+                    self.evaluate_reference(name, &signed.source, signed.goal, signed.seed);
                 }
                 None => self.toasts.add(ToastKind::Info, "Nobody has signed this mission off yet"),
             },
@@ -78,7 +78,7 @@ impl AppState {
         let is_json = name.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("json"));
         if !is_json {
             let seed = self.settings.plan.seed;
-            self.work_out_reference(name.to_owned(), text, Goal::Default, seed);
+            self.evaluate_reference(name.to_owned(), text, Goal::Default, seed);
             return;
         }
         let failed = |reason: String| format!("{name} cannot be compared with: {reason}");
@@ -89,7 +89,7 @@ impl AppState {
         if document["format"] == mission::review::record::FORMAT {
             match Record::from_json(text).map(|record| record.sign_offs.last().cloned()) {
                 Ok(Some(signed)) => {
-                    self.work_out_reference(name.to_owned(), &signed.source, signed.goal, signed.seed);
+                    self.evaluate_reference(name.to_owned(), &signed.source, signed.goal, signed.seed);
                 }
                 Ok(None) => self.toasts.add(ToastKind::Failed, failed("nobody has signed it".to_owned())),
                 Err(reason) => self.toasts.add(ToastKind::Failed, failed(reason.to_string())),
@@ -105,7 +105,7 @@ impl AppState {
         }
     }
 
-    fn work_out_reference(&mut self, name: String, source: &str, goal: Goal, seed: u64) {
+    fn evaluate_reference(&mut self, name: String, source: &str, goal: Goal, seed: u64) {
         self.compare.last_token += 1;
         let token = self.compare.last_token;
         self.compare.waiting = Some((token, name));
@@ -117,11 +117,11 @@ impl AppState {
             seed,
             trace: false,
         };
-        self.effects.push(Effect::Post(Request::WorkOut { token, update }));
+        self.effects.push(Effect::Post(Request::Evaluate { token, update }));
     }
 
-    /// Takes a text that was worked out to compare with.
-    pub(super) fn take_worked_out(&mut self, token: u64, snapshot: &Snapshot) {
+    /// Takes a text that was planned to compare with.
+    pub(super) fn take_evaluated(&mut self, token: u64, snapshot: &Snapshot) {
         if let Some((_, name)) = self.compare.waiting.take_if(|(waiting, _)| *waiting == token) {
             self.compare.reference = Some(Arc::new(Side::of_snapshot(&name, snapshot)));
         }

@@ -71,6 +71,7 @@ impl AppState {
             snapshot,
             review: &review,
             record: Some(self.review.record()),
+            robustness: self.robustness().map(AsRef::as_ref),
             seed: self.settings.plan.seed,
             ground: ground.map(AsRef::as_ref),
         });

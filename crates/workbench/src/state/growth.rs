@@ -1,15 +1,16 @@
 //! The search for the path of one leg, sample by sample: the trees growing from both ends.
 //!
 //! It is the recorded search that planned the leg, or another planner's on the same ground from the same seed. That one
-//! is run on the spot: it is deterministic, and to go back is to run it again up to an earlier sample.
+//! is run by the core, which answers what each sample did as it goes on.
 
 use std::sync::Arc;
 
-use mission::Snapshot;
-use motion::{GrowthTrace, PlannerKind, Query, Search, Settings};
+use mission::request::Update;
+use mission::{ContentKey, GrowthStanding, PathGrowth, Snapshot};
+use motion::{GrowthTrace, PlannerKind};
 use rmpl::program::{ObstacleShape, World};
 use smol_str::SmolStr;
-use terrain::{ConfigurationSpace, Obstacle, Terrain};
+use terrain::Obstacle;
 use tpn::OccurrenceId;
 
 use crate::state::Selection;
@@ -23,6 +24,8 @@ pub struct Growth {
     pub is_playing: bool,
     shown: Option<Shown>,
     elapsed_samples: f64,
+    /// Whether the core is to be asked for a search.
+    wants_answer: bool,
 }
 
 /// A search under way.
@@ -46,20 +49,20 @@ pub struct Shown {
 enum Walk {
     /// The recorded one, and how many samples of it are looked at.
     Recorded(Arc<GrowthTrace>, u32),
-    /// One that is run on the spot.
-    Run(Box<Run>),
+    /// One that the core runs.
+    Running(Box<Running>),
     /// There is none, for this reason.
     Refused(String),
 }
 
-/// A search that is run on the spot.
-#[derive(Clone, Debug)]
-struct Run {
-    search: Search,
-    last: Option<motion::Event>,
-    query: Query,
-    settings: Settings,
-    space: Arc<ConfigurationSpace>,
+/// A search that the core runs, as far as it has answered.
+#[derive(Clone, Debug, Default)]
+struct Running {
+    search: ContentKey,
+    trace: GrowthTrace,
+    /// How many of its samples are looked at.
+    samples: u32,
+    is_complete: bool,
 }
 
 /// A search as it stands after some samples, to be drawn.
@@ -99,23 +102,17 @@ pub enum GrowthCommand {
 pub struct GrowthInput<'a> {
     /// The mission.
     pub snapshot: &'a Snapshot,
-    /// Its ground.
-    pub map: &'a Terrain,
     /// What is selected.
     pub selection: &'a Selection,
-    /// The seed of path planning.
-    pub seed: u64,
 }
 
 /// Seconds that a whole search takes to play at rate 1, and the least and greatest number of samples a second.
 const PLAY_SECS: f64 = 8.0;
 const SAMPLES_PER_SEC: [f64; 2] = [6.0, 600.0];
-/// Samples after which a search that finds nothing is given up here.
-const MOST_SAMPLES: u32 = 20_000;
 
 impl Default for Growth {
     fn default() -> Self {
-        Self { planner: None, is_playing: false, shown: None, elapsed_samples: 0.0 }
+        Self { planner: None, is_playing: false, shown: None, elapsed_samples: 0.0, wants_answer: false }
     }
 }
 
@@ -174,10 +171,62 @@ impl Growth {
             self.close();
             return;
         };
+        let running = match self.shown.take().map(|shown| shown.walk) {
+            // Until the core has answered, what was known is shown; it may still hold.
+            Some(walk @ Walk::Running(_)) => Some(walk),
+            _ => None,
+        };
         self.shown = self.start(&input, traverse, leg);
         if let Some(shown) = &mut self.shown {
+            if let (Walk::Running(_), Some(running)) = (&shown.walk, running) {
+                shown.walk = running;
+                shown.total = shown.known();
+            }
             shown.go_to(samples);
         }
+    }
+
+    /// What to ask the core, once whenever that has changed; `update` is the mission that is shown.
+    pub fn take_request(&mut self, update: impl FnOnce() -> Option<Update>) -> Option<PathGrowth> {
+        if !self.wants_answer {
+            return None;
+        }
+        let update = update()?;
+        self.wants_answer = false;
+        let shown = self.shown.as_ref()?;
+        let Walk::Running(running) = &shown.walk else { return None };
+        Some(PathGrowth {
+            update,
+            traverse: shown.name.clone(),
+            leg: shown.leg as u32,
+            planner: self.planner?,
+            held_search: running.search,
+            held: running.trace.steps.len() as u32,
+        })
+    }
+
+    /// Takes what the core answered.
+    pub fn take(&mut self, standing: GrowthStanding) {
+        let Some(shown) = &mut self.shown else { return };
+        let is_wanted = shown.name == standing.traverse
+            && shown.leg == standing.leg as usize
+            && self.planner == Some(standing.planner);
+        let Walk::Running(running) = &mut shown.walk else { return };
+        if !is_wanted || standing.first as usize > running.trace.steps.len() {
+            return;
+        }
+        if let Some(refusal) = standing.refusal {
+            shown.walk = Walk::Refused(refusal);
+            shown.total = 0;
+            return;
+        }
+        running.search = standing.search;
+        running.trace.roots_m = standing.roots_m;
+        running.trace.steps.truncate(standing.first as usize);
+        running.trace.steps.extend(standing.steps);
+        running.is_complete = standing.is_complete;
+        running.samples = running.samples.min(running.trace.steps.len() as u32);
+        shown.total = shown.known();
     }
 
     /// Lets `seconds` go by. Answers whether more samples were drawn.
@@ -192,7 +241,7 @@ impl Growth {
         }
         self.elapsed_samples -= f64::from(samples);
         shown.go_to(shown.samples() + samples);
-        self.is_playing = shown.samples() < shown.total;
+        self.is_playing = shown.samples() < shown.total || !shown.is_complete();
         true
     }
 
@@ -207,7 +256,7 @@ impl Growth {
             if !self.is_playing && shown.samples() >= shown.total {
                 shown.go_to(0);
             }
-            self.is_playing = !self.is_playing && shown.total > 0;
+            self.is_playing = !self.is_playing && (shown.total > 0 || !shown.is_complete());
         }
     }
 
@@ -219,13 +268,14 @@ impl Growth {
         }
     }
 
-    fn start(&self, input: &GrowthInput<'_>, traverse: &mission::Traverse, leg: usize) -> Option<Shown> {
+    fn start(&mut self, input: &GrowthInput<'_>, traverse: &mission::Traverse, leg: usize) -> Option<Shown> {
         let leg = leg.min(traverse.legs.len().checked_sub(1)?);
         let way = &traverse.legs[leg];
         let walk = match self.planner {
             None => Walk::Recorded(Arc::clone(&way.growth), 0),
-            Some(planner) => run(input, traverse, way, planner)?,
+            Some(_) => Walk::Running(Box::default()),
         };
+        self.wants_answer = matches!(walk, Walk::Running(_));
         let network = input.snapshot.network.as_deref()?;
         let mut shown = Shown {
             occurrence: traverse.occurrence,
@@ -235,35 +285,9 @@ impl Growth {
             total: 0,
             walk,
         };
-        shown.go_to(u32::MAX);
-        shown.total = shown.samples();
-        shown.go_to(0);
+        shown.total = shown.known();
         Some(shown)
     }
-}
-
-/// Another planner's search for a leg.
-fn run(
-    input: &GrowthInput<'_>,
-    traverse: &mission::Traverse,
-    leg: &mission::Leg,
-    planner: PlannerKind,
-) -> Option<Walk> {
-    let query = Query { start_m: *leg.points_m.first()?, goal_m: *leg.points_m.last()? };
-    let world = &input.snapshot.program.world;
-    let vehicle = world.vehicles.get(*traverse.vehicles.first()? as usize)?;
-    let model = motion::vehicle_model(&vehicle.model.text)?;
-    let space = Arc::new(model.configuration_space(input.map, &obstacles(world)));
-    let settings = Settings {
-        seed: input.seed,
-        greatest_samples: MOST_SAMPLES,
-        limits: motion::DriveLimits::of(model),
-        ..Settings::of(planner)
-    };
-    Some(match Search::new(&space, query, settings) {
-        Ok(search) => Walk::Run(Box::new(Run { search, last: None, query, settings, space })),
-        Err(failure) => Walk::Refused(failure.to_string()),
-    })
 }
 
 impl Shown {
@@ -271,8 +295,25 @@ impl Shown {
     pub fn samples(&self) -> u32 {
         match &self.walk {
             Walk::Recorded(_, samples) => *samples,
-            Walk::Run(run) => run.search.statistics().samples,
+            Walk::Running(running) => running.samples,
             Walk::Refused(_) => 0,
+        }
+    }
+
+    /// Samples that are known.
+    fn known(&self) -> u32 {
+        match &self.walk {
+            Walk::Recorded(trace, _) => trace.steps.len() as u32,
+            Walk::Running(running) => running.trace.steps.len() as u32,
+            Walk::Refused(_) => 0,
+        }
+    }
+
+    /// Whether all samples of the search are known.
+    fn is_complete(&self) -> bool {
+        match &self.walk {
+            Walk::Running(running) => running.is_complete,
+            Walk::Recorded(..) | Walk::Refused(_) => true,
         }
     }
 
@@ -290,7 +331,10 @@ impl Shown {
             Walk::Recorded(trace, samples) => {
                 (trace.roots_m.len() + trace.grown(*samples as usize).count()) as u32
             }
-            Walk::Run(run) => run.search.statistics().vertices,
+            Walk::Running(running) => {
+                let grown = running.trace.grown(running.samples as usize).count();
+                (running.trace.roots_m.len() + grown) as u32
+            }
             Walk::Refused(_) => 0,
         }
     }
@@ -301,7 +345,9 @@ impl Shown {
             Walk::Recorded(trace, samples) => {
                 trace.path_m(*samples as usize).map(mission::traverse::length_m)
             }
-            Walk::Run(run) => run.search.path().map(|path| path.length_m()),
+            Walk::Running(running) => {
+                running.trace.path_m(running.samples as usize).map(mission::traverse::length_m)
+            }
             Walk::Refused(_) => None,
         }
     }
@@ -310,7 +356,7 @@ impl Shown {
     pub fn standing(&self) -> Standing {
         match &self.walk {
             Walk::Recorded(trace, samples) => recorded(trace, *samples as usize),
-            Walk::Run(run) => run.standing(),
+            Walk::Running(running) => running.standing(),
             Walk::Refused(_) => Standing::default(),
         }
     }
@@ -319,50 +365,60 @@ impl Shown {
     fn go_to(&mut self, samples: u32) {
         match &mut self.walk {
             Walk::Recorded(trace, at) => *at = samples.min(trace.steps.len() as u32),
-            Walk::Run(run) => run.go_to(samples),
+            Walk::Running(running) => running.samples = samples.min(running.trace.steps.len() as u32),
             Walk::Refused(_) => {}
         }
     }
 }
 
-impl Run {
-    fn go_to(&mut self, samples: u32) {
-        if samples < self.search.statistics().samples
-            && let Ok(search) = Search::new(&self.space, self.query, self.settings)
-        {
-            (self.search, self.last) = (search, None);
-        }
-        let mut drawn = self.search.statistics().samples;
-        while drawn < samples && !self.search.is_finished() {
-            self.last = Some(self.search.step(&self.space));
-            drawn += 1;
-        }
-    }
+/// A vertex of a tree as it stands.
+struct Vertex<'a> {
+    parent: Option<u32>,
+    point_m: [f64; 2],
+    /// The way from its first parent, if that was not straight.
+    curve_m: &'a [[f64; 2]],
+}
 
+impl Running {
+    /// The trees after the samples that are looked at; vertices that got another parent hang on that.
     fn standing(&self) -> Standing {
-        let mut standing = Standing {
-            path_m: self.search.path().map(|path| path.points_m),
-            sample: self
-                .last
-                .map(|event| (event.sample_m, matches!(event.growth, motion::Growth::Blocked { .. }))),
-            ..Standing::default()
-        };
-        for (number, tree) in self.search.trees().into_iter().enumerate() {
-            for (index, vertex) in tree.vertices.iter().enumerate() {
-                let parent = vertex.parent.and_then(|parent| tree.vertices.get(parent as usize));
-                let Some(parent) = parent else {
-                    standing.roots_m.push(vertex.point_m);
-                    continue;
-                };
-                let mut way = vec![parent.point_m];
-                match tree.curves.get(index).filter(|curve| !curve.is_empty()) {
-                    Some(curve) => way.extend(curve),
-                    None => way.push(vertex.point_m),
+        let samples = self.samples as usize;
+        let root = |&point_m: &[f64; 2]| vec![Vertex { parent: None, point_m, curve_m: &[] }];
+        let mut trees: Vec<Vec<Vertex<'_>>> = self.trace.roots_m.iter().map(root).collect();
+        for step in self.trace.steps.iter().take(samples) {
+            for &[tree, vertex, parent] in &step.rewired {
+                if let Some(vertex) = trees.get_mut(tree as usize).and_then(|it| it.get_mut(vertex as usize))
+                {
+                    vertex.parent = Some(parent);
                 }
-                standing.edges.push((number, way));
+            }
+            for grown in &step.added {
+                let vertex =
+                    Vertex { parent: Some(grown.parent), point_m: grown.point_m, curve_m: &grown.curve_m };
+                if let Some(tree) = trees.get_mut(grown.tree as usize) {
+                    tree.push(vertex);
+                }
             }
         }
-        standing
+        let last = samples.checked_sub(1).and_then(|last| self.trace.steps.get(last));
+        let edges = trees.iter().enumerate().flat_map(|(number, tree)| {
+            tree.iter().filter_map(move |vertex| {
+                let parent = tree.get(vertex.parent? as usize)?;
+                let mut way = vec![parent.point_m];
+                if vertex.curve_m.is_empty() {
+                    way.push(vertex.point_m);
+                } else {
+                    way.extend(vertex.curve_m);
+                }
+                Some((number, way))
+            })
+        });
+        Standing {
+            edges: edges.collect(),
+            roots_m: self.trace.roots_m.clone(),
+            path_m: self.trace.path_m(samples).map(<[_]>::to_vec),
+            sample: last.map(|step| (step.sample_m, step.added.is_empty())),
+        }
     }
 }
 

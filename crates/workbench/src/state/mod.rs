@@ -195,7 +195,7 @@ impl AppState {
     /// Where the plan stands, for the status display.
     pub fn status(&self) -> Status {
         match self.snapshots.status(self.document.revision()) {
-            Status::Empty if self.automaton.program().is_some() => Status::Program,
+            Status::Empty if self.automaton.is_control() => Status::Program,
             status => status,
         }
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use executive::model_based::ProgramTally;
 use mission::{ProgramChance, Request, Response};
 
-use super::automaton::{AutomatonState, Luck, Program};
+use super::automaton::{AutomatonState, FaultSeed, Program};
 use super::{AppState, Effect, ToastKind};
 use crate::mission_file;
 
@@ -88,7 +88,7 @@ impl AppState {
         match command {
             ProgramChanceCommand::Start => {
                 let state = &self.automaton;
-                if !matches!(state.program(), Some(Program::Bound(_))) {
+                if !matches!(state.program(), Some(Program::Bound { .. })) {
                     return;
                 }
                 let asked = asked_of(state);
@@ -107,8 +107,8 @@ impl AppState {
             }
             ProgramChanceCommand::StepThrough(number) => {
                 let Some((_, chance)) = self.automaton.chance.asked.clone() else { return };
-                let luck = Luck { seed: chance.seed, run: Some(number) };
-                self.automaton.show_run(luck, &chance.injected);
+                let seed = FaultSeed { seed: chance.seed, run: Some(number) };
+                self.automaton.show_run(seed, &chance.injected);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use mission::{Robustness, Snapshot, Stage};
+use mission::{Snapshot, Stage};
 use rmpl::Severity;
 
 /// Snapshots as they arrived.
@@ -65,22 +65,6 @@ impl Snapshots {
             self.shown = Some(Arc::clone(latest));
         }
         is_waiting
-    }
-
-    /// Adds what is known of the robustness of the plan of `revision`.
-    pub fn set_robustness(&mut self, revision: u64, robustness: &Arc<Robustness>) {
-        for held in [&mut self.latest, &mut self.shown].into_iter().flatten() {
-            if held.revision == revision {
-                Arc::make_mut(held).robustness = Some(Arc::clone(robustness));
-            }
-        }
-        // Whoever compares what is shown with what is the latest compares places in memory.
-        if let (Some(latest), Some(shown)) = (&self.latest, &mut self.shown)
-            && shown.revision == latest.revision
-            && shown.stage == latest.stage
-        {
-            *shown = Arc::clone(latest);
-        }
     }
 
     /// Forgets everything: another mission was opened.

@@ -13,7 +13,7 @@ use crate::command::ViewAction;
 use crate::state::document::{Caret, EditKind};
 use crate::state::growth::{Growth, GrowthCommand, GrowthInput};
 use crate::state::placing::{self, NewThing, VehicleStart};
-use crate::state::{AppState, Selection, Settings, Snapshots, ToastKind};
+use crate::state::{AppState, Selection, Snapshots, ToastKind};
 
 /// What clicks on the ground do.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -136,7 +136,7 @@ impl AppState {
                 self.turn_to_terrain();
             }
             TerrainCommand::Growth(command) => {
-                let input = growth_input(&self.snapshots, &self.maps, &self.selection, &self.settings);
+                let input = growth_input(&self.snapshots, &self.maps, &self.selection);
                 self.terrain.growth.apply(command, input);
                 if command == GrowthCommand::Toggle {
                     self.turn_to_terrain();
@@ -160,7 +160,7 @@ impl AppState {
 
     /// Adapts what the terrain shows to the snapshot that is shown now.
     pub(super) fn follow_with_terrain(&mut self) {
-        let input = growth_input(&self.snapshots, &self.maps, &self.selection, &self.settings);
+        let input = growth_input(&self.snapshots, &self.maps, &self.selection);
         self.terrain.growth.follow(input);
     }
 
@@ -205,11 +205,10 @@ fn growth_input<'a>(
     snapshots: &'a Snapshots,
     maps: &'a BTreeMap<MapKey, Arc<Terrain>>,
     selection: &'a Selection,
-    settings: &Settings,
 ) -> Option<GrowthInput<'a>> {
     let snapshot = snapshots.shown()?;
-    let map = maps.get(snapshot.map.as_ref()?)?;
-    Some(GrowthInput { snapshot, map, selection, seed: settings.plan.seed })
+    maps.get(snapshot.map.as_ref()?)?;
+    Some(GrowthInput { snapshot, selection })
 }
 
 /// The second word of a declaration that begins at `start`: its name.

@@ -4,7 +4,7 @@ use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, VecDeque};
 use std::rc::Rc;
 
-use mission::{Core, Request, Response, Surroundings};
+use mission::{Core, CoreHost, Request, Response};
 use workbench::host::{FileKind, Host, HostEvent, StorageError};
 
 /// What a test and its host share.
@@ -114,7 +114,7 @@ struct Answers {
     world: Rc<World>,
 }
 
-impl Surroundings for Answers {
+impl CoreHost for Answers {
     fn now_millis(&self) -> f64 {
         0.0
     }

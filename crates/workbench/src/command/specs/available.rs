@@ -26,7 +26,7 @@ pub(super) fn with_program(state: &AppState) -> Availability {
 
 /// Whether there is something that chance can go wrong with: a plan, or a control program with its plant.
 pub(super) fn with_chance(state: &AppState) -> Availability {
-    if matches!(state.automaton.program(), Some(Program::Bound(_))) { Ok(()) } else { with_plan(state) }
+    if matches!(state.automaton.program(), Some(Program::Bound { .. })) { Ok(()) } else { with_plan(state) }
 }
 
 /// Whether there is something to step through: a plan, a recorded search, or a control program.

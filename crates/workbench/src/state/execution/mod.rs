@@ -159,9 +159,14 @@ impl AppState {
 
     /// The present text as the core was asked to plan it, once it has a plan.
     pub(crate) fn update_shown(&self) -> Option<Update> {
+        self.update_planned().filter(|_| self.shown().is_some_and(|shown| shown.plan().is_some()))
+    }
+
+    /// The present text as it was planned, whether or not there is a plan; nothing while that is not shown.
+    pub(crate) fn update_planned(&self) -> Option<Update> {
         let shown = self.shown()?;
         let revision = self.document.revision();
-        if shown.revision != revision || shown.plan().is_none() {
+        if shown.revision != revision {
             return None;
         }
         let PlanSettings { goal, search, seed, trace } = self.settings.plan.clone();

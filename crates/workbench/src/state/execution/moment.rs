@@ -5,7 +5,7 @@ use std::sync::Arc;
 use exact::{Bound, Time};
 use executive::{Observations, Progress};
 use kirk::{Outcome, Stats, Status};
-use mission::{Executed, Planning, Snapshot};
+use mission::{Executed, PartKeys, Planning, Snapshot};
 use tpn::{EventEnd, EventRef, Network, NodeId, OccurrenceId, OccurrenceKind, Plan, Window};
 
 use super::has_come;
@@ -59,10 +59,11 @@ pub(super) fn at(base: &Snapshot, executed: &Executed, time: f64) -> (Snapshot, 
         network: Some(Arc::clone(network)),
         planning: Some(Arc::new(planning)),
         map: base.map.clone(),
-        traverses: executed.traverses.clone(),
-        motions: executed.motions.clone(),
-        encounters: Vec::new(),
-        robustness: base.robustness.clone(),
+        traverses: executed.traverses.clone().into(),
+        motions: executed.motions.clone().into(),
+        encounters: Arc::default(),
+        // It belongs to a moment, and to no core.
+        keys: PartKeys::default(),
         timings: base.timings,
     };
     (snapshot, moment)

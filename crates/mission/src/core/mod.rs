@@ -1,0 +1,240 @@
+//! The chain from text to plan to paths, with each stage's last result kept.
+//!
+//! A request redoes only what its text changed: an edit that leaves the network as it was keeps the plan, and paths are
+//! kept by their inputs. The caller gives the clock, is asked whether to go on, and gets answers as stages complete.
+
+mod control_run;
+mod path_growth;
+mod planned;
+mod running;
+
+use std::sync::Arc;
+
+use terrain::Terrain;
+
+use crate::both_searches;
+use crate::content::{ContentKey, Keyed, Keys, PartKeys};
+use crate::control::ControlTexts;
+use crate::ground::Grounds;
+use crate::problem::Problem;
+use crate::reading::{Followed, Reading};
+use crate::request::{Request, Response, Update};
+use crate::review;
+use crate::snapshot::{MapKey, Snapshot, Stage, Timings};
+use crate::traverse::Paths;
+
+/// What the core needs from where it runs.
+pub trait CoreHost {
+    /// Milliseconds since an arbitrary moment.
+    fn now_millis(&self) -> f64;
+
+    /// Whether the request under way should be given up, because a newer one has come.
+    fn is_superseded(&mut self) -> bool;
+
+    /// Takes an answer.
+    fn answer(&mut self, response: Response);
+}
+
+/// The planning core of one mission. Feed it requests in order.
+#[derive(Default)]
+pub struct Core {
+    grounds: Grounds,
+    paths: Paths,
+    /// The ground that was answered last.
+    sent: Option<MapKey>,
+    keys: Keys,
+    reading: Reading,
+    last: Option<planned::Last>,
+    sampler: Option<running::Sampled>,
+    controls: ControlTexts,
+    control_run: Option<control_run::Session>,
+    growth: Option<path_growth::Session>,
+}
+
+/// Planning that is done within this time is answered once, with the plan.
+const QUICK_MILLIS: f64 = 60.0;
+
+/// Events of a search that are kept for stepping through it.
+const TRACE_EVENTS: usize = 200_000;
+
+impl Core {
+    /// Does what is asked for. Superseded requests end early and may have answered only in part.
+    pub fn handle(&mut self, request: Request, host: &mut dyn CoreHost) {
+        match request {
+            Request::ImportMap { name, bytes } => self.import_map(name, &bytes, host),
+            Request::Update(update) => self.update(&update, host),
+            Request::Execute { update, script } => self.execute(&update, script, host),
+            Request::Sample { update, settings, from } => self.sample(&update, settings, from, host),
+            Request::SampleProgram { revision, source, chance, from } => {
+                self.sample_program((revision, &source), chance, from, host);
+            }
+            Request::Review(update) => self.review(&update, host),
+            Request::Evaluate { token, update } => self.evaluate_beside(token, &update, host),
+            Request::CompareSearches(update) => self.search_both_ways(&update, host),
+            Request::RunControl(wanted) => self.run_control(&wanted, host),
+            Request::GrowPath(wanted) => self.grow_path(&wanted, host),
+        }
+    }
+
+    fn import_map(&mut self, name: smol_str::SmolStr, bytes: &[u8], host: &mut dyn CoreHost) {
+        host.answer(match self.grounds.import(&name, bytes) {
+            Ok(map) => Response::MapAccepted {
+                name,
+                cells: [map.frame().width, map.frame().height],
+                no_data_cells: map.no_data_count() as u64,
+            },
+            Err(reason) => Response::MapRejected { name, reason },
+        });
+    }
+
+    /// The plan is kept from the update before, so this takes only the time of the review itself.
+    fn review(&mut self, update: &Update, host: &mut dyn CoreHost) {
+        let mut quiet = Quiet { host, passes_maps: true, last: None };
+        self.update(update, &mut quiet);
+        let Some(snapshot) = quiet.last else { return };
+        let mut stop = || host.is_superseded();
+        let review = review::review(&snapshot, &update.goal, update.seed, &mut stop);
+        if !host.is_superseded() {
+            let review = Arc::new(review);
+            host.answer(Response::Review { revision: update.revision, review });
+        }
+    }
+
+    /// The open text's own plan is kept.
+    fn evaluate_beside(&mut self, token: u64, update: &Update, host: &mut dyn CoreHost) {
+        let (last, sent, reading) = (self.last.take(), self.sent.take(), std::mem::take(&mut self.reading));
+        let mut quiet = Quiet { host, passes_maps: false, last: None };
+        self.update(update, &mut quiet);
+        let found = quiet.last;
+        (self.last, self.sent, self.reading) = (last, sent, reading);
+        if let Some(snapshot) = found.filter(|snapshot| snapshot.stage == Stage::Complete) {
+            host.answer(Response::Evaluated { token, snapshot });
+        }
+    }
+
+    /// Searches the network with the paths that its plan needs both ways, recorded and measured.
+    fn search_both_ways(&mut self, update: &Update, host: &mut dyn CoreHost) {
+        let Some(Ok(evaluated)) = self.evaluate(update, host) else { return };
+        let network = &evaluated.planned.network;
+        if let Some(comparison) = both_searches::search(network, update.revision, TRACE_EVENTS, host) {
+            host.answer(Response::Searches(Arc::new(comparison)));
+        }
+    }
+
+    /// Reads a text; what is kept of the plan follows it.
+    fn read(&mut self, source: &str) {
+        let structure = self.reading.network_key();
+        let followed = self.reading.follow(source, &mut self.keys);
+        if let (Followed::Moved(edit), Some(last)) = (followed, &mut self.last)
+            && Some(last.structure) == structure
+        {
+            last.follow(&edit, &self.reading);
+        }
+    }
+
+    fn update(&mut self, update: &Update, host: &mut dyn CoreHost) {
+        if rmpl::control::is_control_text(&update.source) {
+            self.update_control(update, host);
+            return;
+        }
+        let begun = host.now_millis();
+        self.read(&update.source);
+        let parsed = host.now_millis();
+        let (network, mut diagnostics) = self.reading.compile(&update.goal, &mut self.keys);
+        let program = self.reading.program();
+        let (ground, found) = self.grounds.resolve(&program.value.world);
+        diagnostics.extend(found);
+        let compiled = host.now_millis();
+        let mut snapshot = Snapshot {
+            problems: Problem::all(&diagnostics, &update.source).into(),
+            program: program.value,
+            map: ground.as_ref().map(|(key, _)| key.clone()),
+            keys: PartKeys { program: program.key, ..PartKeys::default() },
+            timings: Timings {
+                parse_millis: parsed - begun,
+                compile_millis: compiled - parsed,
+                plan_millis: 0.0,
+            },
+            ..Snapshot::empty(update.revision, Arc::clone(&update.source))
+        };
+        self.show_ground(ground.as_ref(), host);
+        let Some(network) = network else {
+            snapshot.stage = Stage::Complete;
+            host.answer(Response::Snapshot(Arc::new(snapshot)));
+            return;
+        };
+        snapshot.network = Some(Arc::clone(&network.value));
+        snapshot.keys.network = network.key;
+        let waiting = Some(Arc::new(snapshot.clone()));
+        let mut unhurried = Unhurried { host, waiting, due_millis: compiled + QUICK_MILLIS };
+        let Some(last) = self.plan(update, &network, ground.as_ref(), &mut unhurried) else { return };
+        let warnings = Problem::all(&last.planned.warnings, &update.source);
+        let mut problems: Vec<Problem> = snapshot.problems.iter().cloned().chain(warnings).collect();
+        problems.sort_by_key(|problem| (problem.span, problem.severity));
+        snapshot.problems = problems.into();
+        last.shown.show(&mut snapshot);
+        snapshot.stage = Stage::Complete;
+        snapshot.timings.plan_millis = host.now_millis() - compiled;
+        host.answer(Response::Snapshot(Arc::new(snapshot)));
+    }
+
+    /// Answers with the ground before the first snapshot that refers to it.
+    fn show_ground(&mut self, ground: Option<&(MapKey, Arc<Terrain>)>, host: &mut dyn CoreHost) {
+        if let Some((key, map)) = ground
+            && self.sent.as_ref() != Some(key)
+        {
+            host.answer(Response::Map { key: key.clone(), map: Arc::clone(map) });
+            self.sent = Some(key.clone());
+        }
+    }
+}
+
+/// Answers with a compiled network once its plan takes long: to send it twice would hold up the plan.
+struct Unhurried<'a> {
+    host: &'a mut dyn CoreHost,
+    waiting: Option<Arc<Snapshot>>,
+    due_millis: f64,
+}
+
+impl CoreHost for Unhurried<'_> {
+    fn now_millis(&self) -> f64 {
+        self.host.now_millis()
+    }
+
+    fn is_superseded(&mut self) -> bool {
+        let is_due = self.host.now_millis() >= self.due_millis;
+        if is_due && let Some(snapshot) = self.waiting.take() {
+            self.answer(Response::Snapshot(snapshot));
+        }
+        self.host.is_superseded()
+    }
+
+    fn answer(&mut self, response: Response) {
+        self.host.answer(response);
+    }
+}
+
+/// Keeps the last snapshot instead of answering with it.
+struct Quiet<'a> {
+    host: &'a mut dyn CoreHost,
+    passes_maps: bool,
+    last: Option<Arc<Snapshot>>,
+}
+
+impl CoreHost for Quiet<'_> {
+    fn now_millis(&self) -> f64 {
+        self.host.now_millis()
+    }
+
+    fn is_superseded(&mut self) -> bool {
+        self.host.is_superseded()
+    }
+
+    fn answer(&mut self, response: Response) {
+        match response {
+            Response::Snapshot(snapshot) => self.last = Some(snapshot),
+            Response::Map { .. } if !self.passes_maps => {}
+            other => self.host.answer(other),
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! The plan of the last request, kept for as long as what it depends on stays the same.
+
+use std::sync::Arc;
+
+use kirk::Options;
+use rmpl::Edit;
+use rmpl::program::Program;
+use rmpl::spans::Spans as _;
+use terrain::Terrain;
+use tpn::Network;
+
+use super::{ContentKey, Core, CoreHost, Keyed, Keys, Reading, TRACE_EVENTS};
+use crate::planning::{self, Planned};
+use crate::request::Update;
+use crate::snapshot::{Encounter, MapKey, Planning, Snapshot, Traverse, VehicleMotion};
+
+/// What the last planned request led to, and what it depended on.
+pub(super) struct Last {
+    /// The key of the network without paths.
+    pub(super) structure: ContentKey,
+    network: Arc<Network>,
+    program: Arc<Program>,
+    map: Option<MapKey>,
+    options: Options,
+    seed: u64,
+    pub(super) planned: Planned,
+    pub(super) shown: Shown,
+}
+
+/// What is shown of a plan.
+#[derive(Clone)]
+pub(super) struct Shown {
+    network: Keyed<Network>,
+    planning: Keyed<Planning>,
+    traverses: Keyed<[Traverse]>,
+    motions: Keyed<[VehicleMotion]>,
+    encounters: Keyed<[Encounter]>,
+}
+
+impl Shown {
+    /// What is equal to what an earlier plan showed is kept. `network` is the one without paths.
+    fn new(planned: &Planned, network: &Keyed<Network>, earlier: Option<&Self>, keys: &mut Keys) -> Self {
+        let with_paths = if Arc::ptr_eq(&planned.network, &network.value) {
+            network.clone()
+        } else {
+            Keyed::new(Arc::clone(&planned.network), earlier.map(|it| &it.network), keys)
+        };
+        Self {
+            network: with_paths,
+            planning: Keyed::new(Arc::clone(&planned.planning), earlier.map(|it| &it.planning), keys),
+            traverses: Keyed::new(planned.traverses.clone().into(), earlier.map(|it| &it.traverses), keys),
+            motions: Keyed::new(planned.motions.clone().into(), earlier.map(|it| &it.motions), keys),
+            encounters: Keyed::new(planned.encounters.clone().into(), earlier.map(|it| &it.encounters), keys),
+        }
+    }
+
+    /// Puts the parts into a snapshot.
+    pub(super) fn show(&self, snapshot: &mut Snapshot) {
+        let Self { network, planning, traverses, motions, encounters } = self.clone();
+        snapshot.keys.network = network.key;
+        snapshot.keys.planning = planning.key;
+        snapshot.keys.traverses = traverses.key;
+        snapshot.keys.motions = motions.key;
+        snapshot.keys.encounters = encounters.key;
+        snapshot.network = Some(network.value);
+        snapshot.planning = Some(planning.value);
+        snapshot.traverses = traverses.value;
+        snapshot.motions = motions.value;
+        snapshot.encounters = encounters.value;
+    }
+}
+
+impl Last {
+    /// Moves all places through an edit that left the program as it is; `reading` has made it already.
+    pub(super) fn follow(&mut self, edit: &Edit, reading: &Reading) {
+        let is_bare = Arc::ptr_eq(&self.planned.network, &self.network);
+        self.program = reading.program().value;
+        if let Some(network) = reading.network() {
+            self.network = network;
+        }
+        if is_bare {
+            self.planned.network = Arc::clone(&self.network);
+        } else {
+            Arc::make_mut(&mut self.planned.network).follow(edit);
+        }
+        if self.planned.planning.refers_to_places() {
+            Arc::make_mut(&mut self.planned.planning).follow(edit);
+        }
+        self.planned.warnings.follow(edit);
+        self.shown.network.value = Arc::clone(&self.planned.network);
+        self.shown.planning.value = Arc::clone(&self.planned.planning);
+    }
+}
+
+impl Core {
+    /// Plans, unless the plan of the last request still holds: same network, world and options.
+    pub(super) fn plan(
+        &mut self,
+        update: &Update,
+        network: &Keyed<Network>,
+        ground: Option<&(MapKey, Arc<Terrain>)>,
+        host: &mut dyn CoreHost,
+    ) -> Option<&Last> {
+        let options = Options {
+            search: update.search,
+            trace_events: update.trace.then_some(TRACE_EVENTS),
+            ..Options::default()
+        };
+        let map = ground.map(|(key, _)| key.clone());
+        let program = self.reading.program().value;
+        let holds = self.last.as_ref().is_some_and(|last| {
+            (last.structure == network.key || last.network == network.value && last.program == program)
+                && (last.options, last.seed, &last.map) == (options, update.seed, &map)
+        });
+        if holds {
+            if let Some(last) = &mut self.last {
+                last.structure = network.key;
+            }
+            return self.last.as_ref();
+        }
+        let problem = planning::Problem {
+            network: &network.value,
+            program: &program,
+            ground: ground.map(|(key, map)| (key, map)),
+            options,
+            seed: update.seed,
+            facts: None,
+        };
+        let mut stop = || host.is_superseded();
+        let planned = planning::plan(&problem, &mut self.grounds, &mut self.paths, &mut stop);
+        if host.is_superseded() {
+            return None;
+        }
+        let shown = Shown::new(&planned, network, self.last.as_ref().map(|last| &last.shown), &mut self.keys);
+        let structure = network.key;
+        let network = Arc::clone(&network.value);
+        let seed = update.seed;
+        Some(self.last.insert(Last { structure, network, program, map, options, seed, planned, shown }))
+    }
+}

@@ -1,0 +1,40 @@
+//! The places that what is kept of a control program refers to: see [`crate::spans`].
+
+use super::syntax::{Constraint, ConstraintKind, Guard, Name};
+use crate::span::Span;
+use crate::spans::Spans;
+
+impl Spans for Name {
+    fn visit_spans(&mut self, visit: &mut dyn FnMut(&mut Span)) {
+        visit(&mut self.span);
+    }
+}
+
+impl Spans for Guard {
+    fn visit_spans(&mut self, visit: &mut dyn FnMut(&mut Span)) {
+        self.constraint.visit_spans(visit);
+        visit(&mut self.span);
+    }
+}
+
+impl Spans for Constraint {
+    fn visit_spans(&mut self, visit: &mut dyn FnMut(&mut Span)) {
+        self.kind.visit_spans(visit);
+        visit(&mut self.span);
+    }
+}
+
+impl Spans for ConstraintKind {
+    fn visit_spans(&mut self, visit: &mut dyn FnMut(&mut Span)) {
+        match self {
+            Self::True | Self::False | Self::Unreadable => {}
+            Self::Equals { variable, value } => {
+                variable.visit_spans(visit);
+                value.visit_spans(visit);
+            }
+            Self::Not(inner) => inner.visit_spans(visit),
+            Self::And(parts) | Self::Or(parts) => parts.visit_spans(visit),
+            Self::Parameter(name) => name.visit_spans(visit),
+        }
+    }
+}
