@@ -320,13 +320,12 @@ impl DisplayList {
     /// Calls `visit` with the place of every item that touches `area`, in no particular order. With an index it takes time
     /// in proportion to what is found, and leaves out what is less than `least_size` wide and high.
     pub fn visit(&self, area: Rect, least_size: f64, visit: &mut dyn FnMut(u32)) {
-        match &self.index {
-            Some(index) => index.visit(area, least_size, visit),
-            None => {
-                let is_seen = |at: &u32| self.bounds_of(&self.items[*at as usize]).touches(area);
-                (0..self.items.len() as u32).filter(is_seen).for_each(visit);
-            }
+        if let Some(index) = &self.index {
+            index.visit(area, least_size, visit);
+            return;
         }
+        let is_seen = |at: &u32| self.bounds_of(&self.items[*at as usize]).touches(area);
+        (0..self.items.len() as u32).filter(is_seen).for_each(visit);
     }
 
     fn run(&mut self, pieces: impl Iterator<Item = Piece>) -> Run {

@@ -96,7 +96,9 @@ pub fn network_list(drawing: &NetworkDrawing, network: &Network, state: &Network
         .partition(|curve| matches!(curve.kind, OverlayKind::CausalLink | OverlayKind::Ordering));
     for (curves, crowd) in [(bundled, Some(MAX_CURVES)), (single, None)] {
         list.begin(Group { layer: layer::OVERLAYS, crowd, least_size: 1.2, ..Group::default() });
-        curves.into_iter().for_each(|curve| add_curve(curve, &mut list));
+        for curve in curves {
+            add_curve(curve, &mut list);
+        }
     }
     list.begin(Group { layer: layer::NODES, ..Group::default() });
     for node in &drawing.nodes {
@@ -140,15 +142,12 @@ pub fn progress_list(
     list.begin(Group { layer: layer::DONE, ..Group::default() });
     let (area, least_size) = area.unwrap_or((drawing.bounds, 0.0));
     let mut done = Vec::new();
-    drawing.visit(area, least_size, &mut |shape| match shape {
-        crate::Shape::Node(at) => {
-            let node = &drawing.nodes[at as usize];
-            if progress.done.binary_search(&node.id).is_ok() && builder.parts.shows(builder.standing(node.id))
-            {
-                done.push(at);
-            }
+    drawing.visit(area, least_size, &mut |shape| {
+        let crate::Shape::Node(at) = shape else { return };
+        let node = drawing.nodes[at as usize].id;
+        if progress.done.binary_search(&node).is_ok() && builder.parts.shows(builder.standing(node)) {
+            done.push(at);
         }
-        _ => {}
     });
     done.sort_unstable();
     for &at in &done {
@@ -208,7 +207,9 @@ pub fn emphasis_list(
         }
     }
     list.begin(Group { layer: layer::OVERLAYS, least_size: 1.2, ..Group::default() });
-    chosen.iter().for_each(|curve| add_curve(curve, &mut list));
+    for curve in chosen {
+        add_curve(curve, &mut list);
+    }
     list.begin(Group { layer: layer::TEXTS, ..Group::default() });
     for emphasis in emphases.iter().filter(|it| !it.labels.is_empty()) {
         let Some(plate) = emphasis.plate else { continue };

@@ -1,7 +1,7 @@
 //! The paths of both plans from above: the first dashed, the second solid.
 
 use display::{ColorRole, Dash, Stroke};
-use egui::{Rect, Role, Sense, StrokeKind, Ui, WidgetInfo};
+use egui::{Role, Sense, StrokeKind, Ui, WidgetInfo};
 use layout::list::map::{MapFrame, MapPath, extent_m, map_list};
 use mission::compare::{Comparison, Way};
 use theme::space;
@@ -46,7 +46,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, comparison: &Comparison) 
     let list = map_list(world, &paths, &MapFrame::new(low_m, high_m, drawn(rect), MARGIN), None);
     DisplayPainter::new(ui.painter(), rect, Placement::SCREEN, context.tokens).paint(&[&list], Vec::new());
     let outline = egui::Stroke::new(1.0, context.tokens.line);
-    ui.painter().rect_stroke(Rect::from(rect), 4.0, outline, StrokeKind::Inside);
+    ui.painter().rect_stroke(rect, 4.0, outline, StrokeKind::Inside);
     let note = "Dashed: before. Solid: after. North is up.";
     ui.label(egui::RichText::new(note).small().color(context.tokens.text_muted));
 }

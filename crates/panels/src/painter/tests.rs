@@ -26,13 +26,19 @@ fn on_screen(list: &DisplayList) -> Vec<Shape> {
         output.drop_without_applying_deltas();
     }
     let mut flat = Vec::new();
-    found.into_iter().for_each(|shape| flatten(shape, &mut flat));
+    for shape in found {
+        flatten(shape, &mut flat);
+    }
     flat
 }
 
 fn flatten(shape: Shape, into: &mut Vec<Shape>) {
     match shape {
-        Shape::Vec(shapes) => shapes.into_iter().for_each(|shape| flatten(shape, into)),
+        Shape::Vec(shapes) => {
+            for shape in shapes {
+                flatten(shape, into);
+            }
+        }
         Shape::Noop => {}
         shape => into.push(shape),
     }
