@@ -1,6 +1,8 @@
 //! Measures what jobs cost that are asked for again and again: a step of a control program and an edit of it, the edit of
 //! a comment in a large mission, and the growth of a search tree. `cargo run -p mission --release --example job_costs`.
 
+#![expect(clippy::print_stdout, reason = "the figures are this program's answer")]
+
 use std::fmt::Write as _;
 use std::sync::Arc;
 use std::time::Instant;

@@ -87,7 +87,7 @@ impl Rules {
         let by_exception = self.exceptions.get(name);
         match Expression::parse_mode(licence, ParseMode::LAX) {
             Err(problem) => {
-                wrong.push(format!("{name} has a licence that SPDX does not know: {}", problem.reason))
+                wrong.push(format!("{name} has a licence that SPDX does not know: {}", problem.reason));
             }
             Ok(expression) => {
                 let is_met = |allowed: &BTreeSet<String>| {

@@ -7,7 +7,6 @@ use display::{DisplayList, Piece, Point, approximate_text_width};
 use layout::overlay::{causal_links, negative_cycle, orderings, threats, windows};
 use layout::{NetworkDrawing, NetworkState, Options, OverlayCurve, TextShape};
 use mission::{ContentKey, Planning, Snapshot};
-use smol_str::SmolStr;
 use tpn::{BlockId, BlockKind, Network, NodeId, Plan};
 use workbench::state::search::View;
 use workbench::state::selection::node_name;

@@ -25,7 +25,7 @@ scenario Day[0,60] = { Drive() }",
 };
 
 pub(crate) fn negative(value: Time, span: Span) -> Diagnostic {
-    Diagnostic::error(CODE, span, format!("a bound cannot be negative, and this is {}", value))
+    Diagnostic::error(CODE, span, format!("a bound cannot be negative, and this is {value}"))
 }
 
 pub(crate) fn undefined(span: Span) -> Diagnostic {
@@ -60,7 +60,7 @@ pub(crate) fn disjoint(
     declared: (Time, Bound),
     span: Span,
 ) -> Diagnostic {
-    let show = |(lower, upper): (Time, Bound)| format!("[{},{upper}]", lower);
+    let show = |(lower, upper): (Time, Bound)| format!("[{lower},{upper}]");
     let message =
         format!("`{name}` is declared to last {}, which {} excludes", show(declared), show(written));
     Diagnostic::error(CODE, span, message).with_hint("both hold for the call: make them overlap")

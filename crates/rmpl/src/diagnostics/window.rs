@@ -51,6 +51,6 @@ pub(crate) fn too_short(most: Bound, least: Time, statement: &Statement, span: S
 
 /// The parts take at least `least`, and `most` is allowed.
 pub(crate) fn too_long(least: Time, most: Bound, span: Span) -> Diagnostic {
-    let message = format!("this takes at least {}, and is to be over after {most}", least);
+    let message = format!("this takes at least {least}, and is to be over after {most}");
     Diagnostic::warning(CODE, span, message)
 }
