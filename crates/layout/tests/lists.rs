@@ -234,7 +234,7 @@ fn everything_of_a_world_is_on_its_map() {
     let world = rmpl::parse(text).program().world;
     let [low, high] = extent_m(&world, std::iter::empty()).expect("places");
     let frame = MapFrame::with_side(low, high, 640.0);
-    let points_m = world.locations.iter().map(|it| it.position_m).collect();
+    let points_m = world.locations.iter().map(|it| it.position_m.into()).collect();
     let paths = [MapPath { name: "tour <1>", points_m, stroke: path_stroke(0) }];
     let list = map_list(&world, &paths, &frame, Some(&|_| 200));
     let all = |count: usize| (0..count as u32).collect::<BTreeSet<_>>();

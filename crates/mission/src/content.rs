@@ -73,5 +73,5 @@ pub struct PartKeys {
     /// Of where vehicles are over time.
     pub motions: ContentKey,
     /// Of vehicles too near each other.
-    pub encounters: ContentKey,
+    pub separation_violations: ContentKey,
 }

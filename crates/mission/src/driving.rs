@@ -7,11 +7,11 @@ use std::sync::Arc;
 
 use exact::Time;
 use motion::{Formation, Path};
+use nalgebra::{Point2, distance};
 use terrain::ConfigurationSpace;
 use tpn::OccurrenceId;
 
 use crate::snapshot::{Keyframe, VehicleMotion};
-use crate::traverse::segment_length_m;
 
 /// One traverse with times: who drives which way, from when to when.
 #[derive(Clone, Debug)]
@@ -52,9 +52,7 @@ pub fn motions(drives: &[Drive]) -> Vec<VehicleMotion> {
             let frames = &mut motions[at].keyframes;
             // A vehicle that comes from elsewhere joins the formation on the way.
             let joins = frames.last().filter(|last| {
-                track
-                    .first()
-                    .is_some_and(|first| segment_length_m(last.position_m, first.position_m) > EVEN_M)
+                track.first().is_some_and(|first| distance(&last.position_m, &first.position_m) > EVEN_M)
             });
             let from = joins.map(|last| last.position_m);
             frames.extend(keyframes(&track, from, drive.start, drive.end));
@@ -68,13 +66,13 @@ pub fn motions(drives: &[Drive]) -> Vec<VehicleMotion> {
 #[derive(Clone, Copy, Debug)]
 struct Place {
     share: f64,
-    position_m: [f64; 2],
+    position_m: Point2<f64>,
 }
 
 /// The ways of the vehicles of a drive by itself as paths, the leader's first.
 pub(crate) fn tracks_m(drive: &Drive) -> Vec<Path> {
     let path = |track: Vec<Place>| {
-        let mut points: Vec<[f64; 2]> = track.iter().map(|place| place.position_m).collect();
+        let mut points: Vec<Point2<f64>> = track.iter().map(|place| place.position_m).collect();
         points.dedup();
         Path::new(points)
     };
@@ -90,7 +88,7 @@ fn tracks(drive: &Drive, before: &[Drive]) -> Vec<Vec<Place>> {
     let mut way_m = 0.0;
     for (index, &position_m) in drive.path.points_m.iter().enumerate() {
         if index > 0 {
-            way_m += segment_length_m(drive.path.points_m[index - 1], position_m);
+            way_m += distance(&drive.path.points_m[index - 1], &position_m);
         }
         leader.push(Place { share: share(way_m), position_m });
     }
@@ -118,7 +116,7 @@ fn tracks(drive: &Drive, before: &[Drive]) -> Vec<Vec<Place>> {
 /// The path with what the same vehicles drove directly before it, and how long that was in metres: the formation
 /// goes on from where it stopped.
 fn prolonged_back(drive: &Drive, before: &[Drive]) -> (Path, f64) {
-    let mut points: Vec<[f64; 2]> = drive.path.points_m.clone();
+    let mut points: Vec<Point2<f64>> = drive.path.points_m.clone();
     let mut driven_m = 0.0;
     for earlier in before.iter().rev() {
         let ends_here = earlier.path.points_m.last() == points.first();
@@ -147,7 +145,7 @@ fn even_stretches(track: &[Place]) -> Vec<Place> {
             let (a, b) = (track[from], track[to]);
             track[from + 1..to].iter().all(|place| {
                 let part = (place.share - a.share) / (b.share - a.share);
-                segment_length_m(mix(a.position_m, b.position_m, part), place.position_m) <= EVEN_M
+                distance(&mix(a.position_m, b.position_m, part), &place.position_m) <= EVEN_M
             })
         };
         let farthest = (from + LONGEST).min(track.len() - 1);
@@ -161,7 +159,7 @@ fn even_stretches(track: &[Place]) -> Vec<Place> {
 /// The share of a drive in which a vehicle that comes from elsewhere joins the others.
 const JOINING: f64 = 0.1;
 
-fn keyframes(track: &[Place], from: Option<[f64; 2]>, start: Time, end: Time) -> Vec<Keyframe> {
+fn keyframes(track: &[Place], from: Option<Point2<f64>>, start: Time, end: Time) -> Vec<Keyframe> {
     let mut places: Vec<Place> = track.to_vec();
     if let Some(position_m) = from {
         places.retain(|place| place.share >= JOINING);
@@ -193,15 +191,16 @@ fn keyframes(track: &[Place], from: Option<[f64; 2]>, start: Time, end: Time) ->
 
 /// Whether two places are so far apart that the way between them shows a heading.
 fn is_apart(a: &Place, b: &Place) -> bool {
-    segment_length_m(a.position_m, b.position_m) > 1e-3
+    distance(&a.position_m, &b.position_m) > 1e-3
 }
 
-fn mix(from: [f64; 2], to: [f64; 2], part: f64) -> [f64; 2] {
-    [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis]))
+fn mix(from: Point2<f64>, to: Point2<f64>, part: f64) -> Point2<f64> {
+    from + (to - from) * part
 }
 
-fn heading(from: [f64; 2], to: [f64; 2]) -> f64 {
-    libm::atan2(to[1] - from[1], to[0] - from[0])
+fn heading(from: Point2<f64>, to: Point2<f64>) -> f64 {
+    let ahead = to - from;
+    libm::atan2(ahead.y, ahead.x)
 }
 
 #[cfg(test)]
@@ -212,8 +211,9 @@ mod tests {
 
     const SPACING_M: f64 = 2.0;
 
-    fn drive(points_m: Vec<[f64; 2]>, times: [i64; 2]) -> Drive {
-        let frame = GridFrame { width: 100, height: 100, cell_size_m: 0.6, origin_m: [-20.0, -20.0] };
+    fn drive(points_m: Vec<Point2<f64>>, times: [i64; 2]) -> Drive {
+        let frame =
+            GridFrame { width: 100, height: 100, cell_size_m: 0.6, origin_m: Point2::new(-20.0, -20.0) };
         Drive {
             occurrence: OccurrenceId::from_index(0),
             vehicles: vec![0, 1],
@@ -226,31 +226,31 @@ mod tests {
     }
 
     fn first() -> Drive {
-        drive(vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]], [10, 30])
+        drive([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]].map(Point2::from).to_vec(), [10, 30])
     }
 
     #[test]
     fn a_leader_drives_its_path_at_constant_speed() {
         let motions = motions(&[first()]);
-        assert_eq!(motions[0].at(5.0).map(|(place, _)| place), Some([0.0, 0.0]));
-        assert_eq!(motions[0].at(15.0).map(|(place, _)| place), Some([5.0, 0.0]));
-        assert_eq!(motions[0].at(20.0).map(|(place, _)| place), Some([10.0, 0.0]));
-        assert_eq!(motions[0].at(99.0).map(|(place, _)| place), Some([10.0, 10.0]));
+        assert_eq!(motions[0].at(5.0).map(|(place, _)| place), Some(Point2::new(0.0, 0.0)));
+        assert_eq!(motions[0].at(15.0).map(|(place, _)| place), Some(Point2::new(5.0, 0.0)));
+        assert_eq!(motions[0].at(20.0).map(|(place, _)| place), Some(Point2::new(10.0, 0.0)));
+        assert_eq!(motions[0].at(99.0).map(|(place, _)| place), Some(Point2::new(10.0, 10.0)));
     }
 
     #[test]
     fn a_follower_never_comes_nearer_than_its_spacing_and_goes_on_from_where_it_stopped() {
-        let second = drive(vec![[10.0, 10.0], [0.0, 10.0]], [40, 50]);
+        let second = drive([[10.0, 10.0], [0.0, 10.0]].map(Point2::from).to_vec(), [40, 50]);
         let motions = motions(&[first(), second]);
         let place = |vehicle: usize, time: f64| motions[vehicle].at(time).expect("it moves").0;
         for tenth in 0..600 {
             let time = f64::from(tenth) / 10.0;
-            let apart = segment_length_m(place(0, time), place(1, time));
+            let apart = distance(&place(0, time), &place(1, time));
             assert!(apart >= SPACING_M - 2.0 * EVEN_M, "{apart} m apart at {time}");
             assert!(apart <= 3.0 * SPACING_M, "{apart} m apart at {time}");
         }
         assert_eq!(place(1, 30.0), place(1, 40.0));
-        let moved = segment_length_m(place(1, 39.9), place(1, 40.1));
+        let moved = distance(&place(1, 39.9), &place(1, 40.1));
         assert!(moved < 0.5, "it jumps by {moved} m");
     }
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use motion::VehicleModel;
+use nalgebra::{Point2, Vector2};
 use rmpl::program::{ObstacleShape, TerrainDecl, World};
 use rmpl::{Code, Diagnostic};
 use sha2::{Digest as _, Sha256};
@@ -14,7 +15,7 @@ use terrain::{ConfigurationSpace, GridFrame, Obstacle, Terrain};
 use crate::snapshot::MapKey;
 
 /// How many free spaces are kept: one for each vehicle model of the present text and of the one before it.
-const MOST_SPACES: usize = 8;
+const MAX_SPACES: usize = 8;
 /// Cells along the side of the flat ground of a mission that names no terrain.
 const FLAT_CELLS: u32 = 256;
 
@@ -106,7 +107,7 @@ impl Grounds {
         let Some(made) = made else {
             return (None, vec![self.unknown_terrain(declared)]);
         };
-        let map = Arc::new(made.placed(declared.cell_m, declared.origin_m));
+        let map = Arc::new(made.placed(declared.cell_m, declared.origin_m.into()));
         self.maps.retain(|other, _| other.asset == key.asset);
         self.maps.insert(key.clone(), Arc::clone(&map));
         (Some((key, map)), Vec::new())
@@ -126,7 +127,7 @@ impl Grounds {
         let exact = model.configuration_space(map, &shapes);
         let wider = |room_m: f64| Arc::new(exact.with_radius_m(exact.radius_m() + room_m));
         let space = FreeSpace { roomy: ROOM_M.map(wider).into(), exact: Arc::new(exact) };
-        if self.spaces.len() >= MOST_SPACES {
+        if self.spaces.len() >= MAX_SPACES {
             self.spaces.remove(0);
         }
         self.spaces.push((wanted, space.clone()));
@@ -135,20 +136,20 @@ impl Grounds {
 
     fn flat(&mut self, world: &World) -> Option<(MapKey, Arc<Terrain>)> {
         let (low, high) = extent(world)?;
-        let side_m = (high[0] - low[0]).max(high[1] - low[1]).max(20.0) * 1.2;
+        let side_m = (high - low).max().max(20.0) * 1.2;
         let cell_m = (side_m / f64::from(FLAT_CELLS)).max(0.1);
-        let origin_m = [0, 1].map(|axis| f64::midpoint(low[axis], high[axis]) - side_m / 2.0);
+        let origin_m = nalgebra::center(&low, &high) - Vector2::repeat(side_m / 2.0);
         let key = MapKey {
             asset: SmolStr::default(),
             cell_mm: (cell_m * 1000.0).ceil() as u32,
-            origin_mm: origin_m.map(|metres| (metres * 1000.0).floor() as i64),
+            origin_mm: origin_m.map(|metres| (metres * 1000.0).floor() as i64).into(),
             version: 0,
         };
         let frame = GridFrame {
             width: FLAT_CELLS,
             height: FLAT_CELLS,
             cell_size_m: f64::from(key.cell_mm) / 1000.0,
-            origin_m: key.origin_mm.map(|millimetres| millimetres as f64 / 1000.0),
+            origin_m: key.origin_mm.map(|millimetres| millimetres as f64 / 1000.0).into(),
         };
         let map = self.maps.entry(key.clone()).or_insert_with(|| Arc::new(Terrain::flat(frame)));
         Some((key, Arc::clone(map)))
@@ -171,20 +172,20 @@ fn version(bytes: &[u8]) -> u32 {
 }
 
 /// The least and greatest coordinates of the places of a world.
-fn extent(world: &World) -> Option<([f64; 2], [f64; 2])> {
-    let mut places = world.locations.iter().map(|location| location.position_m);
+fn extent(world: &World) -> Option<(Point2<f64>, Point2<f64>)> {
+    let mut places = world.locations.iter().map(|location| Point2::from(location.position_m));
     let first = places.next()?;
-    Some(places.fold((first, first), |(low, high), place| {
-        ([low[0].min(place[0]), low[1].min(place[1])], [high[0].max(place[0]), high[1].max(place[1])])
-    }))
+    Some(places.fold((first, first), |(low, high), place| (low.inf(&place), high.sup(&place))))
 }
 
 /// A declared obstacle as the terrain knows it.
 pub fn obstacle(shape: &ObstacleShape) -> Obstacle {
     match shape {
         ObstacleShape::Circle { center_m, radius_m } => {
-            Obstacle::Circle { center_m: *center_m, radius_m: *radius_m }
+            Obstacle::Circle { center_m: (*center_m).into(), radius_m: *radius_m }
         }
-        ObstacleShape::Polygon { corners_m } => Obstacle::Polygon { corners_m: corners_m.clone() },
+        ObstacleShape::Polygon { corners_m } => {
+            Obstacle::Polygon { corners_m: corners_m.iter().copied().map(Point2::from).collect() }
+        }
     }
 }

@@ -11,7 +11,6 @@ pub mod control;
 pub mod control_run;
 mod core;
 pub mod driving;
-pub mod encounter;
 pub mod execution;
 pub mod ground;
 pub mod job;
@@ -28,6 +27,7 @@ pub mod request;
 pub mod review;
 pub mod robustness;
 pub mod sampling;
+pub mod separation;
 pub mod simulation;
 pub mod snapshot;
 pub mod traverse;
@@ -51,7 +51,7 @@ pub use request::{Goal, Request, Response, Update};
 pub use robustness::{Robustness, RobustnessSettings, Tally, Uncertainty};
 pub use simulation::{DriveFrame, SimulatedDrive, SimulatedVehicle};
 pub use snapshot::{
-    Encounter, Keyframe, Leg, MapKey, PathFigures, Planning, Snapshot, Stage, Timings, Traverse, Undrivable,
-    VehicleMotion,
+    Keyframe, Leg, MapKey, PathFigures, Planning, SeparationViolation, Snapshot, Stage, Timings, Traverse,
+    Undrivable, VehicleMotion,
 };
 pub use traverse::Paths;

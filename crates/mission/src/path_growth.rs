@@ -1,6 +1,7 @@
 //! The search for the path of one leg by a planner of the asker's choice, sample by sample.
 
 use motion::{GrowthStep, PlannerKind};
+use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
@@ -38,7 +39,7 @@ pub struct GrowthStanding {
     /// The search.
     pub search: ContentKey,
     /// Where its trees begin, in metres.
-    pub roots_m: Vec<[f64; 2]>,
+    pub roots_m: Vec<Point2<f64>>,
     /// The number of the first of these samples, from 0; the asker holds those before.
     pub first: u32,
     /// What the samples from there on did.

@@ -1,10 +1,10 @@
-//! Paths and encounters as JSON, the same from the command line and from the page.
+//! Paths and separation violations as JSON, the same from the command line and from the page.
 
 use rmpl::program::World;
 use serde_json::{Value, json};
 use tpn::Network;
 
-use crate::snapshot::{Encounter, Traverse};
+use crate::snapshot::{SeparationViolation, Traverse};
 
 /// The traverses of a plan with the vertices of their paths and what each leg comes to.
 pub fn traverses_json(traverses: &[Traverse], network: &Network, world: &World) -> Value {
@@ -31,17 +31,17 @@ fn traverse_json(traverse: &Traverse, network: &Network, world: &World) -> Value
 }
 
 /// Vehicles that come too near each other, with times in mission units.
-pub fn encounters_json(encounters: &[Encounter], world: &World) -> Value {
-    let one = |encounter: &Encounter| {
+pub fn separation_violations_json(violations: &[SeparationViolation], world: &World) -> Value {
+    let one = |violation: &SeparationViolation| {
         json!({
-            "vehicles": encounter.vehicles.map(|vehicle| name(world, vehicle)),
-            "since": encounter.since,
-            "time": encounter.time,
-            "position_m": encounter.position_m,
-            "distance_m": encounter.distance_m,
+            "vehicles": violation.vehicles.map(|vehicle| name(world, vehicle)),
+            "since": violation.since,
+            "time": violation.time,
+            "position_m": violation.position_m,
+            "distance_m": violation.distance_m,
         })
     };
-    encounters.iter().map(one).collect()
+    violations.iter().map(one).collect()
 }
 
 fn name(world: &World, vehicle: u32) -> Option<&str> {

@@ -17,10 +17,12 @@ use tpn::path::{PathLeg, TraversePath};
 use tpn::{ArcId, ArcKind, Network, OccurrenceId, Plan};
 
 use crate::driving::{self, Drive};
-use crate::encounter;
 use crate::ground::{FreeSpace, Grounds};
 use crate::programs;
-use crate::snapshot::{Encounter, Leg, MapKey, PathFigures, Planning, Traverse, Undrivable, VehicleMotion};
+use crate::separation;
+use crate::snapshot::{
+    Leg, MapKey, PathFigures, Planning, SeparationViolation, Traverse, Undrivable, VehicleMotion,
+};
 use crate::traverse::{self, Paths, Preference, Route, Waypoint};
 
 /// What to plan and how.
@@ -54,7 +56,7 @@ pub struct Planned {
     /// Where vehicles are over time.
     pub motions: Vec<VehicleMotion>,
     /// Vehicles too near each other.
-    pub encounters: Vec<Encounter>,
+    pub separation_violations: Vec<SeparationViolation>,
     /// What the author should know.
     pub warnings: Vec<Diagnostic>,
 }
@@ -107,7 +109,7 @@ pub fn without_paths(network: &Arc<Network>, outcome: Outcome) -> Planned {
         traverses: Vec::new(),
         spaces: Vec::new(),
         motions: Vec::new(),
-        encounters: Vec::new(),
+        separation_violations: Vec::new(),
         warnings: Vec::new(),
     }
 }
@@ -327,8 +329,8 @@ fn conclude(
         }
     }
     let motions = driving::motions(&drives);
-    let encounters = encounter::encounters(&drives, &motions, world);
-    warnings.extend(encounter::warnings(&encounters, &drives, &network, world));
+    let separation_violations = separation::violations(&drives, &motions, world);
+    warnings.extend(separation::warnings(&separation_violations, &drives, &network, world));
     if let Some(plan) = outcome.plans.first() {
         warnings.extend(programs::overlaps(problem.program, &network, plan));
     }
@@ -341,7 +343,7 @@ fn conclude(
         .collect();
     name_blocked(&mut outcome, &network, &undrivable);
     let planning = Arc::new(Planning { outcome, verdict, undrivable });
-    Planned { network, planning, traverses, spaces, motions, encounters, warnings }
+    Planned { network, planning, traverses, spaces, motions, separation_violations, warnings }
 }
 
 /// Where the vehicles are over time when `plan` is driven along the traverses of `planned`.
@@ -366,10 +368,10 @@ pub fn motions_of(
 
 /// Room between the centres of vehicles that drive together, in metres.
 fn spacing_m(world: &World, vehicles: &[usize]) -> f64 {
-    let radii = |vehicle: &usize| encounter::radius_m(world, *vehicle as u32);
+    let radii = |vehicle: &usize| separation::radius_m(world, *vehicle as u32);
     let mut widest: Vec<f64> = vehicles.iter().map(radii).collect();
     widest.sort_by(f64::total_cmp);
-    widest.iter().rev().take(2).sum::<f64>() + encounter::GAP_M
+    widest.iter().rev().take(2).sum::<f64>() + separation::GAP_M
 }
 
 pub(crate) fn drive(

@@ -2,7 +2,7 @@
 //! show, and as late as that makes them.
 //!
 //! A traverse is driven when the executive starts it, and what it came to follows from its path, the moment and the
-//! disturbances alone. The world that lasers see holds all rocks, declared obstacles exactly, and what disturbances
+//! disturbances alone. The world that range sensors see holds all rocks, declared obstacles exactly, and what disturbances
 //! put into it; planning knows only the map.
 
 mod trip;
@@ -15,6 +15,7 @@ use std::sync::Arc;
 use exact::{Overflow, Time};
 use executive::{Disturbance, Ends, Entry, Happening, Performance, Performer};
 use motion::FineWorld;
+use nalgebra::Point2;
 use rmpl::program::Program;
 use serde::{Deserialize, Serialize};
 use terrain::{Obstacle, Terrain};
@@ -59,15 +60,15 @@ pub struct DriveFrame {
     /// In mission units from the start of the mission.
     pub time: f64,
     /// Metres east and north.
-    pub position_m: [f64; 2],
+    pub position_m: Point2<f64>,
     /// Radians counter-clockwise from east.
     pub heading_rad: f64,
     /// Metres per second.
     pub speed_mps: f64,
-    /// Where laser rays met something, in metres.
-    pub rays_m: Vec<[f32; 2]>,
+    /// Where the rays of its range sensor met something, in metres.
+    pub rays_m: Vec<Point2<f32>>,
     /// Where it meant to drive next, from where it was: along its path, or around what it had seen.
-    pub plan_m: Vec<[f32; 2]>,
+    pub plan_m: Vec<Point2<f32>>,
 }
 
 impl SimulatedVehicle {
@@ -138,17 +139,17 @@ pub(crate) struct Driving<'run> {
     map: &'run Terrain,
     disturbances: &'run [Disturbance],
     courses: &'run RefCell<Courses>,
-    /// Seeds the noise of lasers.
+    /// Seeds the noise of range sensors.
     seed: u64,
     /// What is there from the beginning.
     world: FineWorld,
     /// Where vehicles are that have driven, with their headings.
-    stand: BTreeMap<u32, ([f64; 2], f64)>,
+    stand: BTreeMap<u32, (Point2<f64>, f64)>,
     drives: Vec<SimulatedDrive>,
 }
 
-/// Rocks that a laser sees are at least this large, in metres: smaller ones are below its plane.
-const LEAST_ROCK_M: f64 = 0.4;
+/// Rocks that a range sensor sees are at least this large, in metres: smaller ones are below its plane.
+const MIN_ROCK_M: f64 = 0.4;
 /// Durations are whole multiples of this fraction of a second.
 const TICKS_PER_SECOND: u32 = 10;
 impl<'run> Driving<'run> {
@@ -162,7 +163,7 @@ impl<'run> Driving<'run> {
     ) -> Self {
         let declared = &problem.program.world.obstacles;
         let obstacles: Vec<Obstacle> = declared.iter().map(|it| ground::obstacle(&it.shape)).collect();
-        let world = FineWorld::new(map, &obstacles, LEAST_ROCK_M);
+        let world = FineWorld::new(map, &obstacles, MIN_ROCK_M);
         let (stand, drives) = (BTreeMap::new(), Vec::new());
         Self { problem, map, disturbances, courses, seed, world, stand, drives }
     }

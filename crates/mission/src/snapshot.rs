@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use exact::{Bound, Time};
 use motion::GrowthTrace;
+use nalgebra::Point2;
 use rmpl::Span;
 use rmpl::program::Program;
 use rmpl::spans::Spans;
@@ -38,7 +39,7 @@ pub struct Snapshot {
     /// Where every vehicle is over time, under the earliest schedule of the plan.
     pub motions: Arc<[VehicleMotion]>,
     /// Traverses whose vehicles come within their safety radius of each other.
-    pub encounters: Arc<[Encounter]>,
+    pub separation_violations: Arc<[SeparationViolation]>,
     /// What is new in this snapshot, and what an earlier one had already.
     pub keys: PartKeys,
     /// How long the stages took.
@@ -129,9 +130,9 @@ pub struct Leg {
     /// The name of the location it leads to.
     pub to: SmolStr,
     /// The path, waypoints included, in metres.
-    pub points_m: Vec<[f64; 2]>,
+    pub points_m: Vec<Point2<f64>>,
     /// The search tree that found it, as segments, for display.
-    pub tree_m: Arc<Vec<[[f64; 2]; 2]>>,
+    pub tree_m: Arc<Vec<[Point2<f64>; 2]>>,
     /// How the search grew, sample by sample, for showing it step by step.
     pub growth: Arc<GrowthTrace>,
     /// Samples that the search drew.
@@ -153,14 +154,14 @@ pub struct Keyframe {
     /// In mission time units from the start.
     pub time: Time,
     /// In metres.
-    pub position_m: [f64; 2],
+    pub position_m: Point2<f64>,
     /// Direction of travel in radians, counter-clockwise from east.
     pub heading_rad: f64,
 }
 
-/// Two vehicles too near each other.
+/// Two vehicles nearer to each other than they may be.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Encounter {
+pub struct SeparationViolation {
     /// The vehicles, as indices into the program's world.
     pub vehicles: [u32; 2],
     /// When they first come within their safety radius, in mission units.
@@ -168,7 +169,7 @@ pub struct Encounter {
     /// When they are nearest.
     pub time: f64,
     /// Half way between them, in metres.
-    pub position_m: [f64; 2],
+    pub position_m: Point2<f64>,
     /// How near they come, in metres, from centre to centre.
     pub distance_m: f64,
 }
@@ -217,7 +218,7 @@ impl Snapshot {
             map: None,
             traverses: Arc::default(),
             motions: Arc::default(),
-            encounters: Arc::default(),
+            separation_violations: Arc::default(),
             keys: PartKeys::default(),
             timings: Timings::default(),
         }
@@ -238,7 +239,7 @@ impl Snapshot {
 
 impl VehicleMotion {
     /// Where the vehicle is at `time`, in mission units, and its heading in radians; `None` without keyframes.
-    pub fn at(&self, time: f64) -> Option<([f64; 2], f64)> {
+    pub fn at(&self, time: f64) -> Option<(Point2<f64>, f64)> {
         let seconds = |frame: &Keyframe| frame.time.to_f64();
         let after = self.keyframes.partition_point(|frame| seconds(frame) <= time);
         let before = self.keyframes.get(after.saturating_sub(1))?;
@@ -247,8 +248,7 @@ impl VehicleMotion {
         };
         let (from, to) = (seconds(before), seconds(next));
         let part = if to > from { (time - from) / (to - from) } else { 0.0 };
-        let mix =
-            |axis: usize| before.position_m[axis] + part * (next.position_m[axis] - before.position_m[axis]);
-        Some(([mix(0), mix(1)], before.heading_rad))
+        let position_m = before.position_m + (next.position_m - before.position_m) * part;
+        Some((position_m, before.heading_rad))
     }
 }

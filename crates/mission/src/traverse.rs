@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use exact::Rational;
 use motion::{Path, PlannerKind, Query, SearchResult, ShortcutSettings, VehicleModel};
+use nalgebra::{Point2, distance};
 use rmpl::Span;
 use rmpl::program::{Moves, Program, World};
 use smol_str::SmolStr;
@@ -35,7 +36,7 @@ pub struct Waypoint {
     /// The location's name.
     pub name: SmolStr,
     /// In metres.
-    pub position_m: [f64; 2],
+    pub position_m: Point2<f64>,
 }
 
 /// The routes of the traverses that `plan` selects, in order of their earliest departure. Each vehicle starts where its
@@ -78,7 +79,7 @@ pub fn declared_moves<'program>(program: &'program Program, activity: &str) -> O
 
 fn waypoint(world: &World, name: &str) -> Option<Waypoint> {
     let location = world.locations.iter().find(|location| location.name.text == name)?;
-    Some(Waypoint { name: location.name.text.clone(), position_m: location.position_m })
+    Some(Waypoint { name: location.name.text.clone(), position_m: location.position_m.into() })
 }
 
 fn route(
@@ -175,14 +176,14 @@ pub enum Preference {
 /// A leg's inputs. The free space stands for map, obstacles and vehicle: it is shared while they stay the same.
 struct LegKey {
     space: Arc<ConfigurationSpace>,
-    from_m: [f64; 2],
-    to_m: [f64; 2],
+    from_m: Point2<f64>,
+    to_m: Point2<f64>,
     seed: u64,
     preference: Preference,
 }
 
 /// Legs kept; a mission in work has far fewer, and each holds its search tree.
-const MOST_LEGS: usize = 128;
+const MAX_LEGS: usize = 128;
 
 impl Paths {
     /// How many legs were really searched for, not taken from those kept.
@@ -230,7 +231,7 @@ impl Paths {
         }
         self.searches += 1;
         let leg = find_leg(space, from, to, seed, preference);
-        if self.known.len() >= MOST_LEGS {
+        if self.known.len() >= MAX_LEGS {
             drop(self.known.remove(0));
         }
         let key = LegKey {
@@ -258,7 +259,7 @@ const BLOCKS_FOR_SHORTEST: u32 = 10_000;
 /// Edges of a search tree that reach across a map at most.
 const STEPS_ACROSS: f64 = 60.0;
 /// Samples of a search that can be shown one by one.
-const MOST_TRACED_STEPS: usize = 4000;
+const MAX_TRACED_STEPS: usize = 4000;
 
 /// Searches for one leg; says why there is none, for the author.
 fn find_leg(
@@ -309,24 +310,24 @@ fn find_leg(
         })
     });
     let settings = motion::Settings { seed, ..settings };
-    let growth = motion::trace(space, query, settings, MOST_TRACED_STEPS).unwrap_or_default();
+    let growth = motion::trace(space, query, settings, MAX_TRACED_STEPS).unwrap_or_default();
     Ok(Leg {
         to: to.name.clone(),
         tree_m: Arc::new(tree_m.collect()),
         growth: Arc::new(growth),
-        points_m: motion::thin(space, &path, CORNER_EXTRA_M).points_m,
+        points_m: motion::simplify(space, &path, CORNER_EXTRA_M).points_m,
         samples: statistics.samples,
     })
 }
 
 /// The length of a path in metres.
-pub fn length_m(points_m: &[[f64; 2]]) -> f64 {
-    points_m.windows(2).map(|pair| segment_length_m(pair[0], pair[1])).sum()
+pub fn length_m(points_m: &[Point2<f64>]) -> f64 {
+    points_m.windows(2).map(|pair| distance(&pair[0], &pair[1])).sum()
 }
 
 /// The points of all legs, each waypoint once.
 pub fn joined(legs: &[Leg]) -> Path {
-    let mut points: Vec<[f64; 2]> = Vec::new();
+    let mut points: Vec<Point2<f64>> = Vec::new();
     for leg in legs {
         let repeated = usize::from(!points.is_empty());
         points.extend(leg.points_m.iter().skip(repeated));
@@ -334,21 +335,15 @@ pub fn joined(legs: &[Leg]) -> Path {
     Path::new(points)
 }
 
-/// The distance between two points in metres.
-pub fn segment_length_m(from_m: [f64; 2], to_m: [f64; 2]) -> f64 {
-    let (east, north) = (to_m[0] - from_m[0], to_m[1] - from_m[1]);
-    (east * east + north * north).sqrt()
-}
-
 /// The steepest slope along a path, in radians, looked at twice per cell.
-pub fn steepest_slope_rad(map: &Terrain, points_m: &[[f64; 2]]) -> f64 {
+pub fn steepest_slope_rad(map: &Terrain, points_m: &[Point2<f64>]) -> f64 {
     let step_m = map.frame().cell_size_m / 2.0;
     let mut steepest = 0.0_f64;
     for pair in points_m.windows(2) {
-        let pieces = (segment_length_m(pair[0], pair[1]) / step_m).ceil().max(1.0) as u32;
+        let pieces = (distance(&pair[0], &pair[1]) / step_m).ceil().max(1.0) as u32;
         for piece in 0..=pieces {
             let part = f64::from(piece) / f64::from(pieces);
-            let point = [0, 1].map(|axis| pair[0][axis] + part * (pair[1][axis] - pair[0][axis]));
+            let point = pair[0] + (pair[1] - pair[0]) * part;
             steepest = steepest.max(map.slope_at(point).unwrap_or(0.0));
         }
     }
@@ -356,7 +351,7 @@ pub fn steepest_slope_rad(map: &Terrain, points_m: &[[f64; 2]]) -> f64 {
 }
 
 /// The least distance from the vehicle's rim to an obstacle along a path, in metres.
-pub fn clearance_m(space: &ConfigurationSpace, points_m: &[[f64; 2]]) -> f64 {
+pub fn clearance_m(space: &ConfigurationSpace, points_m: &[Point2<f64>]) -> f64 {
     points_m
         .windows(2)
         .filter_map(|pair| space.segment_clearance_m(pair[0], pair[1]))

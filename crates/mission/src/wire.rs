@@ -15,7 +15,9 @@ use tpn::Network;
 use crate::content::{ContentKey, PartKeys};
 use crate::problem::Problem;
 use crate::request::{Request, Response};
-use crate::snapshot::{Encounter, MapKey, Planning, Snapshot, Stage, Timings, Traverse, VehicleMotion};
+use crate::snapshot::{
+    MapKey, Planning, SeparationViolation, Snapshot, Stage, Timings, Traverse, VehicleMotion,
+};
 
 /// Why bytes cannot be written or read.
 pub type Error = postcard::Error;
@@ -59,7 +61,7 @@ struct SnapshotChange {
     planning: Change<Option<Arc<Planning>>>,
     traverses: Change<Arc<[Traverse]>>,
     motions: Change<Arc<[VehicleMotion]>>,
-    encounters: Change<Arc<[Encounter]>>,
+    separation_violations: Change<Arc<[SeparationViolation]>>,
 }
 
 /// What became of a part.
@@ -219,7 +221,12 @@ impl SnapshotChange {
             planning: Change::of(&before.planning, &after.planning, &edit, keyed(old.planning, new.planning)),
             traverses: Change::of(&before.traverses, &after.traverses, &edit, false),
             motions: Change::of(&before.motions, &after.motions, &edit, false),
-            encounters: Change::of(&before.encounters, &after.encounters, &edit, false),
+            separation_violations: Change::of(
+                &before.separation_violations,
+                &after.separation_violations,
+                &edit,
+                false,
+            ),
             source: edit,
         }
     }
@@ -238,19 +245,19 @@ impl SnapshotChange {
         self.planning.apply(&mut held.planning, edit);
         self.traverses.apply(&mut held.traverses, edit);
         self.motions.apply(&mut held.motions, edit);
-        self.encounters.apply(&mut held.encounters, edit);
+        self.separation_violations.apply(&mut held.separation_violations, edit);
         held.revision = self.revision;
         held.stage = self.stage;
         held.timings = self.timings;
         held.map = self.map;
-        let PartKeys { program, network, planning, traverses, motions, encounters } = self.keys;
+        let PartKeys { program, network, planning, traverses, motions, separation_violations } = self.keys;
         held.keys = PartKeys {
             program: program.of_core(core),
             network: network.of_core(core),
             planning: planning.of_core(core),
             traverses: traverses.of_core(core),
             motions: motions.of_core(core),
-            encounters: encounters.of_core(core),
+            separation_violations: separation_violations.of_core(core),
         };
         held
     }

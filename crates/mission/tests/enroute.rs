@@ -97,11 +97,11 @@ fn both_rovers_drive_from_base_to_the_target_and_the_leader_stays_clear() {
     assert_eq!(snapshot.motions.len(), 2, "{:?}", snapshot.planning.as_ref().map(|it| &it.undrivable));
     let (start, _) = snapshot.motions[0].at(0.0).expect("it has keyframes");
     let (end, _) = snapshot.motions[0].at(800.0).expect("it has keyframes");
-    assert_eq!((start, end), ([24.0, 52.0], [256.0, 238.0]));
+    assert_eq!((start, end), ([24.0, 52.0].into(), [256.0, 238.0].into()));
     let under_way = snapshot.motions[0].at(200.0).expect("it has keyframes").0;
     assert!(under_way != start && under_way != end);
     assert!(snapshot.traverses[0].clearance_m >= 0.0);
-    assert!(snapshot.encounters.is_empty());
+    assert!(snapshot.separation_violations.is_empty());
 }
 
 #[test]

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use exact::{Bound, Time};
 use mission::planning::{self, Planned, Problem};
 use mission::{Goal, Grounds, Paths};
+use nalgebra::{Point2, distance};
 use rmpl::program::{Program, World};
 use terrain::{CellState, Occupancy, Terrain};
 use tpn::ArcKind;
@@ -61,7 +62,7 @@ impl Answer {
     }
 
     /// Occupied squares of the map for a vehicle of this model, as centres, with half their side.
-    fn occupied(&self, model: &str) -> (Vec<[f64; 2]>, f64) {
+    fn occupied(&self, model: &str) -> (Vec<Point2<f64>>, f64) {
         let map = self.map.as_ref().expect("there is ground");
         let model = motion::vehicle_model(model).expect("it is known");
         let shapes: Vec<_> =
@@ -77,13 +78,9 @@ impl Answer {
     }
 }
 
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
-}
-
 /// The distance from a point to the nearest of some squares.
-fn to_nearest(point: [f64; 2], squares: &[[f64; 2]], half: f64) -> f64 {
-    let to_square = |center: &[f64; 2]| {
+fn to_nearest(point: Point2<f64>, squares: &[Point2<f64>], half: f64) -> f64 {
+    let to_square = |center: &Point2<f64>| {
         let across = ((point[0] - center[0]).abs() - half).max(0.0);
         let along = ((point[1] - center[1]).abs() - half).max(0.0);
         across * across + along * along
@@ -92,8 +89,8 @@ fn to_nearest(point: [f64; 2], squares: &[[f64; 2]], half: f64) -> f64 {
 }
 
 /// Whether two segments cross inside both.
-fn cross(a: [[f64; 2]; 2], b: [[f64; 2]; 2]) -> bool {
-    let side = |from: [f64; 2], to: [f64; 2], point: [f64; 2]| {
+fn cross(a: [Point2<f64>; 2], b: [Point2<f64>; 2]) -> bool {
+    let side = |from: Point2<f64>, to: Point2<f64>, point: Point2<f64>| {
         (to[0] - from[0]) * (point[1] - from[1]) - (to[1] - from[1]) * (point[0] - from[0])
     };
     side(a[0], a[1], b[0]) * side(a[0], a[1], b[1]) < 0.0
@@ -117,8 +114,9 @@ fn every_leg_keeps_radius_and_margin_from_every_obstacle_and_never_crosses_itsel
                     .iter()
                     .find(|it| it.name.text == leg.to)
                     .expect("declared");
-                assert_eq!(leg.points_m.last(), Some(&location.position_m), "{what}");
-                let segments: Vec<[[f64; 2]; 2]> = leg.points_m.windows(2).map(|it| [it[0], it[1]]).collect();
+                assert_eq!(leg.points_m.last(), Some(&location.position_m.into()), "{what}");
+                let segments: Vec<[Point2<f64>; 2]> =
+                    leg.points_m.windows(2).map(|it| [it[0], it[1]]).collect();
                 for (index, segment) in segments.iter().enumerate() {
                     for other in &segments[index + 1..] {
                         assert!(
@@ -126,19 +124,18 @@ fn every_leg_keeps_radius_and_margin_from_every_obstacle_and_never_crosses_itsel
                             "{what} crosses itself at {segment:?} and {other:?}"
                         );
                     }
-                    let pieces = (distance(segment[0], segment[1]) / 0.15).ceil();
-                    let near: Vec<[f64; 2]> = squares
+                    let pieces = (distance(&segment[0], &segment[1]) / 0.15).ceil();
+                    let near: Vec<Point2<f64>> = squares
                         .iter()
                         .copied()
                         .filter(|&center| {
-                            distance(center, segment[0]) + distance(center, segment[1])
-                                < distance(segment[0], segment[1]) + 8.0
+                            distance(&center, &segment[0]) + distance(&center, &segment[1])
+                                < distance(&segment[0], &segment[1]) + 8.0
                         })
                         .collect();
                     for piece in 0..=pieces as u32 {
                         let part = f64::from(piece) / pieces.max(1.0);
-                        let point = [0, 1]
-                            .map(|axis| segment[0][axis] + part * (segment[1][axis] - segment[0][axis]));
+                        let point = segment[0] + (segment[1] - segment[0]) * part;
                         let free = to_nearest(point, &near, half);
                         assert!(free >= model.radius_m() - 1e-6, "{what}: {free} m at {point:?}");
                     }
@@ -162,7 +159,7 @@ fn vertices_of_the_network_are_those_of_the_path_and_their_times_follow_from_len
     let traverse = &answer.planned.traverses[0];
     let network = &answer.planned.network;
     let arcs: Vec<_> = network.arcs.iter().filter(|arc| arc.kind == ArcKind::Path).collect();
-    let segments: Vec<[[f64; 2]; 2]> =
+    let segments: Vec<[Point2<f64>; 2]> =
         traverse.legs.iter().flat_map(|leg| leg.points_m.windows(2).map(|it| [it[0], it[1]])).collect();
     assert_eq!(arcs.len(), segments.len());
     let map = answer.map.as_ref().expect("there is ground");
@@ -317,7 +314,7 @@ fn vehicles_of_one_traverse_never_touch_each_other_or_an_obstacle() {
         for step in 0..=8000 {
             let time = from + (to - from) * f64::from(step) / 8000.0;
             let [leader, follower] = [0, 1].map(|index: usize| motions[index].at(time).expect("it moves").0);
-            let apart = distance(leader, follower);
+            let apart = distance(&leader, &follower);
             assert!(apart >= atrv + jr, "{apart} m apart at {time}");
             assert!(apart <= 12.0, "{apart} m apart at {time}");
             least = least.min(apart);
@@ -344,14 +341,14 @@ const CROSSING: &str = "option time_unit = second;
 #[test]
 fn concurrent_traverses_that_cross_are_reported_with_time_and_place() {
     let answer = plan(CROSSING, 1);
-    let [encounter] = answer.planned.encounters.as_slice() else {
-        panic!("{:?}", answer.planned.encounters);
+    let [violation] = answer.planned.separation_violations.as_slice() else {
+        panic!("{:?}", answer.planned.separation_violations);
     };
-    assert_eq!(encounter.vehicles, [0, 1]);
-    assert!((encounter.time - 60.0).abs() < 0.1, "{encounter:?}");
-    assert!(distance(encounter.position_m, [30.0, 0.0]) < 0.1, "{encounter:?}");
+    assert_eq!(violation.vehicles, [0, 1]);
+    assert!((violation.time - 60.0).abs() < 0.1, "{violation:?}");
+    assert!(distance(&violation.position_m, &Point2::new(30.0, 0.0)) < 0.1, "{violation:?}");
     // Safety radius 0.661 + 0.515 + 1 m, approached at 0.5·√2 m/s.
-    assert!((encounter.since - (60.0 - 2.176 / (0.5 * 2.0_f64.sqrt()))).abs() < 0.1, "{encounter:?}");
+    assert!((violation.since - (60.0 - 2.176 / (0.5 * 2.0_f64.sqrt()))).abs() < 0.1, "{violation:?}");
     let warning =
         answer.planned.warnings.iter().find(|it| it.code.0 == "W-ENCOUNTER").expect("the author is told");
     assert!(
@@ -360,7 +357,7 @@ fn concurrent_traverses_that_cross_are_reported_with_time_and_place() {
         warning.message
     );
     let one_after_the_other = CROSSING.replace("Drive1(EAST)[120,120], ", "Drive1(EAST)[120,120]; ");
-    assert!(plan(&one_after_the_other, 1).planned.encounters.is_empty());
+    assert!(plan(&one_after_the_other, 1).planned.separation_violations.is_empty());
 }
 
 #[test]
@@ -371,8 +368,8 @@ fn a_rover_that_drives_past_a_parked_one_too_near_is_reported() {
         "Drive2(NORTH)[60,70]; Drive1(EAST)[120,120]",
     );
     let answer = plan(&later, 1);
-    assert_eq!(answer.planned.encounters.len(), 1);
-    assert!((answer.planned.encounters[0].distance_m - 1.0).abs() < 0.01);
+    assert_eq!(answer.planned.separation_violations.len(), 1);
+    assert!((answer.planned.separation_violations[0].distance_m - 1.0).abs() < 0.01);
 }
 
 #[test]
@@ -436,14 +433,18 @@ fn a_mission_on_an_imported_map_of_phobos_keeps_to_ground_that_can_be_driven() {
     };
     let space = model.configuration_space(&map, &[]);
     // The free places nearest to those of the text.
-    let near = |wanted: [f64; 2]| {
+    let near = |wanted: Point2<f64>| {
         let frame = *space.frame();
         (0..frame.cell_count())
             .map(|index| frame.center_m(frame.cell(index)))
-            .filter(|&center| space.is_free(center) && !space.are_separated(center, [33_050.0, 17_050.0]))
-            .min_by(|a, b| distance(*a, wanted).total_cmp(&distance(*b, wanted)))
+            .filter(|&center| {
+                space.is_free(center) && !space.are_separated(center, Point2::new(33_050.0, 17_050.0))
+            })
+            .min_by(|a, b| distance(a, &wanted).total_cmp(&distance(b, &wanted)))
     };
-    let (Some(from), Some(to)) = (near([31_050.0, 15_050.0]), near([36_050.0, 19_050.0])) else {
+    let (Some(from), Some(to)) =
+        (near(Point2::new(31_050.0, 15_050.0)), near(Point2::new(36_050.0, 19_050.0)))
+    else {
         panic!("nothing of Phobos can be driven");
     };
     let source = source
@@ -456,12 +457,12 @@ fn a_mission_on_an_imported_map_of_phobos_keeps_to_ground_that_can_be_driven() {
     let (squares, half) = answer.occupied("ATRV");
     assert!(!squares.is_empty(), "some of it is steep");
     for pair in leg.points_m.windows(2) {
-        let pieces = (distance(pair[0], pair[1]) / 25.0).ceil().max(1.0) as u32;
+        let pieces = (distance(&pair[0], &pair[1]) / 25.0).ceil().max(1.0) as u32;
         for piece in 0..=pieces {
             let part = f64::from(piece) / f64::from(pieces);
-            let point = [0, 1].map(|axis| pair[0][axis] + part * (pair[1][axis] - pair[0][axis]));
+            let point = pair[0] + (pair[1] - pair[0]) * part;
             assert!(to_nearest(point, &squares, half) >= model.radius_m() - 1e-6, "{point:?}");
         }
     }
-    assert!(answer.planned.traverses[0].leg_figures[0].length_m >= distance(from, to));
+    assert!(answer.planned.traverses[0].leg_figures[0].length_m >= distance(&from, &to));
 }

@@ -8,6 +8,7 @@ use executive::{Disturbance, Ending, Happening, Script};
 use mission::execution::{self, Execution};
 use mission::planning::{self, Problem};
 use mission::{Goal, Grounds, Paths, SimulatedDrive};
+use nalgebra::{Point2, distance};
 
 const ENROUTE: &str = include_str!("../../../assets/missions/enroute.rmpl");
 const DETOUR: &str = include_str!("../../../assets/missions/detour.rmpl");
@@ -44,12 +45,8 @@ fn duration(drive: &SimulatedDrive) -> f64 {
     minutes(drive.duration.expect("it arrived"))
 }
 
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
-}
-
-fn obstacle(at: i64, [x, y]: [f64; 2], radius: f64) -> Disturbance {
-    Disturbance::Obstacle { at: at.into(), x, y, radius }
+fn obstacle(at: i64, place: Point2<f64>, radius: f64) -> Disturbance {
+    Disturbance::Obstacle { at: at.into(), x: place.x, y: place.y, radius }
 }
 
 fn stand(vehicle: &str, from: i64, until: i64) -> Disturbance {
@@ -94,47 +91,46 @@ fn an_undisturbed_rover_drives_its_path_in_about_the_planned_time_and_touches_no
     let [drive] = execution.drives.as_slice() else { panic!("one traverse is driven") };
     assert!(drive.least_clearance_m > 0.0, "{}", drive.least_clearance_m);
     let frames = &drive.vehicles[0].frames;
-    assert!(distance(frames[0].position_m, [116.0, 72.0]) < 0.01);
+    assert!(distance(&frames[0].position_m, &Point2::new(116.0, 72.0)) < 0.01);
     let last = frames.last().expect("there are frames");
-    assert!(distance(last.position_m, [288.0, 72.0]) <= 0.2 + 1e-9, "{last:?}");
+    assert!(distance(&last.position_m, &Point2::new(288.0, 72.0)) <= 0.2 + 1e-9, "{last:?}");
     // 173 m at 0.2 m/s are 14.4 minutes.
     assert!((14.3..16.5).contains(&duration(drive)), "{}", duration(drive));
     for pair in frames.windows(2) {
         let seconds = (pair[1].time - pair[0].time) * 60.0;
-        let way = distance(pair[0].position_m, pair[1].position_m);
+        let way = distance(&pair[0].position_m, &pair[1].position_m);
         assert!(way <= 0.2 * seconds + 0.01, "{way} m in {seconds} s");
     }
     let motion = &execution.plans[0].motions[0];
     let middle = &frames[frames.len() / 2];
-    assert!(distance(motion.at(middle.time).expect("it moves").0, middle.position_m) < 0.05);
+    assert!(distance(&motion.at(middle.time).expect("it moves").0, &middle.position_m) < 0.05);
 }
 
 #[test]
 fn a_rock_that_appears_on_the_path_is_seen_and_passed() {
     let free = run(DETOUR, &[]);
-    let rock = [150.0, 70.4];
+    let rock = Point2::new(150.0, 70.4);
     let execution = run(DETOUR, &[obstacle(1, rock, 0.8)]);
     assert_eq!(execution.ending, Ending::Finished, "{:?}", execution.log.last());
     let drive = &execution.drives[0];
     let frames = &drive.vehicles[0].frames;
-    let nearest = frames.iter().map(|frame| distance(frame.position_m, rock)).fold(f64::INFINITY, f64::min);
+    let nearest = frames.iter().map(|frame| distance(&frame.position_m, &rock)).fold(f64::INFINITY, f64::min);
     assert!(nearest >= 0.8 + ATRV_M, "it touches the rock: {nearest}");
     assert!(nearest < 4.0, "the rock is beside the way: {nearest}");
     assert!(drive.least_clearance_m >= 0.0);
     assert!(duration(drive) >= duration(&free.drives[0]) - 0.1);
     let seen = frames.iter().flat_map(|frame| &frame.rays_m);
-    let on_rock =
-        seen.filter(|point| (distance([f64::from(point[0]), f64::from(point[1])], rock) - 0.8).abs() < 0.1);
+    let on_rock = seen.filter(|point| (distance(&point.cast::<f64>(), &rock) - 0.8).abs() < 0.1);
     assert!(on_rock.count() > 20, "the laser sees it");
 }
 
 #[test]
 fn a_closed_gap_is_reported_and_another_way_taken_which_takes_longer() {
-    let execution = run(DETOUR, &[obstacle(3, [200.0, 68.0], 5.5)]);
+    let execution = run(DETOUR, &[obstacle(3, Point2::new(200.0, 68.0), 5.5)]);
     assert_eq!(execution.ending, Ending::Stopped, "GAP itself is covered: {:?}", execution.log.last());
     assert!(violations(&execution)[0].contains("Scout finds no way on"), "{:?}", violations(&execution));
     // Beside the waypoint the same rock leaves it reachable, but only from one side.
-    let behind = run(DETOUR, &[obstacle(3, [214.0, 68.0], 6.0)]);
+    let behind = run(DETOUR, &[obstacle(3, Point2::new(214.0, 68.0), 6.0)]);
     assert_eq!(behind.ending, Ending::Finished, "{:?}", behind.log.last());
     assert!(
         progress(&behind).iter().any(|text| text.contains("takes another way")),
@@ -179,7 +175,7 @@ fn a_convoy_makes_good_what_it_lost_where_the_plan_leaves_time_and_fails_where_i
     for step in 0..4000 {
         let time = 10.0 + f64::from(step) * 0.1;
         let [leader, follower] = [0, 1].map(|index: usize| motions[index].at(time).expect("it moves").0);
-        let apart = distance(leader, follower);
+        let apart = distance(&leader, &follower);
         assert!(apart > 0.661 + 0.515, "{apart} m apart at {time}");
         assert!(apart < 15.0, "{apart} m apart at {time}");
     }
@@ -190,6 +186,6 @@ fn a_convoy_makes_good_what_it_lost_where_the_plan_leaves_time_and_fails_where_i
 
 #[test]
 fn the_same_run_is_driven_the_same_way() {
-    let disturbances = [obstacle(2, [150.0, 70.4], 0.8), stand("Scout", 6, 7)];
+    let disturbances = [obstacle(2, Point2::new(150.0, 70.4), 0.8), stand("Scout", 6, 7)];
     assert_eq!(run(DETOUR, &disturbances), run(DETOUR, &disturbances));
 }

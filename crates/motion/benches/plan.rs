@@ -8,6 +8,7 @@ use std::collections::BinaryHeap;
 use std::time::Instant;
 
 use motion::{Path, PlannerKind, Query, Search, Settings, ShortcutSettings, shorten};
+use nalgebra::{Point2, distance};
 use terrain::{Cell, ConfigurationSpace, GridFrame, Occupancy};
 
 const RUNS: u64 = 200;
@@ -23,7 +24,7 @@ fn main() {
                 println!("| {map} | the file ../shared/data/maps/{map}.pgm is not here |");
                 continue;
             };
-            let query = Query { start_m: [8.0, 8.0], goal_m: [503.0, 503.0] };
+            let query = Query { start_m: Point2::new(8.0, 8.0), goal_m: Point2::new(503.0, 503.0) };
             let reference = theta_star(&space, query).map_or(f64::NAN, |path| {
                 let settings =
                     ShortcutSettings { attempts: 5000, corner_rounds: 200, ..ShortcutSettings::default() };
@@ -92,7 +93,6 @@ fn load(map: &str, radius: f64) -> Option<ConfigurationSpace> {
 /// Theta* (Nash, Daniel, Koenig and Felner 2007) over cell centres, between the query's ends.
 fn theta_star(space: &ConfigurationSpace, query: Query) -> Option<Path> {
     let frame = space.frame();
-    let distance = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
     let start = frame.index(frame.cell_at(query.start_m)?);
     let goal = frame.index(frame.cell_at(query.goal_m)?);
     let point = |index: usize| match index {
@@ -128,11 +128,11 @@ fn theta_star(space: &ConfigurationSpace, query: Query) -> Option<Path> {
             }
             let from = parents[current];
             let parent = if space.is_segment_free(point(from), point(next)) { from } else { current };
-            let cost = costs[parent] + distance(point(parent), point(next));
+            let cost = costs[parent] + distance(&point(parent), &point(next));
             if cost < costs[next] {
                 costs[next] = cost;
                 parents[next] = parent;
-                open.push((Reverse(((cost + distance(point(next), query.goal_m)) * 1e6) as u64), next));
+                open.push((Reverse(((cost + distance(&point(next), &query.goal_m)) * 1e6) as u64), next));
             }
         }
     }

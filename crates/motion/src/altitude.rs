@@ -1,5 +1,6 @@
 //! The altitude of a flight along a path: inside the vehicle's band, clear of the ground, and no steeper than it climbs.
 
+use nalgebra::{Point3, distance};
 use terrain::Terrain;
 
 use crate::path::Path;
@@ -8,19 +9,19 @@ use crate::vehicle::{Drive, VehicleModel};
 /// Points (east, north, up) of a flight along a path at the vehicle's greatest speed, as low as its band, its ground
 /// clearance and its rate of climb allow. Over places where the vehicle can be ([`VehicleModel::configuration_space`])
 /// this is never above the band. For a vehicle that drives, the ground under the path.
-pub fn path_in_space(path: &Path, terrain: &Terrain, model: &VehicleModel) -> Vec<[f64; 3]> {
-    let mut points: Vec<[f64; 3]> = Vec::new();
+pub fn path_in_space(path: &Path, terrain: &Terrain, model: &VehicleModel) -> Vec<Point3<f64>> {
+    let mut points: Vec<Point3<f64>> = Vec::new();
     for (from, to) in path.segments() {
         let skip = usize::from(!points.is_empty());
         points.extend(terrain.drape(from, to).into_iter().skip(skip));
     }
-    if let (true, Some(&[east, north])) = (points.is_empty(), path.points_m.first()) {
-        points.push([east, north, terrain.height_at([east, north]).unwrap_or(0.0)]);
+    if let (true, Some(&place)) = (points.is_empty(), path.points_m.first()) {
+        points.push(Point3::new(place.x, place.y, terrain.height_at(place).unwrap_or(0.0)));
     }
     if let Drive::Flight { altitude_band_m, ground_clearance_m, climb_mps } = model.drive {
         let lowest = terrain.height_range_m().map_or(0.0, |[low, _]| f64::from(low));
         for point in &mut points {
-            point[2] = (point[2] + ground_clearance_m).max(lowest + altitude_band_m[0]);
+            point.z = (point.z + ground_clearance_m).max(lowest + altitude_band_m[0]);
         }
         let grade = climb_mps / model.speed_mps;
         limit_climb(&mut points, grade);
@@ -32,16 +33,17 @@ pub fn path_in_space(path: &Path, terrain: &Terrain, model: &VehicleModel) -> Ve
 }
 
 /// Raises points so that none lies more below the one before than the grade allows.
-fn limit_climb(points: &mut [[f64; 3]], grade: f64) {
+fn limit_climb(points: &mut [Point3<f64>], grade: f64) {
     for index in 1..points.len() {
         let (before, point) = (points[index - 1], &mut points[index]);
-        let (east, north) = (point[0] - before[0], point[1] - before[1]);
-        point[2] = point[2].max(before[2] - grade * (east * east + north * north).sqrt());
+        point.z = point.z.max(before.z - grade * distance(&point.xy(), &before.xy()));
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Point2;
+
     use super::*;
     use crate::vehicle::vehicle_model;
     use terrain::GridFrame;
@@ -54,17 +56,17 @@ mod tests {
             .collect();
         let terrain = Terrain::new(frame, heights);
         let model = vehicle_model("Blimp").unwrap();
-        let path = Path::new(vec![[5.0, 3.0], [120.0, 3.5], [235.0, 3.0]]);
+        let path = Path::new(vec![Point2::new(5.0, 3.0), Point2::new(120.0, 3.5), Point2::new(235.0, 3.0)]);
         let flight = path_in_space(&path, &terrain, model);
-        assert_eq!([flight[0][0], flight[0][1]], [5.0, 3.0]);
-        assert!(flight.iter().any(|point| point[2] >= 30.0));
+        assert_eq!(flight[0].xy(), Point2::new(5.0, 3.0));
+        assert!(flight.iter().any(|point| point.z >= 30.0));
         for point in &flight {
-            let ground = terrain.height_at([point[0], point[1]]).unwrap();
-            assert!(point[2] >= ground + 5.0 - 1e-9 && point[2] >= 10.0 && point[2] <= 40.0, "{point:?}");
+            let ground = terrain.height_at(point.xy()).unwrap();
+            assert!(point.z >= ground + 5.0 - 1e-9 && point.z >= 10.0 && point.z <= 40.0, "{point:?}");
         }
         for pair in flight.windows(2) {
-            let ahead = (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]);
-            assert!((pair[1][2] - pair[0][2]).abs() <= 0.2 * ahead + 1e-9);
+            let ahead = (pair[1].x - pair[0].x).hypot(pair[1].y - pair[0].y);
+            assert!((pair[1].z - pair[0].z).abs() <= 0.2 * ahead + 1e-9);
         }
     }
 }

@@ -1,12 +1,15 @@
 //! Vehicles that drive one behind the other in simulation: each follows its own path and avoids what it meets, the
 //! leader keeps a pace, and the others keep up with it without touching each other (SPEC 7.4).
 
+use nalgebra::{Point2, distance};
+use parry2d_f64::query::PointQuery as _;
+use parry2d_f64::shape::Ball;
 use terrain::ConfigurationSpace;
 
 use crate::driver::{DriveEvent, Driver, DriverSettings};
-use crate::geometry::distance;
-use crate::laser::{FineWorld, LaserScan};
+use crate::fine_world::FineWorld;
 use crate::path::Path;
+use crate::range_sensor::RangeScan;
 use crate::trajectory::MotionState;
 
 /// Vehicles under way together; the first leads.
@@ -25,7 +28,7 @@ struct Member {
     planned_m: f64,
     has_arrived: bool,
     /// What of the world is near, and where it was looked for.
-    near: Option<(FineWorld, [f64; 2])>,
+    near: Option<(FineWorld, Point2<f64>)>,
 }
 
 impl Member {
@@ -37,7 +40,7 @@ impl Member {
     /// Whether it is this near to the end of its path.
     fn is_within(&self, reach_m: f64) -> bool {
         let place = self.driver.state().position_m;
-        self.driver.path().points_m.last().is_some_and(|&end| distance(end, place) <= reach_m)
+        self.driver.path().points_m.last().is_some_and(|&end| distance(&end, &place) <= reach_m)
     }
 }
 
@@ -55,14 +58,14 @@ pub struct ConvoyMember {
 /// What the surroundings of a step are.
 #[derive(Clone, Copy, Debug)]
 pub struct Surroundings<'a> {
-    /// What lasers meet.
+    /// What range sensors see.
     pub world: &'a FineWorld,
     /// Whether the world has changed since the last step.
     pub has_changed: bool,
     /// For each vehicle, the map that keeps it off steep ground.
     pub maps: &'a [ConfigurationSpace],
     /// Other vehicles that move, as place and radius in metres: a vehicle stands rather than drive at one.
-    pub others: &'a [([f64; 2], f64)],
+    pub others: &'a [(Point2<f64>, f64)],
 }
 
 /// A part of the world this far around a vehicle is kept at hand, in metres.
@@ -128,7 +131,7 @@ impl Convoy {
         around: &Surroundings<'_>,
         pace_mps: f64,
         most_mps: &[f64],
-    ) -> Vec<(DriveEvent, LaserScan)> {
+    ) -> Vec<(DriveEvent, RangeScan)> {
         self.time_s += self.step_s;
         let share = self.leader_share();
         // By what is left to drive, so that a detour counts as lag and what lies behind a vehicle does not.
@@ -149,7 +152,7 @@ impl Convoy {
             let member = &mut self.members[index];
             member.driver.set_cruise(speed);
             let here = member.driver.state().position_m;
-            let is_at_hand = |near: &(FineWorld, [f64; 2])| distance(near.1, here) <= AT_HAND_STEP_M;
+            let is_at_hand = |near: &(FineWorld, Point2<f64>)| distance(&near.1, &here) <= AT_HAND_STEP_M;
             if around.has_changed || !member.near.as_ref().is_some_and(is_at_hand) {
                 member.near = Some((around.world.around(here, AT_HAND_M), here));
             }
@@ -175,14 +178,13 @@ impl Convoy {
     }
 
     /// Whether a vehicle must not go on because another is close in front of it.
-    fn is_held(&self, vehicle: usize, others: &[([f64; 2], f64)]) -> bool {
+    fn is_held(&self, vehicle: usize, others: &[(Point2<f64>, f64)]) -> bool {
         let own = &self.members[vehicle].driver;
         let state = own.state();
-        let ahead = [libm::cos(state.heading_rad), libm::sin(state.heading_rad)];
-        let is_near = |place: [f64; 2], reach_m: f64| {
-            let offset = [place[0] - state.position_m[0], place[1] - state.position_m[1]];
-            let toward = offset[0] * ahead[0] + offset[1] * ahead[1];
-            toward > 0.0 && distance(place, state.position_m) < reach_m
+        let world_from_body = state.world_from_body();
+        let is_near = |place: Point2<f64>, reach_m: f64| {
+            let place_in_body = world_from_body.inverse_transform_point(&place);
+            place_in_body.x > 0.0 && Ball::new(reach_m).contains_local_point(&place_in_body)
         };
         let radius_m = own.settings().radius_m;
         let stopping_m = state.speed_mps * state.speed_mps / (2.0 * own.settings().limits.acceleration_mps2)

@@ -2,17 +2,19 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::{Point2, UnitComplex, Vector2, distance, distance_squared};
+use parry2d_f64::query::PointQuery as _;
+use parry2d_f64::shape::Segment;
 use terrain::{Cell, CellState, ConfigurationSpace, GridFrame, Obstacle, Occupancy};
 
-use crate::geometry::{distance, squared_distance};
-use crate::laser::LaserScan;
 use crate::path::Path;
+use crate::range_sensor::RangeScan;
 use crate::search::{PlannerKind, Query, Settings, find_path};
 use crate::shortcut::ShortcutSettings;
 
 /// Seen points farther away than this are forgotten, in metres.
 const MEMORY_RADIUS_M: f64 = 6.0;
-/// Points that share a square of this side, in metres, are kept as their mean, which evens out the laser's noise.
+/// Points that share a square of this side, in metres, are kept as their mean, which evens out the sensor's noise.
 const SQUARE_M: f64 = 0.05;
 /// Side of a cell of the grid on which detours are looked for, in metres.
 const CELL_M: f64 = 0.1;
@@ -20,19 +22,17 @@ const CELL_M: f64 = 0.1;
 /// Points that were seen in one square.
 #[derive(Clone, Copy, Debug)]
 struct Seen {
-    mean_m: [f64; 2],
+    mean_m: Point2<f64>,
     count: u32,
 }
 
 impl Seen {
     /// Takes another point in. Only so many count, so that a square costs nothing more in the long run.
-    fn add(&mut self, point: [f64; 2]) {
-        const MOST: u32 = 50;
-        self.count = (self.count + 1).min(MOST);
+    fn add(&mut self, point: Point2<f64>) {
+        const MAX: u32 = 50;
+        self.count = (self.count + 1).min(MAX);
         let share = 1.0 / f64::from(self.count);
-        for (mean, value) in self.mean_m.iter_mut().zip(point) {
-            *mean += (value - *mean) * share;
-        }
+        self.mean_m += (point - self.mean_m) * share;
     }
 }
 
@@ -44,44 +44,35 @@ pub(crate) struct SeenPoints {
 
 impl SeenPoints {
     /// Adds a sweep and forgets what is far from where it was taken.
-    pub(crate) fn add(&mut self, scan: &LaserScan) {
+    pub(crate) fn add(&mut self, scan: &RangeScan) {
         let near = MEMORY_RADIUS_M * MEMORY_RADIUS_M;
-        self.points.retain(|_, seen| squared_distance(seen.mean_m, scan.origin_m) <= near);
-        for point in scan.points_m().filter(|point| squared_distance(*point, scan.origin_m) <= near) {
+        self.points.retain(|_, seen| distance_squared(&seen.mean_m, &scan.origin_m) <= near);
+        for point in scan.points_m().filter(|point| distance_squared(point, &scan.origin_m) <= near) {
             let square = point.map(|value| (value / SQUARE_M).floor() as i64);
-            self.points.entry((square[0], square[1])).or_insert(Seen { mean_m: point, count: 0 }).add(point);
+            self.points.entry((square.x, square.y)).or_insert(Seen { mean_m: point, count: 0 }).add(point);
         }
     }
 
-    pub(crate) fn points_m(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+    pub(crate) fn points_m(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
         self.points.values().map(|seen| seen.mean_m)
     }
 
     /// Whether a disc can go straight from one place to another without coming nearer than `reach` to a seen point that
     /// lies ahead.
-    pub(crate) fn is_open(&self, from: [f64; 2], to: [f64; 2], reach: f64) -> bool {
-        let length = distance(from, to);
-        if length == 0.0 {
-            return true;
-        }
-        let direction = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
-        self.points_m().all(|point| {
-            let offset = [point[0] - from[0], point[1] - from[1]];
-            let along = offset[0] * direction[0] + offset[1] * direction[1];
-            if along <= 0.0 {
-                return true;
-            }
-            let past = (along - length).max(0.0);
-            let across = offset[0] * direction[1] - offset[1] * direction[0];
-            across * across + past * past >= reach * reach
-        })
+    pub(crate) fn is_open(&self, from: Point2<f64>, to: Point2<f64>, reach: f64) -> bool {
+        let way = Segment::new(from, to);
+        let ahead = way.scaled_direction();
+        ahead == Vector2::zeros()
+            || self.points_m().all(|point| {
+                (point - from).dot(&ahead) <= 0.0 || way.distance_to_local_point(&point, true) >= reach
+            })
     }
 
     /// The free places around a vehicle whose centre keeps `reach` metres from everything, with seen points and what is
     /// occupied on the map in the way.
     pub(crate) fn surroundings(
         &self,
-        here: [f64; 2],
+        here: Point2<f64>,
         reach: f64,
         map: Option<&ConfigurationSpace>,
     ) -> ConfigurationSpace {
@@ -90,7 +81,7 @@ impl SeenPoints {
             width: count,
             height: count,
             cell_size_m: CELL_M,
-            origin_m: [here[0] - MEMORY_RADIUS_M, here[1] - MEMORY_RADIUS_M],
+            origin_m: here - Vector2::repeat(MEMORY_RADIUS_M),
         };
         let mut occupancy = Occupancy::free(frame);
         for point in self.points_m() {
@@ -104,7 +95,7 @@ impl SeenPoints {
 }
 
 /// Marks the cells of a grid that are occupied on a map.
-fn mark_map(occupancy: &mut Occupancy, map: &ConfigurationSpace, here: [f64; 2]) {
+fn mark_map(occupancy: &mut Occupancy, map: &ConfigurationSpace, here: Point2<f64>) {
     let frame = *occupancy.frame();
     let distance = map.clearance_m(here).map(|clearance| clearance + map.radius_m());
     if distance.is_some_and(|distance| distance > 2.0 * MEMORY_RADIUS_M) {
@@ -125,7 +116,7 @@ fn mark_map(occupancy: &mut Occupancy, map: &ConfigurationSpace, here: [f64; 2])
 /// reached.
 pub(crate) fn find_detour(
     surroundings: &ConfigurationSpace,
-    here: [f64; 2],
+    here: Point2<f64>,
     path: &Path,
     progress_m: f64,
 ) -> Option<Path> {
@@ -154,7 +145,7 @@ pub(crate) fn find_detour(
 }
 
 /// The place itself, or the nearest free one on rings around it: a vehicle that came too near to something leaves first.
-fn nearest_free(surroundings: &ConfigurationSpace, here: [f64; 2]) -> Option<[f64; 2]> {
+fn nearest_free(surroundings: &ConfigurationSpace, here: Point2<f64>) -> Option<Point2<f64>> {
     const DIRECTIONS: u32 = 24;
     if surroundings.is_free(here) {
         return Some(here);
@@ -163,21 +154,65 @@ fn nearest_free(surroundings: &ConfigurationSpace, here: [f64; 2]) -> Option<[f6
         |(ring, direction)| {
             let angle = std::f64::consts::TAU * f64::from(direction) / f64::from(DIRECTIONS);
             let radius = CELL_M * f64::from(ring);
-            let place = [here[0] + radius * libm::cos(angle), here[1] + radius * libm::sin(angle)];
+            let place = here + UnitComplex::new(angle) * Vector2::new(radius, 0.0);
             surroundings.is_free(place).then_some(place)
         },
     )
 }
 
 /// The nearest place on a stretch of a path: how far along the path, and how far away, in metres.
-pub(crate) fn nearest_along(path: &Path, place: [f64; 2], from_m: f64, stretch_m: f64) -> (f64, f64) {
+pub(crate) fn nearest_along(path: &Path, place: Point2<f64>, from_m: f64, stretch_m: f64) -> (f64, f64) {
     const STEP_M: f64 = 0.1;
     let length = path.length_m();
     (0..=(stretch_m / STEP_M) as u32 + 1)
         .filter_map(|step| {
             let along = (from_m + STEP_M * f64::from(step)).min(length);
-            path.point_at(along).map(|(point, _)| (along, distance(point, place)))
+            path.point_at(along).map(|(point, _)| (along, distance(&point, &place)))
         })
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .unwrap_or((from_m, 0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use terrain::Random;
+
+    use super::*;
+
+    #[test]
+    fn a_way_is_open_when_no_place_on_it_comes_near_a_seen_point_ahead() {
+        let (mut open, mut shut) = (0, 0);
+        for seed in 0..300 {
+            let mut random = Random::from_seed(seed);
+            let mut place = || Point2::new(random.range(-3.0, 3.0), random.range(-3.0, 3.0));
+            let (from, to, seen_m) = (place(), place(), [place(), place(), place()]);
+            let seen = seen_m.map(|mean_m| Seen { mean_m, count: 1 });
+            let points =
+                seen.into_iter().enumerate().map(|(index, seen)| ((index as i64, 0), seen)).collect();
+            let reach = 0.6;
+            let found = SeenPoints { points }.is_open(from, to, reach);
+            // Points beside or behind the start don't count; of the others, dense samples of the way tell.
+            let is_ahead = |point: &Point2<f64>| {
+                (point.x - from.x) * (to.x - from.x) + (point.y - from.y) * (to.y - from.y) > 0.0
+            };
+            let samples = (0..=4000).map(|step| {
+                let share = f64::from(step) / 4000.0;
+                Point2::new(from.x + (to.x - from.x) * share, from.y + (to.y - from.y) * share)
+            });
+            let least = samples
+                .flat_map(|at| {
+                    seen_m
+                        .iter()
+                        .filter(|point| is_ahead(point))
+                        .map(move |point| (point.x - at.x).hypot(point.y - at.y))
+                })
+                .fold(f64::INFINITY, f64::min);
+            if (least - reach).abs() < 0.002 {
+                continue;
+            }
+            assert_eq!(found, least > reach, "seed {seed}: {least} m");
+            if found { open += 1 } else { shut += 1 }
+        }
+        assert!(open > 50 && shut > 50, "{open} open, {shut} shut");
+    }
 }

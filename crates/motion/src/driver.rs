@@ -1,17 +1,18 @@
 //! A vehicle in simulation: it follows its path and avoids what it meets (SPEC 7.4).
 //!
-//! Every tenth of a second, or every tenth of a metre when it creeps, it sweeps its laser and aims at a point ahead on the path (pure pursuit, Coulter 1992), or, when
+//! Every tenth of a second, or every tenth of a metre when it creeps, it sweeps its range sensor and aims at a point ahead on the path (pure pursuit, Coulter 1992), or, when
 //! something stands between, along a detour around what it has seen (`detour`). It picks the speed and turning rate that
 //! serve this best among those it can reach and from which it can still stop in front of everything it has seen (dynamic
 //! window, Fox, Burgard and Thrun 1997).
 
+use nalgebra::{Point2, UnitComplex, Vector2, distance, distance_squared};
 use serde::{Deserialize, Serialize};
 use terrain::{ConfigurationSpace, Random};
 
 use crate::detour::{SeenPoints, find_detour, nearest_along};
-use crate::geometry::{between, distance, squared_distance};
-use crate::laser::{FineWorld, LaserModel, LaserScan};
-use crate::path::Path;
+use crate::fine_world::FineWorld;
+use crate::path::{Path, between};
+use crate::range_sensor::{RangeScan, RangeSensor};
 use crate::trajectory::{DriveLimits, MotionState, Trajectory, heading_difference};
 
 /// How a vehicle drives by itself.
@@ -23,7 +24,7 @@ pub struct DriverSettings {
     pub cruise_mps: f64,
     /// The disc that must not touch anything, in metres: the circumradius.
     pub radius_m: f64,
-    /// What it keeps free around that disc for errors of its laser, in metres.
+    /// What it keeps free around that disc for errors of its range sensor, in metres.
     pub margin_m: f64,
     /// How far ahead on the path it aims, in metres.
     pub lookahead_m: f64,
@@ -36,7 +37,7 @@ pub struct DriverSettings {
     /// The time between two decisions, in seconds.
     pub step_s: f64,
     /// Its range finder.
-    pub laser: LaserModel,
+    pub sensor: RangeSensor,
 }
 
 impl DriverSettings {
@@ -52,7 +53,7 @@ impl DriverSettings {
             blocked_timeout_s: 15.0,
             arrival_m: 0.2,
             step_s: STEP_S,
-            laser: LaserModel::SICK,
+            sensor: RangeSensor::SICK,
         }
     }
 
@@ -166,13 +167,13 @@ impl Driver {
     }
 
     /// What it has seen around it and still remembers, in metres.
-    pub fn seen_m(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+    pub fn seen_m(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
         self.seen.points_m()
     }
 
     /// Where it means to drive next, in metres: along a detour while something stands in the way, otherwise along its
     /// path, for at most `length_m`.
-    pub fn plan_m(&self, length_m: f64) -> Vec<[f64; 2]> {
+    pub fn plan_m(&self, length_m: f64) -> Vec<Point2<f64>> {
         let (path, from_m) = match &self.detour {
             Some(detour) => (detour, nearest_along(detour, self.state.position_m, 0.0, detour.length_m()).0),
             None => (&self.path, self.progress_m),
@@ -182,7 +183,7 @@ impl Driver {
         let mut along_m = 0.0;
         for (index, (a, b)) in path.segments().enumerate() {
             let start_m = along_m;
-            along_m += distance(a, b);
+            along_m += distance(&a, &b);
             if index < first {
                 continue;
             }
@@ -214,10 +215,10 @@ impl Driver {
     }
 
     /// Drives for one step, and returns what came of it with the sweep it was based on. Besides what the
-    /// laser sees, `map` keeps the vehicle off steep ground; its radius should be the circumradius.
-    pub fn step(&mut self, world: &FineWorld, map: Option<&ConfigurationSpace>) -> (DriveEvent, LaserScan) {
+    /// sensor sees, `map` keeps the vehicle off steep ground; its radius should be the circumradius.
+    pub fn step(&mut self, world: &FineWorld, map: Option<&ConfigurationSpace>) -> (DriveEvent, RangeScan) {
         let scan =
-            world.scan(self.state.position_m, self.state.heading_rad, &self.settings.laser, &mut self.random);
+            self.settings.sensor.scan(world, self.state.position_m, self.state.heading_rad, &mut self.random);
         self.seen.add(&scan);
         let remaining = (self.length_m - self.progress_m).max(0.0);
         let target = self.aim(map);
@@ -232,7 +233,7 @@ impl Driver {
     }
 
     /// Where to drive to: a lookahead ahead on the path, or on the detour when something stands in the way there.
-    fn aim(&mut self, map: Option<&ConfigurationSpace>) -> [f64; 2] {
+    fn aim(&mut self, map: Option<&ConfigurationSpace>) -> Point2<f64> {
         let here = self.state.position_m;
         let settings = &self.settings;
         let ahead = |path: &Path, along_m: f64| path.point_at(along_m + settings.lookahead_m).map(|it| it.0);
@@ -251,7 +252,7 @@ impl Driver {
             let segment = detour.point_at(along).map_or(0, |(_, segment)| segment);
             let rest = detour.points_m.get(segment + 1..).unwrap_or_default();
             let start = Some(here).filter(|&here| surroundings.is_free(here));
-            let ahead: Vec<[f64; 2]> = start.into_iter().chain(rest.iter().copied()).collect();
+            let ahead: Vec<Point2<f64>> = start.into_iter().chain(rest.iter().copied()).collect();
             away < 0.5 && detour.length_m() - along > 0.3 && Path::new(ahead).is_free(&surroundings)
         });
         // Looking for a way where there was none a moment ago is of little use, and costs the most of all.
@@ -274,7 +275,7 @@ impl Driver {
     }
 
     /// The reachable speed and turning rate that bring it best toward the target and still let it stop.
-    fn choose(&self, target: [f64; 2], remaining_m: f64, map: Option<&ConfigurationSpace>) -> (f64, f64) {
+    fn choose(&self, target: Point2<f64>, remaining_m: f64, map: Option<&ConfigurationSpace>) -> (f64, f64) {
         const SPEEDS: u32 = 6;
         const RATES: u32 = 14;
         let limits = &self.settings.limits;
@@ -295,10 +296,10 @@ impl Driver {
         let needed_at = |speed: f64| speed * speed / (2.0 * limits.acceleration_mps2) + speed * step_s;
         let horizon = needed_at(fastest) + 1.0 + self.settings.radius_m + self.settings.margin_m;
         let here = self.state.position_m;
-        let near: Vec<[f64; 2]> = self
+        let near: Vec<Point2<f64>> = self
             .seen
             .points_m()
-            .filter(|&point| squared_distance(point, here) <= horizon * horizon)
+            .filter(|&point| distance_squared(&point, &here) <= horizon * horizon)
             .collect();
         let share = |low: f64, high: f64, index: u32, count: u32| {
             low + (high - low) * f64::from(index) / f64::from(count)
@@ -333,7 +334,7 @@ impl Driver {
 
     /// How well a speed and rate serve: facing the target soon, the share of the way that the fastest speed within reach
     /// would make toward it, and a little for room ahead.
-    fn score(&self, speed: f64, rate: f64, target: [f64; 2], fastest: f64, room_m: f64) -> f64 {
+    fn score(&self, speed: f64, rate: f64, target: Point2<f64>, fastest: f64, room_m: f64) -> f64 {
         let look_s = (5.0 * self.settings.step_s).max(1.0);
         let mut state = self.state;
         state.speed_mps = speed;
@@ -343,7 +344,7 @@ impl Driver {
             state = coast(state, look_s / f64::from(steps));
         }
         let error = bearing_error(state, target).abs() / std::f64::consts::PI;
-        let approach = (distance(self.state.position_m, target) - distance(state.position_m, target))
+        let approach = (distance(&self.state.position_m, &target) - distance(&state.position_m, &target))
             / (fastest.max(1e-3) * look_s);
         1.5 * (1.0 - error) + approach + 0.1 * room_m
     }
@@ -354,7 +355,7 @@ impl Driver {
         speed: f64,
         rate: f64,
         most: f64,
-        near: &[[f64; 2]],
+        near: &[Point2<f64>],
         map: Option<&ConfigurationSpace>,
     ) -> f64 {
         const PIECE_M: f64 = 0.06;
@@ -363,11 +364,11 @@ impl Driver {
         let mut state = MotionState { speed_mps: speed, turn_rate_rps: rate, ..self.state };
         let mut way = 0.0;
         // A vehicle that is nearer to something than its margin may leave it.
-        let mut before: Vec<f64> = near.iter().map(|&point| squared_distance(point, here)).collect();
+        let mut before: Vec<f64> = near.iter().map(|&point| distance_squared(&point, &here)).collect();
         while way < most {
             let next = coast(state, PIECE_M / speed);
             let touches = near.iter().zip(&mut before).any(|(&point, before)| {
-                let squared = squared_distance(point, next.position_m);
+                let squared = distance_squared(&point, &next.position_m);
                 let nearer = squared < *before;
                 *before = squared;
                 nearer && squared < reach * reach
@@ -392,7 +393,7 @@ impl Driver {
         self.progress_m = self.progress_m.max(progress);
         let end = self.path.points_m.last().copied().unwrap_or(here);
         let near_end = self.length_m - self.progress_m <= self.settings.lookahead_m;
-        if near_end && distance(here, end) <= self.settings.arrival_m {
+        if near_end && distance(&here, &end) <= self.settings.arrival_m {
             return DriveEvent::Arrived;
         }
         if deviation_m > self.settings.corridor_m {
@@ -414,20 +415,17 @@ fn coast(state: MotionState, seconds: f64) -> MotionState {
     let middle = 0.5 * (state.heading_rad + heading_rad);
     let ahead = state.speed_mps * seconds;
     MotionState {
-        position_m: [
-            state.position_m[0] + ahead * libm::cos(middle),
-            state.position_m[1] + ahead * libm::sin(middle),
-        ],
+        position_m: state.position_m + UnitComplex::new(middle) * Vector2::new(ahead, 0.0),
         heading_rad,
         ..state
     }
 }
 
 /// The turn that would make a state face a place, in radians.
-fn bearing_error(state: MotionState, target: [f64; 2]) -> f64 {
-    let (east, north) = (target[0] - state.position_m[0], target[1] - state.position_m[1]);
-    if east * east + north * north < 1e-6 {
+fn bearing_error(state: MotionState, target: Point2<f64>) -> f64 {
+    let offset = target - state.position_m;
+    if offset.norm_squared() < 1e-6 {
         return 0.0;
     }
-    heading_difference(state.heading_rad, libm::atan2(north, east))
+    heading_difference(state.heading_rad, libm::atan2(offset.y, offset.x))
 }

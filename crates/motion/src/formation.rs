@@ -1,9 +1,9 @@
 //! Vehicles that keep formation behind a leader (SPEC 1.8 `moves`).
 
+use nalgebra::{Point2, UnitComplex, Vector2, distance};
 use terrain::ConfigurationSpace;
 
-use crate::geometry::{between, distance};
-use crate::path::Path;
+use crate::path::{Path, between};
 
 /// Where the followers of a leader drive: in a wedge, left and right behind it, that closes to a column where the ground
 /// is narrow.
@@ -26,7 +26,7 @@ impl Formation {
         path: &Path,
         travelled_m: f64,
         followers: u32,
-    ) -> Vec<[f64; 2]> {
+    ) -> Vec<Point2<f64>> {
         let Some((leader, _)) = path.point_at(travelled_m) else { return Vec::new() };
         let mut positions = vec![leader];
         let travelled = travelled_m.min(path.length_m());
@@ -53,26 +53,24 @@ impl Formation {
         positions
     }
 
-    fn keeps_apart(self, place: [f64; 2], others: &[[f64; 2]]) -> bool {
-        others.iter().all(|&other| distance(place, other) >= self.spacing_m * (1.0 - 1e-9))
+    fn keeps_apart(self, place: Point2<f64>, others: &[Point2<f64>]) -> bool {
+        others.iter().all(|&other| distance(&place, &other) >= self.spacing_m * (1.0 - 1e-9))
     }
 
     /// The place at a distance along the path, which may be before its start, and as far to the side as is free.
-    fn place_beside(self, space: &ConfigurationSpace, path: &Path, along_m: f64, side: f64) -> [f64; 2] {
+    fn place_beside(self, space: &ConfigurationSpace, path: &Path, along_m: f64, side: f64) -> Point2<f64> {
         let center = point_before_or_on(path, along_m);
         // The direction is taken over a spacing to both sides, so that a corner turns the formation gradually.
         let behind = point_before_or_on(path, along_m - 0.5 * self.spacing_m);
         let ahead = point_before_or_on(path, along_m + 0.5 * self.spacing_m);
-        let length = distance(behind, ahead);
+        let length = distance(&behind, &ahead);
         if length == 0.0 {
             return center;
         }
-        let left = [(behind[1] - ahead[1]) / length, (ahead[0] - behind[0]) / length];
+        let forward = (ahead - behind) / length;
+        let left = Vector2::new(-forward.y, forward.x);
         [1.0, 0.5, 0.25, 0.0]
-            .map(|share| {
-                let offset = share * side * self.spacing_m;
-                [center[0] + offset * left[0], center[1] + offset * left[1]]
-            })
+            .map(|share| center + left * (share * side * self.spacing_m))
             .into_iter()
             .find(|&place| space.is_segment_free(center, place))
             .unwrap_or(center)
@@ -80,14 +78,19 @@ impl Formation {
 
     /// The nearest free place on rings around a place that keeps apart from the others; the place itself when there is
     /// none.
-    fn nearest_place(self, space: &ConfigurationSpace, place: [f64; 2], others: &[[f64; 2]]) -> [f64; 2] {
+    fn nearest_place(
+        self,
+        space: &ConfigurationSpace,
+        place: Point2<f64>,
+        others: &[Point2<f64>],
+    ) -> Point2<f64> {
         const DIRECTIONS: u32 = 24;
         (1..=24)
             .flat_map(|ring| (0..DIRECTIONS).map(move |direction| (ring, direction)))
             .map(|(ring, direction)| {
                 let angle = std::f64::consts::TAU * f64::from(direction) / f64::from(DIRECTIONS);
                 let radius = 0.25 * self.spacing_m * f64::from(ring);
-                [place[0] + radius * libm::cos(angle), place[1] + radius * libm::sin(angle)]
+                place + UnitComplex::new(angle) * Vector2::new(radius, 0.0)
             })
             .find(|&candidate| space.is_free(candidate) && self.keeps_apart(candidate, others))
             .unwrap_or(place)
@@ -95,12 +98,12 @@ impl Formation {
 }
 
 /// The point at a distance along a path, which is prolonged straight back before its start.
-fn point_before_or_on(path: &Path, along_m: f64) -> [f64; 2] {
+fn point_before_or_on(path: &Path, along_m: f64) -> Point2<f64> {
     let Some((first, next)) = path.segments().find(|(a, b)| a != b) else {
         return path.points_m.first().copied().unwrap_or_default();
     };
     if along_m < 0.0 {
-        return between(first, next, along_m / distance(first, next));
+        return between(first, next, along_m / distance(&first, &next));
     }
     path.point_at(along_m).map_or(first, |(point, _)| point)
 }
@@ -119,7 +122,7 @@ mod tests {
             for (index, &place) in places.iter().enumerate() {
                 assert!(space.is_free(place), "vehicle {index} at {place:?} after {travelled} m");
                 for &other in &places[..index] {
-                    let apart = distance(place, other);
+                    let apart = distance(&place, &other);
                     assert!(
                         apart >= formation.spacing_m * (1.0 - 1e-6),
                         "{apart} m apart after {travelled} m"
@@ -132,11 +135,13 @@ mod tests {
     #[test]
     fn followers_keep_apart_and_off_obstacles_around_corners() {
         let mut occupancy = Occupancy::free(GridFrame::new(100, 100, 0.6));
-        for (center_m, radius_m) in [([20.0, 26.0], 4.0), ([38.0, 30.0], 5.0), ([20.0, 16.0], 2.5)] {
-            occupancy.mark(&Obstacle::Circle { center_m, radius_m }, CellState::Obstacle);
+        for (center, radius_m) in [([20.0, 26.0], 4.0), ([38.0, 30.0], 5.0), ([20.0, 16.0], 2.5)] {
+            occupancy.mark(&Obstacle::Circle { center_m: center.into(), radius_m }, CellState::Obstacle);
         }
         let space = ConfigurationSpace::new(occupancy, 0.8);
-        let path = Path::new(vec![[10.0, 8.0], [12.0, 20.0], [29.0, 21.0], [29.0, 45.0], [50.0, 46.0]]);
+        let path = Path::new(
+            [[10.0, 8.0], [12.0, 20.0], [29.0, 21.0], [29.0, 45.0], [50.0, 46.0]].map(Point2::from).to_vec(),
+        );
         assert!(path.is_free(&space));
         assert_apart_and_free(&space, &path, 3, Formation { spacing_m: 2.0 });
     }
@@ -144,7 +149,7 @@ mod tests {
     #[test]
     fn a_leader_that_turns_back_does_not_run_into_its_followers() {
         let space = ConfigurationSpace::new(Occupancy::free(GridFrame::new(100, 100, 0.6)), 0.8);
-        let path = Path::new(vec![[10.0, 30.0], [40.0, 30.0], [10.0, 30.5]]);
+        let path = Path::new([[10.0, 30.0], [40.0, 30.0], [10.0, 30.5]].map(Point2::from).to_vec());
         assert_apart_and_free(&space, &path, 2, Formation { spacing_m: 2.0 });
     }
 }

@@ -4,12 +4,12 @@
 //! up to some seconds; the free state on any of these that comes nearest to the sample is kept. Near the goal the
 //! vehicle stops, turns on the spot and drives straight to it, so that the path ends there exactly and at rest.
 
-use crate::geometry::distance;
 use crate::nearest::PointTree;
 use crate::path::Path;
 use crate::search::{Context, Event, Growth, Query};
 use crate::trajectory::{MotionState, Trajectory, heading_difference};
 use crate::tree::{Root, Tree};
+use nalgebra::{Point2, distance};
 
 /// One tree of states from the start at rest.
 #[derive(Clone, Debug)]
@@ -31,8 +31,8 @@ const HEADING_WEIGHT_M: f64 = 1.5;
 
 impl Kinodynamic {
     pub(crate) fn new(query: Query) -> Self {
-        let (east, north) = (query.goal_m[0] - query.start_m[0], query.goal_m[1] - query.start_m[1]);
-        let start = MotionState::at_rest(query.start_m, libm::atan2(north, east));
+        let ahead = query.goal_m - query.start_m;
+        let start = MotionState::at_rest(query.start_m, libm::atan2(ahead.y, ahead.x));
         let mut points = PointTree::default();
         points.add(query.start_m);
         let mut tree = Tree::new(Root::Start, query.start_m);
@@ -105,7 +105,7 @@ impl Kinodynamic {
     }
 
     fn add(&mut self, motion: Vec<MotionState>, parent: u32) -> u32 {
-        let point = motion.last().map_or([0.0; 2], |state| state.position_m);
+        let point = motion.last().map_or_else(Point2::origin, |state| state.position_m);
         self.points.add(point);
         self.tree.curves.push(motion.iter().map(|state| state.position_m).collect());
         self.motions.push(motion);
@@ -114,17 +114,17 @@ impl Kinodynamic {
 }
 
 /// How far a state is from a place: the distance, and what it takes to face it. At least the distance.
-fn measure(state: MotionState, place_m: [f64; 2]) -> f64 {
-    let (east, north) = (place_m[0] - state.position_m[0], place_m[1] - state.position_m[1]);
-    let length = (east * east + north * north).sqrt();
-    let turn = heading_difference(state.heading_rad, libm::atan2(north, east));
+fn measure(state: MotionState, place_m: Point2<f64>) -> f64 {
+    let offset = place_m - state.position_m;
+    let length = offset.norm();
+    let turn = heading_difference(state.heading_rad, libm::atan2(offset.y, offset.x));
     // Right at the place it doesn't matter where it faces.
     length + HEADING_WEIGHT_M * turn.abs() * (length / HEADING_WEIGHT_M).min(1.0)
 }
 
 /// The free motion that ends nearest to a sample, over all controls and durations; none when every one hits something
 /// at once.
-fn extend(start: MotionState, sample_m: [f64; 2], context: &Context) -> Option<Vec<MotionState>> {
+fn extend(start: MotionState, sample_m: Point2<f64>, context: &Context) -> Option<Vec<MotionState>> {
     let limits = &context.settings.limits;
     let steps =
         (context.settings.step_m / limits.speed_mps / Trajectory::STEP_S).ceil().clamp(4.0, 120.0) as usize;
@@ -166,7 +166,7 @@ fn extend(start: MotionState, sample_m: [f64; 2], context: &Context) -> Option<V
 /// The way to the goal from a state within two steps of it: braking, turning on the spot, driving straight.
 fn arrive(state: MotionState, context: &Context) -> Option<Trajectory> {
     let goal_m = context.query.goal_m;
-    if distance(state.position_m, goal_m) > 2.0 * context.settings.step_m {
+    if distance(&state.position_m, &goal_m) > 2.0 * context.settings.step_m {
         return None;
     }
     let limits = &context.settings.limits;

@@ -1,9 +1,9 @@
 //! Paths for the legs of a traverse: through its waypoints in order.
 
+use nalgebra::{Point2, distance};
 use serde::{Deserialize, Serialize};
 use terrain::ConfigurationSpace;
 
-use crate::geometry::distance;
 use crate::path::Path;
 use crate::search::{Failure, PlannerKind, Query, SearchResult, Settings, Statistics, find_path};
 use crate::shortcut::ShortcutSettings;
@@ -70,7 +70,7 @@ pub fn find_shortest_path(
     stop: &mut dyn FnMut(&Statistics) -> bool,
 ) -> SearchResult {
     let length = |result: &SearchResult| result.path.as_ref().map_or(f64::INFINITY, Path::length_m);
-    let straight = distance(query.start_m, query.goal_m) * (1.0 + 1e-9);
+    let straight = distance(&query.start_m, &query.goal_m) * (1.0 + 1e-9);
     let mut best = find_path(space, query, settings, Some(shortcut), stop);
     for attempt in 1..u64::from(tries) {
         if best.path.is_err() || length(&best) <= straight {
@@ -89,7 +89,7 @@ pub fn find_shortest_path(
 /// Paths from each waypoint to the next.
 pub fn plan_legs(
     space: &ConfigurationSpace,
-    waypoints_m: &[[f64; 2]],
+    waypoints_m: &[Point2<f64>],
     seed: u64,
     stop: &mut dyn FnMut(&Statistics) -> bool,
 ) -> Result<Vec<Leg>, LegFailure> {

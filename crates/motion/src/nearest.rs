@@ -4,7 +4,7 @@
 //! come in any order but a hostile one keep the depth logarithmic. All answers are exact; of points at the same
 //! distance the one added first is the nearest.
 
-use crate::geometry::squared_distance;
+use nalgebra::{Point2, Vector2, distance_squared};
 
 const BUCKET_SIZE: usize = 12;
 
@@ -18,7 +18,7 @@ pub struct PointTree {
 #[derive(Clone, Debug)]
 enum Node {
     Split { axis: usize, at: f64, low: u32, high: u32 },
-    Bucket(Vec<([f64; 2], u32)>),
+    Bucket(Vec<(Point2<f64>, u32)>),
 }
 
 impl Default for PointTree {
@@ -39,7 +39,7 @@ impl PointTree {
     }
 
     /// Adds a point and returns its number: 0 for the first, then one more each time.
-    pub fn add(&mut self, point: [f64; 2]) -> u32 {
+    pub fn add(&mut self, point: Point2<f64>) -> u32 {
         let number = self.count;
         self.count += 1;
         let mut node = 0_usize;
@@ -60,15 +60,15 @@ impl PointTree {
     }
 
     /// The number of the nearest point and its squared distance; `None` when there is no point.
-    pub fn nearest(&self, point: [f64; 2]) -> Option<(u32, f64)> {
+    pub fn nearest(&self, point: Point2<f64>) -> Option<(u32, f64)> {
         self.nearest_by(point, |_, squared| squared)
     }
 
     /// The point with the least measure and that measure. `measure` gets a point's number and its squared distance, and
     /// must not be less than that squared distance.
-    pub fn nearest_by(&self, point: [f64; 2], measure: impl Fn(u32, f64) -> f64) -> Option<(u32, f64)> {
+    pub fn nearest_by(&self, point: Point2<f64>, measure: impl Fn(u32, f64) -> f64) -> Option<(u32, f64)> {
         let mut best: Option<(u32, f64)> = None;
-        self.search(0, point, [0.0; 2], &mut |number, squared| {
+        self.search(0, point, Vector2::zeros(), &mut |number, squared| {
             if best.is_none_or(|(_, least)| squared <= least) {
                 let value = measure(number, squared);
                 if best.is_none_or(|(first, least)| value < least || (value == least && number < first)) {
@@ -82,9 +82,9 @@ impl PointTree {
 
     /// Calls `visit` with the number and squared distance of every point within a distance, in no particular but always
     /// the same order.
-    pub fn for_each_within(&self, point: [f64; 2], radius: f64, mut visit: impl FnMut(u32, f64)) {
+    pub fn for_each_within(&self, point: Point2<f64>, radius: f64, mut visit: impl FnMut(u32, f64)) {
         let limit = radius * radius;
-        self.search(0, point, [0.0; 2], &mut |number, squared| {
+        self.search(0, point, Vector2::zeros(), &mut |number, squared| {
             if squared <= limit {
                 visit(number, squared);
             }
@@ -97,15 +97,15 @@ impl PointTree {
     fn search(
         &self,
         node: u32,
-        point: [f64; 2],
-        offsets: [f64; 2],
+        point: Point2<f64>,
+        offsets: Vector2<f64>,
         visit: &mut impl FnMut(u32, f64) -> f64,
     ) -> f64 {
         match &self.nodes[node as usize] {
             Node::Bucket(points) => {
                 let mut limit = f64::INFINITY;
                 for (other, number) in points {
-                    limit = visit(*number, squared_distance(point, *other));
+                    limit = visit(*number, distance_squared(&point, other));
                 }
                 limit
             }
@@ -115,8 +115,11 @@ impl PointTree {
                 let limit = self.search(near, point, offsets, visit);
                 let mut far_offsets = offsets;
                 far_offsets[*axis] = beyond;
-                let squared = far_offsets[0] * far_offsets[0] + far_offsets[1] * far_offsets[1];
-                if squared <= limit { self.search(far, point, far_offsets, visit) } else { limit }
+                if far_offsets.norm_squared() <= limit {
+                    self.search(far, point, far_offsets, visit)
+                } else {
+                    limit
+                }
             }
         }
     }
@@ -155,15 +158,15 @@ mod tests {
     use super::*;
     use terrain::Random;
 
-    fn points(seed: u64, count: usize) -> Vec<[f64; 2]> {
+    fn points(seed: u64, count: usize) -> Vec<Point2<f64>> {
         let mut random = Random::from_seed(seed);
         // A coarse lattice makes many equal coordinates and coincident points.
         (0..count)
             .map(|_| {
                 if seed.is_multiple_of(2) {
-                    [f64::from(random.below(9)), f64::from(random.below(9))]
+                    Point2::new(f64::from(random.below(9)), f64::from(random.below(9)))
                 } else {
-                    [random.range(-5.0, 5.0), random.range(-1.0, 1.0)]
+                    Point2::new(random.range(-5.0, 5.0), random.range(-1.0, 1.0))
                 }
             })
             .collect()
@@ -174,15 +177,15 @@ mod tests {
         for seed in 0..12 {
             let points = points(seed, 300);
             let mut tree = PointTree::default();
-            assert_eq!(tree.nearest([0.0, 0.0]), None);
+            assert_eq!(tree.nearest(Point2::origin()), None);
             let mut random = Random::from_seed(seed + 100);
             for (index, &point) in points.iter().enumerate() {
                 assert_eq!(tree.add(point) as usize, index);
-                let query = [random.range(-6.0, 10.0), random.range(-6.0, 10.0)];
+                let query = Point2::new(random.range(-6.0, 10.0), random.range(-6.0, 10.0));
                 let expected = points[..=index]
                     .iter()
                     .enumerate()
-                    .map(|(number, &other)| (number as u32, squared_distance(query, other)))
+                    .map(|(number, &other)| (number as u32, distance_squared(&query, &other)))
                     .fold(None, |best: Option<(u32, f64)>, candidate| match best {
                         Some(best) if best.1 <= candidate.1 => Some(best),
                         _ => Some(candidate),
@@ -200,12 +203,12 @@ mod tests {
             for &point in &points {
                 tree.add(point);
             }
-            let center = [1.0, 0.5];
+            let center = Point2::new(1.0, 0.5);
             let mut found = Vec::new();
             tree.for_each_within(center, 2.0, |number, _| found.push(number));
             found.sort_unstable();
             let expected: Vec<u32> = (0..points.len() as u32)
-                .filter(|&number| squared_distance(center, points[number as usize]) <= 4.0)
+                .filter(|&number| distance_squared(&center, &points[number as usize]) <= 4.0)
                 .collect();
             assert_eq!(found, expected, "seed {seed}");
         }

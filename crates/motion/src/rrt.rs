@@ -1,10 +1,10 @@
 //! The rapidly-exploring random tree (`LaValle` 1998) as SPEC 7.2 has it.
 
-use crate::geometry::{between, distance};
 use crate::nearest::PointTree;
-use crate::path::Path;
+use crate::path::{Path, between};
 use crate::search::{Context, Event, Growth, Query};
 use crate::tree::{Root, Tree};
+use nalgebra::{Point2, distance};
 
 /// One tree from the start, until a vertex can be joined to the goal.
 #[derive(Clone, Debug)]
@@ -39,7 +39,7 @@ impl Rrt {
         let vertex = self.add(to, nearest);
         if to == goal_m {
             self.goal = Some(vertex);
-        } else if distance(to, goal_m) <= context.settings.step_m && context.is_edge_free(to, goal_m) {
+        } else if distance(&to, &goal_m) <= context.settings.step_m && context.is_edge_free(to, goal_m) {
             self.goal = Some(self.add(goal_m, vertex));
         }
         match self.goal {
@@ -60,7 +60,7 @@ impl Rrt {
         self.tree
     }
 
-    fn add(&mut self, point_m: [f64; 2], parent: u32) -> u32 {
+    fn add(&mut self, point_m: Point2<f64>, parent: u32) -> u32 {
         self.points.add(point_m);
         self.tree.add(point_m, parent)
     }

@@ -1,10 +1,10 @@
 //! RRT-Connect (Kuffner and `LaValle` 2000): two trees, each reaching for what the other has just grown.
 
-use crate::geometry::{between, distance};
 use crate::nearest::PointTree;
-use crate::path::Path;
+use crate::path::{Path, between};
 use crate::search::{Context, Event, Growth, Query};
 use crate::tree::{Root, Tree};
+use nalgebra::{Point2, distance};
 
 /// A tree from the start and one from the goal, until they meet.
 #[derive(Clone, Debug)]
@@ -73,9 +73,9 @@ impl RrtConnect {
     }
 
     /// Adds a vertex one step from another toward a target, if the way is free.
-    fn extend(&mut self, tree: usize, from: u32, target: [f64; 2], context: &mut Context) -> Option<u32> {
+    fn extend(&mut self, tree: usize, from: u32, target: Point2<f64>, context: &mut Context) -> Option<u32> {
         let start = self.trees[tree].point(from);
-        let length = distance(start, target);
+        let length = distance(&start, &target);
         let to = if length > context.settings.step_m {
             between(start, target, context.settings.step_m / length)
         } else {

@@ -1,11 +1,11 @@
 //! RRT* (Karaman and Frazzoli 2011) that, once it has a path, samples only where a shorter one can pass (informed
 //! RRT*, Gammell, Srinivasa and Barfoot 2014).
 
-use crate::geometry::{between, distance};
 use crate::nearest::PointTree;
-use crate::path::Path;
+use crate::path::{Path, between};
 use crate::search::{Context, Event, Growth, Query};
 use crate::tree::{Root, Tree};
+use nalgebra::{Point2, Vector2, distance};
 
 /// One tree from the start whose vertices keep the shortest way back that their neighbours offer.
 #[derive(Clone, Debug)]
@@ -84,9 +84,10 @@ impl RrtStar {
     }
 
     /// The vertices within the radius that keeps RRT* asymptotically optimal, but not beyond one step.
-    fn find_near(&mut self, point: [f64; 2], context: &Context) {
+    fn find_near(&mut self, point: Point2<f64>, context: &Context) {
         let [low, high] = context.space.free_box_m();
-        let area = (high[0] - low[0]) * (high[1] - low[1]);
+        let extent = high - low;
+        let area = extent.x * extent.y;
         let count = self.points.len() as f64 + 1.0;
         let optimal = 1.1 * (3.0 * area / std::f64::consts::PI * libm::log(count) / count).sqrt();
         self.near.clear();
@@ -97,7 +98,7 @@ impl RrtStar {
     }
 
     /// Adds a vertex under the neighbour that offers the shortest free way; `nearest` is known to be free.
-    fn add(&mut self, point: [f64; 2], nearest: u32, length: f64, context: &mut Context) -> u32 {
+    fn add(&mut self, point: Point2<f64>, nearest: u32, length: f64, context: &mut Context) -> u32 {
         let mut parent = (nearest, self.costs_m[nearest as usize] + length);
         let costs = &self.costs_m;
         self.near.sort_unstable_by(|&(a, to_a), &(b, to_b)| {
@@ -116,7 +117,7 @@ impl RrtStar {
         self.attach(point, parent.0, parent.1)
     }
 
-    fn attach(&mut self, point: [f64; 2], parent: u32, cost_m: f64) -> u32 {
+    fn attach(&mut self, point: Point2<f64>, parent: u32, cost_m: f64) -> u32 {
         self.points.add(point);
         self.costs_m.push(cost_m);
         self.children.push(Vec::new());
@@ -154,7 +155,7 @@ impl RrtStar {
     /// Adds the goal under a new vertex that is near enough to it and in sight.
     fn reach_for_goal(&mut self, vertex: u32, context: &mut Context) {
         let (point, goal_m) = (self.tree.point(vertex), context.query.goal_m);
-        let length = distance(point, goal_m);
+        let length = distance(&point, &goal_m);
         let useful = self.best.is_none_or(|best| self.costs_m[vertex as usize] + length < best.length_m);
         if point == goal_m {
             self.goals.push(vertex);
@@ -178,16 +179,13 @@ impl RrtStar {
 }
 
 /// A sample in the ellipse of points through which a path of less than `length_m` can lead.
-fn informed_sample(context: &mut Context, length_m: f64) -> [f64; 2] {
+fn informed_sample(context: &mut Context, length_m: f64) -> Point2<f64> {
     let Query { start_m, goal_m } = context.query;
-    let straight = distance(start_m, goal_m);
+    let straight = distance(&start_m, &goal_m);
     let (half_major, half_minor) =
         (0.5 * length_m, 0.5 * (length_m * length_m - straight * straight).max(0.0).sqrt());
-    let (east, north) = if straight > 0.0 {
-        ((goal_m[0] - start_m[0]) / straight, (goal_m[1] - start_m[1]) / straight)
-    } else {
-        (1.0, 0.0)
-    };
+    let ahead = if straight > 0.0 { (goal_m - start_m) / straight } else { Vector2::x() };
+    let left = Vector2::new(-ahead.y, ahead.x);
     let [low, high] = context.space.free_box_m();
     // A narrow ellipse may lie mostly off the map; the bound keeps a step from taking forever.
     for _ in 0..64 {
@@ -196,10 +194,7 @@ fn informed_sample(context: &mut Context, length_m: f64) -> [f64; 2] {
             continue;
         }
         let (along, across) = (u * half_major, v * half_minor);
-        let point = [
-            0.5 * (start_m[0] + goal_m[0]) + along * east - across * north,
-            0.5 * (start_m[1] + goal_m[1]) + along * north + across * east,
-        ];
+        let point = Point2::from(0.5 * (start_m.coords + goal_m.coords)) + along * ahead + across * left;
         if (0..2).all(|axis| point[axis] >= low[axis] && point[axis] <= high[axis]) {
             return point;
         }

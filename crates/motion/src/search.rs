@@ -1,9 +1,9 @@
 //! What a path search is asked, what it answers, and the loop that all planners share.
 
+use nalgebra::{Point2, distance};
 use serde::{Deserialize, Serialize};
 use terrain::{Collision, ConfigurationSpace, Random};
 
-use crate::geometry::distance;
 use crate::kinodynamic::Kinodynamic;
 use crate::path::Path;
 use crate::rrt::Rrt;
@@ -31,9 +31,9 @@ pub enum PlannerKind {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Query {
     /// Where the path starts, exactly.
-    pub start_m: [f64; 2],
+    pub start_m: Point2<f64>,
     /// Where it ends, exactly.
-    pub goal_m: [f64; 2],
+    pub goal_m: Point2<f64>,
 }
 
 /// How a search goes about it. The same settings on the same query give the same path.
@@ -131,7 +131,7 @@ pub struct Statistics {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {
     /// The sample.
-    pub sample_m: [f64; 2],
+    pub sample_m: Point2<f64>,
     /// The tree that was grown toward it.
     pub tree: u32,
     /// What came of it.
@@ -171,20 +171,20 @@ pub(crate) struct Context<'a> {
 
 impl Context<'_> {
     /// A sample: the goal with the probability of the goal bias, otherwise anywhere in the box of the free places.
-    pub(crate) fn sample(&mut self) -> [f64; 2] {
+    pub(crate) fn sample(&mut self) -> Point2<f64> {
         if self.random.unit() < self.settings.goal_bias {
             return self.query.goal_m;
         }
         self.uniform_sample()
     }
 
-    pub(crate) fn uniform_sample(&mut self) -> [f64; 2] {
+    pub(crate) fn uniform_sample(&mut self) -> Point2<f64> {
         let [low, high] = self.space.free_box_m();
-        [self.random.range(low[0], high[0]), self.random.range(low[1], high[1])]
+        Point2::new(self.random.range(low.x, high.x), self.random.range(low.y, high.y))
     }
 
     /// Whether an edge is free, counted.
-    pub(crate) fn is_edge_free(&mut self, from_m: [f64; 2], to_m: [f64; 2]) -> bool {
+    pub(crate) fn is_edge_free(&mut self, from_m: Point2<f64>, to_m: Point2<f64>) -> bool {
         let free = self.space.is_segment_free(from_m, to_m);
         self.statistics.blocked_edges += u32::from(!free);
         free
@@ -276,7 +276,7 @@ impl Search {
         let Statistics { samples, samples_to_first_path, .. } = self.statistics;
         let satisfied = samples_to_first_path.is_some_and(|first| match &self.planner {
             Planner::RrtStar(planner) => {
-                let straight = distance(self.query.start_m, self.query.goal_m);
+                let straight = distance(&self.query.start_m, &self.query.goal_m);
                 samples - first >= self.settings.improving_samples
                     || planner.length_m().is_some_and(|length| length <= straight * (1.0 + 1e-9))
             }

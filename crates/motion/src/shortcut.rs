@@ -5,11 +5,11 @@
 //! round after round. Every edge of the result was checked exactly; that it is the shortest path of all is likely but
 //! not proved.
 
+use nalgebra::{Point2, distance};
 use serde::{Deserialize, Serialize};
 use terrain::{ConfigurationSpace, Random};
 
-use crate::geometry::{between, distance};
-use crate::path::Path;
+use crate::path::{Path, between};
 use crate::way_around::way_around;
 
 /// How much to try.
@@ -57,7 +57,7 @@ pub fn shorten(space: &ConfigurationSpace, path: &Path, settings: &ShortcutSetti
 /// A path at most so many times as long as the one another way around may be shorter still once it is tight.
 const WORTHWHILE: f64 = 1.05;
 
-fn take_shortcuts(space: &ConfigurationSpace, points: &mut Vec<[f64; 2]>, settings: &ShortcutSettings) {
+fn take_shortcuts(space: &ConfigurationSpace, points: &mut Vec<Point2<f64>>, settings: &ShortcutSettings) {
     let mut random = Random::from_seed(settings.seed);
     for _ in 0..settings.attempts {
         if points.len() < 3 {
@@ -68,7 +68,7 @@ fn take_shortcuts(space: &ConfigurationSpace, points: &mut Vec<[f64; 2]>, settin
     skip_corners(space, points);
 }
 
-fn pull_tight(space: &ConfigurationSpace, points: &mut Vec<[f64; 2]>, settings: &ShortcutSettings) {
+fn pull_tight(space: &ConfigurationSpace, points: &mut Vec<Point2<f64>>, settings: &ShortcutSettings) {
     for _ in 0..settings.corner_rounds {
         if points.len() < 3 {
             break;
@@ -82,12 +82,12 @@ fn pull_tight(space: &ConfigurationSpace, points: &mut Vec<[f64; 2]>, settings: 
     }
 }
 
-fn length(points: &[[f64; 2]]) -> f64 {
-    points.windows(2).map(|pair| distance(pair[0], pair[1])).sum()
+fn length(points: &[Point2<f64>]) -> f64 {
+    points.windows(2).map(|pair| distance(&pair[0], &pair[1])).sum()
 }
 
 /// Leaves out every corner that the straight way around it makes needless.
-fn skip_corners(space: &ConfigurationSpace, points: &mut Vec<[f64; 2]>) {
+fn skip_corners(space: &ConfigurationSpace, points: &mut Vec<Point2<f64>>) {
     let mut kept = 0;
     while kept + 2 < points.len() {
         // The farthest point in sight, looked for by doubling and then stepping back.
@@ -112,7 +112,7 @@ fn skip_corners(space: &ConfigurationSpace, points: &mut Vec<[f64; 2]>) {
 }
 
 /// Tries to go straight between two random points of the path.
-fn random_shortcut(space: &ConfigurationSpace, points: &mut Vec<[f64; 2]>, random: &mut Random) {
+fn random_shortcut(space: &ConfigurationSpace, points: &mut Vec<Point2<f64>>, random: &mut Random) {
     let total = length(points);
     let (a, b) = (random.unit() * total, random.unit() * total);
     let (first, second) = (locate(points, a.min(b)), locate(points, a.max(b)));
@@ -124,10 +124,10 @@ fn random_shortcut(space: &ConfigurationSpace, points: &mut Vec<[f64; 2]>, rando
 }
 
 /// The segment and the point at a distance along the path.
-fn locate(points: &[[f64; 2]], distance_m: f64) -> (usize, [f64; 2]) {
+fn locate(points: &[Point2<f64>], distance_m: f64) -> (usize, Point2<f64>) {
     let mut rest = distance_m;
     for (index, pair) in points.windows(2).enumerate() {
-        let length = distance(pair[0], pair[1]);
+        let length = distance(&pair[0], &pair[1]);
         if rest <= length && length > 0.0 {
             return (index, between(pair[0], pair[1], rest / length));
         }
@@ -137,7 +137,7 @@ fn locate(points: &[[f64; 2]], distance_m: f64) -> (usize, [f64; 2]) {
 }
 
 /// Cuts every corner as far as obstacles allow.
-fn cut_corners(space: &ConfigurationSpace, points: &mut Vec<[f64; 2]>) {
+fn cut_corners(space: &ConfigurationSpace, points: &mut Vec<Point2<f64>>) {
     const HALVINGS: u32 = 7;
     let mut cut = Vec::with_capacity(2 * points.len());
     cut.push(points[0]);

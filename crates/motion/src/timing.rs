@@ -1,9 +1,9 @@
 //! How long the pieces of a path take (SPEC 7.3).
 
+use nalgebra::{Point2, distance};
 use serde::{Deserialize, Serialize};
 use terrain::Terrain;
 
-use crate::geometry::distance;
 use crate::path::Path;
 use crate::vehicle::{Drive, VehicleModel};
 
@@ -54,13 +54,13 @@ pub fn time_path(
 }
 
 fn time_segment(
-    from_m: [f64; 2],
-    to_m: [f64; 2],
+    from_m: Point2<f64>,
+    to_m: Point2<f64>,
     terrain: &Terrain,
     model: &VehicleModel,
     speeds: SpeedLimits,
 ) -> SegmentTiming {
-    let plan_length_m = distance(from_m, to_m);
+    let plan_length_m = distance(&from_m, &to_m);
     let mut ground_length_m = plan_length_m;
     let mut grade = 0.0;
     let mut slowest = speeds.greatest_mps;
@@ -72,8 +72,8 @@ fn time_segment(
         ground_length_m = 0.0;
         let ground = terrain.drape(from_m, to_m);
         for pair in ground.windows(2) {
-            let ahead = distance([pair[0][0], pair[0][1]], [pair[1][0], pair[1][1]]);
-            let up = pair[1][2] - pair[0][2];
+            let ahead = distance(&pair[0].xy(), &pair[1].xy());
+            let up = pair[1].z - pair[0].z;
             let length = (ahead * ahead + up * up).sqrt();
             let limit = if ahead > 0.0 { model.speed_on_grade_mps(up / ahead) } else { model.speed_mps };
             ground_length_m += length;
@@ -86,7 +86,7 @@ fn time_segment(
         if let (Some(first), Some(last)) = (ground.first(), ground.last())
             && plan_length_m > 0.0
         {
-            grade = (last[2] - first[2]) / plan_length_m;
+            grade = (last.z - first.z) / plan_length_m;
         }
     }
     let slope_speed_mps = (slowest < speeds.greatest_mps).then_some(slowest);
@@ -106,7 +106,7 @@ mod tests {
     fn the_legs_of_the_papers_example_take_405_to_450_minutes() {
         // SPEC 7.3: legs of 300, 500 and 415 m at 0.045 to 0.05 m/s.
         let terrain = Terrain::flat(GridFrame::new(2200, 4, 0.6));
-        let path = Path::new(vec![[0.0, 1.0], [300.0, 1.0], [800.0, 1.0], [1215.0, 1.0]]);
+        let path = Path::new([0.0, 300.0, 800.0, 1215.0].map(|east| Point2::new(east, 1.0)).to_vec());
         let speeds = SpeedLimits { least_mps: 0.045, greatest_mps: 0.05 };
         let timings = time_path(&path, &terrain, vehicle_model("ATRV").unwrap(), speeds);
         let least: Vec<u64> = timings.iter().map(|timing| timing.least_millis).collect();
@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn a_vehicle_that_may_stop_has_no_greatest_duration() {
         let terrain = Terrain::flat(GridFrame::new(10, 10, 1.0));
-        let path = Path::new(vec![[1.0, 1.0], [5.0, 1.0]]);
+        let path = Path::new(vec![Point2::new(1.0, 1.0), Point2::new(5.0, 1.0)]);
         let speeds = SpeedLimits { least_mps: 0.0, greatest_mps: 0.8 };
         let timing = time_path(&path, &terrain, vehicle_model("ATRV").unwrap(), speeds)[0];
         assert_eq!((timing.least_millis, timing.greatest_millis), (5000, None));
@@ -131,7 +131,7 @@ mod tests {
         let frame = GridFrame::new(40, 10, 1.0);
         let heights = (0..400).map(|index| 0.2 * (index % 40) as f32).collect();
         let terrain = Terrain::new(frame, heights);
-        let path = Path::new(vec![[5.0, 5.0], [25.0, 5.0]]);
+        let path = Path::new(vec![Point2::new(5.0, 5.0), Point2::new(25.0, 5.0)]);
         let model = vehicle_model("ATRV").unwrap();
         let timing =
             |greatest_mps| time_path(&path, &terrain, model, SpeedLimits { least_mps: 0.1, greatest_mps })[0];

@@ -1,5 +1,6 @@
 //! How a search grew, sample by sample, so that it can be shown growing.
 
+use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
 use terrain::ConfigurationSpace;
 
@@ -9,7 +10,7 @@ use crate::search::{Failure, Growth, PlannerKind, Query, Search, Settings};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GrowthTrace {
     /// The root of each tree in metres: the start, and for a planner with two trees the goal.
-    pub roots_m: Vec<[f64; 2]>,
+    pub roots_m: Vec<Point2<f64>>,
     /// What each sample did, in order.
     pub steps: Vec<GrowthStep>,
 }
@@ -18,13 +19,13 @@ pub struct GrowthTrace {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GrowthStep {
     /// The sample in metres.
-    pub sample_m: [f64; 2],
+    pub sample_m: Point2<f64>,
     /// The vertices that were added, in order; none where an obstacle was in the way.
     pub added: Vec<GrownVertex>,
     /// Vertices that got another parent, as tree, vertex and parent: RRT* does this.
     pub rewired: Vec<[u32; 3]>,
     /// The first path, or a shorter one, that this sample led to, in metres.
-    pub path_m: Option<Vec<[f64; 2]>>,
+    pub path_m: Option<Vec<Point2<f64>>>,
 }
 
 /// A vertex as it was added to its tree. Vertices are numbered by tree in the order in which they appear; the root is 0.
@@ -35,11 +36,11 @@ pub struct GrownVertex {
     /// Its parent's number in the same tree.
     pub parent: u32,
     /// Where its parent is, in metres.
-    pub from_m: [f64; 2],
+    pub from_m: Point2<f64>,
     /// Where it is, in metres.
-    pub point_m: [f64; 2],
+    pub point_m: Point2<f64>,
     /// The points on the way from its parent, without it, to the vertex; empty if the way is straight.
-    pub curve_m: Vec<[f64; 2]>,
+    pub curve_m: Vec<Point2<f64>>,
 }
 
 impl GrowthTrace {
@@ -49,7 +50,7 @@ impl GrowthTrace {
     }
 
     /// The best path after the first `steps` steps.
-    pub fn path_m(&self, steps: usize) -> Option<&[[f64; 2]]> {
+    pub fn path_m(&self, steps: usize) -> Option<&[Point2<f64>]> {
         self.steps.iter().take(steps).rev().find_map(|step| step.path_m.as_deref())
     }
 }
@@ -136,17 +137,17 @@ mod tests {
     #[test]
     fn a_trace_ends_with_the_trees_and_the_path_of_the_search() {
         let mut occupancy = Occupancy::free(GridFrame::new(100, 100, 0.6));
-        let disc = Obstacle::Circle { center_m: [30.0, 30.0], radius_m: 9.0 };
+        let disc = Obstacle::Circle { center_m: Point2::new(30.0, 30.0), radius_m: 9.0 };
         occupancy.mark(&disc, CellState::Obstacle);
         let space = ConfigurationSpace::new(occupancy, 0.7);
-        let query = Query { start_m: [6.0, 29.0], goal_m: [54.0, 31.0] };
+        let query = Query { start_m: Point2::new(6.0, 29.0), goal_m: Point2::new(54.0, 31.0) };
         for planner in [PlannerKind::Rrt, PlannerKind::RrtConnect, PlannerKind::RrtStar] {
             let settings = Settings { seed: 5, improving_samples: 200, ..Settings::of(planner) };
             let found = find_path(&space, query, &settings, None, &mut |_| false);
             let traced = trace(&space, query, settings, usize::MAX).expect("both ends are free");
             assert_eq!(found.seed, 5);
             assert_eq!(traced.steps.len(), found.statistics.samples as usize, "{planner:?}");
-            let mut trees: Vec<Vec<([f64; 2], Option<u32>)>> =
+            let mut trees: Vec<Vec<(Point2<f64>, Option<u32>)>> =
                 traced.roots_m.iter().map(|&root| vec![(root, None)]).collect();
             for step in &traced.steps {
                 for vertex in &step.added {

@@ -1,9 +1,9 @@
 //! Motion over time within a vehicle's limits: states, the step from one to the next, and driving a path exactly.
 
+use nalgebra::{Isometry2, Point2, UnitComplex, Vector2, distance};
 use serde::{Deserialize, Serialize};
 
-use crate::geometry::{between, distance};
-use crate::path::Path;
+use crate::path::{Path, between};
 use crate::vehicle::{Drive, VehicleModel};
 
 /// What a skid-steer vehicle can do (SPEC 7.2): a unicycle with limits on speeds, accelerations and wheels.
@@ -51,7 +51,7 @@ impl DriveLimits {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MotionState {
     /// Metres east and north.
-    pub position_m: [f64; 2],
+    pub position_m: Point2<f64>,
     /// Radians counter-clockwise from east.
     pub heading_rad: f64,
     /// Metres per second forward; negative in reverse.
@@ -62,8 +62,13 @@ pub struct MotionState {
 
 impl MotionState {
     /// At rest.
-    pub const fn at_rest(position_m: [f64; 2], heading_rad: f64) -> Self {
+    pub const fn at_rest(position_m: Point2<f64>, heading_rad: f64) -> Self {
         Self { position_m, heading_rad, speed_mps: 0.0, turn_rate_rps: 0.0 }
+    }
+
+    /// Where the vehicle's own axes, ahead and to the left, lie in the world.
+    pub fn world_from_body(self) -> Isometry2<f64> {
+        Isometry2::new(self.position_m.coords, self.heading_rad)
     }
 
     /// The state after `seconds` in which speed and turning rate go toward targets as fast as the limits allow. Both
@@ -91,10 +96,7 @@ impl MotionState {
         let middle = 0.5 * (self.heading_rad + heading_rad);
         let ahead = 0.5 * (self.speed_mps + speed) * seconds;
         Self {
-            position_m: [
-                self.position_m[0] + ahead * libm::cos(middle),
-                self.position_m[1] + ahead * libm::sin(middle),
-            ],
+            position_m: self.position_m + UnitComplex::new(middle) * Vector2::new(ahead, 0.0),
             heading_rad,
             speed_mps: speed,
             turn_rate_rps: rate,
@@ -143,7 +145,7 @@ impl Trajectory {
                 })
             })
         };
-        let mut points_m: Vec<[f64; 2]> = self
+        let mut points_m: Vec<Point2<f64>> = self
             .states
             .iter()
             .enumerate()
@@ -164,7 +166,7 @@ impl Trajectory {
         let mix = |a: f64, b: f64| a + (b - a) * share;
         let (a, b) = (before.state, after.state);
         Some(MotionState {
-            position_m: [mix(a.position_m[0], b.position_m[0]), mix(a.position_m[1], b.position_m[1])],
+            position_m: a.position_m + (b.position_m - a.position_m) * share,
             heading_rad: mix(a.heading_rad, b.heading_rad),
             speed_mps: mix(a.speed_mps, b.speed_mps),
             turn_rate_rps: mix(a.turn_rate_rps, b.turn_rate_rps),
@@ -189,13 +191,14 @@ impl Trajectory {
     }
 
     /// From rest, turns on the spot to face a place and drives straight to it, exactly, to stand there.
-    pub(crate) fn drive_to(&mut self, goal_m: [f64; 2], limits: &DriveLimits) {
+    pub(crate) fn drive_to(&mut self, goal_m: Point2<f64>, limits: &DriveLimits) {
         let start = self.last();
-        let length = distance(start.position_m, goal_m);
+        let length = distance(&start.position_m, &goal_m);
         if length == 0.0 {
             return;
         }
-        let bearing = libm::atan2(goal_m[1] - start.position_m[1], goal_m[0] - start.position_m[0]);
+        let ahead = goal_m - start.position_m;
+        let bearing = libm::atan2(ahead.y, ahead.x);
         let turn = heading_difference(start.heading_rad, bearing);
         for step in rest_to_rest(turn.abs(), limits.turn_rate_in_place_rps(), limits.turn_acceleration_rps2) {
             let state = MotionState {

@@ -1,5 +1,6 @@
 //! A tree of points that a search grows, kept for display as it stands.
 
+use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
 
 use crate::path::Path;
@@ -17,7 +18,7 @@ pub enum Root {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Vertex {
     /// Metres east and north.
-    pub point_m: [f64; 2],
+    pub point_m: Point2<f64>,
     /// The vertex that it was grown from; only the first vertex, the root, has none.
     pub parent: Option<u32>,
 }
@@ -31,20 +32,20 @@ pub struct Tree {
     pub vertices: Vec<Vertex>,
     /// For a tree of motions, the points from each vertex's parent, without it, to the vertex; empty for a tree with
     /// straight edges.
-    pub curves: Vec<Vec<[f64; 2]>>,
+    pub curves: Vec<Vec<Point2<f64>>>,
 }
 
 impl Tree {
-    pub(crate) fn new(root: Root, point_m: [f64; 2]) -> Self {
+    pub(crate) fn new(root: Root, point_m: Point2<f64>) -> Self {
         Self { root, vertices: vec![Vertex { point_m, parent: None }], curves: Vec::new() }
     }
 
-    pub(crate) fn add(&mut self, point_m: [f64; 2], parent: u32) -> u32 {
+    pub(crate) fn add(&mut self, point_m: Point2<f64>, parent: u32) -> u32 {
         self.vertices.push(Vertex { point_m, parent: Some(parent) });
         self.vertices.len() as u32 - 1
     }
 
-    pub(crate) fn point(&self, vertex: u32) -> [f64; 2] {
+    pub(crate) fn point(&self, vertex: u32) -> Point2<f64> {
         self.vertices[vertex as usize].point_m
     }
 

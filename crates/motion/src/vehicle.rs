@@ -163,6 +163,8 @@ impl VehicleModel {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Point2;
+
     use super::*;
 
     #[test]
@@ -187,9 +189,9 @@ mod tests {
     #[test]
     fn a_blimp_flies_over_obstacles_that_stop_a_rover() {
         let terrain = Terrain::flat(terrain::GridFrame::new(60, 60, 0.6));
-        let rock = [Obstacle::Circle { center_m: [18.0, 18.0], radius_m: 3.0 }];
+        let rock = [Obstacle::Circle { center_m: Point2::new(18.0, 18.0), radius_m: 3.0 }];
         let free = |name: &str| {
-            vehicle_model(name).unwrap().configuration_space(&terrain, &rock).is_free([18.0, 18.0])
+            vehicle_model(name).unwrap().configuration_space(&terrain, &rock).is_free(Point2::new(18.0, 18.0))
         };
         assert!(!free("ATRV"));
         assert!(free("Blimp"));

@@ -8,9 +8,8 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use nalgebra::{Point2, distance};
 use terrain::{Cell, ConfigurationSpace};
-
-use crate::geometry::distance;
 
 /// How much more the rest of the way counts than the way so far: places nearer to the goal go first, and the way found
 /// is at most this share longer than the shortest one over these places.
@@ -20,10 +19,10 @@ const EAGERNESS: f64 = 0.03;
 /// are made of the ground at most: twice as many look almost one and a half times as closely.
 pub(crate) fn way_around(
     space: &ConfigurationSpace,
-    ends_m: [[f64; 2]; 2],
+    ends_m: [Point2<f64>; 2],
     bound_m: f64,
     blocks: u32,
-) -> Option<Vec<[f64; 2]>> {
+) -> Option<Vec<Point2<f64>>> {
     let blocks = Blocks::within(space, ends_m, bound_m, blocks)?;
     let start = blocks.block_of(space.frame().cell_at(ends_m[0])?)?;
     let goal = blocks.block_of(space.frame().cell_at(ends_m[1])?)?;
@@ -44,7 +43,7 @@ struct Blocks {
 
 impl Blocks {
     /// Blocks over the box around the ellipse of the points over which a path shorter than `bound_m` could lead.
-    fn within(space: &ConfigurationSpace, ends_m: [[f64; 2]; 2], bound_m: f64, most: u32) -> Option<Self> {
+    fn within(space: &ConfigurationSpace, ends_m: [Point2<f64>; 2], bound_m: f64, most: u32) -> Option<Self> {
         let frame = space.frame();
         let cells = ends_m.map(|end| frame.to_cells(end));
         let bound = bound_m / frame.cell_size_m;
@@ -73,7 +72,7 @@ impl Blocks {
     }
 
     /// The free place that stands for a block: its middle, or else the middle of its most open cell.
-    fn place(&self, space: &ConfigurationSpace, block: usize) -> Option<[f64; 2]> {
+    fn place(&self, space: &ConfigurationSpace, block: usize) -> Option<Point2<f64>> {
         let at = [block as u32 % self.columns, block as u32 / self.columns];
         let low = [0, 1].map(|axis| self.low[axis] + at[axis] * self.side);
         let end = [0, 1].map(|axis| (low[axis] + self.side).min(self.end[axis]));
@@ -100,7 +99,7 @@ impl Blocks {
 /// What the search knows of a block.
 #[derive(Clone, Copy)]
 struct Place {
-    point_m: [f64; 2],
+    point_m: Point2<f64>,
     /// The length of the way to it, or infinity.
     cost_m: f64,
     parent: u32,
@@ -120,7 +119,7 @@ enum State {
 struct Lattice<'a> {
     space: &'a ConfigurationSpace,
     blocks: Blocks,
-    ends_m: [[f64; 2]; 2],
+    ends_m: [Point2<f64>; 2],
     /// The blocks of the ends.
     ends: [usize; 2],
     bound_m: f64,
@@ -133,11 +132,12 @@ impl<'a> Lattice<'a> {
     fn new(
         space: &'a ConfigurationSpace,
         blocks: Blocks,
-        ends_m: [[f64; 2]; 2],
+        ends_m: [Point2<f64>; 2],
         ends: [usize; 2],
         bound_m: f64,
     ) -> Self {
-        let unseen = Place { point_m: [0.0; 2], cost_m: f64::INFINITY, parent: 0, state: State::Unseen };
+        let unseen =
+            Place { point_m: Point2::origin(), cost_m: f64::INFINITY, parent: 0, state: State::Unseen };
         let mut places = vec![unseen; blocks.columns as usize * blocks.rows as usize];
         for (end, point_m) in ends.into_iter().zip(ends_m) {
             places[end] = Place { point_m, state: State::Open, ..unseen };
@@ -148,7 +148,7 @@ impl<'a> Lattice<'a> {
         Self { space, blocks, ends_m, ends, bound_m, places, open }
     }
 
-    fn search(mut self) -> Option<Vec<[f64; 2]>> {
+    fn search(mut self) -> Option<Vec<Point2<f64>>> {
         while let Some((_, Reverse(block))) = self.open.pop() {
             let block = block as usize;
             if self.places[block].state == State::Done || !self.is_reached(block) {
@@ -178,7 +178,7 @@ impl<'a> Lattice<'a> {
         let mut best = (f64::INFINITY, place.parent);
         for other in self.blocks.around(block) {
             let beside = self.places[other];
-            let cost_m = beside.cost_m + distance(beside.point_m, place.point_m);
+            let cost_m = beside.cost_m + distance(&beside.point_m, &place.point_m);
             if beside.state == State::Done
                 && cost_m < best.0
                 && self.space.is_segment_free(beside.point_m, place.point_m)
@@ -187,31 +187,32 @@ impl<'a> Lattice<'a> {
             }
         }
         (self.places[block].cost_m, self.places[block].parent) = best;
-        best.0 + distance(place.point_m, self.ends_m[1]) < self.bound_m
+        best.0 + distance(&place.point_m, &self.ends_m[1]) < self.bound_m
     }
 
     /// Notes that a block may be reached straight from `parent`.
     fn reach(&mut self, block: usize, parent: u32) {
         if self.places[block].state == State::Unseen {
             let [start, goal] = self.ends_m;
-            let is_near = |point: &[f64; 2]| distance(start, *point) + distance(*point, goal) < self.bound_m;
+            let is_near =
+                |point: &Point2<f64>| distance(&start, point) + distance(point, &goal) < self.bound_m;
             let point_m = self.blocks.place(self.space, block).filter(is_near);
             self.places[block].state = if point_m.is_some() { State::Open } else { State::Barred };
             self.places[block].point_m = point_m.unwrap_or_default();
         }
         let place = self.places[block];
         let from = self.places[parent as usize];
-        let cost_m = from.cost_m + distance(from.point_m, place.point_m);
-        let least_m = cost_m + distance(place.point_m, self.ends_m[1]);
+        let cost_m = from.cost_m + distance(&from.point_m, &place.point_m);
+        let least_m = cost_m + distance(&place.point_m, &self.ends_m[1]);
         if place.state == State::Open && cost_m < place.cost_m && least_m < self.bound_m {
             (self.places[block].cost_m, self.places[block].parent) = (cost_m, parent);
             // Lengths are not negative, and such numbers order as their bits do.
-            let rank_m = least_m + EAGERNESS * distance(place.point_m, self.ends_m[1]);
+            let rank_m = least_m + EAGERNESS * distance(&place.point_m, &self.ends_m[1]);
             self.open.push((Reverse(rank_m.to_bits()), Reverse(block as u32)));
         }
     }
 
-    fn way(&self) -> Vec<[f64; 2]> {
+    fn way(&self) -> Vec<Point2<f64>> {
         let mut points = Vec::new();
         let mut block = self.ends[1];
         loop {

@@ -4,6 +4,7 @@ use motion::{
     Convoy, ConvoyMember, DriveEvent, DriveLimits, Driver, DriverSettings, FineWorld, Path, Surroundings,
     Trajectory, VehicleModel, vehicle_model,
 };
+use nalgebra::{Point2, Vector2, distance};
 use terrain::{Obstacle, Random};
 
 fn rover() -> &'static VehicleModel {
@@ -29,10 +30,7 @@ fn drive(world: &FineWorld, path: Path, seed: u64) -> (DriveEvent, Driver) {
         assert!(change <= limits.acceleration_mps2 * Trajectory::STEP_S + 1e-9);
         assert!(after.speed_mps + after.turn_rate_rps.abs() * limits.half_track_m <= limits.speed_mps + 1e-9);
         let stopping = after.speed_mps * after.speed_mps / (2.0 * limits.acceleration_mps2);
-        let ahead = [
-            after.position_m[0] + stopping * after.heading_rad.cos(),
-            after.position_m[1] + stopping * after.heading_rad.sin(),
-        ];
+        let ahead = after.world_from_body() * Point2::from(Vector2::x() * stopping);
         // Straight ahead is one of the ways to stop; it must be free unless a turn under way leads around.
         assert!(
             after.turn_rate_rps.abs() > 0.02 || world.distance_m(ahead) >= settings().radius_m - 0.02,
@@ -48,11 +46,11 @@ fn drive(world: &FineWorld, path: Path, seed: u64) -> (DriveEvent, Driver) {
 
 #[test]
 fn an_empty_world_is_driven_at_full_speed_to_the_end() {
-    let path = Path::new(vec![[0.0, 0.0], [30.0, 0.0], [30.0, 20.0]]);
+    let path = Path::new([[0.0, 0.0], [30.0, 0.0], [30.0, 20.0]].map(Point2::from).to_vec());
     let (event, driver) = drive(&FineWorld::default(), path, 1);
     assert_eq!(event, DriveEvent::Arrived);
     let end = driver.state().position_m;
-    assert!((end[0] - 30.0).hypot(end[1] - 20.0) <= 0.2);
+    assert!(distance(&end, &Point2::new(30.0, 20.0)) <= 0.2);
     // 50 m at 1 m/s, with ramps, the corner and a slow approach.
     assert!((50.0..75.0).contains(&driver.time_s()), "{} s", driver.time_s());
 }
@@ -64,10 +62,11 @@ fn rocks_that_the_map_does_not_show_are_passed_without_touching() {
         let mut random = Random::from_seed(seed);
         let mut world = FineWorld::default();
         for _ in 0..14 {
-            let center_m = [random.range(5.0, 35.0), random.range(-4.0, 4.0)];
+            let center_m = Point2::new(random.range(5.0, 35.0), random.range(-4.0, 4.0));
             world.add(&Obstacle::Circle { center_m, radius_m: random.range(0.2, 0.45) });
         }
-        let (event, driver) = drive(&world, Path::new(vec![[0.0, 0.0], [40.0, 0.0]]), seed);
+        let (event, driver) =
+            drive(&world, Path::new([[0.0, 0.0], [40.0, 0.0]].map(Point2::from).to_vec()), seed);
         match event {
             DriveEvent::Arrived => arrived += 1,
             DriveEvent::Blocked { .. } | DriveEvent::OffCorridor { .. } => {}
@@ -81,9 +80,9 @@ fn rocks_that_the_map_does_not_show_are_passed_without_touching() {
 fn a_wall_across_the_way_is_reported() {
     let mut world = FineWorld::default();
     world.add(&Obstacle::Polygon {
-        corners_m: vec![[15.0, -30.0], [16.0, -30.0], [16.0, 30.0], [15.0, 30.0]],
+        corners_m: [[15.0, -30.0], [16.0, -30.0], [16.0, 30.0], [15.0, 30.0]].map(Point2::from).to_vec(),
     });
-    let (event, driver) = drive(&world, Path::new(vec![[0.0, 0.0], [40.0, 0.0]]), 3);
+    let (event, driver) = drive(&world, Path::new([[0.0, 0.0], [40.0, 0.0]].map(Point2::from).to_vec()), 3);
     assert!(
         matches!(event, DriveEvent::Blocked { .. } | DriveEvent::OffCorridor { .. }),
         "{event:?} at {:?}",
@@ -91,7 +90,7 @@ fn a_wall_across_the_way_is_reported() {
     );
     let mut driver = driver;
     let here = driver.state().position_m;
-    driver.follow(Path::new(vec![here, [0.0, here[1]]]));
+    driver.follow(Path::new(vec![here, ([0.0, here[1]]).into()]));
     for _ in 0..2000 {
         if driver.step(&world, None).0 == DriveEvent::Arrived {
             return;
@@ -103,8 +102,8 @@ fn a_wall_across_the_way_is_reported() {
 #[test]
 fn the_same_seed_drives_the_same_way() {
     let mut world = FineWorld::default();
-    world.add(&Obstacle::Circle { center_m: [10.0, 0.1], radius_m: 0.4 });
-    let run = |seed| drive(&world, Path::new(vec![[0.0, 0.0], [20.0, 0.0]]), seed).1;
+    world.add(&Obstacle::Circle { center_m: Point2::new(10.0, 0.1), radius_m: 0.4 });
+    let run = |seed| drive(&world, Path::new([[0.0, 0.0], [20.0, 0.0]].map(Point2::from).to_vec()), seed).1;
     let end = |driver: &Driver| (driver.state(), driver.time_s());
     assert_eq!(end(&run(7)), end(&run(7)));
     assert_ne!(end(&run(7)), end(&run(8)));
@@ -119,15 +118,16 @@ fn a_creeping_vehicle_passes_rocks_too_and_takes_as_long_as_its_speed_says() {
         let mut random = Random::from_seed(seed);
         let mut world = FineWorld::default();
         for _ in 0..14 {
-            let center_m = [random.range(5.0, 35.0), random.range(-4.0, 4.0)];
+            let center_m = Point2::new(random.range(5.0, 35.0), random.range(-4.0, 4.0));
             world.add(&Obstacle::Circle { center_m, radius_m: random.range(0.2, 0.45) });
         }
-        let mut driver = Driver::new(Path::new(vec![[0.0, 0.0], [40.0, 0.0]]), 0.0, creeping, seed);
+        let mut driver =
+            Driver::new(Path::new([[0.0, 0.0], [40.0, 0.0]].map(Point2::from).to_vec()), 0.0, creeping, seed);
         for _ in 0..2000 {
             let before = driver.state().position_m;
             let (event, _) = driver.step(&world, None);
             let place = driver.state().position_m;
-            assert!((place[0] - before[0]).hypot(place[1] - before[1]) <= 0.1 + 1e-9);
+            assert!(distance(&place, &before) <= 0.1 + 1e-9);
             let clearance = world.distance_m(place);
             assert!(clearance >= creeping.radius_m, "seed {seed}: {clearance} m at {place:?}");
             if event == DriveEvent::Arrived {
@@ -148,8 +148,9 @@ fn a_convoy_keeps_apart_waits_for_a_stopped_follower_and_arrives() {
     let jr = rover();
     let spacing_m = 2.2 * jr.circumradius_m + 1.0;
     let settings = DriverSettings::new(DriveLimits::of(jr), jr.circumradius_m).at_most(0.5);
-    let leader = Path::new(vec![[0.0, 0.0], [30.0, 0.0], [30.0, 25.0]]);
-    let follower = Path::new(vec![[-spacing_m, 0.0], [30.0, 0.0], [30.0, 25.0 - spacing_m]]);
+    let leader = Path::new([[0.0, 0.0], [30.0, 0.0], [30.0, 25.0]].map(Point2::from).to_vec());
+    let follower =
+        Path::new([[-spacing_m, 0.0], [30.0, 0.0], [30.0, 25.0 - spacing_m]].map(Point2::from).to_vec());
     let members = [leader, follower].map(|path| ConvoyMember { path, heading_rad: 0.0, settings }).to_vec();
     let mut convoy = Convoy::new(members, spacing_m, 3);
     let world = FineWorld::default();
@@ -159,7 +160,7 @@ fn a_convoy_keeps_apart_waits_for_a_stopped_follower_and_arrives() {
         let stopped = (20.0..60.0).contains(&convoy.time_s());
         convoy.step(&around, 0.5, &[0.5, if stopped { 0.0 } else { 0.6 }]);
         let [a, b] = [0, 1].map(|vehicle| convoy.state(vehicle).position_m);
-        let apart = (a[0] - b[0]).hypot(a[1] - b[1]);
+        let apart = distance(&a, &b);
         assert!(apart > 2.0 * jr.circumradius_m, "{apart} m apart at {}", convoy.time_s());
         farthest = farthest.max(apart);
     }

@@ -6,6 +6,7 @@ use motion::{
     Statistics, Trajectory, Tree, drive_path, find_path, find_shortest_path, plan_legs, shorten,
     vehicle_model,
 };
+use nalgebra::{Point2, Vector2};
 use terrain::{Cell, CellState, Collision, ConfigurationSpace, GridFrame, Obstacle, Occupancy, Random};
 
 const PLANNERS: [PlannerKind; 4] =
@@ -14,20 +15,21 @@ const PLANNERS: [PlannerKind; 4] =
 /// A map with random discs, and the obstacle cells for a check that shares nothing with the space.
 fn random_space(seed: u64, radius_m: f64) -> ConfigurationSpace {
     let mut random = Random::from_seed(seed);
-    let frame = GridFrame { width: 140, height: 110, cell_size_m: 0.6, origin_m: [-20.0, 35.0] };
+    let frame = GridFrame { width: 140, height: 110, cell_size_m: 0.6, origin_m: Point2::new(-20.0, 35.0) };
     let mut occupancy = Occupancy::free(frame);
-    let [east, north] = frame.extent_m();
+    let extent = frame.extent_m();
     for _ in 0..24 {
-        let center_m = [frame.origin_m[0] + random.unit() * east, frame.origin_m[1] + random.unit() * north];
+        let part = Vector2::new(random.unit(), random.unit());
+        let center_m = frame.origin_m + part.component_mul(&extent);
         occupancy.mark(&Obstacle::Circle { center_m, radius_m: random.range(0.5, 5.0) }, CellState::Obstacle);
     }
     ConfigurationSpace::new(occupancy, radius_m)
 }
 
-fn free_point(space: &ConfigurationSpace, random: &mut Random) -> [f64; 2] {
+fn free_point(space: &ConfigurationSpace, random: &mut Random) -> Point2<f64> {
     let [low, high] = space.free_box_m();
     loop {
-        let point = [random.range(low[0], high[0]), random.range(low[1], high[1])];
+        let point = Point2::new(random.range(low.x, high.x), random.range(low.y, high.y));
         if space.is_free(point) {
             return point;
         }
@@ -37,7 +39,7 @@ fn free_point(space: &ConfigurationSpace, random: &mut Random) -> [f64; 2] {
 /// Panics unless every point of a dense sample of the path keeps the radius from every occupied square.
 fn assert_clear(space: &ConfigurationSpace, path: &Path, what: &str) {
     let frame = space.frame();
-    let occupied: Vec<[f64; 2]> = space
+    let occupied: Vec<Point2<f64>> = space
         .occupancy()
         .states()
         .iter()
@@ -47,15 +49,15 @@ fn assert_clear(space: &ConfigurationSpace, path: &Path, what: &str) {
         .collect();
     let half = 0.5 * frame.cell_size_m;
     for (a, b) in path.segments() {
-        let length = ((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1])).sqrt();
+        let length = (b - a).norm();
         let samples = (length / (0.1 * frame.cell_size_m)).ceil() as u32 + 1;
         for sample in 0..=samples {
             let share = f64::from(sample) / f64::from(samples);
-            let point = [a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share];
+            let point = a + (b - a) * share;
             assert!(frame.contains(point), "{what}: {point:?} is off the map");
             for center in &occupied {
-                let across = ((point[0] - center[0]).abs() - half).max(0.0);
-                let along = ((point[1] - center[1]).abs() - half).max(0.0);
+                let across = ((point.x - center.x).abs() - half).max(0.0);
+                let along = ((point.y - center.y).abs() - half).max(0.0);
                 let distance = (across * across + along * along).sqrt();
                 assert!(distance >= space.radius_m() - 1e-7, "{what}: {point:?} is {distance} m from a cell");
             }
@@ -129,7 +131,7 @@ fn paths_have_exact_ends_and_keep_their_clearance() {
 #[test]
 fn the_same_seed_gives_the_same_path_and_another_seed_another() {
     let space = random_space(4, 0.7);
-    let query = Query { start_m: [-18.0, 37.0], goal_m: [60.0, 98.0] };
+    let query = Query { start_m: Point2::new(-18.0, 37.0), goal_m: Point2::new(60.0, 98.0) };
     for planner in PLANNERS {
         let run = |seed| {
             let settings = settings(planner, seed);
@@ -143,7 +145,7 @@ fn the_same_seed_gives_the_same_path_and_another_seed_another() {
 #[test]
 fn stepping_one_by_one_gives_what_running_gives() {
     let space = random_space(4, 0.7);
-    let query = Query { start_m: [-18.0, 37.0], goal_m: [60.0, 98.0] };
+    let query = Query { start_m: Point2::new(-18.0, 37.0), goal_m: Point2::new(60.0, 98.0) };
     for planner in PLANNERS {
         let settings = settings(planner, 1);
         let mut search = Search::new(&space, query, settings).unwrap();
@@ -163,7 +165,7 @@ fn stepping_one_by_one_gives_what_running_gives() {
 #[test]
 fn an_end_in_collision_is_said() {
     let mut occupancy = Occupancy::free(GridFrame::new(50, 50, 1.0));
-    occupancy.mark(&Obstacle::Circle { center_m: [25.0, 25.0], radius_m: 3.0 }, CellState::Steep);
+    occupancy.mark(&Obstacle::Circle { center_m: Point2::new(25.0, 25.0), radius_m: 3.0 }, CellState::Steep);
     let space = ConfigurationSpace::new(occupancy, 1.0);
     for planner in PLANNERS {
         let fail = |start_m, goal_m| {
@@ -171,16 +173,18 @@ fn an_end_in_collision_is_said() {
                 .path
                 .unwrap_err()
         };
-        let Failure::StartInCollision(Collision::Cell { state, .. }) = fail([25.0, 25.0], [2.0, 2.0]) else {
+        let Failure::StartInCollision(Collision::Cell { state, .. }) =
+            fail(Point2::new(25.0, 25.0), Point2::new(2.0, 2.0))
+        else {
             panic!("the start is not in collision")
         };
         assert_eq!(state, CellState::Steep);
         assert_eq!(
-            fail([2.0, 2.0], [60.0, 2.0]),
+            fail(Point2::new(2.0, 2.0), Point2::new(60.0, 2.0)),
             Failure::GoalInCollision(Collision::OutsideMap),
             "{planner:?}"
         );
-        assert!(fail([2.0, 2.0], [25.0, 28.7]).to_string().contains("too steep"));
+        assert!(fail(Point2::new(2.0, 2.0), Point2::new(25.0, 28.7)).to_string().contains("too steep"));
     }
 }
 
@@ -202,7 +206,7 @@ fn no_sample_of_a_path_on_the_shared_maps_lies_in_an_obstacle_pixel() {
         let occupied: Vec<bool> = pixels.iter().map(|&pixel| pixel == 0).collect();
         let frame = GridFrame::new(512, 512, 1.0);
         let space = ConfigurationSpace::new(Occupancy::from_obstacles(frame, &occupied), 0.0);
-        let query = Query { start_m: [8.0, 8.0], goal_m: [503.0, 503.0] };
+        let query = Query { start_m: Point2::new(8.0, 8.0), goal_m: Point2::new(503.0, 503.0) };
         for planner in [PlannerKind::Rrt, PlannerKind::RrtConnect, PlannerKind::RrtStar] {
             for seed in 0..8 {
                 let settings = Settings { step_m: 20.0, ..settings(planner, seed) };
@@ -210,10 +214,10 @@ fn no_sample_of_a_path_on_the_shared_maps_lies_in_an_obstacle_pixel() {
                 let short = shorten(&space, &raw, &ShortcutSettings::default());
                 assert!(short.length_m() < 0.95 * raw.length_m() || raw.length_m() < 760.0);
                 for (a, b) in raw.segments().chain(short.segments()) {
-                    let samples = (40.0 * (b[0] - a[0]).hypot(b[1] - a[1])).ceil();
+                    let samples = (40.0 * (b - a).norm()).ceil();
                     for sample in 0..=samples as u32 {
                         let share = f64::from(sample) / samples;
-                        let (x, y) = (a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share);
+                        let (x, y) = (a.x + (b.x - a.x) * share, a.y + (b.y - a.y) * share);
                         assert!(
                             pixels[y as usize * 512 + x as usize] > 0,
                             "{name} {planner:?} at ({x}, {y})"
@@ -233,8 +237,8 @@ fn a_path_around_the_wrong_end_of_a_wall_is_led_around_the_other() {
     }
     let frame = GridFrame::new(120, 120, 0.5);
     let occupancy = Occupancy::from_obstacles(frame, &occupied);
-    let (start, goal) = ([15.0, 20.0], [45.0, 20.0]);
-    let given = Path::new(vec![start, [15.0, 58.0], [45.0, 58.0], goal]);
+    let (start, goal) = (Point2::new(15.0, 20.0), Point2::new(45.0, 20.0));
+    let given = Path::new(vec![start, Point2::new(15.0, 58.0), Point2::new(45.0, 58.0), goal]);
     // The corners of the wall's southern end are at (30, 5) and (30.5, 5).
     let shortest_m = 15.0_f64.hypot(15.0) + 0.5 + 14.5_f64.hypot(15.0);
     for radius_m in [0.0, 0.3] {
@@ -253,7 +257,7 @@ fn a_path_around_the_wrong_end_of_a_wall_is_led_around_the_other() {
 #[test]
 fn more_tries_never_give_a_longer_path() {
     let space = random_space(4, 0.7);
-    let query = Query { start_m: [-18.0, 37.0], goal_m: [60.0, 98.0] };
+    let query = Query { start_m: Point2::new(-18.0, 37.0), goal_m: Point2::new(60.0, 98.0) };
     let mut before = f64::INFINITY;
     for tries in 1..6 {
         let settings = settings(PlannerKind::Rrt, 2);
@@ -282,7 +286,7 @@ fn ring(gap_cells: u32, radius_m: f64) -> ConfigurationSpace {
 
 #[test]
 fn an_enclosed_goal_is_proved_and_a_gap_opens_it() {
-    let query = Query { start_m: [3.0, 3.0], goal_m: [20.0, 20.0] };
+    let query = Query { start_m: Point2::new(3.0, 3.0), goal_m: Point2::new(20.0, 20.0) };
     for planner in PLANNERS {
         let settings = Settings { greatest_samples: 20_000, step_m: 3.0, ..Settings::of(planner) };
         let run = |space: &ConfigurationSpace| find_path(space, query, &settings, None, &mut never);
@@ -300,7 +304,7 @@ fn an_enclosed_goal_is_proved_and_a_gap_opens_it() {
 
 #[test]
 fn running_out_of_samples_is_no_proof_and_says_how_many() {
-    let query = Query { start_m: [3.0, 3.0], goal_m: [20.0, 20.0] };
+    let query = Query { start_m: Point2::new(3.0, 3.0), goal_m: Point2::new(20.0, 20.0) };
     for planner in PLANNERS {
         let settings = Settings { greatest_samples: 15, step_m: 1.0, ..Settings::of(planner) };
         let result = find_path(&ring(1, 0.1), query, &settings, None, &mut never);
@@ -310,7 +314,7 @@ fn running_out_of_samples_is_no_proof_and_says_how_many() {
 
 #[test]
 fn a_caller_can_stop_a_search() {
-    let query = Query { start_m: [3.0, 3.0], goal_m: [20.0, 20.0] };
+    let query = Query { start_m: Point2::new(3.0, 3.0), goal_m: Point2::new(20.0, 20.0) };
     for planner in PLANNERS {
         let settings = Settings { step_m: 1.0, ..Settings::of(planner) };
         let mut stop = |statistics: &Statistics| statistics.samples >= 9;
@@ -322,7 +326,7 @@ fn a_caller_can_stop_a_search() {
 #[test]
 fn a_path_in_the_open_becomes_a_straight_line() {
     let space = ConfigurationSpace::new(Occupancy::free(GridFrame::new(200, 200, 0.6)), 0.7);
-    let query = Query { start_m: [10.0, 10.0], goal_m: [110.0, 90.0] };
+    let query = Query { start_m: Point2::new(10.0, 10.0), goal_m: Point2::new(110.0, 90.0) };
     for planner in [PlannerKind::Rrt, PlannerKind::RrtConnect, PlannerKind::RrtStar] {
         let settings = settings(planner, 1);
         let result = find_path(&space, query, &settings, Some(&ShortcutSettings::default()), &mut never);
@@ -333,14 +337,15 @@ fn a_path_in_the_open_becomes_a_straight_line() {
 #[test]
 fn shortening_comes_near_the_shortest_way_around_a_disc() {
     let mut occupancy = Occupancy::free(GridFrame::new(400, 400, 0.1));
-    occupancy.mark(&Obstacle::Circle { center_m: [20.0, 20.0], radius_m: 6.0 }, CellState::Obstacle);
+    occupancy
+        .mark(&Obstacle::Circle { center_m: Point2::new(20.0, 20.0), radius_m: 6.0 }, CellState::Obstacle);
     let space = ConfigurationSpace::new(occupancy, 0.5);
     // Two tangents and an arc, around the disc grown by the radius, from 15 m left to 15 m right of its centre.
     let grown = 6.5_f64;
     let tangent = (15.0_f64 * 15.0 - grown * grown).sqrt();
     let arc = std::f64::consts::PI - 2.0 * (grown / 15.0).acos();
     let shortest = 2.0 * tangent + grown * arc;
-    let query = Query { start_m: [5.0, 20.0], goal_m: [35.0, 20.0] };
+    let query = Query { start_m: Point2::new(5.0, 20.0), goal_m: Point2::new(35.0, 20.0) };
     for seed in 0..5 {
         let settings = Settings { seed, ..Settings::of(PlannerKind::RrtConnect) };
         let path =
@@ -353,13 +358,13 @@ fn shortening_comes_near_the_shortest_way_around_a_disc() {
 #[test]
 fn legs_join_at_waypoints_and_a_failure_names_its_leg() {
     let space = ring(0, 0.3);
-    let waypoints = [[3.0, 3.0], [36.0, 4.0], [36.0, 36.0]];
+    let waypoints = [[3.0, 3.0], [36.0, 4.0], [36.0, 36.0]].map(Point2::from);
     let legs = plan_legs(&space, &waypoints, 3, &mut never).unwrap();
     assert_eq!(legs.len(), 2);
     for (leg, pair) in legs.iter().zip(waypoints.windows(2)) {
         assert_eq!([leg.path.points_m[0], *leg.path.points_m.last().unwrap()], [pair[0], pair[1]]);
     }
-    let blocked = [[3.0, 3.0], [36.0, 4.0], [20.0, 20.0]];
+    let blocked = [[3.0, 3.0], [36.0, 4.0], [20.0, 20.0]].map(Point2::from);
     let failure = plan_legs(&space, &blocked, 3, &mut never).unwrap_err();
     assert_eq!((failure.leg, failure.failure), (1, Failure::GoalEnclosed));
 }
@@ -367,7 +372,7 @@ fn legs_join_at_waypoints_and_a_failure_names_its_leg() {
 #[test]
 fn rrt_star_gets_shorter_with_more_samples_and_its_lengths_are_those_of_its_path() {
     let space = random_space(4, 0.7);
-    let query = Query { start_m: [-18.0, 37.0], goal_m: [60.0, 98.0] };
+    let query = Query { start_m: Point2::new(-18.0, 37.0), goal_m: Point2::new(60.0, 98.0) };
     let mut search = Search::new(&space, query, Settings::of(PlannerKind::RrtStar)).unwrap();
     let mut found = Vec::new();
     while !search.is_finished() {
@@ -415,13 +420,13 @@ fn assert_within_limits(trajectory: &Trajectory, limits: &DriveLimits) {
         assert!(after.turn_rate_rps.abs() <= limits.turn_rate_rps + slack);
         let wheels = after.speed_mps.abs() + after.turn_rate_rps.abs() * limits.half_track_m;
         assert!(wheels <= limits.speed_mps + slack, "a wheel runs at {wheels} m/s");
-        let moved = [after.position_m[0] - before.position_m[0], after.position_m[1] - before.position_m[1]];
-        let way = moved[0].hypot(moved[1]);
+        let moved = after.position_m - before.position_m;
+        let way = moved.norm();
         assert!(way <= before.speed_mps.max(after.speed_mps) * seconds + 1e-3, "{way} m in {seconds} s");
         assert!((after.heading_rad - before.heading_rad).abs() <= limits.turn_rate_rps * seconds + slack);
         // It moves where it looks, never sideways.
         let middle = 0.5 * (before.heading_rad + after.heading_rad);
-        let sideways = moved[1] * middle.cos() - moved[0] * middle.sin();
+        let sideways = moved.y * middle.cos() - moved.x * middle.sin();
         assert!(sideways.abs() < 1e-6, "{sideways} m sideways");
     }
 }
@@ -429,16 +434,18 @@ fn assert_within_limits(trajectory: &Trajectory, limits: &DriveLimits) {
 #[test]
 fn driving_a_path_passes_its_corners_within_the_limits() {
     let limits = DriveLimits::of(vehicle_model("ATRV-Jr").unwrap());
-    let path = Path::new(vec![[0.0, 0.0], [10.0, 0.0], [10.0, 0.2], [-3.0, 7.0]]);
+    let path = Path::new([[0.0, 0.0], [10.0, 0.0], [10.0, 0.2], [-3.0, 7.0]].map(Point2::from).to_vec());
     let trajectory = drive_path(&path, 2.0, &limits);
     assert_within_limits(&trajectory, &limits);
     for &corner in &path.points_m {
         assert!(trajectory.states.iter().any(|timed| timed.state.position_m == corner), "{corner:?}");
     }
     // 10 m at 1 m/s with ramps of 0.6 m/s²: 10 s and 1 / 0.6 s for the ramps.
-    let arrival = trajectory.states.iter().find(|timed| timed.state.position_m == [10.0, 0.0]).unwrap();
-    let departure = trajectory.states.iter().rfind(|timed| timed.state.position_m == [0.0, 0.0]).unwrap();
+    let arrival =
+        trajectory.states.iter().find(|timed| timed.state.position_m == Point2::new(10.0, 0.0)).unwrap();
+    let departure =
+        trajectory.states.iter().rfind(|timed| timed.state.position_m == Point2::new(0.0, 0.0)).unwrap();
     assert!((arrival.time_s - departure.time_s - 10.0 - 1.0 / 0.6).abs() < 1e-6);
-    assert_eq!(trajectory.state_at(-1.0).unwrap().position_m, [0.0, 0.0]);
-    assert_eq!(trajectory.state_at(1e9).unwrap().position_m, [-3.0, 7.0]);
+    assert_eq!(trajectory.state_at(-1.0).unwrap().position_m, Point2::new(0.0, 0.0));
+    assert_eq!(trajectory.state_at(1e9).unwrap().position_m, Point2::new(-3.0, 7.0));
 }

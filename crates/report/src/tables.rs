@@ -17,7 +17,9 @@ pub(crate) fn sections(review: &Review) -> String {
             continue;
         }
         out.push_str(&match section {
-            Section::Plan | Section::Encounters | Section::Warnings => lines(&review.lines(section)),
+            Section::Plan | Section::SeparationViolations | Section::Warnings => {
+                lines(&review.lines(section))
+            }
             Section::Choices => choices(review),
             Section::CausalLinks => links(review),
             Section::Conflicts => conflicts(review),

@@ -4,6 +4,7 @@
 //! whole square cells. The clearance map of cell centres only decides what is far from every border; near one, the
 //! query measures the distance to the squares themselves. Nothing is sampled.
 
+use nalgebra::{Point2, distance};
 use serde::{Deserialize, Serialize};
 
 use crate::connectivity::{self, Regions};
@@ -40,7 +41,7 @@ pub struct ConfigurationSpace {
     flags: Vec<u8>,
     regions: Regions,
     /// The corners of the least box of cells around every cell that isn't occupied, in metres.
-    free_box_m: [[f64; 2]; 2],
+    free_box_m: [Point2<f64>; 2],
     /// The vehicle's radius in cells.
     pub(crate) radius: f64,
 }
@@ -103,7 +104,7 @@ impl ConfigurationSpace {
     }
 
     /// The south-west and north-east corners of the least box around the free places, in metres: where to sample.
-    pub const fn free_box_m(&self) -> [[f64; 2]; 2] {
+    pub const fn free_box_m(&self) -> [Point2<f64>; 2] {
         self.free_box_m
     }
 
@@ -136,7 +137,7 @@ impl ConfigurationSpace {
     /// Metres from the vehicle's rim to the nearest obstacle when its centre is at a point; negative in collision
     /// and infinite on a map without obstacles. `None` outside the map. Exact outside obstacles; inside one, the depth
     /// is that of the cell's centre.
-    pub fn clearance_m(&self, point_m: [f64; 2]) -> Option<f64> {
+    pub fn clearance_m(&self, point_m: Point2<f64>) -> Option<f64> {
         let cell = self.frame().cell_at(point_m)?;
         let point = self.frame().to_cells(point_m);
         let distance = if self.is_occupied(cell) {
@@ -148,13 +149,13 @@ impl ConfigurationSpace {
     }
 
     /// Whether the vehicle's centre can be at a point.
-    pub fn is_free(&self, point_m: [f64; 2]) -> bool {
+    pub fn is_free(&self, point_m: Point2<f64>) -> bool {
         let Some(cell) = self.frame().cell_at(point_m) else { return false };
         self.is_free_in_cell(self.frame().to_cells(point_m), cell)
     }
 
     /// What is in the way of a vehicle at a point; `None` when it is free.
-    pub fn collision_at(&self, point_m: [f64; 2]) -> Option<Collision> {
+    pub fn collision_at(&self, point_m: Point2<f64>) -> Option<Collision> {
         let Some(own) = self.frame().cell_at(point_m) else { return Some(Collision::OutsideMap) };
         let point = self.frame().to_cells(point_m);
         if self.is_free_in_cell(point, own) {
@@ -170,29 +171,29 @@ impl ConfigurationSpace {
 
     /// Whether the vehicle's centre can move straight from one point to another: every point between is free, to
     /// within a billionth of a cell. Time is proportional to the number of cells passed near obstacles.
-    pub fn is_segment_free(&self, from_m: [f64; 2], to_m: [f64; 2]) -> bool {
+    pub fn is_segment_free(&self, from_m: Point2<f64>, to_m: Point2<f64>) -> bool {
         let (Some(first), Some(_)) = (self.frame().cell_at(from_m), self.frame().cell_at(to_m)) else {
             return false;
         };
         let (from, to) = (self.frame().to_cells(from_m), self.frame().to_cells(to_m));
-        let offset = [to[0] - from[0], to[1] - from[1]];
-        let length = (offset[0] * offset[0] + offset[1] * offset[1]).sqrt();
+        let offset = to - from;
+        let length = offset.norm();
         if length == 0.0 {
             return self.is_free_in_cell(from, first);
         }
-        let walk = Walk { from, direction: [offset[0] / length, offset[1] / length], length };
+        let walk = Walk { from, direction: offset / length, length };
         self.walk_is_free(&walk) && self.is_free(to_m)
     }
 
     /// The least clearance in metres along a straight segment, to within a hundredth of a cell and never more than it
     /// really is by that: for display and reports. `None` when an end is outside the map.
-    pub fn segment_clearance_m(&self, from_m: [f64; 2], to_m: [f64; 2]) -> Option<f64> {
+    pub fn segment_clearance_m(&self, from_m: Point2<f64>, to_m: Point2<f64>) -> Option<f64> {
         let tolerance = 0.01 * self.frame().cell_size_m;
         let mut least = self.clearance_m(from_m)?.min(self.clearance_m(to_m)?);
         let mut pieces = vec![(from_m, to_m)];
         while let Some((a, b)) = pieces.pop() {
-            let length = ((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1])).sqrt();
-            let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+            let length = distance(&a, &b);
+            let middle = Point2::from(0.5 * (a.coords + b.coords));
             let clearance = self.clearance_m(middle)?;
             least = least.min(clearance);
             // Clearance changes by no more than the way moved.
@@ -206,7 +207,7 @@ impl ConfigurationSpace {
 
     /// Whether it is proved that no path joins two points: an outer bound of the free places falls into pieces, and
     /// the points lie in different ones. `false` proves nothing. Constant time.
-    pub fn are_separated(&self, a_m: [f64; 2], b_m: [f64; 2]) -> bool {
+    pub fn are_separated(&self, a_m: Point2<f64>, b_m: Point2<f64>) -> bool {
         let (Some(a), Some(b)) = (self.frame().cell_at(a_m), self.frame().cell_at(b_m)) else { return true };
         !self.regions.joined(self.frame().index(a), self.frame().index(b))
     }
@@ -214,7 +215,7 @@ impl ConfigurationSpace {
     /// Like [`Self::are_separated`] with a sixteen times finer outer bound, which also sees gaps that are only a little
     /// too narrow for the vehicle. Linear in the number of cells: for use when a search has failed. A map of more than
     /// four million cells is not looked at more finely.
-    pub fn are_separated_finely(&self, a_m: [f64; 2], b_m: [f64; 2]) -> bool {
+    pub fn are_separated_finely(&self, a_m: Point2<f64>, b_m: Point2<f64>) -> bool {
         self.are_separated(a_m, b_m) || connectivity::are_separated_finely(self, a_m, b_m)
     }
 
@@ -228,7 +229,7 @@ impl ConfigurationSpace {
     }
 
     /// Whether a point in units of cells, which lies in `cell`, is free.
-    fn is_free_in_cell(&self, point: [f64; 2], cell: Cell) -> bool {
+    fn is_free_in_cell(&self, point: Point2<f64>, cell: Cell) -> bool {
         if self.is_occupied(cell) {
             return false;
         }
@@ -239,7 +240,7 @@ impl ConfigurationSpace {
     }
 
     /// The distance from a point in units of cells to the nearest occupied square, and its cell.
-    pub(crate) fn nearest_occupied(&self, point: [f64; 2], own: Cell) -> Option<(f64, Cell)> {
+    pub(crate) fn nearest_occupied(&self, point: Point2<f64>, own: Cell) -> Option<(f64, Cell)> {
         let center = self.center_clearance(own);
         if center == f64::INFINITY {
             return None;
@@ -247,7 +248,7 @@ impl ConfigurationSpace {
         let reach = center + HALF_DIAGONAL + CLEARANCE_ROUNDING;
         let mut nearest: Option<(f64, Cell)> = None;
         for cell in self.border_cells_near(own, reach) {
-            let squared = point_to_cell(point, [f64::from(cell.column), f64::from(cell.row)]);
+            let squared = point_to_cell(point, Point2::new(f64::from(cell.column), f64::from(cell.row)));
             if nearest.is_none_or(|(least, _)| squared < least) {
                 nearest = Some((squared, cell));
             }
@@ -267,7 +268,7 @@ impl ConfigurationSpace {
     }
 
     /// Whether some occupied border cell around `own` is nearer than the radius by a measure of squared distance.
-    fn near_border_cell(&self, own: Cell, squared_distance: impl Fn([f64; 2]) -> f64) -> bool {
+    fn near_border_cell(&self, own: Cell, squared_distance: impl Fn(Point2<f64>) -> f64) -> bool {
         let limit = (self.radius - TOLERANCE).max(0.0);
         let limit = limit * limit;
         let width = self.frame().width as usize;
@@ -278,7 +279,7 @@ impl ConfigurationSpace {
             let flags = &self.flags[row * width + columns.start..row * width + columns.end];
             for (offset, &flag) in flags.iter().enumerate() {
                 if flag & BORDER != 0
-                    && squared_distance([(columns.start + offset) as f64, row as f64]) < limit
+                    && squared_distance(Point2::new((columns.start + offset) as f64, row as f64)) < limit
                 {
                     return true;
                 }
@@ -362,7 +363,7 @@ fn possibly_free(radius: f64, clearance: f64, occupied: bool) -> bool {
     !occupied && clearance + HALF_DIAGONAL + CLEARANCE_ROUNDING >= radius
 }
 
-fn free_box_m(frame: &GridFrame, free: &[bool]) -> [[f64; 2]; 2] {
+fn free_box_m(frame: &GridFrame, free: &[bool]) -> [Point2<f64>; 2] {
     let (mut low, mut high) = ([u32::MAX; 2], [0; 2]);
     for (index, _) in free.iter().enumerate().filter(|(_, free)| **free) {
         let Cell { column, row } = frame.cell(index);
@@ -372,7 +373,7 @@ fn free_box_m(frame: &GridFrame, free: &[bool]) -> [[f64; 2]; 2] {
     if low[0] > high[0] {
         return [frame.origin_m, frame.origin_m];
     }
-    [low, high].map(|corner| frame.to_metres(corner.map(f64::from)))
+    [low, high].map(|corner| frame.to_metres(Point2::from(corner.map(f64::from))))
 }
 
 fn border_flags(width: usize, height: usize, occupied: &[bool]) -> Vec<u8> {

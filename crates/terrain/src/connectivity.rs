@@ -1,5 +1,7 @@
 //! Proofs that a place can't be reached: the pieces into which an outer bound of the free places falls.
 
+use nalgebra::Point2;
+
 use crate::configuration::ConfigurationSpace;
 use crate::distance::HALF_DIAGONAL;
 use crate::frame::Cell;
@@ -77,13 +79,13 @@ fn unite(parents: &mut [u32], a: u32, b: u32) -> u32 {
 const PIECES: u32 = 4;
 
 /// Maps with more cells are not cut: it would take gigabytes.
-const MOST_CELLS_CUT: usize = 1 << 22;
+const MAX_CELLS_CUT: usize = 1 << 22;
 
 /// Whether two points are in different pieces of an outer bound of the free places, made of cells cut in sixteen. `false`
 /// on a map of more than four million cells.
-pub(crate) fn are_separated_finely(space: &ConfigurationSpace, a_m: [f64; 2], b_m: [f64; 2]) -> bool {
+pub(crate) fn are_separated_finely(space: &ConfigurationSpace, a_m: Point2<f64>, b_m: Point2<f64>) -> bool {
     let frame = *space.frame();
-    if frame.cell_count() > MOST_CELLS_CUT {
+    if frame.cell_count() > MAX_CELLS_CUT {
         return false;
     }
     let (width, height) = ((frame.width * PIECES) as usize, (frame.height * PIECES) as usize);
@@ -99,15 +101,15 @@ pub(crate) fn are_separated_finely(space: &ConfigurationSpace, a_m: [f64; 2], b_
         if (clearance - space.radius).abs() > HALF_DIAGONAL + 0.01 {
             return clearance > space.radius;
         }
-        let center = [(f64::from(column) + 0.5) * size, (f64::from(row) + 0.5) * size];
+        let center = Point2::new((f64::from(column) + 0.5) * size, (f64::from(row) + 0.5) * size);
         space
             .nearest_occupied(center, cell)
             .is_none_or(|(distance, _)| distance + HALF_DIAGONAL * size + 1e-6 >= space.radius)
     });
-    let index = |point_m: [f64; 2]| {
-        let [x, y] = frame.to_cells(point_m);
+    let index = |point_m: Point2<f64>| {
+        let point = frame.to_cells(point_m);
         let piece = |value: f64, size: usize| ((value * f64::from(PIECES)) as usize).min(size - 1);
-        piece(y, height) * width + piece(x, width)
+        piece(point.y, height) * width + piece(point.x, width)
     };
     !frame.contains(a_m) || !frame.contains(b_m) || !regions.joined(index(a_m), index(b_m))
 }

@@ -3,13 +3,15 @@
 //! Shape after Pike (1977) and Melosh (1989) for simple craters: a bowl about 0.2 diameters deep with a rim 0.04
 //! diameters high and a blanket that falls with the cube of the distance; old ones are shallower and have lost rim.
 
+use nalgebra::{Point2, Vector2, distance};
+
 use crate::frame::GridFrame;
 use crate::random::Random;
 
 /// A crater to be pressed into a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Crater {
-    pub(crate) center_m: [f64; 2],
+    pub(crate) center_m: Point2<f64>,
     pub(crate) diameter_m: f64,
     /// 1 is fresh, 0 has vanished.
     pub(crate) freshness: f64,
@@ -37,16 +39,14 @@ impl Crater {
     /// Adds the crater to heights on a grid.
     pub(crate) fn press(&self, frame: &GridFrame, heights_m: &mut [f32]) {
         let reach = REACH_RADII * 0.5 * self.diameter_m;
-        let low = frame.to_cells([self.center_m[0] - reach, self.center_m[1] - reach]);
-        let high = frame.to_cells([self.center_m[0] + reach, self.center_m[1] + reach]);
+        let low = frame.to_cells(self.center_m - Vector2::repeat(reach));
+        let high = frame.to_cells(self.center_m + Vector2::repeat(reach));
         let columns = low[0].max(0.0) as u32..(high[0].max(0.0) as u32 + 1).min(frame.width);
         let rows = low[1].max(0.0) as u32..(high[1].max(0.0) as u32 + 1).min(frame.height);
         for row in rows {
             for column in columns.clone() {
                 let cell = crate::frame::Cell { column, row };
-                let [x, y] = frame.center_m(cell);
-                let (east, north) = (x - self.center_m[0], y - self.center_m[1]);
-                let added = self.height_m((east * east + north * north).sqrt());
+                let added = self.height_m(distance(&frame.center_m(cell), &self.center_m));
                 heights_m[frame.index(cell)] += added as f32;
             }
         }
@@ -63,13 +63,11 @@ pub(crate) fn crater_population(
     random: &mut Random,
 ) -> Vec<Crater> {
     let [least, greatest] = diameters_m;
-    let [east, north] = frame.extent_m();
+    let extent = frame.extent_m();
     let mut craters: Vec<Crater> = (0..count)
         .map(|_| {
-            let center_m = [
-                frame.origin_m[0] + random.range(-0.1, 1.1) * east,
-                frame.origin_m[1] + random.range(-0.1, 1.1) * north,
-            ];
+            let part = Vector2::new(random.range(-0.1, 1.1), random.range(-0.1, 1.1));
+            let center_m = frame.origin_m + part.component_mul(&extent);
             // The inverse of N(≥ D) ∝ D⁻² between the two diameters.
             let rank = random.unit();
             let share = least * least / (greatest * greatest);
@@ -87,7 +85,7 @@ mod tests {
 
     #[test]
     fn a_fresh_crater_has_the_depth_and_rim_of_simple_craters() {
-        let crater = Crater { center_m: [0.0, 0.0], diameter_m: 50.0, freshness: 1.0 };
+        let crater = Crater { center_m: Point2::origin(), diameter_m: 50.0, freshness: 1.0 };
         assert!((crater.height_m(25.0) - 2.0).abs() < 1e-9);
         assert!((crater.height_m(0.0) + 8.0).abs() < 1e-9);
         assert!((crater.height_m(24.999) - crater.height_m(25.001)).abs() < 0.01);

@@ -1,5 +1,6 @@
 //! Where a grid lies in the world: its cells, its corner, and the way between metres and cells.
 
+use nalgebra::{Point2, Vector2};
 use serde::{Deserialize, Serialize};
 
 /// One cell of a grid.
@@ -21,13 +22,13 @@ pub struct GridFrame {
     /// The side of a cell in metres.
     pub cell_size_m: f64,
     /// The south-west corner of the grid in metres east and north.
-    pub origin_m: [f64; 2],
+    pub origin_m: Point2<f64>,
 }
 
 impl GridFrame {
     /// A frame whose south-west corner is the origin.
     pub const fn new(width: u32, height: u32, cell_size_m: f64) -> Self {
-        Self { width, height, cell_size_m, origin_m: [0.0, 0.0] }
+        Self { width, height, cell_size_m, origin_m: Point2::new(0.0, 0.0) }
     }
 
     /// The number of cells.
@@ -36,14 +37,13 @@ impl GridFrame {
     }
 
     /// Metres from west to east and from south to north.
-    pub fn extent_m(&self) -> [f64; 2] {
-        [f64::from(self.width) * self.cell_size_m, f64::from(self.height) * self.cell_size_m]
+    pub fn extent_m(&self) -> Vector2<f64> {
+        Vector2::new(f64::from(self.width), f64::from(self.height)) * self.cell_size_m
     }
 
     /// The north-east corner in metres.
-    pub fn far_corner_m(&self) -> [f64; 2] {
-        let extent = self.extent_m();
-        [self.origin_m[0] + extent[0], self.origin_m[1] + extent[1]]
+    pub fn far_corner_m(&self) -> Point2<f64> {
+        self.origin_m + self.extent_m()
     }
 
     /// The place of a cell in row-major storage, southernmost row first.
@@ -57,39 +57,36 @@ impl GridFrame {
     }
 
     /// A point in units of cells from the south-west corner.
-    pub fn to_cells(&self, point_m: [f64; 2]) -> [f64; 2] {
-        [
-            (point_m[0] - self.origin_m[0]) / self.cell_size_m,
-            (point_m[1] - self.origin_m[1]) / self.cell_size_m,
-        ]
+    pub fn to_cells(&self, point_m: Point2<f64>) -> Point2<f64> {
+        ((point_m - self.origin_m) / self.cell_size_m).into()
     }
 
     /// A point given in units of cells from the south-west corner, in metres.
-    pub fn to_metres(&self, point_cells: [f64; 2]) -> [f64; 2] {
-        [
-            self.origin_m[0] + point_cells[0] * self.cell_size_m,
-            self.origin_m[1] + point_cells[1] * self.cell_size_m,
-        ]
+    pub fn to_metres(&self, point_cells: Point2<f64>) -> Point2<f64> {
+        self.origin_m + point_cells.coords * self.cell_size_m
     }
 
     /// Whether a point lies in the grid or on its border.
-    pub fn contains(&self, point_m: [f64; 2]) -> bool {
+    pub fn contains(&self, point_m: Point2<f64>) -> bool {
         let far = self.far_corner_m();
         (0..2).all(|axis| point_m[axis] >= self.origin_m[axis] && point_m[axis] <= far[axis])
     }
 
     /// The cell that holds a point. A cell holds its west and south border; the grid's east and north border belong
     /// to its last cells. `None` outside the grid and for a point that is not a number.
-    pub fn cell_at(&self, point_m: [f64; 2]) -> Option<Cell> {
+    pub fn cell_at(&self, point_m: Point2<f64>) -> Option<Cell> {
         if self.width == 0 || self.height == 0 || !self.contains(point_m) {
             return None;
         }
-        let [x, y] = self.to_cells(point_m);
-        Some(Cell { column: (x as u32).min(self.width - 1), row: (y as u32).min(self.height - 1) })
+        let point = self.to_cells(point_m);
+        Some(Cell {
+            column: (point.x as u32).min(self.width - 1),
+            row: (point.y as u32).min(self.height - 1),
+        })
     }
 
     /// The centre of a cell in metres.
-    pub fn center_m(&self, cell: Cell) -> [f64; 2] {
-        self.to_metres([f64::from(cell.column) + 0.5, f64::from(cell.row) + 0.5])
+    pub fn center_m(&self, cell: Cell) -> Point2<f64> {
+        self.to_metres(Point2::new(f64::from(cell.column) + 0.5, f64::from(cell.row) + 0.5))
     }
 }

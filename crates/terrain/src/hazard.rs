@@ -1,5 +1,6 @@
 //! Maps of slope, roughness and hazard for display and for reports, and what can be seen from where.
 
+use nalgebra::{Matrix2, Point2, Point3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::frame::Cell;
@@ -30,10 +31,7 @@ pub struct HazardLimits {
 impl Terrain {
     /// The slope of every cell in radians (Horn 1981), row by row from the south; NaN without data.
     pub fn slope_map_rad(&self) -> Vec<f32> {
-        self.map_cells(|cell| {
-            let [east, north] = self.cell_gradient(cell);
-            libm::atan((east * east + north * north).sqrt())
-        })
+        self.map_cells(|cell| libm::atan(self.cell_gradient(cell).norm()))
     }
 
     /// The roughness of every cell in metres: the standard deviation of the heights of the cells within `reach` columns
@@ -62,14 +60,14 @@ impl Terrain {
     /// Whether an eye so many metres over the ground at one point sees a mark so many metres over the ground at
     /// another: whether the straight line between them stays over the ground, looked at every half cell. `false` when
     /// an end has no height.
-    pub fn is_in_sight(&self, from_m: [f64; 2], eye_m: f64, to_m: [f64; 2], mark_m: f64) -> bool {
+    pub fn is_in_sight(&self, from_m: Point2<f64>, eye_m: f64, to_m: Point2<f64>, mark_m: f64) -> bool {
         let (Some(start), Some(end)) = (self.height_at(from_m), self.height_at(to_m)) else { return false };
         let (start, end) = (start + eye_m, end + mark_m);
         let ground = self.drape(from_m, to_m);
         let last = ground.len() - 1;
         ground.iter().enumerate().all(|(index, point)| {
             let share = index as f64 / last as f64;
-            point[2] <= start + (end - start) * share + 1e-9
+            point.z <= start + (end - start) * share + 1e-9
         })
     }
 
@@ -93,7 +91,7 @@ impl Terrain {
                 if let Some(height) = self.height_of(Cell { column, row }) {
                     let east = f64::from(column) - f64::from(center.column);
                     let north = f64::from(row) - f64::from(center.row);
-                    points.push([east, north, height]);
+                    points.push(Point3::new(east, north, height));
                 }
             }
         }
@@ -102,34 +100,46 @@ impl Terrain {
 }
 
 /// The standard deviation of points from the plane that fits them best, along the third axis.
-fn deviation_from_plane(points: &[[f64; 3]]) -> f64 {
+fn deviation_from_plane(points: &[Point3<f64>]) -> f64 {
     let count = points.len() as f64;
-    let mean = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / count;
-    let (east, north, up) = (mean(0), mean(1), mean(2));
-    let (mut ee, mut nn, mut en, mut eu, mut nu) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    let middle = points.iter().fold(Vector3::zeros(), |sum, point| sum + point.coords) / count;
+    // The normal equations of the fit: how the plan spreads, and how the height goes with it.
+    let (mut spread, mut rise) = (Matrix2::zeros(), Vector2::zeros());
     for point in points {
-        let (e, n, u) = (point[0] - east, point[1] - north, point[2] - up);
-        ee += e * e;
-        nn += n * n;
-        en += e * n;
-        eu += e * u;
-        nu += n * u;
+        let offset = point.coords - middle;
+        spread += offset.xy() * offset.xy().transpose();
+        rise += offset.xy() * offset.z;
     }
-    let determinant = ee * nn - en * en;
-    let (slope_e, slope_n) = if determinant > 1e-12 {
-        ((eu * nn - nu * en) / determinant, (nu * ee - eu * en) / determinant)
-    } else {
-        // Points along one line leave the slope across it open.
-        (if ee > 0.0 { eu / ee } else { 0.0 }, if nn > 0.0 && ee == 0.0 { nu / nn } else { 0.0 })
-    };
+    let slope = slope_of_fit(spread, rise);
     let squares: f64 = points
         .iter()
         .map(|point| {
-            let rest = point[2] - up - slope_e * (point[0] - east) - slope_n * (point[1] - north);
+            let offset = point.coords - middle;
+            let rest = offset.z - slope.x * offset.x - slope.y * offset.y;
             rest * rest
         })
         .sum();
     (squares / count).sqrt()
+}
+
+/// Solves the normal equations by Cramer's rule.
+fn slope_of_fit(spread: Matrix2<f64>, rise: Vector2<f64>) -> Vector2<f64> {
+    let determinant = spread.determinant();
+    if determinant > 1e-12 {
+        let [along_east, along_north] = [spread.column(0).into_owned(), spread.column(1).into_owned()];
+        let east = Matrix2::from_columns(&[rise, along_north]).determinant();
+        let north = Matrix2::from_columns(&[along_east, rise]).determinant();
+        return Vector2::new(east, north) / determinant;
+    }
+    // Points along one line leave the slope across it open.
+    let (east, north) = (spread[(0, 0)], spread[(1, 1)]);
+    if east > 0.0 {
+        Vector2::new(rise.x / east, 0.0)
+    } else if north > 0.0 {
+        Vector2::new(0.0, rise.y / north)
+    } else {
+        Vector2::zeros()
+    }
 }
 
 #[cfg(test)]
@@ -141,8 +151,8 @@ mod tests {
         let frame = GridFrame::new(30, 20, 1.0);
         let heights = (0..frame.cell_count())
             .map(|index| {
-                let [x, y] = frame.center_m(frame.cell(index));
-                height(x, y) as f32
+                let center = frame.center_m(frame.cell(index));
+                height(center.x, center.y) as f32
             })
             .collect();
         Terrain::new(frame, heights)
@@ -177,9 +187,9 @@ mod tests {
     #[test]
     fn a_ridge_hides_what_is_behind_it() {
         let ridge = terrain(|x, _| if (14.0..16.0).contains(&x) { 3.0 } else { 0.0 });
-        assert!(!ridge.is_in_sight([5.0, 5.0], 1.0, [25.0, 5.0], 1.0));
-        assert!(ridge.is_in_sight([5.0, 5.0], 4.0, [25.0, 5.0], 4.0));
-        assert!(ridge.is_in_sight([5.0, 5.0], 1.0, [12.0, 5.0], 1.0));
-        assert!(!ridge.is_in_sight([5.0, 5.0], 1.0, [99.0, 5.0], 1.0));
+        assert!(!ridge.is_in_sight(Point2::new(5.0, 5.0), 1.0, Point2::new(25.0, 5.0), 1.0));
+        assert!(ridge.is_in_sight(Point2::new(5.0, 5.0), 4.0, Point2::new(25.0, 5.0), 4.0));
+        assert!(ridge.is_in_sight(Point2::new(5.0, 5.0), 1.0, Point2::new(12.0, 5.0), 1.0));
+        assert!(!ridge.is_in_sight(Point2::new(5.0, 5.0), 1.0, Point2::new(99.0, 5.0), 1.0));
     }
 }

@@ -1,5 +1,9 @@
 //! Obstacles as a mission declares them, and the cells that they touch.
 
+use nalgebra::{Point2, Vector2, distance_squared};
+use parry2d_f64::query::PointQuery as _;
+use parry2d_f64::shape::Ball;
+use parry2d_f64::utils::point_in_poly2d;
 use serde::{Deserialize, Serialize};
 
 use crate::frame::{Cell, GridFrame};
@@ -10,14 +14,14 @@ pub enum Obstacle {
     /// A disc.
     Circle {
         /// The centre.
-        center_m: [f64; 2],
+        center_m: Point2<f64>,
         /// The radius.
         radius_m: f64,
     },
     /// A simple polygon; its last corner is joined to its first.
     Polygon {
         /// The corners, in either order of turning.
-        corners_m: Vec<[f64; 2]>,
+        corners_m: Vec<Point2<f64>>,
     },
 }
 
@@ -36,24 +40,23 @@ impl Obstacle {
         }
     }
 
-    /// Whether a point lies in the shape or on its border.
-    pub fn contains(&self, point_m: [f64; 2]) -> bool {
+    /// Whether a point lies in the shape; the border of a polygon may count either way.
+    pub fn contains(&self, point_m: Point2<f64>) -> bool {
         match self {
             Self::Circle { center_m, radius_m } => {
-                squared_distance(*center_m, point_m) <= radius_m * radius_m
+                Ball::new(*radius_m).contains_local_point(&Point2::from(point_m - center_m))
             }
-            Self::Polygon { corners_m } => polygon_contains(corners_m, point_m),
+            Self::Polygon { corners_m } => point_in_poly2d(&point_m, corners_m),
         }
     }
 
     /// The least and greatest cells that the shape's bounding box meets; `None` when it misses the grid.
     fn cell_box(&self, frame: &GridFrame) -> Option<[Cell; 2]> {
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        let mut cover = |point: [f64; 2], margin: f64| {
-            for axis in 0..2 {
-                low[axis] = low[axis].min(point[axis] - margin);
-                high[axis] = high[axis].max(point[axis] + margin);
-            }
+        let mut low = Point2::from([f64::INFINITY; 2]);
+        let mut high = Point2::from([f64::NEG_INFINITY; 2]);
+        let mut cover = |point: Point2<f64>, margin: f64| {
+            low = low.inf(&(point - Vector2::repeat(margin)));
+            high = high.sup(&(point + Vector2::repeat(margin)));
         };
         match self {
             Self::Circle { center_m, radius_m } => cover(*center_m, *radius_m),
@@ -74,45 +77,29 @@ impl Obstacle {
     }
 
     fn touches_cell(&self, frame: &GridFrame, cell: Cell) -> bool {
-        let low = frame.to_metres([f64::from(cell.column), f64::from(cell.row)]);
-        let high = frame.to_metres([f64::from(cell.column) + 1.0, f64::from(cell.row) + 1.0]);
+        let low = frame.to_metres(Point2::new(f64::from(cell.column), f64::from(cell.row)));
+        let high = frame.to_metres(Point2::new(f64::from(cell.column) + 1.0, f64::from(cell.row) + 1.0));
         match self {
             Self::Circle { center_m, radius_m } => {
-                let nearest = [center_m[0].clamp(low[0], high[0]), center_m[1].clamp(low[1], high[1])];
-                squared_distance(*center_m, nearest) <= radius_m * radius_m
+                let nearest = center_m.sup(&low).inf(&high);
+                distance_squared(center_m, &nearest) <= radius_m * radius_m
             }
             Self::Polygon { corners_m } => {
-                let middle = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
-                polygon_contains(corners_m, middle)
+                let middle = Point2::from(0.5 * (low.coords + high.coords));
+                point_in_poly2d(&middle, corners_m)
                     || sides(corners_m).any(|(a, b)| segment_meets_box(a, b, low, high))
             }
         }
     }
 }
 
-fn squared_distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    let (east, north) = (a[0] - b[0], a[1] - b[1]);
-    east * east + north * north
-}
-
 /// The sides of a polygon.
-fn sides(corners: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + '_ {
+fn sides(corners: &[Point2<f64>]) -> impl Iterator<Item = (Point2<f64>, Point2<f64>)> + '_ {
     corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
 }
 
-/// Whether a polygon contains a point, by the parity of crossings; its border may count either way.
-fn polygon_contains(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
-    let mut inside = false;
-    for (a, b) in sides(corners) {
-        if (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) {
-            inside = !inside;
-        }
-    }
-    inside
-}
-
 /// Whether a segment shares a point with a closed box: clipping after Liang and Barsky (1984).
-pub(crate) fn segment_meets_box(a: [f64; 2], b: [f64; 2], low: [f64; 2], high: [f64; 2]) -> bool {
+pub(crate) fn segment_meets_box(a: Point2<f64>, b: Point2<f64>, low: Point2<f64>, high: Point2<f64>) -> bool {
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
     for axis in 0..2 {
         let step = b[axis] - a[axis];
@@ -142,23 +129,46 @@ mod tests {
     #[test]
     fn a_disc_takes_every_cell_it_touches() {
         let frame = GridFrame::new(5, 5, 1.0);
-        let disc = Obstacle::Circle { center_m: [2.5, 2.5], radius_m: 0.6 };
+        let disc = Obstacle::Circle { center_m: Point2::new(2.5, 2.5), radius_m: 0.6 };
         assert_eq!(cells(&disc, &frame), [(2, 1), (1, 2), (2, 2), (3, 2), (2, 3)]);
     }
 
     #[test]
     fn a_thin_polygon_takes_the_cells_it_passes_without_holding_a_centre() {
         let frame = GridFrame::new(4, 3, 1.0);
-        let sliver = Obstacle::Polygon { corners_m: vec![[0.1, 1.1], [3.9, 1.2], [3.9, 1.15]] };
+        let sliver =
+            Obstacle::Polygon { corners_m: [[0.1, 1.1], [3.9, 1.2], [3.9, 1.15]].map(Point2::from).to_vec() };
         assert_eq!(cells(&sliver, &frame), [(0, 1), (1, 1), (2, 1), (3, 1)]);
     }
 
     #[test]
     fn an_obstacle_beyond_the_map_takes_no_cell() {
         let frame = GridFrame::new(4, 4, 1.0);
-        let away = Obstacle::Circle { center_m: [-9.0, 2.0], radius_m: 3.0 };
+        let away = Obstacle::Circle { center_m: Point2::new(-9.0, 2.0), radius_m: 3.0 };
         assert_eq!(cells(&away, &frame), []);
         let nothing = Obstacle::Polygon { corners_m: vec![] };
         assert_eq!(cells(&nothing, &frame), []);
+    }
+
+    #[test]
+    fn a_polygon_holds_the_points_from_which_a_ray_crosses_its_sides_an_odd_number_of_times() {
+        let (mut inside, mut outside) = (0, 0);
+        for seed in 0..200 {
+            let mut random = crate::Random::from_seed(seed);
+            let mut place = || Point2::new(random.range(0.0, 9.0), random.range(0.0, 9.0));
+            let corners_m: Vec<Point2<f64>> = (0..3 + seed % 5).map(|_| place()).collect();
+            for _ in 0..20 {
+                let point = place();
+                let crosses = |&(a, b): &(Point2<f64>, Point2<f64>)| {
+                    (a.y > point.y) != (b.y > point.y)
+                        && point.x < a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x)
+                };
+                let is_inside = sides(&corners_m).filter(crosses).count() % 2 == 1;
+                let found = Obstacle::Polygon { corners_m: corners_m.clone() }.contains(point);
+                assert_eq!(found, is_inside, "seed {seed}: {point} in {corners_m:?}");
+                if found { inside += 1 } else { outside += 1 }
+            }
+        }
+        assert!(inside > 200 && outside > 200, "{inside} inside, {outside} outside");
     }
 }

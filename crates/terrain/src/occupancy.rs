@@ -129,8 +129,7 @@ impl Occupancy {
 fn ground_state(terrain: &Terrain, cell: Cell, index: usize, traversability: &Traversability) -> CellState {
     match *traversability {
         Traversability::Ground { greatest_grade, .. } => {
-            let [east, north] = terrain.cell_gradient(cell);
-            if east * east + north * north > greatest_grade * greatest_grade {
+            if terrain.cell_gradient(cell).norm_squared() > greatest_grade * greatest_grade {
                 CellState::Steep
             } else {
                 CellState::Free

@@ -1,5 +1,6 @@
 //! Seeded recipes of Mars-like terrain, and the named maps that example missions use.
 
+use nalgebra::Point2;
 use serde::Serialize;
 
 use crate::crater::crater_population;
@@ -75,7 +76,7 @@ pub struct Dunes {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Fan {
     /// Where the river enters, as shares of the map's extent.
-    pub apex: [f64; 2],
+    pub apex: Point2<f64>,
     /// Length from the apex to the scarp in metres.
     pub length_m: f64,
     /// Height of the scarp in metres.
@@ -118,7 +119,12 @@ pub const RECIPES: &[Recipe] = &[
         relief: Relief { height_m: 5.0, wavelength_m: 240.0, octaves: 8, gain: 0.4, ridged: false },
         craters: Craters { count: 130, diameters_m: [6.0, 90.0], freshness: [0.15, 0.9] },
         dunes: Some(Dunes { height_m: 0.5, wavelength_m: 9.0, wind_rad: 0.6, cover: 0.2 }),
-        fan: Some(Fan { apex: [0.02, 0.62], length_m: 330.0, height_m: 14.0, channel_depth_m: 3.0 }),
+        fan: Some(Fan {
+            apex: Point2::new(0.02, 0.62),
+            length_m: 330.0,
+            height_m: 14.0,
+            channel_depth_m: 3.0,
+        }),
         rock_abundance: 0.06,
     },
     Recipe {
@@ -156,7 +162,7 @@ pub fn asset(name: &str) -> Option<Terrain> {
 }
 
 /// Rocks smaller than this are left out altogether: a rover drives over them.
-const LEAST_ROCK_M: f64 = 0.4;
+const MIN_ROCK_M: f64 = 0.4;
 
 /// Makes a map. Time is proportional to its cells and its number of octaves.
 pub fn generate(recipe: &Recipe) -> Terrain {
@@ -176,26 +182,26 @@ pub fn generate(recipe: &Recipe) -> Terrain {
             *height += dune_height(dunes, recipe.seed as u32, frame.center_m(frame.cell(index))) as f32;
         }
     }
-    let rocks = scatter_rocks(&frame, recipe.rock_abundance, LEAST_ROCK_M, &mut random);
+    let rocks = scatter_rocks(&frame, recipe.rock_abundance, MIN_ROCK_M, &mut random);
     Terrain::new(frame, heights_m).with_rocks(rocks)
 }
 
 /// Hills and delta at a point, in metres.
-fn surface_height(recipe: &Recipe, [x, y]: [f64; 2]) -> f64 {
+fn surface_height(recipe: &Recipe, point_m: Point2<f64>) -> f64 {
     let relief = recipe.relief;
     let seed = recipe.seed as u32;
-    let (u, v) = (x / relief.wavelength_m, y / relief.wavelength_m);
+    let wave = point_m / relief.wavelength_m;
     let noise = if relief.ridged { ridged_noise } else { fractal_noise };
-    let hills = relief.height_m * noise(seed, u, v, relief.octaves, relief.gain);
-    hills + recipe.fan.map_or(0.0, |fan| fan_height(&fan, &recipe.frame, seed, [x, y]))
+    let hills = relief.height_m * noise(seed, wave.x, wave.y, relief.octaves, relief.gain);
+    hills + recipe.fan.map_or(0.0, |fan| fan_height(&fan, &recipe.frame, seed, point_m))
 }
 
 /// How far a delta raises a point, in metres.
-fn fan_height(fan: &Fan, frame: &GridFrame, seed: u32, [x, y]: [f64; 2]) -> f64 {
-    let extent = frame.extent_m();
-    let (east, north) = (x - fan.apex[0] * extent[0], y - fan.apex[1] * extent[1]);
-    let distance = (east * east + north * north).sqrt();
-    let bearing = libm::atan2(north, east);
+fn fan_height(fan: &Fan, frame: &GridFrame, seed: u32, point_m: Point2<f64>) -> f64 {
+    let (x, y) = (point_m.x, point_m.y);
+    let offset = point_m.coords - fan.apex.coords.component_mul(&frame.extent_m());
+    let distance = offset.norm();
+    let bearing = libm::atan2(offset.y, offset.x);
     // The front is lobed: its distance from the apex varies with the bearing and a little from place to place.
     let lobes = 0.16 * gradient_noise(seed ^ 0xfa, bearing * 2.6, 0.5)
         + 0.05 * fractal_noise(seed ^ 0xfb, x / 40.0, y / 40.0, 3, 0.5);
@@ -211,7 +217,8 @@ fn fan_height(fan: &Fan, frame: &GridFrame, seed: u32, [x, y]: [f64; 2]) -> f64 
 }
 
 /// How far sand raises a point, in metres: crests across the wind, steeper in their lee.
-fn dune_height(dunes: &Dunes, seed: u32, [x, y]: [f64; 2]) -> f64 {
+fn dune_height(dunes: &Dunes, seed: u32, point_m: Point2<f64>) -> f64 {
+    let (x, y) = (point_m.x, point_m.y);
     let patch = fractal_noise(seed ^ 0xd0, x / 90.0, y / 90.0, 3, 0.5);
     let cover = smooth_step(0.0, 0.35, patch + dunes.cover - 0.5);
     if cover == 0.0 {

@@ -1,6 +1,7 @@
 //! Rocks by the size–frequency distribution of Golombek and Rapp (1997), "Size-frequency distributions of rocks on Mars
 //! and Earth analog sites", J. Geophys. Res. 102.
 
+use nalgebra::{Point2, Vector2};
 use serde::{Deserialize, Serialize};
 
 use crate::frame::GridFrame;
@@ -10,7 +11,7 @@ use crate::random::Random;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rock {
     /// Metres east and north.
-    pub center_m: [f64; 2],
+    pub center_m: Point2<f64>,
     /// Metres across.
     pub diameter_m: f64,
 }
@@ -45,19 +46,20 @@ pub fn scatter_rocks(
     random: &mut Random,
 ) -> Vec<Rock> {
     const CLASS_WIDTH_M: f64 = 0.05;
-    const GREATEST_DIAMETER_M: f64 = 4.0;
-    let [east, north] = frame.extent_m();
+    const MAX_DIAMETER_M: f64 = 4.0;
+    let extent = frame.extent_m();
     let mut rocks = Vec::new();
     let mut low = least_diameter_m;
-    while abundance > 0.0 && low < GREATEST_DIAMETER_M {
+    while abundance > 0.0 && low < MAX_DIAMETER_M {
         let high = low + CLASS_WIDTH_M;
-        let covered =
-            (cumulative_rock_area(abundance, low) - cumulative_rock_area(abundance, high)) * east * north;
+        let covered = (cumulative_rock_area(abundance, low) - cumulative_rock_area(abundance, high))
+            * extent.x
+            * extent.y;
         let middle = 0.5 * (low + high);
         let count = covered / (std::f64::consts::FRAC_PI_4 * middle * middle) + random.unit();
         for _ in 0..count as u32 {
-            let center_m =
-                [frame.origin_m[0] + random.unit() * east, frame.origin_m[1] + random.unit() * north];
+            let part = Vector2::new(random.unit(), random.unit());
+            let center_m = frame.origin_m + part.component_mul(&extent);
             rocks.push(Rock { center_m, diameter_m: random.range(low, high) });
         }
         low = high;

@@ -1,5 +1,6 @@
 //! The ground between two places: its profile, its length, and whether they see each other.
 
+use nalgebra::{Point2, Point3, distance};
 use serde::{Deserialize, Serialize};
 
 use crate::heightfield::Terrain;
@@ -8,7 +9,7 @@ use crate::heightfield::Terrain;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GroundProfile {
     /// Metres in the plan from the first place, and the height of the ground there, in order; both ends included.
-    pub points_m: Vec<[f64; 2]>,
+    pub points_m: Vec<Point2<f64>>,
     /// The length of the ground in metres, up and down its slopes.
     pub ground_m: f64,
     /// The straight distance in space between the two places, in metres.
@@ -23,18 +24,18 @@ pub struct GroundProfile {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LineOfSight {
     /// Where the ground first hides the second place from the first (east, north, up); `None` when nothing does.
-    pub blocked_at_m: Option<[f64; 3]>,
+    pub blocked_at_m: Option<Point3<f64>>,
 }
 
 impl Terrain {
     /// The ground from one place straight to another, sampled twice per cell. `None` when one of them has no height:
     /// it is outside the map or in a cell without data. Linear in the distance.
-    pub fn profile(&self, from_m: [f64; 2], to_m: [f64; 2]) -> Option<GroundProfile> {
+    pub fn profile(&self, from_m: Point2<f64>, to_m: Point2<f64>) -> Option<GroundProfile> {
         let (first, last) = (self.height_at(from_m)?, self.height_at(to_m)?);
         let ground = self.drape(from_m, to_m);
-        let points_m: Vec<[f64; 2]> =
-            ground.iter().map(|point| [distance(from_m, [point[0], point[1]]), point[2]]).collect();
-        let plan_m = distance(from_m, to_m);
+        let points_m: Vec<Point2<f64>> =
+            ground.iter().map(|point| Point2::new(distance(&from_m, &point.xy()), point.z)).collect();
+        let plan_m = distance(&from_m, &to_m);
         let mut profile = GroundProfile {
             ground_m: 0.0,
             straight_m: (plan_m * plan_m + (last - first) * (last - first)).sqrt(),
@@ -43,30 +44,30 @@ impl Terrain {
             points_m,
         };
         for pair in profile.points_m.windows(2) {
-            let (along, up) = (pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
-            profile.ground_m += (along * along + up * up).sqrt();
-            profile.climb_m[usize::from(up < 0.0)] += up.abs();
-            profile.slope_max_rad = profile.slope_max_rad.max(libm::atan2(up.abs(), along));
+            let piece = pair[1] - pair[0];
+            profile.ground_m += piece.norm();
+            profile.climb_m[usize::from(piece.y < 0.0)] += piece.y.abs();
+            profile.slope_max_rad = profile.slope_max_rad.max(libm::atan2(piece.y.abs(), piece.x));
         }
         Some(profile)
     }
 
     /// Whether eyes `eye_height_m` over the ground at two places see each other over the ground between them; declared
     /// obstacles and rocks do not count. `None` when one of the places has no height.
-    pub fn line_of_sight(&self, from_m: [f64; 2], to_m: [f64; 2], eye_height_m: f64) -> Option<LineOfSight> {
+    pub fn line_of_sight(
+        &self,
+        from_m: Point2<f64>,
+        to_m: Point2<f64>,
+        eye_height_m: f64,
+    ) -> Option<LineOfSight> {
         let from = self.height_at(from_m)? + eye_height_m;
         let to = self.height_at(to_m)? + eye_height_m;
         let ground = self.drape(from_m, to_m);
         let pieces = ground.len().saturating_sub(1).max(1) as f64;
         let inner = ground.iter().enumerate().skip(1).take(ground.len().saturating_sub(2));
         let hides =
-            |&(index, point): &(usize, &[f64; 3])| point[2] > from + (to - from) * index as f64 / pieces;
+            |&(index, point): &(usize, &Point3<f64>)| point.z > from + (to - from) * index as f64 / pieces;
         let blocked_at_m = inner.into_iter().find(hides).map(|(_, point)| *point);
         Some(LineOfSight { blocked_at_m })
     }
-}
-
-fn distance(from: [f64; 2], to: [f64; 2]) -> f64 {
-    let (east, north) = (to[0] - from[0], to[1] - from[1]);
-    (east * east + north * north).sqrt()
 }

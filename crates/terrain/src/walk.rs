@@ -1,12 +1,14 @@
 //! A segment walked from cell to cell of a grid, and its distance to cells, all in units of cells.
 
+use nalgebra::{Point2, Vector2};
+
 use crate::frame::{Cell, GridFrame};
 use crate::obstacle::segment_meets_box;
 
 /// A segment in units of cells.
 pub(crate) struct Walk {
-    pub(crate) from: [f64; 2],
-    pub(crate) direction: [f64; 2],
+    pub(crate) from: Point2<f64>,
+    pub(crate) direction: Vector2<f64>,
     pub(crate) length: f64,
 }
 
@@ -38,8 +40,8 @@ impl Cursor {
 
 impl Walk {
     /// The point so far along the segment.
-    pub(crate) fn point(&self, at: f64) -> [f64; 2] {
-        [self.from[0] + self.direction[0] * at, self.from[1] + self.direction[1] * at]
+    pub(crate) fn point(&self, at: f64) -> Point2<f64> {
+        self.from + self.direction * at
     }
 
     /// The cell of the grid so far along the segment.
@@ -72,35 +74,28 @@ impl Walk {
 }
 
 /// The squared distance from a point to the unit square with this south-west corner.
-pub(crate) fn point_to_cell(point: [f64; 2], low: [f64; 2]) -> f64 {
+pub(crate) fn point_to_cell(point: Point2<f64>, low: Point2<f64>) -> f64 {
     let outside = |value: f64, low: f64| (low - value).max(value - low - 1.0).max(0.0);
-    let (across, along) = (outside(point[0], low[0]), outside(point[1], low[1]));
-    across * across + along * along
+    Vector2::new(outside(point.x, low.x), outside(point.y, low.y)).norm_squared()
 }
 
 /// The squared distance between a segment and the unit square with this south-west corner. When they don't meet, the
 /// least distance is at an end of the segment or at a corner of the square.
-pub(crate) fn segment_to_cell(a: [f64; 2], b: [f64; 2], low: [f64; 2]) -> f64 {
-    let high = [low[0] + 1.0, low[1] + 1.0];
+pub(crate) fn segment_to_cell(a: Point2<f64>, b: Point2<f64>, low: Point2<f64>) -> f64 {
+    let high = low + Vector2::repeat(1.0);
     if segment_meets_box(a, b, low, high) {
         return 0.0;
     }
-    let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
+    let corners = [low, Point2::new(high.x, low.y), high, Point2::new(low.x, high.y)];
     corners
         .iter()
         .map(|&corner| point_to_segment(corner, a, b))
         .fold(point_to_cell(a, low).min(point_to_cell(b, low)), f64::min)
 }
 
-fn point_to_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
-    let side = [b[0] - a[0], b[1] - a[1]];
-    let offset = [point[0] - a[0], point[1] - a[1]];
-    let squared = side[0] * side[0] + side[1] * side[1];
-    let share = if squared > 0.0 {
-        ((offset[0] * side[0] + offset[1] * side[1]) / squared).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    let rest = [offset[0] - side[0] * share, offset[1] - side[1] * share];
-    rest[0] * rest[0] + rest[1] * rest[1]
+fn point_to_segment(point: Point2<f64>, a: Point2<f64>, b: Point2<f64>) -> f64 {
+    let (side, offset) = (b - a, point - a);
+    let squared = side.norm_squared();
+    let share = if squared > 0.0 { (offset.dot(&side) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    (offset - side * share).norm_squared()
 }

@@ -1,7 +1,7 @@
 //! The configuration space against independent ways to compute the same: dense samples, brute force over all cells,
 //! and flood fill.
 
-use parry2d_f64::math::{Pose, Vector};
+use nalgebra::{Isometry2, Point2, Vector2};
 use parry2d_f64::shape::{Cuboid, Segment};
 use terrain::{Cell, CellState, Collision, ConfigurationSpace, GridFrame, Obstacle, Occupancy, Random};
 
@@ -10,24 +10,27 @@ fn random_grid(random: &mut Random, density: f64) -> (GridFrame, Vec<bool>) {
         width: 8 + random.below(40),
         height: 8 + random.below(40),
         cell_size_m: 0.5 + random.unit(),
-        origin_m: [random.range(-50.0, 50.0), random.range(-50.0, 50.0)],
+        origin_m: Point2::new(random.range(-50.0, 50.0), random.range(-50.0, 50.0)),
     };
     let occupied = (0..frame.cell_count()).map(|_| random.unit() < density).collect();
     (frame, occupied)
 }
 
-fn random_point(frame: &GridFrame, random: &mut Random) -> [f64; 2] {
-    frame.to_metres([random.unit() * f64::from(frame.width), random.unit() * f64::from(frame.height)])
+fn random_point(frame: &GridFrame, random: &mut Random) -> Point2<f64> {
+    frame.to_metres(Point2::new(
+        random.unit() * f64::from(frame.width),
+        random.unit() * f64::from(frame.height),
+    ))
 }
 
 /// Metres from a point to the nearest occupied square, over all squares.
-fn distance_by_brute_force(frame: &GridFrame, occupied: &[bool], point: [f64; 2]) -> f64 {
+fn distance_by_brute_force(frame: &GridFrame, occupied: &[bool], point: Point2<f64>) -> f64 {
     let mut least = f64::INFINITY;
     for (index, _) in occupied.iter().enumerate().filter(|(_, occupied)| **occupied) {
         let center = frame.center_m(frame.cell(index));
         let half = 0.5 * frame.cell_size_m;
-        let across = ((point[0] - center[0]).abs() - half).max(0.0);
-        let along = ((point[1] - center[1]).abs() - half).max(0.0);
+        let across = ((point.x - center.x).abs() - half).max(0.0);
+        let along = ((point.y - center.y).abs() - half).max(0.0);
         least = least.min((across * across + along * along).sqrt());
     }
     least
@@ -72,11 +75,11 @@ fn a_free_segment_is_free_at_every_dense_sample_and_a_blocked_one_comes_too_near
             let least = (0..=samples)
                 .map(|sample| {
                     let share = f64::from(sample) / f64::from(samples);
-                    let point = [a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share];
+                    let point = a + (b - a) * share;
                     distance_by_brute_force(&frame, &occupied, point)
                 })
                 .fold(f64::INFINITY, f64::min);
-            let length = ((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1])).sqrt();
+            let length = (b - a).norm();
             // Between two samples the distance can be less than at both by at most half their spacing.
             let doubt = 0.5 * length / f64::from(samples);
             if space.is_segment_free(a, b) {
@@ -96,19 +99,19 @@ fn a_free_segment_is_free_at_every_dense_sample_and_a_blocked_one_comes_too_near
 }
 
 /// Metres between a segment and the nearest occupied square, by parry's convex distance.
-fn distance_by_parry(frame: &GridFrame, occupied: &[bool], a: [f64; 2], b: [f64; 2]) -> f64 {
+fn distance_by_parry(frame: &GridFrame, occupied: &[bool], a: Point2<f64>, b: Point2<f64>) -> f64 {
     let half = 0.5 * frame.cell_size_m;
-    let square = Cuboid::new(Vector::new(half, half));
-    let segment = Segment::new(Vector::new(a[0], a[1]), Vector::new(b[0], b[1]));
+    let square = Cuboid::new(Vector2::new(half, half));
+    let segment = Segment::new(a, b);
     occupied
         .iter()
         .enumerate()
         .filter(|(_, occupied)| **occupied)
         .map(|(index, _)| {
-            let [x, y] = frame.center_m(frame.cell(index));
-            parry2d_f64::query::distance(&Pose::IDENTITY, &segment, &Pose::translation(x, y), &square)
+            let center = frame.center_m(frame.cell(index));
+            let world_from_square = Isometry2::translation(center.x, center.y);
+            parry2d_f64::query::distance(&Isometry2::identity(), &segment, &world_from_square, &square)
                 .unwrap()
-                .distance
         })
         .fold(f64::INFINITY, f64::min)
 }
@@ -164,7 +167,7 @@ fn the_least_clearance_of_a_segment_agrees_with_dense_samples() {
         let sampled = (0..=2000)
             .map(|sample| {
                 let share = f64::from(sample) / 2000.0;
-                space.clearance_m([a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share]).unwrap()
+                space.clearance_m(a + (b - a) * share).unwrap()
             })
             .fold(f64::INFINITY, f64::min);
         let found = space.segment_clearance_m(a, b).unwrap();
@@ -181,9 +184,9 @@ fn a_point_vehicle_does_not_slip_between_cells_that_share_a_corner() {
     occupied[frame.index(Cell { column: 1, row: 2 })] = true;
     occupied[frame.index(Cell { column: 2, row: 1 })] = true;
     let space = ConfigurationSpace::new(Occupancy::from_obstacles(frame, &occupied), 0.0);
-    assert!(!space.is_segment_free([1.5, 1.5], [2.5, 2.5]));
-    assert!(!space.is_segment_free([2.5, 2.5], [1.5, 1.5]));
-    assert!(space.is_segment_free([0.5, 1.5], [1.99, 1.5]));
+    assert!(!space.is_segment_free(Point2::new(1.5, 1.5), Point2::new(2.5, 2.5)));
+    assert!(!space.is_segment_free(Point2::new(2.5, 2.5), Point2::new(1.5, 1.5)));
+    assert!(space.is_segment_free(Point2::new(0.5, 1.5), Point2::new(1.99, 1.5)));
 }
 
 #[test]
@@ -192,31 +195,33 @@ fn a_point_on_the_west_border_of_a_free_cell_belongs_to_it() {
     let mut occupied = vec![false; 9];
     occupied[frame.index(Cell { column: 0, row: 1 })] = true;
     let space = ConfigurationSpace::new(Occupancy::from_obstacles(frame, &occupied), 0.0);
-    assert!(space.is_free([1.0, 1.0]));
-    assert!(space.is_segment_free([1.0, 0.0], [1.0, 3.0]));
-    assert!(!space.is_segment_free([1.5, 1.5], [0.9, 1.5]));
+    assert!(space.is_free(Point2::new(1.0, 1.0)));
+    assert!(space.is_segment_free(Point2::new(1.0, 0.0), Point2::new(1.0, 3.0)));
+    assert!(!space.is_segment_free(Point2::new(1.5, 1.5), Point2::new(0.9, 1.5)));
 }
 
 #[test]
 fn the_borders_of_the_map_can_be_reached_but_not_left() {
     let space = ConfigurationSpace::new(Occupancy::free(GridFrame::new(7, 5, 0.6)), 0.5);
-    let [east, north] = space.frame().far_corner_m();
-    assert!(space.is_segment_free([0.0, 0.0], [east, north]));
-    assert!(space.is_segment_free([east, north], [0.0, north]));
-    assert!(!space.is_segment_free([0.0, 0.0], [east + 0.01, north]));
-    assert_eq!(space.collision_at([-1.0, 0.0]), Some(Collision::OutsideMap));
-    assert_eq!(space.clearance_m([1.0, 1.0]), Some(f64::INFINITY));
+    let far = space.frame().far_corner_m();
+    assert!(space.is_segment_free(Point2::origin(), far));
+    assert!(space.is_segment_free(far, Point2::new(0.0, far.y)));
+    assert!(!space.is_segment_free(Point2::origin(), far + Vector2::new(0.01, 0.0)));
+    assert_eq!(space.collision_at(Point2::new(-1.0, 0.0)), Some(Collision::OutsideMap));
+    assert_eq!(space.clearance_m(Point2::new(1.0, 1.0)), Some(f64::INFINITY));
 }
 
 #[test]
 fn what_is_in_the_way_is_named() {
     let frame = GridFrame::new(20, 20, 0.5);
     let mut occupancy = Occupancy::free(frame);
-    occupancy.mark(&Obstacle::Circle { center_m: [5.0, 5.0], radius_m: 1.0 }, CellState::Obstacle);
+    occupancy.mark(&Obstacle::Circle { center_m: Point2::new(5.0, 5.0), radius_m: 1.0 }, CellState::Obstacle);
     let space = ConfigurationSpace::new(occupancy, 0.5);
-    let Some(Collision::Cell { state, .. }) = space.collision_at([6.6, 5.1]) else { panic!("free") };
+    let Some(Collision::Cell { state, .. }) = space.collision_at(Point2::new(6.6, 5.1)) else {
+        panic!("free")
+    };
     assert_eq!(state, CellState::Obstacle);
-    assert_eq!(space.collision_at([8.0, 8.0]), None);
+    assert_eq!(space.collision_at(Point2::new(8.0, 8.0)), None);
 }
 
 /// A square wall around the middle of a map, with a gap of some cells in its north side.
@@ -241,14 +246,14 @@ fn a_closed_wall_separates_and_an_open_one_does_not() {
     {
         let (frame, occupied) = fortress(gap_cells);
         let space = ConfigurationSpace::new(Occupancy::from_obstacles(frame, &occupied), radius);
-        let (inside, outside) = ([20.5, 20.5], [3.0, 3.0]);
+        let (inside, outside) = (Point2::new(20.5, 20.5), Point2::new(3.0, 3.0));
         assert_eq!(space.are_separated(inside, outside), separated, "gap {gap_cells}, radius {radius}");
         assert_eq!(
             space.are_separated_finely(inside, outside),
             separated,
             "gap {gap_cells}, radius {radius}"
         );
-        assert!(!space.are_separated(outside, [37.0, 37.0]));
+        assert!(!space.are_separated(outside, Point2::new(37.0, 37.0)));
     }
 }
 
@@ -257,7 +262,10 @@ fn a_gap_too_narrow_for_the_vehicle_separates() {
     for (gap_cells, radius) in [(1, 0.7), (2, 1.2), (3, 1.75)] {
         let (frame, occupied) = fortress(gap_cells);
         let space = ConfigurationSpace::new(Occupancy::from_obstacles(frame, &occupied), radius);
-        assert!(space.are_separated_finely([20.5, 20.5], [3.0, 3.0]), "gap {gap_cells}, radius {radius}");
+        assert!(
+            space.are_separated_finely(Point2::new(20.5, 20.5), Point2::new(3.0, 3.0)),
+            "gap {gap_cells}, radius {radius}"
+        );
     }
 }
 
@@ -273,5 +281,5 @@ fn cells_that_only_share_corners_close_a_ring() {
         }
     }
     let space = ConfigurationSpace::new(Occupancy::from_obstacles(frame, &occupied), 0.0);
-    assert!(space.are_separated([4.5, 4.5], [0.5, 0.5]));
+    assert!(space.are_separated(Point2::new(4.5, 4.5), Point2::new(0.5, 0.5)));
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use terrain::Cell;
 use terrain::format::{
-    FileFormat, FormatError, GREATEST_CELL_COUNT, ImportOptions, Meaning, Raster, RawLayout, SampleType,
+    FileFormat, FormatError, ImportOptions, MAX_CELL_COUNT, Meaning, Raster, RawLayout, SampleType,
     read_raster, read_terrain,
 };
 
@@ -163,7 +163,7 @@ fn an_ascii_grid_is_read_with_its_cell_size_and_holes() {
     assert_eq!(raster.samples[..2], [1.0, 2.0]);
     assert!(raster.samples[2].is_nan());
     assert_eq!(raster.samples[3..], [4.0, 5.5, -60.0]);
-    assert_eq!(raster.into_terrain().height_at([1.0, 1.0]), Some(4.0));
+    assert_eq!(raster.into_terrain().height_at(nalgebra::Point2::new(1.0, 1.0)), Some(4.0));
 }
 
 #[test]
@@ -236,7 +236,7 @@ fn an_enormous_map_is_refused_before_it_is_allocated() {
     for bytes in [b"P5 70000 70000 255 ".as_slice(), ascii.as_bytes(), moving.as_bytes(), &png] {
         let error = read(bytes).unwrap_err();
         assert!(matches!(error, FormatError::TooLarge { .. }), "{error}");
-        assert!(error.to_string().contains(&GREATEST_CELL_COUNT.to_string()));
+        assert!(error.to_string().contains(&MAX_CELL_COUNT.to_string()));
     }
 }
 

@@ -1,5 +1,6 @@
 //! The ground between two places: lengths and views of ground whose shape is known.
 
+use nalgebra::Point2;
 use terrain::{GridFrame, Terrain};
 
 /// A plain of 100 m with a wall 10 m high across it, from 48 m to 52 m east.
@@ -18,17 +19,17 @@ fn slope() -> Terrain {
 #[test]
 fn on_an_even_slope_ground_and_straight_line_are_equally_long() {
     // 40 m east and 30 m up are 50 m.
-    let profile = slope().profile([10.5, 20.5], [50.5, 20.5]).expect("on the map");
+    let profile = slope().profile(Point2::new(10.5, 20.5), Point2::new(50.5, 20.5)).expect("on the map");
     assert!((profile.straight_m - 50.0).abs() < 1e-6, "{}", profile.straight_m);
     assert!((profile.ground_m - 50.0).abs() < 1e-6, "{}", profile.ground_m);
     assert!((profile.climb_m[0] - 30.0).abs() < 1e-6 && profile.climb_m[1] == 0.0, "{:?}", profile.climb_m);
     assert!((profile.slope_max_rad - 0.75_f64.atan()).abs() < 1e-6);
-    assert_eq!(profile.points_m.first(), Some(&[0.0, 7.5]));
+    assert_eq!(profile.points_m.first(), Some(&Point2::new(0.0, 7.5)));
 }
 
 #[test]
 fn over_a_wall_the_ground_is_longer_by_going_up_and_down() {
-    let profile = walled().profile([20.5, 50.5], [80.5, 50.5]).expect("on the map");
+    let profile = walled().profile(Point2::new(20.5, 50.5), Point2::new(80.5, 50.5)).expect("on the map");
     assert!((profile.straight_m - 60.0).abs() < 1e-9);
     assert!((profile.climb_m[0] - 10.0).abs() < 1e-6 && (profile.climb_m[1] - 10.0).abs() < 1e-6);
     // Each flank leads 10 m up within one metre.
@@ -39,11 +40,13 @@ fn over_a_wall_the_ground_is_longer_by_going_up_and_down() {
 #[test]
 fn a_wall_hides_what_is_behind_it_and_its_near_flank_is_said() {
     let ground = walled();
-    let sight = ground.line_of_sight([20.5, 50.5], [80.5, 50.5], 1.5).expect("on the map");
-    let [east, north, up] = sight.blocked_at_m.expect("hidden");
-    assert!((47.0..49.0).contains(&east) && (north - 50.5).abs() < 1e-9 && up > 1.5, "{east} {north} {up}");
-    let back = ground.line_of_sight([80.5, 50.5], [20.5, 50.5], 1.5).expect("on the map");
-    assert!(back.blocked_at_m.is_some_and(|at| (51.0..53.0).contains(&at[0])));
+    let sight =
+        ground.line_of_sight(Point2::new(20.5, 50.5), Point2::new(80.5, 50.5), 1.5).expect("on the map");
+    let at = sight.blocked_at_m.expect("hidden");
+    assert!((47.0..49.0).contains(&at.x) && (at.y - 50.5).abs() < 1e-9 && at.z > 1.5, "{at}");
+    let back =
+        ground.line_of_sight(Point2::new(80.5, 50.5), Point2::new(20.5, 50.5), 1.5).expect("on the map");
+    assert!(back.blocked_at_m.is_some_and(|at| (51.0..53.0).contains(&at.x)));
 }
 
 #[test]
@@ -51,13 +54,13 @@ fn places_on_the_same_side_and_eyes_above_the_wall_see_each_other() {
     let ground = walled();
     let clear =
         |from, to, eye| ground.line_of_sight(from, to, eye).expect("on the map").blocked_at_m.is_none();
-    assert!(clear([20.5, 20.5], [40.5, 80.5], 1.5));
-    assert!(clear([20.5, 50.5], [80.5, 50.5], 10.5));
-    assert!(clear([20.5, 50.5], [50.5, 50.5], 1.5), "the top of the wall is seen");
+    assert!(clear(Point2::new(20.5, 20.5), Point2::new(40.5, 80.5), 1.5));
+    assert!(clear(Point2::new(20.5, 50.5), Point2::new(80.5, 50.5), 10.5));
+    assert!(clear(Point2::new(20.5, 50.5), Point2::new(50.5, 50.5), 1.5), "the top of the wall is seen");
 }
 
 #[test]
 fn places_outside_the_map_have_no_profile() {
-    assert_eq!(slope().profile([-1.0, 5.0], [5.0, 5.0]), None);
-    assert_eq!(slope().line_of_sight([5.0, 5.0], [5.0, 500.0], 1.5), None);
+    assert_eq!(slope().profile(Point2::new(-1.0, 5.0), Point2::new(5.0, 5.0)), None);
+    assert_eq!(slope().line_of_sight(Point2::new(5.0, 5.0), Point2::new(5.0, 500.0), 1.5), None);
 }

@@ -1,14 +1,15 @@
-//! Vehicles under way in a run: what their laser range finders see, and where they mean to drive next.
+//! Vehicles under way in a run: what their range sensors see, and where they mean to drive next.
 
 use glam::{Vec2, Vec3};
 use mission::{DriveFrame, Execution};
-use motion::LaserModel;
+use motion::RangeSensor;
+use nalgebra::Point2;
 
 use crate::scene::{self, SceneInput, cased_line, faded, place};
 use crate::shapes::Shapes;
 
-/// How high over the ground a laser looks, in metres.
-const LASER_M: f32 = 0.5;
+/// How high over the ground a range sensor looks, in metres.
+const SENSOR_M: f32 = 0.5;
 /// The height of marks where a ray meets something, in metres.
 const MARK_M: f32 = 0.3;
 
@@ -35,17 +36,21 @@ pub fn under_way(run: &Execution, time: f64) -> impl Iterator<Item = (u32, &Driv
     })
 }
 
-/// The distance from a vehicle to the nearest thing that its laser sees, in metres.
+/// The distance from a vehicle to the nearest thing that its range sensor sees, in metres.
 pub fn nearest_seen_m(frame: &DriveFrame) -> Option<f32> {
     let from = place(frame.position_m);
-    let away = frame.rays_m.iter().map(|&[east, north]| from.distance(Vec2::new(east, north)));
+    let away = frame.rays_m.iter().map(|&point| from.distance(single(point)));
     away.min_by(f32::total_cmp)
+}
+
+fn single(point_m: Point2<f32>) -> Vec2 {
+    Vec2::new(point_m.x, point_m.y)
 }
 
 /// The local plan: along the path, or around what was seen.
 fn way_ahead(shapes: &mut Shapes, input: &SceneInput<'_>, origin: Vec2, frame: &DriveFrame, color: [f32; 4]) {
     // The plan begins where the vehicle was when it was made: what it has passed since is left out.
-    let points: Vec<Vec2> = frame.plan_m.iter().map(|&[east, north]| Vec2::new(east, north)).collect();
+    let points: Vec<Vec2> = frame.plan_m.iter().map(|&point| single(point)).collect();
     let passed = origin.distance(place(frame.position_m));
     let ahead = points.into_iter().filter(|point| point.distance(place(frame.position_m)) > passed);
     let mut before = origin;
@@ -55,10 +60,10 @@ fn way_ahead(shapes: &mut Shapes, input: &SceneInput<'_>, origin: Vec2, frame: &
     }
 }
 
-/// The sector that the laser sweeps, its rays that meet something, and a mark where they do.
+/// The sector that the range sensor sweeps, its rays that meet something, and a mark where they do.
 fn rays(shapes: &mut Shapes, input: &SceneInput<'_>, origin: Vec2, frame: &DriveFrame, color: [f32; 4]) {
     const ARC_PIECES: u16 = 24;
-    let model = LaserModel::SICK;
+    let model = RangeSensor::SICK;
     let (reach, heading) = (model.range_m as f32, frame.heading_rad as f32);
     let half = (model.field_of_view_rad / 2.0) as f32;
     let rim = |piece: u16| {
@@ -72,9 +77,9 @@ fn rays(shapes: &mut Shapes, input: &SceneInput<'_>, origin: Vec2, frame: &Drive
     for end in [rim(0), rim(ARC_PIECES)] {
         shapes.draped_line(input.ground, [origin, end], 1.0, edge);
     }
-    let eye = input.ground.drape(origin, LASER_M);
-    for &[east, north] in &frame.rays_m {
-        let met = input.ground.drape(Vec2::new(east, north), LASER_M);
+    let eye = input.ground.drape(origin, SENSOR_M);
+    for &point in &frame.rays_m {
+        let met = input.ground.drape(single(point), SENSOR_M);
         shapes.line(eye, met, 1.0, faded(color, 0.5));
         shapes.line(met, met + Vec3::Z * MARK_M, 1.4, input.palette.light);
     }
@@ -88,10 +93,10 @@ mod tests {
     fn the_nearest_thing_seen_is_measured_from_the_vehicle() {
         let frame = DriveFrame {
             time: 0.0,
-            position_m: [10.0, 10.0],
+            position_m: [10.0, 10.0].into(),
             heading_rad: 0.0,
             speed_mps: 0.5,
-            rays_m: vec![[16.0, 10.0], [13.0, 14.0]],
+            rays_m: [[16.0, 10.0], [13.0, 14.0]].map(Point2::from).to_vec(),
             plan_m: Vec::new(),
         };
         assert_eq!(nearest_seen_m(&frame), Some(5.0));

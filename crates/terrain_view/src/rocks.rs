@@ -1,7 +1,7 @@
 //! The rocks of a map near what the camera looks at: those that vehicles must keep away from, mapped or not.
 
 use glam::{Vec2, Vec3};
-use motion::LaserModel;
+use motion::RangeSensor;
 use terrain::{Rock, Terrain};
 
 use crate::camera::Camera;
@@ -20,7 +20,7 @@ const STONE: [f32; 4] = [0.53, 0.38, 0.29, 1.0];
 
 /// Draws the rocks around the camera's target, the largest if there are too many.
 pub(crate) fn draw(shapes: &mut Shapes, ground: &Ground, map: &Terrain, camera: &Camera) {
-    let around_m = AROUND_M.max(LaserModel::SICK.range_m as f32);
+    let around_m = AROUND_M.max(RangeSensor::SICK.range_m as f32);
     if camera.distance_m > SHOWN_WITHIN_M {
         return;
     }
@@ -61,6 +61,7 @@ fn stone(shapes: &mut Shapes, ground: &Ground, rock: &Rock) {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Point2;
     use terrain::GridFrame;
 
     use super::*;
@@ -68,7 +69,7 @@ mod tests {
     #[test]
     fn rocks_are_drawn_around_the_target_of_a_near_camera_only() {
         let frame = GridFrame::new(400, 400, 1.0);
-        let rock = |east, diameter_m| Rock { center_m: [east, 200.0], diameter_m };
+        let rock = |east, diameter_m| Rock { center_m: Point2::new(east, 200.0), diameter_m };
         let rocks = vec![rock(200.0, 1.0), rock(220.0, 0.1), rock(390.0, 2.0)];
         let map = Terrain::flat(frame).with_rocks(rocks);
         let ground = Ground::new(400, 400, 1.0, Vec2::splat(0.5), &vec![0.0; 160_000]);

@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use mission::Snapshot;
+use nalgebra::Point2;
 use rmpl::program::{ObstacleShape, VehicleDecl, World};
 use workbench::state::Selection;
 use workbench::state::growth::Growth;
@@ -70,7 +71,7 @@ pub struct SceneInput<'a> {
     /// What a tool in hand has and would do.
     pub sketch: &'a Sketch,
     /// Obstacles that have appeared in the run that is watched, with centres and radii in metres.
-    pub appeared: &'a [([f64; 2], f64)],
+    pub appeared: &'a [(Point2<f64>, f64)],
 }
 
 /// What a tool has so far, to be drawn on the ground.
@@ -108,7 +109,7 @@ pub fn build(input: &SceneInput<'_>) -> Shapes {
     if input.growth.shown().is_none() {
         paths(&mut shapes, input);
     }
-    encounters(&mut shapes, input);
+    separation_violations(&mut shapes, input);
     driving::draw(&mut shapes, input);
     vehicles(&mut shapes, input);
     tree::draw(&mut shapes, input);
@@ -117,8 +118,9 @@ pub fn build(input: &SceneInput<'_>) -> Shapes {
 }
 
 /// A position of the program in the renderer's precision.
-pub fn place([east, north]: [f64; 2]) -> Vec2 {
-    Vec2::new(east as f32, north as f32)
+pub fn place(point_m: impl Into<Point2<f64>>) -> Vec2 {
+    let point_m = point_m.into();
+    Vec2::new(point_m.x as f32, point_m.y as f32)
 }
 
 /// Where a vehicle is and where its nose points at `time`: on its way, or at its start.
@@ -262,9 +264,9 @@ fn paths(shapes: &mut Shapes, input: &SceneInput<'_>) {
     }
 }
 
-fn encounters(shapes: &mut Shapes, input: &SceneInput<'_>) {
-    for encounter in &*input.snapshot.encounters {
-        ring(shapes, input, place(encounter.position_m), 4.0, input.palette.warning, 3.0);
+fn separation_violations(shapes: &mut Shapes, input: &SceneInput<'_>) {
+    for violation in &*input.snapshot.separation_violations {
+        ring(shapes, input, place(violation.position_m), 4.0, input.palette.warning, 3.0);
     }
 }
 

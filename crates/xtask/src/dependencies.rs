@@ -11,7 +11,7 @@ use spdx::{Expression, ParseMode};
 const REGISTRY: &str = "registry+https://github.com/rust-lang/crates.io-index";
 
 /// The rules that are read, and the values that they may have. Others would not be checked, so they are refused.
-const UNDERSTOOD: [(&str, &str, Option<&str>); 10] = [
+const UNDERSTOOD: [(&str, &str, Option<&str>); 11] = [
     ("graph", "all-features", Some("true")),
     ("licenses", "allow", None),
     ("licenses", "exceptions", None),
@@ -21,6 +21,8 @@ const UNDERSTOOD: [(&str, &str, Option<&str>); 10] = [
     ("bans", "wildcards", Some("\"deny\"")),
     ("bans", "allow-wildcard-paths", Some("true")),
     ("advisories", "yanked", Some("\"deny\"")),
+    // Advisories are not looked up here.
+    ("advisories", "unmaintained", Some("\"workspace\"")),
     ("sources", "unknown-registry", Some("\"deny\"")),
     ("sources", "unknown-git", Some("\"deny\"")),
 ];

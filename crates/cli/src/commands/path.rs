@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 use anyhow::Context as _;
 use clap::ValueEnum;
 use motion::{Failure, PlannerKind, Query, Search, Settings, ShortcutSettings, Statistics};
+use nalgebra::Point2;
 use serde_json::{Value, json};
 use terrain::format::{FileFormat, ImportOptions, read_raster};
 use terrain::{ConfigurationSpace, GridFrame, Occupancy};
@@ -25,10 +26,10 @@ pub struct Args {
     map: PathBuf,
     /// Where it starts: x to the right and y down from the top left corner.
     #[arg(long, value_name = "X,Y", value_parser = parse_point, allow_hyphen_values = true)]
-    from: [f64; 2],
+    from: Point2<f64>,
     /// Where it ends.
     #[arg(long, value_name = "X,Y", value_parser = parse_point, allow_hyphen_values = true)]
-    to: [f64; 2],
+    to: Point2<f64>,
     /// Which planner.
     #[arg(long, value_enum, default_value_t = Planner::RrtConnect)]
     planner: Planner,
@@ -228,7 +229,7 @@ fn describe(runs: &[Run]) -> String {
                     run.millis[2]
                 );
                 if runs.len() == 1 {
-                    text.extend(path.points_m.iter().map(|[x, y]| format!("{x} {y}\n")));
+                    text.extend(path.points_m.iter().map(|point| format!("{} {}\n", point.x, point.y)));
                 }
             }
             Err(failure) => text += &format!("{prefix}{failure} ({:.3} ms)\n", run.millis[2]),
@@ -237,9 +238,9 @@ fn describe(runs: &[Run]) -> String {
     text
 }
 
-fn parse_point(text: &str) -> Result<[f64; 2], String> {
+fn parse_point(text: &str) -> Result<Point2<f64>, String> {
     let (x, y) = text.split_once(',').ok_or("two numbers with a comma between them are needed, as in 8,8")?;
-    Ok([parse_number(x)?, parse_number(y)?])
+    Ok(Point2::new(parse_number(x)?, parse_number(y)?))
 }
 
 fn parse_number(text: &str) -> Result<f64, String> {
@@ -263,8 +264,8 @@ mod tests {
 
     #[test]
     fn points_are_two_finite_numbers() {
-        assert_eq!(parse_point("8,-503.5"), Ok([8.0, -503.5]));
-        assert_eq!(parse_point(" 1 , 2 "), Ok([1.0, 2.0]));
+        assert_eq!(parse_point("8,-503.5"), Ok(Point2::new(8.0, -503.5)));
+        assert_eq!(parse_point(" 1 , 2 "), Ok(Point2::new(1.0, 2.0)));
         assert!(parse_point("8").unwrap_err().contains("comma"));
         assert!(parse_point("8,x").unwrap_err().contains("`x`"));
         assert!(parse_point("8,inf").unwrap_err().contains("finite"));

@@ -9,7 +9,7 @@ use anyhow::Context as _;
 use clap::ValueEnum;
 use exact::{Bound, Time};
 use kirk::{Failure, Options, Outcome, Search, Stats, Status};
-use mission::paths_json::{encounters_json, traverses_json};
+use mission::paths_json::{separation_violations_json, traverses_json};
 use mission::planning::{self, Planned};
 use mission::{Paths, Problem};
 use rmpl::LineIndex;
@@ -202,7 +202,7 @@ fn outcome_json(planned: &Planned, loaded: &Loaded, [compile_millis, plan_millis
             "reason": undrivable.reason,
         })).collect::<Vec<_>>(),
         "traverses": world.map(|world| traverses_json(&planned.traverses, &planned.network, world)),
-        "encounters": world.map(|world| encounters_json(&planned.encounters, world)),
+        "encounters": world.map(|world| separation_violations_json(&planned.separation_violations, world)),
         "stats": {
             "parse_millis": loaded.parse_millis,
             "compile_millis": compile_millis - loaded.parse_millis,

@@ -140,7 +140,7 @@ fn review_json(review: &Review) -> Value {
             "clearance_m": it.clearance_m,
             "slope_max_rad": it.slope_max_rad,
         }))).collect::<Vec<_>>(),
-        "encounters": plain(&review.encounters),
+        "encounters": plain(&review.separation_violations),
         "warnings": plain(&review.warnings),
     })
 }

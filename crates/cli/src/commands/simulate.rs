@@ -95,8 +95,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 fn drive_json(drive: &SimulatedDrive, network: &Network, program: &Program) -> Value {
     let name = |vehicle: u32| program.world.vehicles.get(vehicle as usize).map(|it| it.name.text.as_str());
     let track = |frames: &[DriveFrame]| -> Vec<[f64; 5]> {
-        let row =
-            |it: &DriveFrame| [it.time, it.position_m[0], it.position_m[1], it.heading_rad, it.speed_mps];
+        let row = |it: &DriveFrame| [it.time, it.position_m.x, it.position_m.y, it.heading_rad, it.speed_mps];
         frames.iter().map(row).collect()
     };
     json!({

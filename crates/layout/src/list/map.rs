@@ -4,14 +4,15 @@ use display::{
     Anchor, ColorRole, Dash, DisplayList, Fit, Group, Point, Rect, Stroke, TargetKind, Text,
     approximate_text_width, text_width_at,
 };
+use nalgebra::{Point2, Vector2};
 use rmpl::program::{ObstacleShape, World};
 use smol_str::{SmolStr, format_smolstr};
 
 /// Which part of the world is shown, in metres east and north, and where in the drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapFrame {
-    low_m: [f64; 2],
-    high_m: [f64; 2],
+    low_m: Point2<f64>,
+    high_m: Point2<f64>,
     /// The frame of the drawing.
     pub rect: Rect,
     /// Drawing units per metre.
@@ -24,13 +25,13 @@ pub struct MapPath<'a> {
     /// Its name.
     pub name: &'a str,
     /// From point to point.
-    pub points_m: Vec<[f64; 2]>,
+    pub points_m: Vec<Point2<f64>>,
     /// Its line, told from others by its pattern as well.
     pub stroke: Stroke,
 }
 
 /// The brightness of the ground at a point, from 0 to 255.
-pub type Relief<'a> = &'a dyn Fn([f64; 2]) -> u8;
+pub type Relief<'a> = &'a dyn Fn(Point2<f64>) -> u8;
 
 /// Squares of shaded ground along the longer side.
 const SHADES: f64 = 96.0;
@@ -43,55 +44,58 @@ const SCALE_INSET: f64 = 14.0;
 
 impl MapFrame {
     /// Shows everything from `low_m` to `high_m` in the middle of `rect`, `margin` inside it.
-    pub fn new(low_m: [f64; 2], high_m: [f64; 2], rect: Rect, margin: f64) -> Self {
-        let size_m = [0, 1].map(|axis| (high_m[axis] - low_m[axis]).max(1.0));
+    pub fn new(low_m: Point2<f64>, high_m: Point2<f64>, rect: Rect, margin: f64) -> Self {
+        let size_m = (high_m - low_m).sup(&Vector2::repeat(1.0));
         let room = rect.expanded(-margin);
-        let scale = (room.width() / size_m[0]).min(room.height() / size_m[1]).max(1e-9);
+        let scale = (room.width() / size_m.x).min(room.height() / size_m.y).max(1e-9);
         Self { low_m, high_m, rect, scale }
     }
 
     /// The same ground in a drawing whose longer side has this length.
-    pub fn with_side(low_m: [f64; 2], high_m: [f64; 2], side: f64) -> Self {
-        let size_m = [0, 1].map(|axis| (high_m[axis] - low_m[axis]).max(1.0));
-        let scale = side / size_m[0].max(size_m[1]);
-        let rect = Rect::new(0.0, 0.0, size_m[0] * scale, size_m[1] * scale);
+    pub fn with_side(low_m: Point2<f64>, high_m: Point2<f64>, side: f64) -> Self {
+        let size_m = (high_m - low_m).sup(&Vector2::repeat(1.0));
+        let scale = side / size_m.max();
+        let rect = Rect::new(0.0, 0.0, size_m.x * scale, size_m.y * scale);
         Self { low_m, high_m, rect, scale }
     }
 
     /// Where a place of the world is.
-    pub fn point(&self, [east, north]: [f64; 2]) -> Point {
-        let middle = [0, 1].map(|axis| f64::midpoint(self.low_m[axis], self.high_m[axis]));
-        self.rect.center().shifted((east - middle[0]) * self.scale, (middle[1] - north) * self.scale)
+    pub fn point(&self, place_m: Point2<f64>) -> Point {
+        let offset = (place_m - self.middle_m()) * self.scale;
+        self.rect.center().shifted(offset.x, -offset.y)
     }
 
     /// Which place of the world is at a point.
-    fn place_m(&self, point: Point) -> [f64; 2] {
-        let (middle, center) =
-            ([0, 1].map(|axis| f64::midpoint(self.low_m[axis], self.high_m[axis])), self.rect.center());
-        [middle[0] + (point.x - center.x) / self.scale, middle[1] - (point.y - center.y) / self.scale]
+    fn place_m(&self, point: Point) -> Point2<f64> {
+        let center = self.rect.center();
+        self.middle_m() + Vector2::new(point.x - center.x, center.y - point.y) / self.scale
+    }
+
+    fn middle_m(&self) -> Point2<f64> {
+        nalgebra::center(&self.low_m, &self.high_m)
     }
 }
 
 /// The part of the world that holds all places, obstacles and `more`, with some room around; `None` for an empty one.
-pub fn extent_m(world: &World, more: impl Iterator<Item = [f64; 2]>) -> Option<[[f64; 2]; 2]> {
-    let mut corners: Vec<[f64; 2]> = world.locations.iter().map(|it| it.position_m).chain(more).collect();
-    if corners.is_empty() {
-        return None;
-    }
+pub fn extent_m(world: &World, more: impl Iterator<Item = Point2<f64>>) -> Option<[Point2<f64>; 2]> {
+    let places = world.locations.iter().map(|it| Point2::from(it.position_m));
+    let mut corners: Vec<Point2<f64>> = places.chain(more).collect();
+    let first = *corners.first()?;
     for obstacle in &world.obstacles {
         match &obstacle.shape {
             ObstacleShape::Circle { center_m, radius_m } => {
-                corners.push(center_m.map(|middle| middle - radius_m));
-                corners.push(center_m.map(|middle| middle + radius_m));
+                let reach = Vector2::repeat(*radius_m);
+                corners.extend([Point2::from(*center_m) - reach, Point2::from(*center_m) + reach]);
             }
-            ObstacleShape::Polygon { corners_m } => corners.extend(corners_m),
+            ObstacleShape::Polygon { corners_m } => {
+                corners.extend(corners_m.iter().copied().map(Point2::from));
+            }
         }
     }
-    let least = |axis: usize| corners.iter().map(|corner| corner[axis]).fold(f64::INFINITY, f64::min);
-    let most = |axis: usize| corners.iter().map(|corner| corner[axis]).fold(f64::NEG_INFINITY, f64::max);
-    let (low, high) = ([least(0), least(1)], [most(0), most(1)]);
-    let margin = 0.06 * (high[0] - low[0]).max(high[1] - low[1]).max(10.0);
-    Some([low.map(|value| value - margin), high.map(|value| value + margin)])
+    let (low, high) =
+        corners.iter().fold((first, first), |(low, high), corner| (low.inf(corner), high.sup(corner)));
+    let margin = Vector2::repeat(0.06 * (high - low).max().max(10.0));
+    Some([low - margin, high + margin])
 }
 
 /// The map of a world with paths in it. Linear in the world, the paths and, with `relief`, the squares of its ground.
@@ -157,10 +161,11 @@ fn add_obstacles(world: &World, frame: &MapFrame, list: &mut DisplayList) {
     for (number, obstacle) in (0..).zip(&world.obstacles) {
         let item = match &obstacle.shape {
             ObstacleShape::Circle { center_m, radius_m } => {
-                list.circle(frame.point(*center_m), radius_m * frame.scale, fill, stroke)
+                list.circle(frame.point((*center_m).into()), radius_m * frame.scale, fill, stroke)
             }
             ObstacleShape::Polygon { corners_m } => {
-                let corners: Vec<Point> = corners_m.iter().map(|&corner| frame.point(corner)).collect();
+                let corners: Vec<Point> =
+                    corners_m.iter().map(|&corner| frame.point(corner.into())).collect();
                 list.polygon(&corners, fill, stroke)
             }
         };
@@ -172,7 +177,7 @@ fn add_obstacles(world: &World, frame: &MapFrame, list: &mut DisplayList) {
 fn add_places(world: &World, frame: &MapFrame, list: &mut DisplayList) {
     let (radius, size) = PLACE;
     for (number, location) in (0..).zip(&world.locations) {
-        let at = frame.point(location.position_m);
+        let at = frame.point(location.position_m.into());
         let stroke = Stroke::solid(ColorRole::Text, 1.5);
         list.circle(at, radius, Some(ColorRole::NodeFill.into()), Some(stroke))
             .stands_for(TargetKind::Place, number);
@@ -237,11 +242,12 @@ mod tests {
 
     #[test]
     fn north_is_up_and_the_ground_fills_its_frame() {
-        let frame = MapFrame::with_side([100.0, 200.0], [300.0, 300.0], 400.0);
+        let frame = MapFrame::with_side(Point2::new(100.0, 200.0), Point2::new(300.0, 300.0), 400.0);
         assert_eq!(frame.rect, Rect::new(0.0, 0.0, 400.0, 200.0));
-        assert_eq!(frame.point([100.0, 300.0]), Point::new(0.0, 0.0));
-        assert_eq!(frame.point([300.0, 200.0]), Point::new(400.0, 200.0));
-        assert_eq!(frame.place_m(frame.point([150.0, 220.0])), [150.0, 220.0]);
+        assert_eq!(frame.point(Point2::new(100.0, 300.0)), Point::new(0.0, 0.0));
+        assert_eq!(frame.point(Point2::new(300.0, 200.0)), Point::new(400.0, 200.0));
+        let place_m = Point2::new(150.0, 220.0);
+        assert_eq!(frame.place_m(frame.point(place_m)), place_m);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use exact::{Bound, Time};
+use nalgebra::Point2;
 use serde::Deserialize as _;
 use serde_json::Value;
 use tpn::{Network, OccurrenceKind, Ordering, Window};
@@ -54,7 +55,7 @@ pub struct Item {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Way {
     /// The path, in metres.
-    pub points_m: Vec<[f64; 2]>,
+    pub points_m: Vec<Point2<f64>>,
     /// Its length along the map, in metres.
     pub length_m: f64,
 }

@@ -12,7 +12,7 @@ use tpn::Network;
 use super::{ContentKey, Core, CoreHost, Keyed, Keys, Reading, TRACE_EVENTS};
 use crate::planning::{self, Planned};
 use crate::request::Update;
-use crate::snapshot::{Encounter, MapKey, Planning, Snapshot, Traverse, VehicleMotion};
+use crate::snapshot::{MapKey, Planning, SeparationViolation, Snapshot, Traverse, VehicleMotion};
 
 /// What the last planned request led to, and what it depended on.
 pub(super) struct Last {
@@ -34,7 +34,7 @@ pub(super) struct Shown {
     planning: Keyed<Planning>,
     traverses: Keyed<[Traverse]>,
     motions: Keyed<[VehicleMotion]>,
-    encounters: Keyed<[Encounter]>,
+    separation_violations: Keyed<[SeparationViolation]>,
 }
 
 impl Shown {
@@ -50,23 +50,27 @@ impl Shown {
             planning: Keyed::new(Arc::clone(&planned.planning), earlier.map(|it| &it.planning), keys),
             traverses: Keyed::new(planned.traverses.clone().into(), earlier.map(|it| &it.traverses), keys),
             motions: Keyed::new(planned.motions.clone().into(), earlier.map(|it| &it.motions), keys),
-            encounters: Keyed::new(planned.encounters.clone().into(), earlier.map(|it| &it.encounters), keys),
+            separation_violations: Keyed::new(
+                planned.separation_violations.clone().into(),
+                earlier.map(|it| &it.separation_violations),
+                keys,
+            ),
         }
     }
 
     /// Puts the parts into a snapshot.
     pub(super) fn show(&self, snapshot: &mut Snapshot) {
-        let Self { network, planning, traverses, motions, encounters } = self.clone();
+        let Self { network, planning, traverses, motions, separation_violations } = self.clone();
         snapshot.keys.network = network.key;
         snapshot.keys.planning = planning.key;
         snapshot.keys.traverses = traverses.key;
         snapshot.keys.motions = motions.key;
-        snapshot.keys.encounters = encounters.key;
+        snapshot.keys.separation_violations = separation_violations.key;
         snapshot.network = Some(network.value);
         snapshot.planning = Some(planning.value);
         snapshot.traverses = traverses.value;
         snapshot.motions = motions.value;
-        snapshot.encounters = encounters.value;
+        snapshot.separation_violations = separation_violations.value;
     }
 }
 

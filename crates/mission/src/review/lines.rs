@@ -24,7 +24,7 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
         conflicts: Vec::new(),
         events: Vec::new(),
         traverses: Vec::new(),
-        encounters: encounters(snapshot, &places),
+        separation_violations: separation_violations(snapshot, &places),
         warnings: warnings(snapshot, &places),
     };
     if let Some(mut lines) = PlanLines::new(snapshot, &places) {
@@ -139,24 +139,24 @@ fn undrivable(planning: &Planning, network: &Network, places: &Places<'_>) -> Ve
     planning.undrivable.iter().filter_map(line).collect()
 }
 
-fn encounters(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
+fn separation_violations(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
     let vehicles = &snapshot.program.world.vehicles;
-    let line = |encounter: &crate::snapshot::Encounter| {
-        let [first, second] = encounter.vehicles.map(|vehicle| vehicles.get(vehicle as usize));
+    let line = |violation: &crate::snapshot::SeparationViolation| {
+        let [first, second] = violation.vehicles.map(|vehicle| vehicles.get(vehicle as usize));
         let (first, second) = (first?, second?);
         let text = format!(
             "{} and {} come within {:.1} m of each other at {:.1}, near ({:.0}, {:.0})",
             first.name.text,
             second.name.text,
-            encounter.distance_m,
-            encounter.time,
-            encounter.position_m[0],
-            encounter.position_m[1]
+            violation.distance_m,
+            violation.time,
+            violation.position_m.x,
+            violation.position_m.y
         );
         let names = vec![first.name.text.to_string(), second.name.text.to_string()];
         Some(places.line(Status::Attention, text, Some(first.span), names, Vec::new()))
     };
-    snapshot.encounters.iter().filter_map(line).collect()
+    snapshot.separation_violations.iter().filter_map(line).collect()
 }
 
 fn warnings(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
@@ -170,6 +170,6 @@ fn warnings(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
         let text = format!("{}: {}{hint}", problem.code, problem.message);
         places.line(status, text, Some(problem.span), Vec::new(), Vec::new())
     };
-    // Encounters have lines of their own.
-    snapshot.problems.iter().filter(|problem| problem.code != crate::encounter::CODE.0).map(line).collect()
+    // Separation violations have lines of their own.
+    snapshot.problems.iter().filter(|problem| problem.code != crate::separation::CODE.0).map(line).collect()
 }

@@ -41,7 +41,7 @@ pub struct Review {
     /// The traverses, in order of departure.
     pub traverses: Vec<TraverseReview>,
     /// Vehicles that come too near each other.
-    pub encounters: Vec<Line>,
+    pub separation_violations: Vec<Line>,
     /// What is wrong with the text, or could be.
     pub warnings: Vec<Line>,
 }
@@ -194,8 +194,8 @@ pub enum Section {
     Events,
     /// [`Review::traverses`].
     Traverses,
-    /// [`Review::encounters`].
-    Encounters,
+    /// [`Review::separation_violations`].
+    SeparationViolations,
     /// [`Review::warnings`].
     Warnings,
 }
@@ -209,7 +209,7 @@ impl Section {
         Self::Conflicts,
         Self::Events,
         Self::Traverses,
-        Self::Encounters,
+        Self::SeparationViolations,
         Self::Warnings,
     ];
 
@@ -222,7 +222,7 @@ impl Section {
             Self::Conflicts => "Threats and orderings",
             Self::Events => "Windows and slack",
             Self::Traverses => "Traverses",
-            Self::Encounters => "Conflicts between vehicles",
+            Self::SeparationViolations => "Conflicts between vehicles",
             Self::Warnings => "Warnings in the text",
         }
     }
@@ -238,7 +238,7 @@ impl Review {
             Section::Conflicts => self.conflicts.iter().map(|it| &it.line).collect(),
             Section::Events => self.events.iter().map(|it| &it.line).collect(),
             Section::Traverses => self.traverses.iter().map(|it| &it.line).collect(),
-            Section::Encounters => self.encounters.iter().collect(),
+            Section::SeparationViolations => self.separation_violations.iter().collect(),
             Section::Warnings => self.warnings.iter().collect(),
         }
     }
@@ -263,7 +263,7 @@ impl Review {
             Section::CausalLinks => "Nothing requires a condition.",
             Section::Conflicts => "No two conditions contradict each other, so there is no threat.",
             Section::Traverses => "No vehicle drives.",
-            Section::Encounters => "No two vehicles come too near each other.",
+            Section::SeparationViolations => "No two vehicles come too near each other.",
         }
     }
 

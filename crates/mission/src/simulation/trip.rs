@@ -3,16 +3,16 @@
 use exact::{Rational, Time};
 use executive::Disturbance;
 use motion::{
-    Convoy, ConvoyMember, DriveEvent, DriveLimits, DriverSettings, FineWorld, LaserScan, Path, PlannerKind,
-    Query, ShortcutSettings, Surroundings, VehicleModel,
+    Convoy, ConvoyMember, DriveEvent, DriveLimits, DriverSettings, FineWorld, Path, PlannerKind, Query,
+    RangeScan, ShortcutSettings, Surroundings, VehicleModel,
 };
+use nalgebra::{Point2, Vector2, distance};
 use terrain::{CellState, ConfigurationSpace, Obstacle, Terrain};
 use tpn::{ArcKind, EventEnd, EventRef, Network, OccurrenceId};
 
 use super::way::{nearest_free, rest_of, until};
 use super::{Course, DriveFrame, Driving, SimulatedVehicle};
 use crate::driving;
-use crate::traverse;
 
 /// Frames are kept this far apart, in metres and radians, and at least every so many steps.
 const FRAME_M: f64 = 1.0;
@@ -23,8 +23,8 @@ const SHOWN_PLAN_M: f64 = 6.0;
 /// The leader aims to be there this share of its time early: what it meets costs time.
 const EARLY: f64 = 0.985;
 /// Vehicles give up after so many other ways, and after so many times the time that they were to take.
-const MOST_REROUTES: u32 = 12;
-const MOST_TIMES: f64 = 4.0;
+const MAX_REROUTES: u32 = 12;
+const MAX_TIMES: f64 = 4.0;
 
 /// One traverse under way.
 pub(super) struct Trip<'a> {
@@ -77,20 +77,18 @@ impl<'a> Trip<'a> {
             .zip(&models)
             .map(|((vehicle, track), model)| {
                 let mut points = track.points_m;
-                let stand = driving.stand.get(vehicle).filter(|(place, _)| {
-                    points.first().is_some_and(|&first| traverse::segment_length_m(*place, first) < 20.0)
-                });
+                let stand = driving
+                    .stand
+                    .get(vehicle)
+                    .filter(|(place, _)| points.first().is_some_and(|&first| distance(place, &first) < 20.0));
                 if let (Some(&(place, _)), Some(first)) = (stand, points.first_mut()) {
                     *first = place;
                 }
-                let ahead = points
-                    .get(1)
-                    .zip(points.first())
-                    .map_or(0.0, |(to, from)| libm::atan2(to[1] - from[1], to[0] - from[0]));
+                let ahead = points.get(1).zip(points.first()).map_or(Vector2::x(), |(to, from)| to - from);
                 let limits = DriveLimits::of(model);
                 ConvoyMember {
                     path: Path::new(points),
-                    heading_rad: stand.map_or(ahead, |&(_, heading_rad)| heading_rad),
+                    heading_rad: stand.map_or(libm::atan2(ahead.y, ahead.x), |&(_, heading_rad)| heading_rad),
                     settings: DriverSettings::new(limits, model.circumradius_m).at_most(speeds_mps[1]),
                 }
             })
@@ -101,7 +99,10 @@ impl<'a> Trip<'a> {
         for disturbance in driving.disturbances {
             match disturbance {
                 Disturbance::Obstacle { at, x, y, radius } => {
-                    coming.push((seconds(*at), Obstacle::Circle { center_m: [*x, *y], radius_m: *radius }));
+                    coming.push((
+                        seconds(*at),
+                        Obstacle::Circle { center_m: Point2::new(*x, *y), radius_m: *radius },
+                    ));
                 }
                 Disturbance::VehicleSlow { vehicle, factor, from, until } => {
                     let is_named = |it: &u32| declared(*it).is_some_and(|it| it.name.text == *vehicle);
@@ -123,7 +124,7 @@ impl<'a> Trip<'a> {
             if drive.vehicles.contains(&vehicle) {
                 continue;
             }
-            let radius_m = crate::encounter::radius_m(world, vehicle);
+            let radius_m = crate::separation::radius_m(world, vehicle);
             let moving =
                 driving.drives.iter().rev().flat_map(|it| &it.vehicles).find(|it| it.vehicle == vehicle);
             match moving.filter(|it| it.frames.last().is_some_and(|last| last.time > start)) {
@@ -135,7 +136,7 @@ impl<'a> Trip<'a> {
         let mut along_m = 0.0;
         let mut passed_m: Vec<f64> = Vec::new();
         for (from, to) in drive.path.segments() {
-            along_m += traverse::segment_length_m(from, to);
+            along_m += distance(&from, &to);
             passed_m.push(length_m - along_m);
         }
         let events = network.nodes.iter().flat_map(|node| &node.events).filter(|event| {
@@ -173,12 +174,12 @@ impl<'a> Trip<'a> {
 
     /// Drives until all vehicles are there; an error says who got stuck where.
     pub(super) fn drive(&mut self) -> Result<(), String> {
-        let most_s = MOST_TIMES * self.wanted_s + 600.0 * self.convoy.step_s();
+        let most_s = MAX_TIMES * self.wanted_s + 600.0 * self.convoy.step_s();
         self.record_all(&[]);
         while !self.convoy.has_arrived() {
             let time_s = self.convoy.time_s();
             if time_s > most_s {
-                return Err(format!("{} after {:.0} times the time planned", self.stuck(0), MOST_TIMES));
+                return Err(format!("{} after {:.0} times the time planned", self.stuck(0), MAX_TIMES));
             }
             let mut has_changed = false;
             while let Some((_, obstacle)) = self.coming.pop_if(|(at_s, _)| *at_s <= time_s) {
@@ -186,7 +187,7 @@ impl<'a> Trip<'a> {
                 has_changed = true;
             }
             let now = self.start + time_s / self.unit_s;
-            let others: Vec<([f64; 2], f64)> = (self.others.iter())
+            let others: Vec<(Point2<f64>, f64)> = (self.others.iter())
                 .filter_map(|(vehicle, radius_m)| Some((vehicle.at(now)?.position_m, *radius_m)))
                 .collect();
             let most: Vec<f64> = (0..self.models.len()).map(|index| self.greatest_speed_mps(index)).collect();
@@ -218,7 +219,7 @@ impl<'a> Trip<'a> {
     fn greatest_speed_mps(&self, index: usize) -> f64 {
         let state = self.convoy.state(index);
         let gradient = self.map.gradient_at(state.position_m).unwrap_or_default();
-        let grade = gradient[0] * libm::cos(state.heading_rad) + gradient[1] * libm::sin(state.heading_rad);
+        let grade = gradient.dot(&(state.world_from_body() * Vector2::x()));
         let model = self.models[index];
         // Followers may catch up.
         let share = if index == 0 { 1.0 } else { 1.25 };
@@ -234,7 +235,7 @@ impl<'a> Trip<'a> {
     fn reroute(&mut self, vehicle: usize) -> Result<(), String> {
         self.reroutes += 1;
         let stuck = self.stuck(vehicle);
-        let Some(driver) = self.convoy.driver(vehicle).filter(|_| self.reroutes <= MOST_REROUTES) else {
+        let Some(driver) = self.convoy.driver(vehicle).filter(|_| self.reroutes <= MAX_REROUTES) else {
             return Err(stuck);
         };
         let here = driver.state().position_m;
@@ -280,7 +281,7 @@ impl<'a> Trip<'a> {
             self.convoy.time_s(),
             format!(
                 "{name} can't go on near ({:.0}, {:.0}) and takes another way of {length_m:.0} m",
-                here[0], here[1]
+                here.x, here.y
             ),
         ));
         if vehicle == 0 {
@@ -298,8 +299,8 @@ impl<'a> Trip<'a> {
     }
 
     fn stuck(&self, vehicle: usize) -> String {
-        let [east, north] = self.convoy.state(vehicle).position_m;
-        format!("{} finds no way on near ({east:.0}, {north:.0})", self.names[vehicle])
+        let here = self.convoy.state(vehicle).position_m;
+        format!("{} finds no way on near ({:.0}, {:.0})", self.names[vehicle], here.x, here.y)
     }
 
     fn note_passes(&mut self) {
@@ -321,7 +322,7 @@ impl<'a> Trip<'a> {
     }
 
     /// Keeps a frame of each vehicle that has moved or turned since its last one.
-    fn record_all(&mut self, steps: &[(DriveEvent, LaserScan)]) {
+    fn record_all(&mut self, steps: &[(DriveEvent, RangeScan)]) {
         let is_over = self.convoy.has_arrived();
         for index in 0..self.models.len() {
             let Some(driver) = self.convoy.driver(index) else { continue };
@@ -330,14 +331,14 @@ impl<'a> Trip<'a> {
             let last = self.frames[index].last();
             let is_due = last.is_none_or(|last| {
                 let turned = motion::heading_difference(last.heading_rad, state.heading_rad).abs();
-                traverse::segment_length_m(last.position_m, state.position_m) >= FRAME_M
+                distance(&last.position_m, &state.position_m) >= FRAME_M
                     || turned >= FRAME_RAD
                     || self.steps_since_frame[index] >= FRAME_STEPS
             });
             if !is_due && !is_over {
                 continue;
             }
-            let single = |[east, north]: [f64; 2]| [east as f32, north as f32];
+            let single = |point_m: Point2<f64>| point_m.map(|metres| metres as f32);
             self.steps_since_frame[index] = 0;
             let frame = DriveFrame {
                 time: self.start + self.convoy.time_s() / self.unit_s,

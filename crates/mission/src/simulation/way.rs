@@ -1,10 +1,11 @@
 //! Parts of ways that vehicles take when theirs is blocked.
 
 use motion::Path;
+use nalgebra::{Point2, UnitComplex, Vector2};
 use terrain::ConfigurationSpace;
 
 /// The place itself, or the nearest free one around it: what a vehicle has come close to fills whole cells.
-pub(super) fn nearest_free(space: &ConfigurationSpace, here: [f64; 2]) -> Option<[f64; 2]> {
+pub(super) fn nearest_free(space: &ConfigurationSpace, here: Point2<f64>) -> Option<Point2<f64>> {
     const DIRECTIONS: u32 = 24;
     const RING_M: f64 = 0.2;
     if space.is_free(here) {
@@ -14,14 +15,14 @@ pub(super) fn nearest_free(space: &ConfigurationSpace, here: [f64; 2]) -> Option
         |(ring, direction)| {
             let angle = std::f64::consts::TAU * f64::from(direction) / f64::from(DIRECTIONS);
             let radius = RING_M * f64::from(ring);
-            let place = [here[0] + radius * libm::cos(angle), here[1] + radius * libm::sin(angle)];
+            let place = here + UnitComplex::new(angle) * Vector2::new(radius, 0.0);
             space.is_free(place).then_some(place)
         },
     )
 }
 
 /// The corners of a path from a distance along it on, with the place at that distance.
-pub(super) fn rest_of(path: &Path, from_m: f64) -> Vec<[f64; 2]> {
+pub(super) fn rest_of(path: &Path, from_m: f64) -> Vec<Point2<f64>> {
     let Some((place, segment)) = path.point_at(from_m) else { return Vec::new() };
     let mut points = vec![place];
     points.extend(path.points_m.iter().skip(segment + 1).filter(|&&point| point != place));
@@ -29,9 +30,9 @@ pub(super) fn rest_of(path: &Path, from_m: f64) -> Vec<[f64; 2]> {
 }
 
 /// The corners of a path up to a distance along it, with the place at that distance.
-pub(super) fn until(path: &Path, to_m: f64) -> Vec<[f64; 2]> {
+pub(super) fn until(path: &Path, to_m: f64) -> Vec<Point2<f64>> {
     let Some((place, segment)) = path.point_at(to_m) else { return Vec::new() };
-    let mut points: Vec<[f64; 2]> = path.points_m.iter().take(segment + 1).copied().collect();
+    let mut points: Vec<Point2<f64>> = path.points_m.iter().take(segment + 1).copied().collect();
     points.push(place);
     points
 }

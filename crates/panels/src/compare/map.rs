@@ -24,7 +24,8 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, comparison: &Comparison) 
     let Some([low_m, high_m]) = extent_m(world, points_m) else { return };
     ui.add_space(space::S);
     let width = ui.available_width().min(MAX_SIZE[0]);
-    let high_per_wide = (high_m[1] - low_m[1]) / (high_m[0] - low_m[0]).max(1.0);
+    let size_m = high_m - low_m;
+    let high_per_wide = size_m.y / size_m.x.max(1.0);
     let height = (width * high_per_wide as f32).clamp(120.0, MAX_SIZE[1]);
     let (rect, response) = ui.allocate_exact_size(egui::vec2(width, height), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, words(comparison)));

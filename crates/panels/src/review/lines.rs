@@ -30,10 +30,10 @@ pub(super) fn line(
     };
     if row::show(ui, list.context, &shown).clicked() {
         go_to(list, section, line, commands);
-        if let (Section::Encounters, Some(snapshot)) = (section, list.context.snapshot)
-            && let Some(encounter) = snapshot.encounters.get(index).filter(|_| !list.is_stale)
+        if let (Section::SeparationViolations, Some(snapshot)) = (section, list.context.snapshot)
+            && let Some(violation) = snapshot.separation_violations.get(index).filter(|_| !list.is_stale)
         {
-            commands.send(Command::Seek(encounter.time));
+            commands.send(Command::Seek(violation.time));
         }
     }
 }

@@ -83,7 +83,7 @@ impl ReviewPanel {
             if is_open {
                 ui.push_id(section.title(), |ui| self.section(ui, list, section, commands));
             }
-            if section == Section::Encounters {
+            if section == Section::SeparationViolations {
                 let figures = list.context.state.robustness().map(AsRef::as_ref);
                 let note = robustness::note(figures);
                 if header(ui, list.context, &mut self.closed, "Robustness", None, &note) {

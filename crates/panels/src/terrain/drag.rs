@@ -2,6 +2,7 @@
 
 use egui::{PointerButton, Pos2};
 use glam::Vec2;
+use nalgebra::{Point2, Vector2};
 use rmpl::Edit;
 use rmpl::program::{ObstacleShape, Program};
 use smol_str::SmolStr;
@@ -122,7 +123,7 @@ pub fn start_at(pointer: Pos2, scene: &Scene<'_>) -> Option<VehicleStart> {
         return Some(VehicleStart::Location(location));
     }
     let at = scene.ground_at(pointer)?;
-    Some(VehicleStart::Ground([f64::from(at.x), f64::from(at.y)]))
+    Some(VehicleStart::Ground(Point2::new(f64::from(at.x), f64::from(at.y))))
 }
 
 /// Whether a vehicle has not left its start at the time shown.
@@ -135,7 +136,8 @@ fn is_at_start(scene: &Scene<'_>, name: &str) -> bool {
 
 /// The edit that moves a thing `by_m` from where it was.
 fn moved(what: &Dragged, program: &Program, by_m: Vec2) -> Option<Edit> {
-    let shifted = |[east, north]: [f64; 2]| place([east + f64::from(by_m.x), north + f64::from(by_m.y)]);
+    let by_m = Vector2::new(by_m.x, by_m.y).cast::<f64>();
+    let shifted = |point_m: [f64; 2]| place(Point2::from(point_m) + by_m);
     match what {
         Dragged::Location(name, position_m) => {
             let location = program.world.locations.iter().find(|it| it.name.text == *name)?;

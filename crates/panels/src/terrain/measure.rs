@@ -1,7 +1,8 @@
 //! The measuring tool: distances, the height profile and the line of sight between two places.
 
 use egui::{Color32, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui, pos2, vec2};
-use glam::{Vec2, Vec3};
+use glam::Vec3;
+use nalgebra::{Point2, Point3, distance};
 use terrain::{GroundProfile, LineOfSight, Terrain};
 use terrain_view::ground::Ground;
 use terrain_view::scene::{Sketch, place};
@@ -11,7 +12,7 @@ use theme::{Tokens, space};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
     /// The two places.
-    pub ends_m: [[f64; 2]; 2],
+    pub ends_m: [Point2<f64>; 2],
     /// The ground between them.
     pub profile: GroundProfile,
     /// Whether they see each other.
@@ -23,7 +24,7 @@ pub const EYE_HEIGHT_M: f64 = 1.5;
 
 impl Measurement {
     /// Measures between two places; `None` when one of them is not on the map.
-    pub fn new(map: &Terrain, ends_m: [[f64; 2]; 2]) -> Option<Self> {
+    pub fn new(map: &Terrain, ends_m: [Point2<f64>; 2]) -> Option<Self> {
         let [from, to] = ends_m;
         Some(Self {
             ends_m,
@@ -54,11 +55,10 @@ impl Measurement {
     }
 
     /// How far along the line the view is blocked, and where.
-    fn blocked(&self) -> Option<(f64, [f64; 3])> {
+    fn blocked(&self) -> Option<(f64, Point3<f64>)> {
         let at = self.sight.blocked_at_m?;
         let [from, _] = self.ends_m;
-        let (east, north) = (at[0] - from[0], at[1] - from[1]);
-        Some(((east * east + north * north).sqrt(), at))
+        Some((distance(&from, &at.xy()), at))
     }
 
     /// What to draw on the ground.
@@ -69,8 +69,8 @@ impl Measurement {
             lines: vec![ends],
             sights: vec![(eyes[0], eyes[1], self.sight.blocked_at_m.is_none())],
             marks: ends.to_vec(),
-            blocked: self.blocked().map(|(_, [east, north, _])| {
-                let at = Vec2::new(east as f32, north as f32);
+            blocked: self.blocked().map(|(_, at)| {
+                let at = place(at.xy());
                 Vec3::new(at.x, at.y, ground.height_at(at))
             }),
             disc: None,
@@ -104,7 +104,7 @@ pub fn show_rows(ui: &mut Ui, tokens: &Tokens, rows: &[(&'static str, String)]) 
 pub fn show_chart(ui: &mut Ui, tokens: &Tokens, measurement: &Measurement) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 62.0), Sense::hover());
     let points = &measurement.profile.points_m;
-    let heights = || points.iter().map(|point| point[1]);
+    let heights = || points.iter().map(|point| point.y);
     let (low, high) = heights().fold((f64::MAX, f64::MIN), |(low, high), up| (low.min(up), high.max(up)));
     let name = format!("Height profile: {low:.1} m to {high:.1} m over {}", metres(last_of(points)));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &name));
@@ -115,7 +115,7 @@ pub fn show_chart(ui: &mut Ui, tokens: &Tokens, measurement: &Measurement) {
     };
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 4.0, tokens.sunken);
-    let line: Vec<Pos2> = points.iter().map(|&[along, up]| chart.at(along, up)).collect();
+    let line: Vec<Pos2> = points.iter().map(|point| chart.at(point.x, point.y)).collect();
     for pair in line.windows(2) {
         let floor = chart.rect.bottom() + space::S;
         let corners = vec![pair[0], pair[1], pos2(pair[1].x, floor), pos2(pair[0].x, floor)];
@@ -123,12 +123,12 @@ pub fn show_chart(ui: &mut Ui, tokens: &Tokens, measurement: &Measurement) {
     }
     painter.add(Shape::line(line, Stroke::new(1.6, tokens.text)));
     if let (Some(first), Some(last)) = (points.first(), points.last()) {
-        let eyes = [first, last].map(|&[along, up]| chart.at(along, up + EYE_HEIGHT_M));
+        let eyes = [first, last].map(|point| chart.at(point.x, point.y + EYE_HEIGHT_M));
         let blocked = measurement.blocked();
         let color = if blocked.is_some() { tokens.warning } else { tokens.good };
         painter.extend(Shape::dashed_line(&eyes, Stroke::new(1.4, color), 4.0, 3.0));
-        if let Some((along, [.., up])) = blocked {
-            painter.circle_filled(chart.at(along, up), 3.5, tokens.warning);
+        if let Some((along, at)) = blocked {
+            painter.circle_filled(chart.at(along, at.z), 3.5, tokens.warning);
         }
     }
     let written = |at: Pos2, align, text: String| {
@@ -154,8 +154,8 @@ impl Chart {
     }
 }
 
-fn last_of(points: &[[f64; 2]]) -> f64 {
-    points.last().map_or(0.0, |point| point[0])
+fn last_of(points: &[Point2<f64>]) -> f64 {
+    points.last().map_or(0.0, |point| point.x)
 }
 
 fn ground_color(tokens: &Tokens) -> Color32 {
@@ -172,14 +172,16 @@ mod tests {
     fn a_measurement_says_distances_and_what_blocks_the_view() {
         let wall = |index: u32| if (48..52).contains(&(index % 100)) { 10.0 } else { 0.0 };
         let map = Terrain::new(GridFrame::new(100, 100, 1.0), (0..100 * 100).map(wall).collect());
-        let measured = Measurement::new(&map, [[20.5, 50.5], [80.5, 50.5]]).expect("on the map");
+        let measured =
+            Measurement::new(&map, [Point2::new(20.5, 50.5), Point2::new(80.5, 50.5)]).expect("on the map");
         let rows = measured.rows();
         assert!(rows.contains(&("Straight", "60.0 m".to_owned())), "{rows:?}");
         assert!(rows.contains(&("Up and down", "10.0 m, 10.0 m".to_owned())), "{rows:?}");
         let (_, sight) = rows.last().expect("the view");
         assert!(sight.starts_with("blocked after 27") || sight.starts_with("blocked after 28"), "{sight}");
-        let beside = Measurement::new(&map, [[20.5, 50.5], [20.5, 80.5]]).expect("on the map");
+        let beside =
+            Measurement::new(&map, [Point2::new(20.5, 50.5), Point2::new(20.5, 80.5)]).expect("on the map");
         assert_eq!(beside.sight_words(), "clear");
-        assert!(Measurement::new(&map, [[20.5, 50.5], [200.0, 50.5]]).is_none());
+        assert!(Measurement::new(&map, [Point2::new(20.5, 50.5), Point2::new(200.0, 50.5)]).is_none());
     }
 }

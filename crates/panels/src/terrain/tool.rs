@@ -2,6 +2,7 @@
 
 use egui::{Key, PointerButton, Pos2, Response};
 use glam::Vec2;
+use nalgebra::Point2;
 use terrain_view::pick::Scene;
 use terrain_view::scene::{Sketch, place};
 use workbench::command::{Command, CommandSender};
@@ -67,7 +68,7 @@ pub fn update(
             }
         }
         Tool::Polygon => {
-            let is_close = |point: [f64; 2]| {
+            let is_close = |point: Point2<f64>| {
                 let projected = scene.camera.project(scene.ground.drape(place(point), 0.0), scene.size());
                 let inside = clicked.map(|at| at - scene.rect.min);
                 projected
@@ -170,6 +171,6 @@ pub fn hint(tool: &Tool, points: usize) -> Option<String> {
     })
 }
 
-fn metres(place: Vec2) -> [f64; 2] {
-    [f64::from(place.x), f64::from(place.y)]
+fn metres(place: Vec2) -> Point2<f64> {
+    Point2::new(f64::from(place.x), f64::from(place.y))
 }

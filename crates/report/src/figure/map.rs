@@ -3,6 +3,7 @@
 use display::Theme;
 use layout::list::map::{MapFrame, MapPath, Relief, extent_m, map_list, path_stroke};
 use mission::Snapshot;
+use nalgebra::{Point2, Vector3};
 use terrain::Terrain;
 
 /// The longer side of the drawing, in user units.
@@ -27,7 +28,7 @@ pub(crate) fn map(snapshot: &Snapshot, ground: Option<&Terrain>) -> Option<Strin
     let shade_at;
     let relief: Option<Relief<'_>> = match ground {
         Some(ground) => {
-            shade_at = |point_m: [f64; 2]| shade(ground, point_m);
+            shade_at = |point_m: Point2<f64>| shade(ground, point_m);
             Some(&shade_at)
         }
         None => None,
@@ -37,10 +38,11 @@ pub(crate) fn map(snapshot: &Snapshot, ground: Option<&Terrain>) -> Option<Strin
 }
 
 /// The brightness of the ground at a point, in steps.
-fn shade(ground: &Terrain, point_m: [f64; 2]) -> u8 {
-    let Some([east, north, up]) = ground.normal_at(point_m) else { return 0xD0 };
+fn shade(ground: &Terrain, point_m: Point2<f64>) -> u8 {
+    let Some(normal) = ground.normal_at(point_m) else { return 0xD0 };
     // Light from the north-west, 45° high.
-    let light = (-0.5 * east + 0.5 * north + std::f64::consts::FRAC_1_SQRT_2 * up).clamp(0.0, 1.0);
+    let to_light = Vector3::new(-0.5, 0.5, std::f64::consts::FRAC_1_SQRT_2);
+    let light = to_light.dot(&normal).clamp(0.0, 1.0);
     let steps = (light * 32.0).round() / 32.0;
     (150.0 + 125.0 * steps).min(246.0) as u8
 }

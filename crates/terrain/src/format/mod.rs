@@ -18,7 +18,7 @@ use crate::heightfield::Terrain;
 pub use pds::{RawLayout, SampleType};
 
 /// The most cells that a map may have: 33 million, or 5800 × 5800.
-pub const GREATEST_CELL_COUNT: u64 = 1 << 25;
+pub const MAX_CELL_COUNT: u64 = 1 << 25;
 
 /// Metres per cell where neither the file nor the caller says (SPEC 1.8).
 pub const DEFAULT_CELL_SIZE_M: f64 = 0.6;
@@ -64,8 +64,8 @@ pub enum FormatError {
         /// What it uses.
         problem: String,
     },
-    /// More cells than [`GREATEST_CELL_COUNT`].
-    #[error("the map has {width} × {height} cells; at most {GREATEST_CELL_COUNT} can be read")]
+    /// More cells than [`MAX_CELL_COUNT`].
+    #[error("the map has {width} × {height} cells; at most {MAX_CELL_COUNT} can be read")]
     TooLarge {
         /// Columns.
         width: u64,
@@ -209,7 +209,7 @@ fn checked_cell_count(width: u64, height: u64) -> Result<usize, FormatError> {
         return Err(FormatError::Empty);
     }
     match width.checked_mul(height) {
-        Some(count) if count <= GREATEST_CELL_COUNT => Ok(count as usize),
+        Some(count) if count <= MAX_CELL_COUNT => Ok(count as usize),
         _ => Err(FormatError::TooLarge { width, height }),
     }
 }

@@ -212,8 +212,8 @@ struct Label {
 
 impl Label {
     fn parse(bytes: &[u8]) -> Self {
-        const GREATEST_LABEL_BYTES: usize = 1 << 20;
-        let text = String::from_utf8_lossy(&bytes[..bytes.len().min(GREATEST_LABEL_BYTES)]);
+        const MAX_LABEL_BYTES: usize = 1 << 20;
+        let text = String::from_utf8_lossy(&bytes[..bytes.len().min(MAX_LABEL_BYTES)]);
         let entries = text
             .lines()
             .map(str::trim)

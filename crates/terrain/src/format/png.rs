@@ -2,12 +2,12 @@
 
 use std::io::Cursor;
 
-use super::{FormatError, GREATEST_CELL_COUNT, Meaning, Raster, checked_cell_count};
+use super::{FormatError, MAX_CELL_COUNT, Meaning, Raster, checked_cell_count};
 
 const FORMAT: &str = "PNG";
 
 pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
-    let limits = ::png::Limits { bytes: 8 * GREATEST_CELL_COUNT as usize };
+    let limits = ::png::Limits { bytes: 8 * MAX_CELL_COUNT as usize };
     let mut decoder = ::png::Decoder::new_with_limits(Cursor::new(bytes), limits);
     decoder.set_transformations(::png::Transformations::EXPAND);
     let header = decoder.read_header_info().map_err(|error| malformed(&error))?;

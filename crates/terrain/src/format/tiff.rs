@@ -5,7 +5,7 @@ use std::io::Cursor;
 use ::tiff::decoder::{Decoder, DecodingResult, Limits};
 use ::tiff::tags::Tag;
 
-use super::{FormatError, GREATEST_CELL_COUNT, Meaning, Raster, checked_cell_count};
+use super::{FormatError, MAX_CELL_COUNT, Meaning, Raster, checked_cell_count};
 
 const FORMAT: &str = "TIFF";
 /// `GTModelTypeGeoKey`: 2 says that the pixel scale is in degrees.
@@ -20,8 +20,8 @@ const MARS_RADIUS_M: f64 = 3_396_190.0;
 
 pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     let mut limits = Limits::default();
-    limits.decoding_buffer_size = 8 * GREATEST_CELL_COUNT as usize;
-    limits.intermediate_buffer_size = 8 * GREATEST_CELL_COUNT as usize;
+    limits.decoding_buffer_size = 8 * MAX_CELL_COUNT as usize;
+    limits.intermediate_buffer_size = 8 * MAX_CELL_COUNT as usize;
     let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(|error| problem(&error))?.with_limits(limits);
     let (width, height) = decoder.dimensions().map_err(|error| problem(&error))?;
     let count = checked_cell_count(u64::from(width), u64::from(height))?;

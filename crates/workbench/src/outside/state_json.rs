@@ -354,13 +354,15 @@ fn vehicles_json(state: &AppState, snapshot: &Snapshot) -> Vec<Value> {
         .motions
         .iter()
         .filter_map(|motion| {
-            let ([x, y], heading) = motion.at(time)?;
+            let (place, heading) = motion.at(time)?;
             let vehicle = vehicles.get(motion.vehicle as usize)?;
             let name = vehicle.name.text.as_str();
             let z = ground
-                .and_then(|ground| ground.height_at([x, y]))
+                .and_then(|ground| ground.height_at(place))
                 .map(|height| height + flight_height_m(&vehicle.model.text));
-            Some(json!({ "name": name, "x": x, "y": y, "z": z, "heading": heading, "time": time }))
+            Some(
+                json!({ "name": name, "x": place.x, "y": place.y, "z": z, "heading": heading, "time": time }),
+            )
         })
         .collect()
 }

@@ -8,7 +8,8 @@ use std::sync::Arc;
 use mission::request::Update;
 use mission::{ContentKey, GrowthStanding, PathGrowth, Snapshot};
 use motion::{GrowthTrace, PlannerKind};
-use rmpl::program::{ObstacleShape, World};
+use nalgebra::Point2;
+use rmpl::program::World;
 use smol_str::SmolStr;
 use terrain::Obstacle;
 use tpn::OccurrenceId;
@@ -69,13 +70,13 @@ struct Running {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Standing {
     /// Where the trees begin.
-    pub roots_m: Vec<[f64; 2]>,
+    pub roots_m: Vec<Point2<f64>>,
     /// The edges, each with the number of its tree.
-    pub edges: Vec<(usize, Vec<[f64; 2]>)>,
+    pub edges: Vec<(usize, Vec<Point2<f64>>)>,
     /// The best path so far.
-    pub path_m: Option<Vec<[f64; 2]>>,
+    pub path_m: Option<Vec<Point2<f64>>>,
     /// The last sample, and whether an obstacle was in its way.
-    pub sample: Option<([f64; 2], bool)>,
+    pub sample: Option<(Point2<f64>, bool)>,
 }
 
 /// What can be asked of the growth.
@@ -374,16 +375,16 @@ impl Shown {
 /// A vertex of a tree as it stands.
 struct Vertex<'a> {
     parent: Option<u32>,
-    point_m: [f64; 2],
+    point_m: Point2<f64>,
     /// The way from its first parent, if that was not straight.
-    curve_m: &'a [[f64; 2]],
+    curve_m: &'a [Point2<f64>],
 }
 
 impl Running {
     /// The trees after the samples that are looked at; vertices that got another parent hang on that.
     fn standing(&self) -> Standing {
         let samples = self.samples as usize;
-        let root = |&point_m: &[f64; 2]| vec![Vertex { parent: None, point_m, curve_m: &[] }];
+        let root = |&point_m: &Point2<f64>| vec![Vertex { parent: None, point_m, curve_m: &[] }];
         let mut trees: Vec<Vec<Vertex<'_>>> = self.trace.roots_m.iter().map(root).collect();
         for step in self.trace.steps.iter().take(samples) {
             for &[tree, vertex, parent] in &step.rewired {
@@ -437,16 +438,7 @@ fn recorded(trace: &GrowthTrace, samples: usize) -> Standing {
 
 /// The obstacles of a world for path planning.
 pub fn obstacles(world: &World) -> Vec<Obstacle> {
-    world
-        .obstacles
-        .iter()
-        .map(|obstacle| match &obstacle.shape {
-            ObstacleShape::Circle { center_m, radius_m } => {
-                Obstacle::Circle { center_m: *center_m, radius_m: *radius_m }
-            }
-            ObstacleShape::Polygon { corners_m } => Obstacle::Polygon { corners_m: corners_m.clone() },
-        })
-        .collect()
+    world.obstacles.iter().map(|it| mission::ground::obstacle(&it.shape)).collect()
 }
 
 /// The name of a planner on screen; `None` is the search that planned the leg.

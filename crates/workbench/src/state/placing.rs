@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use nalgebra::Point2;
 use rmpl::program::{Program, World};
 use rmpl::{Edit, Span};
 use smol_str::{SmolStr, format_smolstr};
@@ -12,16 +13,16 @@ use crate::state::Selection;
 #[derive(Clone, Debug, PartialEq)]
 pub enum NewThing {
     /// A named place, in metres east and north.
-    Location([f64; 2]),
+    Location(Point2<f64>),
     /// A round obstacle.
     Circle {
         /// Its centre.
-        center_m: [f64; 2],
+        center_m: Point2<f64>,
         /// Its radius in metres.
         radius_m: f64,
     },
     /// An obstacle with at least three corners.
-    Polygon(Vec<[f64; 2]>),
+    Polygon(Vec<Point2<f64>>),
     /// A vehicle.
     Vehicle {
         /// The name of its model.
@@ -37,7 +38,7 @@ pub enum VehicleStart {
     /// At a location that is declared.
     Location(SmolStr),
     /// At a place that gets a location of its own.
-    Ground([f64; 2]),
+    Ground(Point2<f64>),
 }
 
 /// The edits that declare something, in textual order, and what to select then.
@@ -116,11 +117,11 @@ pub fn metres(value: f64) -> String {
 }
 
 /// A place to a tenth of a metre, without parentheses.
-pub fn place([east, north]: [f64; 2]) -> String {
-    format!("{}, {}", metres(east), metres(north))
+pub fn place(point_m: Point2<f64>) -> String {
+    format!("{}, {}", metres(point_m.x), metres(point_m.y))
 }
 
-fn location(name: &str, at_m: [f64; 2]) -> String {
+fn location(name: &str, at_m: Point2<f64>) -> String {
     format!("location {name} ({});", place(at_m))
 }
 
@@ -233,43 +234,43 @@ mod tests {
 
     #[test]
     fn a_location_comes_behind_the_last_one_under_a_name_that_is_new() {
-        let text = after(WORLD, &NewThing::Location([12.34, -0.02]));
+        let text = after(WORLD, &NewThing::Location(Point2::new(12.34, -0.02)));
         assert_eq!(text, WORLD.replace("P1 (3, 4);", "P1 (3, 4);\nlocation P2 (12.3, 0);"));
     }
 
     #[test]
     fn the_first_obstacle_comes_behind_the_locations() {
-        let text = after(WORLD, &NewThing::Circle { center_m: [5.0, 6.0], radius_m: 2.5 });
+        let text = after(WORLD, &NewThing::Circle { center_m: Point2::new(5.0, 6.0), radius_m: 2.5 });
         assert_eq!(text, WORLD.replace("P1 (3, 4);", "P1 (3, 4);\n\nobstacle Rock1 circle (5, 6, 2.5);"));
-        let corners = vec![[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]];
+        let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]].map(Point2::from).to_vec();
         let text = after(WORLD, &NewThing::Polygon(corners));
         assert!(text.contains("obstacle Area1 polygon (0, 0, 4, 0, 4, 4);"), "{text}");
     }
 
     #[test]
     fn a_vehicle_on_free_ground_gets_a_location_in_the_same_step() {
-        let start = VehicleStart::Ground([7.0, 8.0]);
+        let start = VehicleStart::Ground(Point2::new(7.0, 8.0));
         let text = after(WORLD, &NewThing::Vehicle { model: "ATRV".into(), start });
         let expected = WORLD
             .replace("P1 (3, 4);", "P1 (3, 4);\nlocation Start1 (7, 8);")
             .replace("ATRV at A;", "ATRV at A;\nvehicle Rover2 : ATRV at Start1;");
         assert_eq!(text, expected);
-        let start = VehicleStart::Ground([7.0, 8.0]);
+        let start = VehicleStart::Ground(Point2::new(7.0, 8.0));
         let text = after("// Nothing.\n", &NewThing::Vehicle { model: "Blimp".into(), start });
         assert_eq!(text, "// Nothing.\nlocation Start1 (7, 8);\nvehicle Blimp1 : Blimp at Start1;\n");
     }
 
     #[test]
     fn a_comment_behind_the_last_declaration_stays_on_its_line() {
-        let text = after("location A (1, 2); // home\n", &NewThing::Location([3.0, 4.0]));
+        let text = after("location A (1, 2); // home\n", &NewThing::Location(Point2::new(3.0, 4.0)));
         assert_eq!(text, "location A (1, 2); // home\nlocation P1 (3, 4);\n");
-        let text = after("location A (1, 2); scenario S = {}", &NewThing::Location([3.0, 4.0]));
+        let text = after("location A (1, 2); scenario S = {}", &NewThing::Location(Point2::new(3.0, 4.0)));
         assert_eq!(text, "location A (1, 2);\nlocation P1 (3, 4); scenario S = {}");
     }
 
     #[test]
     fn a_text_without_a_world_gets_its_first_place_in_front_of_its_code() {
-        let text = after("// A title.\n\nscenario S = { }\n", &NewThing::Location([3.0, 4.0]));
+        let text = after("// A title.\n\nscenario S = { }\n", &NewThing::Location(Point2::new(3.0, 4.0)));
         assert_eq!(text, "// A title.\n\nlocation P1 (3, 4);\n\nscenario S = { }\n");
     }
 
@@ -286,6 +287,6 @@ mod tests {
         let expected = WORLD
             .replace("P1 (3, 4);", "P1 (3, 4);\nlocation Start1 (9, 9);")
             .replace("ATRV at A", "ATRV at Start1");
-        assert_eq!(moved(VehicleStart::Ground([9.0, 9.0])), expected);
+        assert_eq!(moved(VehicleStart::Ground(Point2::new(9.0, 9.0))), expected);
     }
 }

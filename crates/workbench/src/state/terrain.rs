@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use mission::MapKey;
+use nalgebra::Point2;
 use rmpl::Span;
 use smol_str::SmolStr;
 use terrain::Terrain;
@@ -56,7 +57,7 @@ pub struct TerrainState {
     /// What clicks do.
     pub tool: Tool,
     /// The places clicked so far, in metres east and north: ends of a measurement, corners of an obstacle.
-    pub points_m: Vec<[f64; 2]>,
+    pub points_m: Vec<Point2<f64>>,
     /// The growth of search trees.
     pub growth: Growth,
 }
@@ -67,7 +68,7 @@ pub enum TerrainCommand {
     /// Takes a tool in hand; the one that is already there is put away.
     Take(Tool),
     /// A click of a tool that collects places.
-    Point([f64; 2]),
+    Point(Point2<f64>),
     /// Takes the last place back.
     TakeBack,
     /// The corners so far are an obstacle.

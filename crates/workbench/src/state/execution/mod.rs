@@ -11,6 +11,7 @@ use std::sync::Arc;
 use exact::{Rational, Time};
 use executive::{Disturbance, Entry, Script};
 use mission::{Execution, Request, Response, Snapshot, Update};
+use nalgebra::Point2;
 use serde_json::{Value, json};
 
 use super::terrain::Tool;
@@ -53,7 +54,7 @@ pub enum ExecutionCommand {
     /// A round obstacle appears at the time shown.
     Appear {
         /// Its centre.
-        center_m: [f64; 2],
+        center_m: Point2<f64>,
         /// Its radius in metres.
         radius_m: f64,
         /// Whether the tool that places it stays in hand.
@@ -100,9 +101,11 @@ impl ExecutionState {
     }
 
     /// The obstacles that have appeared by `time`, with centres and radii in metres.
-    pub fn appeared(&self, time: f64) -> impl Iterator<Item = ([f64; 2], f64)> + '_ {
+    pub fn appeared(&self, time: f64) -> impl Iterator<Item = (Point2<f64>, f64)> + '_ {
         self.disturbances().iter().filter_map(move |disturbance| match *disturbance {
-            Disturbance::Obstacle { at, x, y, radius } if has_come(at, time) => Some(([x, y], radius)),
+            Disturbance::Obstacle { at, x, y, radius } if has_come(at, time) => {
+                Some((Point2::new(x, y), radius))
+            }
             _ => None,
         })
     }
@@ -258,7 +261,7 @@ impl AppState {
                 let at = self.settle_time();
                 self.disturb(Disturbance::Withdrawn { condition, at });
             }
-            ExecutionCommand::Appear { center_m: [x, y], radius_m, again } => {
+            ExecutionCommand::Appear { center_m, radius_m, again } => {
                 if !again {
                     self.terrain.tool = Tool::Look;
                 }
@@ -268,7 +271,8 @@ impl AppState {
                 }
                 let at = self.settle_time();
                 let to_tenth = |metres: f64| (metres * 10.0).round() / 10.0;
-                let (x, y, radius) = (to_tenth(x), to_tenth(y), to_tenth(radius_m).max(0.1));
+                let (x, y) = (to_tenth(center_m.x), to_tenth(center_m.y));
+                let radius = to_tenth(radius_m).max(0.1);
                 self.disturb(Disturbance::Obstacle { at, x, y, radius });
             }
             ExecutionCommand::SlowDown { vehicle, factor, duration } => {

@@ -61,7 +61,7 @@ pub(super) fn at(base: &Snapshot, executed: &Executed, time: f64) -> (Snapshot, 
         map: base.map.clone(),
         traverses: executed.traverses.clone().into(),
         motions: executed.motions.clone().into(),
-        encounters: Arc::default(),
+        separation_violations: Arc::default(),
         // It belongs to a moment, and to no core.
         keys: PartKeys::default(),
         timings: base.timings,

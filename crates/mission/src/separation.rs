@@ -1,4 +1,4 @@
-//! Vehicles of different traverses that come too near each other, with time and place.
+//! Separation violations: vehicles of different traverses that come too near each other, with time and place.
 
 use motion::TimedPoint;
 use rmpl::program::World;
@@ -6,9 +6,9 @@ use rmpl::{Code, Diagnostic};
 use tpn::Network;
 
 use crate::driving::Drive;
-use crate::snapshot::{Encounter, VehicleMotion};
+use crate::snapshot::{SeparationViolation, VehicleMotion};
 
-/// The warning of an encounter.
+/// The warning of a separation violation.
 pub const CODE: Code = Code("W-ENCOUNTER");
 
 /// Room between vehicles beyond their radii, in metres: what a formation keeps and what others have to.
@@ -16,7 +16,7 @@ pub const GAP_M: f64 = 1.0;
 
 /// Vehicles that don't drive together and come nearer than the sum of their radii and [`GAP_M`], at the earliest
 /// schedule. A vehicle that has not begun to move or has stopped is where it is.
-pub fn encounters(drives: &[Drive], motions: &[VehicleMotion], world: &World) -> Vec<Encounter> {
+pub fn violations(drives: &[Drive], motions: &[VehicleMotion], world: &World) -> Vec<SeparationViolation> {
     let together = |a: u32, b: u32| {
         drives.iter().any(|drive| drive.vehicles.contains(&a) && drive.vehicles.contains(&b))
     };
@@ -29,14 +29,14 @@ pub fn encounters(drives: &[Drive], motions: &[VehicleMotion], world: &World) ->
                 continue;
             }
             let safety_m = radius_m(world, first.vehicle) + radius_m(world, second.vehicle) + GAP_M;
-            let Some(near) = motion::proximity(first_track, second_track, safety_m) else { continue };
-            let Some(conflict) = near.conflict else { continue };
+            let Some(near) = motion::closest_approach(first_track, second_track, safety_m) else { continue };
+            let Some(violation) = near.violation else { continue };
             let [a, b] = near.closest.positions_m;
-            found.push(Encounter {
+            found.push(SeparationViolation {
                 vehicles: [first.vehicle, second.vehicle],
-                since: conflict.time_s,
+                since: violation.time_s,
                 time: near.closest.time_s,
-                position_m: [f64::midpoint(a[0], b[0]), f64::midpoint(a[1], b[1])],
+                position_m: nalgebra::center(&a, &b),
                 distance_m: near.closest.distance_m,
             });
         }
@@ -52,31 +52,33 @@ pub fn radius_m(world: &World, vehicle: u32) -> f64 {
 
 /// Tells the author, at the traverse of the second vehicle.
 pub fn warnings(
-    encounters: &[Encounter],
+    violations: &[SeparationViolation],
     drives: &[Drive],
     network: &Network,
     world: &World,
 ) -> Vec<Diagnostic> {
     let name = |vehicle: u32| world.vehicles.get(vehicle as usize).map_or("?", |it| it.name.text.as_str());
-    encounters
+    violations
         .iter()
-        .filter_map(|encounter| {
-            let [first, second] = encounter.vehicles;
+        .filter_map(|violation| {
+            let [first, second] = violation.vehicles;
             let under_way = |drive: &&Drive| {
-                drive.vehicles.contains(&second) && drive.start.to_f64() <= encounter.time
+                drive.vehicles.contains(&second) && drive.start.to_f64() <= violation.time
             };
             let drive = drives.iter().rev().find(under_way).or_else(|| {
                 drives.iter().find(|drive| drive.vehicles.contains(&second))
             })?;
             let span = network.occurrences.get(drive.occurrence.index())?.span?;
-            let [east, north] = encounter.position_m;
+            let place = violation.position_m;
             let message = format!(
-                "{} and {} come within {:.1} m of each other near ({east:.0}, {north:.0}) at {:.1}, in the plan's \
+                "{} and {} come within {:.1} m of each other near ({:.0}, {:.0}) at {:.1}, in the plan's \
                  earliest schedule",
                 name(first),
                 name(second),
-                encounter.distance_m,
-                encounter.time
+                violation.distance_m,
+                place.x,
+                place.y,
+                violation.time
             );
             Some(Diagnostic::warning(CODE, span, message).with_hint(
                 "order the traverses, or lead one of them by another way; vehicles of one traverse keep formation",

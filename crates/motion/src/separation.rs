@@ -1,8 +1,15 @@
 //! How near two moving vehicles come to each other: exact for straight motion at constant speed between given times.
+//!
+//! On each interval of time one vehicle, seen from the other, moves along a segment. The closest approach is that
+//! segment's nearest point to the origin; the separation is violated from where the segment enters the disc of the
+//! safety radius.
 
+use crate::path::between;
+use nalgebra::{Point2, distance};
+use parry2d_f64::query::details::ray_toi_with_ball;
+use parry2d_f64::query::{PointQueryWithLocation as _, Ray};
+use parry2d_f64::shape::Segment;
 use serde::{Deserialize, Serialize};
-
-use crate::geometry::{between, distance};
 
 /// A place at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -10,32 +17,32 @@ pub struct TimedPoint {
     /// Seconds.
     pub time_s: f64,
     /// Metres east and north.
-    pub position_m: [f64; 2],
+    pub position_m: Point2<f64>,
 }
 
 /// Two vehicles at one time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Encounter {
+pub struct Separation {
     /// When, in seconds.
     pub time_s: f64,
     /// Where both are then, in metres.
-    pub positions_m: [[f64; 2]; 2],
+    pub positions_m: [Point2<f64>; 2],
     /// How far apart, in metres.
     pub distance_m: f64,
 }
 
 /// What happens between two vehicles that move at the same time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Proximity {
+pub struct Approach {
     /// When they are nearest to each other; the first such time.
-    pub closest: Encounter,
+    pub closest: Separation,
     /// When they first come within the safety radius, if they do.
-    pub conflict: Option<Encounter>,
+    pub violation: Option<Separation>,
 }
 
 /// How near two vehicles come while both are under way, and when they first come closer than `safety_m`. Times must not
 /// decrease along a track. `None` when they are never under way at the same time. Linear in the number of points.
-pub fn proximity(a: &[TimedPoint], b: &[TimedPoint], safety_m: f64) -> Option<Proximity> {
+pub fn closest_approach(a: &[TimedPoint], b: &[TimedPoint], safety_m: f64) -> Option<Approach> {
     let start = a.first()?.time_s.max(b.first()?.time_s);
     let end = a.last()?.time_s.min(b.last()?.time_s);
     if start > end {
@@ -49,50 +56,41 @@ pub fn proximity(a: &[TimedPoint], b: &[TimedPoint], safety_m: f64) -> Option<Pr
     times.dedup();
     // On each interval both move straight at constant speed.
     let (mut track_a, mut track_b) = (Follow::new(a), Follow::new(b));
-    let mut from = encounter(start, track_a.at(start), track_b.at(start));
-    let mut found = Proximity { closest: from, conflict: (from.distance_m < safety_m).then_some(from) };
+    let mut from = separation(start, track_a.at(start), track_b.at(start));
+    let mut found = Approach { closest: from, violation: (from.distance_m < safety_m).then_some(from) };
     for &time in &times[1..] {
-        let to = encounter(time, track_a.at(time), track_b.at(time));
+        let to = separation(time, track_a.at(time), track_b.at(time));
         examine(&mut found, from, to, safety_m);
         from = to;
     }
     Some(found)
 }
 
-fn encounter(time_s: f64, a: [f64; 2], b: [f64; 2]) -> Encounter {
-    Encounter { time_s, positions_m: [a, b], distance_m: distance(a, b) }
+fn separation(time_s: f64, a: Point2<f64>, b: Point2<f64>) -> Separation {
+    Separation { time_s, positions_m: [a, b], distance_m: distance(&a, &b) }
 }
 
-/// Looks for the closest approach and the first conflict between two times.
-fn examine(found: &mut Proximity, from: Encounter, to: Encounter, safety_m: f64) {
-    let offset = |moment: &Encounter| {
-        let [a, b] = moment.positions_m;
-        [b[0] - a[0], b[1] - a[1]]
-    };
-    let (first, last) = (offset(&from), offset(&to));
-    let change = [last[0] - first[0], last[1] - first[1]];
-    // The squared distance at a share of the interval is square · share² + 2 · slope · share + start.
-    let square = change[0] * change[0] + change[1] * change[1];
-    let slope = first[0] * change[0] + first[1] * change[1];
-    let start = first[0] * first[0] + first[1] * first[1];
+/// Looks for the closest approach and the first violation between two times.
+fn examine(found: &mut Approach, from: Separation, to: Separation, safety_m: f64) {
+    let relative = |moment: &Separation| Point2::from(moment.positions_m[1] - moment.positions_m[0]);
+    let motion = Segment::new(relative(&from), relative(&to));
     let at = |share: f64| {
         let time_s = from.time_s + (to.time_s - from.time_s) * share;
-        encounter(
-            time_s,
-            between(from.positions_m[0], to.positions_m[0], share),
-            between(from.positions_m[1], to.positions_m[1], share),
-        )
+        let [a, b] = [0, 1].map(|vehicle| between(from.positions_m[vehicle], to.positions_m[vehicle], share));
+        separation(time_s, a, b)
     };
-    let nearest = if square > 0.0 { (-slope / square).clamp(0.0, 1.0) } else { 0.0 };
-    for moment in [at(nearest), to] {
+    let (_, location) = motion.project_local_point_and_get_location(&Point2::origin(), true);
+    let nearest_share = location.barycentric_coordinates()[1];
+    let nearest = at(nearest_share);
+    for moment in [nearest, to] {
         if moment.distance_m < found.closest.distance_m {
             found.closest = moment;
         }
     }
-    if found.conflict.is_none() && at(nearest).distance_m.min(to.distance_m) < safety_m {
-        let rest = slope * slope - square * (start - safety_m * safety_m);
-        let entry = if square > 0.0 && rest >= 0.0 { (-slope - rest.sqrt()) / square } else { 0.0 };
-        found.conflict = Some(at(entry.clamp(0.0, 1.0)));
+    if found.violation.is_none() && nearest.distance_m.min(to.distance_m) < safety_m {
+        let ray = Ray::new(motion.a, motion.scaled_direction());
+        let (_, entry) = ray_toi_with_ball(&Point2::origin(), safety_m, &ray, true);
+        found.violation = Some(at(entry.unwrap_or(nearest_share).min(1.0)));
     }
 }
 
@@ -107,7 +105,7 @@ impl<'a> Follow<'a> {
         Self { track, next: 0 }
     }
 
-    fn at(&mut self, time_s: f64) -> [f64; 2] {
+    fn at(&mut self, time_s: f64) -> Point2<f64> {
         while self.next + 1 < self.track.len() && self.track[self.next].time_s < time_s {
             self.next += 1;
         }
@@ -129,30 +127,30 @@ mod tests {
     use terrain::Random;
 
     fn track(points: &[(f64, f64, f64)]) -> Vec<TimedPoint> {
-        points.iter().map(|&(time_s, x, y)| TimedPoint { time_s, position_m: [x, y] }).collect()
+        points.iter().map(|&(time_s, x, y)| TimedPoint { time_s, position_m: Point2::new(x, y) }).collect()
     }
 
     #[test]
     fn crossing_ways_meet_at_the_right_time_and_place() {
         let a = track(&[(0.0, -10.0, 0.0), (20.0, 10.0, 0.0)]);
         let b = track(&[(0.0, 0.0, -10.0), (20.0, 0.0, 10.0)]);
-        let found = proximity(&a, &b, 2.0).unwrap();
+        let found = closest_approach(&a, &b, 2.0).unwrap();
         assert_eq!((found.closest.time_s, found.closest.distance_m), (10.0, 0.0));
         // They are 2 m apart √2 m, and so √2 s, before the crossing.
-        let conflict = found.conflict.unwrap();
-        assert!((conflict.time_s - (10.0 - 2.0_f64.sqrt())).abs() < 1e-9);
-        assert!((conflict.distance_m - 2.0).abs() < 1e-9);
+        let violation = found.violation.unwrap();
+        assert!((violation.time_s - (10.0 - 2.0_f64.sqrt())).abs() < 1e-9);
+        assert!((violation.distance_m - 2.0).abs() < 1e-9);
     }
 
     #[test]
-    fn passing_the_same_place_at_different_times_is_no_conflict() {
+    fn passing_the_same_place_at_different_times_is_no_violation() {
         let a = track(&[(0.0, -10.0, 0.0), (20.0, 10.0, 0.0)]);
         let b = track(&[(0.0, 0.0, -30.0), (20.0, 0.0, -10.0), (40.0, 0.0, 10.0)]);
-        let found = proximity(&a, &b, 2.0).unwrap();
-        assert_eq!(found.conflict, None);
+        let found = closest_approach(&a, &b, 2.0).unwrap();
+        assert_eq!(found.violation, None);
         assert!(found.closest.distance_m > 10.0);
         let later = track(&[(30.0, -10.0, 0.0), (50.0, 10.0, 0.0)]);
-        assert_eq!(proximity(&a, &later, 2.0), None);
+        assert_eq!(closest_approach(&a, &later, 2.0), None);
     }
 
     #[test]
@@ -165,13 +163,13 @@ mod tests {
                 (0..points)
                     .map(|_| {
                         time_s += random.range(0.0, 9.0);
-                        let position_m = [random.range(0.0, 30.0), random.range(0.0, 30.0)];
+                        let position_m = Point2::new(random.range(0.0, 30.0), random.range(0.0, 30.0));
                         TimedPoint { time_s, position_m }
                     })
                     .collect::<Vec<_>>()
             };
             let (a, b) = (wander(0.0), wander(4.0));
-            let Some(found) = proximity(&a, &b, 5.0) else { continue };
+            let Some(found) = closest_approach(&a, &b, 5.0) else { continue };
             let (start, end) =
                 (a[0].time_s.max(b[0].time_s), a.last().unwrap().time_s.min(b.last().unwrap().time_s));
             let (mut follow_a, mut follow_b) = (Follow::new(&a), Follow::new(&b));
@@ -179,7 +177,7 @@ mod tests {
             let mut first_near = None;
             for step in 0..=20_000 {
                 let time = start + (end - start) * f64::from(step) / 20_000.0;
-                let apart = distance(follow_a.at(time), follow_b.at(time));
+                let apart = distance(&follow_a.at(time), &follow_b.at(time));
                 least = least.min(apart);
                 if apart < 5.0 && first_near.is_none() {
                     first_near = Some(time);
@@ -188,7 +186,7 @@ mod tests {
             assert!(found.closest.distance_m <= least + 1e-9, "seed {seed}");
             assert!(found.closest.distance_m >= least - 0.2, "seed {seed}");
             if let Some(time) = first_near {
-                assert!((found.conflict.unwrap().time_s - time).abs() < 0.02, "seed {seed}");
+                assert!((found.violation.unwrap().time_s - time).abs() < 0.02, "seed {seed}");
             }
         }
     }

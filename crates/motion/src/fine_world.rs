@@ -1,0 +1,85 @@
+//! What stands on the ground, finer than the map shows it: shapes, how near they are, and where rays meet them (SPEC 7.4).
+
+use nalgebra::Point2;
+use parry2d_f64::bounding_volume::{BoundingSphere, BoundingVolume as _};
+use parry2d_f64::query::details::ray_toi_with_ball;
+use parry2d_f64::query::{PointQuery as _, Ray, RayCast as _};
+use parry2d_f64::shape::{Ball, Segment};
+use terrain::{Obstacle, Terrain};
+
+/// The things that vehicles can touch and range sensors see: discs and straight faces, in metres.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FineWorld {
+    discs: Vec<Disc>,
+    faces: Vec<Segment>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Disc {
+    center_m: Point2<f64>,
+    shape: Ball,
+}
+
+impl FineWorld {
+    /// The rocks of a map from a diameter in metres on, also those too small for the map, and declared obstacles.
+    pub fn new(terrain: &Terrain, obstacles: &[Obstacle], least_rock_m: f64) -> Self {
+        let mut world = Self::default();
+        for rock in terrain.rocks().iter().filter(|rock| rock.diameter_m >= least_rock_m) {
+            world.add(&Obstacle::Circle { center_m: rock.center_m, radius_m: 0.5 * rock.diameter_m });
+        }
+        for obstacle in obstacles {
+            world.add(obstacle);
+        }
+        world
+    }
+
+    /// Puts a thing into the world.
+    pub fn add(&mut self, obstacle: &Obstacle) {
+        match obstacle {
+            Obstacle::Circle { center_m, radius_m } => {
+                self.discs.push(Disc { center_m: *center_m, shape: Ball::new(*radius_m) });
+            }
+            Obstacle::Polygon { corners_m } => {
+                let next = corners_m.iter().cycle().skip(1);
+                self.faces.extend(corners_m.iter().zip(next).map(|(&a, &b)| Segment::new(a, b)));
+            }
+        }
+    }
+
+    /// Metres from a point to the nearest surface, 0 inside a disc; infinite in an empty world.
+    pub fn distance_m(&self, point_m: Point2<f64>) -> f64 {
+        let discs = self.discs.iter().map(|disc| disc.distance_m(point_m));
+        let faces = self.faces.iter().map(|face| face.distance_to_local_point(&point_m, true));
+        discs.chain(faces).fold(f64::INFINITY, f64::min)
+    }
+
+    /// What of it comes within a range of a point.
+    pub fn around(&self, point_m: Point2<f64>, range_m: f64) -> Self {
+        let reach = BoundingSphere::new(point_m, range_m);
+        let is_near = |disc: &&Disc| reach.intersects(&BoundingSphere::new(disc.center_m, disc.shape.radius));
+        let is_in_reach = |face: &&Segment| face.distance_to_local_point(&point_m, true) <= range_m;
+        Self {
+            discs: self.discs.iter().filter(is_near).copied().collect(),
+            faces: self.faces.iter().filter(is_in_reach).copied().collect(),
+        }
+    }
+
+    /// The distance along a ray with a unit direction to the first thing it meets within a range.
+    pub(crate) fn cast(&self, ray: &Ray, range_m: f64) -> Option<f64> {
+        let discs = self.discs.iter().filter_map(|disc| disc.cast(ray));
+        let faces = self.faces.iter().filter_map(|face| face.cast_local_ray(ray, range_m, true));
+        discs.chain(faces).filter(|&range| range <= range_m).min_by(f64::total_cmp)
+    }
+}
+
+impl Disc {
+    fn distance_m(&self, point_m: Point2<f64>) -> f64 {
+        let offset = Point2::from(point_m - self.center_m);
+        self.shape.distance_to_local_point(&offset, true)
+    }
+
+    /// Where a ray meets it; 0 for a ray that begins inside.
+    fn cast(&self, ray: &Ray) -> Option<f64> {
+        ray_toi_with_ball(&self.center_m, self.shape.radius, ray, true).1
+    }
+}
