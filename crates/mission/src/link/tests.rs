@@ -1,3 +1,5 @@
+//! The link between front end and core on a fake transport: order, superseding, cancelling, silence, crash and retry.
+
 use super::*;
 use crate::job::JobId;
 use crate::request::{Goal, Update};
