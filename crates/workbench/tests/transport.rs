@@ -59,8 +59,9 @@ fn index(track: Track) -> usize {
     }
 }
 
+/// Asks for something, and lets the core's answers come: it runs control programs.
 fn drive(app: &mut App, command: TransportCommand) {
-    app.session.apply(vec![Command::Transport(command)]);
+    app.run(Command::Transport(command));
 }
 
 #[test]

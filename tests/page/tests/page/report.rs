@@ -107,7 +107,7 @@ fn the_report_is_a_page_that_stands_alone_and_prints_on_both_papers() -> Result<
         ("Map with the paths of the plan", "TAI_POS"),
     ] {
         let shown = tab.evaluate(&format!(
-            "[...document.querySelectorAll('figure svg')].some((it) => it.querySelector('title').textContent === {} \
+            "[...document.querySelectorAll('figure > svg')].some((it) => it.querySelector('title').textContent === {} \
              && it.textContent.includes({}) && it.getBoundingClientRect().height > 100)",
             json!(drawing),
             json!(name)
