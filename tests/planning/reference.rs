@@ -16,7 +16,7 @@ const MISSIONS: u64 = 60_000;
 /// Missions with many orders in little time.
 const CROWDED_MISSIONS: u64 = 30_000;
 /// The reference gives up on missions with more steps than this, and another one takes their place.
-const MOST_STEPS: u64 = 1_500;
+const MAX_STEPS: u64 = 1_500;
 /// What ordered intervals are kept apart by: it decides what touching means (SPEC 5.3).
 const GAPS: [&str; 4] = ["1", "0", "2", "0.5"];
 
@@ -148,7 +148,7 @@ fn compare(text: &str, gap: Time) -> Result<Option<Compared>, String> {
     let (network, diagnostics) = compile(text, &Top::Scenario(None));
     let mut network = network.ok_or_else(|| format!("does not compile: {diagnostics:?}\n{text}"))?;
     network.threat_gap = gap;
-    let Some(answer) = search(&network, MOST_STEPS) else { return Ok(None) };
+    let Some(answer) = search(&network, MAX_STEPS) else { return Ok(None) };
     let plan_key = |plan: &Plan| plan_key(&network, plan);
     let mut has_other_first = false;
     let expected: BTreeSet<Comparable> = answer.plans.iter().map(found_key).collect();

@@ -169,7 +169,7 @@ fn runs_stop_when_asked_to_and_belong_to_the_text_they_were_made_of() {
 }
 
 #[test]
-fn components_fail_by_chance_with_the_same_luck_again_and_again() {
+fn components_fail_by_chance_from_the_same_fault_seed_again_and_again() {
     let mut app = orbit_insertion();
     app.harness.get_by_label("Components fail by chance").click();
     app.settle();

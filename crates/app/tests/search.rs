@@ -147,7 +147,7 @@ fn arrows_walk_the_tree_and_select_what_was_chosen_there() {
 }
 
 #[test]
-fn running_stops_at_dead_ends_only_and_then_at_the_end() {
+fn running_stops_at_failures_only_and_then_at_the_end() {
     let mut app = lesson("");
     dispatch(&mut app, "search.breakpoints", &json!({ "failure": true }));
     let mut stops = 0;
@@ -188,7 +188,7 @@ fn playing_goes_on_by_itself_at_the_chosen_speed_and_stops_at_a_breakpoint() {
 }
 
 #[test]
-fn a_dead_end_shows_its_negative_cycle_in_every_panel() {
+fn a_failure_shows_its_negative_cycle_in_every_panel() {
     let mut app = lesson("");
     dispatch(&mut app, "search.breakpoints", &json!({ "failure": true }));
     dispatch(&mut app, "view.panel", &json!("distances"));

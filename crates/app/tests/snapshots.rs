@@ -13,7 +13,7 @@ use workbench::command::Command;
 use workbench::workspace::Workspace;
 
 /// Names longer than this are cut: the mission's text is one.
-const MOST_CHARACTERS: usize = 80;
+const MAX_CHARACTERS: usize = 80;
 
 fn outline(app: &support::App) -> String {
     let mut text = String::new();
@@ -26,7 +26,7 @@ fn outline(app: &support::App) -> String {
         let (Some(name), Some(area)) = (node.label().or_else(|| node.value()), node.bounding_box()) else {
             continue;
         };
-        let name: String = name.replace('\n', "⏎").chars().take(MOST_CHARACTERS).collect();
+        let name: String = name.replace('\n', "⏎").chars().take(MAX_CHARACTERS).collect();
         let (width, height) = (area.x1 - area.x0, area.y1 - area.y0);
         let _ = writeln!(
             text,

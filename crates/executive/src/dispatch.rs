@@ -6,7 +6,7 @@ use stn::{Dispatchable, PointId};
 use crate::plan_network::{PlanError, PlanNetwork};
 
 /// The greatest number of events that is dispatched; the dispatchable form takes time cubic in it.
-pub const MOST_EVENTS: usize = 1500;
+pub const MAX_EVENTS: usize = 1500;
 
 /// The state of a dispatch. Components are the rigid components of the plan; an event is a point and its time follows
 /// its component's.
@@ -48,7 +48,7 @@ impl Dispatcher {
     /// Prepares a plan for dispatch.
     pub fn new(plan: &mut PlanNetwork) -> Result<Self, PlanError> {
         let points: Vec<PointId> = plan.all_points().collect();
-        if points.len() > MOST_EVENTS {
+        if points.len() > MAX_EVENTS {
             return Err(PlanError::Overflow);
         }
         let distances = plan.stn.all_pairs()?;

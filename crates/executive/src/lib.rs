@@ -2,11 +2,11 @@
 //!
 //! Nothing here reads a clock: time is the mission's, exact, and moves from event to event.
 
+pub mod activity_execution;
 pub mod dispatch;
 pub mod facts;
 pub mod log;
 pub mod model_based;
-pub mod performance;
 pub mod pinned;
 pub mod plan_network;
 pub mod progress;
@@ -14,10 +14,10 @@ pub mod run;
 pub mod stage;
 pub mod world;
 
+pub use activity_execution::{ActivityExecution, ActivityExecutor, AsPlanned, Ends};
 pub use dispatch::Dispatcher;
 pub use facts::Facts;
 pub use log::{Ending, Entry, Happening};
-pub use performance::{AsPlanned, Ends, Performance, Performer};
 pub use pinned::PinnedPlan;
 pub use plan_network::{PlanError, PlanNetwork};
 pub use progress::{Observations, Progress, progress};

@@ -100,7 +100,7 @@ impl PinnedPlan {
         self.grabbed = None;
     }
 
-    /// Puts the grabbed event back where it was before it was grabbed. Answers whether one was grabbed.
+    /// Puts the grabbed event back where it was before it was grabbed. Returns whether one was grabbed.
     pub fn put_back(&mut self) -> bool {
         let Some(grabbed) = self.grabbed.take() else { return false };
         match grabbed.before {

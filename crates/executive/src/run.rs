@@ -12,10 +12,10 @@ use smol_str::SmolStr;
 use stn::PointId;
 use tpn::{EventEnd, EventRef, Network, NodeId, OccurrenceId, OccurrenceKind, Plan};
 
+use crate::activity_execution::{ActivityExecutor, AsPlanned, Ends};
 use crate::dispatch::SettleError;
 use crate::facts::Facts;
 use crate::log::{Ending, Entry, Happening};
-use crate::performance::{AsPlanned, Ends, Performer};
 use crate::plan_network::PlanError;
 use crate::stage::{ExecutedPlan, Stage};
 use crate::world::World;
@@ -45,7 +45,7 @@ impl RunOutcome {
 }
 
 /// A run that replans more often than this is stopped: something is wrong with the world or with the mission.
-const MOST_REPLANS: usize = 50;
+const MAX_REPLANS: usize = 50;
 
 /// Executes `plan` in `world`, with activities that take as long as planned where the world does not say otherwise.
 /// `num_program_nodes` is how many nodes the network has without inserted paths.
@@ -60,23 +60,23 @@ pub fn run(
     run_stage(stage, num_program_nodes, world, &mut AsPlanned, replanner)
 }
 
-/// Executes a plan that was made ready, in ticks that fit `world` and `performer`.
+/// Executes a plan that was made ready, in ticks that fit `world` and `executor`.
 pub fn run_stage(
     stage: Stage,
     num_program_nodes: usize,
     world: &World,
-    performer: &mut dyn Performer,
+    executor: &mut dyn ActivityExecutor,
     replanner: &mut dyn Replanner,
 ) -> Result<RunOutcome, PlanError> {
     let mut run = Run {
         stage,
         num_program_nodes,
         world,
-        performer,
+        executor,
         now: Time::ZERO,
         log: Vec::new(),
         coming: VecDeque::new(),
-        performed: BTreeMap::new(),
+        executions: BTreeMap::new(),
         passes: Vec::new(),
         news: Facts::default(),
         plans: Vec::new(),
@@ -91,13 +91,13 @@ struct Run<'a> {
     stage: Stage,
     num_program_nodes: usize,
     world: &'a World,
-    performer: &'a mut dyn Performer,
+    executor: &'a mut dyn ActivityExecutor,
     now: Time,
     log: Vec<Entry>,
     /// What is known to be seen of the activities under way, in order of time.
     coming: VecDeque<(OccurrenceId, Entry)>,
     /// When the activities that were started will be over.
-    performed: BTreeMap<OccurrenceId, Ends>,
+    executions: BTreeMap<OccurrenceId, Ends>,
     /// After how long from their traverse's start path vertices are passed.
     passes: Vec<(EventRef, Time)>,
     /// What the world has made known against the plan, kept over all replans.
@@ -332,7 +332,7 @@ impl Run<'_> {
                     return Ok(Some(ByWorld::Free));
                 };
                 let Some(started) = started else { return Ok(None) };
-                let news = match self.performed.get(&event.occurrence) {
+                let news = match self.executions.get(&event.occurrence) {
                     Some(Ends::After(all) | Ends::NotBefore(all)) => News::Duration(event.occurrence, *all),
                     _ => News::None,
                 };
@@ -340,8 +340,8 @@ impl Run<'_> {
             }
             (OccurrenceKind::Primitive, EventEnd::End) => {
                 let given = self.world.duration(&self.stage.network, occurrence)?;
-                let performed = self.performed.get(&event.occurrence);
-                let duration = match (given, performed) {
+                let execution = self.executions.get(&event.occurrence);
+                let duration = match (given, execution) {
                     (Some(given), _) => given,
                     (None, Some(Ends::After(duration))) => *duration,
                     (None, Some(Ends::NotBefore(duration))) => {
@@ -392,7 +392,7 @@ impl Run<'_> {
     /// A point happens now, if it can.
     fn happen(&mut self, point: PointId) -> Result<Option<Violation>, PlanError> {
         let node = self.stage.made.node(point);
-        // Ticks are fine enough for all times that the world and the performer bring.
+        // Ticks are fine enough for all times that the world and the executor bring.
         let ticks = self.stage.made.scale().ticks(self.now).map_err(|_| self.too_large(node))?;
         match self.stage.dispatcher.settle(point, ticks) {
             Ok(()) => {}
@@ -421,11 +421,11 @@ impl Run<'_> {
         if !is_start || self.world.duration(&self.stage.network, occurrence).map_err(too_late)?.is_some() {
             return Ok(());
         }
-        let performance =
-            self.performer.start(&self.stage.network, event.occurrence, self.now).map_err(too_late)?;
-        self.performed.insert(event.occurrence, performance.ends);
-        self.passes.extend(performance.passes);
-        for entry in performance.entries {
+        let execution =
+            self.executor.start(&self.stage.network, event.occurrence, self.now).map_err(too_late)?;
+        self.executions.insert(event.occurrence, execution.ends);
+        self.passes.extend(execution.passes);
+        for entry in execution.entries {
             let at = self.coming.partition_point(|(_, before)| before.time <= entry.time);
             self.coming.insert(at, (event.occurrence, entry));
         }
@@ -434,8 +434,8 @@ impl Run<'_> {
 
     /// Plans again from now; an answer says why there is no plan.
     fn replan(&mut self, replanner: &mut dyn Replanner) -> Result<Option<String>, PlanError> {
-        if self.plans.len() >= MOST_REPLANS {
-            return Ok(Some(format!("planned again {MOST_REPLANS} times without an end")));
+        if self.plans.len() >= MAX_REPLANS {
+            return Ok(Some(format!("planned again {MAX_REPLANS} times without an end")));
         }
         let mut facts = Facts { now: self.now, ..self.news.clone() };
         for (index, time) in self.stage.times.iter().enumerate() {
@@ -453,7 +453,7 @@ impl Run<'_> {
         let changes = changed_choices(&network, &self.stage.plan, &plan);
         self.write(Happening::Replanned { changes });
         let mut grid = self.world.times(&network)?;
-        grid.push(self.performer.granularity());
+        grid.push(self.executor.granularity());
         grid.push(self.now);
         let mut stage = Stage::new(network, plan, &grid)?;
         stage.from = self.now;

@@ -32,11 +32,11 @@ pub struct Searched {
 
 /// Alternatives after which a search of a network with one node would be stopped. Larger networks take longer for each,
 /// and get less in proportion.
-const MOST_WORK: u64 = 20_000_000;
+const MAX_WORK: u64 = 20_000_000;
 /// Every network gets as many alternatives.
 const LEAST_ALTERNATIVES: u64 = 2_000;
 /// None gets more.
-const MOST_ALTERNATIVES: u64 = 200_000;
+const MAX_ALTERNATIVES: u64 = 200_000;
 
 /// Searches `network` both ways, recording up to `trace_events` events of each. `None` when superseded.
 pub fn search(
@@ -64,7 +64,7 @@ fn searched(
         ..Options::default()
     };
     let nodes = network.nodes.len().max(1) as u64;
-    let most = (MOST_WORK / nodes).clamp(LEAST_ALTERNATIVES, MOST_ALTERNATIVES);
+    let most = (MAX_WORK / nodes).clamp(LEAST_ALTERNATIVES, MAX_ALTERNATIVES);
     let begun = host.now_millis();
     let mut is_superseded = false;
     let outcome = kirk::plan(network, &options, &mut |stats: &Stats| {

@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use exact::{Bound, Time};
 use executive::{
-    AsPlanned, Disturbance, Ending, Entry, Facts, Performer, PlanError, Replanner, RunOutcome, Script, Stage,
-    World, run_stage,
+    ActivityExecutor, AsPlanned, Disturbance, Ending, Entry, Facts, PlanError, Replanner, RunOutcome, Script,
+    Stage, World, run_stage,
 };
 use kirk::Status;
 use rmpl::program::Program;
@@ -87,12 +87,12 @@ pub fn execute(
         problem.ground.map(|(_, map)| Driving::new(problem, map, disturbances, &courses, problem.seed));
     let (programs, _) = Programs::compile(problem.program);
     let mut as_planned = AsPlanned;
-    let others: &mut dyn Performer = match &mut driving {
+    let others: &mut dyn ActivityExecutor = match &mut driving {
         Some(driving) => driving,
         None => &mut as_planned,
     };
-    let mut performer = ProgramPerformer::new(&programs, disturbances, None, others);
-    let granularity = performer.granularity();
+    let mut executor = ProgramPerformer::new(&programs, disturbances, None, others);
+    let granularity = executor.granularity();
     let grid = world.times(&planned.network).map_err(PlanError::from);
     let stage = grid.and_then(|mut grid| {
         grid.push(granularity);
@@ -102,27 +102,27 @@ pub fn execute(
         let mut replanner =
             WithPaths { problem, grounds, paths, replanned: Vec::new(), courses: Some(&courses) };
         let num_program_nodes = problem.network.nodes.len();
-        let outcome = run_stage(stage, num_program_nodes, &world, &mut performer, &mut replanner)?;
+        let outcome = run_stage(stage, num_program_nodes, &world, &mut executor, &mut replanner)?;
         Ok((outcome, replanner.replanned))
     });
     let drives = driving.map(Driving::into_drives).unwrap_or_default();
     Some(ran.map(|(outcome, replanned)| Ran { outcome, replanned, drives }))
 }
 
-/// Executes a plan of `problem` that was made ready for `world` and `performer`, which looks for its traverses in
+/// Executes a plan of `problem` that was made ready for `world` and `executor`, which looks for its traverses in
 /// `courses` if vehicles drive.
 pub(crate) fn execute_stage(
     problem: &Problem<'_>,
     stage: Stage,
     world: &World,
-    performer: &mut dyn Performer,
+    executor: &mut dyn ActivityExecutor,
     planner: (&mut Grounds, &mut Paths),
     courses: Option<&RefCell<Courses>>,
 ) -> Result<Ran, PlanError> {
     let (grounds, paths) = planner;
     let mut replanner = WithPaths { problem, grounds, paths, replanned: Vec::new(), courses };
     let num_program_nodes = problem.network.nodes.len();
-    let outcome = run_stage(stage, num_program_nodes, world, performer, &mut replanner)?;
+    let outcome = run_stage(stage, num_program_nodes, world, executor, &mut replanner)?;
     Ok(Ran { outcome, replanned: replanner.replanned, drives: Vec::new() })
 }
 

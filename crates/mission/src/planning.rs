@@ -62,7 +62,7 @@ pub struct Planned {
 }
 
 /// Rounds of planning and path finding; each adds the paths of at least one traverse or of a new start for one.
-const MOST_ROUNDS: usize = 64;
+const MAX_ROUNDS: usize = 64;
 
 /// A traverse as it stands in the network: its way, and its legs, or why it can't be driven.
 struct Inserted {
@@ -89,8 +89,7 @@ pub fn plan(
         outcome = kirk::plan(&network, &problem.options, &mut |_: &Stats| stop());
         rounds += 1;
         let (Some(ground), Some(found)) = (problem.ground, outcome.plans.first()) else { break };
-        if rounds > MOST_ROUNDS
-            || !find_paths(problem, ground, &network, found, grounds, paths, &mut inserted)
+        if rounds > MAX_ROUNDS || !find_paths(problem, ground, &network, found, grounds, paths, &mut inserted)
         {
             break;
         }

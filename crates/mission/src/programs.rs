@@ -8,8 +8,8 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 use exact::{Bound, Overflow, Time};
-use executive::model_based::{Estimation, Mind, Options, Run, StepInput, StepRecord, System};
-use executive::{Disturbance, Ends, Entry, Happening, Performance, Performer};
+use executive::model_based::{Estimation, Estimator, Options, Run, StepInput, StepRecord, System};
+use executive::{ActivityExecution, ActivityExecutor, Disturbance, Ends, Entry, Happening};
 use plant::{Belief, Model, Random, State};
 use rmpl::program::{Name, Program};
 use rmpl::{Code, Diagnostic};
@@ -28,7 +28,7 @@ pub struct Programs {
 }
 
 /// A program is given up after this many steps, even if its activity may last forever.
-const MOST_STEPS: i64 = 1000;
+const MAX_STEPS: i64 = 1000;
 
 impl Programs {
     /// Compiles the programs that the primitives of `program` run, and says what is wrong with them.
@@ -186,13 +186,13 @@ fn moved(mut diagnostic: Diagnostic, offset: u32) -> Diagnostic {
     diagnostic
 }
 
-/// Runs control programs when the executive starts their activities; leaves all other activities to another performer.
+/// Runs control programs when the executive starts their activities; leaves all other activities to another executor.
 pub struct ProgramPerformer<'run> {
     programs: &'run Programs,
     disturbances: &'run [Disturbance],
     /// Lets components fail by chance.
     chance: Option<Random>,
-    others: &'run mut dyn Performer,
+    others: &'run mut dyn ActivityExecutor,
     /// The plant as the last program left it, and what was believed of it.
     plant: Option<(State, Belief)>,
     /// Which activity controls the plant, and until when; no time if it never stops.
@@ -205,7 +205,7 @@ impl<'run> ProgramPerformer<'run> {
         programs: &'run Programs,
         disturbances: &'run [Disturbance],
         seed: Option<u64>,
-        others: &'run mut dyn Performer,
+        others: &'run mut dyn ActivityExecutor,
     ) -> Self {
         Self { programs, disturbances, chance: seed.map(Random::new), others, plant: None, control: None }
     }
@@ -216,7 +216,7 @@ impl<'run> ProgramPerformer<'run> {
         network: &Network,
         id: OccurrenceId,
         start: Time,
-    ) -> Result<Performance, Overflow> {
+    ) -> Result<ActivityExecution, Overflow> {
         let occurrence = &network.occurrences[id.index()];
         let name = occurrence.name.clone();
         if let Some((other, until)) = &self.control
@@ -224,7 +224,7 @@ impl<'run> ProgramPerformer<'run> {
         {
             let until = until.map_or_else(String::new, |until| format!(" until {}", until.readable()));
             let reason = format!("the program of {other} commands the plant{until}");
-            return Ok(Performance { ends: Ends::Never(reason), ..Performance::default() });
+            return Ok(ActivityExecution { ends: Ends::Never(reason), ..ActivityExecution::default() });
         }
         let step = self.programs.step;
         let upper = occurrence.arc.and_then(|arc| network.arcs.get(arc.index()));
@@ -232,15 +232,15 @@ impl<'run> ProgramPerformer<'run> {
             // One step more than there is time for shows whether it would have ended later.
             Some(Bound::Finite(upper)) => {
                 let steps = upper.checked_ratio(step).ok_or(Overflow)?.floor();
-                steps.saturating_add(1).clamp(1, MOST_STEPS)
+                steps.saturating_add(1).clamp(1, MAX_STEPS)
             }
-            _ => MOST_STEPS,
+            _ => MAX_STEPS,
         };
         let options = Options { seed: self.chance.as_mut().map(Random::next_bits), ..Options::default() };
-        let mind = Mind::new(Arc::clone(&system.planner), Estimation::for_model(&system.model));
+        let estimator = Estimator::new(Arc::clone(&system.planner), Estimation::for_model(&system.model));
         let mut run = match self.plant.take() {
-            Some((state, belief)) => Run::resumed(system, options, mind, state, belief),
-            None => Run::with_mind(system, options, mind),
+            Some((state, belief)) => Run::resumed(system, options, estimator, state, belief),
+            None => Run::with_estimator(system, options, estimator),
         };
         let mut entries = Vec::new();
         let mut trouble = None;
@@ -271,7 +271,7 @@ impl<'run> ProgramPerformer<'run> {
             _ => None,
         };
         self.control = Some((name, until));
-        Ok(Performance { ends, entries, ..Performance::default() })
+        Ok(ActivityExecution { ends, entries, ..ActivityExecution::default() })
     }
 
     /// The faults of one step.
@@ -290,13 +290,13 @@ impl<'run> ProgramPerformer<'run> {
     }
 }
 
-impl Performer for ProgramPerformer<'_> {
+impl ActivityExecutor for ProgramPerformer<'_> {
     fn start(
         &mut self,
         network: &Network,
         occurrence: OccurrenceId,
         start: Time,
-    ) -> Result<Performance, Overflow> {
+    ) -> Result<ActivityExecution, Overflow> {
         let activity = network.occurrences.get(occurrence.index()).map_or("", |it| it.activity.as_str());
         match self.programs.system(activity).cloned() {
             Some(system) => self.run(&system, network, occurrence, start),

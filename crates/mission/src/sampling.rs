@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use exact::{Bound, Overflow, Time};
 use executive::{
-    AsPlanned, Disturbance, Ending, Entry, Happening, Performer, PlanError, RunOutcome, Stage, World,
+    ActivityExecutor, AsPlanned, Disturbance, Ending, Entry, Happening, PlanError, RunOutcome, Stage, World,
 };
 use motion::Path;
 use plant::Random;
@@ -98,16 +98,16 @@ impl Sampler {
             Driving::new(problem, map, &disturbances, courses, run_seed(settings.seed, number))
         });
         let mut as_planned = AsPlanned;
-        let others: &mut dyn Performer = match &mut driving {
+        let others: &mut dyn ActivityExecutor = match &mut driving {
             Some(driving) => driving,
             None => &mut as_planned,
         };
-        let mut performer = ProgramPerformer::new(&self.programs, &[], fault_seed, others);
+        let mut executor = ProgramPerformer::new(&self.programs, &[], fault_seed, others);
         let ran = execution::execute_stage(
             problem,
             self.stage.clone(),
             &world,
-            &mut performer,
+            &mut executor,
             (grounds, paths),
             courses.as_ref(),
         )?;

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use exact::{Overflow, Time};
-use executive::{Disturbance, Ends, Entry, Happening, Performance, Performer};
+use executive::{ActivityExecution, ActivityExecutor, Disturbance, Ends, Entry, Happening};
 use motion::FineWorld;
 use nalgebra::Point2;
 use rmpl::program::Program;
@@ -174,15 +174,17 @@ impl<'run> Driving<'run> {
     }
 }
 
-impl Performer for Driving<'_> {
+impl ActivityExecutor for Driving<'_> {
     fn start(
         &mut self,
         network: &Network,
         occurrence: OccurrenceId,
         start: Time,
-    ) -> Result<Performance, Overflow> {
+    ) -> Result<ActivityExecution, Overflow> {
         let courses = self.courses.borrow();
-        let Some(course) = courses.known.get(&occurrence).cloned() else { return Ok(Performance::default()) };
+        let Some(course) = courses.known.get(&occurrence).cloned() else {
+            return Ok(ActivityExecution::default());
+        };
         let name = network.occurrences[occurrence.index()].name.clone();
         let mut trip = Trip::new(self, &course, network, start);
         let reached = trip.drive();
@@ -215,7 +217,7 @@ impl Performer for Driving<'_> {
             Ok(Entry { time, happening: Happening::Progress { name: name.clone(), text } })
         };
         let pass = |(event, seconds): (EventRef, f64)| Ok((event, units(seconds)?));
-        Ok(Performance {
+        Ok(ActivityExecution {
             ends: reached.map_or_else(Ends::Never, |()| Ends::NotBefore(duration)),
             entries: entries.into_iter().map(entry).collect::<Result<_, _>>()?,
             passes: passes.into_iter().map(pass).collect::<Result<_, _>>()?,

@@ -19,7 +19,7 @@ use crate::odds::{Bests, Odds, best_of, multiply};
 use crate::successor::{Choices, EstimateError, distributions};
 
 /// How many states as likely as the last one wanted are looked at, to list the first of them in the order of modes.
-const MOST_TIES: usize = 16;
+const MAX_TIES: usize = 16;
 
 /// What a search did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -217,7 +217,7 @@ impl Search {
             // weights, which decide, put among the first.
             if found.len() >= most {
                 let last = found.get(most - 1).map_or(0.0, |(value, _)| *value);
-                if waiting.bound < last * (1.0 - 1e-9) || found.len() > most.saturating_add(MOST_TIES) {
+                if waiting.bound < last * (1.0 - 1e-9) || found.len() > most.saturating_add(MAX_TIES) {
                     break;
                 }
             }

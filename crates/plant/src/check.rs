@@ -10,7 +10,7 @@ use crate::inherit::{MergedClass, MergedVariable};
 use crate::probability;
 
 /// Value sets are words of 64 bits.
-const MOST_VALUES: usize = 64;
+const MAX_VALUES: usize = 64;
 
 /// Adds what is wrong with the classes and components of a file that parsed without errors.
 pub(crate) fn check(
@@ -51,9 +51,9 @@ impl Checker<'_, '_> {
     fn check_class(&mut self, name: &SmolStr) {
         let Some(class) = self.classes.get(name) else { return };
         for variable in class.variables.iter().chain(&class.commands) {
-            if variable.values.len() > MOST_VALUES {
+            if variable.values.len() > MAX_VALUES {
                 let message = format!(
-                    "`{}` has {} values; at most {MOST_VALUES} are possible",
+                    "`{}` has {} values; at most {MAX_VALUES} are possible",
                     variable.name.text,
                     variable.values.len()
                 );
@@ -78,9 +78,9 @@ impl Checker<'_, '_> {
                 self.error("E-UNDEF", target.span, format!("the port `{}` names no class", port.text), hint);
             }
         }
-        if class.modes.len() > MOST_VALUES {
-            let span = class.modes[MOST_VALUES].0.span;
-            self.error("E-VALUE", span, format!("at most {MOST_VALUES} modes are possible"), None);
+        if class.modes.len() > MAX_VALUES {
+            let span = class.modes[MAX_VALUES].0.span;
+            self.error("E-VALUE", span, format!("at most {MAX_VALUES} modes are possible"), None);
         }
         for (_, constraints) in &class.modes {
             for constraint in constraints {

@@ -43,7 +43,7 @@ pub fn compile(file: &ControlFile) -> (Option<Model>, Vec<Diagnostic>) {
             .first()
             .and_then(|id| model.component(*id))
             .map_or(Span::default(), |component| component.span);
-        let message = format!("these components depend on each other in a circle: {}", names.join(", "));
+        let message = format!("these components depend on each other in a cycle: {}", names.join(", "));
         diagnostics.push(
             Diagnostic::warning(Code("E-RECURSION"), span, message).with_hint(
                 "estimation works, but commands are then found by search instead of by causal order",

@@ -29,7 +29,7 @@ impl<'model> Assumed<'model> {
 
     /// Narrows `domains` to what the assumed modes leave; the error names components that cannot hold together.
     ///
-    /// Answers whether the constraints of all assumed modes now hold whatever values are chosen.
+    /// Whether the constraints of all assumed modes now hold whatever values are chosen.
     pub(crate) fn propagate(&self, domains: &mut Domains) -> Result<bool, Places> {
         self.assume(Places::MAX, domains)?;
         self.settle(domains)
@@ -101,7 +101,7 @@ impl<'model> Assumed<'model> {
             let symbol = Model::mode_symbol(*component);
             let set = 1_u64.checked_shl(u32::from(*mode)).unwrap_or(0);
             if !domains.narrow(symbol, set, place_bit(place)) {
-                return Err(domains.blame(&[symbol], place));
+                return Err(domains.reason_for(&[symbol], place));
             }
         }
         Ok(())
@@ -114,7 +114,7 @@ impl<'model> Assumed<'model> {
         self.drain(domains)
     }
 
-    /// Looks at all places that are waiting, and at those that this concerns; answers whether none is left open.
+    /// Looks at all places that are waiting, and at those that this concerns; returns whether none is left open.
     ///
     /// Places are looked at in their order, and again when a symbol they speak of was narrowed: where causes are declared
     /// before effects, once each.
@@ -148,7 +148,7 @@ impl<'model> Assumed<'model> {
         }
     }
 
-    /// Enforces the constraint at a place; answers whether it now holds whatever is chosen.
+    /// Enforces the constraint at a place; returns whether it now holds whatever is chosen.
     fn enforce(&self, place: usize, domains: &mut Domains) -> Result<bool, Places> {
         let Some(mode) = self.modes[place] else { return Ok(true) };
         let Some(saying) = self.island.sayings[place].get(usize::from(mode)) else { return Ok(true) };
@@ -161,11 +161,11 @@ impl<'model> Assumed<'model> {
                 match clause {
                     Clause::True => {}
                     Clause::Open => is_true = false,
-                    Clause::False => return Err(domains.blame(&saying.symbols, place)),
+                    Clause::False => return Err(domains.reason_for(&saying.symbols, place)),
                     Clause::Needs(members) => {
-                        let blame = domains.blame(&saying.symbols, place);
+                        let reason = domains.reason_for(&saying.symbols, place);
                         for member in members {
-                            domains.narrow(member.symbol, member.set, blame);
+                            domains.narrow(member.symbol, member.set, reason);
                         }
                     }
                 }
@@ -183,8 +183,8 @@ impl<'model> Assumed<'model> {
         if formula.truth(&domains.sets) == Truth::True {
             return Ok(true);
         }
-        let blame = domains.blame(&saying.symbols, place);
-        if enforce(formula, domains, blame) { Ok(false) } else { Err(blame) }
+        let reason = domains.reason_for(&saying.symbols, place);
+        if enforce(formula, domains, reason) { Ok(false) } else { Err(reason) }
     }
 
     /// Whether some completion of `domains` satisfies all assumed modes; the error as in [`Self::propagate`].
@@ -206,20 +206,20 @@ impl<'model> Assumed<'model> {
     pub(crate) fn search(&self, domains: &mut Domains) -> Result<(), Places> {
         let Some((symbol, place)) = self.open_symbol(domains) else { return Ok(()) };
         let set = domains.sets.get(symbol as usize).copied().unwrap_or(0);
-        let mut blame = place_bit(place) | domains.blame_of(symbol);
+        let mut reason = place_bit(place) | domains.reason_of(symbol);
         let point = domains.point();
         for value in crate::observe::values(set) {
             match self.restrict([(symbol, 1 << value)], domains) {
                 Ok(true) => return Ok(()),
                 Ok(false) => match self.search(domains) {
                     Ok(()) => return Ok(()),
-                    Err(places) => blame |= places,
+                    Err(places) => reason |= places,
                 },
-                Err(places) => blame |= places,
+                Err(places) => reason |= places,
             }
             domains.return_to(&point);
         }
-        Err(blame)
+        Err(reason)
     }
 
     /// Leaves symbols only some values, and draws the consequences for `domains` of which all were drawn before.
@@ -233,7 +233,7 @@ impl<'model> Assumed<'model> {
         let mark = domains.mark();
         for (symbol, set) in given {
             if !domains.narrow(symbol, set, 0) {
-                return Err(domains.blame_of(symbol));
+                return Err(domains.reason_of(symbol));
             }
         }
         self.wake(mark, domains);
@@ -276,11 +276,11 @@ impl<'model> Assumed<'model> {
 }
 
 /// Removes values that `formula` rules out; false when none are left.
-fn enforce(formula: &Formula, domains: &mut Domains, blame: Places) -> bool {
+fn enforce(formula: &Formula, domains: &mut Domains, reason: Places) -> bool {
     match formula {
         Formula::Constant(value) => *value,
-        Formula::Member { symbol, set } => domains.narrow(*symbol, *set, blame),
-        Formula::All(parts) => parts.iter().all(|part| enforce(part, domains, blame)),
+        Formula::Member { symbol, set } => domains.narrow(*symbol, *set, reason),
+        Formula::All(parts) => parts.iter().all(|part| enforce(part, domains, reason)),
         Formula::Any(parts) => {
             let mut possible = None;
             for part in parts {
@@ -291,7 +291,7 @@ fn enforce(formula: &Formula, domains: &mut Domains, blame: Places) -> bool {
                     Truth::Open => possible = Some(part),
                 }
             }
-            possible.is_some_and(|part| enforce(part, domains, blame))
+            possible.is_some_and(|part| enforce(part, domains, reason))
         }
     }
 }

@@ -134,7 +134,7 @@ pub(crate) fn shrink(
         }
     };
     keep(assumed, places);
-    debug_assert!(assumed.check(observed).is_err(), "those to blame contradict each other");
+    debug_assert!(assumed.check(observed).is_err(), "the modes responsible contradict each other");
     for place in 0..assumed.modes.len() {
         if assumed.modes[place].is_none() || !may_go(place) {
             continue;

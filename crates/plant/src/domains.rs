@@ -1,9 +1,9 @@
-//! The values that symbols may still have, with who is to blame for that and how to take it back.
+//! The values that symbols may still have, with the reason for that and how to take it back.
 
 use crate::island::{Places, place_bit};
 use crate::model::{Model, Observation};
 
-/// The values that symbols may still have, and which components' modes are to blame.
+/// The values that symbols may still have, and which components' modes are the reason.
 ///
 /// Every narrowing is written down, so that a trial is undone in time proportional to what it did.
 #[derive(Clone, Debug)]
@@ -100,30 +100,30 @@ impl Domains {
         }
     }
 
-    /// Leaves a symbol only values of `set`, because of `blame`; false when none are left.
+    /// Leaves a symbol only values of `set`, because of `reason`; false when none are left.
     #[inline]
-    pub(crate) fn narrow(&mut self, symbol: u32, set: u64, blame: Places) -> bool {
+    pub(crate) fn narrow(&mut self, symbol: u32, set: u64, reason: Places) -> bool {
         let at = symbol as usize;
         let Some(&before) = self.sets.get(at) else { return false };
         let narrowed = before & set;
         if narrowed != before {
             self.trail.push((symbol, before, self.reasons[at]));
             self.sets[at] = narrowed;
-            self.reasons[at] |= blame;
+            self.reasons[at] |= reason;
         }
         narrowed != 0
     }
 
-    /// Who is to blame for a symbol's values.
+    /// The reason for a symbol's values.
     #[inline]
-    pub(crate) fn blame_of(&self, symbol: u32) -> Places {
+    pub(crate) fn reason_of(&self, symbol: u32) -> Places {
         self.reasons.get(symbol as usize).copied().unwrap_or(0)
     }
 
-    /// Who is to blame for what a constraint at a place makes of its symbols.
+    /// The reason for what a constraint at a place makes of its symbols.
     #[inline]
-    pub(crate) fn blame(&self, symbols: &[u32], place: usize) -> Places {
+    pub(crate) fn reason_for(&self, symbols: &[u32], place: usize) -> Places {
         let reasons = symbols.iter().filter_map(|symbol| self.reasons.get(*symbol as usize));
-        reasons.fold(place_bit(place), |blame, reason| blame | reason)
+        reasons.fold(place_bit(place), |all, reason| all | reason)
     }
 }

@@ -62,7 +62,7 @@ pub(crate) fn merge_all(file: &ControlFile) -> (BTreeMap<SmolStr, MergedClass<'_
 struct Merger<'file> {
     classes: BTreeMap<&'file str, &'file Class>,
     diagnostics: Vec<Diagnostic>,
-    /// Classes on a circle that has been reported.
+    /// Classes on a cycle that has been reported.
     on_circles: Vec<&'file str>,
 }
 

@@ -181,7 +181,7 @@ impl<'model> Likelihoods<'model> {
             sets.is_some_and(|(left, right)| left & right == 0)
         };
         if let Some(contradicted) = observed.iter().find(contradicts) {
-            return Err(self.free.blame_of(*contradicted));
+            return Err(self.free.reason_of(*contradicted));
         }
         if is_settled {
             return Ok(product_of_values(observed, &self.free));

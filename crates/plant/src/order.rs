@@ -9,7 +9,7 @@ pub struct CausalOrder {
     pub causes: Vec<Vec<ComponentId>>,
     /// Per component its number: a component has a lower number than its causes.
     pub numbers: Vec<u32>,
-    /// Whether some components depend on each other in a circle; then numbers are only a tie-break.
+    /// Whether some components depend on each other in a cycle; then numbers are only a tie-break.
     pub is_cyclic: bool,
 }
 
@@ -58,7 +58,7 @@ impl CausalOrder {
     }
 }
 
-/// Components that depend on each other in a circle, if there are any.
+/// Components that depend on each other in a cycle, if there are any.
 pub(crate) fn cycle(model: &Model) -> Option<Vec<ComponentId>> {
     let order = CausalOrder::new(model);
     if !order.is_cyclic {

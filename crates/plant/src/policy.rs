@@ -11,7 +11,7 @@ use crate::order::CausalOrder;
 use crate::successor::successor;
 
 /// A guard with more alternatives than this is not planned with.
-const MOST_ALTERNATIVES: usize = 256;
+const MAX_ALTERNATIVES: usize = 256;
 
 /// One way to take a transition: the commands to give while the conditions hold.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -91,7 +91,7 @@ impl Planner {
     pub(crate) fn reach(&self, state: &State) -> Vec<u64> {
         let mut reach: Vec<u64> = self.model.component_ids().map(|id| 1 << state.mode(id)).collect();
         let mut order: Vec<usize> = (0..reach.len()).collect();
-        // Causes first, so that one round is enough where there is no circle.
+        // Causes first, so that one round is enough where there is no cycle.
         order.sort_by_key(|&at| std::cmp::Reverse(self.order.numbers[at]));
         loop {
             let before = reach.clone();
@@ -215,7 +215,7 @@ fn steps_of(model: &Model, component: ComponentId, is_complete: &mut bool) -> Ve
     let leave = |(from, mode): (usize, &crate::Mode)| {
         let mut steps = Vec::new();
         for transition in mode.transitions.iter().filter(|transition| transition.to as usize != from) {
-            let Some(alternatives) = transition.guard.alternatives(MOST_ALTERNATIVES) else {
+            let Some(alternatives) = transition.guard.alternatives(MAX_ALTERNATIVES) else {
                 *is_complete = false;
                 continue;
             };

@@ -14,7 +14,7 @@ use crate::policy::Planner;
 use crate::successor::nominal;
 
 /// A search over whole states gives up after this many of them.
-const MOST_STATES: usize = 20_000;
+const MAX_STATES: usize = 20_000;
 
 /// A component to be brought into one of some modes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -290,7 +290,7 @@ impl Planner {
             if is_met(&nodes[at].0, goals) {
                 return Ok(path(&nodes, at, &choices));
             }
-            if nodes.len() > MOST_STATES {
+            if nodes.len() > MAX_STATES {
                 return Err(Failure::Limit);
             }
             for (choice, commands) in choices.iter().enumerate() {
@@ -306,7 +306,7 @@ impl Planner {
 
     fn reason(&self, state: &State, goal: Goal, accepted: &[Goal], limit_reached: bool) -> String {
         if limit_reached {
-            return format!("no way to {} was found among {MOST_STATES} states", goal.describe(&self.model));
+            return format!("no way to {} was found among {MAX_STATES} states", goal.describe(&self.model));
         }
         let reach = self.reach(state);
         if reach.get(goal.component.0 as usize).is_some_and(|reach| reach & goal.modes != 0) {

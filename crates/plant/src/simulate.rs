@@ -114,12 +114,12 @@ impl SimulatedPlant {
         let mut free = Domains::observed(&self.model, &Observation::default());
         for island in &self.model.islands {
             if let Err(places) = Assumed::all(&self.model, island, &next.0).check(&mut free) {
-                let blamed = island
+                let responsible = island
                     .components
                     .iter()
                     .enumerate()
                     .filter(|(place, _)| places >> (place % 128) & 1 == 1);
-                let names: Vec<String> = blamed
+                let names: Vec<String> = responsible
                     .filter_map(|(_, id)| {
                         Some(format!(
                             "{}={}",

@@ -3,7 +3,7 @@
 //! Parsing never fails: every stage returns a result and its diagnostics. Nothing here knows of networks or plans.
 
 mod analysis;
-pub mod circles;
+pub mod call_cycles;
 pub mod control;
 pub mod diagnostic;
 pub mod diagnostics;

@@ -38,7 +38,7 @@ pub struct Parse {
     places: Vec<Place>,
     names: Names,
     index: Index,
-    circles: Vec<(DeclarationKey, Diagnostic)>,
+    cycles: Vec<(DeclarationKey, Diagnostic)>,
 }
 
 /// Where a declaration stands.
@@ -188,10 +188,10 @@ impl Parse {
         }
         let changed_keys = self.places.get(changed.clone()).unwrap_or_default().iter().map(|place| place.key);
         let moves_circle =
-            changed_keys.into_iter().any(|key| self.circles.iter().any(|(other, _)| *other == key));
+            changed_keys.into_iter().any(|key| self.cycles.iter().any(|(other, _)| *other == key));
         if self.index.take_calls_changed() || moves_circle {
             let summaries = self.places.iter().map(|place| (place.key, &place.declaration.summary));
-            self.circles = recursion(&self.names, &self.index, summaries);
+            self.cycles = recursion(&self.names, &self.index, summaries);
         }
     }
 
@@ -228,8 +228,8 @@ impl Parse {
             let shown = place.checked.diagnostics.iter().filter_map(|(once, diagnostic)| {
                 once.is_none_or(|once| told.insert(once)).then_some(diagnostic)
             });
-            let circles = self.circles.iter().filter(|(key, _)| *key == place.key);
-            let here = own.chain(shown).chain(circles.map(|(_, diagnostic)| diagnostic));
+            let cycles = self.cycles.iter().filter(|(key, _)| *key == place.key);
+            let here = own.chain(shown).chain(cycles.map(|(_, diagnostic)| diagnostic));
             all.extend(here.map(|diagnostic| diagnostic.clone().moved(place.start)));
             if let Some(here) = all.get_mut(first..) {
                 here.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.severity));

@@ -2,7 +2,7 @@
 //!
 //! The algorithm is RUL⁻ in its faster form (Cairo, Hunsberger and Rizzi, 2018; Hunsberger and Posenato, 2022): per
 //! contingent link one search back from its end (`reduction`), which yields ordinary edges that bypass its upper case,
-//! where a link whose activation the search meets comes first. Such waiting in a circle is a semi-reducible negative
+//! where a link whose activation the search meets comes first. Such waiting in a cycle is a semi-reducible negative
 //! cycle, as is a negative cycle of ordinary and lower-case edges; without either the network is dynamically
 //! controllable with instantaneous reaction. `O(mn + k²n + kn log n)` for `n` points, `m` edges and `k` links.
 //!
@@ -301,7 +301,7 @@ impl Checker {
             frame.met = met;
             match self.visits[awaited as usize] {
                 Visit::Done => {}
-                Visit::Open => return Err(self.circle(&stack, awaited)),
+                Visit::Open => return Err(self.cycle(&stack, awaited)),
                 Visit::Not => self.open(awaited, &mut stack),
             }
         }
@@ -359,7 +359,7 @@ impl Checker {
     }
 
     /// Links that await each other, the last of `stack` awaiting `awaited` further down.
-    fn circle(&self, stack: &[Frame], awaited: u32) -> Refusal {
+    fn cycle(&self, stack: &[Frame], awaited: u32) -> Refusal {
         let mut cycle = Vec::new();
         for frame in stack.iter().rev() {
             cycle.extend(self.path(frame.met));

@@ -29,7 +29,7 @@ pub struct ClearanceMap<'a> {
 /// More room than this is as good as any.
 pub const AMPLE_M: f32 = 10.0;
 /// Larger images are no clearer, and slow to make while an obstacle is dragged.
-const MOST_PIXELS: u32 = 1024;
+const MAX_PIXELS: u32 = 1024;
 
 impl Decal {
     /// Paints obstacles over the clearance map, if one is wanted; `None` when there is nothing to paint.
@@ -41,7 +41,7 @@ impl Decal {
         if obstacles.is_empty() && clearance.is_none() {
             return None;
         }
-        let (width, height) = (ground.width.min(MOST_PIXELS), ground.height.min(MOST_PIXELS));
+        let (width, height) = (ground.width.min(MAX_PIXELS), ground.height.min(MAX_PIXELS));
         let cells_per_pixel =
             Vec2::new(ground.width as f32 / width as f32, ground.height as f32 / height as f32);
         let pixels = match clearance {

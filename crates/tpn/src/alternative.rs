@@ -7,7 +7,7 @@ use crate::network::{ArcId, DecisionId, Network, NodeId, Occurrence, OccurrenceK
 /// The longest call that stands for an alternative; longer ones are named by their occurrence.
 const LONGEST_CALL: usize = 40;
 /// So many parts of an alternative are named.
-const MOST_NAMED: usize = 2;
+const MAX_NAMED: usize = 2;
 
 impl Network {
     /// What an alternative of a decision does, for people: `Carry(GAP, LANDER)`, or `Group-Traverse-Path#1` where the call is
@@ -49,8 +49,8 @@ impl Network {
             [] => "nothing".to_owned(),
             [single] => call(single),
             several => {
-                let names: Vec<&str> = several.iter().take(MOST_NAMED).map(|it| it.name.as_str()).collect();
-                match several.len().saturating_sub(MOST_NAMED) {
+                let names: Vec<&str> = several.iter().take(MAX_NAMED).map(|it| it.name.as_str()).collect();
+                match several.len().saturating_sub(MAX_NAMED) {
                     0 => names.join(" and "),
                     rest => format!("{} and {rest} more", names.join(", ")),
                 }

@@ -31,7 +31,7 @@ const KEYS: usize = 12;
 /// The longest wait for a frame, and for the answer to an edit or a map.
 const LIMIT_MILLIS: u32 = 30_000;
 /// More panels than there are.
-const MOST_PANELS: usize = 20;
+const MAX_PANELS: usize = 20;
 
 #[expect(clippy::print_stdout, reason = "printing its tables is what a benchmark is for")]
 fn main() -> Result<()> {
@@ -237,7 +237,7 @@ fn leave_alone(tab: &Tab, panels: &[&str]) -> Result<()> {
         tab.evaluate(&format!("enroute.dispatch('view.panel', {{ name: '{panel}' }})"))?;
     }
     next_frame(tab)?;
-    for _ in 0..MOST_PANELS {
+    for _ in 0..MAX_PANELS {
         let open = tab.evaluate("enroute.state().panels")?;
         let open = open.as_array().context("panels are a list")?;
         let too_many: Vec<&str> =

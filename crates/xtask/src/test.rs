@@ -21,7 +21,7 @@ struct Count {
 }
 
 /// Runs every check, whatever the ones before found, and ends with the line `N passed, N failed`. A check that is not
-/// a test program counts as one failure if it fails, and not at all otherwise. Answers whether nothing failed.
+/// a test program counts as one failure if it fails, and not at all otherwise. Returns whether nothing failed.
 pub(crate) fn run_all() -> Result<bool> {
     // Nothing is gained by testing for minutes before a missing browser is noticed.
     find_or_install_chromium()?;

@@ -14,7 +14,7 @@ use crate::input::{read_json, read_text};
 use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
 
 /// The search for likely states gives up after this many nodes.
-const MOST_NODES: u32 = 1_000_000;
+const MAX_NODES: u32 = 1_000_000;
 
 /// Updates a belief about a plant by commands and observations.
 #[derive(clap::Args)]
@@ -62,7 +62,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let observation = model.observation_from_names(names(&given)).map_err(|error| anyhow!(error))?;
     let result = match args.k {
         None => update_exact(&model, &prior, &commands, &observation).map(|belief| (belief, false)),
-        Some(most) => update_best(&model, &prior, &commands, &observation, most.max(1), MOST_NODES)
+        Some(most) => update_best(&model, &prior, &commands, &observation, most.max(1), MAX_NODES)
             .map(|(belief, statistics)| (belief, statistics.limit_reached)),
     };
     let (posterior, limit_reached) = match result {

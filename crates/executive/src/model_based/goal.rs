@@ -3,44 +3,53 @@
 use plant::{Goal, Model, Planner, State};
 use rmpl::control::{Constraint, ConstraintKind};
 
-/// A constraint with more ways to be satisfied is pursued by its first ones only.
-const MOST_WAYS: usize = 64;
+/// A constraint with more goal configurations is pursued by its first ones only.
+const MAX_CONFIGURATIONS: usize = 64;
 
-/// The ways in which an asserted constraint can come true.
+/// The configurations of modes in which an asserted constraint holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Wish {
+pub(super) struct GoalConfigurations {
     /// Each a conjunction of goals; empty for a constraint that can never hold.
-    ways: Vec<Vec<Goal>>,
+    configurations: Vec<Vec<Goal>>,
 }
 
-impl Wish {
-    /// The goals to pursue from a state: of the ways already taken, then of those in reach, the first.
+impl GoalConfigurations {
+    /// The goals to pursue from a state: of the configurations already reached, then of those in reach, the first.
     ///
     /// `None` for a constraint that can never hold.
     pub(super) fn goals(&self, planner: &Planner, state: &State) -> Option<&[Goal]> {
-        let met = |way: &&Vec<Goal>| way.iter().all(|goal| goal.modes >> state.mode(goal.component) & 1 == 1);
-        let reachable = |way: &&Vec<Goal>| way.iter().all(|goal| planner.may_reach(state, goal));
-        let way = match self.ways.as_slice() {
-            [only] => Some(only),
-            ways => ways.iter().find(met).or_else(|| ways.iter().find(reachable)).or(ways.first()),
+        let met = |configuration: &&Vec<Goal>| {
+            configuration.iter().all(|goal| goal.modes >> state.mode(goal.component) & 1 == 1)
         };
-        way.map(Vec::as_slice)
+        let reachable =
+            |configuration: &&Vec<Goal>| configuration.iter().all(|goal| planner.may_reach(state, goal));
+        let configuration = match self.configurations.as_slice() {
+            [only] => Some(only),
+            configurations => configurations
+                .iter()
+                .find(met)
+                .or_else(|| configurations.iter().find(reachable))
+                .or(configurations.first()),
+        };
+        configuration.map(Vec::as_slice)
     }
 }
 
 /// Reads a constraint once, when the program is compiled.
-pub(super) fn wish(planner: &Planner, constraint: &Constraint) -> Wish {
-    Wish { ways: ways(planner.model(), planner, constraint, true) }
+pub(super) fn goal_configurations(planner: &Planner, constraint: &Constraint) -> GoalConfigurations {
+    GoalConfigurations { configurations: configurations(planner.model(), planner, constraint, true) }
 }
 
-fn ways(model: &Model, planner: &Planner, constraint: &Constraint, wanted: bool) -> Vec<Vec<Goal>> {
+fn configurations(model: &Model, planner: &Planner, constraint: &Constraint, wanted: bool) -> Vec<Vec<Goal>> {
     match &constraint.kind {
-        ConstraintKind::Not(inner) => ways(model, planner, inner, !wanted),
+        ConstraintKind::Not(inner) => configurations(model, planner, inner, !wanted),
         ConstraintKind::And(parts) if wanted => all(model, planner, parts, wanted),
         ConstraintKind::Or(parts) if !wanted => all(model, planner, parts, wanted),
-        ConstraintKind::And(parts) | ConstraintKind::Or(parts) => {
-            parts.iter().flat_map(|part| ways(model, planner, part, wanted)).take(MOST_WAYS).collect()
-        }
+        ConstraintKind::And(parts) | ConstraintKind::Or(parts) => parts
+            .iter()
+            .flat_map(|part| configurations(model, planner, part, wanted))
+            .take(MAX_CONFIGURATIONS)
+            .collect(),
         ConstraintKind::Equals { variable, value } => {
             let goal = if let Some(component) = model.component_named(&variable.text) {
                 let modes = model.component(component).map_or(0, |data| data.modes.len());
@@ -83,11 +92,11 @@ fn chosen(set: u64, count: usize, wanted: bool) -> u64 {
 fn all(model: &Model, planner: &Planner, parts: &[Constraint], wanted: bool) -> Vec<Vec<Goal>> {
     let mut joined: Vec<Vec<Goal>> = vec![Vec::new()];
     for part in parts {
-        let inner = ways(model, planner, part, wanted);
+        let inner = configurations(model, planner, part, wanted);
         joined = joined
             .iter()
             .flat_map(|left| inner.iter().map(|right| left.iter().chain(right).copied().collect()))
-            .take(MOST_WAYS)
+            .take(MAX_CONFIGURATIONS)
             .collect();
     }
     joined

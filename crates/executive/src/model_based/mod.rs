@@ -3,13 +3,13 @@
 //! Each step asserts goals, commands the plant towards them, lets nature answer, observes, updates the belief, and
 //! moves the automaton by the most likely state.
 
+mod estimator;
 mod goal;
-mod mind;
 mod monte_carlo;
 mod run;
 mod system;
 
-pub use mind::{Estimation, Mind};
+pub use estimator::{Estimation, Estimator};
 pub use monte_carlo::{FaultTally, ProgramTally, Trials, run_seed, sample, wilson_interval};
 pub use run::{Knowledge, Options, Run, StepInput, StepRecord};
 pub use system::{System, SystemCompilation};

@@ -11,7 +11,7 @@ use plant::{EstimateError, Random};
 use serde::{Deserialize, Serialize};
 use smol_str::{SmolStr, format_smolstr};
 
-use super::mind::{Estimation, Mind};
+use super::estimator::{Estimation, Estimator};
 use super::run::{Options, Run, StepInput};
 use super::system::System;
 
@@ -128,12 +128,12 @@ pub fn sample(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<ProgramTally, EstimateError> {
     let estimation = trials.options.estimation.unwrap_or_else(|| Estimation::for_model(&system.model));
-    let mut mind = Mind::new(Arc::clone(&system.planner), estimation);
+    let mut estimator = Estimator::new(Arc::clone(&system.planner), estimation);
     let nothing = StepInput::default();
     let mut tally = ProgramTally::default();
     for number in numbers {
         let options = Options { seed: Some(run_seed(trials.seed, number)), ..trials.options };
-        let mut run = Run::with_mind(system, options, mind);
+        let mut run = Run::with_estimator(system, options, estimator);
         for step in 1..=trials.most_steps {
             if run.is_done() {
                 break;
@@ -141,7 +141,7 @@ pub fn sample(
             run.step(trials.inputs.get(&step).unwrap_or(&nothing))?;
         }
         tally.take(system, &run, number);
-        mind = run.into_mind();
+        estimator = run.into_estimator();
         if !go_on() {
             break;
         }

@@ -12,7 +12,7 @@ use plant::{
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
-use super::mind::{Estimation, Mind};
+use super::estimator::{Estimation, Estimator};
 use super::system::System;
 
 /// What the automaton takes for known.
@@ -84,7 +84,7 @@ struct Standing {
 pub struct Run {
     system: Arc<System>,
     options: Options,
-    mind: Mind,
+    estimator: Estimator,
     stepper: Stepper,
     plant: SimulatedPlant,
     belief: Belief,
@@ -97,15 +97,15 @@ impl Run {
     /// Starts with the plant in its initial state, which is known.
     pub fn new(system: &Arc<System>, options: Options) -> Self {
         let estimation = options.estimation.unwrap_or_else(|| Estimation::for_model(&system.model));
-        let mind = Mind::new(Arc::clone(&system.planner), estimation);
-        Self::with_mind(system, options, mind)
+        let estimator = Estimator::new(Arc::clone(&system.planner), estimation);
+        Self::with_estimator(system, options, estimator)
     }
 
-    /// The same with a mind that earlier runs have furnished.
-    pub fn with_mind(system: &Arc<System>, options: Options, mind: Mind) -> Self {
+    /// The same with an estimator that remembers what earlier runs asked.
+    pub fn with_estimator(system: &Arc<System>, options: Options, estimator: Estimator) -> Self {
         Self {
             options,
-            mind,
+            estimator,
             stepper: Stepper::new(&system.automaton),
             plant: SimulatedPlant::new(&system.model, None),
             belief: Belief::certain(system.model.initial_state()),
@@ -117,8 +117,14 @@ impl Run {
     }
 
     /// Starts with the plant as an earlier run left it, and with what was believed then.
-    pub fn resumed(system: &Arc<System>, options: Options, mind: Mind, state: State, belief: Belief) -> Self {
-        let mut run = Self::with_mind(system, options, mind);
+    pub fn resumed(
+        system: &Arc<System>,
+        options: Options,
+        estimator: Estimator,
+        state: State,
+        belief: Belief,
+    ) -> Self {
+        let mut run = Self::with_estimator(system, options, estimator);
         run.plant = SimulatedPlant::new(&system.model, Some(state));
         run.belief = belief;
         run
@@ -230,13 +236,13 @@ impl Run {
         }
         let mut observation = self.plant.observation();
         observation.0.extend(&input.observed);
-        let thought = self.mind.think(&self.belief, &commands, &observation)?;
-        self.belief = thought.belief.clone();
+        let update = self.estimator.estimate(&self.belief, &commands, &observation)?;
+        self.belief = update.belief.clone();
         let most = match self.options.knowledge {
             Knowledge::MostLikely => 1,
             Knowledge::CommonTo(most) => most.max(1),
         };
-        let shown = if thought.is_unexplained { Observation::default() } else { observation.clone() };
+        let shown = if update.is_unexplained { Observation::default() } else { observation.clone() };
         let estimates: Vec<hca::Estimate> =
             self.belief.states().take(most).map(|(state, _)| system.estimate(state, &shown)).collect();
         self.stepper.step_observed(&estimates, &mut trace);
@@ -248,9 +254,9 @@ impl Run {
             failed,
             true_state: self.plant.state().clone(),
             observation,
-            belief: thought.belief,
-            is_unexplained: thought.is_unexplained,
-            conflicts: thought.conflicts,
+            belief: update.belief,
+            is_unexplained: update.is_unexplained,
+            conflicts: update.conflicts,
         })
     }
 
@@ -261,8 +267,8 @@ impl Run {
         let mut goals: Vec<Goal> = Vec::new();
         let mut unachievable: Vec<(SmolStr, String)> = Vec::new();
         for location in self.stepper.marking().iter() {
-            let Some(wish) = system.wish(location) else { continue };
-            if let Some(found) = wish.goals(self.mind.planner(), &state) {
+            let Some(configurations) = system.goal_configurations(location) else { continue };
+            if let Some(found) = configurations.goals(self.estimator.planner(), &state) {
                 goals.extend(found);
             } else {
                 let label = system
@@ -276,7 +282,7 @@ impl Run {
         }
         goals.sort_unstable();
         goals.dedup();
-        let next = self.mind.plan(&state, &goals);
+        let next = self.estimator.plan(&state, &goals);
         let described = next
             .unreachable
             .iter()
@@ -288,7 +294,7 @@ impl Run {
     }
 
     /// What the run has found out about its plant, for another run.
-    pub fn into_mind(self) -> Mind {
-        self.mind
+    pub fn into_estimator(self) -> Estimator {
+        self.estimator
     }
 }

@@ -11,7 +11,7 @@ use rmpl::control::{
 use rmpl::{Code, Diagnostic, Severity};
 use smol_str::SmolStr;
 
-use super::goal::{Wish, wish};
+use super::goal::{GoalConfigurations, goal_configurations};
 
 /// What a variable of the program stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,8 +34,8 @@ pub struct System {
     /// The plant's reactive planner.
     pub planner: Arc<Planner>,
     bindings: Vec<Binding>,
-    /// Per location, what it wants of the plant.
-    wishes: Vec<Option<Wish>>,
+    /// Per location, the configurations of the plant that satisfy what it asserts.
+    goal_configurations: Vec<Option<GoalConfigurations>>,
 }
 
 /// What compiling a program and its plant gives.
@@ -140,9 +140,9 @@ impl System {
         estimate
     }
 
-    /// What a location wants of the plant, if anything.
-    pub(super) fn wish(&self, location: hca::LocationId) -> Option<&Wish> {
-        self.wishes.get(location.0 as usize)?.as_ref()
+    /// The configurations of the plant that satisfy what a location asserts, if it asserts anything.
+    pub(super) fn goal_configurations(&self, location: hca::LocationId) -> Option<&GoalConfigurations> {
+        self.goal_configurations.get(location.0 as usize)?.as_ref()
     }
 }
 
@@ -182,15 +182,15 @@ fn bind(file: &rmpl::control::ControlFile, model: Model) -> (Option<Arc<System>>
     let bindings = automaton.variables.iter().map(|variable| binding(&variable.name)).collect();
     let model = Arc::new(model);
     let planner = Arc::new(Planner::new(&model));
-    let wishes = automaton
+    let goal_configurations = automaton
         .locations
         .iter()
         .map(|location| {
             let assertion = location.assertion.as_ref()?;
-            Some(wish(&planner, &automaton.guard(assertion.test)?.constraint))
+            Some(goal_configurations(&planner, &automaton.guard(assertion.test)?.constraint))
         })
         .collect();
-    (Some(Arc::new(System { automaton, model, planner, bindings, wishes })), diagnostics)
+    (Some(Arc::new(System { automaton, model, planner, bindings, goal_configurations })), diagnostics)
 }
 
 fn undefined(name: &Name, known: &BTreeSet<SmolStr>, is_asserted: bool) -> Diagnostic {

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use executive::model_based::{Estimation, Mind, Options, Run, System};
+use executive::model_based::{Estimation, Estimator, Options, Run, System};
 use hca::Automaton;
 use rmpl::spans::Spans as _;
 
@@ -74,8 +74,8 @@ impl Session {
         if before.seed == seed && (program == before.program || is_elsewhere(&before.control, &control)) {
             return Self { control, program, ..before };
         }
-        let mind = before.run.map(|run| run.run.into_mind());
-        let run = RunOfSystem::start(&control, seed, mind);
+        let estimator = before.run.map(|run| run.run.into_estimator());
+        let run = RunOfSystem::start(&control, seed, estimator);
         Self { control, seed, program, key: keys.fresh(), run }
     }
 
@@ -123,10 +123,10 @@ fn is_elsewhere(one: &Control, other: &Control) -> bool {
 }
 
 impl RunOfSystem {
-    fn start(control: &Control, seed: Option<u64>, mind: Option<Mind>) -> Option<Self> {
+    fn start(control: &Control, seed: Option<u64>, estimator: Option<Estimator>) -> Option<Self> {
         let Control::Bound(system) = control else { return None };
         let options = Options { seed, ..Options::default() };
-        let run = Run::with_mind(system, options, mind_for(system, mind));
+        let run = Run::with_estimator(system, options, estimator_for(system, estimator));
         let moments = vec![moment_of_run(&run)];
         Some(Self { run, inputs: Vec::new(), moments })
     }
@@ -182,10 +182,12 @@ impl RunOfSystem {
 }
 
 /// What an earlier run found out serves for an equal plant.
-fn mind_for(system: &Arc<System>, mind: Option<Mind>) -> Mind {
-    let is_equal = |mind: &Mind| mind.planner().model().without_places() == system.model.without_places();
-    mind.filter(is_equal)
-        .unwrap_or_else(|| Mind::new(Arc::clone(&system.planner), Estimation::for_model(&system.model)))
+fn estimator_for(system: &Arc<System>, estimator: Option<Estimator>) -> Estimator {
+    let is_equal =
+        |estimator: &Estimator| estimator.planner().model().without_places() == system.model.without_places();
+    estimator
+        .filter(is_equal)
+        .unwrap_or_else(|| Estimator::new(Arc::clone(&system.planner), Estimation::for_model(&system.model)))
 }
 
 /// What was answered of a request so far.

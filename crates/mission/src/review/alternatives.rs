@@ -59,10 +59,10 @@ impl Fate {
 }
 
 /// Alternatives that are planned again at most, and how long each search may be.
-const MOST_EXAMINED: usize = 64;
-const MOST_EXPANDED: u64 = 20_000;
+const MAX_EXAMINED: usize = 64;
+const MAX_EXPANDED: u64 = 20_000;
 /// Explaining takes many searches; a larger network is asked only whether there is a plan.
-const MOST_EXPLAINED_NODES: usize = 4_000;
+const MAX_EXPLAINED_NODES: usize = 4_000;
 /// Characters of an alternative that are shown.
 const LONGEST_BEGINNING: usize = 60;
 
@@ -120,17 +120,17 @@ impl<'input> Examiner<'input> {
 
     fn fate(&mut self, other: Choice, stop: &mut dyn FnMut() -> bool) -> Fate {
         self.examined += 1;
-        if self.examined > MOST_EXAMINED || stop() {
+        if self.examined > MAX_EXAMINED || stop() {
             return Fate::NotExamined;
         }
         let network = self.restricted(other);
         let options = Options {
             relax: false,
-            explain: network.nodes.len() <= MOST_EXPLAINED_NODES,
+            explain: network.nodes.len() <= MAX_EXPLAINED_NODES,
             ..Options::default()
         };
         let mut outcome =
-            kirk::plan(&network, &options, &mut |stats: &Stats| stats.expanded >= MOST_EXPANDED || stop());
+            kirk::plan(&network, &options, &mut |stats: &Stats| stats.expanded >= MAX_EXPANDED || stop());
         planning::name_blocked(&mut outcome, &network, self.undrivable);
         match outcome.status {
             Status::Plan => Fate::AlsoPossible,

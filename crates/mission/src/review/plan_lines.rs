@@ -229,13 +229,13 @@ impl<'input> PlanLines<'input> {
 
 /// What was taken, and rather than what.
 fn choice_text(name: &str, alternatives: &[Alternative]) -> String {
-    const MOST_NAMED: usize = 3;
+    const MAX_NAMED: usize = 3;
     let taken = alternatives.iter().find(|it| it.fate == Fate::Taken).map_or("nothing", |it| &it.name);
     let others: Vec<&str> =
         alternatives.iter().filter(|it| it.fate != Fate::Taken).map(|it| it.name.as_str()).collect();
     match others.len() {
         0 => format!("{name} takes {taken}, its only alternative"),
-        1..=MOST_NAMED => format!("{name} takes {taken} rather than {}", others.join(" or ")),
+        1..=MAX_NAMED => format!("{name} takes {taken} rather than {}", others.join(" or ")),
         count => format!("{name} takes {taken} rather than one of {count} others"),
     }
 }

@@ -16,7 +16,7 @@ use super::title;
 use crate::Context;
 
 /// So many faults, and so many locations, are listed.
-const MOST_LISTED: usize = 8;
+const MAX_LISTED: usize = 8;
 
 /// Shows what is asked for and what was found.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
@@ -155,7 +155,7 @@ fn faults(ui: &mut Ui, context: &Context<'_>, tally: &ProgramTally) {
     let mut faults: Vec<_> = tally.faults.iter().collect();
     faults.sort_by_key(|(name, tally)| (std::cmp::Reverse(tally.runs), name.as_str()));
     Grid::new("automaton-faults").num_columns(3).striped(true).show(ui, |ui| {
-        for (name, tally) in faults.into_iter().take(MOST_LISTED) {
+        for (name, tally) in faults.into_iter().take(MAX_LISTED) {
             ui.label(name.as_str());
             ui.label(format!("{} ×", tally.runs));
             ui.label(format!("{} reached the end", percent(tally.reached as f64 / tally.runs as f64)));
@@ -169,12 +169,12 @@ fn stuck(ui: &mut Ui, context: &Context<'_>, tally: &ProgramTally, commands: &mu
     title(ui, context, "Still marked in the other runs", "");
     let mut stuck: Vec<_> = tally.stuck.iter().collect();
     stuck.sort_by_key(|(label, runs)| (std::cmp::Reverse(**runs), label.as_str()));
-    for (label, runs) in stuck.into_iter().take(MOST_LISTED) {
+    for (label, runs) in stuck.into_iter().take(MAX_LISTED) {
         ui.label(format!("{runs} × {label}"));
     }
     ui.add_space(space::S);
     let button = ui.button(format!("Step through run {}", number + 1));
-    if button.on_hover_text("The first run that did not reach the end, with the same luck").clicked() {
+    if button.on_hover_text("The first run that did not reach the end, from the same fault seed").clicked() {
         commands.send(Command::ProgramChance(ProgramChanceCommand::StepThrough(number)));
         commands.send(Command::Automaton(AutomatonCommand::GoTo(0)));
     }

@@ -150,7 +150,7 @@ fn chance(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         }
         match fault_seed {
             Some(FaultSeed { mut seed, run: None }) => {
-                let label = ui.label(RichText::new("Luck").color(context.tokens.text_muted)).id;
+                let label = ui.label(RichText::new("Fault seed").color(context.tokens.text_muted)).id;
                 let field = DragValue::new(&mut seed).speed(0.1);
                 let field = ui.add(field).labelled_by(label);
                 if field.on_hover_text("With the same number, the same components fail").changed() {

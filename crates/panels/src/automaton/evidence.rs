@@ -12,7 +12,7 @@ use super::title;
 use crate::Context;
 
 /// So many of the most likely states are listed.
-const MOST_LISTED: usize = 6;
+const MAX_LISTED: usize = 6;
 
 /// Shows belief, observations and diagnosis.
 pub(super) fn show(
@@ -37,7 +37,7 @@ fn belief(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMoment
     let listed: Vec<(&State, f64)> = plant
         .belief
         .states()
-        .take(MOST_LISTED)
+        .take(MAX_LISTED)
         .map(|(state, probability)| (state, probability.to_f64().unwrap_or(0.0)))
         .collect();
     for (rank, (state, probability)) in listed.iter().enumerate() {
@@ -106,7 +106,7 @@ fn history(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let Some(plant) = &moment.plant else { continue };
         let left = rect.left() + at as f32 * width;
         let mut bottom = rect.bottom() - 12.0;
-        for (rank, (_, probability)) in plant.belief.states().take(MOST_LISTED).enumerate() {
+        for (rank, (_, probability)) in plant.belief.states().take(MAX_LISTED).enumerate() {
             let height =
                 (probability.to_f64().unwrap_or(0.0) as f32 * 30.0).max(if rank == 0 { 1.0 } else { 1.5 });
             let part =

@@ -121,7 +121,7 @@ fn pairs(graph: &DistanceGraph) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// The column of each vertex: one after the last of those before it. What goes in circles is cut where it is met.
+/// The column of each vertex: one after the last of those before it. What goes in cycles is cut where it is met.
 fn columns(count: usize, pairs: &[(usize, usize)]) -> Vec<usize> {
     let mut after = vec![Vec::new(); count];
     let mut waiting = vec![0_usize; count];

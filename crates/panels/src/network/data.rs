@@ -65,7 +65,7 @@ struct Listed {
 }
 
 impl Drawn {
-    /// Draws what `snapshot` holds, as far as it has changed. Answers whether the drawing is new. `windows_of` are the
+    /// Draws what `snapshot` holds, as far as it has changed. Returns whether the drawing is new. `windows_of` are the
     /// pins whose windows are written, and the plan with them; `None` while windows are not shown.
     pub(super) fn follow(
         &mut self,

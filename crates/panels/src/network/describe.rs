@@ -37,7 +37,7 @@ pub(super) fn describe(item: Item, network: &Network, plan: Option<&Plan>) -> Op
 }
 
 /// With more choices than this, nobody wants to hear them one by one.
-const MOST_CHOICES: usize = 30;
+const MAX_CHOICES: usize = 30;
 
 /// The drawing in a sentence.
 pub(super) fn summary(network: &Network, plan: Option<&Plan>) -> String {
@@ -55,7 +55,7 @@ pub(super) fn summary(network: &Network, plan: Option<&Plan>) -> String {
     match choices {
         None => {}
         Some([]) => text.push_str(" Chosen: nothing."),
-        Some(choices) if choices.len() > MOST_CHOICES => {
+        Some(choices) if choices.len() > MAX_CHOICES => {
             text.push_str(&format!(" {} decisions are made.", choices.len()));
         }
         Some(choices) => {

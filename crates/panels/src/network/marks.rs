@@ -49,7 +49,7 @@ const ROOM: f32 = 32.0;
 /// How wide a count beside a mark is, in points of the screen.
 const COUNT: f32 = 18.0;
 /// A tooltip tells the messages of this many problems.
-const MOST_TOLD: usize = 5;
+const MAX_TOLD: usize = 5;
 
 /// The marks of the problems of `latest` on a drawing of `network`, which was made from the text `source`.
 pub(super) fn marks(
@@ -145,10 +145,10 @@ pub(super) fn show(
         if response.clicked() {
             commands.send(Command::Reveal(mark.span));
         }
-        let told = members.iter().take(MOST_TOLD).map(|&member| marks[member].told());
+        let told = members.iter().take(MAX_TOLD).map(|&member| marks[member].told());
         let mut told: Vec<String> = told.collect();
-        if members.len() > MOST_TOLD {
-            told.push(format!("and {} more", members.len() - MOST_TOLD));
+        if members.len() > MAX_TOLD {
+            told.push(format!("and {} more", members.len() - MAX_TOLD));
         }
         response.on_hover_text_at_pointer(told.join("\n"));
     }

@@ -4,7 +4,7 @@ use tpn::{DecisionId, LabelId, Network, NodeId, OccurrenceId};
 use workbench::state::Selection;
 
 /// More matches than this are not listed; they would not help.
-const MOST_MATCHES: usize = 500;
+const MAX_MATCHES: usize = 500;
 
 /// What was looked for, and the match that was shown last.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -72,6 +72,6 @@ pub(super) fn matches(network: &Network, text: &str) -> Vec<Selection> {
     found.extend(decisions.map(Selection::Decision));
     found.extend(labels.map(Selection::Label));
     found.extend(nodes.map(Selection::Node));
-    found.truncate(MOST_MATCHES);
+    found.truncate(MAX_MATCHES);
     found
 }

@@ -8,7 +8,7 @@ use egui::{Color32, Mesh, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 pub(super) struct LevelLines(Mesh);
 
 impl LevelLines {
-    /// Adds a line if it is level or upright; answers whether it is.
+    /// Adds a line if it is level or upright; returns whether it is.
     pub(super) fn add(&mut self, from: Pos2, to: Pos2, stroke: Stroke) -> bool {
         /// Less than this is no slope that can be seen, in points.
         const LEVEL: f32 = 0.5;

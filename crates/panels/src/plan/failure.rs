@@ -137,7 +137,7 @@ fn show_cycle(ui: &mut Ui, context: &Context<'_>, network: &Network, reason: &Re
                 ui.label(RichText::new(step).small().color(tokens.text_muted));
             }
             let sum = format!(
-                "Around the circle this adds up to {}, less than zero.",
+                "Around the cycle this adds up to {}, less than zero.",
                 total.map_or_else(|| "a time beyond 64 bits".to_owned(), workbench::time_text::time)
             );
             ui.label(RichText::new(sum).small().color(tokens.threat));

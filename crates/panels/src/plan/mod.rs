@@ -151,7 +151,7 @@ fn show_verdict(ui: &mut Ui, context: &Context<'_>, planning: &mission::Planning
         }
     });
     let tried = counted(stats.expanded, "alternative");
-    let effort = format!("{tried} tried, {}", counted(stats.conflicts, "dead end"));
+    let effort = format!("{tried} tried, {}", counted(stats.conflicts, "failure"));
     ui.label(RichText::new(effort).small().color(tokens.text_muted));
     for violation in planning.verdict.iter().flat_map(|verdict| &verdict.violations) {
         ui.label(RichText::new(&violation.message).color(tokens.error));

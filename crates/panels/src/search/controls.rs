@@ -120,7 +120,7 @@ fn show_breakpoints(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSe
     let mut breakpoints = search.breakpoints;
     for (value, name, help) in [
         (&mut breakpoints.decision, "decisions", "Run and Play stop where an alternative is taken"),
-        (&mut breakpoints.failure, "dead ends", "Run and Play stop at dead ends"),
+        (&mut breakpoints.failure, "failures", "Run and Play stop at failures"),
         (&mut breakpoints.threat, "threats", "Run and Play stop where conflicting intervals may overlap"),
         (&mut breakpoints.solution, "plans", "Run and Play stop at plans"),
     ] {

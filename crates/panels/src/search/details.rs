@@ -69,11 +69,11 @@ fn show_state(
             let text = format!("steps {}–{}", first + 1, last + 1);
             ui.label(RichText::new(text).small().color(tokens.text_muted));
         }
-        let (below, dead_ends) = (index.below[at], index.dead_ends[at]);
+        let (below, failures) = (index.below[at], index.failures[at]);
         if below > 0 {
             let states = if below == 1 { "state" } else { "states" };
-            let ends = if dead_ends == 1 { "dead end" } else { "dead ends" };
-            let text = format!("{below} {states} below, {dead_ends} {ends}");
+            let ends = if failures == 1 { "failure" } else { "failures" };
+            let text = format!("{below} {states} below, {failures} {ends}");
             ui.label(RichText::new(text).small().color(tokens.text_muted));
         }
     });
@@ -83,7 +83,7 @@ fn show_state(
     }
 }
 
-/// The dead end that a state without states below it ended in.
+/// The failure that a state without states below it ended in.
 fn failure_of<'a>(trace: &'a Trace, index: &TreeIndex, state: TreeNodeId) -> Option<&'a Event> {
     let at = state as usize;
     if !index.children(state).is_empty() {

@@ -277,7 +277,7 @@ fn show_unrecorded(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
             return;
         }
         let text =
-            "The search is not recorded. Recording it lets you step through every decision and dead end.";
+            "The search is not recorded. Recording it lets you step through every decision and failure.";
         ui.label(RichText::new(text).color(context.tokens.text_muted));
         ui.add_space(space::M);
         if ui.button("Record the search").clicked() {

@@ -49,7 +49,7 @@ pub fn show(
             ("states", now.states.into(), all.states.into()),
             ("propagations", now.propagations.into(), all.propagations.into()),
             ("returns", now.backtracks.into(), all.backtracks.into()),
-            ("dead ends", now.dead_ends.into(), all.dead_ends.into()),
+            ("failures", now.failures.into(), all.failures.into()),
         ];
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = 10.0;

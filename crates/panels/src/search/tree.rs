@@ -28,8 +28,8 @@ pub struct TreeIndex {
     known_from: Vec<usize>,
     /// How many states are below each.
     pub below: Vec<u32>,
-    /// How many dead ends are in or below each.
-    pub dead_ends: Vec<u32>,
+    /// How many failures are in or below each.
+    pub failures: Vec<u32>,
     /// Whether there is a plan in or below each state.
     pub has_solution: Vec<bool>,
     /// The states in the order in which they were entered.
@@ -48,7 +48,7 @@ impl TreeIndex {
             last_step: vec![None; count],
             known_from: vec![usize::MAX; count],
             below: vec![0; count],
-            dead_ends: vec![0; count],
+            failures: vec![0; count],
             has_solution: trace.tree.iter().map(|node| node.status == TreeStatus::Solution).collect(),
             ..Self::default()
         };
@@ -65,16 +65,16 @@ impl TreeIndex {
         index.find_children(trace);
         // Parents come before their children, so one pass from the end sees children first.
         for (id, node) in trace.tree.iter().enumerate().rev() {
-            // A state that failed because all below it failed is no dead end of its own.
-            if index.dead_ends[id] == 0 && node.status == TreeStatus::Failed {
-                index.dead_ends[id] = 1;
+            // A state that failed because all below it failed is no failure of its own.
+            if index.failures[id] == 0 && node.status == TreeStatus::Failed {
+                index.failures[id] = 1;
             }
             let Some(parent) = node.parent.map(|parent| parent as usize).filter(|&parent| parent < id) else {
                 continue;
             };
             index.has_solution[parent] |= index.has_solution[id];
             index.below[parent] += 1 + index.below[id];
-            index.dead_ends[parent] += index.dead_ends[id];
+            index.failures[parent] += index.failures[id];
             index.last_step[parent] = index.last_step[parent].max(index.last_step[id]);
         }
         index.find_known(trace);
@@ -445,10 +445,10 @@ mod tests {
     }
 
     #[test]
-    fn dead_ends_below_a_state_are_counted_once() {
-        // The root with two branches: one with two dead ends, one that is a dead end itself.
+    fn failures_below_a_state_are_counted_once() {
+        // The root with two branches: one with two failures, one that is a failure itself.
         let index = TreeIndex::new(&failed(&[0, 0, 1, 1]));
-        assert_eq!(index.dead_ends, vec![3, 2, 1, 1, 1]);
+        assert_eq!(index.failures, vec![3, 2, 1, 1, 1]);
         assert_eq!(index.below, vec![4, 2, 0, 0, 0]);
     }
 

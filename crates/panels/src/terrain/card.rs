@@ -16,7 +16,7 @@ use crate::Context;
 /// Cards are as wide as this, or as the panel allows.
 const WIDTH: f32 = 232.0;
 
-/// A card near `anchor`, kept inside `image` and clear of the anchor. Answers whether its cross was clicked.
+/// A card near `anchor`, kept inside `image` and clear of the anchor. Returns whether its cross was clicked.
 pub fn show(
     ui: &mut Ui,
     context: &Context<'_>,
@@ -175,7 +175,7 @@ pub fn show_path(
     }
 }
 
-/// The card of a measurement; answers whether it was closed.
+/// The card of a measurement; returns whether it was closed.
 pub fn show_measurement(
     ui: &mut Ui,
     context: &Context<'_>,

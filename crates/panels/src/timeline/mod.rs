@@ -349,7 +349,7 @@ impl TimelinePanel {
         response.on_hover_cursor(CursorIcon::ResizeHorizontal);
     }
 
-    /// Selects a range of times by a drag with Shift. Answers whether that is going on.
+    /// Selects a range of times by a drag with Shift. Returns whether that is going on.
     fn select_range(
         &mut self,
         ui: &Ui,
@@ -462,7 +462,7 @@ impl TimelinePanel {
     }
 }
 
-/// A bar that shares its row with others, as something to click. Answers whether it is pointed at.
+/// A bar that shares its row with others, as something to click. Returns whether it is pointed at.
 fn show_bar(
     ui: &Ui,
     painting: &Painting<'_>,
@@ -480,7 +480,7 @@ fn show_bar(
     respond(&response, painting, plan, bar, is_selected, commands)
 }
 
-/// What pointing at a bar and clicking it does. Answers whether it is pointed at, here or in another panel.
+/// What pointing at a bar and clicking it does. Returns whether it is pointed at, here or in another panel.
 fn respond(
     response: &Response,
     painting: &Painting<'_>,

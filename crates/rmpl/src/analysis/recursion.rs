@@ -1,6 +1,6 @@
 //! Activities that call themselves, directly or through others: no finite network can hold them.
 
-use crate::circles::circles;
+use crate::call_cycles::call_cycles;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostics::recursion as wording;
 use crate::span::Span;
@@ -9,7 +9,7 @@ use super::index::{DeclarationKey, Index, Namespace};
 use super::names::Names;
 use super::summary::Summary;
 
-/// One diagnostic for each circle of calls, at the call that closes it; circles that share an activity are one
+/// One diagnostic for each cycle of calls, at the call that closes it; cycles that share an activity are one
 /// mistake. Offsets are relative to the declaration of the key. Linear in the number of calls.
 pub(crate) fn recursion<'a>(
     names: &Names,
@@ -35,9 +35,9 @@ pub(crate) fn recursion<'a>(
         let definition = declarations.get(node).and_then(|(_, summary)| summary.definition.as_ref());
         definition.map(|definition| names.text(definition.name).as_str()).unwrap_or_default()
     };
-    let described = circles(&calls).into_iter().map(|circle| {
-        let way: Vec<&str> = circle.members.iter().map(|&node| name(node)).collect();
-        (declarations[circle.last()].0, wording::circle(&way, circle.closing_call))
+    let described = call_cycles(&calls).into_iter().map(|cycle| {
+        let way: Vec<&str> = cycle.members.iter().map(|&node| name(node)).collect();
+        (declarations[cycle.last()].0, wording::cycle(&way, cycle.closing_call))
     });
     described.collect()
 }

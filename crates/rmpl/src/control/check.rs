@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::circles::circles;
+use crate::call_cycles::call_cycles;
 use crate::diagnostic::{Code, Diagnostic, Edit, Fix};
 
 use super::read_program::Reader;
@@ -170,7 +170,7 @@ impl<'file> Checker<'file> {
         self.error("E-UNDEF", name, format!("no definition is called `{}`", name.text), hint);
     }
 
-    /// One diagnostic per circle of calls, at the call that closes it.
+    /// One diagnostic per cycle of calls, at the call that closes it.
     fn recursion(&mut self) {
         let definitions = &self.file.definitions;
         let mut positions = BTreeMap::new();
@@ -183,17 +183,17 @@ impl<'file> Checker<'file> {
             names.retain(|name| !is_parameter(name, definition));
             names.iter().filter_map(|name| Some((*positions.get(name.text.as_str())?, name.span))).collect()
         });
-        for circle in circles(&calls.collect::<Vec<_>>()) {
+        for cycle in call_cycles(&calls.collect::<Vec<_>>()) {
             let way: Vec<&str> =
-                circle.members.iter().map(|&member| definitions[member].name.text.as_str()).collect();
+                cycle.members.iter().map(|&member| definitions[member].name.text.as_str()).collect();
             let message = match way[..] {
                 [only] => format!("`{only}` calls itself"),
                 _ => {
-                    format!("these definitions call each other in a circle: {} → {}", way.join(" → "), way[0])
+                    format!("these definitions call each other in a cycle: {} → {}", way.join(" → "), way[0])
                 }
             };
             self.diagnostics.push(
-                Diagnostic::error(Code("E-RECURSION"), circle.closing_call, message)
+                Diagnostic::error(Code("E-RECURSION"), cycle.closing_call, message)
                     .with_hint("an automaton is finite: repeat with ALWAYS or WHENEVER-DONEXT"),
             );
         }

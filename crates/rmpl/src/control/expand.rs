@@ -12,7 +12,7 @@ use super::syntax::{
 };
 
 /// An automaton of more expressions than this is refused: no author means it.
-const MOST_EXPRESSIONS: usize = 100_000;
+const MAX_EXPRESSIONS: usize = 100_000;
 /// Deeper expressions than this are refused, so that no later stage needs a deep stack.
 const DEEPEST: usize = 400;
 
@@ -57,10 +57,10 @@ impl Expander<'_> {
     ) -> Expression {
         self.count += 1;
         let unreadable = Expression { kind: ExpressionKind::Unreadable, span: from.span };
-        if self.count > MOST_EXPRESSIONS || depth > DEEPEST {
-            if self.count <= MOST_EXPRESSIONS + 1 {
+        if self.count > MAX_EXPRESSIONS || depth > DEEPEST {
+            if self.count <= MAX_EXPRESSIONS + 1 {
                 self.error("E-RECURSION", from.span, "the calls expand to too large a program".into());
-                self.count = MOST_EXPRESSIONS + 1;
+                self.count = MAX_EXPRESSIONS + 1;
             }
             return unreadable;
         }

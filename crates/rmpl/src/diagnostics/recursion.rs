@@ -23,8 +23,8 @@ Patrol() = { Drive(); Drive() }
 scenario Day[0,60] = { Patrol() }",
 };
 
-/// A circle of calls: the activities of the circle, and the call that closes it.
-pub fn circle(way: &[&str], call: Span) -> Diagnostic {
+/// A cycle of calls: the activities of the cycle, and the call that closes it.
+pub fn cycle(way: &[&str], call: Span) -> Diagnostic {
     let first = way.first().copied().unwrap_or_default();
     let steps: Vec<String> = way.iter().chain([&first]).map(|name| format!("`{name}`")).collect();
     let message =

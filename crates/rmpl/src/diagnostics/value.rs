@@ -44,13 +44,13 @@ pub(crate) fn no_value(variable: &str, span: Span, domain: &[&str]) -> Diagnosti
     let diagnostic =
         Diagnostic::error(CODE, span, format!("`{variable}` is a variable: say which value it has"))
             .with_hint(format!("`{variable}` is one of {}", domain.join(", ")));
-    domain.iter().take(MOST_FIXES).fold(diagnostic, |diagnostic, value| {
+    domain.iter().take(MAX_FIXES).fold(diagnostic, |diagnostic, value| {
         diagnostic.with_fix(insertion(format!("Write `{variable}={value}`"), span.end, format!("={value}")))
     })
 }
 
 /// How many values are offered as fixes.
-const MOST_FIXES: usize = 5;
+const MAX_FIXES: usize = 5;
 
 pub(crate) fn option(name: &str, wanted: &str, span: Span) -> Diagnostic {
     Diagnostic::error(CODE, span, format!("the option `{name}` is {wanted}"))

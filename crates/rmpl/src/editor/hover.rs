@@ -106,7 +106,7 @@ fn hover_bound(parse: &Parse, offset: u32, evaluation: &Evaluation) -> Option<Ho
     };
     let mut lines = vec![format!("`{}`", shown.text())];
     let invocations = evaluation.invocations.iter().filter(|invocation| invocation.activity == own_name.text);
-    for invocation in invocations.take(MOST_LINES) {
+    for invocation in invocations.take(MAX_LINES) {
         if let Some(result) = value(shown, invocation) {
             lines.push(format!("= **{result}** in {}", invocation.occurrence));
         }
@@ -142,7 +142,7 @@ fn mentions_name(node: &SyntaxNode<'_>) -> bool {
 }
 
 /// How many occurrences a hover lists.
-const MOST_LINES: usize = 8;
+const MAX_LINES: usize = 8;
 
 fn describe(parse: &Parse, name: &NameUse, evaluation: &Evaluation) -> String {
     let places = references_of(parse, name);
@@ -173,7 +173,7 @@ fn describe(parse: &Parse, name: &NameUse, evaluation: &Evaluation) -> String {
     let calls = evaluation.invocations.iter().filter(|call| call.activity == name.text);
     if name.kind == NameKind::Activity {
         let lines: Vec<String> = calls
-            .take(MOST_LINES)
+            .take(MAX_LINES)
             .map(|call| format!("- {}: [{},{}]", call.occurrence, call.lower, call.upper))
             .collect();
         if !lines.is_empty() {
@@ -193,7 +193,7 @@ fn windows_at(evaluation: &Evaluation, span: Span) -> Vec<String> {
     let around: Vec<&EventWindow> = evaluation.windows.iter().filter(contains).collect();
     let smallest = around.iter().map(|window| window.span.end - window.span.start).min();
     let own = around.into_iter().filter(|window| Some(window.span.end - window.span.start) == smallest);
-    own.take(MOST_LINES)
+    own.take(MAX_LINES)
         .map(|window| format!("- {} in [{},{}]", window.event, window.earliest, window.latest))
         .collect()
 }

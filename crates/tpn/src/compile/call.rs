@@ -40,7 +40,7 @@ impl<'program> Expander<'program> {
         let Some(&activity) = self.activities.get(callee.as_str()) else {
             return self.primitive(&callee, arguments, &call, entry, scope);
         };
-        // Static recursion was refused before; names that are passed as arguments can still close a circle.
+        // Static recursion was refused before; names that are passed as arguments can still close a cycle.
         if self.active.contains(&activity.name.text.as_str()) {
             let message =
                 format!("activities may not call themselves, and `{callee}` does through its arguments");

@@ -19,7 +19,7 @@ use super::{E_LIMIT, E_UNDEF};
 use crate::network::{ArcId, ArcKind, BlockId, BlockKind, Network, NodeId, OccurrenceId, OccurrenceKind};
 
 /// Networks grow no larger than this many nodes, so that a few lines of doubling calls cannot exhaust the memory.
-const MOST_NODES: usize = 500_000;
+const MAX_NODES: usize = 500_000;
 /// Statements nest no deeper than this, instances included, so that no text can exhaust the stack.
 const DEEPEST: usize = 200;
 
@@ -404,12 +404,12 @@ impl<'program> Expander<'program> {
 
     fn is_too_large(&mut self, span: Span) -> bool {
         let is_deep = self.depth >= DEEPEST;
-        if !self.is_cut_off && (is_deep || self.builder.node_count() >= MOST_NODES) {
+        if !self.is_cut_off && (is_deep || self.builder.node_count() >= MAX_NODES) {
             self.is_cut_off = true;
             let message = if is_deep {
                 format!("statements and calls are nested deeper than {DEEPEST} levels")
             } else {
-                format!("with its calls expanded, the mission has more than {MOST_NODES} events")
+                format!("with its calls expanded, the mission has more than {MAX_NODES} events")
             };
             self.diagnostics.push(Diagnostic::error(E_LIMIT, span, message));
         }

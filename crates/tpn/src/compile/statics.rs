@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use rmpl::circles::circles;
+use rmpl::call_cycles::call_cycles;
 use rmpl::diagnostics::recursion as wording;
 use rmpl::program::{ActivityDecl, Bounds, HeaderBound, HeaderBounds, Program, Statement, StatementKind};
 use rmpl::{Diagnostic, Span};
@@ -44,7 +44,7 @@ pub(super) fn check(program: &Program) -> Vec<Diagnostic> {
     found
 }
 
-/// One diagnostic for each circle of calls; circles that share an activity are one mistake.
+/// One diagnostic for each cycle of calls; cycles that share an activity are one mistake.
 fn recursion(program: &Program) -> Vec<Diagnostic> {
     let mut by_name: BTreeMap<&str, usize> = BTreeMap::new();
     for (index, activity) in program.activities.iter().enumerate() {
@@ -52,9 +52,9 @@ fn recursion(program: &Program) -> Vec<Diagnostic> {
     }
     let calls: Vec<Vec<(usize, Span)>> =
         program.activities.iter().map(|activity| calls_of(activity, &by_name)).collect();
-    let described = circles(&calls).into_iter().map(|circle| {
+    let described = call_cycles(&calls).into_iter().map(|cycle| {
         let name = |&member: &usize| program.activities[member].name.text.as_str();
-        wording::circle(&circle.members.iter().map(name).collect::<Vec<_>>(), circle.closing_call)
+        wording::cycle(&cycle.members.iter().map(name).collect::<Vec<_>>(), cycle.closing_call)
     });
     described.collect()
 }

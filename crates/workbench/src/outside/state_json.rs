@@ -105,7 +105,7 @@ fn search_json(state: &AppState) -> Value {
                 "states": counts.states,
                 "propagations": counts.propagations,
                 "backtracks": counts.backtracks,
-                "deadEnds": counts.dead_ends,
+                "deadEnds": counts.failures,
                 "millis": searched.millis,
             }))
         })

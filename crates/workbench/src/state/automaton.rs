@@ -345,7 +345,7 @@ impl AutomatonState {
         }
     }
 
-    /// Lets `seconds` go by. Answers whether another moment is shown, or asked for.
+    /// Lets `seconds` go by. Returns whether another moment is shown, or asked for.
     pub fn advance(&mut self, seconds: f64, rate: f64) -> bool {
         if !self.is_playing {
             return false;

@@ -230,7 +230,7 @@ impl Growth {
         shown.total = shown.known();
     }
 
-    /// Lets `seconds` go by. Answers whether more samples were drawn.
+    /// Lets `seconds` go by. Returns whether more samples were drawn.
     pub fn advance(&mut self, seconds: f64, rate: f64) -> bool {
         let Some(shown) = self.shown.as_mut().filter(|_| self.is_playing) else { return false };
         let [least, greatest] = SAMPLES_PER_SEC;

@@ -13,8 +13,8 @@ pub struct Counts {
     pub propagations: u32,
     /// Times that the search went back to an earlier choice, by a step or by a jump.
     pub backtracks: u32,
-    /// Dead ends met.
-    pub dead_ends: u32,
+    /// Failures met.
+    pub failures: u32,
 }
 
 impl Counts {
@@ -37,7 +37,7 @@ impl Counts {
             match entry.event {
                 Event::Propagate { .. } => counts.propagations += 1,
                 Event::Backtrack { .. } | Event::Backjump { .. } => counts.backtracks += 1,
-                _ => counts.dead_ends += u32::from(is_failure(&entry.event)),
+                _ => counts.failures += u32::from(is_failure(&entry.event)),
             }
         }
         counts

@@ -10,7 +10,7 @@ use crate::state::Selection;
 /// What a step is about.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Focus {
-    /// Whether the search has just met a dead end.
+    /// Whether the search has just met a failure.
     pub is_failure: bool,
     /// Events.
     pub nodes: Vec<NodeId>,
@@ -117,7 +117,7 @@ impl Focus {
     }
 }
 
-/// Whether an event is a dead end.
+/// Whether an event is a failure.
 pub fn is_failure(event: &Event) -> bool {
     matches!(
         event,

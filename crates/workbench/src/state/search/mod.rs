@@ -51,7 +51,7 @@ pub struct SearchState {
 pub struct Breakpoints {
     /// An alternative is taken.
     pub decision: bool,
-    /// A dead end.
+    /// A failure.
     pub failure: bool,
     /// Two conflicting intervals may overlap.
     pub threat: bool,

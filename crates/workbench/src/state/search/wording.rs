@@ -38,20 +38,20 @@ pub fn event(network: &Network, event: &Event) -> String {
         Event::Propagate { moved } => format!("Propagate: {moved} events move."),
         Event::Inconsistent { cycle } => {
             match exact::Time::checked_sum(cycle.iter().map(|member| member.weight)) {
-                Some(total) => format!("Dead end: a negative cycle of {total}."),
-                None => "Dead end: a negative cycle.".to_owned(),
+                Some(total) => format!("Failure: a negative cycle of {total}."),
+                None => "Failure: a negative cycle.".to_owned(),
             }
         }
-        Event::Unclosable { ask } => format!("Dead end: nothing can carry {}.", label(*ask)),
+        Event::Unclosable { ask } => format!("Failure: nothing can carry {}.", label(*ask)),
         Event::TryLink { link } => format!("Let {} carry {}.", label(link.tell), label(link.ask)),
         Event::Threat { left, right } => {
             format!("Threat: {} and {} may overlap.", label(*left), label(*right))
         }
         Event::TryOrder { order } => format!("Put {} before {}.", label(order.first), label(order.then)),
         Event::Unresolvable { left, right } => {
-            format!("Dead end: {} and {} fit in neither order.", label(*left), label(*right))
+            format!("Failure: {} and {} fit in neither order.", label(*left), label(*right))
         }
-        Event::Known => "Dead end: these choices contain a conflict that was learned before.".to_owned(),
+        Event::Known => "Failure: these choices contain a conflict that was learned before.".to_owned(),
         Event::Backtrack { .. } => "Back to the last choice.".to_owned(),
         Event::Backjump { because, .. } => {
             format!("Jump back to the last choice that is to blame, one of {}.", because.len().max(1))

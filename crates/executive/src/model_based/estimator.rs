@@ -1,4 +1,4 @@
-//! What the executive thinks: belief updates and commands, remembered so that many runs share them.
+//! The estimator: belief updates and the commands that follow, remembered so that many runs share them.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -28,15 +28,15 @@ impl Estimation {
 }
 
 /// The search for likely states gives up after this many nodes.
-const MOST_NODES: u32 = 50_000;
-/// Remembered thoughts are thrown away when there are more than this many.
-const MOST_REMEMBERED: usize = 20_000;
+const MAX_NODES: u32 = 50_000;
+/// Remembered updates are thrown away when there are more than this many.
+const MAX_REMEMBERED: usize = 20_000;
 /// A diagnosis names at most this many conflicts.
-const MOST_CONFLICTS: usize = 8;
+const MAX_CONFLICTS: usize = 8;
 
 /// A belief after a step, and what it took.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Thought {
+pub(super) struct BeliefUpdate {
     pub(super) belief: Belief,
     /// Whether nothing that was believed possible explains the observation, which was then left out of account.
     pub(super) is_unexplained: bool,
@@ -45,17 +45,17 @@ pub(super) struct Thought {
 
 /// Estimates and plans for one model.
 #[derive(Clone, Debug)]
-pub struct Mind {
+pub struct Estimator {
     planner: Arc<Planner>,
     estimation: Estimation,
-    thoughts: BTreeMap<(Belief, Commands, Observation), Thought>,
+    updates: BTreeMap<(Belief, Commands, Observation), BeliefUpdate>,
     plans: BTreeMap<(State, Vec<Goal>), NextCommands>,
 }
 
-impl Mind {
+impl Estimator {
     /// Remembers nothing yet; the planner has the model.
     pub fn new(planner: Arc<Planner>, estimation: Estimation) -> Self {
-        Self { planner, estimation, thoughts: BTreeMap::new(), plans: BTreeMap::new() }
+        Self { planner, estimation, updates: BTreeMap::new(), plans: BTreeMap::new() }
     }
 
     /// The reactive planner.
@@ -63,14 +63,14 @@ impl Mind {
         &self.planner
     }
 
-    pub(super) fn think(
+    pub(super) fn estimate(
         &mut self,
         belief: &Belief,
         commands: &Commands,
         observation: &Observation,
-    ) -> Result<Thought, EstimateError> {
+    ) -> Result<BeliefUpdate, EstimateError> {
         let key = (belief.clone(), commands.clone(), observation.clone());
-        if let Some(known) = self.thoughts.get(&key) {
+        if let Some(known) = self.updates.get(&key) {
             return Ok(known.clone());
         }
         let (updated, is_unexplained) = match self.update(belief, commands, observation) {
@@ -80,13 +80,13 @@ impl Mind {
             updated => (updated?, false),
         };
         let conflicts =
-            conflicts(self.planner.model(), belief.most_likely(), commands, observation, MOST_CONFLICTS)?;
-        let thought = Thought { belief: updated, is_unexplained, conflicts };
-        if self.thoughts.len() >= MOST_REMEMBERED {
-            self.thoughts.clear();
+            conflicts(self.planner.model(), belief.most_likely(), commands, observation, MAX_CONFLICTS)?;
+        let update = BeliefUpdate { belief: updated, is_unexplained, conflicts };
+        if self.updates.len() >= MAX_REMEMBERED {
+            self.updates.clear();
         }
-        self.thoughts.insert(key, thought.clone());
-        Ok(thought)
+        self.updates.insert(key, update.clone());
+        Ok(update)
     }
 
     fn update(
@@ -98,7 +98,7 @@ impl Mind {
         match self.estimation {
             Estimation::Exact => update_exact(self.planner.model(), belief, commands, observation),
             Estimation::Best(most) => {
-                update_best(self.planner.model(), belief, commands, observation, most, MOST_NODES)
+                update_best(self.planner.model(), belief, commands, observation, most, MAX_NODES)
                     .map(|(belief, _)| belief)
             }
         }
@@ -110,7 +110,7 @@ impl Mind {
             return known.clone();
         }
         let next = self.planner.next_commands(state, goals);
-        if self.plans.len() >= MOST_REMEMBERED {
+        if self.plans.len() >= MAX_REMEMBERED {
             self.plans.clear();
         }
         self.plans.insert(key, next.clone());

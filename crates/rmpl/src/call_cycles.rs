@@ -1,26 +1,26 @@
-//! Definitions that call each other in a circle.
+//! Definitions that call each other in a cycle.
 
 use crate::span::Span;
 
-/// A circle of calls.
+/// A cycle of calls.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Circle {
+pub struct CallCycle {
     /// The definitions, each calling the next one, from the one that is called again.
     pub members: Vec<usize>,
     /// The last member's call of the first one.
     pub closing_call: Span,
 }
 
-impl Circle {
-    /// The definition with the call that closes the circle.
+impl CallCycle {
+    /// The definition with the call that closes the cycle.
     pub fn last(&self) -> usize {
         self.members.last().copied().unwrap_or_default()
     }
 }
 
-/// The circles among definitions of which each calls others, by position, at places of the text. Circles that share a
+/// The cycles among definitions of which each calls others, by position, at places of the text. Cycles that share a
 /// definition are one mistake, and only the first one is given. Linear in the number of calls.
-pub fn circles(calls: &[Vec<(usize, Span)>]) -> Vec<Circle> {
+pub fn call_cycles(calls: &[Vec<(usize, Span)>]) -> Vec<CallCycle> {
     let mut search = Search { calls, state: vec![State::New; calls.len()], found: Vec::new() };
     for start in 0..calls.len() {
         search.visit(start);
@@ -39,7 +39,7 @@ enum State {
 struct Search<'calls> {
     calls: &'calls [Vec<(usize, Span)>],
     state: Vec<State>,
-    found: Vec<Circle>,
+    found: Vec<CallCycle>,
 }
 
 impl Search<'_> {
@@ -60,7 +60,7 @@ impl Search<'_> {
                 continue;
             };
             *next += 1;
-            // Everything on the path is open, or reported as part of a circle.
+            // Everything on the path is open, or reported as part of a cycle.
             match self.state[callee] {
                 State::New => {
                     self.state[callee] = State::Open;
@@ -74,7 +74,7 @@ impl Search<'_> {
                         self.state[member] = State::Reported;
                     }
                     if !is_told {
-                        self.found.push(Circle { members, closing_call: span });
+                        self.found.push(CallCycle { members, closing_call: span });
                     }
                 }
                 State::Done | State::Reported => {}
@@ -91,7 +91,7 @@ mod tests {
         let with_spans =
             |callees: &&[usize]| callees.iter().map(|&callee| (callee, Span::default())).collect();
         let calls: Vec<Vec<(usize, Span)>> = calls.iter().map(with_spans).collect();
-        circles(&calls).into_iter().map(|circle| circle.members).collect()
+        call_cycles(&calls).into_iter().map(|cycle| cycle.members).collect()
     }
 
     #[test]
@@ -111,6 +111,6 @@ mod tests {
     fn a_chain_of_a_hundred_thousand_calls_is_searched() {
         let chain: Vec<Vec<(usize, Span)>> =
             (1..=100_000).map(|next| vec![(next % 100_000, Span::default())]).collect();
-        assert_eq!(circles(&chain).len(), 1);
+        assert_eq!(call_cycles(&chain).len(), 1);
     }
 }

@@ -7,7 +7,7 @@ use crate::log::Entry;
 
 /// How an activity that has just been started will go.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Performance {
+pub struct ActivityExecution {
     /// When it will be over.
     pub ends: Ends,
     /// What will be seen of it until then, in order of time. Of an activity that is stopped the rest is not seen.
@@ -32,14 +32,14 @@ pub enum Ends {
 
 /// Carries activities out. Whatever it does must follow from its own inputs: a run is worked out as often as it is
 /// looked at.
-pub trait Performer {
+pub trait ActivityExecutor {
     /// Starts an activity at `start`, in mission units; an error if a time of it does not fit. Not called for one whose duration the world decides.
     fn start(
         &mut self,
         network: &Network,
         occurrence: OccurrenceId,
         start: Time,
-    ) -> Result<Performance, Overflow>;
+    ) -> Result<ActivityExecution, Overflow>;
 
     /// All durations that it gives are multiples of this, which is above 0.
     fn granularity(&self) -> Time {
@@ -47,12 +47,12 @@ pub trait Performer {
     }
 }
 
-/// Performs nothing: every activity takes as long as the plan wants it to.
+/// Every activity takes as long as the plan wants it to.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct AsPlanned;
 
-impl Performer for AsPlanned {
-    fn start(&mut self, _: &Network, _: OccurrenceId, _: Time) -> Result<Performance, Overflow> {
-        Ok(Performance::default())
+impl ActivityExecutor for AsPlanned {
+    fn start(&mut self, _: &Network, _: OccurrenceId, _: Time) -> Result<ActivityExecution, Overflow> {
+        Ok(ActivityExecution::default())
     }
 }
