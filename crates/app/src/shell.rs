@@ -9,6 +9,7 @@ use panels::{Context, Panels};
 use serde_json::Value;
 use workbench::command::{Command, CommandSender};
 use workbench::host::{Host, Remote, RemoteError};
+use workbench::outside::PageState;
 use workbench::state::AppState;
 use workbench::{PanelEffect, PanelKind, Session, WindowEffect};
 
@@ -222,7 +223,7 @@ impl Remote for Enroute {
         Ok(())
     }
 
-    fn state(&self) -> Value {
+    fn state(&self) -> PageState {
         Remote::state(&self.session)
     }
 

@@ -9,7 +9,8 @@ use eframe::WebRunner;
 use egui::{Key, Modifiers};
 use wasm_bindgen::prelude::*;
 use web_sys::HtmlCanvasElement;
-use workbench::{command::all_commands, host::Remote};
+use workbench::command::all_commands;
+use workbench::host::{RefusalCode, Remote};
 
 use crate::{
     glue::Glue,
@@ -38,7 +39,7 @@ pub async fn start(canvas: HtmlCanvasElement, glue: Glue) -> Result<FrontEnd, Js
             }))
         }),
     );
-    started.await.map_err(|reason| refusal("no-graphics", &words(&reason)))?;
+    started.await.map_err(|reason| refusal(RefusalCode::NoGraphics, &words(&reason)))?;
     Ok(FrontEnd { runner })
 }
 
@@ -109,13 +110,14 @@ impl FrontEnd {
     /// Runs a command with arguments given as JSON.
     pub fn dispatch(&self, command: &str, arguments: &str) -> Result<(), JsValue> {
         let arguments = serde_json::from_str(arguments)
-            .map_err(|reason| refusal("bad-arguments", &reason.to_string()))?;
+            .map_err(|reason| refusal(RefusalCode::BadArguments, &reason.to_string()))?;
         self.with(|page| page.app.dispatch(command, &arguments))?.map_err(from_remote)
     }
 
     /// The state as JSON.
     pub fn state(&self) -> Result<String, JsValue> {
-        self.with(|page| page.app.state().to_string())
+        let state = self.with(|page| serde_json::to_string(&page.app.state()))?;
+        state.map_err(|reason| refusal(RefusalCode::Stopped, &reason.to_string()))
     }
 
     /// Grows whenever the state may have changed.
@@ -131,12 +133,12 @@ impl FrontEnd {
         change
             .map(|change| serde_json::to_string(&change))
             .transpose()
-            .map_err(|reason| refusal("stopped", &reason.to_string()))
+            .map_err(|reason| refusal(RefusalCode::Stopped, &reason.to_string()))
     }
 
     /// Does something to an element of the accessible document; `act` is JSON.
     pub fn act(&self, element: &str, act: &str) -> Result<(), JsValue> {
-        let bad = |reason: String| refusal("bad-arguments", &reason);
+        let bad = |reason: String| refusal(RefusalCode::BadArguments, &reason);
         let element: u64 = element.parse().map_err(|_| bad(format!("no element {element}")))?;
         let act: Act = serde_json::from_str(act).map_err(|reason| bad(reason.to_string()))?;
         self.with(|page| {
@@ -150,7 +152,7 @@ impl FrontEnd {
     /// Uses the app between frames, and asks for a frame that shows what came of it.
     fn with<T>(&self, act: impl FnOnce(&mut PageApp) -> T) -> Result<T, JsValue> {
         let Some(mut page) = self.runner.app_mut::<PageApp>() else {
-            return Err(refusal("stopped", "Enroute has stopped, or is just drawing a frame"));
+            return Err(refusal(RefusalCode::Stopped, "Enroute has stopped, or is just drawing a frame"));
         };
         Ok(act(&mut page))
     }

@@ -2,14 +2,14 @@
 
 use js_sys::{Error, Reflect};
 use wasm_bindgen::JsValue;
-use workbench::host::RemoteError;
+use workbench::host::{RefusalCode, RemoteError};
 
 /// An `EnrouteError`.
-pub(crate) fn refusal(code: &str, message: &str) -> JsValue {
+pub(crate) fn refusal(code: RefusalCode, message: &str) -> JsValue {
     let error = Error::new(message);
     error.set_name("EnrouteError");
     // Setting a property of a fresh object cannot fail.
-    let _ = Reflect::set(&error, &"code".into(), &code.into());
+    let _ = Reflect::set(&error, &"code".into(), &code.name().into());
     error.into()
 }
 

@@ -6,6 +6,10 @@
 
 use mission::{Request, Response};
 use serde_json::Value;
+#[cfg(test)]
+use ts_rs::TS;
+
+use crate::outside::PageState;
 
 /// What the app needs from where it runs.
 ///
@@ -168,8 +172,8 @@ pub trait Remote {
     /// Runs a command of the registry by its name.
     fn dispatch(&mut self, command: &str, arguments: &Value) -> Result<(), RemoteError>;
 
-    /// The state as plain JSON, in the shape of DESIGN 4.3.
-    fn state(&self) -> Value;
+    /// The state as host pages see it.
+    fn state(&self) -> PageState;
 
     /// Grows whenever [`Remote::state`] may have changed; subscribers are told then.
     fn state_version(&self) -> u64;
@@ -210,14 +214,49 @@ pub enum RemoteError {
     },
 }
 
-impl RemoteError {
-    /// A stable name for programs: the `code` of the error that the page throws.
-    pub fn code(&self) -> &'static str {
+/// The `code` of an error that the page throws: a stable name for programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(test, derive(TS), ts(rename_all = "kebab-case"))]
+pub enum RefusalCode {
+    /// The front end is still loading.
+    NotReady,
+    /// The front end has stopped.
+    Stopped,
+    /// Nothing can draw the front end here.
+    NoGraphics,
+    /// There is no example of this name.
+    UnknownMission,
+    /// There is no command of this name.
+    UnknownCommand,
+    /// The arguments do not fit.
+    BadArguments,
+    /// The command has nothing to work on now.
+    Unavailable,
+}
+
+impl RefusalCode {
+    /// The name.
+    pub const fn name(self) -> &'static str {
         match self {
-            Self::UnknownMission { .. } => "unknown-mission",
-            Self::UnknownCommand { .. } => "unknown-command",
-            Self::BadArguments { .. } => "bad-arguments",
-            Self::Unavailable { .. } => "unavailable",
+            Self::NotReady => "not-ready",
+            Self::Stopped => "stopped",
+            Self::NoGraphics => "no-graphics",
+            Self::UnknownMission => "unknown-mission",
+            Self::UnknownCommand => "unknown-command",
+            Self::BadArguments => "bad-arguments",
+            Self::Unavailable => "unavailable",
+        }
+    }
+}
+
+impl RemoteError {
+    /// The code of the error that the page throws.
+    pub const fn code(&self) -> RefusalCode {
+        match self {
+            Self::UnknownMission { .. } => RefusalCode::UnknownMission,
+            Self::UnknownCommand { .. } => RefusalCode::UnknownCommand,
+            Self::BadArguments { .. } => RefusalCode::BadArguments,
+            Self::Unavailable { .. } => RefusalCode::Unavailable,
         }
     }
 }

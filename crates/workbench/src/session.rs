@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::command::{self, Command};
 use crate::host::{Host, HostEvent, Remote, RemoteError};
 use crate::mission_file::{self, EXAMPLES};
-use crate::outside::{self, DraftKeeper};
+use crate::outside::{self, DraftKeeper, PageState};
 use crate::state::{AnswerFrame, AppState, Effect, PlanSettings, Settings, Status, ToastKind};
 
 /// The state with its host.
@@ -250,8 +250,8 @@ impl Remote for Session {
         Ok(())
     }
 
-    fn state(&self) -> Value {
-        outside::state_json(&self.state)
+    fn state(&self) -> PageState {
+        PageState::of(&self.state)
     }
 
     fn state_version(&self) -> u64 {

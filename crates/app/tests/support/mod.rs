@@ -61,6 +61,6 @@ impl App {
 
     /// The app's state as a host page sees it.
     pub fn json(&self) -> serde_json::Value {
-        workbench::host::Remote::state(self.harness.state())
+        serde_json::to_value(workbench::host::Remote::state(self.harness.state())).expect("plain data")
     }
 }

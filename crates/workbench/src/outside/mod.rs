@@ -2,8 +2,7 @@
 
 mod address;
 mod draft;
-mod hca_json;
-mod state_json;
+mod page_state;
 
 use mission::review::Record;
 
@@ -13,7 +12,7 @@ use crate::state::{AppState, Settings};
 
 pub use address::{fragment, open_fragment};
 pub use draft::DraftKeeper;
-pub use state_json::state_json;
+pub use page_state::PageState;
 
 /// What reviewers said of the open mission when it was last kept.
 pub fn recall_review(host: &dyn Host, state: &mut AppState) {

@@ -62,6 +62,6 @@ impl App {
 
     /// The state as a host page sees it.
     pub fn json(&self) -> Value {
-        workbench::host::Remote::state(&self.session)
+        serde_json::to_value(workbench::host::Remote::state(&self.session)).expect("plain data")
     }
 }

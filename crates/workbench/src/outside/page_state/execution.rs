@@ -1,0 +1,127 @@
+//! The run that is watched, many runs with chance, and pinned events.
+
+use std::collections::BTreeMap;
+
+use exact::Time;
+use executive::{Disturbance, Ending, Entry, Happening};
+use mission::Snapshot;
+use serde::Serialize;
+use serde_json::Value;
+use tpn::plan_json::plan_to_json;
+#[cfg(test)]
+use ts_rs::TS;
+
+use crate::state::AppState;
+use crate::state::execution::{Pending, has_come};
+use crate::state::{pins, playback};
+
+/// A run of the mission at the time shown.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Execution {
+    #[cfg_attr(test, ts(type = "\"under-way\" | \"finished\" | \"stopped\""))]
+    status: &'static str,
+    /// How the whole run ends.
+    #[cfg_attr(test, ts(type = "\"finished\" | \"stopped\""))]
+    ending: Ending,
+    /// Whether a newer run is being worked out.
+    is_working: bool,
+    time: f64,
+    replans: usize,
+    under_way: Vec<String>,
+    holding: Vec<String>,
+    waited_for: Vec<String>,
+    deadline: Option<Deadline>,
+    #[cfg_attr(test, ts(type = "Record<string, unknown>[]"))]
+    disturbances: Vec<Disturbance>,
+    /// What has happened up to the time shown.
+    #[cfg_attr(test, ts(type = "({ time: Time; event: string } & Record<string, unknown>)[]"))]
+    log: Vec<Entry>,
+}
+
+/// The next event that must happen, and its latest time.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Deadline {
+    event: String,
+    #[cfg_attr(test, ts(type = "Time"))]
+    time: Time,
+}
+
+/// What many runs with chance came to.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Robustness {
+    #[cfg_attr(test, ts(type = "number"))]
+    runs: u64,
+    is_running: bool,
+    probability: f64,
+    /// The 95 % confidence interval.
+    interval: [f64; 2],
+    /// The events that broke plans, the worst first.
+    worst: Vec<String>,
+}
+
+/// Events pinned to times on the timeline, and the windows that they leave to all events.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Pinned {
+    events: BTreeMap<String, f64>,
+    #[cfg_attr(test, ts(type = "Record<string, [Time, Time]>"))]
+    windows: Value,
+}
+
+pub(super) fn execution(state: &AppState) -> Option<Execution> {
+    let run = state.execution.run().filter(|_| state.is_executing())?;
+    let network = state.looked_at().and_then(|shown| shown.network.as_deref())?;
+    let moment = state.execution.moment()?;
+    let time = state.playback.time;
+    let log: Vec<Entry> = run.log.iter().filter(|entry| has_come(entry.time, time)).cloned().collect();
+    let status = match log.last().map(|entry| &entry.happening) {
+        Some(Happening::Finished) => "finished",
+        Some(Happening::Stopped { .. }) => "stopped",
+        _ => "under-way",
+    };
+    let names = |pending: &[Pending]| -> Vec<String> {
+        pending.iter().map(|it| network.occurrences[it.occurrence.index()].name.to_string()).collect()
+    };
+    Some(Execution {
+        status,
+        ending: run.ending,
+        is_working: state.execution.is_working(),
+        time,
+        replans: log.iter().filter(|entry| matches!(entry.happening, Happening::Replanned { .. })).count(),
+        under_way: names(&moment.under_way),
+        holding: names(&moment.holding),
+        waited_for: names(&moment.to_come),
+        deadline: moment
+            .deadline
+            .map(|(event, latest)| Deadline { event: network.event_name(event), time: latest }),
+        disturbances: state.execution.disturbances().to_vec(),
+        log,
+    })
+}
+
+pub(super) fn robustness(state: &AppState) -> Option<Robustness> {
+    let tally = &state.robustness()?.tally;
+    let (low, high) = tally.interval();
+    Some(Robustness {
+        runs: tally.runs,
+        is_running: state.chance.is_running(),
+        probability: tally.probability(),
+        interval: [low, high],
+        worst: tally.worst_events().into_iter().map(|(name, _)| name.to_string()).collect(),
+    })
+}
+
+pub(super) fn pinned(state: &AppState, snapshot: &Snapshot) -> Option<Pinned> {
+    let (network, plan) = (snapshot.network.as_deref()?, state.pins.plan(snapshot)?);
+    let pinned = state.pins.all();
+    let events = pinned
+        .iter()
+        .map(|&(node, time)| (pins::event_name(network, node), playback::number(time)))
+        .collect();
+    Some(Pinned { events, windows: plan_to_json(network, plan)["windows"].take() })
+}

@@ -1,0 +1,345 @@
+//! The state as host pages and tests see it (DESIGN 4.3).
+//!
+//! The types here are the one source of that interface: they are what is written as JSON, and `web/enroute.d.ts` is
+//! made from them by the test in `typescript.rs`. Their documentation is the interface's.
+
+mod execution;
+mod program;
+mod review;
+mod search;
+mod terrain;
+#[cfg(test)]
+mod typescript;
+
+use std::collections::BTreeMap;
+
+use mission::paths_json::traverses_json;
+use mission::{Problem, Snapshot};
+use rmpl::diagnostic::Severity;
+use serde::Serialize;
+use serde_json::Value;
+use tpn::Network;
+use tpn::plan_json::plan_to_json;
+#[cfg(test)]
+use ts_rs::TS;
+
+use crate::state::settings::ThemeChoice;
+use crate::state::{AppState, Status};
+
+pub use self::execution::{Execution, Pinned, Robustness};
+pub use self::program::ProgramRun;
+pub use self::review::Review;
+pub use self::search::Search;
+pub use self::terrain::{Terrain, Vehicle};
+
+/// Everything the page shows. What was worked out belongs to `shownRevision`, which is `revision` once `status` is not
+/// `working`.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS), ts(rename = "State"))]
+#[serde(rename_all = "camelCase")]
+pub struct PageState {
+    /// Counts the edits of the text.
+    #[cfg_attr(test, ts(type = "number"))]
+    revision: u64,
+    /// The revision that was last answered.
+    #[cfg_attr(test, ts(type = "number | null"))]
+    answered_revision: Option<u64>,
+    /// The revision of what is shown.
+    #[cfg_attr(test, ts(type = "number | null"))]
+    shown_revision: Option<u64>,
+    #[cfg_attr(
+        test,
+        ts(type = "\"working\" | \"broken\" | \"empty\" | \"program\" | \"plan\" | \"no-plan\"")
+    )]
+    status: &'static str,
+    /// Whether what is shown is of an older text.
+    is_stale: bool,
+    /// The name of the open mission.
+    mission: String,
+    workspace: &'static str,
+    active_panel: &'static str,
+    /// The panels on screen, by name.
+    panels: Vec<&'static str>,
+    #[cfg_attr(test, ts(type = "\"dark\" | \"light\""))]
+    theme: ThemeChoice,
+    diagnostics: Vec<Diagnostic>,
+    /// How many of each the network has; `null` while the text does not compile.
+    tpn: Option<NetworkSize>,
+    #[cfg_attr(test, ts(type = "Plan | null"))]
+    plan: Option<Value>,
+    /// What the independent checker says of the plan.
+    verdict: Option<Verdict>,
+    /// Why there is no plan.
+    failure: Option<Failure>,
+    review: Review,
+    /// What the mission is compared with.
+    compare: Option<Comparison>,
+    search: Search,
+    /// The run of a control program; `null` for a mission.
+    hca: Option<ProgramRun>,
+    vehicles: Vec<Vehicle>,
+    #[cfg_attr(test, ts(type = "Traverse[] | null"))]
+    traverses: Option<Value>,
+    /// The time shown, in mission units.
+    time: f64,
+    end_time: f64,
+    is_playing: bool,
+    /// The range of times that is selected on the timeline.
+    time_range: Option<[f64; 2]>,
+    pinned: Option<Pinned>,
+    /// The run that is watched in the Execute workspace.
+    execution: Option<Execution>,
+    /// What many runs with chance came to; `null` until runs were made.
+    robustness: Option<Robustness>,
+    #[cfg_attr(test, ts(type = "{ kind: string; name: string | null; id: unknown } | null"))]
+    selection: Value,
+    caret: Caret,
+    can_undo: bool,
+    can_redo: bool,
+    /// The dialog that is open.
+    dialog: Option<&'static str>,
+    terrain: Terrain,
+    /// The messages on screen.
+    toasts: Vec<String>,
+    /// What draws the canvas: WebGPU or WebGL2.
+    renderer: String,
+    timings: Timings,
+}
+
+/// Something to tell the author about a place of the text.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Diagnostic {
+    code: String,
+    #[cfg_attr(test, ts(type = "\"error\" | \"warning\" | \"note\""))]
+    severity: Severity,
+    message: String,
+    span: Span,
+    hint: Option<String>,
+    /// The labels of its quick fixes.
+    fixes: Vec<String>,
+}
+
+/// A place of the text: `start` and `end` in bytes, `line` and `column` from 1.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Span {
+    start: u32,
+    end: u32,
+    line: u32,
+    column: u32,
+}
+
+/// Where the caret is and where its selection began, in bytes.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Caret {
+    anchor: usize,
+    head: usize,
+}
+
+/// How large a network is.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct NetworkSize {
+    nodes: usize,
+    arcs: usize,
+    decisions: usize,
+    occurrences: usize,
+}
+
+/// What the independent checker says of a plan.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Verdict {
+    valid: bool,
+    violations: Vec<String>,
+}
+
+/// Why there is no plan.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Failure {
+    reasons: Vec<Reason>,
+    /// The labelled intervals that take part.
+    conditions: Vec<String>,
+    /// What would make a plan possible.
+    relaxations: Vec<String>,
+}
+
+/// One minimal conflict: the choices that it holds for, and what is wrong then.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Reason {
+    choices: BTreeMap<String, u32>,
+    kind: &'static str,
+    message: String,
+}
+
+/// What the mission is compared with.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Comparison {
+    with: String,
+    planned: bool,
+}
+
+/// Milliseconds by stage, for the revision shown.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Timings {
+    parse: f64,
+    compile: f64,
+    plan: f64,
+    layout: f64,
+    total: f64,
+    /// The app's own code in the last frame.
+    frame: f64,
+    /// All that the frame before took on the page's thread.
+    whole_frame: Option<f64>,
+    /// The app's code in the frame that first shows the answer to the present text; `null` until then.
+    answer_frame: Option<f64>,
+    /// When that frame was ready, on the clock of `performance.now()`; `null` until then.
+    shown_at: Option<f64>,
+}
+
+impl PageState {
+    /// What host pages see of a state.
+    pub fn of(state: &AppState) -> Self {
+        let latest = state.snapshots.latest();
+        let shown = state.looked_at();
+        let network = shown.and_then(|shown| shown.network.as_deref());
+        let planning = shown.and_then(|shown| shown.planning.as_deref());
+        let plan = network.zip(shown.and_then(|shown| shown.plan()));
+        let failure = planning.and_then(|planning| planning.outcome.failure.as_ref());
+        let caret = state.document.caret();
+        Self {
+            revision: state.document.revision(),
+            answered_revision: latest.map(|latest| latest.revision),
+            shown_revision: shown.map(|shown| shown.revision),
+            status: status_name(state.status()),
+            is_stale: state.snapshots.is_stale(state.document.revision()),
+            mission: state.mission.to_string(),
+            workspace: state.workspace.name(),
+            active_panel: state.active_panel.name(),
+            panels: state.panels_on_screen.iter().map(|panel| panel.name()).collect(),
+            theme: state.settings.theme,
+            diagnostics: latest.map(|it| it.problems.iter().map(diagnostic).collect()).unwrap_or_default(),
+            tpn: network.map(network_size),
+            plan: plan.map(|(network, plan)| plan_to_json(network, plan)),
+            verdict: planning.and_then(|planning| planning.verdict.as_ref()).map(verdict),
+            failure: network.zip(failure).map(|(network, failure)| failure_of(network, failure)),
+            review: review::review(state),
+            compare: state
+                .compare
+                .reference()
+                .map(|side| Comparison { with: side.name.to_string(), planned: side.is_planned }),
+            search: search::search(state),
+            hca: program::program_run(&state.automaton, state.document.revision()),
+            vehicles: shown.map(|shown| terrain::vehicles(state, shown)).unwrap_or_default(),
+            traverses: shown
+                .zip(network)
+                .map(|(shown, network)| traverses_json(&shown.traverses, network, &shown.program.world)),
+            time: state.playback.time,
+            end_time: state.playback.end,
+            is_playing: state.playback.is_playing,
+            time_range: state.time_range,
+            pinned: shown.and_then(|shown| execution::pinned(state, shown)),
+            execution: execution::execution(state),
+            robustness: execution::robustness(state),
+            selection: state.selection.to_json(network),
+            caret: Caret { anchor: caret.anchor, head: caret.head },
+            can_undo: state.document.can_undo(),
+            can_redo: state.document.can_redo(),
+            dialog: state.dialog.as_ref().map(crate::Dialog::name),
+            terrain: terrain::terrain(state),
+            toasts: state.toasts.shown().iter().map(|toast| toast.text.to_string()).collect(),
+            renderer: state.frame.renderer.to_string(),
+            timings: timings(state, shown),
+        }
+    }
+}
+
+fn network_size(network: &Network) -> NetworkSize {
+    NetworkSize {
+        nodes: network.nodes.len(),
+        arcs: network.arcs.len(),
+        decisions: network.decisions.len(),
+        occurrences: network.occurrences.len(),
+    }
+}
+
+fn verdict(verdict: &verify::Verdict) -> Verdict {
+    Verdict {
+        valid: verdict.valid,
+        violations: verdict.violations.iter().map(|it| it.message.to_string()).collect(),
+    }
+}
+
+fn diagnostic(problem: &Problem) -> Diagnostic {
+    Diagnostic {
+        code: problem.code.to_string(),
+        severity: problem.severity,
+        message: problem.message.to_string(),
+        span: Span {
+            start: problem.span.start,
+            end: problem.span.end,
+            line: problem.line,
+            column: problem.column,
+        },
+        hint: problem.hint.as_ref().map(ToString::to_string),
+        fixes: problem.fixes.iter().map(|fix| fix.label.to_string()).collect(),
+    }
+}
+
+fn failure_of(network: &Network, failure: &kirk::Failure) -> Failure {
+    let reasons = failure.reasons.iter().map(|reason| Reason {
+        choices: reason
+            .choices
+            .iter()
+            .map(|choice| (Network::decision_name(choice.decision), choice.alternative))
+            .collect(),
+        kind: reason.kind.name(),
+        message: reason.message.to_string(),
+    });
+    let conditions =
+        failure.reasons.iter().flat_map(|reason| &reason.conflict).filter_map(|member| match member {
+            kirk::Member::Condition(label) => Some(network.label_name(*label)),
+            kirk::Member::Bound(_) => None,
+        });
+    Failure {
+        reasons: reasons.collect(),
+        conditions: conditions.collect(),
+        relaxations: failure.relaxations.iter().map(|it| it.label.to_string()).collect(),
+    }
+}
+
+fn timings(state: &AppState, shown: Option<&std::sync::Arc<Snapshot>>) -> Timings {
+    let timings = shown.map(|shown| shown.timings).unwrap_or_default();
+    let layout = state.frame.layout_millis;
+    let revision = state.document.revision();
+    let answer = state.frame.answer.filter(|answer| answer.revision == revision);
+    Timings {
+        parse: timings.parse_millis,
+        compile: timings.compile_millis,
+        plan: timings.plan_millis,
+        layout,
+        total: timings.parse_millis + timings.compile_millis + timings.plan_millis + layout,
+        frame: state.frame.cpu_millis,
+        whole_frame: state.frame.whole_millis,
+        answer_frame: answer.map(|answer| answer.cpu_millis),
+        shown_at: answer.map(|answer| answer.done_secs * 1000.0),
+    }
+}
+
+fn status_name(status: Status) -> &'static str {
+    match status {
+        Status::Working => "working",
+        Status::Broken => "broken",
+        Status::Empty => "empty",
+        Status::Program => "program",
+        Status::Plan => "plan",
+        Status::NoPlan => "no-plan",
+    }
+}

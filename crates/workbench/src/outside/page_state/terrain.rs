@@ -1,0 +1,109 @@
+//! What is done on the terrain, and where the vehicles are.
+
+use mission::Snapshot;
+use serde::Serialize;
+#[cfg(test)]
+use ts_rs::TS;
+
+use crate::state::AppState;
+
+/// What is done on the terrain.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Terrain {
+    #[cfg_attr(
+        test,
+        ts(type = "\"look\" | \"measure\" | \"location\" | \"circle\" | \"polygon\" | \"vehicle\"")
+    )]
+    tool: &'static str,
+    /// The places that the tool has so far, in metres east and north.
+    points: Vec<[f64; 2]>,
+    /// Whether the clearance map is shown.
+    clearance: bool,
+    /// How many rays of range sensors are drawn.
+    rays: usize,
+    growth: Option<PathGrowth>,
+}
+
+/// The search for a path that is looked at sample by sample.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct PathGrowth {
+    planner: &'static str,
+    leg: usize,
+    samples: u32,
+    total: u32,
+    vertices: u32,
+    /// The length of the best path so far, in metres.
+    length: Option<f64>,
+}
+
+/// Where a vehicle is: metres, and radians counter-clockwise from east.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Vehicle {
+    name: String,
+    x: f64,
+    y: f64,
+    /// The height of the ground there, for a blimp its height over it; `null` off the map.
+    z: Option<f64>,
+    heading: f64,
+    time: f64,
+}
+
+pub(super) fn terrain(state: &AppState) -> Terrain {
+    let terrain = &state.terrain;
+    let time = state.playback.time;
+    let drives = state.run_shown().map_or(&[][..], |run| run.drives.as_slice());
+    let rays = drives
+        .iter()
+        .flat_map(|drive| &drive.vehicles)
+        .filter(|it| it.frames.last().is_some_and(|last| last.time > time))
+        .filter_map(|it| it.at(time))
+        .map(|frame| frame.rays_m.len());
+    Terrain {
+        tool: terrain.tool.name(),
+        points: terrain.points_m.iter().map(|point| [point.x, point.y]).collect(),
+        clearance: state.settings.views.terrain.clearance,
+        rays: rays.sum(),
+        growth: terrain.growth.shown().map(|shown| PathGrowth {
+            planner: crate::state::growth::planner_title(terrain.growth.planner),
+            leg: shown.leg,
+            samples: shown.samples(),
+            total: shown.total,
+            vertices: shown.vertices(),
+            length: shown.length_m(),
+        }),
+    }
+}
+
+pub(super) fn vehicles(state: &AppState, snapshot: &Snapshot) -> Vec<Vehicle> {
+    let time = state.playback.time;
+    let ground = snapshot.map.as_ref().and_then(|key| state.maps.get(key));
+    let vehicles = &snapshot.program.world.vehicles;
+    snapshot
+        .motions
+        .iter()
+        .filter_map(|motion| {
+            let (place, heading) = motion.at(time)?;
+            let vehicle = vehicles.get(motion.vehicle as usize)?;
+            let height = ground.and_then(|ground| ground.height_at(place));
+            Some(Vehicle {
+                name: vehicle.name.text.to_string(),
+                x: place.x,
+                y: place.y,
+                z: height.map(|height| height + flight_height_m(&vehicle.model.text)),
+                heading,
+                time,
+            })
+        })
+        .collect()
+}
+
+/// How high over the ground a vehicle of this model is drawn; 0 for what drives.
+fn flight_height_m(model: &str) -> f64 {
+    match motion::vehicle_model(model).map(|model| model.drive) {
+        Some(motion::Drive::Flight { altitude_band_m: [low, high], .. }) => f64::midpoint(low, high),
+        _ => 0.0,
+    }
+}
