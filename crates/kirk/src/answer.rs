@@ -6,8 +6,9 @@ use stn::Overflow;
 use tpn::{Network, Plan};
 
 use crate::model::Model;
-use crate::options::{Options, Outcome, Search, Stats, Status, Termination};
+use crate::options::{Options, Outcome, Search, Stats, Status, Termination, Unlimited};
 use crate::search::{Choices, Engine, Gaps, Halt, Setup};
+use crate::solver::{Answer, Part, Problem, TooLarge};
 use crate::trace::Event;
 use crate::{explain, relax, solution};
 
@@ -28,9 +29,9 @@ pub(crate) fn answer(
         outcome.trace = trace;
     }
     if outcome.status == Status::NoPlan && options.explain {
-        let mut failure = explain::explain(network, model)?;
+        let mut failure = explain::explain(network, model, termination)?;
         if options.relax {
-            failure.relaxations = relax::relaxations(network, model, &failure)?;
+            failure.relaxations = relax::relaxations(network, model, &failure, termination)?;
         }
         outcome.failure = Some(failure);
     }
@@ -77,14 +78,102 @@ pub(crate) fn with_choices(
     Ok(Some(Outcome { status: Status::Plan, plans: vec![plan], failure: None, stats, trace: None }))
 }
 
-/// The first plan that a search finds which expects no choice to force intervals to touch. Where it finds none and has
-/// doubts, one without gaps may show that there is none, and otherwise one that blames every choice decides.
+/// How often the search in textual order may go back before the solver takes over.
+const MAX_BACKTRACKS: u64 = 100;
+
+/// A plan, by a search in textual order where that meets few failures, and otherwise by the solver.
+///
+/// Both first expect no choice to force intervals to touch. Where there is no plan then and gaps had to do with it, one
+/// that asks for no gaps may show that there is none; otherwise a search that rests such failures on every choice decides.
 fn first_plan(
     model: &Model,
     options: &Options,
     termination: &mut dyn Termination,
 ) -> Result<(Outcome, bool), Overflow> {
-    let (mut outcome, has_doubts) = run(model, options, (Gaps::Trusted, Stats::default()), termination)?;
+    if options.trace_events.is_some() || !model.has_contexts {
+        return first_in_order(model, options, Stats::default(), termination);
+    }
+    let mut is_stopped = false;
+    let mut soon = |stats: &Stats| {
+        is_stopped = termination.should_stop(stats);
+        is_stopped || stats.backtracks > MAX_BACKTRACKS
+    };
+    let (outcome, has_doubts) = run(model, options, (Gaps::Trusted, Stats::default()), &mut soon)?;
+    if is_stopped || outcome.status == Status::Plan || (outcome.status == Status::NoPlan && !has_doubts) {
+        return Ok((outcome, has_doubts));
+    }
+    first_by_solver(model, options, outcome.stats, termination)
+}
+
+/// A plan by the solver.
+fn first_by_solver(
+    model: &Model,
+    options: &Options,
+    mut stats: Stats,
+    termination: &mut dyn Termination,
+) -> Result<(Outcome, bool), Overflow> {
+    let all_gaps = [Gaps::Trusted, Gaps::Ignored];
+    for &gaps in if model.gap == 0 { &all_gaps[1..] } else { &all_gaps[..] } {
+        let Ok((answer, choices)) = solve(model, gaps, Part::default(), &mut stats, termination) else { break };
+        let status = match answer {
+            Answer::Solved => {
+                if let Some(choices) = choices
+                    && let Some(plan) = plan_with(model, choices)?
+                {
+                    return Ok((ended(Status::Plan, vec![plan], stats), true));
+                }
+                break;
+            }
+            Answer::Stopped => Status::Limit,
+            Answer::Unsolvable if gaps == Gaps::Trusted => continue,
+            Answer::Unsolvable => Status::NoPlan,
+        };
+        return Ok((ended(status, Vec::new(), stats), true));
+    }
+    run(model, options, (Gaps::Exact, stats), termination)
+}
+
+fn ended(status: Status, plans: Vec<Plan>, stats: Stats) -> Outcome {
+    Outcome { status, plans, failure: None, stats, trace: None }
+}
+
+/// One search by the solver, whose work is added to `stats`.
+pub(crate) fn solve(
+    model: &Model,
+    gaps: Gaps,
+    part: Part<'_>,
+    stats: &mut Stats,
+    termination: &mut dyn Termination,
+) -> Result<(Answer, Option<Choices>), TooLarge> {
+    let (mut problem, mut solver) = Problem::new(model, gaps, part)?;
+    solver.stats = *stats;
+    let answer = solver.solve(&mut problem, &mut |stats| termination.should_stop(stats));
+    *stats = solver.stats;
+    let choices = (answer == Answer::Solved).then(|| problem.solution(&solver));
+    Ok((answer, choices))
+}
+
+/// The plan with these choices, where conflicting pairs are ordered by the times given. `None` if a pair that only
+/// touches is not forced to.
+fn plan_with(model: &Model, choices: Choices) -> Result<Option<Plan>, Overflow> {
+    let proposed = choices.times.clone();
+    let setup =
+        Setup { jumps: true, is_checking: true, assumed: Some(choices), proposed, ..Setup::default() };
+    let mut engine = Engine::new(model, setup);
+    if engine.run(&mut Unlimited)? != Halt::Solution {
+        return Ok(None);
+    }
+    solution::plan_at(&mut engine).map(Some)
+}
+
+/// The first plan in textual order, but for those that rest on intervals being forced to touch.
+fn first_in_order(
+    model: &Model,
+    options: &Options,
+    stats: Stats,
+    termination: &mut dyn Termination,
+) -> Result<(Outcome, bool), Overflow> {
+    let (mut outcome, has_doubts) = run(model, options, (Gaps::Trusted, stats), termination)?;
     if outcome.status != Status::NoPlan || !has_doubts {
         return Ok((outcome, has_doubts));
     }
@@ -158,4 +247,65 @@ fn run(
         trace: engine.recorder.take().map(|recorder| recorder.trace),
     };
     Ok((outcome, engine.has_doubts))
+}
+
+#[cfg(test)]
+mod tests {
+    use rmpl::Rational;
+    use tpn::compile::{Top, compile};
+    use tpn::families::{chain, long_requirements, nested, open_shop, pigeonholes, symmetric};
+    use tpn::generate::{Recipe, Tightness, mission};
+
+    use super::*;
+    use crate::options::ExpansionLimit;
+
+    fn network(text: &str) -> Network {
+        let (network, diagnostics) = compile(&rmpl::parse(text).program(), &Top::Scenario(None));
+        network.unwrap_or_else(|| panic!("does not compile: {diagnostics:?}\n{text}"))
+    }
+
+    /// The solver alone says that there is a plan exactly where the paper's search does, and its plans are plans.
+    #[test]
+    fn the_solver_alone_agrees_with_the_chronological_search() {
+        let mut texts = Vec::new();
+        for seed in 0..150 {
+            texts.extend([90, 110, 150].map(|percent| nested(20 + seed as usize % 30, percent, seed)));
+            texts.extend([70, 85, 100].map(|percent| long_requirements(3, 3, seed, percent)));
+            texts.push(open_shop(2, 95 + seed as i64 % 12, seed));
+            for tightness in [Tightness::Feasible, Tightness::Boundary, Tightness::Infeasible] {
+                texts.push(mission(Recipe { nodes: 30 + seed as usize % 40, tightness, seed }));
+            }
+        }
+        texts.extend([pigeonholes(4, 0), pigeonholes(4, 1), symmetric(3, 2, 0), symmetric(3, 2, 1)]);
+        texts.extend([chain(5, true), chain(5, false)]);
+        let (mut plans, mut none) = (0, 0);
+        for text in &texts {
+            for gap in [None, Some(Rational::from_integer(1))] {
+                let network = network(text);
+                let chronological = Options {
+                    search: Search::Chronological,
+                    threat_gap: gap,
+                    explain: false,
+                    relax: false,
+                    ..Options::default()
+                };
+                let expected = crate::plan(&network, &chronological, &mut ExpansionLimit(20_000));
+                if expected.status == Status::Limit {
+                    continue;
+                }
+                let model = Model::new(&network, gap).expect("times fit");
+                let options = Options { search: Search::ConflictDirected, ..chronological };
+                let (outcome, _) = first_by_solver(&model, &options, Stats::default(), &mut Unlimited).expect("fits");
+                assert_eq!(outcome.status, expected.status, "gap {gap:?}\n{text}");
+                let mut network = network;
+                network.threat_gap = gap.unwrap_or(network.threat_gap);
+                for plan in &outcome.plans {
+                    let verdict = verify::check_plan(&network, plan);
+                    assert!(verdict.violations.is_empty(), "{verdict:?}\n{text}");
+                }
+                *if outcome.plans.is_empty() { &mut none } else { &mut plans } += 1;
+            }
+        }
+        assert!(plans > 300 && none > 300, "{plans} have a plan and {none} have none");
+    }
 }

@@ -96,6 +96,16 @@ impl Conditions {
             && variable.conflicts[left.literal as usize * variable.num_literals + right.literal as usize]
     }
 
+    /// Whether `tell` is an assertion that makes requirement `ask` hold.
+    pub(crate) fn supports(&self, tell: u32, ask: u32) -> bool {
+        let (tell, ask) = (&self.labels[tell as usize], &self.labels[ask as usize]);
+        let variable = &self.variables[ask.variable as usize];
+        tell.variable == ask.variable
+            && !tell.is_ask
+            && ask.is_ask
+            && variable.supports[tell.literal as usize * variable.num_literals + ask.literal as usize]
+    }
+
     /// The assertions that would make requirement `ask` hold, selected or not, in textual order.
     pub(crate) fn supporters(&self, ask: u32) -> impl Iterator<Item = u32> + '_ {
         let required = &self.labels[ask as usize];

@@ -9,7 +9,7 @@ use tpn::{Choice, DecisionId, Network};
 
 use crate::failure::{Failure, Member, Reason};
 use crate::model::{INFINITE, Model, NONE};
-use crate::options::Stats;
+use crate::options::{Stats, Termination, Unlimited};
 use crate::record::DeadEnd;
 use crate::search::{Choices, Engine, Halt, Setup, UNBOUNDED_BELOW};
 use crate::trace::{Constraint, CycleMember};
@@ -19,25 +19,35 @@ use crate::wording;
 const MAX_REASONS: u64 = 64;
 
 /// How much work explanations may be, in searches of a whole network of a certain size.
-pub(crate) struct Effort {
+pub(crate) struct Effort<'t> {
     /// Searches left.
     pub(crate) searches: usize,
     /// Alternatives that one search may try.
-    pub(crate) expansions: u64,
+    expansions: u64,
+    termination: &'t mut dyn Termination,
 }
 
-impl Effort {
-    pub(crate) fn for_size(num_nodes: usize) -> Self {
+impl<'t> Effort<'t> {
+    pub(crate) fn for_size(num_nodes: usize, termination: &'t mut dyn Termination) -> Self {
         let size = num_nodes.max(1);
         Self {
             searches: (1_000_000 / size).clamp(60, 5_000),
             expansions: (2_000_000 / size as u64).clamp(200, 10_000),
+            termination,
         }
     }
 
     pub(crate) fn spend(&mut self) -> bool {
         self.searches = self.searches.saturating_sub(1);
         self.searches > 0
+    }
+
+    /// Whether one search has done enough. Nothing more is searched once the termination condition says so.
+    pub(crate) fn is_spent(&mut self, stats: &Stats) -> bool {
+        if self.termination.should_stop(stats) {
+            self.searches = 0;
+        }
+        self.searches == 0 || stats.expanded >= self.expansions
     }
 }
 
@@ -46,7 +56,8 @@ impl Effort {
 /// carry requirements. `None` if that takes too long to find out or times do not fit.
 pub fn is_conflict(network: &Network, choices: &[Choice], members: &[Member]) -> Option<bool> {
     let model = Model::new(network, None).ok()?;
-    let mut effort = Effort::for_size(model.num_nodes);
+    let mut unlimited = Unlimited;
+    let mut effort = Effort::for_size(model.num_nodes, &mut unlimited);
     let choices: Vec<(u32, u32)> =
         choices.iter().map(|choice| (choice.decision.0, choice.alternative)).collect();
     let mut part = Part::new(&model, &choices);
@@ -57,12 +68,15 @@ pub fn is_conflict(network: &Network, choices: &[Choice], members: &[Member]) ->
 }
 
 /// Explains why there is no plan.
-pub(crate) fn explain(network: &Network, model: &Model) -> Result<Failure, Overflow> {
-    let mut effort = Effort::for_size(model.num_nodes);
+pub(crate) fn explain(
+    network: &Network,
+    model: &Model,
+    termination: &mut dyn Termination,
+) -> Result<Failure, Overflow> {
+    let mut effort = Effort::for_size(model.num_nodes, termination);
     let setup = Setup { jumps: true, records_dead_ends: true, ..Setup::default() };
     let mut engine = Engine::new(model, setup);
-    let limit = effort.expansions;
-    let mut enough = |stats: &Stats| stats.expanded >= limit || stats.backtracks > MAX_REASONS;
+    let mut enough = |stats: &Stats| effort.is_spent(stats) || stats.backtracks > MAX_REASONS;
     let is_complete = engine.run(&mut enough)? == Halt::Exhausted;
     let mut dead_ends = engine.dead_ends.found;
     dead_ends.sort_by(|left, right| left.choices.cmp(&right.choices));
@@ -80,7 +94,7 @@ fn reason(
     network: &Network,
     model: &Model,
     dead_end: &DeadEnd,
-    effort: &mut Effort,
+    effort: &mut Effort<'_>,
 ) -> Result<Reason, Overflow> {
     let mut part = Part::new(model, &dead_end.choices);
     let mut members = dead_end.members.clone();
@@ -173,13 +187,12 @@ impl Part {
     }
 
     /// Whether the part has no plan; `None` if that takes too long to find out.
-    fn fails(&self, effort: &mut Effort) -> Result<Option<bool>, Overflow> {
+    fn fails(&self, effort: &mut Effort<'_>) -> Result<Option<bool>, Overflow> {
         if !effort.spend() {
             return Ok(None);
         }
         let mut engine = Engine::new(&self.model, self.setup(false));
-        let limit = effort.expansions;
-        Ok(match engine.run(&mut |stats: &Stats| stats.expanded >= limit)? {
+        Ok(match engine.run(&mut |stats: &Stats| effort.is_spent(stats))? {
             Halt::Solution => Some(false),
             Halt::Exhausted => Some(true),
             Halt::Stopped => None,
@@ -187,10 +200,9 @@ impl Part {
     }
 
     /// A contradiction among the bounds of the part, if there is one to show.
-    fn first_cycle(&self, effort: &Effort) -> Result<Vec<CycleMember>, Overflow> {
+    fn first_cycle(&self, effort: &mut Effort<'_>) -> Result<Vec<CycleMember>, Overflow> {
         let mut engine = Engine::new(&self.model, self.setup(true));
-        let limit = effort.expansions;
-        engine.run(&mut |stats: &Stats| stats.expanded >= limit)?;
+        engine.run(&mut |stats: &Stats| effort.is_spent(stats))?;
         Ok(engine
             .dead_ends
             .found
@@ -205,7 +217,7 @@ impl Part {
             jumps: true,
             records_dead_ends,
             active_labels: Some(self.active_labels.clone()),
-            assumed: Some(Choices { alternatives: self.assumed.clone(), carriers: Vec::new() }),
+            assumed: Some(Choices { alternatives: self.assumed.clone(), ..Choices::default() }),
             ..Setup::default()
         }
     }

@@ -123,6 +123,7 @@ impl Engine<'_> {
                 *pair = (right, left);
             }
         }
+        ordered.sort_by_key(|&(first, then)| (first.min(then), first.max(then)));
         Ok(ordered)
     }
 
@@ -175,6 +176,12 @@ impl Engine<'_> {
                 }
             }
         }
+        if self.setup.assumed.as_ref().is_some_and(|assumed| !assumed.times.is_empty()) {
+            // What only touches may be ordered by what follows from the others.
+            let mut pairs = std::mem::take(&mut self.leaf.pairs);
+            pairs.sort_by_key(|&(left, right)| self.only_touch(left, right));
+            self.leaf.pairs = pairs;
+        }
         self.leaf.is_swapped.clear();
         self.leaf.is_swapped.resize(self.leaf.pairs.len(), false);
     }
@@ -208,6 +215,25 @@ impl Engine<'_> {
             return Ok(Relation::After);
         }
         Ok(Relation::Open)
+    }
+
+    /// Whether the times that are given leave less than the gap between two intervals.
+    fn only_touch(&self, left: u32, right: u32) -> bool {
+        let Some(order) = self.assumed_order(left, right) else { return false };
+        let (first, then) = if order == 0 { (left, right) } else { (right, left) };
+        let times = self.setup.assumed.as_ref().map_or(&[][..], |assumed| &assumed.times);
+        let (end, start) = (self.model.interval(first).1, self.model.interval(then).0);
+        times[start.index()] - times[end.index()] < self.model.gap
+    }
+
+    /// Which of two intervals comes first, by the times that are given: 0 for the left one.
+    pub(crate) fn assumed_order(&self, left: u32, right: u32) -> Option<u32> {
+        let times = self.setup.assumed.as_ref().map(|assumed| &assumed.times).filter(|times| !times.is_empty())?;
+        let room = |first: u32, then: u32| {
+            let (end, start) = (self.model.interval(first).1, self.model.interval(then).0);
+            times[start.index()] - times[end.index()]
+        };
+        Some(u32::from(room(right, left) > room(left, right)))
     }
 
     fn find_windows(&mut self) -> Result<(), Overflow> {

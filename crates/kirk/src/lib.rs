@@ -21,6 +21,7 @@ mod replay;
 mod search;
 mod selection;
 mod solution;
+mod solver;
 mod structure;
 mod trace;
 mod trace_lines;

@@ -94,6 +94,7 @@ impl Planner {
             let mut choices = Choices {
                 alternatives: vec![NONE; model.decisions.len()],
                 carriers: vec![NONE; model.conditions.labels.len()],
+                times: Vec::new(),
             };
             for choice in &plan.choices {
                 choices.alternatives[choice.decision.index()] = choice.alternative;

@@ -10,7 +10,7 @@ use tpn::{ArcId, Network};
 use crate::explain::Effort;
 use crate::failure::{Failure, Member, Relaxation};
 use crate::model::{INFINITE, Model};
-use crate::options::Stats;
+use crate::options::{Stats, Termination};
 use crate::search::{Engine, Gaps, Halt, Setup};
 use crate::trace::Constraint;
 use crate::wording;
@@ -23,8 +23,10 @@ pub(crate) fn relaxations(
     network: &Network,
     model: &Model,
     failure: &Failure,
+    termination: &mut dyn Termination,
 ) -> Result<Vec<Relaxation>, Overflow> {
-    let mut trial = Trial { network, model: model.clone(), effort: Effort::for_size(model.num_nodes) };
+    let effort = Effort::for_size(model.num_nodes, termination);
+    let mut trial = Trial { network, model: model.clone(), effort };
     let mut found: Vec<Relaxation> = Vec::new();
     for (arcs, is_lower) in candidates(network, failure) {
         if let Some(new) = trial.closest(&arcs, is_lower)? {
@@ -80,7 +82,7 @@ fn candidates(network: &Network, failure: &Failure) -> Vec<(Vec<ArcId>, bool)> {
 struct Trial<'a> {
     network: &'a Network,
     model: Model,
-    effort: Effort,
+    effort: Effort<'a>,
 }
 
 impl Trial<'_> {
@@ -133,8 +135,8 @@ impl Trial<'_> {
         }
         self.model.refresh_structure()?;
         let setup = Setup { jumps: true, by_structure: true, gaps: Gaps::Trusted, ..Setup::default() };
-        let limit = self.effort.expansions;
-        let halt = Engine::new(&self.model, setup).run(&mut |stats: &Stats| stats.expanded >= limit)?;
+        let Self { model, effort, .. } = self;
+        let halt = Engine::new(model, setup).run(&mut |stats: &Stats| effort.is_spent(stats))?;
         for arc in arcs {
             self.model.set_bounds(self.network, arc.0, lower, upper);
         }

@@ -4,6 +4,7 @@
 
 mod alternative;
 pub mod compile;
+pub mod families;
 pub mod generate;
 pub mod interchange;
 pub mod network;

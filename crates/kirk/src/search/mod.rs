@@ -341,7 +341,10 @@ impl<'m> Engine<'m> {
                 if assumed == NONE { (0, count) } else { (assumed, assumed + 1) }
             }
             Kind::Link { tells, .. } => (0, tells.len() as u32),
-            Kind::Threat { .. } => (0, 2),
+            &Kind::Threat { left, right, .. } => match self.assumed_order(left, right) {
+                Some(order) => (order, order + 1),
+                None => (0, 2),
+            },
         };
         let depth = self.levels.len() as u32;
         if let Kind::Decision { decision } = kind {

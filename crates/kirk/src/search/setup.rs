@@ -30,6 +30,8 @@ pub(crate) struct Choices {
     pub(crate) alternatives: Vec<u32>,
     /// The assertion that carries each requirement, by label, or [`NONE`]; empty if that is open.
     pub(crate) carriers: Vec<u32>,
+    /// Times by node that tell how conflicting pairs are ordered; empty if that is open.
+    pub(crate) times: Vec<i64>,
 }
 
 /// What a search makes of orders that fail only because of the gap they ask for, but would hold by touching if other

@@ -194,6 +194,13 @@ impl Structure {
         Ok(duration.transpose()?.map(|duration| (duration.lower, duration.upper())))
     }
 
+    /// The first and last event of a choice, and how long it can take whatever is chosen.
+    pub(crate) fn initial_bounds(&self, decision: u32) -> (u32, u32, i64, i64) {
+        let block = self.decision_blocks[decision as usize] as usize;
+        let (from, to) = self.blocks[block].ends;
+        (from, to, self.initial[block].lower, self.initial[block].upper())
+    }
+
     pub(crate) fn start(&self) -> TreeState {
         TreeState { durations: self.initial.clone(), trail: Vec::new() }
     }

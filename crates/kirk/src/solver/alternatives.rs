@@ -1,0 +1,97 @@
+//! Bounds that all alternatives left of a choice have in common.
+//!
+//! The event where a choice ends is no later than the latest end of an alternative that is still possible, and no earlier
+//! than the earliest; the same holds for where it begins. So an open choice counts with its relaxation.
+
+use super::literal::{Literal, Side};
+use super::trail::{Cause, Conflict, Trail};
+
+/// One way in which an alternative bounds a common event.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Way {
+    pub(crate) from: Side,
+    pub(crate) weight: i64,
+    /// Whether the alternative is taken.
+    pub(crate) when: Literal,
+}
+
+#[derive(Clone, Debug)]
+struct Common {
+    to: Side,
+    ways: Vec<Way>,
+}
+
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Alternatives {
+    commons: Vec<Common>,
+    /// By side: what to look at when its bound moves.
+    concerned: Vec<Vec<u32>>,
+    is_waiting: Vec<bool>,
+    waiting: Vec<u32>,
+}
+
+impl Alternatives {
+    pub(crate) fn resize(&mut self, num_variables: usize) {
+        self.concerned.resize(num_variables * 2, Vec::new());
+    }
+
+    /// Adds that `to` is bounded by at least one of `ways`, of which one is taken wherever `to` exists.
+    pub(crate) fn add(&mut self, to: Side, ways: Vec<Way>) {
+        let id = self.commons.len() as u32;
+        for way in &ways {
+            self.concerned[way.from.index()].push(id);
+            self.concerned[(!way.when).side.index()].push(id);
+        }
+        self.commons.push(Common { to, ways });
+        self.is_waiting.push(true);
+        self.waiting.push(id);
+    }
+
+    pub(crate) fn moved(&mut self, side: Side) {
+        for &id in &self.concerned[side.index()] {
+            if !self.is_waiting[id as usize] {
+                self.is_waiting[id as usize] = true;
+                self.waiting.push(id);
+            }
+        }
+    }
+
+    /// Drops what is still to be looked at: its events are being taken back.
+    pub(crate) fn forget(&mut self) {
+        for id in self.waiting.drain(..) {
+            self.is_waiting[id as usize] = false;
+        }
+    }
+
+    pub(crate) fn propagate(&mut self, trail: &mut Trail) -> Result<(), Conflict> {
+        while let Some(id) = self.waiting.pop() {
+            self.is_waiting[id as usize] = false;
+            let Common { to, ways } = &self.commons[id as usize];
+            let left = ways.iter().filter(|way| !trail.fails(way.when));
+            let most = left.map(|way| trail.bound(way.from) + way.weight).max();
+            if let Some(most) = most
+                && most < trail.bound(*to)
+            {
+                trail.set(Literal::new(*to, most), Cause::Alternatives(id))?;
+            }
+        }
+        Ok(())
+    }
+
+    pub(crate) fn explain(&self, trail: &Trail, literal: Literal, id: u32, at: u32, reason: &mut Conflict) {
+        for way in &self.commons[id as usize].ways {
+            let is_bounded = Literal::new(way.from, literal.most - way.weight);
+            let holds_before = |literal: Literal| trail.bound_before(literal.side, at) <= literal.most;
+            if holds_before(is_bounded) {
+                let earlier = |literal: Literal| trail.implying_event(literal).wrapping_add(1);
+                if holds_before(!way.when) && earlier(!way.when) < earlier(is_bounded) {
+                    reason.push(!way.when);
+                } else {
+                    reason.push(is_bounded);
+                }
+            } else {
+                reason.push(!way.when);
+            }
+        }
+    }
+}

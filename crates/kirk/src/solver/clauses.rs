@@ -1,0 +1,173 @@
+//! Clauses, learned ones among them, watched by two of their literals.
+
+use super::literal::Literal;
+use super::trail::{Cause, Conflict, Trail};
+
+#[derive(Clone, Debug)]
+pub(crate) struct Clause {
+    pub(crate) literals: Box<[Literal]>,
+    is_learned: bool,
+    /// How many levels its literals came from when it was learned.
+    num_levels: u32,
+    activity: f64,
+}
+
+/// A clause is looked at when the watched literal becomes false: when this side is at most `most`.
+#[derive(Clone, Copy, Debug)]
+struct Watch {
+    most: i64,
+    clause: u32,
+    /// Another literal of the clause; while it holds, there is nothing to do.
+    other: Literal,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct Clauses {
+    clauses: Vec<Clause>,
+    free: Vec<u32>,
+    /// By side.
+    watches: Vec<Vec<Watch>>,
+    num_learned: usize,
+    increment: f64,
+}
+
+impl Clauses {
+    pub(crate) fn new() -> Self {
+        Self {
+            clauses: Vec::new(),
+            free: Vec::new(),
+            watches: Vec::new(),
+            num_learned: 0,
+            increment: 1.0,
+        }
+    }
+
+    pub(crate) fn resize(&mut self, num_variables: usize) {
+        self.watches.resize(num_variables * 2, Vec::new());
+    }
+
+    pub(crate) fn num_learned(&self) -> usize {
+        self.num_learned
+    }
+
+    pub(crate) fn literals(&self, clause: u32) -> &[Literal] {
+        &self.clauses[clause as usize].literals
+    }
+
+    /// Adds a clause of at least two literals. The first two are watched: they must be the last ones to become false.
+    pub(crate) fn add(&mut self, literals: Vec<Literal>, num_levels: Option<u32>) -> u32 {
+        let watched = [literals[0], literals[1]];
+        let clause = Clause {
+            literals: literals.into_boxed_slice(),
+            is_learned: num_levels.is_some(),
+            num_levels: num_levels.unwrap_or(0),
+            activity: self.increment,
+        };
+        self.num_learned += usize::from(num_levels.is_some());
+        let id = match self.free.pop() {
+            Some(id) => {
+                self.clauses[id as usize] = clause;
+                id
+            }
+            None => {
+                self.clauses.push(clause);
+                self.clauses.len() as u32 - 1
+            }
+        };
+        for (literal, other) in [(watched[0], watched[1]), (watched[1], watched[0])] {
+            let falsified = !literal;
+            self.watches[falsified.side.index()].push(Watch { most: falsified.most, clause: id, other });
+        }
+        id
+    }
+
+    /// Makes a clause outlive others.
+    pub(crate) fn bump(&mut self, clause: u32) {
+        let activity = &mut self.clauses[clause as usize].activity;
+        *activity += self.increment;
+        if *activity > 1e100 {
+            for clause in &mut self.clauses {
+                clause.activity *= 1e-100;
+            }
+            self.increment *= 1e-100;
+        }
+    }
+
+    pub(crate) fn decay(&mut self) {
+        self.increment /= 0.999;
+    }
+
+    /// Propagates all clauses that a side's new bound concerns.
+    pub(crate) fn propagate(&mut self, trail: &mut Trail, event: u32) -> Result<(), Conflict> {
+        let event = trail.events[event as usize];
+        let side = event.side.index();
+        if self.watches[side].is_empty() {
+            return Ok(());
+        }
+        let mut watches = std::mem::take(&mut self.watches[side]);
+        let mut result = Ok(());
+        let (mut kept, mut at) = (0, 0);
+        while at < watches.len() {
+            let watch = watches[at];
+            at += 1;
+            if watch.most < event.most || trail.holds(watch.other) {
+                watches[kept] = watch;
+                kept += 1;
+                continue;
+            }
+            let falsified = !Literal::new(event.side, watch.most);
+            let literals = &mut self.clauses[watch.clause as usize].literals;
+            if literals[0] == falsified {
+                literals.swap(0, 1);
+            }
+            let other = literals[0];
+            let replacement = if trail.holds(other) {
+                None
+            } else {
+                (2..literals.len()).find(|&position| !trail.fails(literals[position]))
+            };
+            if let Some(position) = replacement {
+                literals.swap(1, position);
+                let next = !literals[1];
+                self.watches[next.side.index()].push(Watch { most: next.most, clause: watch.clause, other });
+                continue;
+            }
+            watches[kept] = Watch { other, ..watch };
+            kept += 1;
+            if let Err(conflict) = trail.set(other, Cause::Clause(watch.clause)) {
+                result = Err(conflict);
+                break;
+            }
+        }
+        watches.copy_within(at.., kept);
+        watches.truncate(kept + watches.len() - at);
+        // Replacements never watch the side that is being looked through.
+        let moved = std::mem::replace(&mut self.watches[side], watches);
+        self.watches[side].extend(moved);
+        result
+    }
+
+    /// Forgets the worse half of what was learned. Only where no clause is the reason of anything: at the root.
+    pub(crate) fn forget_half(&mut self) {
+        let mut learned: Vec<u32> = (0..self.clauses.len() as u32)
+            .filter(|&id| {
+                let clause = &self.clauses[id as usize];
+                clause.is_learned && clause.num_levels > 2 && !clause.literals.is_empty()
+            })
+            .collect();
+        learned.sort_by(|&left, &right| {
+            let (left, right) = (&self.clauses[left as usize], &self.clauses[right as usize]);
+            (left.num_levels.min(8).cmp(&right.num_levels.min(8)))
+                .then(right.activity.total_cmp(&left.activity))
+        });
+        for id in learned.split_off(learned.len() / 2) {
+            self.clauses[id as usize].literals = Box::default();
+            self.free.push(id);
+            self.num_learned -= 1;
+        }
+        let clauses = &self.clauses;
+        for watches in &mut self.watches {
+            watches.retain(|watch| !clauses[watch.clause as usize].literals.is_empty());
+        }
+    }
+}

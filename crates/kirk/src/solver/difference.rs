@@ -1,0 +1,200 @@
+//! Difference constraints: `to − from ≤ weight` while a literal holds.
+//!
+//! Each constraint carries an upper bound of its source on to its target; its mirror does the same for lower bounds.
+//! A constraint whose literal is open and whose ends can no longer satisfy it refutes the literal. Where the bounds of
+//! all times are settled, the least values satisfy every constraint in force, so that bounds alone decide consistency;
+//! cycles whose weights add up to less than zero are looked for where a bound keeps moving, because bounds would creep
+//! along them for as long as their range allows.
+
+use super::literal::{Literal, Side};
+use super::trail::{Cause, Conflict, INITIAL, Trail};
+
+/// `to ≤ from + weight`, as a step from side to side. The literal implies that both ends exist, or it always holds and
+/// the existence of the target implies that of the source.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Difference {
+    pub(crate) from: Side,
+    pub(crate) to: Side,
+    pub(crate) weight: i64,
+    pub(crate) when: Literal,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    to: Side,
+    id: u32,
+    weight: i64,
+    when: Literal,
+}
+
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Differences {
+    all: Vec<Difference>,
+    /// By source.
+    steps: Vec<Vec<Step>>,
+    /// By the side that makes their literal hold.
+    waiting: Vec<Vec<u32>>,
+    /// How often the bound of each side has moved in the present propagation.
+    moves: Vec<u32>,
+    moved: Vec<Side>,
+}
+
+/// After so many moves of one bound the cycle is looked for that may cause them.
+const MOVES_BEFORE_CYCLE: u32 = 6;
+
+impl Differences {
+    pub(crate) fn resize(&mut self, num_variables: usize) {
+        self.steps.resize(num_variables * 2, Vec::new());
+        self.waiting.resize(num_variables * 2, Vec::new());
+        self.moves.resize(num_variables * 2, 0);
+    }
+
+    /// Adds a step and returns its id.
+    pub(crate) fn add(&mut self, difference: Difference) -> u32 {
+        let id = self.all.len() as u32;
+        let Difference { from, to, weight, when } = difference;
+        self.all.push(difference);
+        self.steps[from.index()].push(Step { to, id, weight, when });
+        if when != Literal::TRUE {
+            self.waiting[when.side.index()].push(id);
+        }
+        id
+    }
+
+    pub(crate) fn len(&self) -> u32 {
+        self.all.len() as u32
+    }
+
+    /// Carries on the bound of a side, as when it has just moved.
+    pub(crate) fn carry_on(&self, trail: &mut Trail, side: Side) -> Result<(), Conflict> {
+        let bound = trail.bound(side);
+        self.steps[side.index()].iter().try_for_each(|&step| carry(trail, bound, step))
+    }
+
+    /// Whether the least times satisfy all constraints in force between times that exist.
+    pub(crate) fn are_satisfied(&self, trail: &Trail) -> bool {
+        let value = |side: Side| {
+            let least = trail.least(side.variable());
+            if side == side.variable().upper() { least } else { -least }
+        };
+        self.all.iter().all(|difference| {
+            let Difference { from, to, weight, when } = *difference;
+            !trail.holds(when)
+                || !trail.holds(trail.presence(to.variable()))
+                || value(to) <= value(from) + weight
+        })
+    }
+
+    /// How much room the constraints that wait for a literal leave: the least of them all.
+    pub(crate) fn slack(&self, trail: &Trail, when: Literal) -> i64 {
+        let room = self.waiting[when.side.index()].iter().map(|&id| {
+            let Difference { from, to, weight, .. } = self.all[id as usize];
+            trail.bound(from) + weight + trail.bound(to.opposite())
+        });
+        room.min().unwrap_or(i64::MAX)
+    }
+
+    /// Starts counting moves anew.
+    pub(crate) fn begin(&mut self) {
+        for side in self.moved.drain(..) {
+            self.moves[side.index()] = 0;
+        }
+    }
+
+    /// Looks at one step as if its source had just moved.
+    pub(crate) fn check(&self, trail: &mut Trail, id: u32) -> Result<(), Conflict> {
+        let Difference { from, to, weight, when } = self.all[id as usize];
+        carry(trail, trail.bound(from), Step { to, id, weight, when })
+    }
+
+    /// Carries on what an event tells.
+    pub(crate) fn propagate(&mut self, trail: &mut Trail, event: u32) -> Result<(), Conflict> {
+        let side = trail.events[event as usize].side;
+        for &id in &self.waiting[side.index()] {
+            self.check(trail, id)?;
+        }
+        if self.steps[side.index()].is_empty() {
+            return Ok(());
+        }
+        // A later event of the same side carries more.
+        let bound = trail.bound(side);
+        if bound < trail.events[event as usize].most {
+            return Ok(());
+        }
+        let moves = &mut self.moves[side.index()];
+        *moves += 1;
+        if *moves == 1 {
+            self.moved.push(side);
+        } else if moves.is_multiple_of(MOVES_BEFORE_CYCLE)
+            && let Some(mut reason) = self.negative_cycle(trail, event)
+        {
+            let presence = trail.presence(side.variable());
+            if trail.holds(presence) {
+                reason.push(presence);
+                return Err(reason);
+            }
+            let cause = trail.note(reason);
+            return trail.set(!presence, cause);
+        }
+        for &step in &self.steps[side.index()] {
+            carry(trail, bound, step)?;
+        }
+        Ok(())
+    }
+
+    /// Why a literal holds that a difference is the cause of, or is refuted by.
+    pub(crate) fn explain(&self, trail: &Trail, literal: Literal, id: u32, reason: &mut Conflict) {
+        let Difference { from, weight, when, .. } = self.all[id as usize];
+        reason.push(Literal::new(from, literal.most - weight));
+        if when != Literal::TRUE {
+            reason.push(when);
+        }
+        debug_assert!(trail.holds(Literal::new(from, literal.most - weight)), "it was carried");
+    }
+
+    pub(crate) fn explain_refuted(&self, trail: &Trail, id: u32, at: u32, reason: &mut Conflict) {
+        let Difference { from, to, weight, .. } = self.all[id as usize];
+        let bound = trail.bound_before(from, at);
+        // The target must reach at least one more than what the source allows.
+        reason.push(Literal::new(from, bound));
+        reason.push(!Literal::new(to, bound + weight));
+    }
+
+    /// The literals of a cycle that the last moves of a bound went along.
+    fn negative_cycle(&self, trail: &Trail, event: u32) -> Option<Conflict> {
+        let start = trail.events[event as usize].side;
+        let (mut at, mut most) = (event, trail.events[event as usize].most);
+        let mut reason = Vec::new();
+        for _ in 0..self.steps.len() {
+            let Cause::Difference(id) = trail.events[at as usize].cause else { return None };
+            let Difference { from, weight, when, .. } = self.all[id as usize];
+            if when != Literal::TRUE {
+                reason.push(when);
+            }
+            most -= weight;
+            at = trail.implying_event(Literal::new(from, most));
+            if at == INITIAL {
+                return None;
+            }
+            if from == start {
+                return Some(reason);
+            }
+        }
+        None
+    }
+}
+
+fn carry(trail: &mut Trail, bound: i64, step: Step) -> Result<(), Conflict> {
+    let Step { to, id, weight, when } = step;
+    let most = bound + weight;
+    if most >= trail.bound(to) {
+        return Ok(());
+    }
+    if when == Literal::TRUE || trail.holds(when) {
+        return trail.set(Literal::new(to, most), Cause::Difference(id));
+    }
+    if most < -trail.bound(to.opposite()) {
+        return trail.set(!when, Cause::Refuted(id));
+    }
+    Ok(())
+}

@@ -1,0 +1,201 @@
+//! Sets of intervals that exclude each other: too many of them in too little time, and which must come last or first
+//! (overload checking and edge finding; Carlier and Pinson 1989, Vilím 2004).
+//!
+//! Only intervals that exist for sure count. Everything is told for one direction of time and done for both.
+
+use super::encode::{Interval, Problem};
+use super::literal::{Literal, Side};
+use super::trail::{Conflict, Trail};
+
+/// In larger sets only overloads are looked for.
+const MAX_EDGE_FINDING: usize = 24;
+/// Larger sets are left to the pairs.
+const MAX_TASKS: usize = 200;
+
+#[derive(Clone, Debug)]
+struct Exclusion {
+    tasks: Vec<Interval>,
+    /// The least time between one and the next.
+    gap: i64,
+}
+
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Disjunctives {
+    sets: Vec<Exclusion>,
+    /// By side: the sets that its bound concerns.
+    concerned: Vec<Vec<u32>>,
+    is_waiting: Vec<bool>,
+    waiting: Vec<u32>,
+    /// Room for the tasks that count at the moment.
+    present: Vec<Task>,
+}
+
+/// A task seen along one direction of time.
+#[derive(Clone, Copy, Debug)]
+struct Task {
+    /// It starts no earlier than the negated bound of this side.
+    start: Side,
+    /// It ends no later than the bound of this side.
+    end: Side,
+    earliest: i64,
+    latest: i64,
+    duration: i64,
+    presence: Literal,
+}
+
+impl Disjunctives {
+    pub(crate) fn resize(&mut self, num_variables: usize) {
+        self.concerned.resize(num_variables * 2, Vec::new());
+    }
+
+    /// Finds sets among the labels of one variable that must be kept apart, `gap` between each two.
+    pub(crate) fn add(&mut self, problem: &Problem<'_>, labels: &[u32]) {
+        let mut is_covered = vec![false; labels.len()];
+        for (first, &seed) in labels.iter().enumerate() {
+            if is_covered[first] || labels.len() > MAX_TASKS {
+                continue;
+            }
+            let mut members = vec![seed];
+            let mut is_gap_due = true;
+            for (position, &label) in labels.iter().enumerate() {
+                if position == first || problem.intervals[label as usize].duration == 0 {
+                    continue;
+                }
+                let relations = members.iter().map(|&member| problem.exclusion(member.min(label), member.max(label)));
+                let relations: Option<Vec<bool>> = relations.collect();
+                if let Some(relations) = relations {
+                    is_gap_due &= relations.iter().all(|&is_gap_due| is_gap_due);
+                    members.push(label);
+                    is_covered[position] = true;
+                }
+            }
+            if members.len() > 2 {
+                let gap = if is_gap_due { problem.least_gap() } else { 0 };
+                let tasks = members.iter().map(|&label| problem.intervals[label as usize]).collect();
+                self.add_set(Exclusion { tasks, gap });
+            }
+        }
+    }
+
+    fn add_set(&mut self, set: Exclusion) {
+        let id = self.sets.len() as u32;
+        for task in &set.tasks {
+            for side in [task.start.lower(), task.end.upper(), task.presence.side] {
+                self.concerned[side.index()].push(id);
+            }
+        }
+        self.sets.push(set);
+        self.is_waiting.push(true);
+        self.waiting.push(id);
+    }
+
+    pub(crate) fn moved(&mut self, side: Side) {
+        for &id in &self.concerned[side.index()] {
+            if !self.is_waiting[id as usize] {
+                self.is_waiting[id as usize] = true;
+                self.waiting.push(id);
+            }
+        }
+    }
+
+    pub(crate) fn forget(&mut self) {
+        for id in self.waiting.drain(..) {
+            self.is_waiting[id as usize] = false;
+        }
+    }
+
+    /// Looks at one set that waits. `false` if none does.
+    pub(crate) fn propagate(&mut self, trail: &mut Trail) -> Result<bool, Conflict> {
+        let Some(id) = self.waiting.pop() else { return Ok(false) };
+        self.is_waiting[id as usize] = false;
+        let set = &self.sets[id as usize];
+        for is_forward in [true, false] {
+            self.present.clear();
+            for task in set.tasks.iter().filter(|task| trail.holds(task.presence)) {
+                let (start, end) = if is_forward {
+                    (task.start.lower(), task.end.upper())
+                } else {
+                    (task.end.upper(), task.start.lower())
+                };
+                self.present.push(Task {
+                    start,
+                    end,
+                    earliest: -trail.bound(start),
+                    latest: trail.bound(end),
+                    duration: task.duration,
+                    presence: task.presence,
+                });
+            }
+            self.present.sort_by_key(|task| std::cmp::Reverse(task.earliest));
+            if is_forward {
+                check_load(&self.present, set.gap)?;
+            }
+            if self.present.len() <= MAX_EDGE_FINDING {
+                find_last(trail, &self.present, set.gap)?;
+            }
+        }
+        Ok(true)
+    }
+}
+
+/// Whether tasks between two times need more than there is between them. Tasks come latest first.
+fn check_load(tasks: &[Task], gap: i64) -> Result<(), Conflict> {
+    for limit in tasks.iter().map(|task| task.latest) {
+        let mut needed = -gap;
+        for task in tasks {
+            if task.latest > limit {
+                continue;
+            }
+            needed += task.duration + gap;
+            if task.earliest + needed > limit {
+                return Err(within(tasks, task.earliest, limit));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Tasks that must come after all of some others start when these can be over. Tasks come latest first.
+fn find_last(trail: &mut Trail, tasks: &[Task], gap: i64) -> Result<(), Conflict> {
+    for limit in tasks.iter().map(|task| task.latest) {
+        for last in tasks.iter().filter(|task| task.latest > limit) {
+            let (mut needed, mut over, mut over_from) = (0, i64::MIN, 0);
+            let mut found = None;
+            for task in tasks.iter().filter(|task| task.latest <= limit) {
+                needed += task.duration + gap;
+                if task.earliest + needed > over {
+                    (over, over_from) = (task.earliest + needed, task.earliest);
+                }
+                let begin = task.earliest.min(last.earliest);
+                if begin + needed + last.duration > limit {
+                    found = Some((task.earliest, begin, over, over_from));
+                    break;
+                }
+            }
+            if let Some((from, begin, over, over_from)) = found
+                && over > last.earliest
+            {
+                let mut reason = within(tasks, from, limit);
+                reason.extend(within(tasks, over_from, limit));
+                reason.push(Literal::new(last.start, -begin));
+                reason.push(last.presence);
+                reason.retain(|literal| *literal != Literal::TRUE);
+                let cause = trail.note(reason);
+                trail.set(Literal::new(last.start, -over), cause)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// That all tasks that lie between two times do.
+fn within(tasks: &[Task], from: i64, limit: i64) -> Conflict {
+    let mut reason = Vec::new();
+    for task in tasks.iter().filter(|task| task.earliest >= from && task.latest <= limit) {
+        reason.push(Literal::new(task.start, -from));
+        reason.push(Literal::new(task.end, limit));
+        reason.push(task.presence);
+    }
+    reason.retain(|literal| *literal != Literal::TRUE);
+    reason
+}

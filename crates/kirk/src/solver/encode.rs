@@ -1,0 +1,429 @@
+//! A planning problem for the solver: what of it are variables, constraints and choice points, and what a solution means.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use stn::PointId;
+
+use super::alternatives::Way;
+use super::literal::{Literal, Variable};
+use super::{Item, ItemKind, Solver, interchangeable};
+use crate::model::{Context, INFINITE, Model, NONE};
+use crate::search::{Choices, Gaps, UNBOUNDED_BELOW};
+use crate::structure::Relation;
+
+/// The problem does not fit: its times into 62 bits, or its links into memory.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TooLarge;
+
+/// More possible causal links than this are not put up with.
+const MAX_LINKS: usize = 2_000_000;
+
+/// A labelled interval.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Interval {
+    pub(crate) start: Variable,
+    pub(crate) end: Variable,
+    pub(crate) presence: Literal,
+    /// The least that it lasts.
+    pub(crate) duration: i64,
+}
+
+/// What a search is asked for, beside the model.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Part<'a> {
+    /// The labels that count; all if `None`. Assertions that do not count still support.
+    pub(crate) active_labels: Option<&'a [bool]>,
+    /// The alternatives of decisions that are given, or [`NONE`].
+    pub(crate) alternatives: Option<&'a [u32]>,
+}
+
+/// How a planning problem is told to the solver.
+#[derive(Clone, Debug)]
+pub(crate) struct Problem<'m> {
+    pub(crate) model: &'m Model,
+    gaps: Gaps,
+    /// By label.
+    pub(crate) intervals: Vec<Interval>,
+    /// Labels that count, in textual order.
+    pub(crate) labels_by_variable: Vec<Vec<u32>>,
+    /// Pairs that are choice points, with the literals of both orders.
+    pub(crate) orders: BTreeMap<(u32, u32), [Literal; 2]>,
+    pub(crate) known_pairs: BTreeSet<(u32, u32)>,
+    /// By variable: whether the solver has been told which of its intervals exclude each other.
+    pub(crate) has_exclusion: Vec<bool>,
+    /// By node.
+    times: Vec<Variable>,
+    /// By decision and alternative.
+    alternatives: Vec<Vec<Literal>>,
+    /// Requirements with the assertions that may carry them.
+    carriers: Vec<(u32, Vec<(u32, Literal)>)>,
+    contexts: Vec<Context>,
+}
+
+impl<'m> Problem<'m> {
+    /// The problem and a solver that knows it. The model's contexts must be known.
+    pub(crate) fn new(model: &'m Model, gaps: Gaps, part: Part<'_>) -> Result<(Self, Solver), TooLarge> {
+        let reach = reach(model)?;
+        let mut solver = Solver::new();
+        let alternatives = add_alternatives(model, &mut solver);
+        let mut problem = Self {
+            model,
+            gaps,
+            intervals: Vec::new(),
+            labels_by_variable: vec![Vec::new(); model.conditions.variables.len()],
+            orders: BTreeMap::new(),
+            known_pairs: BTreeSet::new(),
+            has_exclusion: vec![false; model.conditions.variables.len()],
+            times: Vec::new(),
+            alternatives,
+            carriers: Vec::new(),
+            contexts: node_contexts(model),
+        };
+        problem.add_times(&mut solver, reach);
+        solver.resize();
+        problem.add_choices(&mut solver, part);
+        problem.add_arcs(&mut solver);
+        problem.add_intervals(&mut solver, part);
+        problem.sweep(&mut solver);
+        if !solver.is_contradictory && solver.propagate().is_err() {
+            solver.is_contradictory = true;
+        }
+        if !solver.is_contradictory {
+            problem.add_links(&mut solver, part)?;
+        }
+        Ok((problem, solver))
+    }
+
+    /// What the solver's solution chooses, with the least time of each node.
+    pub(crate) fn solution(&self, solver: &Solver) -> Choices {
+        let chosen = |options: &Vec<Literal>| {
+            let taken = options.iter().position(|&option| solver.trail.holds(option));
+            taken.map_or(NONE, |taken| taken as u32)
+        };
+        let mut carriers = vec![NONE; self.model.conditions.labels.len()];
+        for (ask, options) in &self.carriers {
+            if solver.trail.holds(self.intervals[*ask as usize].presence)
+                && let Some((tell, _)) = options.iter().find(|(_, option)| solver.trail.holds(*option))
+            {
+                carriers[*ask as usize] = *tell;
+            }
+        }
+        let times = self.times.iter().map(|&time| solver.trail.least(time)).collect();
+        Choices { alternatives: self.alternatives.iter().map(chosen).collect(), carriers, times }
+    }
+
+    /// What must lie between the end of a labelled interval and the start of one that excludes it.
+    pub(crate) fn order_gap(&self, label: u32) -> i64 {
+        if self.gaps == Gaps::Ignored { self.gap_after(label) } else { self.model.gap }
+    }
+
+    /// What counts as ordered where it follows from the rest.
+    pub(crate) fn gap_after(&self, label: u32) -> i64 {
+        self.model.gap_after[label as usize]
+    }
+
+    /// Whether two labels conflict and neither nesting nor a choice point orders them yet.
+    pub(crate) fn must_be_ordered(&self, pair: (u32, u32)) -> bool {
+        let (left, right) = pair;
+        self.model.conditions.conflict(left, right)
+            && !self.known_pairs.contains(&pair)
+            && !self.is_nested(left, right)
+    }
+
+    /// Whether two labels never overlap, and then whether the gap is due between them.
+    pub(crate) fn exclusion(&self, left: u32, right: u32) -> Option<bool> {
+        let arc = |label: u32| self.model.conditions.labels[label as usize].arc;
+        let structure = self.model.structure.as_ref();
+        if structure.is_some_and(|structure| structure.relation(arc(left), arc(right)) != Relation::Open) {
+            return Some(false);
+        }
+        (self.model.conditions.conflict(left, right) && arc(left) != arc(right)).then_some(true)
+    }
+
+    /// The least gap that an order of two labels asks for.
+    pub(crate) fn least_gap(&self) -> i64 {
+        if self.gaps == Gaps::Ignored { 0 } else { self.model.gap }
+    }
+
+    fn is_nested(&self, left: u32, right: u32) -> bool {
+        let Some(structure) = &self.model.structure else { return false };
+        let arc = |label: u32| self.model.conditions.labels[label as usize].arc;
+        match structure.relation(arc(left), arc(right)) {
+            Relation::Before => self.gap_after(left) == 0,
+            Relation::After => self.gap_after(right) == 0,
+            Relation::Open => false,
+        }
+    }
+
+    /// What makes something exist.
+    fn presence(&self, context: Context) -> Literal {
+        if context.decision == NONE {
+            Literal::TRUE
+        } else {
+            self.alternatives[context.decision as usize][context.alternative as usize]
+        }
+    }
+
+    fn add_times(&mut self, solver: &mut Solver, (least, most): (i64, i64)) {
+        let model = self.model;
+        let mut variables: Vec<Option<Variable>> = vec![None; model.num_nodes];
+        for point in &model.order {
+            let twin = model.twin[point.index()];
+            if variables[twin as usize].is_none() {
+                let presence = self.presence(self.contexts[twin as usize]);
+                let is_start = twin == model.twin[model.start as usize];
+                let (least, most) = if is_start { (0, 0) } else { (least, most) };
+                variables[twin as usize] = Some(solver.variable(least, most, presence));
+            }
+        }
+        self.times =
+            model.twin.iter().map(|&twin| variables[twin as usize].unwrap_or(Variable(0))).collect();
+    }
+
+    fn add_choices(&mut self, solver: &mut Solver, part: Part<'_>) {
+        for (decision, options) in self.model.decisions.iter().zip(&self.alternatives) {
+            let when = self.presence(decision.context);
+            let id = solver.items.len() as u32;
+            for &option in options {
+                solver.exclusive[option.side.variable().index()] = id;
+                solver.imply(option, when);
+            }
+            solver.at_least_one(options.iter().copied().chain([!when]));
+            let item = Item {
+                when: [when, Literal::TRUE],
+                kind: ItemKind::Alternatives,
+                options: options.clone(),
+                last: None,
+            };
+            solver.add_item(item, 0.0);
+        }
+        let Some(given) = part.alternatives else {
+            for decision in 0..self.model.decisions.len() as u32 {
+                for alternative in interchangeable::repeated(self.model, decision) {
+                    solver.assert(!self.alternatives[decision as usize][alternative as usize]);
+                }
+            }
+            return;
+        };
+        for (options, &given) in self.alternatives.iter().zip(given) {
+            for (alternative, &option) in (0..).zip(options) {
+                if given != NONE && given != alternative {
+                    solver.assert(!option);
+                }
+            }
+        }
+    }
+
+    fn add_arcs(&mut self, solver: &mut Solver) {
+        let model = self.model;
+        // By common event: how each alternative bounds it.
+        let mut ways: BTreeMap<(u32, u32), Vec<(u32, Way)>> = BTreeMap::new();
+        for arc in &model.arcs {
+            let (from, to) = (self.times[arc.from as usize], self.times[arc.to as usize]);
+            if from == to {
+                if arc.lower > 0 {
+                    solver.assert(!self.presence(arc.context));
+                }
+                continue;
+            }
+            let taken = self.presence(arc.context);
+            let when = |node: u32| {
+                if self.contexts[node as usize] == arc.context { Literal::TRUE } else { taken }
+            };
+            let (when_from, when_to) = (when(arc.from), when(arc.to));
+            let mut bounds = |from: Variable, to: Variable, weight: i64, when: [Literal; 2]| {
+                solver.difference(from, to, weight, when);
+                let sides = [(from.upper(), to.upper()), (to.lower(), from.lower())];
+                for ((from, to), when) in sides.into_iter().zip(when) {
+                    if when != Literal::TRUE {
+                        let ways = ways.entry((to.0, arc.context.decision)).or_default();
+                        ways.push((arc.context.alternative, Way { from, weight, when }));
+                    }
+                }
+            };
+            if arc.upper != INFINITE {
+                bounds(from, to, arc.upper, [when_to, when_from]);
+            }
+            if arc.lower != UNBOUNDED_BELOW {
+                bounds(to, from, -arc.lower, [when_from, when_to]);
+            }
+        }
+        for ((to, decision), mut ways) in ways {
+            ways.sort_by_key(|&(alternative, _)| alternative);
+            ways.dedup_by_key(|(alternative, _)| *alternative);
+            if ways.len() == self.alternatives[decision as usize].len() {
+                let ways = ways.into_iter().map(|(_, way)| way).collect();
+                solver.alternatives.add(super::Side(to), ways);
+            }
+        }
+        let Some(structure) = &model.structure else { return };
+        for decision in 0..model.decisions.len() as u32 {
+            let (from, to, lower, upper) = structure.initial_bounds(decision);
+            let (from, to) = (self.times[from as usize], self.times[to as usize]);
+            if lower > upper || from == to {
+                continue;
+            }
+            if upper != INFINITE {
+                solver.difference(from, to, upper, [Literal::TRUE; 2]);
+            }
+            solver.difference(to, from, -lower, [Literal::TRUE; 2]);
+        }
+    }
+
+    fn add_intervals(&mut self, solver: &mut Solver, part: Part<'_>) {
+        let conditions = &self.model.conditions;
+        let is_active = |label: u32| part.active_labels.is_none_or(|active| active[label as usize]);
+        for (id, label) in (0..).zip(&conditions.labels) {
+            let arc = &self.model.arcs[label.arc as usize];
+            self.intervals.push(Interval {
+                start: self.times[arc.from as usize],
+                end: self.times[arc.to as usize],
+                presence: self.presence(arc.context),
+                duration: arc.lower.max(0),
+            });
+            if is_active(id) {
+                self.labels_by_variable[label.variable as usize].push(id);
+            }
+        }
+        for &(left, right) in &conditions.self_conflicting {
+            if is_active(left) && is_active(right) {
+                solver.assert(!self.intervals[left as usize].presence);
+            }
+        }
+    }
+
+    /// Bounds along the arcs, each node after those before it.
+    fn sweep(&self, solver: &mut Solver) {
+        let Solver { differences, trail, is_contradictory, .. } = solver;
+        let mut carry = |side| {
+            if !*is_contradictory && differences.carry_on(trail, side).is_err() {
+                *is_contradictory = true;
+            }
+        };
+        let time = |point: &PointId| self.times[point.index()];
+        self.model.order.iter().for_each(|point| carry(time(point).lower()));
+        self.model.order.iter().rev().for_each(|point| carry(time(point).upper()));
+    }
+
+    fn add_links(&mut self, solver: &mut Solver, part: Part<'_>) -> Result<(), TooLarge> {
+        let conditions = &self.model.conditions;
+        let mut count = 0;
+        for ask in 0..conditions.labels.len() as u32 {
+            let is_active = part.active_labels.is_none_or(|active| active[ask as usize]);
+            let asked = self.intervals[ask as usize];
+            if !conditions.labels[ask as usize].is_ask || !is_active || solver.trail.fails(asked.presence) {
+                continue;
+            }
+            let arc_of = |label: u32| conditions.labels[label as usize].arc;
+            if let Some(own) = conditions.supporters(ask).find(|&tell| arc_of(tell) == arc_of(ask)) {
+                self.carriers.push((ask, vec![(own, asked.presence)]));
+                continue;
+            }
+            let tells: Vec<u32> =
+                conditions.supporters(ask).filter(|&tell| self.can_carry(solver, ask, tell)).collect();
+            count += tells.len();
+            if count > MAX_LINKS {
+                return Err(TooLarge);
+            }
+            let mut options = Vec::with_capacity(tells.len());
+            let is_only = tells.len() == 1;
+            for tell in tells {
+                let link = if is_only { asked.presence } else { solver.boolean() };
+                options.push((tell, link));
+            }
+            solver.resize();
+            let first = solver.differences.len();
+            for &(tell, link) in &options {
+                let teller = self.intervals[tell as usize];
+                solver.imply(link, teller.presence);
+                solver.imply(link, asked.presence);
+                solver.difference(asked.start, teller.start, 0, [link; 2]);
+                solver.difference(teller.end, asked.end, 0, [link; 2]);
+            }
+            let literals: Vec<Literal> = options.iter().map(|&(_, link)| link).collect();
+            solver.check_differences(first);
+            if !is_only {
+                solver.at_least_one(literals.iter().copied().chain([!asked.presence]));
+                let when = [asked.presence, Literal::TRUE];
+                solver.add_item(
+                    Item { when, kind: ItemKind::Carriers { ask }, options: literals, last: None },
+                    0.0,
+                );
+            }
+            self.carriers.push((ask, options));
+            if solver.is_contradictory {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether an assertion could carry a requirement, by their alternatives, durations and windows.
+    fn can_carry(&self, solver: &Solver, ask: u32, tell: u32) -> bool {
+        let (asked, teller) = (self.intervals[ask as usize], self.intervals[tell as usize]);
+        let arc = |label: u32| &self.model.arcs[self.model.conditions.labels[label as usize].arc as usize];
+        !solver.trail.fails(teller.presence)
+            && self.are_compatible(arc(ask).context, arc(tell).context)
+            && asked.duration <= arc(tell).upper
+            && solver.trail.least(teller.start) <= solver.trail.most(asked.start)
+            && solver.trail.least(asked.end) <= solver.trail.most(teller.end)
+    }
+
+    /// Whether two contexts can be in one plan.
+    fn are_compatible(&self, mut left: Context, mut right: Context) -> bool {
+        loop {
+            if left.decision == right.decision {
+                return left.decision == NONE || left.alternative == right.alternative;
+            }
+            // The inner one of two nested decisions is the later one.
+            let is_left_inner =
+                right.decision == NONE || (left.decision != NONE && left.decision > right.decision);
+            let inner = if is_left_inner { &mut left } else { &mut right };
+            *inner = self.model.decisions[inner.decision as usize].context;
+        }
+    }
+}
+
+/// Between which times everything fits: more than all bounds together.
+fn reach(model: &Model) -> Result<(i64, i64), TooLarge> {
+    let mut total = i128::from(model.gap) * (model.conditions.labels.len() as i128 + 1) + 1;
+    let mut can_precede_start = false;
+    for arc in &model.arcs {
+        can_precede_start |= arc.lower < 0;
+        if arc.lower != UNBOUNDED_BELOW {
+            total += i128::from(arc.lower).abs();
+        }
+        if arc.upper != INFINITE {
+            total += i128::from(arc.upper).abs();
+        }
+    }
+    let most = i64::try_from(total).map_err(|_| TooLarge)?;
+    if most > 1 << 60 {
+        return Err(TooLarge);
+    }
+    Ok((if can_precede_start { -most } else { 0 }, most))
+}
+
+fn add_alternatives(model: &Model, solver: &mut Solver) -> Vec<Vec<Literal>> {
+    let alternatives = model
+        .decisions
+        .iter()
+        .map(|decision| decision.alternatives.iter().map(|_| solver.boolean()).collect())
+        .collect();
+    solver.resize();
+    alternatives
+}
+
+fn node_contexts(model: &Model) -> Vec<Context> {
+    let mut contexts = vec![Context::ALWAYS; model.num_nodes];
+    for node in 0..model.num_nodes as u32 {
+        let decision = model.decision_of[node as usize];
+        contexts[node as usize] = if decision == NONE {
+            let first = model.out_arcs(node).first();
+            first.map_or(Context::ALWAYS, |&arc| model.arcs[arc as usize].context)
+        } else {
+            model.decisions[decision as usize].context
+        };
+    }
+    contexts
+}

@@ -1,0 +1,104 @@
+//! Alternatives of one choice that are alike, of which only the first needs to be tried.
+//!
+//! Two alternatives are interchangeable if they have the same shape and bounds, and if their conditions, in order, stand
+//! in the same relations to all conditions outside the choice and to each other: then a plan with one is a plan with
+//! the other in its place.
+
+use std::collections::BTreeMap;
+
+use crate::model::{Context, Model, NONE};
+
+/// Larger alternatives are not compared.
+const MAX_NODES: usize = 64;
+/// Variables with more labels are not looked through.
+const MAX_LABELS: usize = 2_000;
+
+/// The alternatives of `decision` that are like an earlier one.
+pub(super) fn repeated(model: &Model, decision: u32) -> Vec<u32> {
+    let count = model.decisions[decision as usize].alternatives.len() as u32;
+    let mut kept: Vec<u32> = Vec::new();
+    let mut repeated = Vec::new();
+    for alternative in 0..count {
+        if kept.iter().take(8).any(|&earlier| are_alike(model, decision, earlier, alternative)) {
+            repeated.push(alternative);
+        } else {
+            kept.push(alternative);
+        }
+    }
+    repeated
+}
+
+fn are_alike(model: &Model, decision: u32, left: u32, right: u32) -> bool {
+    let alternatives = &model.decisions[decision as usize].alternatives;
+    let mut counterparts: BTreeMap<u32, u32> = BTreeMap::new();
+    let mut labels: Vec<(u32, u32)> = Vec::new();
+    let mut open = vec![(alternatives[left as usize], alternatives[right as usize])];
+    while let Some((left_arc, right_arc)) = open.pop() {
+        let (one, other) = (&model.arcs[left_arc as usize], &model.arcs[right_arc as usize]);
+        let (left_labels, right_labels) =
+            (model.conditions.labels_of(left_arc), model.conditions.labels_of(right_arc));
+        if (one.lower, one.upper) != (other.lower, other.upper) || left_labels.len() != right_labels.len() {
+            return false;
+        }
+        labels.extend(left_labels.iter().copied().zip(right_labels.iter().copied()));
+        let merge = model.decisions[decision as usize].merge;
+        if one.to == merge || other.to == merge {
+            if one.to != other.to {
+                return false;
+            }
+            continue;
+        }
+        if let Some(&known) = counterparts.get(&one.to) {
+            if known != other.to {
+                return false;
+            }
+            continue;
+        }
+        let (left_out, right_out) = (model.out_arcs(one.to), model.out_arcs(other.to));
+        let is_choice = |node: u32| model.decision_of[node as usize] != NONE;
+        if left_out.len() != right_out.len()
+            || is_choice(one.to) != is_choice(other.to)
+            || counterparts.values().any(|&known| known == other.to)
+            || counterparts.len() >= MAX_NODES
+        {
+            return false;
+        }
+        counterparts.insert(one.to, other.to);
+        open.extend(left_out.iter().copied().zip(right_out.iter().copied()));
+    }
+    labels.iter().all(|&(one, other)| have_same_relations(model, decision, &labels, one, other))
+}
+
+fn have_same_relations(
+    model: &Model,
+    decision: u32,
+    labels: &[(u32, u32)],
+    one: u32,
+    other: u32,
+) -> bool {
+    let conditions = &model.conditions;
+    let (left, right) = (&conditions.labels[one as usize], &conditions.labels[other as usize]);
+    let variable = &conditions.variables[left.variable as usize];
+    if left.variable != right.variable || left.is_ask != right.is_ask || variable.labels.len() > MAX_LABELS {
+        return false;
+    }
+    let same = |third: u32, counterpart: u32| {
+        conditions.conflict(one, third) == conditions.conflict(other, counterpart)
+            && conditions.supports(one, third) == conditions.supports(other, counterpart)
+            && conditions.supports(third, one) == conditions.supports(counterpart, other)
+    };
+    let outside = variable.labels.iter().filter(|&&label| !is_inside(model, label, decision));
+    outside.copied().all(|third| same(third, third)) && labels.iter().all(|&(third, its)| same(third, its))
+}
+
+/// Whether a label belongs to an alternative of a decision.
+fn is_inside(model: &Model, label: u32, decision: u32) -> bool {
+    let mut context: Context = model.arcs[model.conditions.labels[label as usize].arc as usize].context;
+    while context.decision != NONE {
+        if context.decision == decision {
+            return true;
+        }
+        context = model.decisions[context.decision as usize].context;
+    }
+    false
+}

@@ -1,0 +1,412 @@
+//! A conflict-driven solver for choices, causal links and orderings over difference constraints (SPEC 5.6): lazy clause
+//! generation (Ohrimenko, Stuckey and Codish 2009) over the bounds of times.
+//!
+//! Choice points are alternatives of decisions, carriers of requirements, and orders of conflicting pairs; each
+//! alternative of one is a literal, and so is every bound of a time. Theories make bounds follow from bounds and say why
+//! when they are asked: differences, open choices, intervals that exclude each other. A conflict is traced back to
+//! the one literal of its level that all of it went through, becomes a clause, and is undone as far as the clause still
+//! tells something. What has to do with conflicts is decided first, as it was decided last; at times the search starts
+//! over with all it has learned. Pairs of conflicting intervals become choice points once a solution puts them
+//! in each other's way.
+//!
+//! A further theory has three duties: to propagate what the trail's new events mean to it, through [`Trail::set`]; to
+//! give the reason of what it has set, from literals that held before (at once with [`Trail::note`], or later by a
+//! [`Cause`] of its own); and to forget what it has waiting when events are taken back. It keeps no other state that
+//! depends on the trail.
+//!
+//! The same problem is always solved in the same steps.
+
+mod activity;
+mod alternatives;
+mod analysis;
+mod clauses;
+mod difference;
+mod disjunctive;
+mod encode;
+mod interchangeable;
+mod leaf;
+mod literal;
+mod trail;
+
+use crate::options::Stats;
+use activity::Activity;
+use alternatives::Alternatives;
+use analysis::Analysis;
+use clauses::Clauses;
+use difference::{Difference, Differences};
+use disjunctive::Disjunctives;
+use literal::{Literal, Side, Variable};
+use trail::{Conflict, Trail};
+
+pub(crate) use encode::{Part, Problem, TooLarge};
+
+/// How a search came to an end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Answer {
+    /// Everything is decided, and the least values of all times fit.
+    Solved,
+    /// There is no solution.
+    Unsolvable,
+    Stopped,
+}
+
+/// A choice point.
+#[derive(Clone, Debug)]
+struct Item {
+    /// What makes it count.
+    when: [Literal; 2],
+    kind: ItemKind,
+    /// One of these must hold; the one taken last is tried first again.
+    options: Vec<Literal>,
+    last: Option<u32>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ItemKind {
+    /// Alternatives, in textual order.
+    Alternatives,
+    /// Assertions that may carry a requirement.
+    Carriers { ask: u32 },
+    /// Two orders of a conflicting pair.
+    Orders { left: u32, right: u32 },
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct Solver {
+    trail: Trail,
+    clauses: Clauses,
+    differences: Differences,
+    alternatives: Alternatives,
+    disjunctives: Disjunctives,
+    /// By side of a Boolean: sides that follow.
+    implied: Vec<Vec<Side>>,
+    /// By variable: the choice point whose options exclude each other, or [`NO_ITEM`].
+    exclusive: Vec<u32>,
+    items: Vec<Item>,
+    /// By variable: the choice point that it belongs to.
+    item_of: Vec<u32>,
+    /// By side of a Boolean: choice points that begin to count.
+    reached: Vec<Vec<u32>>,
+    activity: Activity,
+    head: u32,
+    analysis: Analysis,
+    is_contradictory: bool,
+    conflicts_until_restart: u64,
+    restarts: u64,
+    most_learned: usize,
+    pub(crate) stats: Stats,
+}
+
+const NO_ITEM: u32 = u32::MAX;
+
+/// Conflicts in the unit of the restart sequence.
+const RESTART_UNIT: u64 = 64;
+
+impl Solver {
+    fn new() -> Self {
+        let mut solver = Self {
+            trail: Trail::new(),
+            clauses: Clauses::new(),
+            differences: Differences::default(),
+            alternatives: Alternatives::default(),
+            disjunctives: Disjunctives::default(),
+            implied: Vec::new(),
+            exclusive: Vec::new(),
+            items: Vec::new(),
+            item_of: Vec::new(),
+            reached: Vec::new(),
+            activity: Activity::new(),
+            head: 0,
+            analysis: Analysis::default(),
+            is_contradictory: false,
+            conflicts_until_restart: RESTART_UNIT,
+            restarts: 0,
+            most_learned: 4_000,
+            stats: Stats::default(),
+        };
+        solver.resize();
+        solver
+    }
+
+    /// Adds a variable; [`Solver::resize`] must follow before it is used.
+    fn variable(&mut self, least: i64, most: i64, presence: Literal) -> Variable {
+        self.trail.add(least, most, presence)
+    }
+
+    fn boolean(&mut self) -> Literal {
+        self.variable(0, 1, Literal::TRUE).holds()
+    }
+
+    fn resize(&mut self) {
+        let count = self.trail.num_variables();
+        self.clauses.resize(count);
+        self.differences.resize(count);
+        self.alternatives.resize(count);
+        self.disjunctives.resize(count);
+        self.implied.resize(count * 2, Vec::new());
+        self.reached.resize(count * 2, Vec::new());
+        self.exclusive.resize(count, NO_ITEM);
+        self.item_of.resize(count, NO_ITEM);
+    }
+
+    /// `left` implies `right`, both Booleans. At the root.
+    fn imply(&mut self, left: Literal, right: Literal) {
+        if right == Literal::TRUE || left == right {
+            return;
+        }
+        self.implied[left.side.index()].push(right.side);
+        self.implied[(!right).side.index()].push((!left).side);
+        if self.trail.holds(left) {
+            self.assert(right);
+        } else if self.trail.fails(right) {
+            self.assert(!left);
+        }
+    }
+
+    /// Makes a literal hold whatever is decided. At the root.
+    fn assert(&mut self, literal: Literal) {
+        if self.trail.set(literal, trail::Cause::Decision).is_err() {
+            self.is_contradictory = true;
+        }
+    }
+
+    /// At least one literal holds. At the root.
+    fn at_least_one(&mut self, literals: impl IntoIterator<Item = Literal>) {
+        let mut open: Vec<Literal> = Vec::new();
+        for literal in literals {
+            if self.trail.holds(literal) {
+                return;
+            }
+            if !self.trail.fails(literal) && !open.contains(&literal) {
+                open.push(literal);
+            }
+        }
+        match open.as_slice() {
+            [] => self.is_contradictory = true,
+            &[only] => self.assert(only),
+            _ => {
+                self.clauses.add(open, None);
+            }
+        }
+    }
+
+    fn add_item(&mut self, item: Item, initial_activity: f64) {
+        let id = self.items.len() as u32;
+        for option in &item.options {
+            self.item_of[option.side.variable().index()] = id;
+        }
+        for when in item.when {
+            self.reached[when.side.index()].push(id);
+        }
+        let counts = item.when.iter().all(|&when| self.trail.holds(when));
+        self.items.push(item);
+        self.activity.add(initial_activity);
+        if counts {
+            self.activity.insert(id);
+        }
+    }
+
+    /// Adds `to − from ≤ weight`: a step and its mirror, each with the literal under which it carries. At the root.
+    fn difference(&mut self, from: Variable, to: Variable, weight: i64, when: [Literal; 2]) {
+        let [forward, backward] = when;
+        self.differences.add(Difference { from: from.upper(), to: to.upper(), weight, when: forward });
+        self.differences.add(Difference { from: to.lower(), to: from.lower(), weight, when: backward });
+    }
+
+    /// Carries on the present bounds along what has been added since `first`. At the root.
+    fn check_differences(&mut self, first: u32) {
+        for id in first..self.differences.len() {
+            if self.differences.check(&mut self.trail, id).is_err() {
+                self.is_contradictory = true;
+                return;
+            }
+        }
+    }
+
+    /// Searches until everything is decided. `stop` is asked once per decision and conflict.
+    pub(crate) fn solve(&mut self, problem: &mut Problem<'_>, stop: &mut dyn FnMut(&Stats) -> bool) -> Answer {
+        loop {
+            if self.is_contradictory {
+                return Answer::Unsolvable;
+            }
+            match self.propagate() {
+                Err(conflict) => {
+                    self.stats.conflicts += 1;
+                    self.conflicts_until_restart = self.conflicts_until_restart.saturating_sub(1);
+                    if !self.learn(&conflict) {
+                        self.is_contradictory = true;
+                        return Answer::Unsolvable;
+                    }
+                }
+                Ok(()) => {
+                    if self.conflicts_until_restart == 0 {
+                        self.restart();
+                    }
+                    if self.decide() {
+                        self.stats.expanded += 1;
+                    } else {
+                        self.stats.leaves += 1;
+                        if !self.add_pairs(problem) {
+                            debug_assert!(self.is_solution(problem), "the least times fit");
+                            return Answer::Solved;
+                        }
+                    }
+                }
+            }
+            if stop(&self.stats) {
+                self.retract(0);
+                return Answer::Stopped;
+            }
+        }
+    }
+
+    fn propagate(&mut self) -> Result<(), Conflict> {
+        self.differences.begin();
+        loop {
+            while (self.head as usize) < self.trail.events.len() {
+                let event = self.head;
+                self.head += 1;
+                let side = self.trail.events[event as usize].side;
+                self.clauses.propagate(&mut self.trail, event)?;
+                for position in 0..self.implied[side.index()].len() {
+                    let implied = self.implied[side.index()][position];
+                    self.trail.set(implied.decided(), trail::Cause::Implied(side))?;
+                }
+                self.exclude_others(side)?;
+                for position in 0..self.reached[side.index()].len() {
+                    self.activity.insert(self.reached[side.index()][position]);
+                }
+                self.differences.propagate(&mut self.trail, event)?;
+                self.alternatives.moved(side);
+                self.disjunctives.moved(side);
+            }
+            self.alternatives.propagate(&mut self.trail)?;
+            if (self.head as usize) < self.trail.events.len() {
+                continue;
+            }
+            if !self.disjunctives.propagate(&mut self.trail)? {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Of alternatives at most one is taken.
+    fn exclude_others(&mut self, side: Side) -> Result<(), Conflict> {
+        let item = self.exclusive[side.variable().index()];
+        if item == NO_ITEM || side != side.variable().lower() {
+            return Ok(());
+        }
+        for position in 0..self.items[item as usize].options.len() {
+            let other = self.items[item as usize].options[position];
+            if other.side != side {
+                self.trail.set(!other, trail::Cause::Implied(side))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Learns from a conflict and goes back. `false` if there is no solution.
+    fn learn(&mut self, conflict: &[Literal]) -> bool {
+        let conflict = &self.before_crossing(conflict);
+        let highest = conflict.iter().map(|&literal| self.level_of(literal)).max().unwrap_or(0);
+        if highest < self.trail.level() {
+            self.retract(highest);
+        }
+        let Some(learned) = self.analyze(conflict) else { return false };
+        self.stats.backtracks += 1;
+        self.stats.jumped_over += u64::from(self.trail.level() - learned.level - 1);
+        self.retract(learned.level);
+        let decisive = learned.clause[0];
+        let cause = if learned.clause.len() == 1 {
+            trail::Cause::Decision
+        } else {
+            self.stats.nogoods += 1;
+            trail::Cause::Clause(self.clauses.add(learned.clause, Some(learned.num_levels)))
+        };
+        self.activity.decay();
+        self.clauses.decay();
+        // What contradicts it below is found by the next propagation's conflict.
+        match self.trail.set(decisive, cause) {
+            Ok(()) => true,
+            Err(conflict) => self.learn(&conflict),
+        }
+    }
+
+    /// A conflict whose last event left a variable no value, as the reasons of that event; it is taken back.
+    fn before_crossing(&mut self, conflict: &[Literal]) -> Conflict {
+        let Some(&trail::Event { side, most, .. }) = self.trail.events.last() else { return conflict.to_vec() };
+        let last = Literal::new(side, most);
+        if !self.trail.holds(!last) || !conflict.contains(&last) {
+            return conflict.to_vec();
+        }
+        let mut reason: Conflict = conflict.iter().copied().filter(|&literal| literal != last).collect();
+        self.explain(last, self.trail.events.len() as u32 - 1, &mut reason);
+        self.trail.undo_last();
+        self.head = self.head.min(self.trail.events.len() as u32);
+        reason
+    }
+
+    fn restart(&mut self) {
+        self.restarts += 1;
+        self.conflicts_until_restart = RESTART_UNIT * luby(self.restarts);
+        self.retract(0);
+        if self.clauses.num_learned() > self.most_learned {
+            self.clauses.forget_half();
+            self.most_learned += self.most_learned / 10;
+        }
+    }
+
+    fn retract(&mut self, level: u32) {
+        let Self { trail, items, item_of, activity, .. } = self;
+        trail.retract(level, |event| {
+            let variable = event.side.variable();
+            let item = item_of[variable.index()];
+            if item != NO_ITEM {
+                activity.insert(item);
+                let Item { options, last, .. } = &mut items[item as usize];
+                if let Some(option) = options.iter().position(|option| option.side == event.side) {
+                    *last = Some(option as u32);
+                }
+            }
+        });
+        self.head = self.head.min(self.trail.events.len() as u32);
+        self.alternatives.forget();
+        self.disjunctives.forget();
+    }
+
+    /// Makes the next decision. `false` if everything that counts is decided.
+    fn decide(&mut self) -> bool {
+        while let Some(id) = self.activity.pop() {
+            let item = &self.items[id as usize];
+            let counts = item.when.iter().all(|&when| self.trail.holds(when));
+            if !counts || item.options.iter().any(|&option| self.trail.holds(option)) {
+                continue;
+            }
+            let Some(option) = self.preferred(item) else { continue };
+            self.trail.open_level();
+            // An open Boolean can be either.
+            let _ = self.trail.set(option, trail::Cause::Decision);
+            return true;
+        }
+        false
+    }
+
+    fn bump(&mut self, literal: Literal) {
+        let item = self.item_of[literal.side.variable().index()];
+        if item != NO_ITEM {
+            self.activity.bump(item);
+        }
+    }
+}
+
+/// The restart sequence of Luby, Sinclair and Zuckerman: 1, 1, 2, 1, 1, 2, 4, …
+fn luby(position: u64) -> u64 {
+    let mut position = position;
+    loop {
+        let power = u64::BITS - (position + 1).leading_zeros();
+        if position + 1 == 1 << (power - 1) {
+            return (1 << (power - 1)) / 2;
+        }
+        position -= (1 << (power - 1)) - 1;
+    }
+}
