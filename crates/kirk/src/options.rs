@@ -7,15 +7,15 @@ use tpn::Plan;
 use crate::failure::Failure;
 use crate::trace::Trace;
 
-/// How to search. Both find the same plans, and say of the same missions that they have none.
+/// How to search. Both list the same plans where all are asked for, and say of the same missions that they have none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Search {
     /// The paper's: on failure undo the last choice (SPEC 5.1 to 5.4). Its first plan is the canonical one.
     Chronological,
-    /// Learns from each failure which choices caused it, jumps back to the last of them, and never repeats them
-    /// (SPEC 5.6). Its first plan is the canonical one, too, except where that one rests on intervals that its choices
-    /// force to touch although there is no room for the gap: then it may be a later one.
+    /// Learns from each failure what caused it, jumps back to where that was chosen, and never repeats it (SPEC 5.6).
+    /// It begins in the order of the text, and finds the canonical plan where that takes few steps back; otherwise
+    /// a solver that learns about links, orderings and times as well finds a valid plan, the same one each time.
     #[default]
     ConflictDirected,
 }
@@ -131,8 +131,8 @@ pub enum Status {
 pub struct Outcome {
     /// How planning ended.
     pub status: Status,
-    /// The plans: none, the canonical one (SPEC 5.4), or all distinct ones in the order they were found, the canonical
-    /// one first.
+    /// The plans: none, one (of the chronological search the canonical one, SPEC 5.4), or all distinct ones in the order
+    /// they were found, the canonical one first.
     pub plans: Vec<Plan>,
     /// Why there is none.
     pub failure: Option<Failure>,

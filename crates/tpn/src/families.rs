@@ -156,7 +156,7 @@ pub fn chain(count: usize, can_succeed: bool) -> String {
         .replace("KEY=a [1,1]; delay[0,0]", "HAND=a [1,1]; delay[0,0]")
         .replace("KEY=b [1,1]; delay[0,0]", "HAND=b [1,1]; delay[0,0]");
     let keys = keys.replace("LOCK", "KEY");
-    scenario(&format!("chain of {count}"), horizon, [text, keys].into_iter())
+    scenario(&format!("chain of {count}"), horizon, [text, keys])
 }
 
 /// `asks` long requirements and `tells` assertions of each of a few conditions that could carry them, where assertions of

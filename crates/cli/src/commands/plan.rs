@@ -28,7 +28,7 @@ use crate::output::{
 pub struct Args {
     #[command(flatten)]
     target: Target,
-    /// How to search; both find the same first plan.
+    /// How to search.
     #[arg(long, value_enum, default_value_t)]
     search: SearchName,
     /// Lists every distinct plan.
@@ -62,7 +62,7 @@ pub struct Args {
 enum SearchName {
     /// The paper's: on failure undo the last choice.
     Chronological,
-    /// Learns from each failure and jumps back.
+    /// Learns from each failure and jumps back; finds a valid plan, not always the first one in the text's order.
     #[default]
     ConflictDirected,
 }

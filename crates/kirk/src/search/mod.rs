@@ -4,7 +4,8 @@
 //! Both searches try decisions in textual order with their alternatives from left to right, requirements in textual
 //! order with assertions in textual order, and conflicting pairs in textual order with the textual order of the pair
 //! first; jumping back skips only what cannot hold a plan, and an assertion that windows refuse is tried last, where it
-//! fails as it would have failed before. So both find the same first plan, the canonical one.
+//! fails as it would have failed before. So both find the same first plan, the canonical one, where this search comes to an
+//! end; where the one that jumps back meets many failures, the solver takes over.
 
 mod apply;
 mod retreat;
