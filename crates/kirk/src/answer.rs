@@ -114,7 +114,9 @@ fn first_by_solver(
 ) -> Result<(Outcome, bool), Overflow> {
     let all_gaps = [Gaps::Trusted, Gaps::Ignored];
     for &gaps in if model.gap == 0 { &all_gaps[1..] } else { &all_gaps[..] } {
-        let Ok((answer, choices)) = solve(model, gaps, Part::default(), &mut stats, termination) else { break };
+        let Ok((answer, choices)) = solve(model, gaps, Part::default(), &mut stats, termination) else {
+            break;
+        };
         let status = match answer {
             Answer::Solved => {
                 if let Some(choices) = choices
@@ -295,7 +297,8 @@ mod tests {
                 }
                 let model = Model::new(&network, gap).expect("times fit");
                 let options = Options { search: Search::ConflictDirected, ..chronological };
-                let (outcome, _) = first_by_solver(&model, &options, Stats::default(), &mut Unlimited).expect("fits");
+                let (outcome, _) =
+                    first_by_solver(&model, &options, Stats::default(), &mut Unlimited).expect("fits");
                 assert_eq!(outcome.status, expected.status, "gap {gap:?}\n{text}");
                 let mut network = network;
                 network.threat_gap = gap.unwrap_or(network.threat_gap);

@@ -228,7 +228,8 @@ impl Engine<'_> {
 
     /// Which of two intervals comes first, by the times that are given: 0 for the left one.
     pub(crate) fn assumed_order(&self, left: u32, right: u32) -> Option<u32> {
-        let times = self.setup.assumed.as_ref().map(|assumed| &assumed.times).filter(|times| !times.is_empty())?;
+        let times =
+            self.setup.assumed.as_ref().map(|assumed| &assumed.times).filter(|times| !times.is_empty())?;
         let room = |first: u32, then: u32| {
             let (end, start) = (self.model.interval(first).1, self.model.interval(then).0);
             times[start.index()] - times[end.index()]

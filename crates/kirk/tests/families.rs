@@ -10,7 +10,8 @@ use tpn::families::{JOB_SHOPS, JobShop, chain, pigeonholes, symmetric};
 /// plans are checked.
 fn status(text: &str) -> Status {
     let network = network(text);
-    let outcome = kirk::plan(&network, &options(Search::ConflictDirected, false), &mut ExpansionLimit(200_000));
+    let outcome =
+        kirk::plan(&network, &options(Search::ConflictDirected, false), &mut ExpansionLimit(200_000));
     for plan in &outcome.plans {
         let verdict = verify::check_plan(&network, plan);
         assert!(verdict.violations.is_empty(), "{verdict:?}\n{text}");

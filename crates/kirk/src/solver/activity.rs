@@ -2,7 +2,7 @@
 
 #[derive(Clone, Debug)]
 pub(crate) struct Activity {
-    activity: Vec<f64>,
+    scores: Vec<f64>,
     increment: f64,
     heap: Vec<u32>,
     /// Where each choice point stands in the heap, or `ABSENT`.
@@ -13,12 +13,12 @@ const ABSENT: u32 = u32::MAX;
 
 impl Activity {
     pub(crate) fn new() -> Self {
-        Self { activity: Vec::new(), increment: 1.0, heap: Vec::new(), position: Vec::new() }
+        Self { scores: Vec::new(), increment: 1.0, heap: Vec::new(), position: Vec::new() }
     }
 
     /// Adds the next choice point, with as much activity as `initial` times what a conflict gives.
     pub(crate) fn add(&mut self, initial: f64) {
-        self.activity.push(initial * self.increment);
+        self.scores.push(initial * self.increment);
         self.position.push(ABSENT);
     }
 
@@ -45,10 +45,10 @@ impl Activity {
     }
 
     pub(crate) fn bump(&mut self, item: u32) {
-        self.activity[item as usize] += self.increment;
-        if self.activity[item as usize] > 1e100 {
-            for activity in &mut self.activity {
-                *activity *= 1e-100;
+        self.scores[item as usize] += self.increment;
+        if self.scores[item as usize] > 1e100 {
+            for score in &mut self.scores {
+                *score *= 1e-100;
             }
             self.increment *= 1e-100;
         }
@@ -63,7 +63,7 @@ impl Activity {
     }
 
     fn is_before(&self, left: u32, right: u32) -> bool {
-        let (a, b) = (self.activity[left as usize], self.activity[right as usize]);
+        let (a, b) = (self.scores[left as usize], self.scores[right as usize]);
         a > b || (a == b && left < right)
     }
 

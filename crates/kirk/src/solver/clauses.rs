@@ -23,7 +23,7 @@ struct Watch {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Clauses {
-    clauses: Vec<Clause>,
+    all: Vec<Clause>,
     free: Vec<u32>,
     /// By side.
     watches: Vec<Vec<Watch>>,
@@ -33,13 +33,7 @@ pub(crate) struct Clauses {
 
 impl Clauses {
     pub(crate) fn new() -> Self {
-        Self {
-            clauses: Vec::new(),
-            free: Vec::new(),
-            watches: Vec::new(),
-            num_learned: 0,
-            increment: 1.0,
-        }
+        Self { all: Vec::new(), free: Vec::new(), watches: Vec::new(), num_learned: 0, increment: 1.0 }
     }
 
     pub(crate) fn resize(&mut self, num_variables: usize) {
@@ -51,7 +45,7 @@ impl Clauses {
     }
 
     pub(crate) fn literals(&self, clause: u32) -> &[Literal] {
-        &self.clauses[clause as usize].literals
+        &self.all[clause as usize].literals
     }
 
     /// Adds a clause of at least two literals. The first two are watched: they must be the last ones to become false.
@@ -64,15 +58,12 @@ impl Clauses {
             activity: self.increment,
         };
         self.num_learned += usize::from(num_levels.is_some());
-        let id = match self.free.pop() {
-            Some(id) => {
-                self.clauses[id as usize] = clause;
-                id
-            }
-            None => {
-                self.clauses.push(clause);
-                self.clauses.len() as u32 - 1
-            }
+        let id = if let Some(id) = self.free.pop() {
+            self.all[id as usize] = clause;
+            id
+        } else {
+            self.all.push(clause);
+            self.all.len() as u32 - 1
         };
         for (literal, other) in [(watched[0], watched[1]), (watched[1], watched[0])] {
             let falsified = !literal;
@@ -83,10 +74,10 @@ impl Clauses {
 
     /// Makes a clause outlive others.
     pub(crate) fn bump(&mut self, clause: u32) {
-        let activity = &mut self.clauses[clause as usize].activity;
+        let activity = &mut self.all[clause as usize].activity;
         *activity += self.increment;
         if *activity > 1e100 {
-            for clause in &mut self.clauses {
+            for clause in &mut self.all {
                 clause.activity *= 1e-100;
             }
             self.increment *= 1e-100;
@@ -116,7 +107,7 @@ impl Clauses {
                 continue;
             }
             let falsified = !Literal::new(event.side, watch.most);
-            let literals = &mut self.clauses[watch.clause as usize].literals;
+            let literals = &mut self.all[watch.clause as usize].literals;
             if literals[0] == falsified {
                 literals.swap(0, 1);
             }
@@ -149,23 +140,23 @@ impl Clauses {
 
     /// Forgets the worse half of what was learned. Only where no clause is the reason of anything: at the root.
     pub(crate) fn forget_half(&mut self) {
-        let mut learned: Vec<u32> = (0..self.clauses.len() as u32)
+        let mut learned: Vec<u32> = (0..self.all.len() as u32)
             .filter(|&id| {
-                let clause = &self.clauses[id as usize];
+                let clause = &self.all[id as usize];
                 clause.is_learned && clause.num_levels > 2 && !clause.literals.is_empty()
             })
             .collect();
         learned.sort_by(|&left, &right| {
-            let (left, right) = (&self.clauses[left as usize], &self.clauses[right as usize]);
+            let (left, right) = (&self.all[left as usize], &self.all[right as usize]);
             (left.num_levels.min(8).cmp(&right.num_levels.min(8)))
                 .then(right.activity.total_cmp(&left.activity))
         });
         for id in learned.split_off(learned.len() / 2) {
-            self.clauses[id as usize].literals = Box::default();
+            self.all[id as usize].literals = Box::default();
             self.free.push(id);
             self.num_learned -= 1;
         }
-        let clauses = &self.clauses;
+        let clauses = &self.all;
         for watches in &mut self.watches {
             watches.retain(|watch| !clauses[watch.clause as usize].literals.is_empty());
         }

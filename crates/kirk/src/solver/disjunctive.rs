@@ -61,7 +61,8 @@ impl Disjunctives {
                 if position == first || problem.intervals[label as usize].duration == 0 {
                     continue;
                 }
-                let relations = members.iter().map(|&member| problem.exclusion(member.min(label), member.max(label)));
+                let relations =
+                    members.iter().map(|&member| problem.exclusion(member.min(label), member.max(label)));
                 let relations: Option<Vec<bool>> = relations.collect();
                 if let Some(relations) = relations {
                     is_gap_due &= relations.iter().all(|&is_gap_due| is_gap_due);

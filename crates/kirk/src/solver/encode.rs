@@ -176,8 +176,7 @@ impl<'m> Problem<'m> {
                 variables[twin as usize] = Some(solver.variable(least, most, presence));
             }
         }
-        self.times =
-            model.twin.iter().map(|&twin| variables[twin as usize].unwrap_or(Variable(0))).collect();
+        self.times = model.twin.iter().map(|&twin| variables[twin as usize].unwrap_or(Variable(0))).collect();
     }
 
     fn add_choices(&mut self, solver: &mut Solver, part: Part<'_>) {

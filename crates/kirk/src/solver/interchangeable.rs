@@ -69,13 +69,7 @@ fn are_alike(model: &Model, decision: u32, left: u32, right: u32) -> bool {
     labels.iter().all(|&(one, other)| have_same_relations(model, decision, &labels, one, other))
 }
 
-fn have_same_relations(
-    model: &Model,
-    decision: u32,
-    labels: &[(u32, u32)],
-    one: u32,
-    other: u32,
-) -> bool {
+fn have_same_relations(model: &Model, decision: u32, labels: &[(u32, u32)], one: u32, other: u32) -> bool {
     let conditions = &model.conditions;
     let (left, right) = (&conditions.labels[one as usize], &conditions.labels[other as usize]);
     let variable = &conditions.variables[left.variable as usize];

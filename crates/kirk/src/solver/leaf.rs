@@ -55,10 +55,11 @@ impl Solver {
                 || self.trail.least(other.end) <= self.trail.least(one.start)
         };
         let labels = &problem.labels_by_variable;
-        let is_kept = |left: u32, right: u32| {
-            !problem.model.conditions.conflict(left, right) || is_apart(left, right)
-        };
-        labels.iter().all(|labels| labels.iter().all(|&left| labels.iter().all(|&right| is_kept(left, right))))
+        let is_kept =
+            |left: u32, right: u32| !problem.model.conditions.conflict(left, right) || is_apart(left, right);
+        labels
+            .iter()
+            .all(|labels| labels.iter().all(|&left| labels.iter().all(|&right| is_kept(left, right))))
             && self.differences.are_satisfied(&self.trail)
     }
 
@@ -91,7 +92,9 @@ impl Solver {
         let mut pairs = Vec::new();
         for (position, &left) in present.iter().enumerate() {
             for &right in &present[position + 1..] {
-                if problem.must_be_ordered((left, right)) && !self.is_ordered_by_windows(problem, (left, right)) {
+                if problem.must_be_ordered((left, right))
+                    && !self.is_ordered_by_windows(problem, (left, right))
+                {
                     pairs.push((left, right));
                     if pairs.len() > MAX_PAIRS_AT_ONCE {
                         return pairs;

@@ -224,36 +224,36 @@ impl Solver {
     }
 
     /// Searches until everything is decided. `stop` is asked once per decision and conflict.
-    pub(crate) fn solve(&mut self, problem: &mut Problem<'_>, stop: &mut dyn FnMut(&Stats) -> bool) -> Answer {
+    pub(crate) fn solve(
+        &mut self,
+        problem: &mut Problem<'_>,
+        stop: &mut dyn FnMut(&Stats) -> bool,
+    ) -> Answer {
         loop {
             if self.is_contradictory {
                 return Answer::Unsolvable;
             }
-            match self.propagate() {
-                Err(conflict) => {
-                    self.stats.conflicts += 1;
-                    self.conflicts_until_restart = self.conflicts_until_restart.saturating_sub(1);
-                    if !self.learn(&conflict) {
-                        self.is_contradictory = true;
-                        return Answer::Unsolvable;
-                    }
+            if let Err(conflict) = self.propagate() {
+                self.stats.conflicts += 1;
+                self.conflicts_until_restart = self.conflicts_until_restart.saturating_sub(1);
+                if !self.learn(&conflict) {
+                    self.is_contradictory = true;
                 }
-                Ok(()) => {
-                    if self.conflicts_until_restart == 0 {
-                        self.restart();
-                    }
-                    if self.decide() {
-                        self.stats.expanded += 1;
-                    } else {
-                        self.stats.leaves += 1;
-                        if !self.add_pairs(problem) {
-                            debug_assert!(self.is_solution(problem), "the least times fit");
-                            return Answer::Solved;
-                        }
+            } else {
+                if self.conflicts_until_restart == 0 {
+                    self.restart();
+                }
+                if self.decide() {
+                    self.stats.expanded += 1;
+                } else {
+                    self.stats.leaves += 1;
+                    if !self.add_pairs(problem) {
+                        debug_assert!(self.is_solution(problem), "the least times fit");
+                        return Answer::Solved;
                     }
                 }
             }
-            if stop(&self.stats) {
+            if !self.is_contradictory && stop(&self.stats) {
                 self.retract(0);
                 return Answer::Stopped;
             }
@@ -334,7 +334,9 @@ impl Solver {
 
     /// A conflict whose last event left a variable no value, as the reasons of that event; it is taken back.
     fn before_crossing(&mut self, conflict: &[Literal]) -> Conflict {
-        let Some(&trail::Event { side, most, .. }) = self.trail.events.last() else { return conflict.to_vec() };
+        let Some(&trail::Event { side, most, .. }) = self.trail.events.last() else {
+            return conflict.to_vec();
+        };
         let last = Literal::new(side, most);
         if !self.trail.holds(!last) || !conflict.contains(&last) {
             return conflict.to_vec();
