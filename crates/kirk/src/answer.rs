@@ -253,7 +253,7 @@ fn run(
 
 #[cfg(test)]
 mod tests {
-    use rmpl::Rational;
+    use exact::Time;
     use tpn::compile::{Top, compile};
     use tpn::families::{chain, long_requirements, nested, open_shop, pigeonholes, symmetric};
     use tpn::generate::{Recipe, Tightness, mission};
@@ -282,7 +282,7 @@ mod tests {
         texts.extend([chain(5, true), chain(5, false)]);
         let (mut plans, mut none) = (0, 0);
         for text in &texts {
-            for gap in [None, Some(Rational::from_integer(1))] {
+            for gap in [None, Some(Time::from(1))] {
                 let network = network(text);
                 let chronological = Options {
                     search: Search::Chronological,
