@@ -25,6 +25,8 @@ use crate::tools::Tools;
 enum Subject {
     /// First plans of random missions: CP-SAT, Z3, aries.
     Planner,
+    /// First plans of missions by families: aries.
+    Families,
     /// Simple temporal networks, arc by arc: aries.
     Stn,
     /// Drawings of networks: Graphviz, ELK, dagre, rust-sugiyama.
@@ -49,6 +51,9 @@ struct Options {
     /// Fewer and smaller instances, to see that everything runs.
     #[arg(long)]
     quick: bool,
+    /// Of the families only those whose names begin like this; may be given several times.
+    #[arg(long)]
+    family: Vec<String>,
 }
 
 fn main() -> Result<()> {
@@ -56,6 +61,7 @@ fn main() -> Result<()> {
     let mut tools = Tools::new(&options.work)?;
     let all = [
         Subject::Planner,
+        Subject::Families,
         Subject::Stn,
         Subject::Layout,
         Subject::Paths,
@@ -68,6 +74,7 @@ fn main() -> Result<()> {
         }
         match subject {
             Subject::Planner => planner::compare(&mut tools, options.quick)?,
+            Subject::Families => planner::families::compare(&options.family, options.quick),
             Subject::Stn => network::compare(options.quick),
             Subject::Layout => layouts::compare(&mut tools, options.quick)?,
             Subject::Paths => paths::compare(&mut tools, options.quick)?,

@@ -80,6 +80,8 @@ pub(crate) fn with_choices(
 
 /// How often the search in textual order may go back before the solver takes over.
 const MAX_BACKTRACKS: u64 = 100;
+/// How often it may go back where the solver knows a plan in which intervals touch.
+const MAX_BACKTRACKS_TOUCHING: u64 = 2_000;
 
 /// A plan, by a search in textual order where that meets few failures, and otherwise by the solver.
 ///
@@ -106,12 +108,16 @@ fn first_plan(
 }
 
 /// A plan by the solver.
+///
+/// A plan that needs intervals to touch depends on the order in which conflicting pairs are looked at (SPEC 5.3). It is the
+/// textual one as far as a search through all such plans comes to an end soon; beyond that it is whichever serves.
 fn first_by_solver(
     model: &Model,
     options: &Options,
     mut stats: Stats,
     termination: &mut dyn Termination,
 ) -> Result<(Outcome, bool), Overflow> {
+    let mut touching = None;
     let all_gaps = [Gaps::Trusted, Gaps::Ignored];
     for &gaps in if model.gap == 0 { &all_gaps[1..] } else { &all_gaps[..] } {
         let Ok((answer, choices)) = solve(model, gaps, Part::default(), &mut stats, termination) else {
@@ -119,11 +125,11 @@ fn first_by_solver(
         };
         let status = match answer {
             Answer::Solved => {
-                if let Some(choices) = choices
-                    && let Some(plan) = plan_with(model, choices)?
-                {
+                let Some(choices) = choices else { break };
+                if let Some(plan) = plan_with(model, choices.clone(), false)? {
                     return Ok((ended(Status::Plan, vec![plan], stats), true));
                 }
+                touching = Some(choices);
                 break;
             }
             Answer::Stopped => Status::Limit,
@@ -132,7 +138,21 @@ fn first_by_solver(
         };
         return Ok((ended(status, Vec::new(), stats), true));
     }
-    run(model, options, (Gaps::Exact, stats), termination)
+    let Some(choices) = touching else { return run(model, options, (Gaps::Exact, stats), termination) };
+    let before = stats.backtracks;
+    let mut is_stopped = false;
+    let mut soon = |stats: &Stats| {
+        is_stopped = termination.should_stop(stats);
+        is_stopped || stats.backtracks > before + MAX_BACKTRACKS_TOUCHING
+    };
+    let (outcome, has_doubts) = run(model, options, (Gaps::Exact, stats), &mut soon)?;
+    if is_stopped || outcome.status != Status::Limit {
+        return Ok((outcome, has_doubts));
+    }
+    match plan_with(model, choices, true)? {
+        Some(plan) => Ok((ended(Status::Plan, vec![plan], outcome.stats), true)),
+        None => run(model, options, (Gaps::Exact, outcome.stats), termination),
+    }
 }
 
 fn ended(status: Status, plans: Vec<Plan>, stats: Stats) -> Outcome {
@@ -157,10 +177,16 @@ pub(crate) fn solve(
 
 /// The plan with these choices, where conflicting pairs are ordered by the times given. `None` if a pair that only
 /// touches is not forced to.
-fn plan_with(model: &Model, choices: Choices) -> Result<Option<Plan>, Overflow> {
+fn plan_with(model: &Model, choices: Choices, orders_touching_last: bool) -> Result<Option<Plan>, Overflow> {
     let proposed = choices.times.clone();
-    let setup =
-        Setup { jumps: true, is_checking: true, assumed: Some(choices), proposed, ..Setup::default() };
+    let setup = Setup {
+        jumps: true,
+        is_checking: true,
+        assumed: Some(choices),
+        orders_touching_last,
+        proposed,
+        ..Setup::default()
+    };
     let mut engine = Engine::new(model, setup);
     if engine.run(&mut Unlimited)? != Halt::Solution {
         return Ok(None);

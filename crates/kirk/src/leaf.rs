@@ -176,7 +176,7 @@ impl Engine<'_> {
                 }
             }
         }
-        if self.setup.assumed.as_ref().is_some_and(|assumed| !assumed.times.is_empty()) {
+        if self.setup.orders_touching_last {
             // What only touches may be ordered by what follows from the others.
             let mut pairs = std::mem::take(&mut self.leaf.pairs);
             pairs.sort_by_key(|&(left, right)| self.only_touch(left, right));

@@ -67,6 +67,22 @@ scenario S[0,9] = {
 }
 
 #[test]
+fn pairs_that_touch_are_ordered_in_textual_order() {
+    // Both uses of C follow B: the second one, ordered first, would force B to touch the first one, which then needs no
+    // gap. In textual order the first one asks for the gap, and there is no plan.
+    let text = "var MODE : {A, B, C};
+scenario S[0,7] = {
+  { choose { delay[4,4], delay[0,4], delay[3,3] }; MODE=C [2,2] },
+  { delay[5,5]; MODE=C [2,2] },
+  { delay[0,inf]; MODE=B [3,3] }
+}";
+    let mut network = network(text);
+    network.threat_gap = exact::Time::from(2);
+    assert_eq!(plan(&network, Search::Chronological, false).status, Status::NoPlan);
+    assert_eq!(plan(&network, Search::ConflictDirected, false).status, Status::NoPlan);
+}
+
+#[test]
 fn networks_without_their_program_are_planned_the_same() {
     for seed in 100..140 {
         for tightness in TIGHTNESS {

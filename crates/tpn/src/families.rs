@@ -83,6 +83,69 @@ pub const JOB_SHOPS: [JobShop; 7] = [
     },
 ];
 
+/// Missions of one kind.
+#[derive(Clone, Debug)]
+pub struct Family {
+    /// What they are.
+    pub name: String,
+    /// Their texts.
+    pub missions: Vec<String>,
+}
+
+/// All families, in sizes from ten to `max_nodes` nodes.
+pub fn families(max_nodes: usize) -> Vec<Family> {
+    let mut families = Vec::new();
+    let mut add = |name: String, missions: Vec<String>| families.push(Family { name, missions });
+    for (what, horizon) in JOB_SHOP_HORIZONS {
+        let of = |shop: &JobShop| shop.mission(horizon(shop.optimum));
+        let small = JOB_SHOPS.iter().filter(|shop| shop.name != "ft10");
+        add(format!("job shops ft06, la01 to la05, {what}"), small.map(of).collect());
+        let large = JOB_SHOPS.iter().filter(|shop| shop.name == "ft10");
+        add(format!("job shop ft10, {what}"), large.map(of).collect());
+    }
+    for size in [3, 4, 5] {
+        for percent in [100, 120] {
+            let missions = (0..5).map(|seed| open_shop(size, percent, seed)).collect();
+            add(format!("open shops {size} × {size}, {percent} % of the bound"), missions);
+        }
+    }
+    for (missing, what) in [(0, "just enough time"), (1, "one unit missing")] {
+        add(format!("pigeonholes, {what}"), [5, 12, 40, 100].map(|count| pigeonholes(count, missing)).into());
+        let sizes = [(10, 5), (20, 10), (50, 20)];
+        add(
+            format!("symmetric choices, {what}"),
+            sizes.map(|(count, ways)| symmetric(count, ways, missing)).into(),
+        );
+    }
+    for (can_succeed, what) in [(true, "fits"), (false, "does not")] {
+        let missions = [10, 100, 1_000, 5_000].map(|count| chain(count, can_succeed)).into();
+        add(format!("chains whose end {what}"), missions);
+    }
+    for (asks, tells) in [(10, 6), (50, 20), (200, 40)] {
+        for percent in [80, 100, 150] {
+            let missions = (0..5).map(|seed| long_requirements(asks, tells, seed, percent)).collect();
+            add(format!("{asks} requirements, {tells} assertions, {percent} % time"), missions);
+        }
+    }
+    for (nodes, seeds) in [(100, 9), (1_000, 9), (3_000, 9), (10_000, 5), (30_000, 3)] {
+        for percent in [90, 110, 200] {
+            if nodes <= max_nodes {
+                let missions = (0..seeds).map(|seed| nested(nodes, percent, seed)).collect();
+                add(format!("nested, {nodes} nodes, {percent} % time"), missions);
+            }
+        }
+    }
+    families
+}
+
+type Horizon = fn(i64) -> i64;
+
+const JOB_SHOP_HORIZONS: [(&str, Horizon); 3] = [
+    ("half as much again", |optimum| optimum * 3 / 2),
+    ("the optimum", |optimum| optimum),
+    ("one below", |optimum| optimum - 1),
+];
+
 impl JobShop {
     /// The shop as a mission that must be over by `horizon`.
     pub fn mission(&self, horizon: i64) -> String {
@@ -93,8 +156,9 @@ impl JobShop {
         });
         let jobs: Vec<Vec<(i64, i64)>> = jobs.collect();
         let branches = (0..).zip(&jobs).map(|(job, operations)| {
-            let operation =
-                |&(machine, duration): &(i64, i64)| format!("delay[0,inf]; {}", use_of(machine, job, duration));
+            let operation = |&(machine, duration): &(i64, i64)| {
+                format!("delay[0,inf]; {}", use_of(machine, job, duration))
+            };
             operations.iter().map(operation).collect::<Vec<_>>().join("; ")
         });
         scenario(&format!("{} by {horizon}", self.name), horizon, branches)
@@ -190,13 +254,18 @@ pub fn long_requirements(asks: usize, tells: usize, seed: u64, percent: i64) -> 
             then + 3
         ));
     }
-    scenario(&format!("{asks} requirements, {tells} assertions, seed {seed}"), length * percent / 100, branches)
+    scenario(
+        &format!("{asks} requirements, {tells} assertions, seed {seed}"),
+        length * percent / 100,
+        branches,
+    )
 }
 
 /// Deep nesting of sequence, parallel and choose, where 60 % of the steps have a condition. `percent` of a horizon that
 /// is about long enough.
 pub fn nested(nodes: usize, percent: i64, seed: u64) -> String {
-    let mut nesting = Nesting { rng: Rng::new(seed ^ (nodes as u64).rotate_left(24)), variables: 2 + nodes as u64 / 50 };
+    let mut nesting =
+        Nesting { rng: Rng::new(seed ^ (nodes as u64).rotate_left(24)), variables: 2 + nodes as u64 / 50 };
     let threads = 2 + nodes / 500;
     let mut branches = Vec::new();
     let mut longest = 0;

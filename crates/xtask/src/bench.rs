@@ -13,7 +13,7 @@ pub(crate) struct Options {
     /// what it needs below the target folder; what is not there is a line in the table.
     #[arg(long, conflicts_with = "tables")]
     peers: bool,
-    /// With `--peers`, only this comparison: planner, stn, layout, paths, language or automata. May be given again.
+    /// With `--peers`, only this comparison: planner, families, stn, layout, paths, language or automata. May be given again.
     #[arg(long, requires = "peers")]
     only: Vec<String>,
     /// With `--peers`, fewer and smaller problems, to see that everything runs.

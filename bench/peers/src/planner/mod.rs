@@ -1,6 +1,7 @@
 //! First plans, and proofs that there is none, of the same random missions by all planners.
 
 mod aries;
+pub(crate) mod families;
 mod instance;
 
 use std::fs;

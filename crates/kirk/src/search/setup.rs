@@ -19,6 +19,9 @@ pub(crate) struct Setup {
     pub(crate) active_labels: Option<Vec<bool>>,
     /// What has been chosen before.
     pub(crate) assumed: Option<Choices>,
+    /// Order conflicting pairs that the times given leave less than the gap after all others, which may then order them
+    /// without a gap; otherwise in textual order, as SPEC 5.4 does.
+    pub(crate) orders_touching_last: bool,
     /// Times that are likely to fit, by node; it only saves work. None if empty.
     pub(crate) proposed: Vec<i64>,
 }
