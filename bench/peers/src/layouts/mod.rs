@@ -9,8 +9,9 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
-use layout::geometry::flatten;
-use layout::{Options, approximate_text_width};
+use display::approximate_text_width;
+use display::geometry::flatten;
+use layout::Options;
 use rust_sugiyama::configure::Config;
 use serde::{Deserialize, Serialize};
 use tpn::generate::{Recipe, Tightness, mission};

@@ -47,7 +47,7 @@ impl Map {
             }
             let frame = GridFrame::new(SIZE as u32, SIZE as u32, 1.0);
             let space = ConfigurationSpace::new(Occupancy::from_obstacles(frame, &occupied), 0.0);
-            if !space.are_separated(ENDS[0], ENDS[1]) {
+            if !space.are_separated(ENDS[0].into(), ENDS[1].into()) {
                 return Self { occupied, space };
             }
         }

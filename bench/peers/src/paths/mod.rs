@@ -144,8 +144,12 @@ fn length(path: &[[f64; 2]]) -> f64 {
     path.windows(2).map(|pair| (pair[0][0] - pair[1][0]).hypot(pair[0][1] - pair[1][1])).sum()
 }
 
+fn coordinates<P: Into<[f64; 2]>>(points: Vec<P>) -> Vec<[f64; 2]> {
+    points.into_iter().map(Into::into).collect()
+}
+
 fn ours(map: &Map, planner: PlannerKind, seed: u64) -> Run {
-    let query = Query { start_m: ENDS[0], goal_m: ENDS[1] };
+    let query = Query { start_m: ENDS[0].into(), goal_m: ENDS[1].into() };
     let settings = Settings { step_m: 20.0, goal_bias: 0.05, seed, ..Settings::of(planner) };
     let start = Stopwatch::start();
     let mut search = Search::new(&map.space, query, settings).expect("both ends are free");
@@ -159,18 +163,23 @@ fn ours(map: &Map, planner: PlannerKind, seed: u64) -> Run {
     };
     let start = Stopwatch::start();
     let short = shorten(&map.space, &path, &ShortcutSettings { seed, ..ShortcutSettings::default() });
-    Run { first_ms, path: path.points_m, simplify_ms: millis(start.elapsed()), simplified: short.points_m }
+    Run {
+        first_ms,
+        path: coordinates(path.points_m),
+        simplify_ms: millis(start.elapsed()),
+        simplified: coordinates(short.points_m),
+    }
 }
 
 /// What a mission does for a leg of a traverse, with this comparison's step: all of it, shortening too, counts as the
 /// time of the path.
 fn best_of_two(map: &Map, seed: u64) -> Run {
-    let query = Query { start_m: ENDS[0], goal_m: ENDS[1] };
+    let query = Query { start_m: ENDS[0].into(), goal_m: ENDS[1].into() };
     let settings = Settings { step_m: 20.0, seed, ..Settings::of(PlannerKind::RrtConnect) };
     let shortcut = ShortcutSettings { seed, ..ShortcutSettings::default() };
     let start = Stopwatch::start();
     let found = find_shortest_path(&map.space, query, &settings, &shortcut, 2, &mut |_| false);
     let first_ms = millis(start.elapsed());
-    let path = found.path.map(|path| path.points_m).unwrap_or_default();
+    let path = found.path.map(|path| coordinates(path.points_m)).unwrap_or_default();
     Run { first_ms, simplified: path.clone(), path, simplify_ms: f64::NAN }
 }

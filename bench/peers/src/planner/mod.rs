@@ -9,12 +9,12 @@ use std::process::Command;
 use std::time::Duration;
 
 use anyhow::Result;
+use instance::Instance;
 use kirk::{ExpansionLimit, Options, Planner, Status};
 use serde::Deserialize;
 use tpn::Network;
 use tpn::compile::{Top, compile};
 use tpn::generate::{Recipe, Tightness, mission};
-use instance::Instance;
 
 use crate::stopwatch::Stopwatch;
 use crate::table::{Table, figure, median, millis, quantile, ratio};
