@@ -29,7 +29,7 @@ impl Native {
             let mut output = self.context.run_ui(RawInput::default(), |ui| self.app.show(ui, None));
             // Nothing is painted here.
             output.textures_delta.clear();
-            let state = self.app.state();
+            let state = serde_json::to_value(self.app.state())?;
             if state["status"] != "working" && state["answeredRevision"] == state["revision"] {
                 return Ok(state);
             }
