@@ -131,6 +131,12 @@ impl Host for NativeHost {
         self.wake_when_due();
     }
 
+    fn stop(&mut self) {
+        self.link.tick(self.begun.elapsed().as_secs_f64());
+        self.link.cancel_all();
+        self.wake_when_due();
+    }
+
     fn poll(&mut self) -> Option<HostEvent> {
         loop {
             self.link.tick(self.begun.elapsed().as_secs_f64());

@@ -59,6 +59,14 @@ impl CoreLink {
         shared.wake_when_due();
     }
 
+    /// Takes back everything that was asked.
+    pub(crate) fn stop(&self) {
+        let mut shared = self.0.borrow_mut();
+        shared.link.tick(now_secs());
+        shared.link.cancel_all();
+        shared.wake_when_due();
+    }
+
     /// Takes the oldest news.
     pub(crate) fn poll(&self) -> Option<HostEvent> {
         let mut shared = self.0.borrow_mut();

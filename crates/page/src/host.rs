@@ -66,6 +66,10 @@ impl Host for PageHost {
         self.link.post(request);
     }
 
+    fn stop(&mut self) {
+        self.link.stop();
+    }
+
     fn poll(&mut self) -> Option<HostEvent> {
         self.link.poll()
     }

@@ -22,6 +22,9 @@ pub trait Host {
     /// then be dropped or stopped half way. Other requests are kept, in order.
     fn post(&mut self, request: Request);
 
+    /// Takes back everything that was asked of the planning core, but the maps that it reads.
+    fn stop(&mut self);
+
     /// The next thing that happened outside, oldest first; `None` when there is nothing new.
     ///
     /// To be called in every frame until it answers `None`.

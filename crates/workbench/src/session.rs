@@ -111,7 +111,12 @@ impl Session {
         self.version += u64::from(advanced.is_changed);
         let toast_secs = self.state.toasts.advance(now_secs);
         self.do_effects();
-        [is_replaced.then_some(0.1), advanced.next_secs, toast_secs].into_iter().flatten().reduce(f64::min)
+        // What stops the work is offered without another reason for a frame.
+        let waits = self.state.status() == Status::Working && !self.state.is_long_at_work();
+        [is_replaced.then_some(0.1), waits.then_some(0.2), advanced.next_secs, toast_secs]
+            .into_iter()
+            .flatten()
+            .reduce(f64::min)
     }
 
     /// Does what commands ask for, in order.
@@ -177,6 +182,7 @@ impl Session {
                 Effect::SavePicture { name, svg, size } => self.host.save_picture(&name, svg, size),
                 Effect::CopyLink => self.copy_link(),
                 Effect::Post(request) => self.host.post(request),
+                Effect::Stop => self.host.stop(),
                 Effect::KeepReview { joins } => {
                     outside::keep_review(self.host.as_mut(), &mut self.state, joins);
                 }
@@ -203,6 +209,7 @@ impl Session {
         let source = self.state.document.shared_text();
         self.host.post(Request::Update(Update { revision, source, goal, search, seed, trace }));
         self.posted = Some(Posted { revision, ..wanted });
+        self.state.frame.asked_secs = self.state.frame.now_secs;
     }
 
     /// Asks for the run that is watched to be worked out, unless that was asked for already.

@@ -4,7 +4,7 @@ mod support;
 
 use serde_json::{Value, json};
 use workbench::command::all_commands;
-use workbench::host::{Remote as _, RemoteError};
+use workbench::host::{HostEvent, Remote as _, RemoteError};
 
 #[test]
 fn a_host_page_can_drive_the_app_and_is_told_what_is_wrong_with_a_call() {
@@ -93,4 +93,59 @@ fn command_names_are_unique_and_no_two_commands_share_a_key_where_both_work() {
             }
         }
     }
+}
+
+/// A text whose planning takes long: it is asked for, and not answered.
+fn at_work() -> support::App {
+    let mut app = support::start();
+    app.world.is_deaf.set(true);
+    app.session.set_source("scenario S[0,10] = { delay[5,5] }");
+    app.settle();
+    app
+}
+
+#[test]
+fn work_that_was_stopped_leaves_its_text_undecided_until_it_is_planned_again() {
+    let mut app = at_work();
+    assert_eq!(app.json()["status"], "working");
+    app.dispatch("plan.stop", &json!(null));
+    assert_eq!(app.json()["status"], "undecided");
+    assert_eq!(app.world.stopped.get(), 1, "the core is told");
+    assert!(app.session.dispatch("plan.stop", &json!(null)).is_err(), "there is nothing to stop any more");
+
+    app.world.is_deaf.set(false);
+    app.dispatch("plan.again", &json!(null));
+    assert_eq!(app.json()["status"], "plan");
+    assert_eq!(app.session.source(), "scenario S[0,10] = { delay[5,5] }");
+}
+
+#[test]
+fn an_edit_is_planned_after_a_stop() {
+    let mut app = at_work();
+    app.dispatch("plan.stop", &json!(null));
+    app.world.is_deaf.set(false);
+    app.session.set_source("scenario S[0,10] = { delay[6,6] }");
+    app.settle();
+    assert_eq!(app.json()["status"], "plan");
+}
+
+#[test]
+fn a_text_over_which_the_core_died_is_undecided() {
+    let mut app = at_work();
+    let revision = app.json()["revision"].as_u64();
+    let died = HostEvent::CoreFailed { revision, message: "out of memory".into() };
+    app.world.news.borrow_mut().push_back(died);
+    app.settle();
+    let state = app.json();
+    assert_eq!(state["status"], "undecided");
+    assert!(state["toasts"].to_string().contains("out of memory"));
+}
+
+#[test]
+fn work_that_takes_long_can_be_stopped_on_screen() {
+    let mut app = at_work();
+    assert!(!app.session.state().is_long_at_work());
+    app.world.now_secs.set(app.world.now_secs.get() + 1.0);
+    app.step();
+    assert!(app.session.state().is_long_at_work());
 }

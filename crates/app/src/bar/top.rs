@@ -33,6 +33,11 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
                 tools(ui, context, commands);
                 ui.add_space(space::M);
                 status(ui, context, commands);
+                if context.state.is_long_at_work()
+                    && icon::button(ui, tokens, Icon::Close, "Stop planning").clicked()
+                {
+                    commands.send(Command::StopWork);
+                }
             });
         });
     });
@@ -153,6 +158,7 @@ fn status(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         }
         Status::Plan => (Icon::Check, "Plan", tokens.good, good, PanelKind::Plan),
         Status::NoPlan => (Icon::Error, "No plan", tokens.error, error, PanelKind::Plan),
+        Status::Undecided => (Icon::Warning, "Not decided", tokens.warning, warning, PanelKind::Plan),
     };
     let font = egui::TextStyle::Body.resolve(ui.style());
     let galley = ui.painter().layout_no_wrap(text.to_owned(), font, color);
@@ -188,6 +194,7 @@ fn status_name(context: &Context<'_>) -> &'static str {
         Status::Program => "Status: a control program",
         Status::Plan => "Status: plan found",
         Status::NoPlan => "Status: no plan",
+        Status::Undecided => "Status: not decided, planning was stopped",
     }
 }
 

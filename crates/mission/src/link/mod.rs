@@ -139,6 +139,16 @@ impl<T: Transport> Link<T> {
         self.push_on();
     }
 
+    /// Takes everything back but the maps, which later jobs need.
+    pub fn cancel_all(&mut self) {
+        for rule in crate::job::RULES.iter().filter(|rule| rule.kind != Kind::ImportMap) {
+            for job in self.queue.of_kind(rule.kind) {
+                self.queue.cancel(job);
+            }
+        }
+        self.push_on();
+    }
+
     /// Takes what the `core`th core said.
     pub fn hear(&mut self, core: u32, news: News) {
         if core != self.cores || self.state == CoreState::Absent {

@@ -305,3 +305,21 @@ fn what_cannot_be_sent_is_given_up() {
     assert_eq!(events(&mut link), ["Update 1 failed: too large"]);
     assert!(!link.is_busy());
 }
+
+#[test]
+fn everything_that_was_asked_can_be_taken_back_and_maps_are_read_all_the_same() {
+    let mut link = ready();
+    link.post(update(1));
+    link.post(Request::Review(text(1)));
+    link.post(map("a", 1));
+    assert_eq!(told(&mut link), ["send Update 1"]);
+    link.cancel_all();
+    assert_eq!(told(&mut link), ["interrupt"]);
+    link.hear(1, News::Finished);
+    assert_eq!(told(&mut link), ["send ImportMap a 1"]);
+    link.hear(1, News::Finished);
+    assert_eq!(told(&mut link), [""; 0]);
+    assert!(!link.is_busy());
+    link.post(update(1));
+    assert_eq!(told(&mut link), ["send Update 1"], "it can be asked again");
+}

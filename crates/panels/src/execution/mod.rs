@@ -75,6 +75,7 @@ fn why_not(context: &Context<'_>) -> String {
         Status::Plan if state.workspace == workbench::workspace::Workspace::Execute => "Working the run out…",
         Status::Plan => "The mission runs in the Execute workspace.",
         Status::Working => "Planning…",
+        Status::Undecided => "Planning was stopped. The plan panel plans again.",
     };
     text.to_owned()
 }

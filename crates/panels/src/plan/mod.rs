@@ -24,11 +24,13 @@ pub struct PlanPanel {
 
 impl Panel for PlanPanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+        work(ui, context, commands);
         let planning = context.snapshot.and_then(|snapshot| snapshot.planning.as_ref());
         let Some((snapshot, planning)) = context.snapshot.zip(planning) else {
             let text = match context.state.status() {
                 Status::Broken => "The text has errors. See the problems.",
                 Status::Empty => "There is nothing to plan in this text.",
+                Status::Undecided => "Nothing is known of a plan for this text.",
                 _ => "Planning…",
             };
             show_empty(ui, context, text);
@@ -57,6 +59,39 @@ impl Panel for PlanPanel {
             });
         });
     }
+}
+
+/// While the planner works, what stops it; after it was stopped, what that means and what starts it again.
+fn work(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let tokens = context.tokens;
+    let (icon, color, text, name, hint, command) = match context.state.status() {
+        Status::Working if context.state.is_long_at_work() => (
+            Icon::Working,
+            tokens.info,
+            "Planning…",
+            "Stop",
+            "Leaves undecided what is not known yet",
+            Command::StopWork,
+        ),
+        Status::Undecided => (
+            Icon::Warning,
+            tokens.warning,
+            "Planning was stopped: whether this text has a plan is not decided.",
+            "Plan again",
+            "Works the text out once more",
+            Command::PlanAgain,
+        ),
+        _ => return,
+    };
+    egui::Frame::new().inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            icon::label(ui, icon, color);
+            ui.label(RichText::new(text).color(color));
+            if ui.button(name).on_hover_text(hint).clicked() {
+                commands.send(command);
+            }
+        });
+    });
 }
 
 /// A number with its noun, in the plural where it belongs.

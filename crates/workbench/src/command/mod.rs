@@ -119,6 +119,10 @@ pub enum Command {
     SetSearch(SearchKind),
     /// Seeds path planning.
     SetSeed(u64),
+    /// Stops whatever the planning core works on.
+    StopWork,
+    /// Plans the same text once more.
+    PlanAgain,
     /// Whether the search is recorded.
     SetTrace(bool),
 

@@ -44,6 +44,8 @@ pub enum Effect {
     CopyLink,
     /// Send something to the planning core.
     Post(Request),
+    /// Take back everything that the planning core was asked.
+    Stop,
     /// Keep what reviewers said of the open mission.
     KeepReview {
         /// Whether what is kept already, perhaps by another tab, is joined with it.
@@ -134,6 +136,11 @@ impl AppState {
             Command::SetGoal(goal) => self.settings.plan.goal = goal,
             Command::SetSearch(search) => self.settings.plan.search = search,
             Command::SetSeed(seed) => self.settings.plan.seed = seed,
+            Command::StopWork => {
+                self.effects.push(Effect::Stop);
+                self.give_up(Some(self.document.revision()));
+            }
+            Command::PlanAgain => self.document.touch(),
             Command::SetTrace(trace) => self.settings.plan.trace = trace,
 
             Command::ShowWorkspace(workspace) => {
@@ -226,14 +233,11 @@ impl AppState {
             HostEvent::Answer(answer @ Response::Sampled { .. }) => self.take_sample(answer),
             HostEvent::Answer(answer @ Response::ProgramSampled { .. }) => self.take_program_sample(answer),
             HostEvent::CoreFailed { message, revision } => {
-                self.search.give_comparison_up(revision);
-                self.give_up_review();
-                self.compare.give_up();
-                self.automaton.give_up();
+                self.give_up(revision);
                 self.toasts.add(
                     ToastKind::Failed,
                     format!(
-                        "Planning stopped and was started anew. Edit the text to plan again. ({message})"
+                        "Planning stopped and was started anew. Edit the text, or plan again. ({message})"
                     ),
                 );
             }
@@ -243,6 +247,19 @@ impl AppState {
             }
         }
         self.follow_review();
+    }
+
+    /// Waits for nothing any more of what the core was asked about `revision` of the text, or about any.
+    fn give_up(&mut self, revision: Option<u64>) {
+        self.search.give_comparison_up(revision);
+        self.give_up_review();
+        self.compare.give_up();
+        self.automaton.give_up();
+        self.chance.give_up();
+        self.execution.give_up();
+        if let Some(revision) = revision {
+            self.snapshots.give_up(revision);
+        }
     }
 
     pub(crate) fn apply_to_search(&mut self, command: SearchCommand) {

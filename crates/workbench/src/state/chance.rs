@@ -47,6 +47,11 @@ impl ChanceState {
         self.running.is_some()
     }
 
+    /// The runs asked for are not made any more; what was found is kept.
+    pub(super) const fn give_up(&mut self) {
+        self.running = None;
+    }
+
     /// How many runs have been made of those asked for last.
     pub const fn runs_made(&self) -> u64 {
         self.tally.runs

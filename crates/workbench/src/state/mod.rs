@@ -130,6 +130,8 @@ pub struct FrameInfo {
     pub layout_millis: f64,
     /// Seconds on the host's clock at the start of this frame.
     pub now_secs: f64,
+    /// The same when the present text was handed to the planning core.
+    pub asked_secs: f64,
     /// The date and time at the start of this frame, in milliseconds since 1970, in UTC.
     pub unix_millis: i64,
 }
@@ -144,6 +146,9 @@ pub struct AnswerFrame {
     /// Milliseconds that the app took for it, laying out included.
     pub cpu_millis: f64,
 }
+
+/// Work that takes longer than this can be stopped on screen.
+const LONG_SECS: f64 = 0.5;
 
 impl AppState {
     /// The state with which the app starts: the first example, before anything was answered.
@@ -198,6 +203,11 @@ impl AppState {
             Status::Empty if self.automaton.is_control() => Status::Program,
             status => status,
         }
+    }
+
+    /// Whether the present text has been worked out for so long that somebody may want to stop it.
+    pub fn is_long_at_work(&self) -> bool {
+        self.status() == Status::Working && self.frame.now_secs - self.frame.asked_secs > LONG_SECS
     }
 
     /// Asks the layout to bring a panel back, or to the front of its tabs.

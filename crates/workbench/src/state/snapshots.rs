@@ -12,6 +12,8 @@ pub struct Snapshots {
     shown: Option<Arc<Snapshot>>,
     /// When `latest` arrived, in seconds on the host's clock.
     latest_secs: f64,
+    /// The revision that is not worked out any more, as long as nothing else is.
+    given_up: Option<u64>,
 }
 
 /// Where the plan stands.
@@ -29,6 +31,8 @@ pub enum Status {
     Plan,
     /// There is none.
     NoPlan,
+    /// Working the present text out was stopped, or the core died over it: nothing is known of its plan.
+    Undecided,
 }
 
 /// Planning that takes longer than this shows the network without a plan meanwhile.
@@ -67,6 +71,11 @@ impl Snapshots {
         is_waiting
     }
 
+    /// The text of `revision` is not worked out any more.
+    pub fn give_up(&mut self, revision: u64) {
+        self.given_up = Some(revision);
+    }
+
     /// Forgets everything: another mission was opened.
     pub fn clear(&mut self) {
         *self = Self::default();
@@ -90,14 +99,15 @@ impl Snapshots {
 
     /// Where the plan stands for the text of `revision`.
     pub fn status(&self, revision: u64) -> Status {
-        let Some(latest) = &self.latest else { return Status::Working };
+        let unfinished = if self.given_up == Some(revision) { Status::Undecided } else { Status::Working };
+        let Some(latest) = &self.latest else { return unfinished };
         if latest.revision != revision {
-            return Status::Working;
+            return unfinished;
         }
         let has_errors = latest.problems.iter().any(|problem| problem.severity == Severity::Error);
         match (&latest.network, &latest.planning) {
             (None, _) if has_errors => Status::Broken,
-            (_, None) if latest.stage == Stage::Compiled => Status::Working,
+            (_, None) if latest.stage == Stage::Compiled => unfinished,
             (None, _) => Status::Empty,
             (Some(_), Some(_)) if latest.plan().is_some() => Status::Plan,
             (Some(_), _) => Status::NoPlan,

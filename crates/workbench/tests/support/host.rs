@@ -30,6 +30,8 @@ pub struct World {
     pub news: RefCell<VecDeque<HostEvent>>,
     /// How many requests were posted.
     pub posted: Cell<usize>,
+    /// How often everything was taken back.
+    pub stopped: Cell<usize>,
 }
 
 /// A host that plans on the spot.
@@ -53,6 +55,10 @@ impl Host for TestHost {
         }
         let world = Rc::clone(&self.world);
         self.core.handle(request, &mut Answers { world });
+    }
+
+    fn stop(&mut self) {
+        self.world.stopped.set(self.world.stopped.get() + 1);
     }
 
     fn poll(&mut self) -> Option<HostEvent> {

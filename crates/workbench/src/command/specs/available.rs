@@ -1,13 +1,23 @@
 //! When commands can be used, and what they wait for otherwise.
 
 use crate::command::registry::Availability;
-use crate::state::AppState;
 use crate::state::automaton::Program;
 use crate::state::search::recorded;
+use crate::state::{AppState, Status};
 
 #[expect(clippy::unnecessary_wraps, reason = "it stands beside conditions that can fail")]
 pub(super) fn always(_: &AppState) -> Availability {
     Ok(())
+}
+
+/// Whether the planning core works on something.
+pub(super) fn while_working(state: &AppState) -> Availability {
+    let is_working = state.status() == Status::Working
+        || state.review.is_running()
+        || state.chance.is_running()
+        || state.execution.is_working()
+        || state.automaton.chance.is_running();
+    if is_working { Ok(()) } else { Err("nothing is being worked out") }
 }
 
 pub(super) fn with_network(state: &AppState) -> Availability {

@@ -1,7 +1,8 @@
 //! Planning.
 
 use super::arguments::{number_argument, text_argument};
-use super::{called, plain};
+use super::available::while_working;
+use super::{called, plain, when};
 use crate::command::Command;
 use crate::command::registry::{CommandSpec, Group, Scope};
 use crate::state::search::SearchCommand;
@@ -25,6 +26,11 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     plain("plan.otherPaths", "Plan other paths", Group::Plan, &[], Scope::Everywhere, |state| {
         Command::SetSeed(state.settings.plan.seed + 1)
     }),
+    when(
+        plain("plan.stop", "Stop planning", Group::Plan, &[], Scope::Everywhere, |_| Command::StopWork),
+        while_working,
+    ),
+    plain("plan.again", "Plan again", Group::Plan, &[], Scope::Everywhere, |_| Command::PlanAgain),
     called("plan.seed", "Choose the seed of path planning", Group::Plan, |_, arguments| {
         number_argument(arguments, "seed").map(|seed| Command::SetSeed(seed.max(0.0) as u64))
     }),

@@ -49,7 +49,9 @@ pub struct PageState {
     shown_revision: Option<u64>,
     #[cfg_attr(
         test,
-        ts(type = "\"working\" | \"broken\" | \"empty\" | \"program\" | \"plan\" | \"no-plan\"")
+        ts(
+            type = "\"working\" | \"broken\" | \"empty\" | \"program\" | \"plan\" | \"no-plan\" | \"undecided\""
+        )
     )]
     status: &'static str,
     /// Whether what is shown is of an older text.
@@ -341,5 +343,6 @@ fn status_name(status: Status) -> &'static str {
         Status::Program => "program",
         Status::Plan => "plan",
         Status::NoPlan => "no-plan",
+        Status::Undecided => "undecided",
     }
 }

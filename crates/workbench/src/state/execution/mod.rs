@@ -120,6 +120,13 @@ impl ExecutionState {
         self.asked.is_some() && self.trouble.is_none() && !self.run.as_ref().is_some_and(is_answered)
     }
 
+    /// The run that was asked for does not come.
+    pub(super) fn give_up(&mut self) {
+        if self.is_working() {
+            self.trouble = Some("working the run out was stopped".to_owned());
+        }
+    }
+
     /// Forgets everything: another mission was opened.
     pub fn forget(&mut self) {
         *self = Self::default();
