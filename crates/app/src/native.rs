@@ -238,8 +238,14 @@ impl Transport for CoreThreads {
     fn start(&mut self, core: u32) {
         let (outside, wake) = (self.outside.clone(), self.wake.clone());
         let superseded = Arc::new(AtomicBool::new(false));
-        let host =
-            ThreadHost { core, outside, superseded: Arc::clone(&superseded), wake, begun: Instant::now() };
+        let host = ThreadHost {
+            core,
+            outside,
+            superseded: Arc::clone(&superseded),
+            wake,
+            begun: Instant::now(),
+            told: Instant::now(),
+        };
         let (requests, received) = channel();
         thread::spawn(move || run_core(&received, host));
         self.running = Some(CoreThread { requests, superseded });
@@ -279,12 +285,17 @@ fn run_core(requests: &Receiver<Request>, mut host: ThreadHost) {
     }
 }
 
+/// A core at work says at least so often that it goes on.
+const ALIVE: Duration = Duration::from_secs(5);
+
 struct ThreadHost {
     core: u32,
     outside: Sender<News>,
     superseded: Arc<AtomicBool>,
     wake: Context,
     begun: Instant,
+    /// When the window last heard something.
+    told: Instant,
 }
 
 impl ThreadHost {
@@ -301,6 +312,10 @@ impl CoreHost for ThreadHost {
     }
 
     fn is_superseded(&mut self) -> bool {
+        if self.told.elapsed() > ALIVE {
+            self.told = Instant::now();
+            self.tell(mission::News::Alive);
+        }
         self.superseded.load(Ordering::Relaxed)
     }
 
