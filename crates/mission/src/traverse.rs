@@ -7,10 +7,10 @@ use exact::Rational;
 use motion::{Path, PlannerKind, Query, SearchResult, ShortcutSettings, VehicleModel};
 use nalgebra::{Point2, distance};
 use rmpl::Span;
-use rmpl::program::{Moves, Program, World};
+use rmpl::program::{Moves, Name, Program, World};
 use smol_str::SmolStr;
 use terrain::{ConfigurationSpace, Terrain};
-use tpn::{Network, OccurrenceId, OccurrenceKind, Plan};
+use tpn::{Network, Occurrence, OccurrenceId, OccurrenceKind, Plan};
 
 use crate::ground::FreeSpace;
 use crate::snapshot::Leg;
@@ -45,23 +45,23 @@ pub fn routes(network: &Network, program: &Program, plan: &Plan) -> Vec<Route> {
     let world = &program.world;
     let mut positions: Vec<Option<Waypoint>> =
         world.vehicles.iter().map(|vehicle| waypoint(world, &vehicle.start.text)).collect();
-    let mut moving: Vec<(OccurrenceId, &Moves)> = network
+    let mut moving: Vec<(OccurrenceId, Moving<'_>)> = network
         .occurrences
         .iter()
         .enumerate()
         .filter(|(_, it)| it.kind == OccurrenceKind::Primitive && plan.selected_nodes[it.start.index()])
         .filter_map(|(index, it)| {
-            let moves = declared_moves(program, &it.activity)?;
-            Some((OccurrenceId::from_index(index), moves))
+            let moving = moving(program, it)?;
+            Some((OccurrenceId::from_index(index), moving))
         })
         .collect();
-    moving.sort_by_key(|&(id, _)| {
+    moving.sort_by_key(|(id, _)| {
         let start = network.occurrences[id.index()].start;
-        (plan.windows[start.index()].map(|window| window.earliest), id)
+        (plan.windows[start.index()].map(|window| window.earliest), *id)
     });
     let mut routes = Vec::new();
-    for (id, moves) in moving {
-        let Some(route) = route(network, world, id, moves, &positions) else { continue };
+    for (id, moving) in moving {
+        let Some(route) = route(network, world, id, &moving, &positions) else { continue };
         if let Some(last) = route.waypoints.last() {
             for &vehicle in &route.vehicles {
                 positions[vehicle] = Some(last.clone());
@@ -72,9 +72,24 @@ pub fn routes(network: &Network, program: &Program, plan: &Plan) -> Vec<Route> {
     routes
 }
 
-/// The `moves` clause of the primitive of this name.
-pub fn declared_moves<'program>(program: &'program Program, activity: &str) -> Option<&'program Moves> {
-    program.primitives.iter().find(|it| it.name.text == activity)?.moves.as_ref()
+/// What a call of a traverse moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moving<'program> {
+    /// The clause of the primitive.
+    pub moves: &'program Moves,
+    /// The vehicles by name, parameters replaced by the arguments of the call; the first leads.
+    pub vehicles: Vec<SmolStr>,
+}
+
+/// What `occurrence` moves, if it is a traverse.
+pub fn moving<'program>(program: &'program Program, occurrence: &Occurrence) -> Option<Moving<'program>> {
+    let primitive = program.primitives.iter().find(|it| it.name.text == occurrence.activity)?;
+    let moves = primitive.moves.as_ref()?;
+    let named = |vehicle: &Name| {
+        let formal = primitive.formals.iter().position(|formal| formal.text == vehicle.text);
+        formal.and_then(|at| occurrence.arguments.get(at)).unwrap_or(&vehicle.text).clone()
+    };
+    Some(Moving { moves, vehicles: moves.vehicles.iter().map(named).collect() })
 }
 
 fn waypoint(world: &World, name: &str) -> Option<Waypoint> {
@@ -86,13 +101,13 @@ fn route(
     network: &Network,
     world: &World,
     id: OccurrenceId,
-    moves: &Moves,
+    moving: &Moving<'_>,
     positions: &[Option<Waypoint>],
 ) -> Option<Route> {
-    let vehicles: Vec<usize> = moves
+    let vehicles: Vec<usize> = moving
         .vehicles
         .iter()
-        .filter_map(|name| world.vehicles.iter().position(|vehicle| vehicle.name.text == name.text))
+        .filter_map(|name| world.vehicles.iter().position(|vehicle| vehicle.name.text == *name))
         .collect();
     let &leader = vehicles.first()?;
     let models =
@@ -112,7 +127,7 @@ fn route(
     waypoints.extend(named);
     waypoints.dedup_by(|next, before| next.position_m == before.position_m);
     let own_speed_mps = Rational::from_f64_nearest(own_mps, 1000)?;
-    let speed_mps = moves.speed_mps.unwrap_or((Rational::ZERO, own_speed_mps));
+    let speed_mps = moving.moves.speed_mps.unwrap_or((Rational::ZERO, own_speed_mps));
     Some(Route { occurrence: id, vehicles, model, speed_mps, waypoints })
 }
 
@@ -127,15 +142,16 @@ pub fn check(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
         }
     };
     for occurrence in &network.occurrences {
-        let Some(moves) = declared_moves(program, &occurrence.activity) else { continue };
+        let Some(moving) = moving(program, occurrence) else { continue };
         let Some(span) = occurrence.span else { continue };
         if !occurrence.arguments.iter().any(|name| waypoint(world, name).is_some()) {
             let name = &occurrence.activity;
             warn(span, format!("`{name}` moves vehicles, but no argument of this call is a location"));
         }
-        for vehicle in &moves.vehicles {
-            if !world.vehicles.iter().any(|it| it.name.text == vehicle.text) {
-                warn(vehicle.span, format!("no vehicle is called `{}`", vehicle.text));
+        for (vehicle, written) in moving.vehicles.iter().zip(&moving.moves.vehicles) {
+            if !world.vehicles.iter().any(|it| it.name.text == *vehicle) {
+                let place = if *vehicle == written.text { written.span } else { span };
+                warn(place, format!("no vehicle is called `{vehicle}`"));
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use rustc_hash::FxHashSet;
 use serde::{Deserialize, Serialize};
 
 use crate::span::Span;
@@ -84,5 +85,16 @@ impl Diagnostic {
     pub fn with_fix(mut self, fix: Fix) -> Self {
         self.fixes.push(fix);
         self
+    }
+}
+
+/// The diagnostics that have been given: what is compiled several times is told once.
+#[derive(Debug, Default)]
+pub(crate) struct Known(FxHashSet<(Code, Span, String)>);
+
+impl Known {
+    /// Whether nothing of the kind has been said at this place, which from now on it has.
+    pub(crate) fn is_new(&mut self, found: &Diagnostic) -> bool {
+        self.0.insert((found.code, found.span, found.message.clone()))
     }
 }

@@ -11,7 +11,7 @@ use rustc_hash::FxHashSet;
 
 use crate::analysis::local::local_diagnostics;
 use crate::analysis::{Checked, DeclarationKey, Index, Meaning, Names, Summary, check, recursion, summarize};
-use crate::diagnostic::{Diagnostic, Edit, Severity};
+use crate::diagnostic::{Diagnostic, Edit, Known, Severity};
 use crate::lower::{Item, Lowering, OptionValue};
 use crate::parser::{Scratch, parse_declaration};
 use crate::program::{Program, TimeUnit};
@@ -259,7 +259,7 @@ impl Parse {
             };
         }
         let is_callable = |name: &str| callables.contains(name);
-        let mut lowering = Lowering { is_callable: &is_callable, bare_names: Vec::new() };
+        let mut lowering = Lowering::new(&is_callable);
         let mut program = Program::default();
         for root in self.declarations() {
             if let Some(item) = lowering.item(root) {
@@ -272,6 +272,7 @@ impl Parse {
 
 fn add(program: &mut Program, item: Item) {
     match item {
+        Item::Constant(decl) => program.constants.push(decl),
         Item::Variable(decl) => program.variables.push(decl),
         Item::Primitive(decl) => program.primitives.push(decl),
         Item::Activity(decl) => program.activities.push(decl),
@@ -303,9 +304,10 @@ impl Declaration {
     fn read(text: &str, scratch: &mut Scratch, names: &mut Names) -> Self {
         let parsed = parse_declaration(text, scratch);
         let root = parsed.tree.root(text.get(..parsed.tree.len() as usize).unwrap_or(""), 0);
-        let mut lowering = Lowering { is_callable: &|_| false, bare_names: Vec::new() };
+        let mut lowering = Lowering::new(&|_| false);
         let item = lowering.item(root);
         let mut diagnostics = parsed.diagnostics;
+        diagnostics.append(&mut lowering.diagnostics);
         let mut is_sound = diagnostics.is_empty();
         if let Some(item) = &item {
             let local = local_diagnostics(item, root);
@@ -313,6 +315,8 @@ impl Declaration {
             diagnostics
                 .extend(local.into_iter().filter(|found| is_sound || found.severity == Severity::Error));
         }
+        let mut known = Known::default();
+        diagnostics.retain(|found| known.is_new(found));
         let summary = summarize(item.as_ref(), &lowering.bare_names, names);
         Self { tree: parsed.tree, diagnostics, item, summary, is_sound, reach: parsed.reach }
     }

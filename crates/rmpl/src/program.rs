@@ -21,6 +21,8 @@ pub struct Name {
 /// A mission file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Program {
+    /// Constants, in textual order (SPEC 14).
+    pub constants: Vec<ConstantDecl>,
     /// Declared finite-domain state variables, in textual order.
     pub variables: Vec<VariableDecl>,
     /// Declared primitives.
@@ -45,6 +47,17 @@ pub struct ControlDecl {
     /// Where it stands.
     pub text_span: Span,
     /// The whole block.
+    pub span: Span,
+}
+
+/// `const NAME = expression;`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConstantDecl {
+    /// The constant.
+    pub name: Name,
+    /// Its value, which may name other constants.
+    pub value: Expr,
+    /// The whole declaration.
     pub span: Span,
 }
 
@@ -166,14 +179,59 @@ pub struct Expr {
 pub enum ExprKind {
     /// A number.
     Number(Rational),
+    /// A number of a unit of time: `90s`, `1.5h`.
+    Duration(Rational, DurationUnit),
     /// `inf` or `∞`.
     Infinity,
-    /// A bound parameter.
+    /// A bound parameter, a parameter that stands for a number, or a constant.
     Name(SmolStr),
     /// `e%`: a hundredth of `e`.
     Percent(Box<Expr>),
     /// `left op right`.
     Binary(BinaryOp, Box<Expr>, Box<Expr>),
+}
+
+/// A unit that is written behind a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum DurationUnit {
+    /// `s`
+    Second,
+    /// `min`
+    Minute,
+    /// `h`
+    Hour,
+    /// `d`: 24 hours.
+    Day,
+    /// `sol`: a solar day of Mars, 88 775.244 seconds.
+    Sol,
+}
+
+impl DurationUnit {
+    /// All of them, by the words that texts use.
+    pub const ALL: [(&'static str, Self); 5] =
+        [("s", Self::Second), ("min", Self::Minute), ("h", Self::Hour), ("d", Self::Day), ("sol", Self::Sol)];
+
+    /// The unit that this word stands for.
+    pub fn by_name(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|(name, _)| *name == word).map(|(_, unit)| unit)
+    }
+
+    /// Seconds in one, exactly.
+    fn seconds(self) -> Option<Rational> {
+        let (numerator, denominator) = match self {
+            Self::Second => (1, 1),
+            Self::Minute => (60, 1),
+            Self::Hour => (3_600, 1),
+            Self::Day => (86_400, 1),
+            Self::Sol => (22_193_811, 250),
+        };
+        Rational::new(numerator, denominator)
+    }
+
+    /// How many of a mission's units of time one is, if that can be said exactly.
+    pub fn in_units(self, unit: TimeUnit) -> Option<Rational> {
+        self.seconds()?.checked_div(Rational::from_integer(unit.seconds()))
+    }
 }
 
 /// The arithmetic of bounds.
@@ -215,6 +273,8 @@ pub enum StatementKind {
     Watching(Box<Statement>, Condition),
     /// `if condition thennext body`
     IfThennext(Condition, Box<Statement>),
+    /// `repeat count { … }`: so many copies of the body, one after the other.
+    Repeat(Expr, Box<Statement>),
     /// `Name(args)`, or a bare name that is a declared activity or primitive.
     Call(Name, Vec<Argument>),
     /// `c`, `tell c` (an assertion) or `ask c`.
@@ -235,7 +295,7 @@ pub enum LabelMode {
 /// An argument of a call.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Argument {
-    /// The name or the number.
+    /// What is handed over.
     pub value: ArgumentValue,
     /// Where it stands.
     pub span: Span,
@@ -248,9 +308,13 @@ pub enum ArgumentValue {
     Name(SmolStr),
     /// A number.
     Number(Rational),
+    /// An expression, evaluated where the call stands.
+    Expression(Expr),
+    /// A condition.
+    Condition(Condition),
 }
 
-/// A literal: `X`, `X=V`, `X!=V`, or the negation of one. Negations are folded into `negated`.
+/// A literal: `X`, `X=V`, `X!=V`, `X in {V, W}`, or the negation of one. Negations are folded into `negated`.
 ///
 /// `X_V` is still written as the author wrote it (`variable` = `X_V`, no value): how it splits depends on the file
 /// (SPEC 1.3) and on substitution of formals; [`crate::program::Program`]'s users resolve it after substitution.
@@ -258,8 +322,8 @@ pub enum ArgumentValue {
 pub struct Condition {
     /// The variable, the atom, or a formal that stands for one.
     pub variable: Name,
-    /// The value; an atom has none.
-    pub value: Option<Name>,
+    /// The value, or several of which the variable has one; an atom has none.
+    pub values: Vec<Name>,
     /// Whether the literal is negated an odd number of times (`not`, `!`, `!=`).
     pub negated: bool,
     /// Where it stands.

@@ -5,9 +5,9 @@
 
 use crate::diagnostic::{Diagnostic, Edit, Fix};
 use crate::program::{
-    ActivityDecl, Argument, Bounds, Condition, ControlDecl, Expr, ExprKind, HeaderBound, HeaderBounds,
-    LocationDecl, Moves, Name, ObstacleDecl, PrimitiveDecl, Program, ScenarioDecl, Statement, StatementKind,
-    TerrainDecl, VariableDecl, VehicleDecl, World,
+    ActivityDecl, Argument, ArgumentValue, Bounds, Condition, ConstantDecl, ControlDecl, Expr, ExprKind,
+    HeaderBound, HeaderBounds, LocationDecl, Moves, Name, ObstacleDecl, PrimitiveDecl, Program, ScenarioDecl,
+    Statement, StatementKind, TerrainDecl, VariableDecl, VehicleDecl, World,
 };
 use crate::span::Span;
 
@@ -101,9 +101,10 @@ macro_rules! spans {
 }
 
 spans! {
-    Program { variables, primitives, activities, scenarios, control, world }
+    Program { constants, variables, primitives, activities, scenarios, control, world }
     Name { span }
     ControlDecl { text_span, span }
+    ConstantDecl { name, value, span }
     VariableDecl { name, values, span }
     PrimitiveDecl { name, formals, bounds, moves, runs, span }
     Moves { vehicles, span }
@@ -112,8 +113,8 @@ spans! {
     Bounds { lower, upper, span }
     Expr { kind, span }
     Statement { kind, bounds, span }
-    Argument { span }
-    Condition { variable, value, span }
+    Argument { value, span }
+    Condition { variable, values, span }
     World { terrain, locations, obstacles, vehicles }
     TerrainDecl { asset_span, span }
     LocationDecl { name, numbers_span, span }
@@ -146,12 +147,22 @@ impl Spans for HeaderBound {
 impl Spans for ExprKind {
     fn visit_spans(&mut self, visit: &mut dyn FnMut(&mut Span)) {
         match self {
-            Self::Number(_) | Self::Infinity | Self::Name(_) => {}
+            Self::Number(_) | Self::Duration(..) | Self::Infinity | Self::Name(_) => {}
             Self::Percent(inner) => inner.visit_spans(visit),
             Self::Binary(_, left, right) => {
                 left.visit_spans(visit);
                 right.visit_spans(visit);
             }
+        }
+    }
+}
+
+impl Spans for ArgumentValue {
+    fn visit_spans(&mut self, visit: &mut dyn FnMut(&mut Span)) {
+        match self {
+            Self::Name(_) | Self::Number(_) => {}
+            Self::Expression(expr) => expr.visit_spans(visit),
+            Self::Condition(condition) => condition.visit_spans(visit),
         }
     }
 }
@@ -166,6 +177,10 @@ impl Spans for StatementKind {
             }
             Self::IfThennext(condition, body) => {
                 condition.visit_spans(visit);
+                body.visit_spans(visit);
+            }
+            Self::Repeat(count, body) => {
+                count.visit_spans(visit);
                 body.visit_spans(visit);
             }
             Self::Call(name, arguments) => {
@@ -214,7 +229,9 @@ mod tests {
 
     #[test]
     fn a_program_follows_the_edit_of_a_comment() {
-        let before = "# A note.\nprimitive B()[1,2];\nA() = { B()[1,2*3]; if P=OK thennext B() }\n";
+        let before = "# A note.\nconst N = 2*M; const M = 3;\nprimitive B(n, c)[1,2];\n\
+             A() = { B(N+1, X in {a, b})[1,2*3]; if P=OK thennext B(2, Q=on) else repeat N { delay } }\n\
+             scenario S = { free A(); do A() maintaining P and (Q or R) }\n";
         let after = before.replace("note", "longer note");
         let mut program = crate::parse(before).program();
         program.follow(&difference(before, &after));

@@ -90,6 +90,26 @@ fn words_go_on_where_the_grammar_does() {
 }
 
 #[test]
+fn what_larger_missions_are_written_with_is_offered_in_its_place() {
+    let check = |line: &str, wanted: &[&str], unwanted: &[&str]| {
+        check_completion_in_mission(&format!("const DAY = 24*60;\n{line}"), wanted, unwanted);
+    };
+    check("scenario S = { $0 }", &["repeat", "free", "if … thennext … else"], &["const", "DAY"]);
+    check("scenario S = { if P=OK thennext Drive(BASE) $0 }", &["else"], &["P", "DAY"]);
+    check("scenario S = { if P=OK thennext Drive(BASE) else $0 }", &["Drive", "P", "choose"], &["BASE"]);
+    check("scenario S = { if P=OK $0 }", &["thennext", "and", "or"], &["P"]);
+    check("scenario S = { do Drive(BASE) maintaining P=OK and $0 }", &["P", "not"], &["Drive"]);
+    check("scenario S = { do Drive(BASE) maintaining P in {OK, $0} }", &["OK", "BAD"], &["P", "choose"]);
+    check("scenario S = { repeat $0 }", &["DAY", "inf"], &["P", "Drive"]);
+    check("scenario S = { free $0 }", &["Drive", "choose"], &["DAY"]);
+    check("M(x)[l,u] = { Drive(BASE)[0,$0", &["DAY", "l", "u", "x"], &["Drive"]);
+    check("M(x)[l,u] = { Drive($0) }", &["DAY", "BASE", "R", "x"], &["choose"]);
+    check("primitive Go(v, to)[1,2] moves $0", &["v", "R"], &["DAY"]);
+    check("const HALF = $0", &["DAY"], &["Drive", "P"]);
+    check("$0", &["const"], &["DAY"]);
+}
+
+#[test]
 fn between_declarations_only_declarations_are_offered() {
     check_completion_in_mission("$0", &["var", "primitive", "scenario"], &["Drive", "choose"]);
 }
@@ -137,6 +157,29 @@ fn a_bound_shows_its_value_in_each_invocation() {
         "`u`  \n= **540** in Survey#1  \n`u*10%` = **54** in Survey#1",
     );
     check_hover("Survey()[l,u] = { A()[1+$02*3,u] }", &Evaluation::default(), "= **7**");
+}
+
+#[test]
+fn constants_and_units_show_their_values() {
+    let head = "// A day has them.\nconst DAY = 24 * HOUR;\nconst HOUR = 60;\n";
+    let check = |line: &str, wanted: &str| check_hover(&format!("{head}{line}"), &day(), wanted);
+    check(
+        "scenario S[0,D$0AY] = { delay }",
+        "```rmpl\nconst DAY = 24 * HOUR\n```\n\nA day has them.\n\n= **1440**",
+    );
+    check("scenario S[0,DAY$0+HOUR] = { delay }", "const DAY");
+    check("scenario S[0,2*DAY$0+HOUR*2] = { delay }", "const DAY");
+    check("scenario S[0,2$0*DAY] = { delay }", "`2*DAY`  \n= **2880**");
+    check(
+        "Survey()[l,u] = { A()[DAY,$0u+HOUR] }",
+        "`u`  \n= **540** in Survey#1  \n`u+HOUR` = **600** in Survey#1",
+    );
+    check("Survey()[l,HOUR] = { A()[0,H$0OUR] }", "= **60**");
+    check("primitive A()[9$00s, 1.5h];", "`90s`  \n= **1.5**");
+    check("option time_unit = second;\nprimitive A()[9s, 1s$0ol];", "= **88775.244**");
+    check("const A = B;\nconst B = A;\nscenario S[0,A$0] = { delay }", "const A = B");
+    check("scenario S = { rep$0eat 3 { A() } }", "copies of A");
+    check("scenario S = { if P thennext A() el$0se B() }", "where it does not");
 }
 
 #[test]

@@ -103,6 +103,71 @@ scenario S = { Drive(BAS$0E) }
 }
 
 #[test]
+fn a_constant_is_found_in_every_expression() {
+    check_references(
+        "\
+const D$0AY = 24 * 60;
+//    ^^^ def
+const WEEK = 7 * DAY;
+//               ^^^
+primitive Drive(n)[n,DAY];
+//                   ^^^
+M(n)[l,DAY] = { Drive(DAY + 1)[l,2*DAY]; repeat DAY { Drive(DAY) }; Drive(WEEK) }
+//     ^^^
+//                    ^^^
+//                                 ^^^
+//                                              ^^^
+//                                                          ^^^
+scenario S[0,DAY] = { M(DAY=on); N() }
+//           ^^^
+",
+    );
+}
+
+#[test]
+fn a_parameter_is_found_in_bounds_conditions_and_behind_moves() {
+    check_references(
+        "\
+primitive Drive(v, n)[n,2*n] moves v$0, R;
+//              ^ def
+//                                 ^
+",
+    );
+    check_references(
+        "\
+M(x$0)[l,u] = { A(x+1)[x,u]; repeat x { B() }; do C() maintaining P=x and X in {a, x} }
+//^ def
+//              ^
+//                   ^
+//                                ^
+//                                                                ^
+//                                                                               ^
+",
+    );
+}
+
+#[test]
+fn a_vehicle_is_found_where_it_is_handed_over_and_a_value_in_a_set() {
+    check_references(
+        "\
+vehicle Scout : ATRV at BASE;
+//      ^^^^^ def
+scenario S = { Drive(Sco$0ut, BASE); Drive(Other, BASE) }
+//                   ^^^^^
+",
+    );
+    check_references(
+        "\
+var P : {OK, BAD};
+//       ^^ def
+scenario S = { P in {O$0K, BAD} [1,2]; Q in {OK, BAD}; ask P=BAD or P=OK }
+//                   ^^
+//                                                                  ^^
+",
+    );
+}
+
+#[test]
 fn names_are_found_in_a_broken_program() {
     check_references(
         "\
@@ -112,6 +177,15 @@ scenario S = { { Drive(; Dr$0ive() }
 //               ^^^^^
 //                       ^^^^^
 ",
+    );
+}
+
+#[test]
+fn renaming_a_constant_changes_the_headers_that_name_it() {
+    check_rename(
+        "const H$0OUR = 60;\nprimitive A(n)[n,HOUR];\nM()[HOUR,u] = { A(HOUR*2)[0,u-HOUR] }\n",
+        "SIXTY",
+        "const SIXTY = 60;\nprimitive A(n)[n,SIXTY];\nM()[SIXTY,u] = { A(SIXTY*2)[0,u-SIXTY] }\n",
     );
 }
 

@@ -29,6 +29,24 @@ fn conditions_are_tight_and_their_bounds_stand_apart() {
 }
 
 #[test]
+fn what_larger_missions_are_written_with_has_its_blanks() {
+    check("const  DAY=24*(60-N)+1.5h ;", "const DAY = 24 * (60 - N) + 1.5h;\n");
+    check("scenario S={repeat(1+2){A()[1,2*n]}}", "scenario S = { repeat (1 + 2) { A()[1,2*n] } }\n");
+    check(
+        "scenario S={repeat n*2{A()};repeat 3{B()}}",
+        "scenario S = { repeat n * 2 { A() }; repeat 3 { B() } }\n",
+    );
+    check(
+        "scenario S={if a and!b thennext A()else B()[1,2];free{A()},free A()}",
+        "scenario S = { if a and !b thennext A() else B()[1,2]; free { A() }, free A() }\n",
+    );
+    check(
+        "scenario S={do A(n+1,X = on,not P,-5) maintaining(a or b)and X in{on ,off};not(a or b)[1,2]}",
+        "scenario S = { do A(n + 1, X=on, not P, -5) maintaining (a or b) and X in {on, off}; not(a or b) [1,2] }\n",
+    );
+}
+
+#[test]
 fn the_papers_text_is_laid_out_by_its_structure() {
     let paper = include_str!("../../../tests/conformance/c01_enroute_verbatim.rmpl");
     check(

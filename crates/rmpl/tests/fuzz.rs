@@ -7,13 +7,14 @@ use rmpl::{Edit, Span, format, parse};
 
 const ROUNDS: u64 = 2500;
 
-const PROGRAMS: [&str; 6] = [
+const PROGRAMS: [&str; 7] = [
     include_str!("../../../assets/missions/enroute.rmpl"),
     include_str!("../../../assets/missions/causal-links.rmpl"),
     include_str!("../../../tests/conformance/c01_enroute_verbatim.rmpl"),
     include_str!("../../../tests/conformance/t28_fig_threat_windows.rmpl"),
     include_str!("../../../tests/conformance/h01_orbit_nominal.rmpl"),
     include_str!("../../../tests/suite/07-mistakes.md"),
+    include_str!("../../../tests/suite/09-larger-missions.md"),
 ];
 
 const PIECES: [&str; 20] = [

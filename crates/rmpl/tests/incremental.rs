@@ -4,15 +4,16 @@ use proptest::prelude::*;
 use rmpl::syntax::SyntaxNode;
 use rmpl::{Edit, Parse, Span, parse};
 
-const MISSIONS: [&str; 4] = [
+const MISSIONS: [&str; 5] = [
     include_str!("../../../assets/missions/enroute.rmpl"),
     include_str!("../../../assets/missions/threats.rmpl"),
     include_str!("../../../tests/conformance/t30_second_search_example.rmpl"),
     "option strict = 1;\nvar P : {OK, BAD};\nA(x)[l,u] = { B()[l,u*2]; C }\nC() = { P_OK [1,2], { delay; tell not(P=BAD) } }\nscenario S[0,9] = { A(P); if P!=BAD thennext C() }\n",
+    "const N = 2*M;\nconst M = 1.5h;\nvar X : {a, b};\nprimitive D(v, n)[n, N] moves v;\nA(c)[N,u] = { repeat 2 { do D(V, M+1) maintaining c and X in {a, b} } }\nscenario S[0,N] = { free A(X=a); if P or not (Q and R) thennext A(not P) else delay, P and Q [1,2] }\n",
 ];
 
 /// Pieces of text that turn up when people type, and others that should not matter.
-const PIECES: [&str; 28] = [
+const PIECES: [&str; 37] = [
     "",
     " ",
     "\n",
@@ -38,6 +39,15 @@ const PIECES: [&str; 28] = [
     "var Q : {A, B};",
     "scenario T = {",
     "thennext ",
+    "else ",
+    " and ",
+    " or ",
+    " in {",
+    "free ",
+    "repeat N {",
+    "const N = 3;",
+    "N",
+    "90s",
     "\"",
     "∞",
     "é",

@@ -99,6 +99,7 @@ fn kind_sign(tokens: &Tokens, kind: CompletionKind) -> (&'static str, egui::Colo
         CompletionKind::Value => ("=", syntax.value),
         CompletionKind::Parameter => ("p", syntax.parameter),
         CompletionKind::BoundName => ("b", syntax.parameter),
+        CompletionKind::Constant => ("c", syntax.parameter),
         CompletionKind::Location => ("@", syntax.place),
         CompletionKind::Vehicle => ("v", syntax.place),
         CompletionKind::Option => ("o", syntax.keyword),

@@ -6,8 +6,10 @@ use super::index::{DeclarationKey, Facts, Index, Namespace, Told};
 use super::names::{Names, Symbol};
 use super::structure;
 use super::summary::{Call, Definition, Literal, Summary, Use, UseKind};
-use crate::diagnostic::{Diagnostic, Severity};
-use crate::diagnostics::{arity, bounds, duplicate, similar, support, traverse, undefined, unused, value};
+use crate::diagnostic::{Diagnostic, Known, Severity};
+use crate::diagnostics::{
+    arity, bounds, duplicate, similar, support, traverse, undefined, unknown_name, unused, value,
+};
 use crate::lower::Item;
 use crate::program::LabelMode;
 
@@ -18,7 +20,7 @@ pub(crate) struct Checked {
     pub(crate) diagnostics: Vec<(Option<(Namespace, Symbol)>, Diagnostic)>,
     pub(crate) revision: u32,
     /// The namespaces in which some diagnostic looks for similar names, so that any new name may change it.
-    pub(crate) depends_on_names: u8,
+    pub(crate) depends_on_names: u16,
 }
 
 /// Checks the declaration `key`. `is_sound` says that it has no errors of its own: only then are its oddities reported.
@@ -49,6 +51,9 @@ pub(crate) fn check(
         let found = structure::structure(item, meaning);
         checker.checked.diagnostics.extend(found.into_iter().map(|diagnostic| (None, diagnostic)));
     }
+    // What `or` and `else` copy is written once, and so is what is wrong with it.
+    let mut known = Known::default();
+    checker.checked.diagnostics.retain(|(_, diagnostic)| known.is_new(diagnostic));
     if !is_sound {
         checker.checked.diagnostics.retain(|(_, diagnostic)| diagnostic.severity == Severity::Error);
     }
@@ -120,6 +125,7 @@ impl<'a> Checker<'a> {
                 Namespace::Callable if definition.is_activity => "activity",
                 Namespace::Callable => "primitive",
                 Namespace::Variable => "variable",
+                Namespace::Constant => "constant",
                 _ => "location",
             };
             self.push(unused::unused(what, self.text(definition.name), definition.span));
@@ -163,8 +169,9 @@ impl<'a> Checker<'a> {
         let arguments: Vec<Use> =
             self.summary.uses.iter().filter(|used| used.kind == UseKind::Argument(number)).copied().collect();
         let is_location = |used: &Use| self.index.facts(used.name).definition(Namespace::Location).is_some();
+        let is_vehicle = |used: &Use| self.index.facts(used.name).definition(Namespace::Vehicle).is_some();
         let known = arguments.iter().filter(|used| is_location(used)).count();
-        for used in arguments.iter().filter(|used| !is_location(used)) {
+        for used in arguments.iter().filter(|used| !is_location(used) && !is_vehicle(used)) {
             if let Some(nearest) = self.nearest(used.name, Namespace::Location) {
                 self.push(similar::location(self.text(used.name), &nearest, used.span));
                 return;
@@ -177,7 +184,11 @@ impl<'a> Checker<'a> {
 
     fn name_use(&mut self, used: &Use) {
         let (namespace, what) = match used.kind {
-            UseKind::Argument(_) => return,
+            UseKind::Argument(_) | UseKind::HeaderBound => return,
+            UseKind::Number => {
+                self.number(used);
+                return;
+            }
             UseKind::Start => (Namespace::Location, "location"),
             UseKind::Vehicle => (Namespace::Vehicle, "vehicle"),
         };
@@ -190,6 +201,16 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// A name in an expression that no parameter explains.
+    fn number(&mut self, used: &Use) {
+        if self.index.facts(used.name).definition(Namespace::Constant).is_some() {
+            return;
+        }
+        let nearest = self.nearest(used.name, Namespace::Constant);
+        let name = self.text(used.name);
+        self.push(unknown_name::unknown(name, used.span, &self.summary.numbers, nearest.as_deref()));
+    }
+
     fn literal(&mut self, literal: &Literal) {
         let is_call =
             literal.is_bare && self.index.facts(literal.variable).definition(Namespace::Callable).is_some();
@@ -199,7 +220,7 @@ impl<'a> Checker<'a> {
         let (variable, value) = self.resolve(literal);
         match self.meaning().domain(variable) {
             Some(domain) => {
-                if !self.value_fits(literal, variable, value, domain) {
+                if !self.values_fit(literal, variable, value, domain) {
                     return;
                 }
             }
@@ -210,8 +231,8 @@ impl<'a> Checker<'a> {
 
     /// The variable and value of a literal; an atom has no value.
     fn resolve(&self, literal: &Literal) -> (Symbol, Option<Symbol>) {
-        match (literal.value, literal.split) {
-            (Some((value, _)), _) => (literal.variable, Some(value)),
+        match (literal.values.first(), literal.split) {
+            (Some(&(value, _)), _) => (literal.variable, Some(value)),
             (None, Some((variable, value))) if self.meaning().splits(literal.variable, (variable, value)) => {
                 (variable, Some(value))
             }
@@ -219,7 +240,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn value_fits(
+    fn values_fit(
         &mut self,
         literal: &Literal,
         variable: Symbol,
@@ -230,15 +251,16 @@ impl<'a> Checker<'a> {
             return true;
         }
         let is_value = |value: Symbol| domain.contains(&value);
+        let wrong = literal.values.iter().find(|(value, _)| !is_value(*value));
         let fits = match value {
-            Some(value) => is_value(value),
+            Some(value) => wrong.is_none() && is_value(value),
             None => self.names.find("true").is_some_and(is_value),
         };
         if !fits {
             let values: Vec<&str> = domain.iter().map(|&value| self.text(value)).collect();
             let name = self.text(variable);
-            let diagnostic = match literal.value {
-                Some((value, span)) => {
+            let diagnostic = match wrong {
+                Some(&(value, span)) => {
                     let nearest = self.names.nearest(value, domain.iter().copied());
                     value::outside_domain(name, self.text(value), span, &values, nearest.as_deref())
                 }
@@ -252,7 +274,7 @@ impl<'a> Checker<'a> {
     /// An undeclared name that looks like a declared variable.
     fn undeclared_variable(&mut self, literal: &Literal, variable: Symbol) {
         let written = self.text(literal.variable);
-        if let Some((stem, value)) = literal.split.filter(|_| literal.value.is_none()) {
+        if let Some((stem, value)) = literal.split.filter(|_| literal.values.is_empty()) {
             if let Some(domain) = self.meaning().domain(stem) {
                 let values: Vec<&str> = domain.iter().map(|&value| self.text(value)).collect();
                 self.push(similar::value(written, self.text(stem), &values, literal.variable_span));
@@ -294,7 +316,9 @@ impl<'a> Checker<'a> {
                 })
         };
         let supports = |told: &Told| {
+            let among = |told: &Told| literal.values.iter().any(|&(value, _)| told.value == Some(value));
             told.is_any
+                || (literal.values.len() > 1 && told.negated == literal.negated && among(told))
                 || match (told.negated, literal.negated) {
                     (false, false) | (true, true) => told.value == value,
                     (false, true) => told.value != value,
@@ -318,6 +342,7 @@ const fn is_unused(namespace: Namespace, facts: &Facts) -> bool {
     match namespace {
         Namespace::Callable => facts.calls == 0,
         Namespace::Variable => facts.literals == 0 && facts.arguments == 0,
+        Namespace::Constant => facts.arguments + facts.numbers == 0,
         Namespace::Location => facts.arguments == 0 && facts.starts == 0,
         _ => false,
     }

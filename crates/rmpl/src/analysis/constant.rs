@@ -2,7 +2,11 @@
 
 use exact::{Bound, BoundError, Time};
 
-use crate::program::{BinaryOp, Bounds, Expr, ExprKind};
+use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
+use std::cell::{Cell, RefCell};
+
+use crate::program::{BinaryOp, Bounds, Expr, ExprKind, Program, TimeUnit};
 
 /// Why an expression has no value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,23 +28,29 @@ pub(crate) fn interval(bounds: &Bounds) -> Option<(Time, Bound)> {
 
 /// The value of an expression without names.
 pub(crate) fn evaluate(expr: &Expr) -> Result<Bound, ConstantError> {
-    evaluate_with(expr, &|_| None)
+    evaluate_with(expr, None, &|_| None)
 }
 
-/// The value of an expression where `lookup` gives the values of names.
-pub(crate) fn evaluate_with(
+/// The value of an expression where `lookup` gives the values of names, and `unit` is the mission's, if that is known.
+fn evaluate_with(
     expr: &Expr,
+    unit: Option<TimeUnit>,
     lookup: &dyn Fn(&str) -> Option<Bound>,
 ) -> Result<Bound, ConstantError> {
     match &expr.kind {
         ExprKind::Number(number) => Ok(Bound::Finite(Time::from_units(*number))),
+        ExprKind::Duration(number, written) => {
+            let unit = unit.ok_or(ConstantError::NotConstant)?;
+            let value = written.in_units(unit).and_then(|one| one.checked_mul(*number));
+            value.map(|value| Bound::Finite(Time::from_units(value))).ok_or(ConstantError::TooLarge)
+        }
         ExprKind::Infinity => Ok(Bound::Infinite),
         ExprKind::Name(name) => lookup(name).ok_or(ConstantError::NotConstant),
         ExprKind::Percent(inner) => {
-            combine(BinaryOp::Divide, evaluate_with(inner, lookup)?, Bound::Finite(Time::from(100)))
+            combine(BinaryOp::Divide, evaluate_with(inner, unit, lookup)?, Bound::Finite(Time::from(100)))
         }
         ExprKind::Binary(operator, left, right) => {
-            combine(*operator, evaluate_with(left, lookup)?, evaluate_with(right, lookup)?)
+            combine(*operator, evaluate_with(left, unit, lookup)?, evaluate_with(right, unit, lookup)?)
         }
     }
 }
@@ -58,4 +68,49 @@ fn combine(operator: BinaryOp, left: Bound, right: Bound) -> Result<Bound, Const
         BoundError::Overflow => ConstantError::TooLarge,
         _ => ConstantError::Undefined,
     })
+}
+
+/// The values of a file's constants, for the editor: compilation has its own, with what is wrong with them.
+#[derive(Debug)]
+pub(crate) struct Constants {
+    declared: FxHashMap<SmolStr, Expr>,
+    unit: TimeUnit,
+    /// What has been asked for, or is being worked out.
+    known: RefCell<FxHashMap<SmolStr, Option<Bound>>>,
+    depth: Cell<u32>,
+}
+
+/// Constants that name each other in longer chains have no value here.
+const MAX_CHAIN: u32 = 100;
+
+impl Constants {
+    pub(crate) fn new(program: &Program) -> Self {
+        let mut declared = FxHashMap::default();
+        for constant in &program.constants {
+            declared.entry(constant.name.text.clone()).or_insert_with(|| constant.value.clone());
+        }
+        let unit = program.options.time_unit;
+        Self { declared, unit, known: RefCell::default(), depth: Cell::new(0) }
+    }
+
+    /// The value of a constant; none if it has no value, or depends on itself.
+    pub(crate) fn value(&self, name: &str) -> Option<Bound> {
+        let known = self.known.borrow().get(name).copied();
+        if let Some(known) = known {
+            return known;
+        }
+        let expr = self.declared.get(name).filter(|_| self.depth.get() < MAX_CHAIN)?;
+        self.known.borrow_mut().insert(name.into(), None);
+        self.depth.set(self.depth.get() + 1);
+        let value = self.evaluate(expr, &|_| None);
+        self.depth.set(self.depth.get() - 1);
+        self.known.borrow_mut().insert(name.into(), value);
+        value
+    }
+
+    /// The value of an expression: of its names, `lookup` knows those that are no constants.
+    pub(crate) fn evaluate(&self, expr: &Expr, lookup: &dyn Fn(&str) -> Option<Bound>) -> Option<Bound> {
+        let lookup = |name: &str| lookup(name).or_else(|| self.value(name));
+        evaluate_with(expr, Some(self.unit), &lookup).ok()
+    }
 }

@@ -26,13 +26,14 @@ pub(crate) enum Namespace {
     Location,
     Obstacle,
     Vehicle,
+    Constant,
 }
 
 impl Namespace {
-    pub(crate) const COUNT: usize = 8;
+    pub(crate) const COUNT: usize = 9;
 
     /// A set of namespaces with this one alone.
-    pub(crate) const fn bit(self) -> u8 {
+    pub(crate) const fn bit(self) -> u16 {
         1 << self as u8
     }
 }
@@ -57,6 +58,8 @@ pub(crate) struct Facts {
     pub(crate) arguments: u32,
     pub(crate) starts: u32,
     pub(crate) vehicles: u32,
+    /// Uses as a number in an expression.
+    pub(crate) numbers: u32,
     /// Conditions about the name, those written `X_V` included.
     pub(crate) literals: u32,
     /// Conditions that compare it with a value.
@@ -68,11 +71,12 @@ pub(crate) struct Facts {
 }
 
 /// What the check of a declaration can see of a name.
-type Visible = (u64, u64, [bool; 4]);
+type Visible = (u64, u64, [bool; 6]);
 
 impl Facts {
     fn visible(&self) -> Visible {
-        let used = [self.calls > 0, self.arguments + self.starts > 0, self.literals > 0, self.compared > 0];
+        let uses = [self.calls, self.arguments, self.starts, self.numbers, self.literals, self.compared];
+        let used = uses.map(|count| count > 0);
         (self.definition_fingerprint, self.told_fingerprint, used)
     }
 
@@ -111,6 +115,7 @@ impl Index {
             arguments: 0,
             starts: 0,
             vehicles: 0,
+            numbers: 0,
             literals: 0,
             compared: 0,
             told: Vec::new(),
@@ -174,7 +179,7 @@ impl Index {
     }
 
     /// Whether something that the check depended on has changed since revision `at`.
-    pub(crate) fn is_stale(&self, summary: &Summary, at: u32, depends_on_names: u8) -> bool {
+    pub(crate) fn is_stale(&self, summary: &Summary, at: u32, depends_on_names: u16) -> bool {
         let newer = |symbol: Symbol| self.facts(symbol).changed_at > at;
         let has_new_names = |(namespace, &changed_at): (usize, &u32)| {
             depends_on_names & (1 << namespace) != 0 && changed_at > at
@@ -292,6 +297,7 @@ impl Index {
                 UseKind::Argument(_) => step(&mut facts.arguments),
                 UseKind::Start => step(&mut facts.starts),
                 UseKind::Vehicle => step(&mut facts.vehicles),
+                UseKind::Number | UseKind::HeaderBound => step(&mut facts.numbers),
             }
         }
         for literal in &summary.literals {
@@ -310,7 +316,7 @@ impl Index {
             return;
         }
         step(&mut self.facts[literal.variable.index()].literals);
-        if literal.value.is_some() {
+        if !literal.values.is_empty() {
             step(&mut self.facts[literal.variable.index()].compared);
         }
         if let Some((variable, _)) = literal.split {
@@ -320,10 +326,10 @@ impl Index {
             return;
         }
         let told = Told {
-            value: literal.value.map(|(value, _)| value),
+            value: literal.values.first().map(|&(value, _)| value),
             negated: literal.negated,
             is_split: false,
-            is_any: literal.value_is_formal,
+            is_any: literal.value_is_formal || literal.values.len() > 1,
             count: 0,
         };
         self.facts[literal.variable.index()].tell(told, is_added);

@@ -4,10 +4,10 @@ use exact::{Bound, Rational};
 
 use super::constant::{self, ConstantError};
 use crate::diagnostic::Diagnostic;
-use crate::diagnostics::{bounds, choice, duplicate, mixed, option, unknown_name, value};
+use crate::diagnostics::{bounds, choice, duplicate, mixed, option, value};
 use crate::lower::{Item, OptionDecl, OptionValue};
 use crate::program::{
-    Bounds, Expr, ExprKind, HeaderBound, HeaderBounds, Name, ObstacleShape, Statement, StatementKind,
+    Bounds, Expr, HeaderBound, HeaderBounds, Name, ObstacleShape, Statement, StatementKind,
 };
 use crate::span::Span;
 use crate::syntax::{Element, SyntaxKind, SyntaxNode};
@@ -17,7 +17,7 @@ pub(crate) const VEHICLE_MODELS: [&str; 3] = ["ATRV", "ATRV-Jr", "Blimp"];
 
 /// All of it, in no particular order.
 pub(crate) fn local_diagnostics(item: &Item, root: SyntaxNode<'_>) -> Vec<Diagnostic> {
-    let mut local = Local { bound_names: Vec::new(), found: Vec::new() };
+    let mut local = Local { found: Vec::new() };
     local.item(item);
     if matches!(item, Item::Activity(_) | Item::Scenario(_)) {
         local.separators(root);
@@ -27,7 +27,6 @@ pub(crate) fn local_diagnostics(item: &Item, root: SyntaxNode<'_>) -> Vec<Diagno
 }
 
 struct Local {
-    bound_names: Vec<Name>,
     found: Vec<Diagnostic>,
 }
 
@@ -48,9 +47,8 @@ impl Local {
                 }
             }
             Item::Activity(decl) => {
-                self.header(&decl.bounds);
                 let mut names = decl.formals.clone();
-                names.extend(self.bound_names.iter().cloned());
+                names.extend(self.header(&decl.bounds));
                 self.distinct(&names, "parameter");
                 self.statement(&decl.body);
             }
@@ -81,7 +79,7 @@ impl Local {
                 let found = parsed.diagnostics.into_iter();
                 self.found.extend(found.map(|diagnostic| diagnostic.moved(decl.text_span.start)));
             }
-            Item::Location(_) => {}
+            Item::Location(_) | Item::Constant(_) => {}
         }
     }
 
@@ -119,45 +117,26 @@ impl Local {
 
     // Bounds.
 
-    fn header(&mut self, header: &HeaderBounds) {
-        let HeaderBounds::Sides { lower, upper, span } = header else { return };
-        for side in [lower, upper] {
-            if let HeaderBound::Parameter(name) = side {
-                self.bound_names.push(name.clone());
-            }
-        }
+    /// Checks the limits of a header; gives back the names that its bounds declare.
+    fn header(&mut self, header: &HeaderBounds) -> Vec<Name> {
+        let HeaderBounds::Sides { lower, upper, span } = header else { return Vec::new() };
+        let name = |side: &HeaderBound| match side {
+            HeaderBound::Parameter(name) => Some(name.clone()),
+            HeaderBound::Limit(_) => None,
+        };
+        let names = [lower, upper].into_iter().filter_map(name).collect();
         let limit = |side: &HeaderBound| match side {
             HeaderBound::Limit(limit) => Some(limit.clone()),
             HeaderBound::Parameter(_) => None,
         };
         let (lower, upper) = (limit(lower), limit(upper));
-        for side in lower.iter().chain(&upper) {
-            self.known_names(side);
-        }
         self.sides(lower.as_ref(), upper.as_ref(), *span);
+        names
     }
 
     fn bounds(&mut self, bounds: Option<&Bounds>) {
         let Some(bounds) = bounds else { return };
-        self.known_names(&bounds.lower);
-        self.known_names(&bounds.upper);
         self.sides(Some(&bounds.lower), Some(&bounds.upper), bounds.span);
-    }
-
-    fn known_names(&mut self, expr: &Expr) {
-        match &expr.kind {
-            ExprKind::Name(text) => {
-                if self.bound_names.iter().all(|name| name.text != *text) {
-                    self.found.push(unknown_name::unknown(text, expr.span, &self.bound_names));
-                }
-            }
-            ExprKind::Percent(inner) => self.known_names(inner),
-            ExprKind::Binary(_, left, right) => {
-                self.known_names(left);
-                self.known_names(right);
-            }
-            ExprKind::Number(_) | ExprKind::Infinity => {}
-        }
     }
 
     /// Checks the sides that are constants; one mistake is reported once.
@@ -203,7 +182,8 @@ impl Local {
             }
             StatementKind::Maintaining(body, _)
             | StatementKind::Watching(body, _)
-            | StatementKind::IfThennext(_, body) => self.statement(body),
+            | StatementKind::IfThennext(_, body)
+            | StatementKind::Repeat(_, body) => self.statement(body),
             StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay => {}
         }
     }

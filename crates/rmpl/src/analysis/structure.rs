@@ -9,7 +9,7 @@ use super::index::Namespace;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostics::{slack, together, window};
 use crate::lower::Item;
-use crate::program::{Condition, HeaderBound, HeaderBounds, LabelMode, Statement, StatementKind};
+use crate::program::{Condition, Expr, HeaderBound, HeaderBounds, LabelMode, Statement, StatementKind};
 use crate::span::Span;
 
 /// Least and greatest duration.
@@ -86,6 +86,11 @@ impl Structure<'_> {
                 is_leaf = false;
                 self.duration(body)
             }
+            StatementKind::Repeat(count, body) => {
+                is_leaf = false;
+                let once = self.duration(body);
+                repeated(count, once)
+            }
             StatementKind::Call(name, _) => {
                 is_leaf = true;
                 self.declared(&name.text)
@@ -138,7 +143,7 @@ impl Structure<'_> {
 
     /// The duration of a bare name that is a call.
     fn called(&self, condition: &Condition) -> Option<Interval> {
-        let is_plain = condition.value.is_none() && !condition.negated;
+        let is_plain = condition.values.is_empty() && !condition.negated;
         let symbol = self.meaning.names.find(&condition.variable.text).filter(|_| is_plain)?;
         self.meaning.index.definition(Namespace::Callable, symbol)?;
         Some(self.declared(&condition.variable.text))
@@ -196,7 +201,8 @@ impl Structure<'_> {
                 false
             }
             StatementKind::Delay => is_instant,
-            StatementKind::Choose(_) | StatementKind::Call(..) => false,
+            // Only a copy begins here, and it may be none.
+            StatementKind::Choose(_) | StatementKind::Call(..) | StatementKind::Repeat(..) => false,
         }
     }
 
@@ -220,8 +226,10 @@ impl Structure<'_> {
     /// Variable, value and negation after the `X_V` rule.
     fn resolve(&self, condition: &Condition) -> Option<(String, Option<String>, bool)> {
         let text = condition.variable.text.as_str();
-        if let Some(value) = &condition.value {
-            return Some((text.to_owned(), Some(value.text.to_string()), condition.negated));
+        match condition.values.as_slice() {
+            [] => {}
+            [value] => return Some((text.to_owned(), Some(value.text.to_string()), condition.negated)),
+            _ => return None,
         }
         let whole = self.meaning.names.find(text)?;
         let split = text.rsplit_once('_').and_then(|(variable, value)| {
@@ -234,6 +242,14 @@ impl Structure<'_> {
             None => (text.to_owned(), None, condition.negated),
         })
     }
+}
+
+/// How long so many copies of something take.
+fn repeated(count: &Expr, (lower, upper): Interval) -> Interval {
+    let Ok(count) = constant::evaluate(count) else { return ANY };
+    let times = |bound: Bound| bound.times(count).ok();
+    let lower = times(Bound::Finite(lower)).and_then(Bound::finite);
+    lower.zip(times(upper)).unwrap_or(ANY)
 }
 
 fn is_disjoint(one: Interval, other: Interval) -> bool {

@@ -11,7 +11,8 @@ use super::index::Namespace;
 use super::names::{Names, Symbol};
 use crate::lower::{Item, OptionValue};
 use crate::program::{
-    Argument, ArgumentValue, Condition, HeaderBound, HeaderBounds, LabelMode, Name, Statement, StatementKind,
+    Argument, ArgumentValue, Bounds, Condition, Expr, ExprKind, HeaderBound, HeaderBounds, LabelMode, Name,
+    Statement, StatementKind,
 };
 use crate::span::Span;
 
@@ -22,6 +23,8 @@ pub(crate) struct Summary {
     pub(crate) calls: Vec<Call>,
     pub(crate) literals: Vec<Literal>,
     pub(crate) uses: Vec<Use>,
+    /// Names that stand for numbers in the declaration's expressions: its header's bounds and its parameters.
+    pub(crate) numbers: Vec<Name>,
     /// Changes when the calls change: who calls whom decides about recursion.
     pub(crate) call_fingerprint: u64,
     /// `Some` when this is `option strict`.
@@ -66,7 +69,8 @@ pub(crate) struct Literal {
     pub(crate) mode: LabelMode,
     pub(crate) variable: Symbol,
     pub(crate) variable_span: Span,
-    pub(crate) value: Option<(Symbol, Span)>,
+    /// The values; an atom has none.
+    pub(crate) values: Vec<(Symbol, Span)>,
     /// `X` and `V` of a condition written `X_V`.
     pub(crate) split: Option<(Symbol, Symbol)>,
     pub(crate) negated: bool,
@@ -95,6 +99,10 @@ pub(crate) enum UseKind {
     Start,
     /// A vehicle of a traverse.
     Vehicle,
+    /// A number in an expression: a constant, for parameters are no uses.
+    Number,
+    /// A name in a header's bounds: a constant if there is one of this name, otherwise it declares a parameter.
+    HeaderBound,
 }
 
 /// Summarises what was lowered. `bare_names` are the starts of names that stand alone as statements.
@@ -122,6 +130,10 @@ struct Collector<'a> {
 impl Collector<'_> {
     fn item(&mut self, item: &Item) {
         match item {
+            Item::Constant(decl) => {
+                self.define(Namespace::Constant, &decl.name, 0, None, Vec::new());
+                self.expression(&decl.value);
+            }
             Item::Variable(decl) => {
                 let values = decl.values.iter().map(|value| self.names.intern(&value.text)).collect();
                 self.define(Namespace::Variable, &decl.name, 0, None, values);
@@ -133,8 +145,13 @@ impl Collector<'_> {
                     definition.moves = true;
                     definition.fingerprint ^= 1 << 2;
                 }
+                self.formals = decl.formals.iter().map(|formal| formal.text.clone()).collect();
+                self.summary.numbers.clone_from(&decl.formals);
+                self.bounds(decl.bounds.as_ref());
                 for vehicle in decl.moves.iter().flat_map(|moves| &moves.vehicles) {
-                    self.name_use(UseKind::Vehicle, &vehicle.text, vehicle.span);
+                    if !self.formals.contains(&vehicle.text) {
+                        self.name_use(UseKind::Vehicle, &vehicle.text, vehicle.span);
+                    }
                 }
             }
             Item::Activity(decl) => {
@@ -145,10 +162,13 @@ impl Collector<'_> {
                     definition.fingerprint ^= 1;
                 }
                 self.formals = decl.formals.iter().map(|formal| formal.text.clone()).collect();
+                self.summary.numbers.clone_from(&decl.formals);
+                self.header(&decl.bounds);
                 self.statement(&decl.body);
             }
             Item::Scenario(decl) => {
                 self.define(Namespace::Scenario, &decl.name, 0, None, Vec::new());
+                self.bounds(decl.bounds.as_ref());
                 self.statement(&decl.body);
             }
             Item::Option(decl) => {
@@ -202,7 +222,47 @@ impl Collector<'_> {
         self.summary.uses.push(Use { kind, name, span });
     }
 
+    /// The names of a header's bounds stand for numbers in the body, unless they are constants: which they are is
+    /// known once the whole file is.
+    fn header(&mut self, bounds: &HeaderBounds) {
+        let HeaderBounds::Sides { lower, upper, .. } = bounds else { return };
+        for side in [lower, upper] {
+            if let HeaderBound::Parameter(name) = side {
+                self.summary.numbers.push(name.clone());
+                self.name_use(UseKind::HeaderBound, &name.text, name.span);
+            }
+        }
+        for side in [lower, upper] {
+            if let HeaderBound::Limit(limit) = side {
+                self.expression(limit);
+            }
+        }
+    }
+
+    fn bounds(&mut self, bounds: Option<&Bounds>) {
+        for side in bounds.iter().flat_map(|bounds| [&bounds.lower, &bounds.upper]) {
+            self.expression(side);
+        }
+    }
+
+    fn expression(&mut self, expr: &Expr) {
+        match &expr.kind {
+            ExprKind::Name(text) => {
+                if self.summary.numbers.iter().all(|name| name.text != *text) {
+                    self.name_use(UseKind::Number, text, expr.span);
+                }
+            }
+            ExprKind::Percent(inner) => self.expression(inner),
+            ExprKind::Binary(_, left, right) => {
+                self.expression(left);
+                self.expression(right);
+            }
+            ExprKind::Number(_) | ExprKind::Duration(..) | ExprKind::Infinity => {}
+        }
+    }
+
     fn statement(&mut self, statement: &Statement) {
+        self.bounds(statement.bounds.as_ref());
         match &statement.kind {
             StatementKind::Sequence(parts)
             | StatementKind::Parallel(parts)
@@ -224,13 +284,23 @@ impl Collector<'_> {
                 self.literal(LabelMode::Ask, condition, false);
                 self.statement(body);
             }
+            StatementKind::Repeat(count, body) => {
+                self.expression(count);
+                self.statement(body);
+            }
             StatementKind::Call(name, arguments) => {
                 let call = self.summary.calls.len() as u32;
                 for argument in arguments {
-                    if let ArgumentValue::Name(text) = &argument.value
-                        && !self.formals.contains(text)
-                    {
-                        self.name_use(UseKind::Argument(call), text, argument.span);
+                    match &argument.value {
+                        ArgumentValue::Name(text) if !self.formals.contains(text) => {
+                            self.name_use(UseKind::Argument(call), text, argument.span);
+                        }
+                        ArgumentValue::Expression(expr) => self.expression(expr),
+                        // What it is used for, asked or told, is known where the parameter stands.
+                        ArgumentValue::Condition(condition) => {
+                            self.literal(LabelMode::Tell, condition, false);
+                        }
+                        ArgumentValue::Name(_) | ArgumentValue::Number(_) => {}
                     }
                 }
                 let is_formal = |argument: &Argument| matches!(&argument.value, ArgumentValue::Name(text) if self.formals.contains(text));
@@ -271,20 +341,24 @@ impl Collector<'_> {
 
     fn literal(&mut self, mode: LabelMode, condition: &Condition, is_bare: bool) {
         let text = &condition.variable.text;
-        let split = text.rsplit_once('_').filter(|_| condition.value.is_none());
+        let split = text.rsplit_once('_').filter(|_| condition.values.is_empty());
         let split = split.filter(|(variable, value)| !variable.is_empty() && !value.is_empty());
         let literal = Literal {
             mode,
             variable: self.names.intern(text),
             variable_span: condition.variable.span,
-            value: condition.value.as_ref().map(|value| (self.names.intern(&value.text), value.span)),
+            values: condition
+                .values
+                .iter()
+                .map(|value| (self.names.intern(&value.text), value.span))
+                .collect(),
             split: split.map(|(variable, value)| {
                 (self.names.intern(&SmolStr::new(variable)), self.names.intern(&SmolStr::new(value)))
             }),
             negated: condition.negated,
             span: condition.span,
             variable_is_formal: self.formals.contains(text),
-            value_is_formal: condition.value.as_ref().is_some_and(|value| self.formals.contains(&value.text)),
+            value_is_formal: condition.values.iter().any(|value| self.formals.contains(&value.text)),
             is_bare,
         };
         self.summary.literals.push(literal);

@@ -30,6 +30,7 @@ pub(crate) fn declaration(namespace: Namespace, name: &str, span: Span) -> Diagn
     let message = match namespace {
         Namespace::Callable => format!("an activity or primitive `{name}` is declared before this one"),
         Namespace::Variable => format!("the variable `{name}` is declared before"),
+        Namespace::Constant => format!("the constant `{name}` is declared before"),
         Namespace::Scenario => format!("a scenario `{name}` is declared before this one"),
         Namespace::Option => format!("the option `{name}` is set before"),
         Namespace::Terrain => "a terrain is declared before this one".to_owned(),

@@ -1,7 +1,8 @@
 //! `E-LIMIT`: a mission that expands to more than can be planned. Compilation reports it.
 
-use crate::diagnostic::{Code, Severity};
+use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;
+use crate::span::Span;
 
 /// The code.
 pub const CODE: Code = Code("E-LIMIT");
@@ -11,8 +12,10 @@ pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
     title: "a mission that expands to too much",
-    meaning: "Every call is written out in full. Activities that each call another one twice double the network with every level: thirty
-levels are a thousand million copies. The mission is refused before it fills the memory.",
+    meaning: "Every call is written out in full, and so is every copy of a `repeat`. Activities that each call another one twice double the
+network with every level: thirty levels are a thousand million copies. A mission of more than 500,000 events, or nested
+deeper than 200 levels, is refused before it fills the memory; so is an activity in which `or` copies more than 10,000
+statements.",
     example: "primitive Step()[1,2];
 Twice() = { Step(); Step() }
 Four() = { Twice(); Twice() }
@@ -22,3 +25,23 @@ scenario Day[0,60] = { Four() }",
 Twice() = { Step(); Step() }
 scenario Day[0,60] = { Twice() }",
 };
+
+/// Calls and `repeat`, written out, have more than `most` events; `what` has them.
+pub fn events(what: &str, most: usize, span: Span) -> Diagnostic {
+    let message = format!("with calls and `repeat` written out, {what} more than {most} events");
+    Diagnostic::error(CODE, span, message).with_hint(
+        "make fewer copies, call the lowest activities fewer times, or plan one activity at a time",
+    )
+}
+
+/// Statements and the calls in them are nested deeper than `most` levels.
+pub fn nested(most: usize, span: Span) -> Diagnostic {
+    Diagnostic::error(CODE, span, format!("statements and calls are nested deeper than {most} levels"))
+}
+
+/// `or` copies more than `most` statements.
+pub(crate) fn copied(most: usize, span: Span) -> Diagnostic {
+    let message = format!("written out, the choices of `or` take more than {most} statements here");
+    Diagnostic::error(CODE, span, message)
+        .with_hint("`or` writes what stands beside it once for each condition")
+}

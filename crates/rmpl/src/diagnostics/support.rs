@@ -23,9 +23,13 @@ scenario Day[0,60] = { { delay; do { Drive() } maintaining LIGHT }, LIGHT [40,40
 
 /// An Ask that no Tell of the file can support.
 pub(crate) fn never(literal: &Literal, name: &str, names: &Names) -> Diagnostic {
-    let mut condition = match literal.value {
-        Some((value, _)) => format!("{name}={}", names.text(value)),
-        None => name.to_owned(),
+    let mut condition = match literal.values.as_slice() {
+        [] => name.to_owned(),
+        [(value, _)] => format!("{name}={}", names.text(*value)),
+        values => {
+            let values: Vec<&str> = values.iter().map(|(value, _)| names.text(*value).as_str()).collect();
+            format!("{name} in {{{}}}", values.join(", "))
+        }
     };
     if literal.negated {
         condition = format!("not({condition})");

@@ -125,3 +125,10 @@ pub(crate) fn double_equals(span: Span) -> Diagnostic {
 pub(crate) fn wrong_count(wanted: &str, count: usize, span: Span) -> Diagnostic {
     error(span, format!("expected {wanted}; here are {count}"))
 }
+
+/// A condition that is asserted leaves open which of several holds.
+pub(crate) fn choice_asserted(span: Span) -> Diagnostic {
+    error(span, "an assertion says what holds, and this leaves open which of several does").with_hint(
+        "write `choose { a, b }` where planning is to choose; `do … watching a and b` asserts that one of them is false",
+    )
+}

@@ -39,8 +39,13 @@ pub(crate) fn conflict(pair: [(LabelMode, &Condition); 2], later: Span) -> Diagn
 
 fn describe(mode: LabelMode, condition: &Condition) -> String {
     let mut text = condition.variable.text.to_string();
-    if let Some(value) = &condition.value {
-        text = format!("{text}={}", value.text);
+    match condition.values.as_slice() {
+        [] => {}
+        [value] => text = format!("{text}={}", value.text),
+        values => {
+            let values: Vec<&str> = values.iter().map(|value| value.text.as_str()).collect();
+            text = format!("{text} in {{{}}}", values.join(", "));
+        }
     }
     if condition.negated {
         text = format!("not({text})");

@@ -51,6 +51,8 @@ pub enum CompletionKind {
     Parameter,
     /// A name of the header's bounds.
     BoundName,
+    /// A constant.
+    Constant,
     /// A location.
     Location,
     /// A vehicle or a model.
@@ -158,9 +160,16 @@ fn place(context: &[SyntaxToken<'_>]) -> Place {
                 return Place::Argument;
             }
         }
-        Some((Kind::LeftBrace, _)) => {}
+        Some((Kind::LeftBrace, at)) => {
+            if let Some(variable) = variable_of_set(context, at) {
+                return Place::Value(variable.to_owned());
+            }
+        }
         _ if !matches!(last.kind, Kind::Semicolon | Kind::RightBrace) => return Place::Nothing,
         _ => return Place::File,
+    }
+    if let Some(place) = behind_word(context, *last) {
+        return place;
     }
     match last.kind {
         Kind::Equals | Kind::NotEquals => {
@@ -182,6 +191,42 @@ fn place(context: &[SyntaxToken<'_>]) -> Place {
     }
 }
 
+/// X of `X in {`, where the brace stands at `at`.
+fn variable_of_set<'a>(context: &[SyntaxToken<'a>], at: usize) -> Option<&'a str> {
+    let [variable, word] = context.get(at.checked_sub(2)?..at)? else { return None };
+    let is_set = variable.kind == SyntaxKind::Name && word.kind == SyntaxKind::Name && word.text == "in";
+    is_set.then_some(variable.text)
+}
+
+/// Behind a word that is one of the language only in its place, and stands there.
+fn behind_word(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Option<Place> {
+    use SyntaxKind as Kind;
+    if last.kind != Kind::Name {
+        return None;
+    }
+    let before = context.get(context.len().checked_sub(2)?)?.kind;
+    let begins_statement = matches!(
+        before,
+        Kind::LeftBrace | Kind::Semicolon | Kind::Comma | Kind::DoKeyword | Kind::ThennextKeyword
+    );
+    let ends = matches!(
+        before,
+        Kind::Name
+            | Kind::Number
+            | Kind::RightParen
+            | Kind::RightBracket
+            | Kind::RightBrace
+            | Kind::DelayKeyword
+    );
+    match last.text {
+        "repeat" if begins_statement => Some(Place::Bound),
+        "free" if begins_statement => Some(Place::Statement),
+        "else" if ends => Some(Place::Statement),
+        "and" | "or" if ends => Some(Place::Condition),
+        _ => None,
+    }
+}
+
 /// Behind a whole statement or condition: the words that may go on.
 fn after_statement(context: &[SyntaxToken<'_>]) -> Place {
     let mut depth = 0_i32;
@@ -196,12 +241,11 @@ fn after_statement(context: &[SyntaxToken<'_>]) -> Place {
             }
             SyntaxKind::Semicolon | SyntaxKind::Comma if depth == 0 && !in_round(context, *token) => break,
             SyntaxKind::DoKeyword if depth == 0 => return Place::Words(&["maintaining", "watching"]),
-            SyntaxKind::IfKeyword if depth == 0 => return Place::Words(&["thennext"]),
-            SyntaxKind::MaintainingKeyword | SyntaxKind::WatchingKeyword | SyntaxKind::ThennextKeyword
-                if depth == 0 =>
-            {
-                break;
+            SyntaxKind::IfKeyword if depth == 0 => return Place::Words(&["thennext", "and", "or", "in"]),
+            SyntaxKind::MaintainingKeyword | SyntaxKind::WatchingKeyword if depth == 0 => {
+                return Place::Words(&["and", "or", "in"]);
             }
+            SyntaxKind::ThennextKeyword if depth == 0 => return Place::Words(&["else"]),
             _ => {}
         }
     }
@@ -241,6 +285,7 @@ fn in_declaration(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Option<
         return None;
     }
     let names = context.iter().filter(|token| token.kind == SyntaxKind::Name).count();
+    let is_constant = context.get(1).is_none_or(|second| second.kind == SyntaxKind::Name);
     Some(match (first.kind, first.text) {
         (SyntaxKind::OptionKeyword, _) => match last.kind {
             SyntaxKind::OptionKeyword => Place::Option,
@@ -256,12 +301,18 @@ fn in_declaration(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Option<
             (SyntaxKind::Name, _) if names == 3 => Place::Words(&["at"]),
             _ => Place::Nothing,
         },
+        (SyntaxKind::Name, "const")
+            if is_constant && context.iter().any(|token| token.kind == SyntaxKind::Equals) =>
+        {
+            Place::Bound
+        }
         (SyntaxKind::Name, "obstacle") if names == 2 => Place::Shape,
         (SyntaxKind::Name, "terrain") => match last.kind {
             SyntaxKind::String => Place::Words(&["cell", "origin"]),
             SyntaxKind::Number => Place::Words(&["origin"]),
             _ => Place::Nothing,
         },
+        (SyntaxKind::Name, "const") if is_constant => Place::Nothing,
         (SyntaxKind::Name, "obstacle" | "location") | (SyntaxKind::VarKeyword, _) => Place::Nothing,
         _ => return None,
     })
@@ -305,13 +356,20 @@ fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<CompletionItem> {
         Place::Bound => {
             items.push(keyword("inf", "inf"));
             local_names(parse, offset, &NameKind::BoundName, CompletionKind::BoundName, &mut items);
+            local_names(parse, offset, &NameKind::Parameter, CompletionKind::Parameter, &mut items);
+            declared(parse, OutlineKind::Constant, CompletionKind::Constant, &mut items);
         }
         Place::Argument => {
             local_names(parse, offset, &NameKind::Parameter, CompletionKind::Parameter, &mut items);
             declared(parse, OutlineKind::Location, CompletionKind::Location, &mut items);
+            declared(parse, OutlineKind::Vehicle, CompletionKind::Vehicle, &mut items);
+            declared(parse, OutlineKind::Constant, CompletionKind::Constant, &mut items);
             declared(parse, OutlineKind::Variable, CompletionKind::Variable, &mut items);
         }
-        Place::Vehicle => declared(parse, OutlineKind::Vehicle, CompletionKind::Vehicle, &mut items),
+        Place::Vehicle => {
+            local_names(parse, offset, &NameKind::Parameter, CompletionKind::Parameter, &mut items);
+            declared(parse, OutlineKind::Vehicle, CompletionKind::Vehicle, &mut items);
+        }
         Place::Location => declared(parse, OutlineKind::Location, CompletionKind::Location, &mut items),
         Place::Model => {
             items.extend(VEHICLE_MODELS.iter().map(|model| plain(model, CompletionKind::Vehicle)));
@@ -346,7 +404,8 @@ fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<CompletionItem> {
     items
 }
 
-const DECLARATIONS: [(&str, &str); 8] = [
+const DECLARATIONS: [(&str, &str); 9] = [
+    ("const", "const $0 = ;"),
     ("var", "var $0 : {};"),
     ("primitive", "primitive $0();"),
     ("scenario", "scenario $0 = {\n}"),
@@ -357,7 +416,10 @@ const DECLARATIONS: [(&str, &str); 8] = [
     ("vehicle", "vehicle $0 : ATRV at BASE;"),
 ];
 
-const STATEMENTS: [(&str, &str); 8] = [
+const STATEMENTS: [(&str, &str); 11] = [
+    ("repeat", "repeat $0 { }"),
+    ("free", "free "),
+    ("if … thennext … else", "if $0 thennext  else "),
     ("choose", "choose { $0 }"),
     ("do … maintaining", "do { $0 } maintaining "),
     ("do … watching", "do { $0 } watching "),
@@ -416,7 +478,7 @@ fn conditions(parse: &Parse, offset: u32, items: &mut Vec<CompletionItem>) {
         {
             let name = parse.meaning().names.text(literal.variable);
             if known.insert(name.to_string()) {
-                let insert = if literal.value.is_some() { format!("{name}=") } else { name.to_string() };
+                let insert = if literal.values.is_empty() { name.to_string() } else { format!("{name}=") };
                 items.push(CompletionItem {
                     label: name.to_string(),
                     kind: CompletionKind::Variable,
@@ -439,9 +501,9 @@ fn values(parse: &Parse, variable: &str, items: &mut Vec<CompletionItem>) {
     let mut known: FxHashSet<Symbol> = FxHashSet::default();
     for (_, summary) in parse.summaries() {
         let own = summary.literals.iter().filter(|literal| literal.variable == symbol);
-        for (value, _) in own.filter_map(|literal| literal.value) {
-            let text = meaning.names.text(value);
-            if known.insert(value) {
+        for (value, _) in own.flat_map(|literal| &literal.values) {
+            let text = meaning.names.text(*value);
+            if known.insert(*value) {
                 items.push(plain(text, CompletionKind::Value));
             }
         }

@@ -77,7 +77,8 @@ fn runs_of_declarations(parse: &Parse) -> Vec<Fold> {
         let declaration = root.children().next().filter(|child| {
             matches!(
                 child.kind(),
-                SyntaxKind::LocationDecl
+                SyntaxKind::ConstantDecl
+                    | SyntaxKind::LocationDecl
                     | SyntaxKind::ObstacleDecl
                     | SyntaxKind::VehicleDecl
                     | SyntaxKind::PrimitiveDecl

@@ -127,7 +127,7 @@ const fn of_name(kind: &NameKind) -> HighlightKind {
         NameKind::Variable => HighlightKind::Variable,
         NameKind::Value(_) => HighlightKind::Value,
         NameKind::Parameter => HighlightKind::Parameter,
-        NameKind::BoundName => HighlightKind::BoundName,
+        NameKind::BoundName | NameKind::Constant => HighlightKind::BoundName,
         NameKind::Scenario => HighlightKind::Scenario,
         NameKind::Location | NameKind::Obstacle => HighlightKind::Location,
         NameKind::Vehicle | NameKind::Model => HighlightKind::Vehicle,

@@ -5,7 +5,7 @@ use smol_str::SmolStr;
 
 use super::definition::references_of;
 use super::name::{NameKind, NameUse, name_at};
-use crate::analysis::constant::evaluate_with;
+use crate::analysis::constant::Constants;
 use crate::lower::bounds::expression;
 use crate::parse::Parse;
 use crate::span::Span;
@@ -75,7 +75,6 @@ fn hover_bound(parse: &Parse, offset: u32, evaluation: &Evaluation) -> Option<Ho
     let root = parse.declaration_at(offset)?;
     let path = root.path_to(offset);
     path.iter().find(|node| node.kind() == SyntaxKind::Bounds)?;
-    let activity = path.iter().find(|node| node.kind() == SyntaxKind::ActivityDecl)?;
     let node = path.iter().rev().find(|node| {
         matches!(
             node.kind(),
@@ -87,58 +86,60 @@ fn hover_bound(parse: &Parse, offset: u32, evaluation: &Evaluation) -> Option<Ho
         )
     })?;
     // The whole side says more than its parts, unless the pointer is on a name.
-    let is_name = node.kind() == SyntaxKind::Operand && node.token(SyntaxKind::Name).is_some();
+    let name = plain_name(*node);
     let side = path.iter().skip_while(|node| node.kind() != SyntaxKind::Bounds).nth(1)?;
-    let shown = if is_name { node } else { side };
-    let own_name = activity.token(SyntaxKind::Name)?;
+    let shown = if name.is_some() { node } else { side };
+    let constants = Constants::new(&parse.program());
+    let activity = path.iter().find(|node| node.kind() == SyntaxKind::ActivityDecl);
     let header: Vec<Option<&str>> = activity
-        .child(SyntaxKind::Bounds)
+        .and_then(|activity| activity.child(SyntaxKind::Bounds))
         .into_iter()
         .flat_map(SyntaxNode::children)
-        .map(|side| side.token(SyntaxKind::Name).map(|name| name.text))
+        .map(|side| plain_name(side).filter(|name| constants.value(name).is_none()))
         .collect();
-    let value = |node: &SyntaxNode<'_>, invocation: &Invocation| {
+    let value = |node: &SyntaxNode<'_>, invocation: Option<&Invocation>| {
         let lookup = |name: &str| match header.iter().position(|bound| *bound == Some(name))? {
-            0 => Some(Bound::Finite(invocation.lower)),
-            _ => Some(invocation.upper),
+            0 => Some(Bound::Finite(invocation?.lower)),
+            _ => Some(invocation?.upper),
         };
-        evaluate_with(&expression(*node)?, &lookup).ok()
+        constants.evaluate(&expression(*node)?, &lookup)
     };
     let mut lines = vec![format!("`{}`", shown.text())];
-    let invocations = evaluation.invocations.iter().filter(|invocation| invocation.activity == own_name.text);
+    let own_name = activity.and_then(|activity| activity.token(SyntaxKind::Name)).map(|name| name.text);
+    let is_own = |invocation: &&Invocation| Some(invocation.activity.as_str()) == own_name;
+    let is_of_header = |name: &str| header.contains(&Some(name));
+    let depends_on_call = name.is_none_or(is_of_header);
+    let invocations = evaluation.invocations.iter().filter(is_own).filter(|_| depends_on_call);
     for invocation in invocations.take(MAX_LINES) {
-        if let Some(result) = value(shown, invocation) {
+        if let Some(result) = value(shown, Some(invocation)) {
             lines.push(format!("= **{result}** in {}", invocation.occurrence));
         }
-        if is_name
+        if name.is_some()
             && shown.span() != side.span()
-            && let Some(result) = value(side, invocation)
+            && let Some(result) = value(side, Some(invocation))
         {
             lines.push(format!("`{}` = **{result}** in {}", side.text(), invocation.occurrence));
         }
     }
     if lines.len() == 1 {
-        match value(
-            shown,
-            &Invocation {
-                activity: SmolStr::default(),
-                occurrence: SmolStr::default(),
-                lower: Time::ZERO,
-                upper: Bound::Infinite,
-            },
-        ) {
-            Some(result) if !is_name && shown.kind() != SyntaxKind::Operand && !mentions_name(shown) => {
+        match name {
+            Some(name) if is_of_header(name) => lines.push("a bound of the call".to_owned()),
+            // What else a name is, its declaration says.
+            Some(_) => return None,
+            None => {
+                let says_more = shown.tokens().filter(|token| !token.kind.is_trivia()).count() > 1;
+                let result = value(shown, None).filter(|_| says_more)?;
                 lines.push(format!("= **{result}**"));
             }
-            _ if is_name => lines.push("a bound of the call".to_owned()),
-            _ => return None,
         }
     }
     Some(Hover { span: shown.span(), markdown: lines.join("  \n") })
 }
 
-fn mentions_name(node: &SyntaxNode<'_>) -> bool {
-    node.tokens().any(|token| token.kind == SyntaxKind::Name)
+/// The name that an operand is; what stands behind a number is a unit.
+fn plain_name(node: SyntaxNode<'_>) -> Option<&str> {
+    let is_operand = node.kind() == SyntaxKind::Operand && node.token(SyntaxKind::Number).is_none();
+    node.token(SyntaxKind::Name).filter(|_| is_operand).map(|name| name.text)
 }
 
 /// How many occurrences a hover lists.
@@ -156,9 +157,14 @@ fn describe(parse: &Parse, name: &NameUse, evaluation: &Evaluation) -> String {
                     parts.push(comments);
                 }
             }
+            let value = || Constants::new(&parse.program()).value(&name.text);
+            if let Some(value) = (*kind == NameKind::Constant).then(value).flatten() {
+                parts.push(format!("= **{value}**"));
+            }
         }
         (_, NameKind::Parameter) => parts.push(format!("`{}`: a parameter", name.text)),
         (_, NameKind::BoundName) => parts.push(format!("`{}`: a bound of the call", name.text)),
+        (_, NameKind::Constant) => parts.push(format!("`{}`: a constant", name.text)),
         (_, NameKind::Activity) => {
             parts.push(format!("`{}`: an undeclared primitive, which may last any time, [0,inf]", name.text));
         }
@@ -254,6 +260,16 @@ fn word(token: SyntaxToken<'_>) -> Option<&'static str> {
         }
         SyntaxKind::Infinity => "`inf`: no upper bound.",
         SyntaxKind::Name => match token.text {
+            "const" => "`const NAME = e;`: a number that bounds, arguments and `repeat` may name.",
+            "repeat" => "`repeat n { A }`: n copies of A, one after the other.",
+            "free" => "`free A`: `delay; A`. A parallel branch that may start later.",
+            "else" => "`if c thennext A else B`: planning chooses A where `c` holds, or B where it does not.",
+            "and" => "`a and b`: both hold.",
+            "or" => "`a or b`: planning chooses which of the two it relies on.",
+            "in" => "`X in {V, W}`: X has one of these values.",
+            "s" | "min" | "h" | "d" | "sol" => {
+                "A unit of time: `s`, `min`, `h`, `d` (24 hours) or `sol` (88 775.244 seconds), converted exactly."
+            }
             "moves" => "`moves V1, V2`: the activity is a traverse; the first vehicle leads.",
             "speed" => "`speed (least, greatest)` in metres per second.",
             "runs" => "`runs P`: executing the activity runs the control program P.",

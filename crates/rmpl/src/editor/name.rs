@@ -20,6 +20,8 @@ pub enum NameKind {
     Parameter,
     /// A name of the header's bounds.
     BoundName,
+    /// A constant.
+    Constant,
     /// A scenario.
     Scenario,
     /// A location.
@@ -107,12 +109,19 @@ impl<'a> Collector<'a> {
                     }
                 }
             }
+            SyntaxKind::ConstantDecl => self.define(names().nth(1), NameKind::Constant),
             SyntaxKind::PrimitiveDecl => self.define(names().next(), NameKind::Activity),
             SyntaxKind::ActivityDecl => {
                 self.define(names().next(), NameKind::Activity);
                 let bounds = node.child(SyntaxKind::Bounds).into_iter().flat_map(SyntaxNode::children);
                 for side in bounds.filter(|side| side.kind() == SyntaxKind::Operand) {
-                    self.define(side.token(SyntaxKind::Name), NameKind::BoundName);
+                    let name =
+                        side.token(SyntaxKind::Name).filter(|_| side.token(SyntaxKind::Number).is_none());
+                    if name.is_some_and(|name| self.is_declared(Namespace::Constant, name.text)) {
+                        self.refer(name, NameKind::Constant);
+                    } else {
+                        self.define(name, NameKind::BoundName);
+                    }
                 }
             }
             SyntaxKind::ScenarioDecl => self.define(names().next(), NameKind::Scenario),
@@ -129,19 +138,20 @@ impl<'a> Collector<'a> {
             }
             SyntaxKind::At => self.refer(names().nth(1), NameKind::Location),
             SyntaxKind::Runs => self.refer(names().nth(1), NameKind::ControlProgram),
-            SyntaxKind::Moves => names().skip(1).for_each(|name| self.refer(Some(name), NameKind::Vehicle)),
+            SyntaxKind::Moves => {
+                for name in names().skip(1) {
+                    let is_parameter = self.parameters.contains(&name.text);
+                    let kind = if is_parameter { NameKind::Parameter } else { NameKind::Vehicle };
+                    self.refer(Some(name), kind);
+                }
+            }
             SyntaxKind::Formals => {
                 for name in names() {
                     self.parameters.push(name.text);
                     self.define(Some(name), NameKind::Parameter);
                 }
             }
-            SyntaxKind::Operand => {
-                let name = names().next();
-                if name.is_some_and(|name| self.found.iter().all(|found| found.span != name.span)) {
-                    self.refer(name, NameKind::BoundName);
-                }
-            }
+            SyntaxKind::Operand => self.operand(node),
             SyntaxKind::Call => self.refer(names().next(), NameKind::Activity),
             SyntaxKind::Argument => self.argument(names().next()),
             SyntaxKind::BareName => self.bare(names().next()),
@@ -180,8 +190,29 @@ impl<'a> Collector<'a> {
             NameKind::Location
         } else if self.is_declared(Namespace::Variable, name.text) {
             NameKind::Variable
+        } else if self.is_declared(Namespace::Constant, name.text) {
+            NameKind::Constant
+        } else if self.is_declared(Namespace::Vehicle, name.text) {
+            NameKind::Vehicle
         } else {
             NameKind::Symbol
+        };
+        self.refer(Some(name), kind);
+    }
+
+    /// A name in an expression; what stands behind a number is a unit.
+    fn operand(&mut self, node: SyntaxNode<'_>) {
+        let Some(name) = node.token(SyntaxKind::Name) else { return };
+        let is_unit = node.token(SyntaxKind::Number).is_some();
+        if is_unit || self.found.iter().any(|found| found.span == name.span) {
+            return;
+        }
+        let kind = if self.parameters.contains(&name.text) {
+            NameKind::Parameter
+        } else if self.is_declared(Namespace::Constant, name.text) {
+            NameKind::Constant
+        } else {
+            NameKind::BoundName
         };
         self.refer(Some(name), kind);
     }
@@ -196,6 +227,10 @@ impl<'a> Collector<'a> {
     }
 
     fn condition(&mut self, node: SyntaxNode<'a>) {
+        if let Some(domain) = node.child(SyntaxKind::Domain) {
+            self.membership(node, domain);
+            return;
+        }
         let mut tokens = node.own_tokens().filter(|token| token.kind == SyntaxKind::Name);
         if let Some(variable) = tokens.next() {
             let is_variable = node.own_tokens().all(|token| {
@@ -205,6 +240,18 @@ impl<'a> Collector<'a> {
             if is_variable {
                 self.literal(variable, tokens.next());
             }
+        }
+    }
+
+    /// `X in {V, W}`
+    fn membership(&mut self, node: SyntaxNode<'a>, domain: SyntaxNode<'a>) {
+        let Some(variable) = node.token(SyntaxKind::Name) else { return };
+        let is_parameter = self.parameters.contains(&variable.text);
+        self.refer(Some(variable), if is_parameter { NameKind::Parameter } else { NameKind::Variable });
+        for value in domain.own_tokens().filter(|token| token.kind == SyntaxKind::Name) {
+            let is_parameter = self.parameters.contains(&value.text);
+            let kind = if is_parameter { NameKind::Parameter } else { NameKind::Value(variable.text.into()) };
+            self.refer(Some(value), kind);
         }
     }
 

@@ -15,6 +15,8 @@ pub enum OutlineKind {
     Activity,
     /// A scenario.
     Scenario,
+    /// A constant.
+    Constant,
     /// An option.
     Option,
     /// The terrain.
@@ -54,6 +56,7 @@ fn item(node: SyntaxNode<'_>) -> Option<OutlineItem> {
         SyntaxKind::PrimitiveDecl => (OutlineKind::Primitive, 0),
         SyntaxKind::ActivityDecl => (OutlineKind::Activity, 0),
         SyntaxKind::ScenarioDecl => (OutlineKind::Scenario, 0),
+        SyntaxKind::ConstantDecl => (OutlineKind::Constant, 1),
         SyntaxKind::OptionDecl => (OutlineKind::Option, 0),
         SyntaxKind::TerrainDecl => (OutlineKind::Terrain, 0),
         SyntaxKind::LocationDecl => (OutlineKind::Location, 1),
@@ -67,7 +70,7 @@ fn item(node: SyntaxNode<'_>) -> Option<OutlineItem> {
     let end = body.map_or(node.span().end, |body| body.start);
     let start = node.span().start;
     let rest = node.text().get((name.span.end - start) as usize..(end - start) as usize).unwrap_or("");
-    let detail: Vec<&str> = rest.trim_end_matches([';', '=', ' ', '\n']).split_whitespace().collect();
+    let detail: Vec<&str> = rest.trim_matches([';', '=', ' ', '\n']).split_whitespace().collect();
     Some(OutlineItem {
         kind,
         name: name.text.trim_matches('"').to_owned(),

@@ -49,11 +49,23 @@ pub(super) fn layout(root: SyntaxNode<'_>) -> Layout {
 impl Layout {
     fn note_places(&mut self, node: SyntaxNode<'_>) {
         let place = match node.kind() {
-            SyntaxKind::Bounds | SyntaxKind::Sum | SyntaxKind::Product | SyntaxKind::PercentOf => {
-                Place::Bounds
+            SyntaxKind::Bounds => Place::Bounds,
+            SyntaxKind::Sum
+            | SyntaxKind::Product
+            | SyntaxKind::PercentOf
+            | SyntaxKind::Grouped
+            | SyntaxKind::Operand => {
+                let first = first_token(node).map(|first| self.place(first));
+                if matches!(first, Some(Place::Bounds | Place::Expression)) {
+                    return;
+                }
+                Place::Expression
             }
-            SyntaxKind::Grouped | SyntaxKind::Operand => Place::Bounds,
-            SyntaxKind::Condition => Place::Condition,
+            SyntaxKind::Condition
+            | SyntaxKind::AllOf
+            | SyntaxKind::AnyOf
+            | SyntaxKind::NotOf
+            | SyntaxKind::ConditionGroup => Place::Condition,
             SyntaxKind::Coordinates => Place::Coordinates,
             SyntaxKind::Domain => Place::Domain,
             SyntaxKind::Argument => Place::Argument,

@@ -9,6 +9,8 @@ pub(super) enum Place {
     Plain,
     /// Inside `[ … ]`, which are written tightly.
     Bounds,
+    /// An expression outside brackets, where a hyphen between letters belongs to a name.
+    Expression,
     /// The `[` of bounds that stand apart from what they bound: `PATH1=OK [450,450]`.
     SpacedBounds,
     Condition,
@@ -28,17 +30,19 @@ pub(super) fn has_space_between(previous: SyntaxToken<'_>, token: SyntaxToken<'_
         | (Kind::NotKeyword, Kind::LeftParen) => false,
         (_, Kind::LeftBracket) => place == Place::SpacedBounds,
         (_, Kind::LeftParen) => match place {
-            Place::Coordinates | Place::Condition => true,
+            Place::Coordinates | Place::Condition | Place::Expression => true,
             Place::Bounds => false,
             _ => previous.kind != Kind::Name,
         },
         (Kind::RightBracket, _) => true,
         _ if place == Place::Bounds => false,
+        // A unit of time.
+        (Kind::Number, Kind::Name) if place == Place::Expression => false,
         (Kind::LeftBrace, _) | (_, Kind::RightBrace) => place != Place::Domain,
         (_, Kind::Equals | Kind::NotEquals) | (Kind::Equals | Kind::NotEquals, _) => {
             place != Place::Condition
         }
-        (Kind::Minus, Kind::Number) => false,
+        (Kind::Minus, Kind::Number) => place == Place::Expression,
         _ => true,
     }
 }

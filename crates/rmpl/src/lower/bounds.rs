@@ -2,7 +2,7 @@
 
 use smol_str::SmolStr;
 
-use crate::program::{BinaryOp, Bounds, Expr, ExprKind, HeaderBound, HeaderBounds};
+use crate::program::{BinaryOp, Bounds, DurationUnit, Expr, ExprKind, HeaderBound, HeaderBounds};
 use crate::syntax::{Element, SyntaxKind, SyntaxNode};
 
 /// The bounds behind a construct, if they stand directly in `node` and are whole.
@@ -39,7 +39,13 @@ pub(crate) fn expression(node: SyntaxNode<'_>) -> Option<Expr> {
         SyntaxKind::Operand => {
             let token = node.own_tokens().next()?;
             match token.kind {
-                SyntaxKind::Number => ExprKind::Number(token.text.parse().ok()?),
+                SyntaxKind::Number => {
+                    let number = token.text.parse().ok()?;
+                    match node.token(SyntaxKind::Name) {
+                        Some(unit) => ExprKind::Duration(number, DurationUnit::by_name(unit.text)?),
+                        None => ExprKind::Number(number),
+                    }
+                }
                 SyntaxKind::Infinity => ExprKind::Infinity,
                 _ => ExprKind::Name(SmolStr::new(token.text)),
             }

@@ -3,12 +3,12 @@
 use exact::Rational;
 use smol_str::SmolStr;
 
-use super::bounds::{bounds_in, header_bounds_in};
+use super::bounds::{bounds_in, expression, header_bounds_in};
 use super::statement::signed;
 use super::{Lowering, OptionDecl, OptionValue, name_of, names};
 use crate::program::{
-    ActivityDecl, ControlDecl, LocationDecl, Moves, Name, ObstacleDecl, ObstacleShape, PrimitiveDecl,
-    ScenarioDecl, TerrainDecl, VariableDecl, VehicleDecl,
+    ActivityDecl, ConstantDecl, ControlDecl, LocationDecl, Moves, Name, ObstacleDecl, ObstacleShape,
+    PrimitiveDecl, ScenarioDecl, TerrainDecl, VariableDecl, VehicleDecl,
 };
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode};
@@ -40,6 +40,13 @@ impl Lowering<'_> {
 
 fn formals(node: SyntaxNode<'_>) -> Vec<Name> {
     node.child(SyntaxKind::Formals).map(|formals| names(formals).collect()).unwrap_or_default()
+}
+
+pub(super) fn constant(node: SyntaxNode<'_>) -> Option<ConstantDecl> {
+    // The first name is the word `const` itself.
+    let name = names(node).nth(1)?;
+    let value = expression(node.children().find(|child| child.kind() != SyntaxKind::Skipped)?)?;
+    Some(ConstantDecl { name, value, span: node.span() })
 }
 
 pub(super) fn variable(node: SyntaxNode<'_>) -> Option<VariableDecl> {

@@ -1,15 +1,17 @@
 //! From the syntax tree to meaning: the pieces of [`crate::program`], with what is broken left out.
 
 pub(crate) mod bounds;
+mod condition;
 mod declaration;
 mod statement;
 
 use exact::Rational;
 use smol_str::SmolStr;
 
+use crate::diagnostic::Diagnostic;
 use crate::program::{
-    ActivityDecl, ControlDecl, LocationDecl, Name, ObstacleDecl, PrimitiveDecl, ScenarioDecl, TerrainDecl,
-    VariableDecl, VehicleDecl,
+    ActivityDecl, ConstantDecl, ControlDecl, LocationDecl, Name, ObstacleDecl, PrimitiveDecl, ScenarioDecl,
+    TerrainDecl, VariableDecl, VehicleDecl,
 };
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken, is_dash};
@@ -17,6 +19,7 @@ use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken, is_dash};
 /// What one declaration declares.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Item {
+    Constant(ConstantDecl),
     Variable(VariableDecl),
     Primitive(PrimitiveDecl),
     Activity(ActivityDecl),
@@ -50,13 +53,25 @@ pub(crate) struct Lowering<'a> {
     pub(crate) is_callable: &'a dyn Fn(&str) -> bool,
     /// Starts of the names that stand alone as statements, in textual order.
     pub(crate) bare_names: Vec<u32>,
+    /// Conditions that cannot be asserted as they are written, or that make the text too large.
+    pub(crate) diagnostics: Vec<Diagnostic>,
+    /// How many statements `or` has copied in this declaration.
+    copied: usize,
+}
+
+impl<'a> Lowering<'a> {
+    pub(crate) const fn new(is_callable: &'a dyn Fn(&str) -> bool) -> Self {
+        Self { is_callable, bare_names: Vec::new(), diagnostics: Vec::new(), copied: 0 }
+    }
 }
 
 impl Lowering<'_> {
     /// What the declaration under `root` declares, if enough of it is there.
     pub(crate) fn item(&mut self, root: SyntaxNode<'_>) -> Option<Item> {
+        self.copied = 0;
         let node = root.children().find(|child| child.kind().is_declaration())?;
         match node.kind() {
+            SyntaxKind::ConstantDecl => declaration::constant(node).map(Item::Constant),
             SyntaxKind::VariableDecl => declaration::variable(node).map(Item::Variable),
             SyntaxKind::PrimitiveDecl => declaration::primitive(node).map(Item::Primitive),
             SyntaxKind::OptionDecl => declaration::option(node).map(Item::Option),

@@ -1,9 +1,10 @@
-//! Statements and conditions.
+//! Statements.
 
 use exact::Rational;
 use smol_str::SmolStr;
 
-use super::bounds::bounds_in;
+use super::bounds::{bounds_in, expression};
+use super::condition::{formula, is_condition, literal};
 use super::{Lowering, name_of};
 use crate::program::{Argument, ArgumentValue, Condition, LabelMode, Name, Statement, StatementKind};
 use crate::span::Span;
@@ -51,9 +52,23 @@ impl Lowering<'_> {
             SyntaxKind::Choose => self.choose(core)?,
             SyntaxKind::Do => self.do_statement(core)?,
             SyntaxKind::If => {
-                let condition = condition(core.child(SyntaxKind::Condition)?)?;
+                let mut parts = core.children();
+                let formula = formula(parts.next()?)?;
+                let mut branches = core.children().filter(|child| child.kind() == SyntaxKind::Statement);
+                let body = self.statement(branches.next()?)?;
+                let otherwise = branches.next().and_then(|branch| self.statement(branch));
+                self.if_statement(formula, body, otherwise, core.span())?
+            }
+            SyntaxKind::Repeat => {
+                let count = core.children().find(|child| child.kind() != SyntaxKind::Skipped)?;
+                let body = self.block(core.child(SyntaxKind::Block)?);
+                StatementKind::Repeat(expression(count)?, Box::new(body))
+            }
+            SyntaxKind::Free => {
+                let word = core.token(SyntaxKind::Name)?;
+                let delay = Statement { kind: StatementKind::Delay, bounds: None, span: word.span };
                 let body = self.statement(core.child(SyntaxKind::Statement)?)?;
-                StatementKind::IfThennext(condition, Box::new(body))
+                StatementKind::Sequence(vec![delay, body])
             }
             SyntaxKind::Call => {
                 let name = name_of(core.token(SyntaxKind::Name)?);
@@ -70,7 +85,8 @@ impl Lowering<'_> {
                 } else {
                     LabelMode::Tell
                 };
-                StatementKind::Condition(mode, condition(core.child(SyntaxKind::Condition)?)?)
+                let formula = formula(core.children().find(|child| is_condition(child.kind()))?)?;
+                return self.assertion(mode, formula, bounds, span);
             }
             SyntaxKind::Delay => StatementKind::Delay,
             _ => return None,
@@ -86,7 +102,7 @@ impl Lowering<'_> {
         let span = name.span;
         StatementKind::Condition(
             LabelMode::Tell,
-            Condition { variable: name, value: None, negated: false, span },
+            Condition { variable: name, values: Vec::new(), negated: false, span },
         )
     }
 
@@ -107,13 +123,15 @@ impl Lowering<'_> {
     }
 
     fn do_statement(&mut self, node: SyntaxNode<'_>) -> Option<StatementKind> {
-        let body = Box::new(self.statement(node.child(SyntaxKind::Statement)?)?);
-        let condition = condition(node.child(SyntaxKind::Condition)?)?;
-        Some(if node.token(SyntaxKind::WatchingKeyword).is_some() {
-            StatementKind::Watching(body, condition)
+        let body = self.statement(node.child(SyntaxKind::Statement)?)?;
+        let formula = formula(node.children().find(|child| is_condition(child.kind()))?)?;
+        let is_watching = node.token(SyntaxKind::WatchingKeyword).is_some();
+        let statement = if is_watching {
+            self.watching(formula, body, node.span())
         } else {
-            StatementKind::Maintaining(body, condition)
-        })
+            self.maintaining(&formula, body, node.span())?
+        };
+        Some(statement.kind)
     }
 }
 
@@ -127,6 +145,15 @@ fn collapse(steps: Vec<Statement>, span: Span) -> Statement {
 }
 
 fn argument(node: SyntaxNode<'_>) -> Option<Argument> {
+    let span = node.span();
+    if let Some(inner) = node.children().next() {
+        let value = if inner.kind() == SyntaxKind::Condition {
+            ArgumentValue::Condition(literal(inner)?)
+        } else {
+            ArgumentValue::Expression(expression(inner)?)
+        };
+        return Some(Argument { value, span });
+    }
     let negative = node.token(SyntaxKind::Minus).is_some();
     let token = node.own_tokens().find(|token| token.kind != SyntaxKind::Minus)?;
     let value = if token.kind == SyntaxKind::Number {
@@ -135,34 +162,7 @@ fn argument(node: SyntaxNode<'_>) -> Option<Argument> {
     } else {
         ArgumentValue::Name(SmolStr::new(token.text))
     };
-    Some(Argument { value, span: node.span() })
-}
-
-/// A literal, with its negations folded.
-fn condition(node: SyntaxNode<'_>) -> Option<Condition> {
-    let mut negated = false;
-    let mut compared = false;
-    let mut variable = None;
-    let mut value = None;
-    for token in node.own_tokens() {
-        match token.kind {
-            SyntaxKind::NotKeyword | SyntaxKind::Bang => negated = !negated,
-            SyntaxKind::NotEquals => {
-                negated = !negated;
-                compared = true;
-            }
-            SyntaxKind::Equals => compared = true,
-            SyntaxKind::Name if variable.is_none() => variable = Some(name_of(token)),
-            SyntaxKind::Name | SyntaxKind::Number => value = Some(name_of(token)),
-            _ => {}
-        }
-    }
-    (compared == value.is_some()).then_some(Condition {
-        variable: variable?,
-        value,
-        negated,
-        span: node.span(),
-    })
+    Some(Argument { value, span })
 }
 
 /// A number with its sign, in metres.

@@ -1,7 +1,8 @@
-//! Bounds and their arithmetic (SPEC 1.2, 1.5).
+//! Bounds and the expressions in them, with their arithmetic (SPEC 1.2, 1.5) and units of time (SPEC 14).
 
 use super::{MAX_OPERANDS, Parser};
 use crate::diagnostics::syntax;
+use crate::program::DurationUnit;
 use crate::span::Span;
 use crate::syntax::SyntaxKind;
 
@@ -69,7 +70,7 @@ impl Parser<'_> {
         )
     }
 
-    fn sum(&mut self) {
+    pub(super) fn sum(&mut self) {
         let mark = self.next_mark();
         self.product();
         self.chain(mark, SyntaxKind::Sum, [SyntaxKind::Plus, SyntaxKind::Minus], Self::product);
@@ -126,9 +127,32 @@ impl Parser<'_> {
         }
     }
 
+    /// A number with the unit that is written right behind it, if one is: `90s`, `1.5h`.
+    pub(super) fn quantity(&mut self) {
+        let has_unit = self.at_quantity();
+        self.bump();
+        if has_unit {
+            self.bump();
+        }
+    }
+
+    /// Whether a number stands here with a unit of time right behind it.
+    pub(super) fn at_quantity(&mut self) -> bool {
+        let next = self.index_after(self.current);
+        self.at(SyntaxKind::Number)
+            && next == self.current + 1
+            && self.kind_at(next) == SyntaxKind::Name
+            && DurationUnit::by_name(self.text_of(next)).is_some()
+    }
+
     fn operand(&mut self) {
         match self.kind {
-            SyntaxKind::Number | SyntaxKind::Infinity | SyntaxKind::Name => {
+            SyntaxKind::Number => {
+                let node = self.open();
+                self.quantity();
+                self.close(node, SyntaxKind::Operand);
+            }
+            SyntaxKind::Infinity | SyntaxKind::Name => {
                 let node = self.open();
                 self.bump();
                 self.close(node, SyntaxKind::Operand);

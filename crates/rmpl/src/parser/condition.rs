@@ -1,12 +1,107 @@
-//! Conditions (SPEC 1.2): `not`, `!`, parentheses, and the literal inside.
+//! Conditions: literals with `not`, `!` and parentheses (SPEC 1.2), joined by `and` and `or` (SPEC 14).
+//!
+//! `and`, `or` and `in` are words of the language only behind a literal.
 
-use super::{MAX_NESTING, Parser};
+use super::{MAX_NESTING, Mark, Parser};
 use crate::diagnostics::syntax;
 use crate::syntax::SyntaxKind;
 
 impl Parser<'_> {
-    /// A condition; its negations and parentheses are tokens of one flat node.
+    /// Conditions joined by `or`, which binds loosest.
     pub(super) fn condition(&mut self) {
+        let mark = self.next_mark();
+        self.conjunction();
+        self.joined(mark, "or", SyntaxKind::AnyOf, Self::conjunction);
+    }
+
+    fn conjunction(&mut self) {
+        let mark = self.next_mark();
+        self.negation();
+        self.joined(mark, "and", SyntaxKind::AllOf, Self::negation);
+    }
+
+    /// Further operands behind the one at `mark`, in one node.
+    fn joined(&mut self, mark: Mark, word: &str, kind: SyntaxKind, operand: impl Fn(&mut Self)) {
+        if !self.at_word(word) {
+            return;
+        }
+        let node = self.open_around(mark);
+        while self.eat_word(word) {
+            operand(self);
+        }
+        self.close(node, kind);
+    }
+
+    /// One literal, or several in parentheses.
+    fn negation(&mut self) {
+        if !self.at_group() {
+            self.literal();
+            return;
+        }
+        let node = self.open();
+        if self.eat(SyntaxKind::NotKeyword) || self.eat(SyntaxKind::Bang) {
+            self.nested(Self::negation);
+            self.close(node, SyntaxKind::NotOf);
+        } else {
+            self.bump();
+            self.nested(Self::condition);
+            self.expect_behind(SyntaxKind::RightParen, ")");
+            self.close(node, SyntaxKind::ConditionGroup);
+        }
+    }
+
+    /// Whether negations and parentheses stand here around several literals.
+    fn at_group(&mut self) -> bool {
+        let mut index = self.current;
+        let mut open_parens = 0_u32;
+        for _ in 0..MAX_NESTING {
+            match self.kind_at(index) {
+                SyntaxKind::NotKeyword | SyntaxKind::Bang => {}
+                SyntaxKind::LeftParen => open_parens += 1,
+                _ => break,
+            }
+            index = self.index_after(index);
+        }
+        if open_parens == 0 || self.kind_at(index) != SyntaxKind::Name {
+            return false;
+        }
+        index = self.index_after(index);
+        if matches!(self.kind_at(index), SyntaxKind::Equals | SyntaxKind::NotEquals) {
+            index = self.index_after(index);
+            index = self.index_after(index);
+        } else if self.kind_at(index) == SyntaxKind::Name && self.text_of(index) == "in" {
+            while !matches!(
+                self.kind_at(index),
+                SyntaxKind::RightBrace | SyntaxKind::Semicolon | SyntaxKind::End
+            ) {
+                index = self.index_after(index);
+            }
+            index = self.index_after(index);
+        }
+        // A parenthesis that closes before `and` groups one literal; the group may be a larger one around it.
+        while open_parens > 0 && self.kind_at(index) == SyntaxKind::RightParen {
+            open_parens -= 1;
+            index = self.index_after(index);
+        }
+        open_parens > 0
+            && self.kind_at(index) == SyntaxKind::Name
+            && matches!(self.text_of(index), "and" | "or")
+    }
+
+    /// Whether `and`, `or` or `in` stands behind the name at the cursor.
+    pub(super) fn at_joined_literal(&mut self) -> bool {
+        let next = self.index_after(self.current);
+        self.kind_at(next) == SyntaxKind::Name && matches!(self.text_of(next), "and" | "or" | "in")
+    }
+
+    /// Whether `X in` stands here.
+    pub(super) fn at_membership(&mut self) -> bool {
+        let next = self.index_after(self.current);
+        self.kind_at(next) == SyntaxKind::Name && self.text_of(next) == "in"
+    }
+
+    /// A literal; its negations and parentheses are tokens of one flat node.
+    pub(super) fn literal(&mut self) {
         let node = self.open();
         let mut open_parens = 0_u32;
         let mut prefixes = 0_u32;
@@ -25,7 +120,7 @@ impl Parser<'_> {
             let diagnostic = syntax::too_deep(self.here());
             self.report(diagnostic);
         }
-        self.literal();
+        self.comparison();
         while open_parens > 0 && self.eat(SyntaxKind::RightParen) {
             open_parens -= 1;
         }
@@ -35,7 +130,7 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::Condition);
     }
 
-    fn literal(&mut self) {
+    fn comparison(&mut self) {
         if !self.eat(SyntaxKind::Name) {
             let keyword = self.kind.is_keyword() && self.kind != SyntaxKind::ThennextKeyword;
             if keyword && self.peek() != SyntaxKind::LeftBrace {
@@ -47,6 +142,11 @@ impl Parser<'_> {
                 self.report_expected("a condition such as `X` or `X=V`");
                 return;
             }
+        }
+        if self.at_word("in") {
+            self.bump();
+            self.domain();
+            return;
         }
         if !matches!(self.kind, SyntaxKind::Equals | SyntaxKind::NotEquals) {
             return;

@@ -16,6 +16,7 @@ impl Parser<'_> {
             SyntaxKind::OptionKeyword => self.option(),
             SyntaxKind::ScenarioKeyword => self.scenario(),
             SyntaxKind::ControlText => self.control(),
+            _ if self.at_constant() => self.constant(),
             _ if self.at_world_declaration() => self.world_declaration(),
             _ if self.at_definition(false) => self.activity(),
             _ => self.garbage(),
@@ -47,6 +48,18 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::ControlDecl);
     }
 
+    /// `const NAME = expression;`
+    fn constant(&mut self) {
+        let node = self.open();
+        self.bump();
+        self.declared_name("the name of the constant");
+        if self.expect(SyntaxKind::Equals) {
+            self.sum();
+        }
+        self.end_declaration();
+        self.close(node, SyntaxKind::ConstantDecl);
+    }
+
     fn variable(&mut self) {
         let node = self.open();
         self.bump();
@@ -58,7 +71,8 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::VariableDecl);
     }
 
-    fn domain(&mut self) {
+    /// `{V1, V2}`
+    pub(super) fn domain(&mut self) {
         let node = self.open();
         if self.expect(SyntaxKind::LeftBrace) {
             self.names_until(SyntaxKind::RightBrace, "a value");

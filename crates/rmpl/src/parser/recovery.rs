@@ -73,7 +73,8 @@ impl Parser<'_> {
             | SyntaxKind::ScenarioKeyword
             | SyntaxKind::OptionKeyword => true,
             SyntaxKind::Name => {
-                self.begins_line() && (self.at_world_declaration() || self.at_definition(true))
+                self.begins_line()
+                    && (self.at_constant() || self.at_world_declaration() || self.at_definition(true))
             }
             _ => false,
         }
@@ -108,7 +109,7 @@ impl Parser<'_> {
     }
 
     /// The index behind the flat group that opens at `index`; stops at what no such group contains.
-    fn index_after_group(&mut self, index: u32, open: SyntaxKind, close: SyntaxKind) -> u32 {
+    pub(super) fn index_after_group(&mut self, index: u32, open: SyntaxKind, close: SyntaxKind) -> u32 {
         let mut index = index;
         let mut depth = 0_u32;
         for _ in 0..LONGEST_HEADER_TOKENS {
@@ -129,6 +130,11 @@ impl Parser<'_> {
             }
         }
         index
+    }
+
+    /// Whether `const NAME` begins here: no definition begins with two names.
+    pub(super) fn at_constant(&mut self) -> bool {
+        self.at_word("const") && (self.peek() == SyntaxKind::Name || self.at_definition_of_nothing())
     }
 
     /// Whether a world declaration begins here: its first word is a keyword only before what must follow it.
@@ -159,7 +165,8 @@ impl Parser<'_> {
                 | SyntaxKind::ScenarioKeyword
                 | SyntaxKind::OptionKeyword
                 | SyntaxKind::ControlText
-        ) || self.at_world_declaration()
+        ) || self.at_constant()
+            || self.at_world_declaration()
             || self.at_definition(false)
     }
 }

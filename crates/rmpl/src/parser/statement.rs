@@ -103,6 +103,8 @@ impl Parser<'_> {
     }
 
     fn core(&mut self) {
+        let is_repeat = self.at_repeat();
+        let is_free = self.at_free();
         match self.kind {
             SyntaxKind::LeftBrace => self.block(),
             SyntaxKind::ChooseKeyword => self.choose(),
@@ -113,6 +115,8 @@ impl Parser<'_> {
                 self.bump();
                 self.close(node, SyntaxKind::Delay);
             }
+            SyntaxKind::Name if is_repeat => self.repeat(),
+            SyntaxKind::Name if is_free => self.free(),
             SyntaxKind::Name => self.call_or_assertion(),
             SyntaxKind::NotKeyword
             | SyntaxKind::Bang
@@ -214,6 +218,9 @@ impl Parser<'_> {
             self.report_expected("a statement behind `thennext`");
         } else {
             self.nested(Self::statement);
+            if self.eat_word("else") {
+                self.nested(Self::statement);
+            }
         }
         self.close(node, SyntaxKind::If);
     }
@@ -236,6 +243,7 @@ impl Parser<'_> {
                 self.close(node, SyntaxKind::Call);
             }
             SyntaxKind::Equals | SyntaxKind::NotEquals => self.assertion(),
+            _ if self.at_joined_literal() => self.assertion(),
             _ => {
                 let node = self.open();
                 self.bump();
@@ -276,12 +284,84 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::Arguments);
     }
 
+    /// Whether `repeat N {` begins here; otherwise the word is a name like any other.
+    fn at_repeat(&mut self) -> bool {
+        if !self.at_word("repeat") {
+            return false;
+        }
+        match self.peek() {
+            SyntaxKind::Number => true,
+            SyntaxKind::Name => !self.at_joined_literal(),
+            SyntaxKind::LeftParen => {
+                let next = self.index_after(self.current);
+                let after = self.index_after_group(next, SyntaxKind::LeftParen, SyntaxKind::RightParen);
+                self.kind_at(after) == SyntaxKind::LeftBrace
+            }
+            _ => false,
+        }
+    }
+
+    fn repeat(&mut self) {
+        let node = self.open();
+        self.bump();
+        self.sum();
+        if self.at(SyntaxKind::LeftBrace) {
+            self.block();
+        } else {
+            self.report_missing("`{`", " {");
+        }
+        self.close(node, SyntaxKind::Repeat);
+    }
+
+    /// Whether `free` stands before a statement; otherwise the word is a name like any other.
+    fn at_free(&mut self) -> bool {
+        self.at_word("free")
+            && match self.peek() {
+                SyntaxKind::Name => !self.at_joined_literal(),
+                SyntaxKind::LeftBrace
+                | SyntaxKind::ChooseKeyword
+                | SyntaxKind::DoKeyword
+                | SyntaxKind::IfKeyword
+                | SyntaxKind::DelayKeyword
+                | SyntaxKind::NotKeyword
+                | SyntaxKind::Bang
+                | SyntaxKind::TellKeyword
+                | SyntaxKind::AskKeyword => true,
+                _ => false,
+            }
+    }
+
+    /// `free A`; bounds behind it bind to A.
+    fn free(&mut self) {
+        let node = self.open();
+        self.bump();
+        self.nested(Self::statement);
+        self.close(node, SyntaxKind::Free);
+    }
+
     fn argument(&mut self) {
         let node = self.open();
-        let signed = self.eat(SyntaxKind::Minus);
-        let found = self.eat(SyntaxKind::Number) || (!signed && self.eat(SyntaxKind::Name));
-        if !found {
-            self.report_expected(if signed { "a number" } else { "a name or a number" });
+        let next = self.peek();
+        let is_operator = matches!(
+            next,
+            SyntaxKind::Plus | SyntaxKind::Minus | SyntaxKind::Star | SyntaxKind::Slash | SyntaxKind::Percent
+        );
+        let is_membership = self.at_membership();
+        let is_plain_number = !is_operator && !self.at_quantity();
+        match self.kind {
+            SyntaxKind::Number if is_plain_number => self.bump(),
+            SyntaxKind::Name if matches!(next, SyntaxKind::Equals | SyntaxKind::NotEquals) => self.literal(),
+            SyntaxKind::Name if is_membership => self.literal(),
+            SyntaxKind::Name if !is_operator => self.bump(),
+            SyntaxKind::Number | SyntaxKind::Name | SyntaxKind::LeftParen => self.sum(),
+            SyntaxKind::NotKeyword | SyntaxKind::Bang => self.literal(),
+            SyntaxKind::Minus => {
+                self.bump();
+                if !self.eat(SyntaxKind::Number) {
+                    self.report_expected("a number");
+                }
+            }
+            _ => self.report_expected("a name or a number"),
         }
         self.close(node, SyntaxKind::Argument);
     }

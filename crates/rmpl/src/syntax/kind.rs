@@ -108,6 +108,8 @@ pub enum SyntaxKind {
     LocationDecl,
     /// `obstacle NAME … ;`
     ObstacleDecl,
+    /// `const NAME = … ;`
+    ConstantDecl,
     /// `vehicle NAME : … ;`
     VehicleDecl,
     /// Text that is no declaration; it has been reported.
@@ -141,7 +143,7 @@ pub enum SyntaxKind {
     PercentOf,
     /// `( … )` in a bound.
     Grouped,
-    /// A number, `inf` or a name in a bound.
+    /// A number, perhaps with a unit of time, `inf` or a name in an expression.
     Operand,
 
     /// A core statement with the bounds behind it.
@@ -156,13 +158,17 @@ pub enum SyntaxKind {
     Alternative,
     /// `do … maintaining …` or `do … watching …`
     Do,
-    /// `if … thennext …`
+    /// `if … thennext …`, perhaps with `else …`
     If,
+    /// `repeat N { … }`
+    Repeat,
+    /// `free …`
+    Free,
     /// `Name( … )`
     Call,
     /// `( … )` of a call.
     Arguments,
-    /// A name or a number handed to a call.
+    /// A name, a number, an expression or a condition handed to a call.
     Argument,
     /// A condition as a statement, with `tell` or `ask` if written.
     Assertion,
@@ -170,8 +176,16 @@ pub enum SyntaxKind {
     BareName,
     /// `delay`
     Delay,
-    /// A condition with its negations and parentheses.
+    /// A literal with its negations and parentheses.
     Condition,
+    /// Conditions joined by `and`.
+    AllOf,
+    /// Conditions joined by `or`.
+    AnyOf,
+    /// `not` before conditions in parentheses.
+    NotOf,
+    /// Conditions in parentheses.
+    ConditionGroup,
     /// Tokens that were skipped to recover.
     Skipped,
 }

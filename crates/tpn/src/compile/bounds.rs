@@ -1,13 +1,22 @@
 //! Exact evaluation of the bounds of a program (SPEC 1.5); every overflow is an error, nothing is rounded.
 
-use exact::{Bound, Time};
-use rmpl::program::{BinaryOp, Bounds, Expr, ExprKind};
+use exact::{Bound, BoundError, Rational, Time};
+use rmpl::program::{BinaryOp, Bounds, DurationUnit, Expr, ExprKind};
 use rmpl::{Code, Diagnostic, Span};
 
 /// Bounds are not as SPEC 1.5 requires.
 pub(super) const E_BOUNDS: Code = Code("E-BOUNDS");
 /// An expression names no bound parameter.
 pub(super) const E_NAME: Code = Code("E-NAME");
+
+/// What the names and units of an expression stand for.
+pub(super) trait Values {
+    /// The value of a name.
+    fn number(&self, name: &str) -> Option<Bound>;
+
+    /// How many of the mission's units of time one `unit` is, if that can be said exactly.
+    fn in_mission_units(&self, unit: DurationUnit) -> Option<Rational>;
+}
 
 /// A least and a greatest duration: `0 ≤ lower ≤ upper`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,13 +44,10 @@ impl std::fmt::Display for Interval {
     }
 }
 
-/// Evaluates `bounds`; `lookup` gives the value of a name.
-pub(super) fn interval(
-    bounds: &Bounds,
-    lookup: &dyn Fn(&str) -> Option<Bound>,
-) -> Result<Interval, Diagnostic> {
-    let lower = value(&bounds.lower, lookup)?;
-    let upper = value(&bounds.upper, lookup)?;
+/// Evaluates `bounds`.
+pub(super) fn interval(bounds: &Bounds, values: &dyn Values) -> Result<Interval, Diagnostic> {
+    let lower = value(&bounds.lower, values)?;
+    let upper = value(&bounds.upper, values)?;
     checked_interval(lower, upper, bounds.span)
 }
 
@@ -66,7 +72,7 @@ pub(super) fn checked_interval(lower: Bound, upper: Bound, span: Span) -> Result
 pub(super) fn is_constant(bounds: &Bounds) -> bool {
     fn constant(expr: &Expr) -> bool {
         match &expr.kind {
-            ExprKind::Number(_) | ExprKind::Infinity => true,
+            ExprKind::Number(_) | ExprKind::Duration(..) | ExprKind::Infinity => true,
             ExprKind::Name(_) => false,
             ExprKind::Percent(inner) => constant(inner),
             ExprKind::Binary(_, left, right) => constant(left) && constant(right),
@@ -76,22 +82,27 @@ pub(super) fn is_constant(bounds: &Bounds) -> bool {
 }
 
 /// The value of `expr`.
-pub(super) fn value(expr: &Expr, lookup: &dyn Fn(&str) -> Option<Bound>) -> Result<Bound, Diagnostic> {
+pub(super) fn value(expr: &Expr, values: &dyn Values) -> Result<Bound, Diagnostic> {
     match &expr.kind {
         ExprKind::Number(number) => Ok(Bound::Finite(Time::from_units(*number))),
+        ExprKind::Duration(number, unit) => values
+            .in_mission_units(*unit)
+            .and_then(|one| one.checked_mul(*number))
+            .map(|duration| Bound::Finite(Time::from_units(duration)))
+            .ok_or_else(|| Diagnostic::error(E_BOUNDS, expr.span, BoundError::Overflow.to_string())),
         ExprKind::Infinity => Ok(Bound::Infinite),
-        ExprKind::Name(name) => lookup(name).ok_or_else(|| {
-            Diagnostic::error(E_NAME, expr.span, format!("`{name}` names no bound here")).with_hint(
-                "bounds may name the bound parameters of the surrounding activity's header, such as `l` and `u` in \
-                 `Name()[l,u] = { … }`",
+        ExprKind::Name(name) => values.number(name).ok_or_else(|| {
+            Diagnostic::error(E_NAME, expr.span, format!("`{name}` stands for no number here")).with_hint(
+                "expressions may name constants, the bound parameters of the surrounding activity's header, such as `l` \
+                 and `u` in `Name()[l,u] = { … }`, and its parameters that stand for numbers",
             )
         }),
         ExprKind::Percent(inner) => {
             let hundred = Bound::Finite(Time::from(100));
-            arithmetic(BinaryOp::Divide, value(inner, lookup)?, hundred, expr.span)
+            arithmetic(BinaryOp::Divide, value(inner, values)?, hundred, expr.span)
         }
         ExprKind::Binary(op, left, right) => {
-            arithmetic(*op, value(left, lookup)?, value(right, lookup)?, expr.span)
+            arithmetic(*op, value(left, values)?, value(right, values)?, expr.span)
         }
     }
 }

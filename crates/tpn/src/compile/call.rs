@@ -1,12 +1,12 @@
 //! Calls: instances of defined activities with their header bounds (SPEC 1.4), and primitives.
 
-use exact::Bound;
+use exact::{Bound, Rational, Time};
 use rmpl::diagnostics::recursion;
-use rmpl::program::{ActivityDecl, ArgumentValue, Bounds, HeaderBound, HeaderBounds, Name};
+use rmpl::program::{ActivityDecl, Argument, ArgumentValue, Bounds, Expr, HeaderBound, HeaderBounds, Name};
 use rmpl::{Diagnostic, Span};
 use smol_str::SmolStr;
 
-use super::bounds::{self, Interval};
+use super::bounds::{self, Interval, Values as _};
 use super::expand::{End, Entry, Expander, Piece};
 use super::scope::{Scope, argument_text};
 use crate::network::{ArcKind, BlockKind, OccurrenceKind};
@@ -91,17 +91,24 @@ impl<'program> Expander<'program> {
         let HeaderBounds::Sides { lower, upper, span } = &activity.bounds else {
             return (call.interval, call_span);
         };
-        if let HeaderBound::Parameter(name) = lower {
-            scope.bind(&name.text, Bound::Finite(call.interval.lower));
+        let constants = &self.constants;
+        // A plain name declares a bound parameter unless it is a constant.
+        let parameter = |side: &'program HeaderBound| match side {
+            HeaderBound::Parameter(name) if constants.number(&name.text).is_none() => Some(&name.text),
+            _ => None,
+        };
+        if let Some(name) = parameter(lower) {
+            scope.bind(name, Bound::Finite(call.interval.lower));
         }
-        if let HeaderBound::Parameter(name) = upper {
-            scope.bind(&name.text, call.interval.upper);
+        if let Some(name) = parameter(upper) {
+            scope.bind(name, call.interval.upper);
         }
+        let values = scope.values(constants);
         let value = |side: &HeaderBound, default: Bound| match side {
-            HeaderBound::Parameter(_) => Ok((default, false)),
-            HeaderBound::Limit(expr) => {
-                bounds::value(expr, &|name| scope.bound(name)).map(|value| (value, true))
+            HeaderBound::Parameter(name) => {
+                Ok(constants.number(&name.text).map_or((default, false), |value| (value, true)))
             }
+            HeaderBound::Limit(expr) => bounds::value(expr, &values).map(|value| (value, true)),
         };
         let sides = value(lower, Bound::ZERO).and_then(|least| Ok((least, value(upper, Bound::Infinite)?)));
         let ((least, limits_lower), (greatest, limits_upper)) = match sides {
@@ -152,6 +159,47 @@ impl<'program> Expander<'program> {
             call.span,
         );
         self.leaf(occurrence, ArcKind::Activity, interval, arc_span, call.span, entry)
+    }
+
+    /// The arguments of a call after substitution, with expressions evaluated where the call stands.
+    pub(super) fn arguments(&mut self, arguments: &[Argument], scope: &Scope) -> Vec<ArgumentValue> {
+        let mut values = Vec::with_capacity(arguments.len());
+        for argument in arguments {
+            let value = match &argument.value {
+                ArgumentValue::Name(name) => {
+                    let constant = || self.constants.number(name).and_then(Bound::finite);
+                    scope
+                        .argument(name)
+                        .or_else(|| scope.number_argument(name))
+                        .or_else(|| constant().map(|number| ArgumentValue::Number(number.units())))
+                }
+                ArgumentValue::Expression(expr) => Some(ArgumentValue::Number(self.number(expr, scope))),
+                ArgumentValue::Condition(condition) => {
+                    Some(ArgumentValue::Condition(scope.condition(condition)))
+                }
+                ArgumentValue::Number(_) => None,
+            };
+            values.push(value.unwrap_or_else(|| argument.value.clone()));
+        }
+        values
+    }
+
+    /// The value of an argument, which is finite.
+    fn number(&mut self, expr: &Expr, scope: &Scope) -> Rational {
+        let value = bounds::value(expr, &scope.values(&self.constants)).and_then(|value| {
+            value.finite().map(Time::units).ok_or_else(|| {
+                Diagnostic::error(
+                    bounds::E_BOUNDS,
+                    expr.span,
+                    "an argument is a number, and this is infinite",
+                )
+            })
+        });
+        // What has no value is reported, and stands for some number until then.
+        value.unwrap_or_else(|error| {
+            self.diagnostics.push(error);
+            Rational::default()
+        })
     }
 
     fn intersect(&mut self, call: &Invocation<'_>, limit: Interval, declared_span: Span) -> Interval {

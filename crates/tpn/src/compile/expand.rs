@@ -3,19 +3,21 @@
 use std::collections::BTreeMap;
 
 use exact::{Bound, Time};
+use rmpl::diagnostics::limit;
 use rmpl::program::{
-    ActivityDecl, Bounds, LabelMode, PrimitiveDecl, Program, ScenarioDecl, Statement, StatementKind,
+    ActivityDecl, Bounds, Expr, LabelMode, PrimitiveDecl, Program, ScenarioDecl, Statement, StatementKind,
 };
 use rmpl::{Diagnostic, Span};
 use smol_str::SmolStr;
 
+use super::E_UNDEF;
 use super::bounds::{self, Interval};
 use super::build::Builder;
 use super::call::{Invocation, themselves};
+use super::constants::Constants;
 use super::names::Vocabulary;
 use super::scope::Scope;
 use super::shape::starts_with_decision;
-use super::{E_LIMIT, E_UNDEF};
 use crate::network::{ArcId, ArcKind, BlockId, BlockKind, Network, NodeId, OccurrenceId, OccurrenceKind};
 
 /// Networks grow no larger than this many nodes, so that a few lines of doubling calls cannot exhaust the memory.
@@ -59,6 +61,7 @@ pub(super) struct Piece {
 pub(super) struct Expander<'program> {
     pub(super) program: &'program Program,
     pub(super) vocabulary: Vocabulary<'program>,
+    pub(super) constants: Constants<'program>,
     pub(super) activities: BTreeMap<&'program str, &'program ActivityDecl>,
     pub(super) primitives: BTreeMap<&'program str, &'program PrimitiveDecl>,
     pub(super) builder: Builder,
@@ -77,7 +80,7 @@ pub(super) struct Root {
 }
 
 impl<'program> Expander<'program> {
-    pub(super) fn new(program: &'program Program) -> Self {
+    pub(super) fn new(program: &'program Program, constants: Constants<'program>) -> Self {
         let mut activities = BTreeMap::new();
         for activity in &program.activities {
             activities.entry(activity.name.text.as_str()).or_insert(activity);
@@ -89,6 +92,7 @@ impl<'program> Expander<'program> {
         Self {
             program,
             vocabulary: Vocabulary::new(program),
+            constants,
             activities,
             primitives,
             builder: Builder::default(),
@@ -193,7 +197,7 @@ impl<'program> Expander<'program> {
     fn unbounded(&mut self, statement: &'program Statement, entry: Entry, scope: &Scope) -> Piece {
         let (span, written) = (statement.span, statement.bounds.as_ref());
         match &statement.kind {
-            StatementKind::Sequence(items) => self.sequence(items, span, entry, scope),
+            StatementKind::Sequence(items) => self.sequence(items.iter(), span, entry, scope),
             StatementKind::Parallel(branches) => self.parallel(branches, span, entry, scope),
             StatementKind::Choose(alternatives) => self.choose(alternatives, span, entry, scope),
             StatementKind::Maintaining(body, condition) => {
@@ -203,8 +207,9 @@ impl<'program> Expander<'program> {
                 self.conditional(body, condition, LabelMode::Tell, span, entry, scope)
             }
             StatementKind::IfThennext(condition, body) => self.guard(condition, body, span, entry, scope),
+            StatementKind::Repeat(count, body) => self.repeat(count, body, span, entry, scope),
             StatementKind::Call(name, arguments) => {
-                let arguments = scope.arguments(arguments);
+                let arguments = self.arguments(arguments, scope);
                 self.call(name, &arguments, written, span, entry, scope)
             }
             StatementKind::Condition(mode, condition) => {
@@ -228,9 +233,18 @@ impl<'program> Expander<'program> {
         }
     }
 
-    fn sequence(&mut self, items: &'program [Statement], span: Span, entry: Entry, scope: &Scope) -> Piece {
-        let mut pieces: Vec<Piece> = Vec::with_capacity(items.len());
+    fn sequence(
+        &mut self,
+        items: impl Iterator<Item = &'program Statement>,
+        span: Span,
+        entry: Entry,
+        scope: &Scope,
+    ) -> Piece {
+        let mut pieces: Vec<Piece> = Vec::new();
         for item in items {
+            if self.is_cut_off {
+                break;
+            }
             let entry = match pieces.last() {
                 None => entry,
                 Some(last) => Entry::After { node: last.end, end: last.end_kind, link: ArcKind::Glue },
@@ -248,6 +262,39 @@ impl<'program> Expander<'program> {
         let children = pieces.iter().map(|piece| piece.block).collect();
         let block = self.builder.block(BlockKind::Sequence { children }, start, end, Some(span));
         Piece { start, end, end_kind, block, arc: None, occurrence: None }
+    }
+
+    /// So many copies of `body`, one after the other.
+    fn repeat(
+        &mut self,
+        count: &Expr,
+        body: &'program Statement,
+        span: Span,
+        entry: Entry,
+        scope: &Scope,
+    ) -> Piece {
+        let copies = bounds::value(count, &scope.values(&self.constants)).and_then(|value| {
+            let whole = value.finite().filter(|value| value.is_integer() && !value.is_negative());
+            let copies = whole.map(|value| usize::try_from(value.numerator()).unwrap_or(usize::MAX));
+            match copies {
+                None => {
+                    let message =
+                        format!("`repeat` takes a number of copies: 0, 1, 2, …, and this is {value}");
+                    Err(Diagnostic::error(bounds::E_BOUNDS, count.span, message))
+                }
+                Some(copies) if copies > MAX_NODES => {
+                    Err(limit::events(&format!("{value} copies have"), MAX_NODES, count.span))
+                }
+                Some(copies) => Ok(copies),
+            }
+        });
+        match copies {
+            Ok(copies) => self.sequence(std::iter::repeat_n(body, copies), span, entry, scope),
+            Err(error) => {
+                self.diagnostics.push(error);
+                self.nothing(span, entry)
+            }
+        }
     }
 
     fn parallel(
@@ -396,7 +443,7 @@ impl<'program> Expander<'program> {
 
     /// The value of written bounds; anything, with a diagnostic, if they have none.
     pub(super) fn interval(&mut self, written: &Bounds, scope: &Scope) -> Interval {
-        bounds::interval(written, &|name| scope.bound(name)).unwrap_or_else(|error| {
+        bounds::interval(written, &scope.values(&self.constants)).unwrap_or_else(|error| {
             self.diagnostics.push(error);
             Interval::ANY
         })
@@ -406,12 +453,11 @@ impl<'program> Expander<'program> {
         let is_deep = self.depth >= DEEPEST;
         if !self.is_cut_off && (is_deep || self.builder.node_count() >= MAX_NODES) {
             self.is_cut_off = true;
-            let message = if is_deep {
-                format!("statements and calls are nested deeper than {DEEPEST} levels")
+            self.diagnostics.push(if is_deep {
+                limit::nested(DEEPEST, span)
             } else {
-                format!("with its calls expanded, the mission has more than {MAX_NODES} events")
-            };
-            self.diagnostics.push(Diagnostic::error(E_LIMIT, span, message));
+                limit::events("the mission has", MAX_NODES, span)
+            });
         }
         self.is_cut_off
     }

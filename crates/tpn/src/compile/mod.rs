@@ -7,6 +7,7 @@ mod bounds;
 mod build;
 mod call;
 mod condition;
+mod constants;
 mod expand;
 mod names;
 mod scope;
@@ -22,14 +23,13 @@ use rmpl::{Code, Diagnostic, Severity, Span};
 use smol_str::SmolStr;
 
 use crate::network::Network;
+use constants::Constants;
 use expand::Expander;
 
 /// There is no scenario, or none of the name that was asked for.
 const E_NOSCENARIO: Code = Code("E-NOSCENARIO");
 /// There is no activity of the name that was asked for.
 const E_UNDEF: Code = Code("E-UNDEF");
-/// The expanded network is larger or nested deeper than this program handles.
-const E_LIMIT: Code = Code("E-LIMIT");
 
 /// What a network is compiled for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -67,11 +67,13 @@ impl Top {
 /// assert_eq!(names, ["scenario#1", "Drive#1", "delay#1", "Dig#1"]);
 /// ```
 pub fn compile(program: &Program, top: &Top) -> (Option<Network>, Vec<Diagnostic>) {
-    let mut diagnostics = statics::check(program);
-    if diagnostics.iter().any(|found| found.code == recursion::CODE) {
+    let (constants, mut diagnostics) = Constants::new(program);
+    let are_constants_sound = diagnostics.is_empty();
+    diagnostics.extend(statics::check(program, &constants));
+    if !are_constants_sound || diagnostics.iter().any(|found| found.code == recursion::CODE) {
         return (None, without_repeats(diagnostics));
     }
-    let mut expander = Expander::new(program);
+    let mut expander = Expander::new(program, constants);
     let root = match top {
         Top::Scenario(name) => find_scenario(program, name.as_ref())
             .map(|scenario| expander.scenario(scenario))

@@ -6,6 +6,7 @@ use rmpl::program::{ArgumentValue, Condition, Program, Statement, StatementKind}
 use rmpl::{Code, Diagnostic};
 use smol_str::SmolStr;
 
+use super::scope::argument_text;
 use crate::network::{Literal, ValueId, ValueSet, Variable, VariableId};
 
 /// A value is outside its variable's domain.
@@ -15,21 +16,38 @@ pub(super) const E_VALUE: Code = Code("E-VALUE");
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Fact {
     pub(super) variable: SmolStr,
-    pub(super) value: Option<SmolStr>,
+    /// An atom has none; several are the set of which the variable has one.
+    pub(super) values: Vec<SmolStr>,
     pub(super) negated: bool,
 }
 
 impl Fact {
+    /// A condition as it is written, before anything is substituted.
+    pub(super) fn written(condition: &Condition) -> Self {
+        Self {
+            variable: condition.variable.text.clone(),
+            values: condition.values.iter().map(|value| value.text.clone()).collect(),
+            negated: condition.negated,
+        }
+    }
+
     /// The fact that holds exactly when this one does not.
     pub(super) fn negation(self) -> Self {
         Self { negated: !self.negated, ..self }
     }
 
+    /// The values; of an atom that it is true.
+    fn values(&self) -> impl Iterator<Item = &str> {
+        let atom = self.values.is_empty().then_some("true");
+        atom.into_iter().chain(self.values.iter().map(SmolStr::as_str))
+    }
+
     /// As the contracts print it (DESIGN 4.1).
     pub(super) fn text(&self) -> SmolStr {
-        let positive = match &self.value {
-            Some(value) => format!("{}={value}", self.variable),
-            None => self.variable.to_string(),
+        let positive = match self.values.as_slice() {
+            [] => self.variable.to_string(),
+            [value] => format!("{}={value}", self.variable),
+            values => format!("{} in {{{}}}", self.variable, values.join(", ")),
         };
         if self.negated { format!("not({positive})").into() } else { positive.into() }
     }
@@ -54,7 +72,7 @@ impl<'program> Vocabulary<'program> {
         let bodies = program.activities.iter().map(|activity| &activity.body);
         for body in bodies.chain(program.scenarios.iter().map(|scenario| &scenario.body)) {
             for_each_condition(body, &mut |condition| {
-                if condition.value.is_some() {
+                if !condition.values.is_empty() {
                     compared.insert(condition.variable.text.as_str());
                 }
             });
@@ -68,21 +86,26 @@ impl<'program> Vocabulary<'program> {
         condition: &Condition,
         substitute: &dyn Fn(&str) -> Option<ArgumentValue>,
     ) -> Result<Fact, Diagnostic> {
-        let text = |name: &SmolStr| match substitute(name) {
-            Some(ArgumentValue::Name(argument)) => argument,
-            Some(ArgumentValue::Number(number)) => number.to_string().into(),
-            None => name.clone(),
-        };
+        let text =
+            |name: &SmolStr| substitute(name).map_or_else(|| name.clone(), |value| argument_text(&value));
         let negated = condition.negated;
-        let variable = text(&condition.variable.text);
-        let fact = match &condition.value {
-            Some(value) => Fact { variable, value: Some(text(&value.text)), negated },
-            None => match self.split(&variable) {
-                Some((variable, value)) => {
-                    Fact { variable: variable.into(), value: Some(value.into()), negated }
-                }
-                None => Fact { variable, value: None, negated },
+        let written = match substitute(&condition.variable.text) {
+            // A parameter that stands for a whole condition, whose own names mean something at the call.
+            Some(ArgumentValue::Condition(handed)) if condition.values.is_empty() => {
+                let fact = Fact::written(&handed);
+                Fact { negated: fact.negated != negated, ..fact }
+            }
+            _ => Fact {
+                variable: text(&condition.variable.text),
+                values: condition.values.iter().map(|value| text(&value.text)).collect(),
+                negated,
             },
+        };
+        let fact = match self.split(&written.variable).filter(|_| written.values.is_empty()) {
+            Some((variable, value)) => {
+                Fact { variable: variable.into(), values: vec![value.into()], negated: written.negated }
+            }
+            None => written,
         };
         self.check(&fact, condition)?;
         Ok(fact)
@@ -103,12 +126,10 @@ impl<'program> Vocabulary<'program> {
 
     fn check(&self, fact: &Fact, condition: &Condition) -> Result<(), Diagnostic> {
         let Some(domain) = self.domains.get(fact.variable.as_str()) else { return Ok(()) };
-        let value = fact.value.as_deref().unwrap_or("true");
-        if domain.contains(&value) {
-            return Ok(());
-        }
-        let span = condition.value.as_ref().map_or(condition.span, |value| value.span);
-        let message = match &fact.value {
+        let wrong = fact.values().position(|value| !domain.contains(&value));
+        let Some(wrong) = wrong else { return Ok(()) };
+        let span = condition.values.get(wrong).map_or(condition.span, |value| value.span);
+        let message = match fact.values.get(wrong) {
             Some(value) => format!("`{value}` is not a value of `{}`", fact.variable),
             None => format!("`{}` is a variable: say which value it has", fact.variable),
         };
@@ -125,7 +146,7 @@ impl<'program> Vocabulary<'program> {
                 tables.push(Table::new(&fact.variable, self.domains.get(fact.variable.as_str())));
                 tables.len() - 1
             });
-            tables[at].mention(fact.value.as_deref());
+            tables[at].mention(fact);
         }
         for table in &mut tables {
             table.close_if_boolean();
@@ -165,9 +186,9 @@ impl Table {
         }
     }
 
-    fn mention(&mut self, value: Option<&str>) {
-        self.has_atom |= value.is_none();
-        self.add(value.unwrap_or("true"));
+    fn mention(&mut self, fact: &Fact) {
+        self.has_atom |= fact.values.is_empty();
+        fact.values().for_each(|value| self.add(value));
     }
 
     /// An atom that is never compared with another value is Boolean: its domain is `false`, `true`.
@@ -180,13 +201,15 @@ impl Table {
     }
 
     fn set(&self, fact: &Fact) -> ValueSet {
-        let value = self.values[fact.value.as_deref().unwrap_or("true")];
+        let mut values: Vec<ValueId> = fact.values().map(|value| self.values[value]).collect();
+        values.sort_unstable();
+        values.dedup();
         match (fact.negated, self.variable.closed) {
-            (false, _) => ValueSet::In(vec![value]),
-            (true, false) => ValueSet::NotIn(vec![value]),
+            (false, _) => ValueSet::In(values),
+            (true, false) => ValueSet::NotIn(values),
             (true, true) => {
                 let all = (0..self.variable.values.len()).map(ValueId::from_index);
-                ValueSet::In(all.filter(|&other| other != value).collect())
+                ValueSet::In(all.filter(|other| values.binary_search(other).is_err()).collect())
             }
         }
     }
@@ -205,7 +228,15 @@ fn for_each_condition<'program>(statement: &'program Statement, visit: &mut dyn 
             visit(condition);
             for_each_condition(body, visit);
         }
+        StatementKind::Repeat(_, body) => for_each_condition(body, visit),
         StatementKind::Condition(_, condition) => visit(condition),
-        StatementKind::Call(..) | StatementKind::Delay => {}
+        StatementKind::Call(_, arguments) => {
+            for argument in arguments {
+                if let ArgumentValue::Condition(condition) = &argument.value {
+                    visit(condition);
+                }
+            }
+        }
+        StatementKind::Delay => {}
     }
 }

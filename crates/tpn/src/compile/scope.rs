@@ -1,9 +1,12 @@
 //! What the names of an expanded body mean: the arguments and bound parameters of the activity instance around it.
 
-use exact::{Bound, Time};
-use rmpl::program::{Argument, ArgumentValue, Name};
+use exact::{Bound, Rational, Time};
+use rmpl::program::{ArgumentValue, Condition, DurationUnit, Name};
 use smol_str::{SmolStr, format_smolstr};
 
+use super::bounds::Values;
+use super::constants::Constants;
+use super::names::Fact;
 use crate::network::OccurrenceId;
 
 /// The instance that a statement is expanded in.
@@ -36,8 +39,32 @@ impl Scope {
         self.arguments.iter().find(|(formal, _)| formal == name).map(|(_, value)| value.clone())
     }
 
-    /// The bound that a name stands for: a bound parameter, or a formal whose argument is a number.
-    pub(super) fn bound(&self, name: &str) -> Option<Bound> {
+    /// The finite bound parameter that a name is, handed on as a number.
+    pub(super) fn number_argument(&self, name: &str) -> Option<ArgumentValue> {
+        self.number(name)?.finite().map(|number| ArgumentValue::Number(number.units()))
+    }
+
+    /// A condition that is handed on, with the instance's own arguments in place of its formals.
+    pub(super) fn condition(&self, condition: &Condition) -> Condition {
+        let replace = |name: &Name| {
+            let text =
+                self.argument(&name.text).map_or_else(|| name.text.clone(), |value| argument_text(&value));
+            Name { text, span: name.span }
+        };
+        if let Some(ArgumentValue::Condition(handed)) = self.argument(&condition.variable.text)
+            && condition.values.is_empty()
+        {
+            return Condition { negated: handed.negated != condition.negated, ..handed };
+        }
+        Condition {
+            variable: replace(&condition.variable),
+            values: condition.values.iter().map(replace).collect(),
+            ..condition.clone()
+        }
+    }
+
+    /// The number that a name stands for: a bound parameter, or a formal whose argument is a number.
+    fn number(&self, name: &str) -> Option<Bound> {
         if let Some((_, bound)) = self.bounds.iter().find(|(parameter, _)| parameter == name) {
             return Some(*bound);
         }
@@ -55,13 +82,25 @@ impl Scope {
         }
     }
 
-    /// The arguments of a call after substitution.
-    pub(super) fn arguments(&self, arguments: &[Argument]) -> Vec<ArgumentValue> {
-        let substituted = arguments.iter().map(|argument| match &argument.value {
-            ArgumentValue::Name(name) => self.argument(name).unwrap_or_else(|| argument.value.clone()),
-            ArgumentValue::Number(_) => argument.value.clone(),
-        });
-        substituted.collect()
+    /// What expressions mean in this instance.
+    pub(super) const fn values<'a>(&'a self, constants: &'a Constants<'a>) -> ScopeValues<'a> {
+        ScopeValues { scope: self, constants }
+    }
+}
+
+/// The numbers of an instance: its own names before the program's constants.
+pub(super) struct ScopeValues<'a> {
+    scope: &'a Scope,
+    constants: &'a Constants<'a>,
+}
+
+impl Values for ScopeValues<'_> {
+    fn number(&self, name: &str) -> Option<Bound> {
+        self.scope.number(name).or_else(|| self.constants.number(name))
+    }
+
+    fn in_mission_units(&self, unit: DurationUnit) -> Option<Rational> {
+        self.constants.in_mission_units(unit)
     }
 }
 
@@ -70,5 +109,8 @@ pub(super) fn argument_text(argument: &ArgumentValue) -> SmolStr {
     match argument {
         ArgumentValue::Name(name) => name.clone(),
         ArgumentValue::Number(number) => format_smolstr!("{number}"),
+        // Expressions are evaluated before anything is done with them.
+        ArgumentValue::Expression(_) => SmolStr::default(),
+        ArgumentValue::Condition(condition) => Fact::written(condition).text(),
     }
 }

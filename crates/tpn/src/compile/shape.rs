@@ -21,7 +21,10 @@ impl Expander<'_> {
             StatementKind::Maintaining(body, _) | StatementKind::Watching(body, _) => {
                 statement.bounds.is_none() && self.is_single_arc(body, scope)
             }
-            StatementKind::Parallel(_) | StatementKind::Choose(_) | StatementKind::IfThennext(..) => false,
+            StatementKind::Parallel(_)
+            | StatementKind::Choose(_)
+            | StatementKind::IfThennext(..)
+            | StatementKind::Repeat(..) => false,
         }
     }
 
@@ -47,7 +50,7 @@ impl Expander<'_> {
         condition: &Condition,
         scope: &Scope,
     ) -> Option<Name> {
-        if mode != LabelMode::Tell || condition.negated || condition.value.is_some() {
+        if mode != LabelMode::Tell || condition.negated || !condition.values.is_empty() {
             return None;
         }
         let Some(ArgumentValue::Name(callee)) = scope.argument(&condition.variable.text) else { return None };
@@ -70,6 +73,8 @@ pub(super) fn starts_with_decision(statement: &Statement, is_bounded_outside: bo
         StatementKind::Sequence(items) => {
             items.first().is_some_and(|first| starts_with_decision(first, false))
         }
+        // If there are no copies at all, the nodes around nothing do no harm.
+        StatementKind::Repeat(_, body) => starts_with_decision(body, false),
         _ => false,
     }
 }

@@ -8,13 +8,14 @@ use rmpl::program::{ActivityDecl, Bounds, HeaderBound, HeaderBounds, Program, St
 use rmpl::{Diagnostic, Span};
 
 use super::bounds;
+use super::constants::Constants;
 
 /// Everything that is wrong whatever is compiled.
-pub(super) fn check(program: &Program) -> Vec<Diagnostic> {
+pub(super) fn check(program: &Program, constants: &Constants<'_>) -> Vec<Diagnostic> {
     let mut found = recursion(program);
     let mut check_bounds = |written: &Bounds| {
         if bounds::is_constant(written)
-            && let Err(error) = bounds::interval(written, &|_| None)
+            && let Err(error) = bounds::interval(written, constants)
         {
             found.push(error);
         }
@@ -86,7 +87,8 @@ pub(super) fn for_each_statement<'program>(
         }
         StatementKind::Maintaining(body, _)
         | StatementKind::Watching(body, _)
-        | StatementKind::IfThennext(_, body) => {
+        | StatementKind::IfThennext(_, body)
+        | StatementKind::Repeat(_, body) => {
             for_each_statement(body, visit);
         }
         StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay => {}

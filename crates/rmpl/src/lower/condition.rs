@@ -1,0 +1,249 @@
+//! Conditions joined by `and` and `or`, and the statements that they stand for (SPEC 14).
+//!
+//! The language below knows single literals only. What is required of several is required of each, nested; a choice
+//! stands for "one of several". Of what is asserted there is no choice.
+
+use crate::diagnostics::{limit, syntax};
+use crate::program::{Bounds, Condition, LabelMode, Name, Statement, StatementKind};
+use crate::span::Span;
+use crate::syntax::{SyntaxKind, SyntaxNode};
+
+use super::{Lowering, name_of, names};
+
+/// A declaration grows by no more statements than this where `or` copies what it stands beside.
+const MAX_COPIED: usize = 10_000;
+
+/// A condition with its negations pushed down to the literals.
+#[derive(Clone, Debug)]
+pub(super) enum Formula {
+    Literal(Condition),
+    All(Vec<Formula>),
+    Any(Vec<Formula>, Span),
+}
+
+/// Whether a node of this kind is a condition.
+pub(super) const fn is_condition(kind: SyntaxKind) -> bool {
+    matches!(
+        kind,
+        SyntaxKind::Condition
+            | SyntaxKind::AllOf
+            | SyntaxKind::AnyOf
+            | SyntaxKind::NotOf
+            | SyntaxKind::ConditionGroup
+    )
+}
+
+/// The condition of a node, if it is whole.
+pub(super) fn formula(node: SyntaxNode<'_>) -> Option<Formula> {
+    let parts = || node.children().filter(|child| is_condition(child.kind())).map(formula);
+    match node.kind() {
+        SyntaxKind::Condition => literal(node).map(Formula::Literal),
+        SyntaxKind::AllOf => Some(Formula::All(parts().collect::<Option<_>>()?)),
+        SyntaxKind::AnyOf => Some(Formula::Any(parts().collect::<Option<_>>()?, node.span())),
+        SyntaxKind::NotOf => Some(parts().next()??.negation(node.span())),
+        SyntaxKind::ConditionGroup => parts().next()?,
+        _ => None,
+    }
+}
+
+impl Formula {
+    /// What holds exactly when this does not; `span` is where the negation is written.
+    fn negation(self, span: Span) -> Self {
+        match self {
+            Self::Literal(literal) => Self::Literal(Condition { negated: !literal.negated, ..literal }),
+            Self::All(parts) => Self::Any(parts.into_iter().map(|part| part.negation(span)).collect(), span),
+            Self::Any(parts, _) => Self::All(parts.into_iter().map(|part| part.negation(span)).collect()),
+        }
+    }
+
+    /// Where it is written.
+    fn span(&self) -> Span {
+        match self {
+            Self::Literal(literal) => literal.span,
+            Self::All(parts) => parts.iter().map(Self::span).reduce(Span::cover).unwrap_or_default(),
+            Self::Any(_, span) => *span,
+        }
+    }
+}
+
+/// A literal, with its negations folded.
+pub(super) fn literal(node: SyntaxNode<'_>) -> Option<Condition> {
+    let mut negated = false;
+    let mut compared = false;
+    let mut variable = None;
+    let mut values: Vec<Name> = Vec::new();
+    for token in node.own_tokens() {
+        match token.kind {
+            SyntaxKind::NotKeyword | SyntaxKind::Bang => negated = !negated,
+            SyntaxKind::NotEquals => {
+                negated = !negated;
+                compared = true;
+            }
+            SyntaxKind::Equals => compared = true,
+            SyntaxKind::Name if variable.is_none() => variable = Some(name_of(token)),
+            SyntaxKind::Name | SyntaxKind::Number if compared => values.push(name_of(token)),
+            _ => {}
+        }
+    }
+    if let Some(domain) = node.child(SyntaxKind::Domain) {
+        compared = true;
+        values = names(domain).collect();
+    }
+    (compared != values.is_empty()).then_some(Condition {
+        variable: variable?,
+        values,
+        negated,
+        span: node.span(),
+    })
+}
+
+/// How `body` is written where one literal is required of it.
+type Require = fn(Condition, Box<Statement>) -> StatementKind;
+
+impl Lowering<'_> {
+    /// `do body maintaining formula`.
+    pub(super) fn maintaining(
+        &mut self,
+        formula: &Formula,
+        body: Statement,
+        span: Span,
+    ) -> Option<Statement> {
+        self.asked(formula, body, span, |literal, body| StatementKind::Maintaining(body, literal))
+    }
+
+    /// `body` where `formula` is required; the first literal is the innermost.
+    fn asked(
+        &mut self,
+        formula: &Formula,
+        body: Statement,
+        span: Span,
+        require: Require,
+    ) -> Option<Statement> {
+        match formula {
+            Formula::Literal(literal) => {
+                Some(Statement { kind: require(literal.clone(), Box::new(body)), bounds: None, span })
+            }
+            Formula::All(parts) => {
+                parts.iter().try_fold(body, |body, part| self.asked(part, body, span, require))
+            }
+            Formula::Any(parts, place) => {
+                let mut alternatives = Vec::with_capacity(parts.len());
+                for part in parts {
+                    let body = self.copy(&body, *place)?;
+                    alternatives.push(self.asked(part, body, span, require)?);
+                }
+                Some(Statement { kind: StatementKind::Choose(alternatives), bounds: None, span })
+            }
+        }
+    }
+
+    /// One more of `body`, unless the declaration has grown too large already.
+    fn copy(&mut self, body: &Statement, span: Span) -> Option<Statement> {
+        let had_room = self.copied <= MAX_COPIED;
+        self.copied = self.copied.saturating_add(size(body));
+        if self.copied > MAX_COPIED {
+            if had_room {
+                self.diagnostics.push(limit::copied(MAX_COPIED, span));
+            }
+            return None;
+        }
+        Some(body.clone())
+    }
+
+    /// `if formula thennext body else otherwise`.
+    pub(super) fn if_statement(
+        &mut self,
+        formula: Formula,
+        body: Statement,
+        otherwise: Option<Statement>,
+        span: Span,
+    ) -> Option<StatementKind> {
+        let mut guarded =
+            |formula: &Formula, body: Statement| self.asked(formula, body, span, StatementKind::IfThennext);
+        let Some(otherwise) = otherwise else { return Some(guarded(&formula, body)?.kind) };
+        let place = formula.span();
+        let then = guarded(&formula, body)?;
+        let otherwise = guarded(&formula.negation(place), otherwise)?;
+        Some(StatementKind::Choose(vec![then, otherwise]))
+    }
+
+    /// `do body watching formula`, which asserts that the formula does not hold.
+    pub(super) fn watching(&mut self, formula: Formula, body: Statement, span: Span) -> Statement {
+        let place = formula.span();
+        // Without the condition, the activities are still known.
+        let denied = self.told(formula.negation(place)).unwrap_or_default();
+        let around = |body, literal: Condition| {
+            let watched = Condition { negated: !literal.negated, ..literal };
+            Statement { kind: StatementKind::Watching(Box::new(body), watched), bounds: None, span }
+        };
+        denied.into_iter().fold(body, around)
+    }
+
+    /// `formula`, `tell formula` or `ask formula`, for as long as `bounds` say.
+    pub(super) fn assertion(
+        &mut self,
+        mode: LabelMode,
+        formula: Formula,
+        bounds: Option<Bounds>,
+        span: Span,
+    ) -> Option<Statement> {
+        let single = |literal: Condition, bounds: Option<Bounds>| Statement {
+            kind: StatementKind::Condition(mode, literal),
+            bounds,
+            span,
+        };
+        match (mode, formula) {
+            (_, Formula::Literal(literal)) => Some(single(literal, bounds)),
+            (LabelMode::Ask, Formula::Any(parts, _)) => {
+                let alternatives =
+                    parts.into_iter().map(|part| self.assertion(mode, part, bounds.clone(), span));
+                let alternatives = alternatives.collect::<Option<Vec<_>>>()?;
+                Some(Statement { kind: StatementKind::Choose(alternatives), bounds: None, span })
+            }
+            (LabelMode::Ask, Formula::All(parts)) => {
+                let mut parts = parts.into_iter();
+                let first = self.assertion(mode, parts.next()?, bounds, span)?;
+                parts.try_fold(first, |body, part| self.maintaining(&part, body, span))
+            }
+            (LabelMode::Tell, formula) => {
+                let mut literals = self.told(formula)?.into_iter();
+                let first = single(literals.next()?, bounds);
+                Some(literals.fold(first, |body, literal| {
+                    let watched = Condition { negated: !literal.negated, ..literal };
+                    let kind = StatementKind::Watching(Box::new(body), watched);
+                    Statement { kind, bounds: None, span }
+                }))
+            }
+        }
+    }
+
+    /// The literals of a condition that is asserted; a choice between several is a mistake.
+    fn told(&mut self, formula: Formula) -> Option<Vec<Condition>> {
+        match formula {
+            Formula::Literal(literal) => Some(vec![literal]),
+            Formula::All(parts) => {
+                let told = parts.into_iter().map(|part| self.told(part));
+                Some(told.collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
+            }
+            Formula::Any(_, span) => {
+                self.diagnostics.push(syntax::choice_asserted(span));
+                None
+            }
+        }
+    }
+}
+
+/// How many statements there are in `statement`, itself included.
+fn size(statement: &Statement) -> usize {
+    let inside = match &statement.kind {
+        StatementKind::Sequence(parts) | StatementKind::Parallel(parts) | StatementKind::Choose(parts) => {
+            parts.iter().map(size).sum()
+        }
+        StatementKind::Maintaining(body, _)
+        | StatementKind::Watching(body, _)
+        | StatementKind::IfThennext(_, body)
+        | StatementKind::Repeat(_, body) => size(body),
+        StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay => 0,
+    };
+    inside + 1
+}
