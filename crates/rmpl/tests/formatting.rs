@@ -41,8 +41,12 @@ fn what_larger_missions_are_written_with_has_its_blanks() {
         "scenario S = { if a and !b thennext A() else B()[1,2]; free { A() }, free A() }\n",
     );
     check(
-        "scenario S={do A(n+1,X = on,not P,-5) maintaining(a or b)and X in{on ,off};not(a or b)[1,2]}",
-        "scenario S = { do A(n + 1, X=on, not P, -5) maintaining (a or b) and X in {on, off}; not(a or b) [1,2] }\n",
+        "scenario S={do A(n+1,X = on,not P,-5) maintaining(a or b)and X in{on ,off}}",
+        "scenario S = { do A(n + 1, X=on, not P, -5) maintaining (a or b) and X in {on, off} }\n",
+    );
+    check(
+        "scenario S={not(a or b)[1,2];ask a and not b [1,2]}",
+        "scenario S = { not(a or b) [1,2]; ask a and not b [1,2] }\n",
     );
 }
 
