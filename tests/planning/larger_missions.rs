@@ -88,7 +88,14 @@ fn repeat_is_so_many_copies() {
     let codes =
         |text: &str| compile(text, &Top::Scenario(None)).1.iter().map(|it| it.code.0).collect::<Vec<_>>();
     assert_eq!(codes("scenario S = { repeat 1.5 { delay } }"), ["E-BOUNDS"]);
+    assert_eq!(codes("scenario S = { repeat (0-1) { delay } }"), ["E-BOUNDS"]);
+    assert_eq!(codes("scenario S = { repeat (inf) { delay } }"), ["E-BOUNDS"]);
     assert_eq!(codes("scenario S = { repeat 999999999999 { delay } }"), ["E-LIMIT"]);
+    // What has nothing in it takes room all the same.
+    assert_eq!(codes("scenario S = { repeat 400000 { repeat 400000 { {} } } }"), ["E-LIMIT"]);
+    let twice = "A() = { repeat 1000 { B() } } B() = { repeat 1000 { delay } } scenario S = { A() }";
+    let message = &compile(twice, &Top::Scenario(None)).1[0].message;
+    assert!(message.contains("`repeat`") && message.contains("more than 500000 events"), "{message}");
 }
 
 #[test]
@@ -176,4 +183,32 @@ fn nested_choices_of_or_are_refused_before_they_fill_the_memory() {
         text = format!("do {{ {text} }} maintaining P{level} or Q{level}");
     }
     assert_eq!(error_codes(&format!("primitive A(); scenario S = {{ {text} }}")), ["E-LIMIT"]);
+}
+
+#[test]
+fn what_is_joined_nests_no_deeper_than_can_be_compiled() {
+    let joined = |count: usize, word: &str| {
+        let names: Vec<String> = (0..count).map(|number| format!("P{number}")).collect();
+        names.join(word)
+    };
+    let codes = |statement: &str| error_codes(&format!("primitive A(); scenario S = {{ {statement} }}"));
+    for count in [300, 100_000] {
+        assert_eq!(codes(&format!("do A() maintaining {}", joined(count, " and "))), ["E-LIMIT"]);
+        assert_eq!(codes(&format!("do A() watching {}", joined(count, " or "))), ["E-LIMIT"]);
+        assert_eq!(codes(&format!("if {} thennext A() else A()", joined(count, " or "))), ["E-LIMIT"]);
+        assert_eq!(codes(&format!("ask {} [1,1]", joined(count, " and "))), ["E-LIMIT"]);
+        assert_eq!(codes(&format!("{} [1,1]", joined(count, " and "))), ["E-LIMIT"]);
+    }
+    assert_eq!(codes(&format!("do A() maintaining {}", joined(300, " or "))), [""; 0]);
+    assert_eq!(codes(&format!("{} [1,1]", joined(100, " and "))), [""; 0]);
+}
+
+#[test]
+fn an_argument_is_one_literal() {
+    assert_eq!(error_codes("primitive A(c); scenario S = { A(X=on and P) }"), ["E-SYNTAX"]);
+    assert_eq!(error_codes("primitive A(c); scenario S = { A(not (P or Q)) }"), ["E-SYNTAX"]);
+    same(
+        "primitive A(); B(c) = { do A() maintaining c } scenario S = { B(X in {a, b}); B(not P) }",
+        "primitive A(); B(c) = { do A() maintaining c } scenario S = { B(X in {a, b}); B(!P) }",
+    );
 }

@@ -253,6 +253,28 @@ fn an_alternative_whose_path_does_not_fit_its_bounds_is_given_up_and_the_search_
     );
 }
 
+/// The vehicle stands where its own last traverse ended, not where the clause's other vehicles do.
+#[test]
+fn a_vehicle_that_is_handed_over_is_the_one_that_moves() {
+    let source = "const SHARE = 2; location BASE (0, 0); location SITE (60, 0); location HILL (0, 40);
+        vehicle R1 : ATRV at BASE; vehicle R2 : ATRV at SITE;
+        primitive Drive(rover, to)[0, SHARE * 1h] moves rover speed (0.05, 0.1);
+        Visit(v, to) = { Drive(v, to) }
+        scenario S[0,inf] = { Visit(R2, BASE); Visit(R1, HILL); Drive(R2, HILL) }";
+    let answer = plan(source, 1);
+    let found: Vec<(Vec<u32>, f64)> = (answer.planned.traverses.iter())
+        .map(|traverse| (traverse.vehicles.clone(), traverse.length_m.round()))
+        .collect();
+    assert_eq!(found, [(vec![1], 60.0), (vec![0], 40.0), (vec![1], 40.0)]);
+    let unknown = source.replace("Visit(R1, HILL)", "Visit(R3, HILL)");
+    let parse = rmpl::parse(&unknown);
+    let network =
+        mission::compile(&parse.program(), &Goal::Default, &mut Vec::new()).expect("it is a network");
+    let warnings = mission::traverse::check(&network, &parse.program());
+    assert_eq!(warnings.len(), 1);
+    assert_eq!(warnings[0].message, "no vehicle is called `R3`");
+}
+
 #[test]
 fn a_leg_is_searched_for_again_only_when_its_inputs_change() {
     let mut planner = Planner::default();

@@ -12,6 +12,8 @@ use super::{Lowering, name_of, names};
 
 /// A declaration grows by no more statements than this where `or` copies what it stands beside.
 const MAX_COPIED: usize = 10_000;
+/// What is required of something nests no deeper than compilation allows, so that no text can exhaust the stack.
+const MAX_NESTED: usize = 200;
 
 /// A condition with its negations pushed down to the literals.
 #[derive(Clone, Debug)]
@@ -34,7 +36,7 @@ pub(super) const fn is_condition(kind: SyntaxKind) -> bool {
 }
 
 /// The condition of a node, if it is whole.
-pub(super) fn formula(node: SyntaxNode<'_>) -> Option<Formula> {
+fn formula(node: SyntaxNode<'_>) -> Option<Formula> {
     let parts = || node.children().filter(|child| is_condition(child.kind())).map(formula);
     match node.kind() {
         SyntaxKind::Condition => literal(node).map(Formula::Literal),
@@ -53,6 +55,21 @@ impl Formula {
             Self::Literal(literal) => Self::Literal(Condition { negated: !literal.negated, ..literal }),
             Self::All(parts) => Self::Any(parts.into_iter().map(|part| part.negation(span)).collect(), span),
             Self::Any(parts, _) => Self::All(parts.into_iter().map(|part| part.negation(span)).collect()),
+        }
+    }
+
+    /// How deep what it is required of nests: several joined by `and` are nested, those joined by `or` are alternatives.
+    fn height(&self, is_negated: bool) -> usize {
+        match self {
+            Self::Literal(_) => 1,
+            Self::All(parts) | Self::Any(parts, _) => {
+                let heights = parts.iter().map(|part| part.height(is_negated));
+                if matches!(self, Self::All(_)) == is_negated {
+                    1 + heights.max().unwrap_or(0)
+                } else {
+                    heights.sum()
+                }
+            }
         }
     }
 
@@ -101,6 +118,23 @@ pub(super) fn literal(node: SyntaxNode<'_>) -> Option<Condition> {
 type Require = fn(Condition, Box<Statement>) -> StatementKind;
 
 impl Lowering<'_> {
+    /// The condition of a node, which is required of `body` or denied, as `is_denied` says; none if it is broken, or
+    /// nests too deeply.
+    pub(super) fn formula(
+        &mut self,
+        node: SyntaxNode<'_>,
+        body: Option<&Statement>,
+        is_denied: &[bool],
+    ) -> Option<Formula> {
+        let formula = formula(node)?;
+        let height = is_denied.iter().map(|&is_denied| formula.height(is_denied)).max().unwrap_or(0);
+        if height > 1 && height + body.map_or(0, depth) > MAX_NESTED {
+            self.diagnostics.push(limit::nested(MAX_NESTED, node.span()));
+            return None;
+        }
+        Some(formula)
+    }
+
     /// `do body maintaining formula`.
     pub(super) fn maintaining(
         &mut self,
@@ -233,17 +267,26 @@ impl Lowering<'_> {
     }
 }
 
-/// How many statements there are in `statement`, itself included.
-fn size(statement: &Statement) -> usize {
-    let inside = match &statement.kind {
+/// What stands directly in a statement.
+fn parts(statement: &Statement) -> &[Statement] {
+    match &statement.kind {
         StatementKind::Sequence(parts) | StatementKind::Parallel(parts) | StatementKind::Choose(parts) => {
-            parts.iter().map(size).sum()
+            parts
         }
         StatementKind::Maintaining(body, _)
         | StatementKind::Watching(body, _)
         | StatementKind::IfThennext(_, body)
-        | StatementKind::Repeat(_, body) => size(body),
-        StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay => 0,
-    };
-    inside + 1
+        | StatementKind::Repeat(_, body) => std::slice::from_ref(body),
+        StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay => &[],
+    }
+}
+
+/// How many statements there are in `statement`, itself included.
+fn size(statement: &Statement) -> usize {
+    1 + parts(statement).iter().map(size).sum::<usize>()
+}
+
+/// How deep `statement` is nested, itself included.
+pub(super) fn depth(statement: &Statement) -> usize {
+    1 + parts(statement).iter().map(depth).max().unwrap_or(0)
 }

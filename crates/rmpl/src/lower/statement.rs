@@ -4,7 +4,7 @@ use exact::Rational;
 use smol_str::SmolStr;
 
 use super::bounds::{bounds_in, expression};
-use super::condition::{formula, is_condition, literal};
+use super::condition::{depth, is_condition, literal};
 use super::{Lowering, name_of};
 use crate::program::{Argument, ArgumentValue, Condition, LabelMode, Name, Statement, StatementKind};
 use crate::span::Span;
@@ -52,11 +52,13 @@ impl Lowering<'_> {
             SyntaxKind::Choose => self.choose(core)?,
             SyntaxKind::Do => self.do_statement(core)?,
             SyntaxKind::If => {
-                let mut parts = core.children();
-                let formula = formula(parts.next()?)?;
                 let mut branches = core.children().filter(|child| child.kind() == SyntaxKind::Statement);
                 let body = self.statement(branches.next()?)?;
                 let otherwise = branches.next().and_then(|branch| self.statement(branch));
+                let deeper =
+                    [Some(&body), otherwise.as_ref()].into_iter().flatten().max_by_key(|it| depth(it));
+                let ways: &[bool] = if otherwise.is_some() { &[false, true] } else { &[false] };
+                let formula = self.formula(core.children().next()?, deeper, ways)?;
                 self.if_statement(formula, body, otherwise, core.span())?
             }
             SyntaxKind::Repeat => {
@@ -85,7 +87,8 @@ impl Lowering<'_> {
                 } else {
                     LabelMode::Tell
                 };
-                let formula = formula(core.children().find(|child| is_condition(child.kind()))?)?;
+                let condition = core.children().find(|child| is_condition(child.kind()))?;
+                let formula = self.formula(condition, None, &[false])?;
                 return self.assertion(mode, formula, bounds, span);
             }
             SyntaxKind::Delay => StatementKind::Delay,
@@ -124,8 +127,9 @@ impl Lowering<'_> {
 
     fn do_statement(&mut self, node: SyntaxNode<'_>) -> Option<StatementKind> {
         let body = self.statement(node.child(SyntaxKind::Statement)?)?;
-        let formula = formula(node.children().find(|child| is_condition(child.kind()))?)?;
         let is_watching = node.token(SyntaxKind::WatchingKeyword).is_some();
+        let condition = node.children().find(|child| is_condition(child.kind()))?;
+        let formula = self.formula(condition, Some(&body), &[is_watching])?;
         let statement = if is_watching {
             self.watching(formula, body, node.span())
         } else {
