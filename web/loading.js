@@ -1,5 +1,7 @@
 // The screen before the front end draws: how far loading is, and what went wrong.
 
+import { saveFile } from "./files.js";
+
 const screen = document.getElementById("loading");
 const text = document.getElementById("loading-text");
 const progress = document.getElementById("loading-progress");
@@ -14,8 +16,8 @@ export function hideLoading() {
   screen.hidden = true;
 }
 
-/** Replaces everything by an explanation of a failure. */
-export function showFailure(title, explanation, error) {
+/** Replaces everything by an explanation of a failure; `mission` is the text that the user may save, if there is one. */
+export function showFailure(title, explanation, error, mission = null) {
   console.error(error);
   const heading = document.createElement("h1");
   heading.textContent = title;
@@ -26,7 +28,14 @@ export function showFailure(title, explanation, error) {
   const again = document.createElement("button");
   again.textContent = "Load again";
   again.addEventListener("click", () => location.reload());
-  screen.replaceChildren(heading, paragraph, again, details);
+  const buttons = [again];
+  if (mission !== null) {
+    const save = document.createElement("button");
+    save.textContent = "Save the text";
+    save.addEventListener("click", () => saveFile("mission.rmpl", new TextEncoder().encode(mission)));
+    buttons.push(save);
+  }
+  screen.replaceChildren(heading, paragraph, ...buttons, details);
   screen.setAttribute("role", "alert");
   screen.hidden = false;
 }

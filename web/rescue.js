@@ -4,30 +4,46 @@ const KEY = "enroute/rescued";
 const EVERY_MILLIS = 1000;
 
 let latest = null;
+let read = null;
 let waiting = false;
 
-/** Remembers what `source()` answers, not more often than is cheap. */
+/** Remembers what `source()` returns, not more often than is cheap. */
 export function remember(source) {
+  read = source;
   if (waiting) return;
   waiting = true;
   setTimeout(() => {
     waiting = false;
-    try {
-      latest = source();
-    } catch {
-      // The front end has stopped meanwhile; what was remembered before still stands.
-    }
+    readAgain();
   }, EVERY_MILLIS);
 }
 
-/** Puts the text where the next load of this tab finds it. */
-export function keepForNextLoad() {
-  if (latest !== null) sessionStorage.setItem(KEY, latest);
+function readAgain() {
+  try {
+    if (read) latest = read();
+  } catch {
+    // The front end has stopped meanwhile; what was remembered before still stands.
+  }
 }
 
-/** The text that an earlier load of this tab kept, once. */
+/** Puts the text where the next load of this tab finds it. Returns the text, and whether there is such a place. */
+export function keepForNextLoad() {
+  readAgain();
+  try {
+    if (latest !== null) sessionStorage.setItem(KEY, latest);
+    return { text: latest, isKept: true };
+  } catch {
+    return { text: latest, isKept: false };
+  }
+}
+
+/** The text that an earlier load of this tab kept, once; `null` where nothing may be kept. */
 export function takeRescued() {
-  const text = sessionStorage.getItem(KEY);
-  sessionStorage.removeItem(KEY);
-  return text;
+  try {
+    const text = sessionStorage.getItem(KEY);
+    sessionStorage.removeItem(KEY);
+    return text;
+  } catch {
+    return null;
+  }
 }

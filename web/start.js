@@ -47,25 +47,25 @@ async function load() {
 // A panic of the front end surfaces here, from whichever event led to it.
 window.addEventListener("error", ({ error }) => {
   if (error instanceof WebAssembly.RuntimeError) {
-    keepForNextLoad();
-    showFailure(
-      "Enroute has stopped",
-      "This is a fault in Enroute. Your text is kept; loading the page again brings it back.",
-      error,
-    );
+    showLoss("Enroute has stopped", "This is a fault in Enroute.", error);
   }
 });
 
 // The browser may take the graphics away, as when the driver fails or the computer has slept. What was drawn is gone.
 canvas.addEventListener("webglcontextlost", (event) => {
   event.preventDefault();
-  keepForNextLoad();
-  showFailure(
-    "The graphics were lost",
-    "The browser has taken the graphics card away. Your text is kept; loading the page again brings it back.",
-    new Error("the canvas lost its context"),
-  );
+  const reason = new Error("the canvas lost its context");
+  showLoss("The graphics were lost", "The browser has taken the graphics card away.", reason);
 });
+
+/** The front end cannot go on; the text does. */
+function showLoss(title, cause, error) {
+  const { text, isKept } = keepForNextLoad();
+  const advice = isKept
+    ? "Your text is kept; loading the page again brings it back."
+    : "This browser keeps nothing for the page: save your text before you load it again.";
+  showFailure(title, `${cause} ${advice}`, error, text);
+}
 
 const loaded = load();
 const api = createApi(loaded);

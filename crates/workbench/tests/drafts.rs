@@ -70,3 +70,16 @@ fn a_full_storage_is_said_once_and_the_text_stays() {
     assert_eq!(toasts.iter().filter(|it| it.to_string().contains("is not kept")).count(), 1, "{toasts:?}");
     assert_eq!(text_of(&app), EDITED);
 }
+
+#[test]
+fn kept_settings_that_cannot_be_used_are_brought_within_reason() {
+    for (kept, scale) in [("1e30", 2.5), ("-4", 0.6), ("1.5", 1.5)] {
+        let world = Rc::new(World::default());
+        let text = format!(r#"{{"text_scale": {kept}, "views": {{"terrain": {{"height_scale": 1e30}}}}}}"#);
+        world.storage.borrow_mut().insert("enroute/settings-1".to_owned(), text);
+        let app = start_in(world);
+        let settings = &app.session.state().settings;
+        assert_eq!(settings.text_scale, scale, "{kept}");
+        assert_eq!(settings.views.terrain.height_scale, 5.0);
+    }
+}

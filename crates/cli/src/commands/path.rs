@@ -46,7 +46,7 @@ pub struct Args {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Probability with which the goal is the sample.
-    #[arg(long, default_value_t = 0.05)]
+    #[arg(long, default_value_t = 0.05, value_parser = parse_share)]
     goal_bias: f64,
     /// Most samples.
     #[arg(long, default_value_t = 200_000)]
@@ -253,6 +253,11 @@ fn parse_length(text: &str) -> Result<f64, String> {
     if number >= 0.0 { Ok(number) } else { Err(format!("{number} is negative")) }
 }
 
+fn parse_share(text: &str) -> Result<f64, String> {
+    let number = parse_number(text)?;
+    if (0.0..=1.0).contains(&number) { Ok(number) } else { Err(format!("{number} is not between 0 and 1")) }
+}
+
 fn parse_positive(text: &str) -> Result<f64, String> {
     let number = parse_number(text)?;
     if number > 0.0 { Ok(number) } else { Err(format!("{number} is not positive")) }
@@ -261,6 +266,14 @@ fn parse_positive(text: &str) -> Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_probability_lies_between_0_and_1() {
+        assert_eq!(parse_share("0.05"), Ok(0.05));
+        for wrong in ["NaN", "-0.1", "1.5", "inf", "often"] {
+            assert!(parse_share(wrong).is_err(), "{wrong}");
+        }
+    }
 
     #[test]
     fn points_are_two_finite_numbers() {

@@ -102,7 +102,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             print_text(&outcome_text(&planned, &loaded))?;
         }
     }
+    let is_refused = planned.planning.verdict.as_ref().is_some_and(|verdict| !verdict.valid);
     Ok(exit(match outcome.status {
+        // What the independent checker does not accept is no plan to rely on.
+        Status::Plan if is_refused => NO,
         Status::Plan => YES,
         Status::NoPlan => NO,
         Status::Limit => LIMIT,

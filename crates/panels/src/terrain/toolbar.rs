@@ -6,7 +6,7 @@ use theme::space;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, ViewAction};
 use workbench::state::growth::GrowthCommand;
-use workbench::state::settings::{Coloring, TerrainView};
+use workbench::state::settings::{Coloring, HEIGHT_SCALES, TerrainView};
 use workbench::state::terrain::{TerrainCommand, Tool};
 
 use crate::Context;
@@ -63,8 +63,8 @@ fn show_menu(ui: &mut Ui, view: &mut TerrainView) {
         ui.checkbox(value, name).on_hover_text(help);
     }
     ui.separator();
-    let mut scale = view.height_scale;
-    let slider = egui::Slider::new(&mut scale, 1.0..=5.0).step_by(0.5).text("heights ×");
+    let (mut scale, [least, most]) = (view.height_scale, HEIGHT_SCALES);
+    let slider = egui::Slider::new(&mut scale, least..=most).step_by(0.5).text("heights ×");
     if ui.add(slider).on_hover_text("How much heights are exaggerated; 1 is true to scale").changed() {
         view.height_scale = scale;
     }

@@ -40,7 +40,7 @@ const SETTINGS_KEY: &str = "enroute/settings-1";
 
 /// The settings of the last run.
 pub fn remembered_settings(host: &dyn Host) -> Option<Settings> {
-    serde_json::from_str(&host.stored(SETTINGS_KEY)?).ok()
+    serde_json::from_str(&host.stored(SETTINGS_KEY)?).ok().map(Settings::checked)
 }
 
 /// Keeps the settings for the next run.

@@ -12,6 +12,7 @@ use crate::mission_file;
 use crate::state::chance::ChanceCommand;
 use crate::state::program_chance::ProgramChanceCommand;
 use crate::state::search::{self, SearchCommand};
+use crate::state::settings::TEXT_SCALES;
 use crate::state::terrain::TerrainState;
 use crate::state::{AppState, PinCommand, Pins, Selection, ToastKind, playback};
 use crate::workspace::Workspace;
@@ -177,7 +178,8 @@ impl AppState {
                 self.effects.push(Effect::Restyle);
             }
             Command::SetTextScale(scale) => {
-                self.settings.text_scale = (scale * 10.0).round().clamp(6.0, 25.0) / 10.0;
+                let [least, most] = TEXT_SCALES;
+                self.settings.text_scale = ((scale * 10.0).round() / 10.0).clamp(least, most);
                 self.effects.push(Effect::Restyle);
             }
 

@@ -35,6 +35,27 @@ impl Default for Settings {
     }
 }
 
+/// How small and how large text can be.
+pub const TEXT_SCALES: [f32; 2] = [0.6, 2.5];
+/// How little and how much heights are exaggerated.
+pub const HEIGHT_SCALES: [f32; 2] = [1.0, 5.0];
+
+impl Settings {
+    /// The same with every number where it can be used: what was kept may have been damaged, or written by another
+    /// version.
+    #[must_use]
+    pub fn checked(mut self) -> Self {
+        self.text_scale = within(self.text_scale, TEXT_SCALES, Self::default().text_scale);
+        let heights = &mut self.views.terrain.height_scale;
+        *heights = within(*heights, HEIGHT_SCALES, TerrainView::default().height_scale);
+        self
+    }
+}
+
+fn within(number: f32, [least, most]: [f32; 2], otherwise: f32) -> f32 {
+    if number.is_finite() { number.clamp(least, most) } else { otherwise }
+}
+
 /// Which theme the user wants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

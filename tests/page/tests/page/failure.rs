@@ -59,6 +59,23 @@ fn a_core_that_never_ends_is_given_up_for_a_newer_text() -> Result<()> {
 }
 
 #[test]
+fn planning_that_never_ends_is_stopped_and_the_text_is_undecided() -> Result<()> {
+    let page = Opened::altered("web/core-worker.js", |text| {
+        let spinning = "while (new TextDecoder().decode(data.request).includes('Stumble'));";
+        text.replace(CALL_OF_CORE, &format!("{spinning} {CALL_OF_CORE}"))
+    })?;
+    page.wait_for("state.status === 'plan'")?;
+    page.tab.evaluate(&format!("enroute.setSource('{STUMBLING_BLOCK}')"))?;
+    page.tab.wait_until("enroute.widgets('button', 'Stop planning').length > 0")?;
+    page.tab.evaluate("enroute.dispatch('plan.stop')")?;
+    page.wait_for("state.status === 'undecided'")?;
+    assert_eq!(page.tab.evaluate("enroute.source()")?, STUMBLING_BLOCK);
+    // The next text finds a core that works.
+    page.tab.evaluate("enroute.dispatch('edit.undo')")?;
+    page.wait_for("state.status === 'plan' && state.answeredRevision === state.revision")
+}
+
+#[test]
 fn a_front_end_that_stops_gives_the_text_back_when_the_page_is_loaded_again() -> Result<()> {
     let page = Opened::planned()?;
     page.tab.evaluate("enroute.setSource('A()[l,u] = { Work()[1,2] }')")?;
