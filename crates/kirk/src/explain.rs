@@ -1,7 +1,8 @@
 //! Why there is no plan: one minimal conflict per group of choices (SPEC 5.4, 5.6).
 //!
 //! A search that records what each dead end rests on gives a sufficient set of bounds and conditions; leaving out one
-//! after the other while what remains is still contradictory makes it minimal.
+//! after the other while what remains is still contradictory makes it minimal. Where there are too many dead ends to
+//! list, the mission as a whole gets one reason.
 
 use rmpl::Span;
 use stn::Overflow;
@@ -11,12 +12,18 @@ use crate::failure::{Failure, Member, Reason};
 use crate::model::{INFINITE, Model, NONE};
 use crate::options::{Stats, Termination, Unlimited};
 use crate::record::DeadEnd;
-use crate::search::{Choices, Engine, Halt, Setup, UNBOUNDED_BELOW};
+use crate::search::{Choices, Engine, Gaps, Halt, Setup, UNBOUNDED_BELOW};
+use crate::solver::{self, Answer};
 use crate::trace::{Constraint, CycleMember};
-use crate::wording;
+use crate::{answer, whole, wording};
 
 /// Explaining stops adding reasons after this many.
 const MAX_REASONS: u64 = 64;
+
+/// After going back so often, the solver takes over.
+pub(crate) const MAX_BACKTRACKS: u64 = 200;
+/// Conflicts that the solver may meet in all searches of one explanation: a second or two.
+const MAX_CONFLICTS: u64 = 30_000;
 
 /// How much work explanations may be, in searches of a whole network of a certain size.
 pub(crate) struct Effort<'t> {
@@ -24,6 +31,8 @@ pub(crate) struct Effort<'t> {
     pub(crate) searches: usize,
     /// Alternatives that one search may try.
     expansions: u64,
+    /// Conflicts that the solver may still meet.
+    conflicts: u64,
     termination: &'t mut dyn Termination,
 }
 
@@ -33,6 +42,7 @@ impl<'t> Effort<'t> {
         Self {
             searches: (1_000_000 / size).clamp(60, 5_000),
             expansions: (2_000_000 / size as u64).clamp(200, 10_000),
+            conflicts: MAX_CONFLICTS,
             termination,
         }
     }
@@ -48,6 +58,17 @@ impl<'t> Effort<'t> {
             self.searches = 0;
         }
         self.searches == 0 || stats.expanded >= self.expansions
+    }
+
+    /// What the solver says of a part of a problem, unless that takes too long.
+    pub(crate) fn solve(&mut self, model: &Model, gaps: Gaps, part: solver::Part<'_>) -> Option<Answer> {
+        let mut stats = Stats::default();
+        let mut is_spent = |stats: &Stats| {
+            self.termination.should_stop(stats) || stats.conflicts >= self.conflicts
+        };
+        let (answer, _) = answer::solve(model, gaps, part, &mut stats, &mut is_spent).ok()?;
+        self.conflicts = self.conflicts.saturating_sub(stats.conflicts);
+        (answer != Answer::Stopped).then_some(answer)
     }
 }
 
@@ -86,6 +107,10 @@ pub(crate) fn explain(
         if !reasons.iter().any(|known| known.choices == reason.choices && known.conflict == reason.conflict) {
             reasons.push(reason);
         }
+    }
+    if !is_complete && let Some(reason) = whole::reason(network, model, &mut effort)? {
+        reasons.insert(0, reason);
+        return Ok(Failure { reasons, is_complete: true, relaxations: Vec::new() });
     }
     Ok(Failure { reasons, is_complete, relaxations: Vec::new() })
 }
@@ -130,7 +155,7 @@ fn reason(
 }
 
 /// The places of a conflict: its conditions, then the bounds that take time.
-fn spans(network: &Network, members: &[Member], cycle: &[CycleMember]) -> Vec<Span> {
+pub(crate) fn spans(network: &Network, members: &[Member], cycle: &[CycleMember]) -> Vec<Span> {
     let conditions = members.iter().filter_map(|member| match member {
         Member::Condition(label) => network.labels[label.index()].span,
         Member::Bound(_) => None,
@@ -151,14 +176,14 @@ fn spans(network: &Network, members: &[Member], cycle: &[CycleMember]) -> Vec<Sp
 }
 
 /// The planning problem that has only some of the bounds and conditions of another.
-struct Part {
+pub(crate) struct Part {
     model: Model,
     active_labels: Vec<bool>,
     assumed: Vec<u32>,
 }
 
 impl Part {
-    fn new(whole: &Model, choices: &[(u32, u32)]) -> Self {
+    pub(crate) fn new(whole: &Model, choices: &[(u32, u32)]) -> Self {
         let mut model = whole.clone();
         model.structure = None;
         for arc in &mut model.arcs {
@@ -171,7 +196,7 @@ impl Part {
         Self { active_labels: vec![false; model.conditions.labels.len()], model, assumed }
     }
 
-    fn set(&mut self, whole: &Model, member: Member, is_in: bool) {
+    pub(crate) fn set(&mut self, whole: &Model, member: Member, is_in: bool) {
         match member {
             Member::Condition(label) => self.active_labels[label.index()] = is_in,
             Member::Bound(Constraint::Lower(arc)) => {
@@ -192,11 +217,36 @@ impl Part {
             return Ok(None);
         }
         let mut engine = Engine::new(&self.model, self.setup(false));
+        let mut enough = |stats: &Stats| effort.is_spent(stats) || stats.backtracks > MAX_BACKTRACKS;
+        match engine.run(&mut enough)? {
+            Halt::Solution => return Ok(Some(false)),
+            Halt::Exhausted => return Ok(Some(true)),
+            Halt::Stopped => {}
+        }
+        if let Some(fails) = self.is_refuted(effort) {
+            return Ok(Some(fails));
+        }
         Ok(match engine.run(&mut |stats: &Stats| effort.is_spent(stats))? {
             Halt::Solution => Some(false),
             Halt::Exhausted => Some(true),
             Halt::Stopped => None,
         })
+    }
+
+    /// Whether the solver proves that the part has no plan, or finds one; `None` if that takes too long, or if gaps
+    /// alone decide.
+    pub(crate) fn is_refuted(&self, effort: &mut Effort<'_>) -> Option<bool> {
+        if !self.model.has_contexts || !effort.spend() {
+            return None;
+        }
+        let part =
+            solver::Part { active_labels: Some(&self.active_labels), alternatives: Some(&self.assumed) };
+        match effort.solve(&self.model, Gaps::Trusted, part)? {
+            Answer::Solved => return Some(false),
+            Answer::Unsolvable if self.model.gap == 0 => return Some(true),
+            _ => {}
+        }
+        (effort.solve(&self.model, Gaps::Ignored, part)? == Answer::Unsolvable).then_some(true)
     }
 
     /// A contradiction among the bounds of the part, if there is one to show.

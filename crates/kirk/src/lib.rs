@@ -25,6 +25,7 @@ mod solver;
 mod structure;
 mod trace;
 mod trace_lines;
+mod whole;
 mod wording;
 
 use stn::Overflow;

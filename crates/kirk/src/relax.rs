@@ -7,11 +7,12 @@ use rmpl::Span;
 use stn::Overflow;
 use tpn::{ArcId, Network};
 
-use crate::explain::Effort;
+use crate::explain::{Effort, MAX_BACKTRACKS};
 use crate::failure::{Failure, Member, Relaxation};
 use crate::model::{INFINITE, Model};
 use crate::options::{Stats, Termination};
 use crate::search::{Engine, Gaps, Halt, Setup};
+use crate::solver::{Answer, Part};
 use crate::trace::Constraint;
 use crate::wording;
 
@@ -136,7 +137,15 @@ impl Trial<'_> {
         self.model.refresh_structure()?;
         let setup = Setup { jumps: true, by_structure: true, gaps: Gaps::Trusted, ..Setup::default() };
         let Self { model, effort, .. } = self;
-        let halt = Engine::new(model, setup).run(&mut |stats: &Stats| effort.is_spent(stats))?;
+        let mut enough = |stats: &Stats| effort.is_spent(stats) || stats.backtracks > MAX_BACKTRACKS;
+        let mut halt = Engine::new(model, setup).run(&mut enough)?;
+        if halt == Halt::Stopped
+            && effort.searches > 0
+            && model.has_contexts
+            && effort.solve(model, Gaps::Trusted, Part::default()) == Some(Answer::Solved)
+        {
+            halt = Halt::Solution;
+        }
         for arc in arcs {
             self.model.set_bounds(self.network, arc.0, lower, upper);
         }

@@ -86,10 +86,27 @@ impl Told<'_> {
             }
         }
         let kept_apart = format!("{} cannot be kept apart", joined(&names));
-        match self.bounds() {
+        match self.bounds().or_else(|| self.room()) {
             Some(bounds) => format!("{kept_apart}: {bounds}"),
             None => kept_apart,
         }
+    }
+
+    /// What leaves too little time, where the conflict has no cycle to show.
+    fn room(&self) -> Option<String> {
+        let mut limits: Vec<String> = Vec::new();
+        for member in self.conflict {
+            let Member::Bound(Constraint::Upper(arc)) = member else { continue };
+            let arc = &self.network.arcs[arc.index()];
+            if !is_structural(arc.kind) {
+                let name = arc_name(self.network, arc);
+                let limit = format!("{name} {} {}", allowing_verb(self.network, arc), arc.upper);
+                if !limits.contains(&limit) {
+                    limits.push(limit);
+                }
+            }
+        }
+        (!limits.is_empty()).then(|| joined(&limits))
     }
 
     /// What needs more time than something else leaves it.

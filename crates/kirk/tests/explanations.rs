@@ -118,3 +118,30 @@ fn conflicts_of_random_infeasible_missions_are_minimal() {
         check(&mission(Recipe { nodes: 24, tightness: Tightness::Infeasible, seed }));
     }
 }
+
+#[test]
+fn what_excludes_each_other_for_too_long_has_one_minimal_reason() {
+    for count in [5, 12] {
+        let failure = check(&tpn::families::pigeonholes(count, 1));
+        assert!(failure.is_complete);
+        assert_eq!(failure.kinds(), [FailureKind::Threat]);
+        let reason = &failure.reasons[0];
+        let all = format!("M0=j0, M0=j1 and {} others cannot be kept apart", count - 2);
+        let horizon = format!("the scenario allows only {}", count * 10 - 1);
+        assert_eq!(reason.message, format!("{all}: {horizon}"));
+        let whole = exact::Time::from(count as i64 * 10);
+        let is_longer = |relaxation: &kirk::Relaxation| !relaxation.is_lower && relaxation.new == whole;
+        assert!(failure.relaxations.iter().any(is_longer), "{:#?}", failure.relaxations);
+    }
+}
+
+#[test]
+fn a_job_shop_one_below_its_optimum_is_explained() {
+    let shop = tpn::families::JOB_SHOPS[0];
+    let (network, failure) = failure(&shop.mission(shop.optimum - 1));
+    assert!(failure.is_complete);
+    let [reason] = failure.reasons.as_slice() else { panic!("{failure:#?}") };
+    assert_eq!(is_conflict(&network, &[], &reason.conflict), Some(true));
+    let optimum = exact::Time::from(shop.optimum);
+    assert!(failure.relaxations.iter().any(|relaxation| relaxation.new == optimum), "{:#?}", failure.relaxations);
+}

@@ -1,0 +1,129 @@
+//! One reason why a mission has no plan whatever is chosen, where there are too many failures to list one after the other:
+//! all its bounds and conditions, less those that the solver needs for no proof.
+
+use std::collections::BTreeMap;
+
+use rmpl::program::LabelMode;
+use stn::Overflow;
+use tpn::{ArcId, LabelId, Network, VariableId};
+
+use crate::explain::{Effort, Part, spans};
+use crate::failure::{FailureKind, Member, Reason};
+use crate::model::{INFINITE, Model};
+use crate::search::UNBOUNDED_BELOW;
+use crate::trace::Constraint;
+use crate::wording;
+
+/// A reason that stays larger than this tells nobody anything.
+const MAX_MEMBERS: usize = 400;
+
+/// The reason, if the solver proves it within the effort.
+pub(crate) fn reason(
+    network: &Network,
+    model: &Model,
+    effort: &mut Effort<'_>,
+) -> Result<Option<Reason>, Overflow> {
+    let mut search = Shrinking { model, part: Part::new(model, &[]), members: Vec::new(), effort };
+    search.members = members(model);
+    for &member in &search.members {
+        search.part.set(model, member, true);
+    }
+    if search.part.is_refuted(search.effort) != Some(true) {
+        return Ok(None);
+    }
+    for group in by_variable(network) {
+        search.leave_out(&group);
+    }
+    let mut size = search.members.len().div_ceil(2);
+    let mut is_minimal = true;
+    while size > 0 {
+        // The last members first: what comes late in the text is told only if it matters.
+        let mut end = search.members.len();
+        while end > 0 {
+            let start = end.saturating_sub(size);
+            let chunk = search.members[start..end].to_vec();
+            let left_out = search.leave_out(&chunk);
+            is_minimal &= size > 1 || left_out.is_some();
+            end = start;
+        }
+        size = if size == 1 { 0 } else { size.div_ceil(2) };
+    }
+    let members = search.members;
+    if members.len() > MAX_MEMBERS {
+        return Ok(None);
+    }
+    let kind = kind(network, &members);
+    let told = wording::Told { network, kind, choices: &[], conflict: &members, cycle: &[] };
+    Ok(Some(Reason {
+        message: told.message(),
+        spans: spans(network, &members, &[]),
+        choices: Vec::new(),
+        kind,
+        conflict: members,
+        cycle: Vec::new(),
+        is_minimal,
+    }))
+}
+
+struct Shrinking<'a, 't> {
+    model: &'a Model,
+    part: Part,
+    members: Vec<Member>,
+    effort: &'a mut Effort<'t>,
+}
+
+impl Shrinking<'_, '_> {
+    /// Leaves members out if what remains is a contradiction still. Whether it did; `None` if nobody knows.
+    fn leave_out(&mut self, chunk: &[Member]) -> Option<bool> {
+        for &member in chunk {
+            self.part.set(self.model, member, false);
+        }
+        let is_refuted = self.part.is_refuted(self.effort);
+        if is_refuted == Some(true) {
+            self.members.retain(|member| !chunk.contains(member));
+        } else {
+            for &member in chunk.iter().filter(|member| self.members.contains(member)) {
+                self.part.set(self.model, member, true);
+            }
+        }
+        is_refuted
+    }
+}
+
+/// All bounds and conditions.
+fn members(model: &Model) -> Vec<Member> {
+    let mut members = Vec::new();
+    for (id, arc) in model.arcs.iter().enumerate() {
+        let id = ArcId::from_index(id);
+        if arc.lower != UNBOUNDED_BELOW {
+            members.push(Member::Bound(Constraint::Lower(id)));
+        }
+        if arc.upper != INFINITE {
+            members.push(Member::Bound(Constraint::Upper(id)));
+        }
+    }
+    members.extend((0..model.conditions.labels.len()).map(|label| Member::Condition(LabelId(label as u32))));
+    members
+}
+
+/// The conditions of each variable: often one variable is all that it takes.
+fn by_variable(network: &Network) -> Vec<Vec<Member>> {
+    let mut groups: BTreeMap<VariableId, Vec<Member>> = BTreeMap::new();
+    for (id, label) in network.labels.iter().enumerate() {
+        groups.entry(label.literal.variable).or_default().push(Member::Condition(LabelId(id as u32)));
+    }
+    groups.into_values().rev().collect()
+}
+
+fn kind(network: &Network, members: &[Member]) -> FailureKind {
+    let conditions = members.iter().filter_map(|member| match member {
+        Member::Condition(label) => Some(network.labels[label.index()].mode),
+        Member::Bound(_) => None,
+    });
+    let modes: Vec<LabelMode> = conditions.collect();
+    match modes.as_slice() {
+        [] => FailureKind::Temporal,
+        [LabelMode::Ask] => FailureKind::OpenCondition,
+        _ => FailureKind::Threat,
+    }
+}
