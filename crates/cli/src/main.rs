@@ -1,6 +1,7 @@
 //! The `enroute` command: reads the call, runs one command, and turns its answer into an exit status.
 
 mod commands;
+mod deadline;
 mod ground;
 mod input;
 mod load;
@@ -73,6 +74,7 @@ fn main() -> ExitCode {
     };
     result.unwrap_or_else(|error| {
         output::print_error(&format!("error: {error:#}"));
-        output::exit(output::WRONG)
+        let is_late = error.is::<deadline::TimeIsUp>();
+        output::exit(if is_late { output::LIMIT } else { output::WRONG })
     })
 }

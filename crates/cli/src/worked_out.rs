@@ -7,6 +7,7 @@ use std::time::Instant;
 use mission::{Core, CoreHost, Goal, Request, Response, SearchKind, Snapshot, Update};
 use terrain::Terrain;
 
+use crate::deadline::{Deadline, TimeIsUp};
 use crate::ground::map_file;
 use crate::input::read_text;
 use crate::load::Target;
@@ -22,12 +23,12 @@ pub struct WorkedOut {
 }
 
 /// Works out the mission that `target` names. Fails when it cannot be read, or is a network.
-pub fn work_out(target: &Target, seed: u64) -> anyhow::Result<WorkedOut> {
+pub fn work_out(target: &Target, seed: u64, deadline: Deadline) -> anyhow::Result<WorkedOut> {
     let is_network = target.file.extension().is_some_and(|ending| ending == "json" || ending == "edn");
     anyhow::ensure!(!is_network, "this command wants a mission text, not a network");
     let name = target.file.file_name().filter(|name| *name != "-");
     let name = name.map_or_else(|| "mission".to_owned(), |name| name.to_string_lossy().into_owned());
-    work_out_text(name, &target.file, &read_text(&target.file)?, target.goal()?, seed)
+    work_out_text(name, &target.file, &read_text(&target.file)?, target.goal()?, seed, deadline)
 }
 
 /// Works out a mission text. The map file that it names, if it names one, lies beside `file`.
@@ -37,6 +38,7 @@ pub fn work_out_text(
     source: &str,
     goal: Goal,
     seed: u64,
+    deadline: Deadline,
 ) -> anyhow::Result<WorkedOut> {
     let update = Update {
         revision: 1,
@@ -46,7 +48,8 @@ pub fn work_out_text(
         seed,
         trace: false,
     };
-    let mut answers = Answers { begun: Instant::now(), snapshot: None, ground: None, rejected: None };
+    let mut answers =
+        Answers { begun: Instant::now(), deadline, snapshot: None, ground: None, rejected: None };
     let mut core = Core::default();
     if let Some((name, bytes)) = map_file(file, &rmpl::parse(source).program().world)? {
         core.handle(Request::ImportMap { name: name.into(), bytes }, &mut answers);
@@ -55,6 +58,9 @@ pub fn work_out_text(
         }
     }
     core.handle(Request::Update(update), &mut answers);
+    if answers.snapshot.is_none() && deadline.is_over() {
+        return Err(TimeIsUp.into());
+    }
     Ok(WorkedOut {
         name,
         snapshot: answers.snapshot.ok_or_else(|| anyhow::anyhow!("the planning core gave no answer"))?,
@@ -65,6 +71,7 @@ pub fn work_out_text(
 /// Keeps the last answers of the core.
 struct Answers {
     begun: Instant,
+    deadline: Deadline,
     snapshot: Option<Arc<Snapshot>>,
     ground: Option<Arc<Terrain>>,
     /// Why a map was not taken.
@@ -77,7 +84,7 @@ impl CoreHost for Answers {
     }
 
     fn is_superseded(&mut self) -> bool {
-        false
+        self.deadline.is_over()
     }
 
     fn answer(&mut self, response: Response) {

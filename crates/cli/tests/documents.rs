@@ -104,3 +104,27 @@ fn what_is_no_plan_cannot_be_compared() {
     assert_eq!(output.status.code(), Some(2), "{output:?}");
     assert!(output.stdout.is_empty());
 }
+
+#[test]
+fn every_command_that_plans_stops_at_its_time_limit() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
+    let observed = folder.join("nothing-observed.json");
+    std::fs::write(&observed, "{}").expect("written");
+    let observed = observed.to_str().expect("a path in UTF-8");
+    let page = folder.join("late.html");
+    let page = page.to_str().expect("a path in UTF-8");
+    for arguments in [
+        &["plan", MISSION][..],
+        &["execute", MISSION, "--observe", observed],
+        &["simulate", MISSION],
+        &["robustness", MISSION, "--runs", "3"],
+        &["report", MISSION, "-o", page],
+        &["export", MISSION, "--as", "csv"],
+        &["compare", MISSION, MISSION],
+    ] {
+        let late = enroute(&[arguments, &["--time-limit", "0"]].concat());
+        assert_eq!(late.status.code(), Some(3), "{arguments:?}: {late:?}");
+        let in_time = enroute(&[arguments, &["--time-limit", "1e300"]].concat());
+        assert_eq!(in_time.status.code(), Some(0), "{arguments:?}: {in_time:?}");
+    }
+}

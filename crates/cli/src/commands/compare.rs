@@ -10,6 +10,7 @@ use mission::{Goal, Problem};
 use serde_json::{Value, json};
 use tpn::Window;
 
+use crate::deadline::TimeLimit;
 use crate::input::read_text;
 use crate::load::Target;
 use crate::output::{
@@ -32,6 +33,8 @@ pub struct Args {
     /// Seeds path planning.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    #[command(flatten)]
+    time_limit: TimeLimit,
     /// For whom the answer is.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -84,22 +87,23 @@ impl Args {
                 activity: None,
                 bounds: None,
             };
-            return Self::worked_out(path, &text, target.goal()?, self.seed);
+            return self.worked_out(path, &text, target.goal()?, self.seed);
         }
         let value: Value = serde_json::from_str(&text).with_context(|| format!("{name} is not JSON"))?;
         if value["format"] == mission::review::record::FORMAT {
             let record = Record::from_json(&text).with_context(|| format!("cannot read {name}"))?;
             let signed =
                 record.sign_offs.last().with_context(|| format!("nobody has signed the review {name}"))?;
-            return Self::worked_out(path, &signed.source, signed.goal.clone(), signed.seed);
+            return self.worked_out(path, &signed.source, signed.goal.clone(), signed.seed);
         }
         let side = Side::of_json(&name, &value).with_context(|| format!("cannot read {name}"))?;
         Ok(Read { side, source: String::new(), problems: Vec::new() })
     }
 
-    fn worked_out(file: &Path, source: &str, goal: Goal, seed: u64) -> anyhow::Result<Read> {
+    fn worked_out(&self, file: &Path, source: &str, goal: Goal, seed: u64) -> anyhow::Result<Read> {
         let name = file.display().to_string();
-        let WorkedOut { name, snapshot, .. } = work_out_text(name, file, source, goal, seed)?;
+        let deadline = self.time_limit.start();
+        let WorkedOut { name, snapshot, .. } = work_out_text(name, file, source, goal, seed, deadline)?;
         let side = Side::of_snapshot(&name, &snapshot);
         Ok(Read { side, source: source.to_owned(), problems: snapshot.problems.to_vec() })
     }

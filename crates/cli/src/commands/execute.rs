@@ -11,6 +11,7 @@ use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
 use tpn::{Network, Plan, Window};
 
+use crate::deadline::TimeLimit;
 use crate::input::read_json;
 use crate::load::{Loaded, Target};
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
@@ -26,6 +27,8 @@ pub struct Args {
     /// What has happened: {"executed": {event: time…}, "now": t}.
     #[arg(long, value_name = "OBS.json")]
     observe: PathBuf,
+    #[command(flatten)]
+    time_limit: TimeLimit,
     /// For whom the answer is.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -43,7 +46,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let plans = tpn::plan_json::plans_from_json(network, &document)?;
         plans.into_iter().next().with_context(|| format!("{} holds no plan", file.display()))?
     } else {
-        let outcome = kirk::plan(network, &kirk::Options::default(), &mut kirk::Unlimited);
+        let deadline = args.time_limit.start();
+        let options = kirk::Options { explain: false, relax: false, ..kirk::Options::default() };
+        let outcome = kirk::plan(network, &options, &mut |_: &kirk::Stats| deadline.is_over());
+        deadline.check(&outcome)?;
         outcome.plans.into_iter().next().context("the mission has no plan to execute")?
     };
     let observed = observations(network, &read_json(&args.observe)?)?;

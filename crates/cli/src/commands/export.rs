@@ -11,6 +11,7 @@ use report::calendar::Calendar;
 use report::export;
 use serde_json::json;
 
+use crate::deadline::TimeLimit;
 use crate::load::Target;
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
 use crate::worked_out::{WorkedOut, work_out};
@@ -37,6 +38,8 @@ pub struct Args {
     /// Seeds path planning.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    #[command(flatten)]
+    time_limit: TimeLimit,
     /// For whom the answer is where there is no schedule.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -55,7 +58,7 @@ enum Form {
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let worked_out = work_out(&args.target, args.seed)?;
+    let worked_out = work_out(&args.target, args.seed, args.time_limit.start())?;
     let WorkedOut { name, snapshot, .. } = &worked_out;
     let is_planned = snapshot.plan().is_some();
     if args.format == Format::Text {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use anyhow::Context as _;
 use clap::ValueEnum;
@@ -17,6 +17,7 @@ use rmpl::program::Program;
 use serde_json::{Value, json};
 use tpn::Network;
 
+use crate::deadline::TimeLimit;
 use crate::ground::ground;
 use crate::load::{Loaded, Target, parse_threat_gap};
 use crate::output::{
@@ -37,9 +38,8 @@ pub struct Args {
     /// Stops after so many plans (with --all).
     #[arg(long, value_name = "N")]
     limit: Option<usize>,
-    /// Stops after so many seconds, with exit status 3.
-    #[arg(long, value_name = "SECONDS")]
-    time_limit: Option<f64>,
+    #[command(flatten)]
+    time_limit: TimeLimit,
     /// The least gap between ordered intervals; the file's own by default.
     #[arg(long, value_name = "G")]
     threat_gap: Option<String>,
@@ -129,15 +129,9 @@ impl Args {
         })
     }
 
-    fn deadline(&self) -> Option<Instant> {
-        // A limit too long to add to the present moment is none.
-        let limit = Duration::try_from_secs_f64(self.time_limit?.max(0.0)).ok()?;
-        Instant::now().checked_add(limit)
-    }
-
     fn plan_network(&self, network: &Arc<Network>, options: Options) -> Planned {
-        let deadline = self.deadline();
-        let mut stop = |_: &Stats| deadline.is_some_and(|deadline| Instant::now() >= deadline);
+        let deadline = self.time_limit.start();
+        let mut stop = |_: &Stats| deadline.is_over();
         let outcome = kirk::plan(network, &options, &mut stop);
         planning::without_paths(network, outcome)
     }
@@ -148,7 +142,7 @@ impl Args {
         program: &Program,
         options: Options,
     ) -> anyhow::Result<Planned> {
-        let deadline = self.deadline();
+        let deadline = self.time_limit.start();
         let (mut grounds, ground) = ground(&self.target.file, &program.world)?;
         let problem = planning::Problem {
             network,
@@ -158,7 +152,7 @@ impl Args {
             seed: self.seed,
             facts: None,
         };
-        let mut stop = || deadline.is_some_and(|deadline| Instant::now() >= deadline);
+        let mut stop = || deadline.is_over();
         Ok(planning::plan(&problem, &mut grounds, &mut Paths::default(), &mut stop))
     }
 }

@@ -7,6 +7,7 @@ use anyhow::Context as _;
 use mission::review::{Line, Record, Review, Section, Status, TimeRange, review};
 use serde_json::{Value, json};
 
+use crate::deadline::TimeLimit;
 use crate::input::read_text;
 use crate::load::Target;
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
@@ -26,6 +27,8 @@ pub struct Args {
     /// Seeds path planning.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    #[command(flatten)]
+    time_limit: TimeLimit,
     /// For whom the answer is.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -33,7 +36,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let worked_out = work_out(&args.target, args.seed)?;
+    let worked_out = work_out(&args.target, args.seed, args.time_limit.start())?;
     let WorkedOut { name, snapshot, ground } = &worked_out;
     let review = review(snapshot, &args.target.goal()?, args.seed, &mut || false);
     let record = match &args.record {

@@ -12,6 +12,7 @@ use mission::sampling::Sampler;
 use mission::{Paths, RobustnessSettings, Tally, Uncertainty};
 use serde::{Deserialize, Serialize};
 
+use crate::deadline::{TimeIsUp, TimeLimit};
 use crate::ground::ground;
 use crate::input::{read_json, read_text};
 use crate::load::Target;
@@ -46,6 +47,8 @@ pub struct Args {
     /// Lets vehicles drive their traverses in simulation instead of drawing how long they take: far slower.
     #[arg(long)]
     drive: bool,
+    #[command(flatten)]
+    time_limit: TimeLimit,
     /// For whom the answer is; json is one line.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -160,7 +163,9 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
         seed: args.path_seed,
         facts: None,
     };
-    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
+    let deadline = args.time_limit.start();
+    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || deadline.is_over());
+    deadline.check(&planned.planning.outcome)?;
     let Some(sampler) = Sampler::new(program, &planned, &uncertainty) else {
         print_text("the mission has no plan to execute; `enroute plan` says why\n")?;
         return Ok(Err(exit(NO)));
@@ -170,6 +175,7 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
     let mut tally = Tally::default();
     let mut number = args.shard.part - 1;
     while number < args.runs {
+        ensure!(!deadline.is_over(), TimeIsUp);
         sampler.run(&problem, &settings, number, &mut grounds, &mut paths, &mut tally)?;
         number += args.shard.of;
     }

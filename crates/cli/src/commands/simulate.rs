@@ -13,6 +13,7 @@ use rmpl::program::Program;
 use serde_json::{Value, json};
 use tpn::Network;
 
+use crate::deadline::TimeLimit;
 use crate::ground::ground;
 use crate::input::read_json;
 use crate::load::Target;
@@ -30,6 +31,8 @@ pub struct Args {
     /// "vehicle-slow", …}…]}; `docs/simulation.md` lists their members.
     #[arg(long, value_name = "D.json")]
     disturb: Option<PathBuf>,
+    #[command(flatten)]
+    time_limit: TimeLimit,
     /// For whom the answer is.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -62,7 +65,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         seed: args.seed,
         facts: None,
     };
-    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
+    let deadline = args.time_limit.start();
+    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || deadline.is_over());
+    deadline.check(&planned.planning.outcome)?;
     let Some(outcome) = execution::execute(&problem, &planned, &disturbances, &mut grounds, &mut paths)
     else {
         match args.format {

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use tpn::plan_json::{PlanError, plan_from_json, selected_activities, stated_activities};
 use tpn::{EventEnd, Network};
 
+use crate::deadline::TimeLimit;
 use crate::ground::ground;
 use crate::input::read_json;
 use crate::load::{Loaded, Target, parse_threat_gap};
@@ -28,6 +29,8 @@ pub struct Args {
     /// The seed that path planning had.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    #[command(flatten)]
+    time_limit: TimeLimit,
     /// For whom the answer is.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -141,5 +144,9 @@ fn with_paths(args: &Args, loaded: &Loaded, network: &Network) -> anyhow::Result
         seed: args.seed,
         facts: None,
     };
-    Ok(planning::plan(&problem, &mut grounds, &mut Paths::default(), &mut || false).network)
+    let deadline = args.time_limit.start();
+    let mut stop = || deadline.is_over();
+    let planned = planning::plan(&problem, &mut grounds, &mut Paths::default(), &mut stop);
+    deadline.check(&planned.planning.outcome)?;
+    Ok(planned.network)
 }
