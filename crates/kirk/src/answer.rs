@@ -80,6 +80,8 @@ pub(crate) fn with_choices(
 
 /// How often the search in textual order may go back before the solver takes over.
 const MAX_BACKTRACKS: u64 = 100;
+/// The same where there are only links and orders to choose, about which it does not learn.
+const MAX_BACKTRACKS_UNDECIDED: u64 = 10;
 /// How often it may go back where the solver knows a plan in which intervals touch.
 const MAX_BACKTRACKS_TOUCHING: u64 = 2_000;
 
@@ -95,10 +97,11 @@ fn first_plan(
     if options.trace_events.is_some() || !model.has_contexts {
         return first_in_order(model, options, Stats::default(), termination);
     }
+    let most = if model.decisions.is_empty() { MAX_BACKTRACKS_UNDECIDED } else { MAX_BACKTRACKS };
     let mut is_stopped = false;
     let mut soon = |stats: &Stats| {
         is_stopped = termination.should_stop(stats);
-        is_stopped || stats.backtracks > MAX_BACKTRACKS
+        is_stopped || stats.backtracks > most
     };
     let (outcome, has_doubts) = run(model, options, (Gaps::Trusted, Stats::default()), &mut soon)?;
     if is_stopped || outcome.status == Status::Plan || (outcome.status == Status::NoPlan && !has_doubts) {

@@ -63,9 +63,8 @@ impl<'t> Effort<'t> {
     /// What the solver says of a part of a problem, unless that takes too long.
     pub(crate) fn solve(&mut self, model: &Model, gaps: Gaps, part: solver::Part<'_>) -> Option<Answer> {
         let mut stats = Stats::default();
-        let mut is_spent = |stats: &Stats| {
-            self.termination.should_stop(stats) || stats.conflicts >= self.conflicts
-        };
+        let mut is_spent =
+            |stats: &Stats| self.termination.should_stop(stats) || stats.conflicts >= self.conflicts;
         let (answer, _) = answer::solve(model, gaps, part, &mut stats, &mut is_spent).ok()?;
         self.conflicts = self.conflicts.saturating_sub(stats.conflicts);
         (answer != Answer::Stopped).then_some(answer)

@@ -143,5 +143,9 @@ fn a_job_shop_one_below_its_optimum_is_explained() {
     let [reason] = failure.reasons.as_slice() else { panic!("{failure:#?}") };
     assert_eq!(is_conflict(&network, &[], &reason.conflict), Some(true));
     let optimum = exact::Time::from(shop.optimum);
-    assert!(failure.relaxations.iter().any(|relaxation| relaxation.new == optimum), "{:#?}", failure.relaxations);
+    assert!(
+        failure.relaxations.iter().any(|relaxation| relaxation.new == optimum),
+        "{:#?}",
+        failure.relaxations
+    );
 }

@@ -159,6 +159,9 @@ fn check_load(tasks: &[Task], gap: i64) -> Result<(), Conflict> {
 /// Tasks that must come after all of some others start when these can be over. Tasks come latest first.
 fn find_last(trail: &mut Trail, tasks: &[Task], gap: i64) -> Result<(), Conflict> {
     for limit in tasks.iter().map(|task| task.latest) {
+        if !is_tight(tasks, limit, gap) {
+            continue;
+        }
         for last in tasks.iter().filter(|task| task.latest > limit) {
             let (mut needed, mut over, mut over_from) = (0, i64::MIN, 0);
             let mut found = None;
@@ -187,6 +190,20 @@ fn find_last(trail: &mut Trail, tasks: &[Task], gap: i64) -> Result<(), Conflict
         }
     }
     Ok(())
+}
+
+/// Whether the tasks that end by a time leave less room than the longest other one needs: otherwise none must come last.
+fn is_tight(tasks: &[Task], limit: i64, gap: i64) -> bool {
+    let (mut needed, mut over, mut longest) = (0, i64::MIN, i64::MIN);
+    for task in tasks {
+        if task.latest <= limit {
+            needed += task.duration + gap;
+            over = over.max(task.earliest + needed);
+        } else {
+            longest = longest.max(task.duration);
+        }
+    }
+    longest != i64::MIN && over + longest > limit
 }
 
 /// That all tasks that lie between two times do.
