@@ -107,7 +107,7 @@ pub(crate) fn explain(
             reasons.push(reason);
         }
     }
-    if !is_complete && let Some(reason) = whole::reason(network, model, &mut effort)? {
+    if !is_complete && let Some(reason) = whole::reason(network, model, &mut effort) {
         reasons.insert(0, reason);
         return Ok(Failure { reasons, is_complete: true, relaxations: Vec::new() });
     }

@@ -4,7 +4,6 @@
 use std::collections::BTreeMap;
 
 use rmpl::program::LabelMode;
-use stn::Overflow;
 use tpn::{ArcId, LabelId, Network, VariableId};
 
 use crate::explain::{Effort, Part, spans};
@@ -18,18 +17,14 @@ use crate::wording;
 const MAX_MEMBERS: usize = 400;
 
 /// The reason, if the solver proves it within the effort.
-pub(crate) fn reason(
-    network: &Network,
-    model: &Model,
-    effort: &mut Effort<'_>,
-) -> Result<Option<Reason>, Overflow> {
+pub(crate) fn reason(network: &Network, model: &Model, effort: &mut Effort<'_>) -> Option<Reason> {
     let mut search = Shrinking { model, part: Part::new(model, &[]), members: Vec::new(), effort };
     search.members = members(model);
     for &member in &search.members {
         search.part.set(model, member, true);
     }
     if search.part.is_refuted(search.effort) != Some(true) {
-        return Ok(None);
+        return None;
     }
     for group in by_variable(network) {
         search.leave_out(&group);
@@ -50,11 +45,11 @@ pub(crate) fn reason(
     }
     let members = search.members;
     if members.len() > MAX_MEMBERS {
-        return Ok(None);
+        return None;
     }
     let kind = kind(network, &members);
     let told = wording::Told { network, kind, choices: &[], conflict: &members, cycle: &[] };
-    Ok(Some(Reason {
+    Some(Reason {
         message: told.message(),
         spans: spans(network, &members, &[]),
         choices: Vec::new(),
@@ -62,7 +57,7 @@ pub(crate) fn reason(
         conflict: members,
         cycle: Vec::new(),
         is_minimal,
-    }))
+    })
 }
 
 struct Shrinking<'a, 't> {
