@@ -236,7 +236,7 @@ impl PageState {
             compare: state
                 .compare
                 .reference()
-                .map(|side| Comparison { with: side.name.to_string(), planned: side.is_planned }),
+                .map(|side| Comparison { with: side.name.clone(), planned: side.is_planned }),
             search: search::search(state),
             hca: program::program_run(&state.automaton, state.document.revision()),
             vehicles: shown.map(|shown| terrain::vehicles(state, shown)).unwrap_or_default(),
@@ -256,8 +256,8 @@ impl PageState {
             can_redo: state.document.can_redo(),
             dialog: state.dialog.as_ref().map(crate::Dialog::name),
             terrain: terrain::terrain(state),
-            toasts: state.toasts.shown().iter().map(|toast| toast.text.to_string()).collect(),
-            renderer: state.frame.renderer.to_string(),
+            toasts: state.toasts.shown().iter().map(|toast| toast.text.clone()).collect(),
+            renderer: state.frame.renderer.clone(),
             timings: timings(state, shown),
         }
     }
@@ -275,7 +275,7 @@ fn network_size(network: &Network) -> NetworkSize {
 fn verdict(verdict: &verify::Verdict) -> Verdict {
     Verdict {
         valid: verdict.valid,
-        violations: verdict.violations.iter().map(|it| it.message.to_string()).collect(),
+        violations: verdict.violations.iter().map(|it| it.message.clone()).collect(),
     }
 }
 
@@ -283,7 +283,7 @@ fn diagnostic(problem: &Problem) -> Diagnostic {
     Diagnostic {
         code: problem.code.to_string(),
         severity: problem.severity,
-        message: problem.message.to_string(),
+        message: problem.message.clone(),
         span: Span {
             start: problem.span.start,
             end: problem.span.end,
@@ -291,7 +291,7 @@ fn diagnostic(problem: &Problem) -> Diagnostic {
             column: problem.column,
         },
         hint: problem.hint.as_ref().map(ToString::to_string),
-        fixes: problem.fixes.iter().map(|fix| fix.label.to_string()).collect(),
+        fixes: problem.fixes.iter().map(|fix| fix.label.clone()).collect(),
     }
 }
 
@@ -303,7 +303,7 @@ fn failure_of(network: &Network, failure: &kirk::Failure) -> Failure {
             .map(|choice| (Network::decision_name(choice.decision), choice.alternative))
             .collect(),
         kind: reason.kind.name(),
-        message: reason.message.to_string(),
+        message: reason.message.clone(),
     });
     let conditions =
         failure.reasons.iter().flat_map(|reason| &reason.conflict).filter_map(|member| match member {
@@ -313,7 +313,7 @@ fn failure_of(network: &Network, failure: &kirk::Failure) -> Failure {
     Failure {
         reasons: reasons.collect(),
         conditions: conditions.collect(),
-        relaxations: failure.relaxations.iter().map(|it| it.label.to_string()).collect(),
+        relaxations: failure.relaxations.iter().map(|it| it.label.clone()).collect(),
     }
 }
 

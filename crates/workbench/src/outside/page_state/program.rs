@@ -133,7 +133,7 @@ fn chance(chance: &ProgramChanceState, revision: u64) -> Option<ProgramChance> {
 
 fn fired(automaton: &Automaton, id: hca::TransitionId) -> Option<Fired> {
     let transition = automaton.transitions.get(id.0 as usize)?;
-    Some(Fired { from: automaton.location_name(transition.source).to_string() })
+    Some(Fired { from: automaton.location_name(transition.source).clone() })
 }
 
 fn plant_state(model: &Model, moment: &PlantMoment) -> PlantState {

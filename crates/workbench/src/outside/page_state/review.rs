@@ -110,7 +110,7 @@ fn items(review: &mission::review::Review) -> Vec<ReviewItem> {
         review.lines(section).into_iter().map(move |line| ReviewItem {
             section,
             status: line.status,
-            text: line.text.to_string(),
+            text: line.text.clone(),
             line: line.line_number,
             names: line.names.iter().map(ToString::to_string).collect(),
         })
