@@ -112,9 +112,9 @@ fn resting_on_a_call_shows_its_signature() -> Result<()> {
         recording.page.tab.hover(editor.x + 215.0, editor.y + 8.0 * f64::from(step))?;
         let rested = format!(
             "new Promise((resolve) => {{
-                const end = execution.now() + 1500;
+                const end = performance.now() + 1500;
                 const look = () => {{
-                    if ({shows_signature} || execution.now() > end) resolve({shows_signature});
+                    if ({shows_signature} || performance.now() > end) resolve({shows_signature});
                     else setTimeout(look, 20);
                 }};
                 look();

@@ -76,7 +76,7 @@ fn the_report_is_a_page_that_stands_alone_and_prints_on_both_papers() -> Result<
     tab.go_to(&format!("file://{}", report.0.display()))?;
     tab.wait_until("document.readyState === 'complete' && document.querySelector('h1') !== null")?;
 
-    assert_eq!(tab.evaluate("execution.getEntriesByType('resource').length")?, 0, "it asks for nothing");
+    assert_eq!(tab.evaluate("performance.getEntriesByType('resource').length")?, 0, "it asks for nothing");
     assert_eq!(count(tab, "script, link, iframe, img, object")?, 0);
     assert_eq!(tab.evaluate("document.querySelector('.hash').textContent")?, hash);
     let headings = tab.evaluate("[...document.querySelectorAll('h2')].map((it) => it.textContent)")?;
