@@ -32,409 +32,370 @@ export interface Traverse {
   legs: Leg[];
 }
 
-/**
- * The `code` of an error that the page throws: a stable name for programs.
- */
+/** The `code` of an error that the page throws: a stable name for programs. */
 export type RefusalCode = "not-ready" | "stopped" | "no-graphics" | "unknown-mission" | "unknown-command" | "bad-arguments" | "unavailable";
 
-/**
- * Everything the page shows. What was worked out belongs to `shownRevision`, which is `revision` once `status` is not
- * `working`.
- */
-export type State = { 
-/**
- * Counts the edits of the text.
- */
-revision: number, 
-/**
- * The revision that was last answered.
- */
-answeredRevision: number | null, 
-/**
- * The revision of what is shown.
- */
-shownRevision: number | null, status: "working" | "broken" | "empty" | "program" | "plan" | "no-plan" | "undecided", 
-/**
- * Whether what is shown is of an older text.
- */
-isStale: boolean, 
-/**
- * The name of the open mission.
- */
-mission: string, workspace: string, activePanel: string, 
-/**
- * The panels on screen, by name.
- */
-panels: Array<string>, theme: "dark" | "light", diagnostics: Array<Diagnostic>, 
-/**
- * How many of each the network has; `null` while the text does not compile.
- */
-tpn: NetworkSize | null, plan: Plan | null, 
-/**
- * What the independent checker says of the plan.
- */
-verdict: Verdict | null, 
-/**
- * Why there is no plan.
- */
-failure: Failure | null, review: Review, 
-/**
- * What the mission is compared with.
- */
-compare: Comparison | null, search: Search, 
-/**
- * The run of a control program; `null` for a mission.
- */
-hca: ProgramRun | null, vehicles: Array<Vehicle>, traverses: Traverse[] | null, 
-/**
- * The time shown, in mission units.
- */
-time: number, endTime: number, isPlaying: boolean, 
-/**
- * The range of times that is selected on the timeline.
- */
-timeRange: [number, number] | null, pinned: Pinned | null, 
-/**
- * The run that is watched in the Execute workspace.
- */
-execution: Execution | null, 
-/**
- * What many runs with chance came to; `null` until runs were made.
- */
-robustness: Robustness | null, selection: { kind: string; name: string | null; id: unknown } | null, caret: Caret, canUndo: boolean, canRedo: boolean, 
-/**
- * The dialog that is open.
- */
-dialog: string | null, terrain: Terrain, 
-/**
- * The messages on screen.
- */
-toasts: Array<string>, 
-/**
- * What draws the canvas: WebGPU or WebGL2.
- */
-renderer: string, timings: Timings, };
+/** Everything the page shows. What was worked out belongs to `shownRevision`, which is `revision` once `status` is not `working`. */
+export type State = {
+  /** Counts the edits of the text. */
+  revision: number;
+  /** The revision that was last answered. */
+  answeredRevision: number | null;
+  /** The revision of what is shown. */
+  shownRevision: number | null;
+  status: "working" | "broken" | "empty" | "program" | "plan" | "no-plan" | "undecided";
+  /** Whether what is shown is of an older text. */
+  isStale: boolean;
+  /** The name of the open mission. */
+  mission: string;
+  workspace: string;
+  activePanel: string;
+  /** The panels on screen, by name. */
+  panels: Array<string>;
+  theme: "dark" | "light";
+  diagnostics: Array<Diagnostic>;
+  /** How many of each the network has; `null` while the text does not compile. */
+  tpn: NetworkSize | null;
+  plan: Plan | null;
+  /** What the independent checker says of the plan. */
+  verdict: Verdict | null;
+  /** Why there is no plan. */
+  failure: Failure | null;
+  review: Review;
+  /** What the mission is compared with. */
+  compare: Comparison | null;
+  search: Search;
+  /** The run of a control program; `null` for a mission. */
+  hca: ProgramRun | null;
+  vehicles: Array<Vehicle>;
+  traverses: Traverse[] | null;
+  /** The time shown, in mission units. */
+  time: number;
+  endTime: number;
+  isPlaying: boolean;
+  /** The range of times that is selected on the timeline. */
+  timeRange: [number, number] | null;
+  pinned: Pinned | null;
+  /** The run that is watched in the Execute workspace. */
+  execution: Execution | null;
+  /** What many runs with chance came to; `null` until runs were made. */
+  robustness: Robustness | null;
+  selection: { kind: string; name: string | null; id: unknown } | null;
+  caret: Caret;
+  canUndo: boolean;
+  canRedo: boolean;
+  /** The dialog that is open. */
+  dialog: string | null;
+  terrain: Terrain;
+  /** The messages on screen. */
+  toasts: Array<string>;
+  /** What draws the canvas: WebGPU or WebGL2. */
+  renderer: string;
+  timings: Timings;
+};
 
-/**
- * Something to tell the author about a place of the text.
- */
-export type Diagnostic = { code: string, severity: "error" | "warning" | "note", message: string, span: Span, hint: string | null, 
-/**
- * The labels of its quick fixes.
- */
-fixes: Array<string>, };
+/** Something to tell the author about a place of the text. */
+export type Diagnostic = {
+  code: string;
+  severity: "error" | "warning" | "note";
+  message: string;
+  span: Span;
+  hint: string | null;
+  /** The labels of its quick fixes. */
+  fixes: Array<string>;
+};
 
-/**
- * A place of the text: `start` and `end` in bytes, `line` and `column` from 1.
- */
-export type Span = { start: number, end: number, line: number, column: number, };
+/** A place of the text: `start` and `end` in bytes, `line` and `column` from 1. */
+export type Span = {
+  start: number;
+  end: number;
+  line: number;
+  column: number;
+};
 
-/**
- * Where the caret is and where its selection began, in bytes.
- */
-export type Caret = { anchor: number, head: number, };
+/** Where the caret is and where its selection began, in bytes. */
+export type Caret = {
+  anchor: number;
+  head: number;
+};
 
-/**
- * How large a network is.
- */
-export type NetworkSize = { nodes: number, arcs: number, decisions: number, occurrences: number, };
+/** How large a network is. */
+export type NetworkSize = {
+  nodes: number;
+  arcs: number;
+  decisions: number;
+  occurrences: number;
+};
 
-/**
- * What the independent checker says of a plan.
- */
-export type Verdict = { valid: boolean, violations: Array<string>, };
+/** What the independent checker says of a plan. */
+export type Verdict = {
+  valid: boolean;
+  violations: Array<string>;
+};
 
-/**
- * Why there is no plan.
- */
-export type Failure = { reasons: Array<Reason>, 
-/**
- * The labelled intervals that take part.
- */
-conditions: Array<string>, 
-/**
- * What would make a plan possible.
- */
-relaxations: Array<string>, };
+/** Why there is no plan. */
+export type Failure = {
+  reasons: Array<Reason>;
+  /** The labelled intervals that take part. */
+  conditions: Array<string>;
+  /** What would make a plan possible. */
+  relaxations: Array<string>;
+};
 
-/**
- * One minimal conflict: the choices that it holds for, and what is wrong then.
- */
-export type Reason = { choices: { [key in string]: number }, kind: string, message: string, };
+/** One minimal conflict: the choices that it holds for, and what is wrong then. */
+export type Reason = {
+  choices: { [key in string]: number };
+  kind: string;
+  message: string;
+};
 
-/**
- * What the mission is compared with.
- */
-export type Comparison = { with: string, planned: boolean, };
+/** What the mission is compared with. */
+export type Comparison = {
+  with: string;
+  planned: boolean;
+};
 
-/**
- * Milliseconds by stage, for the revision shown.
- */
-export type Timings = { parse: number, compile: number, plan: number, layout: number, total: number, 
-/**
- * The app's own code in the last frame.
- */
-frame: number, 
-/**
- * All that the frame before took on the page's thread.
- */
-wholeFrame: number | null, 
-/**
- * The app's code in the frame that first shows the answer to the present text; `null` until then.
- */
-answerFrame: number | null, 
-/**
- * When that frame was ready, on the clock of `performance.now()`; `null` until then.
- */
-shownAt: number | null, };
+/** Milliseconds by stage, for the revision shown. */
+export type Timings = {
+  parse: number;
+  compile: number;
+  plan: number;
+  layout: number;
+  total: number;
+  /** The app's own code in the last frame. */
+  frame: number;
+  /** All that the frame before took on the page's thread. */
+  wholeFrame: number | null;
+  /** The app's code in the frame that first shows the answer to the present text; `null` until then. */
+  answerFrame: number | null;
+  /** When that frame was ready, on the clock of `performance.now()`; `null` until then. */
+  shownAt: number | null;
+};
 
-/**
- * The recorded search and the step that is looked at. While one is, all panels show that step instead of the plan.
- */
-export type Search = { 
-/**
- * The step that is shown, from 1; 0 while the plan is shown.
- */
-step: number, 
-/**
- * How many steps are recorded; 0 if none are.
- */
-steps: number, isPlaying: boolean, stepsPerSecond: number, 
-/**
- * Where running and playing stop.
- */
-breakpoints: Record<"decision" | "failure" | "threat" | "solution", boolean>, 
-/**
- * What the search knew at the step: its choices, links, orderings and windows in the form of a plan.
- */
-known: (Plan & { event: string | null; text: string | null; state: number; cycle: string[] }) | null, 
-/**
- * Both searches side by side, if they are compared.
- */
-compare: SearchComparison | null, };
+/** The recorded search and the step that is looked at. While one is, all panels show that step instead of the plan. */
+export type Search = {
+  /** The step that is shown, from 1; 0 while the plan is shown. */
+  step: number;
+  /** How many steps are recorded; 0 if none are. */
+  steps: number;
+  isPlaying: boolean;
+  stepsPerSecond: number;
+  /** Where running and playing stop. */
+  breakpoints: Record<"decision" | "failure" | "threat" | "solution", boolean>;
+  /** What the search knew at the step: its choices, links, orderings and windows in the form of a plan. */
+  known: (Plan & { event: string | null; text: string | null; state: number; cycle: string[] }) | null;
+  /** Both searches side by side, if they are compared. */
+  compare: SearchComparison | null;
+};
 
-/**
- * Two searches of one mission side by side.
- */
-export type SearchComparison = { 
-/**
- * The one that the panels show, from 0.
- */
-side: number, isLinked: boolean, searches: Array<SearchFigures>, };
+/** Two searches of one mission side by side. */
+export type SearchComparison = {
+  /** The one that the panels show, from 0. */
+  side: number;
+  isLinked: boolean;
+  searches: Array<SearchFigures>;
+};
 
-/**
- * How much work a search was, and where it is looked at.
- */
-export type SearchFigures = { search: "chronological" | "conflict-directed", status: string, step: number, steps: number, states: number, propagations: number, backtracks: number, deadEnds: number, millis: number, };
+/** How much work a search was, and where it is looked at. */
+export type SearchFigures = {
+  search: "chronological" | "conflict-directed";
+  status: string;
+  step: number;
+  steps: number;
+  states: number;
+  propagations: number;
+  backtracks: number;
+  deadEnds: number;
+  millis: number;
+};
 
-/**
- * Where a vehicle is: metres, and radians counter-clockwise from east.
- */
-export type Vehicle = { name: string, x: number, y: number, 
-/**
- * The height of the ground there, for a blimp its height over it; `null` off the map.
- */
-z: number | null, heading: number, time: number, };
+/** Where a vehicle is: metres, and radians counter-clockwise from east. */
+export type Vehicle = {
+  name: string;
+  x: number;
+  y: number;
+  /** The height of the ground there, for a blimp its height over it; `null` off the map. */
+  z: number | null;
+  heading: number;
+  time: number;
+};
 
-/**
- * What is done on the terrain.
- */
-export type Terrain = { tool: "look" | "measure" | "location" | "circle" | "polygon" | "vehicle", 
-/**
- * The places that the tool has so far, in metres east and north.
- */
-points: Array<[number, number]>, 
-/**
- * Whether the clearance map is shown.
- */
-clearance: boolean, 
-/**
- * How many rays of range sensors are drawn.
- */
-rays: number, growth: PathGrowth | null, };
+/** What is done on the terrain. */
+export type Terrain = {
+  tool: "look" | "measure" | "location" | "circle" | "polygon" | "vehicle";
+  /** The places that the tool has so far, in metres east and north. */
+  points: Array<[number, number]>;
+  /** Whether the clearance map is shown. */
+  clearance: boolean;
+  /** How many rays of range sensors are drawn. */
+  rays: number;
+  growth: PathGrowth | null;
+};
 
-/**
- * The search for a path that is looked at sample by sample.
- */
-export type PathGrowth = { planner: string, leg: number, samples: number, total: number, vertices: number, 
-/**
- * The length of the best path so far, in metres.
- */
-length: number | null, };
+/** The search for a path that is looked at sample by sample. */
+export type PathGrowth = {
+  planner: string;
+  leg: number;
+  samples: number;
+  total: number;
+  vertices: number;
+  /** The length of the best path so far, in metres. */
+  length: number | null;
+};
 
-/**
- * A run of the mission at the time shown.
- */
-export type Execution = { status: "under-way" | "finished" | "stopped", 
-/**
- * How the whole run ends.
- */
-ending: "finished" | "stopped", 
-/**
- * Whether a newer run is being worked out.
- */
-isWorking: boolean, time: number, replans: number, underWay: Array<string>, holding: Array<string>, waitedFor: Array<string>, deadline: Deadline | null, disturbances: Record<string, unknown>[], 
-/**
- * What has happened up to the time shown.
- */
-log: ({ time: Time; event: string } & Record<string, unknown>)[], };
+/** A run of the mission at the time shown. */
+export type Execution = {
+  status: "under-way" | "finished" | "stopped";
+  /** How the whole run ends. */
+  ending: "finished" | "stopped";
+  /** Whether a newer run is being worked out. */
+  isWorking: boolean;
+  time: number;
+  replans: number;
+  underWay: Array<string>;
+  holding: Array<string>;
+  waitedFor: Array<string>;
+  deadline: Deadline | null;
+  disturbances: Record<string, unknown>[];
+  /** What has happened up to the time shown. */
+  log: ({ time: Time; event: string } & Record<string, unknown>)[];
+};
 
-/**
- * The next event that must happen, and its latest time.
- */
-export type Deadline = { event: string, time: Time, };
+/** The next event that must happen, and its latest time. */
+export type Deadline = {
+  event: string;
+  time: Time;
+};
 
-/**
- * What many runs with chance came to.
- */
-export type Robustness = { runs: number, isRunning: boolean, probability: number, 
-/**
- * The 95 % confidence interval.
- */
-interval: [number, number], 
-/**
- * The events that broke plans, the worst first.
- */
-worst: Array<string>, };
+/** What many runs with chance came to. */
+export type Robustness = {
+  runs: number;
+  isRunning: boolean;
+  probability: number;
+  /** The 95 % confidence interval. */
+  interval: [number, number];
+  /** The events that broke plans, the worst first. */
+  worst: Array<string>;
+};
 
-/**
- * Events pinned to times on the timeline, and the windows that they leave to all events.
- */
-export type Pinned = { events: { [key in string]: number }, windows: Record<string, [Time, Time]>, };
+/** Events pinned to times on the timeline, and the windows that they leave to all events. */
+export type Pinned = {
+  events: { [key in string]: number };
+  windows: Record<string, [Time, Time]>;
+};
 
-/**
- * The review of the mission.
- */
-export type Review = { 
-/**
- * The hash of what was reviewed; `null` before the first review of this mission.
- */
-hash: string | null, 
-/**
- * The hash of the present text, map and seed.
- */
-currentHash: string | null, 
-/**
- * Whether the two differ.
- */
-stale: boolean, running: boolean, status: "passed" | "attention" | "failed" | null, counts: ReviewCounts | null, items: Array<ReviewItem>, 
-/**
- * The latest sign-off of the present content, otherwise the latest of any.
- */
-signed: SignOff | null, comments: { author: string; time: string; about: string | null; text: string; content_hash: string }[], 
-/**
- * Why comments and sign-offs are not kept beyond this visit, if they are not.
- */
-unkept: string | null, };
+/** The review of the mission. */
+export type Review = {
+  /** The hash of what was reviewed; `null` before the first review of this mission. */
+  hash: string | null;
+  /** The hash of the present text, map and seed. */
+  currentHash: string | null;
+  /** Whether the two differ. */
+  stale: boolean;
+  running: boolean;
+  status: "passed" | "attention" | "failed" | null;
+  counts: ReviewCounts | null;
+  items: Array<ReviewItem>;
+  /** The latest sign-off of the present content, otherwise the latest of any. */
+  signed: SignOff | null;
+  comments: { author: string; time: string; about: string | null; text: string; content_hash: string }[];
+  /** Why comments and sign-offs are not kept beyond this visit, if they are not. */
+  unkept: string | null;
+};
 
-/**
- * How many lines of a review stand how.
- */
-export type ReviewCounts = { passed: number, attention: number, failed: number, };
+/** How many lines of a review stand how. */
+export type ReviewCounts = {
+  passed: number;
+  attention: number;
+  failed: number;
+};
 
-/**
- * A line of a review.
- */
-export type ReviewItem = { section: string, status: "passed" | "attention" | "failed", text: string, 
-/**
- * The line of its place in the text, from 1.
- */
-line: number | null, 
-/**
- * What it is about, by the names of all output.
- */
-names: Array<string>, };
+/** A line of a review. */
+export type ReviewItem = {
+  section: string;
+  status: "passed" | "attention" | "failed";
+  text: string;
+  /** The line of its place in the text, from 1. */
+  line: number | null;
+  /** What it is about, by the names of all output. */
+  names: Array<string>;
+};
 
-/**
- * Somebody vouches for a plan.
- */
-export type SignOff = { name: string, 
-/**
- * An ISO 8601 time in UTC.
- */
-time: string, 
-/**
- * The content that was signed.
- */
-hash: string, 
-/**
- * Whether the present content is another.
- */
-stale: boolean, };
+/** Somebody vouches for a plan. */
+export type SignOff = {
+  name: string;
+  /** An ISO 8601 time in UTC. */
+  time: string;
+  /** The content that was signed. */
+  hash: string;
+  /** Whether the present content is another. */
+  stale: boolean;
+};
 
-/**
- * How a control program stands at the step that is looked at.
- */
-export type ProgramRun = { 
-/**
- * The steps taken before this moment.
- */
-step: number, 
-/**
- * All steps that were taken.
- */
-steps: number, locations: number, 
-/**
- * The labels of what is marked.
- */
-marked: Array<string> | null, 
-/**
- * The goals that the marked locations assert.
- */
-goals: Array<string> | null, 
-/**
- * The transitions of the step that led here.
- */
-fired: Array<Fired> | null, canStep: boolean, isPlaying: boolean, trouble: string | null, 
-/**
- * How likely the program is to reach its end; `null` until many runs were made of the present text.
- */
-chance: ProgramChance | null, plant: PlantState | null, };
+/** How a control program stands at the step that is looked at. */
+export type ProgramRun = {
+  /** The steps taken before this moment. */
+  step: number;
+  /** All steps that were taken. */
+  steps: number;
+  locations: number;
+  /** The labels of what is marked. */
+  marked: Array<string> | null;
+  /** The goals that the marked locations assert. */
+  goals: Array<string> | null;
+  /** The transitions of the step that led here. */
+  fired: Array<Fired> | null;
+  canStep: boolean;
+  isPlaying: boolean;
+  trouble: string | null;
+  /** How likely the program is to reach its end; `null` until many runs were made of the present text. */
+  chance: ProgramChance | null;
+  plant: PlantState | null;
+};
 
-/**
- * A transition that was taken.
- */
-export type Fired = { from: string, };
+/** A transition that was taken. */
+export type Fired = {
+  from: string;
+};
 
-/**
- * How likely a program is to reach its end.
- */
-export type ProgramChance = { runs: number, isRunning: boolean, reached: number, probability: number, 
-/**
- * The 95 % confidence interval of the probability.
- */
-interval: [number, number], meanSteps: number, };
+/** How likely a program is to reach its end. */
+export type ProgramChance = {
+  runs: number;
+  isRunning: boolean;
+  reached: number;
+  probability: number;
+  /** The 95 % confidence interval of the probability. */
+  interval: [number, number];
+  meanSteps: number;
+};
 
-/**
- * What is believed and true of a plant; modes and values by component and variable.
- */
-export type PlantState = { 
-/**
- * Most likely first.
- */
-belief: Array<Believed>, trueState: { [key in string]: string }, observations: { [key in string]: string } | null, commands: { [key in string]: string } | null, nextCommands: { [key in string]: string } | null, unachievable: Array<Unachievable>, 
-/**
- * Whether no state that was believed possible explains the observations.
- */
-isUnexplained: boolean, 
-/**
- * Which assumptions the observations contradict.
- */
-conflicts: Array<string> | null, };
+/** What is believed and true of a plant; modes and values by component and variable. */
+export type PlantState = {
+  /** Most likely first. */
+  belief: Array<Believed>;
+  trueState: { [key in string]: string };
+  observations: { [key in string]: string } | null;
+  commands: { [key in string]: string } | null;
+  nextCommands: { [key in string]: string } | null;
+  unachievable: Array<Unachievable>;
+  /** Whether no state that was believed possible explains the observations. */
+  isUnexplained: boolean;
+  /** Which assumptions the observations contradict. */
+  conflicts: Array<string> | null;
+};
 
-/**
- * A state that is believed possible.
- */
-export type Believed = { state: { [key in string]: string }, 
-/**
- * An exact fraction.
- */
-probability: string, };
+/** A state that is believed possible. */
+export type Believed = {
+  state: { [key in string]: string };
+  /** An exact fraction. */
+  probability: string;
+};
 
-/**
- * A goal that cannot be reached.
- */
-export type Unachievable = { goal: string, reason: string, };
+/** A goal that cannot be reached. */
+export type Unachievable = {
+  goal: string;
+  reason: string;
+};
 
 /** What a call refuses with. */
 export interface EnrouteError extends Error {

@@ -102,12 +102,59 @@ declare global {
 
 /// Adds the declaration of a type, with its documentation.
 fn declare<T: TS + 'static>(out: &mut String) {
-    let config = Config::new();
+    let documentation = T::docs().unwrap_or_default();
+    let declaration = T::decl(&Config::new());
+    let (head, members) = declaration.split_once('{').unwrap_or((&declaration, ""));
+    out.push_str(&format!("\n{}export {}", on_one_line(&documentation), head.trim_end()));
+    if !members.is_empty() {
+        out.push_str(" {\n");
+        for line in members_by_line(&on_one_line(members)).lines() {
+            out.push_str(&format!("  {line}\n"));
+        }
+        out.push_str("};");
+    }
     out.push('\n');
-    out.push_str(&T::docs().unwrap_or_default());
-    out.push_str("export ");
-    out.push_str(&T::decl(&config));
-    out.push('\n');
+}
+
+/// Comments of one line, without the lines around it.
+fn on_one_line(text: &str) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some((before, comment)) = rest.split_once("/**\n") {
+        let (comment, after) = comment.split_once("*/").expect("a comment ends");
+        let lines: Vec<&str> =
+            comment.lines().map(|line| line.trim().trim_start_matches('*').trim()).collect();
+        out.push_str(&format!("{before}/** {} */", lines.join(" ").trim()));
+        rest = after;
+    }
+    out + rest
+}
+
+/// The members of an object type, up to its closing brace, each on a line of its own below its comment.
+fn members_by_line(members: &str) -> String {
+    let (mut out, mut depth, mut is_quoted, mut is_comment) = (String::new(), 0_i32, false, false);
+    for (at, letter) in members.char_indices() {
+        let rest = &members[at..];
+        match letter {
+            '/' if rest.starts_with("/**") => is_comment = true,
+            '/' if is_comment && members[..at].ends_with('*') => is_comment = false,
+            '"' if !is_comment => is_quoted = !is_quoted,
+            '{' | '[' | '(' | '<' if !is_comment && !is_quoted => depth += 1,
+            '}' | ']' | ')' | '>' if !is_comment && !is_quoted => depth -= 1,
+            ',' if !is_comment && !is_quoted && depth == 0 => {
+                out.push_str(";\n");
+                continue;
+            }
+            _ => {}
+        }
+        // The brace of the object itself.
+        if depth < 0 {
+            break;
+        }
+        out.push(letter);
+    }
+    let lines = out.lines().map(str::trim).filter(|line| !line.is_empty());
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 /// Everything that host pages may rely on.
