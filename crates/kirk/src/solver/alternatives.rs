@@ -4,6 +4,7 @@
 //! than the earliest; the same holds for where it begins. So an open choice counts with its relaxation.
 
 use super::literal::{Literal, Side};
+use super::queue::PropagationQueue;
 use super::trail::{Cause, Conflict, Trail};
 
 /// One way in which an alternative bounds a common event.
@@ -24,48 +25,18 @@ struct Common {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Alternatives {
     commons: Vec<Common>,
-    /// By side: what to look at when its bound moves.
-    concerned: Vec<Vec<u32>>,
-    is_waiting: Vec<bool>,
-    waiting: Vec<u32>,
+    pub(super) queue: PropagationQueue,
 }
 
 impl Alternatives {
-    pub(crate) fn resize(&mut self, num_variables: usize) {
-        self.concerned.resize(num_variables * 2, Vec::new());
-    }
-
     /// Adds that `to` is bounded by at least one of `ways`, of which one is taken wherever `to` exists.
     pub(crate) fn add(&mut self, to: Side, ways: Vec<Way>) {
-        let id = self.commons.len() as u32;
-        for way in &ways {
-            self.concerned[way.from.index()].push(id);
-            self.concerned[(!way.when).side.index()].push(id);
-        }
+        self.queue.add(ways.iter().flat_map(|way| [way.from, (!way.when).side]));
         self.commons.push(Common { to, ways });
-        self.is_waiting.push(true);
-        self.waiting.push(id);
-    }
-
-    pub(crate) fn moved(&mut self, side: Side) {
-        for &id in &self.concerned[side.index()] {
-            if !self.is_waiting[id as usize] {
-                self.is_waiting[id as usize] = true;
-                self.waiting.push(id);
-            }
-        }
-    }
-
-    /// Drops what is still to be looked at: its events are being taken back.
-    pub(crate) fn forget(&mut self) {
-        for id in self.waiting.drain(..) {
-            self.is_waiting[id as usize] = false;
-        }
     }
 
     pub(crate) fn propagate(&mut self, trail: &mut Trail) -> Result<(), Conflict> {
-        while let Some(id) = self.waiting.pop() {
-            self.is_waiting[id as usize] = false;
+        while let Some(id) = self.queue.pop() {
             let Common { to, ways } = &self.commons[id as usize];
             let left = ways.iter().filter(|way| !trail.fails(way.when));
             let most = left.map(|way| trail.bound(way.from) + way.weight).max();

@@ -5,6 +5,7 @@
 
 use super::encode::{Interval, Problem};
 use super::literal::{Literal, Side};
+use super::queue::PropagationQueue;
 use super::trail::{Conflict, Trail};
 
 /// In larger sets only overloads are looked for.
@@ -22,10 +23,7 @@ struct Exclusion {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Disjunctives {
     sets: Vec<Exclusion>,
-    /// By side: the sets that its bound concerns.
-    concerned: Vec<Vec<u32>>,
-    is_waiting: Vec<bool>,
-    waiting: Vec<u32>,
+    pub(super) queue: PropagationQueue,
     /// Room for the tasks that count at the moment.
     present: Vec<Task>,
 }
@@ -44,10 +42,6 @@ struct Task {
 }
 
 impl Disjunctives {
-    pub(crate) fn resize(&mut self, num_variables: usize) {
-        self.concerned.resize(num_variables * 2, Vec::new());
-    }
-
     /// Finds sets among the labels of one variable that must be kept apart, `gap` between each two.
     pub(crate) fn add(&mut self, problem: &Problem<'_>, labels: &[u32]) {
         let mut is_covered = vec![false; labels.len()];
@@ -79,36 +73,14 @@ impl Disjunctives {
     }
 
     fn add_set(&mut self, set: Exclusion) {
-        let id = self.sets.len() as u32;
-        for task in &set.tasks {
-            for side in [task.start.lower(), task.end.upper(), task.presence.side] {
-                self.concerned[side.index()].push(id);
-            }
-        }
+        let sides = |task: &Interval| [task.start.lower(), task.end.upper(), task.presence.side];
+        self.queue.add(set.tasks.iter().flat_map(sides));
         self.sets.push(set);
-        self.is_waiting.push(true);
-        self.waiting.push(id);
-    }
-
-    pub(crate) fn moved(&mut self, side: Side) {
-        for &id in &self.concerned[side.index()] {
-            if !self.is_waiting[id as usize] {
-                self.is_waiting[id as usize] = true;
-                self.waiting.push(id);
-            }
-        }
-    }
-
-    pub(crate) fn forget(&mut self) {
-        for id in self.waiting.drain(..) {
-            self.is_waiting[id as usize] = false;
-        }
     }
 
     /// Looks at one set that waits. `false` if none does.
     pub(crate) fn propagate(&mut self, trail: &mut Trail) -> Result<bool, Conflict> {
-        let Some(id) = self.waiting.pop() else { return Ok(false) };
-        self.is_waiting[id as usize] = false;
+        let Some(id) = self.queue.pop() else { return Ok(false) };
         let set = &self.sets[id as usize];
         for is_forward in [true, false] {
             self.present.clear();

@@ -26,6 +26,7 @@ mod encode;
 mod interchangeable;
 mod leaf;
 mod literal;
+mod queue;
 mod trail;
 
 use crate::options::Stats;
@@ -141,8 +142,8 @@ impl Solver {
         let count = self.trail.num_variables();
         self.clauses.resize(count);
         self.differences.resize(count);
-        self.alternatives.resize(count);
-        self.disjunctives.resize(count);
+        self.alternatives.queue.resize(count);
+        self.disjunctives.queue.resize(count);
         self.implied.resize(count * 2, Vec::new());
         self.reached.resize(count * 2, Vec::new());
         self.exclusive.resize(count, NO_ITEM);
@@ -277,8 +278,8 @@ impl Solver {
                     self.activity.insert(self.reached[side.index()][position]);
                 }
                 self.differences.propagate(&mut self.trail, event)?;
-                self.alternatives.moved(side);
-                self.disjunctives.moved(side);
+                self.alternatives.queue.moved(side);
+                self.disjunctives.queue.moved(side);
             }
             self.alternatives.propagate(&mut self.trail)?;
             if (self.head as usize) < self.trail.events.len() {
@@ -372,8 +373,8 @@ impl Solver {
             }
         });
         self.head = self.head.min(self.trail.events.len() as u32);
-        self.alternatives.forget();
-        self.disjunctives.forget();
+        self.alternatives.queue.forget();
+        self.disjunctives.queue.forget();
     }
 
     /// Makes the next decision. `false` if everything that counts is decided.

@@ -41,20 +41,7 @@ impl Parser<'_> {
 
     /// Whether the current token can begin a statement.
     pub(super) fn at_statement_start(&self) -> bool {
-        matches!(
-            self.kind,
-            SyntaxKind::Name
-                | SyntaxKind::LeftBrace
-                | SyntaxKind::LeftParen
-                | SyntaxKind::ChooseKeyword
-                | SyntaxKind::DoKeyword
-                | SyntaxKind::IfKeyword
-                | SyntaxKind::DelayKeyword
-                | SyntaxKind::NotKeyword
-                | SyntaxKind::Bang
-                | SyntaxKind::TellKeyword
-                | SyntaxKind::AskKeyword
-        )
+        matches!(self.kind, SyntaxKind::Name | SyntaxKind::LeftParen) || begins_only_statements(self.kind)
     }
 
     /// Whether the current token ends a statement or a group of them.
@@ -169,4 +156,20 @@ impl Parser<'_> {
             || self.at_world_declaration()
             || self.at_definition(false)
     }
+}
+
+/// Whether a token begins a statement wherever one may stand. A name or a parenthesis may be something else.
+pub(super) const fn begins_only_statements(kind: SyntaxKind) -> bool {
+    matches!(
+        kind,
+        SyntaxKind::LeftBrace
+            | SyntaxKind::ChooseKeyword
+            | SyntaxKind::DoKeyword
+            | SyntaxKind::IfKeyword
+            | SyntaxKind::DelayKeyword
+            | SyntaxKind::NotKeyword
+            | SyntaxKind::Bang
+            | SyntaxKind::TellKeyword
+            | SyntaxKind::AskKeyword
+    )
 }

@@ -1,6 +1,7 @@
 //! Statements (SPEC 1.2, 1.3): blocks, choices, `do`, `if`, calls, assertions and delays.
 
 use super::Parser;
+use super::recovery::begins_only_statements;
 use crate::diagnostics::syntax;
 use crate::span::Span;
 use crate::syntax::SyntaxKind;
@@ -318,16 +319,7 @@ impl Parser<'_> {
         self.at_word("free")
             && match self.peek() {
                 SyntaxKind::Name => !self.at_joined_literal(),
-                SyntaxKind::LeftBrace
-                | SyntaxKind::ChooseKeyword
-                | SyntaxKind::DoKeyword
-                | SyntaxKind::IfKeyword
-                | SyntaxKind::DelayKeyword
-                | SyntaxKind::NotKeyword
-                | SyntaxKind::Bang
-                | SyntaxKind::TellKeyword
-                | SyntaxKind::AskKeyword => true,
-                _ => false,
+                kind => begins_only_statements(kind),
             }
     }
 
