@@ -42,12 +42,11 @@ impl Scale {
 
     /// A time in ticks; an error if it lies between two ticks or does not fit.
     pub fn ticks(self, time: Time) -> Result<i64, Overflow> {
-        let (numerator, denominator) = time.units().wide();
-        let scaled = numerator * i128::from(self.ticks_per_unit);
-        if scaled % denominator != 0 {
+        // In lowest terms only a multiple of the denominator makes a whole number of the time.
+        if self.ticks_per_unit % time.denominator() != 0 {
             return Err(Overflow);
         }
-        i64::try_from(scaled / denominator).map_err(|_| Overflow)
+        time.numerator().checked_mul(self.ticks_per_unit / time.denominator()).ok_or(Overflow)
     }
 
     /// A bound in ticks; `None` for infinity.
@@ -66,6 +65,9 @@ impl Scale {
 
     /// The time of a tick.
     pub fn time(self, ticks: i64) -> Time {
+        if self == Self::UNITS {
+            return Time::from(ticks);
+        }
         // A fraction over a positive denominator always fits.
         Time::from_units(Rational::new(ticks, self.ticks_per_unit).unwrap_or_default())
     }

@@ -53,7 +53,7 @@ impl From<Inconsistency> for PlanError {
     fn from(inconsistency: Inconsistency) -> Self {
         match inconsistency {
             Inconsistency::NegativeCycle => Self::Inconsistent,
-            Inconsistency::Overflow => Self::Overflow,
+            Inconsistency::Overflow(_) => Self::Overflow,
         }
     }
 }

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use stn::Overflow;
 use tpn::{Network, Plan};
 
 use crate::model::Model;
 use crate::options::{Options, Outcome, Search, Stats, Status, Termination, Unlimited};
+use crate::overflow::TimeOverflow;
 use crate::search::{Choices, Engine, Gaps, Halt, Setup};
 use crate::solver::{Answer, Part, Problem, TooLarge};
 use crate::trace::Event;
@@ -18,7 +18,7 @@ pub(crate) fn answer(
     model: &Model,
     options: &Options,
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), Overflow> {
+) -> Result<(Outcome, bool), TimeOverflow> {
     let (mut outcome, mut has_doubts) = searched(model, options, termination)?;
     if outcome.trace.as_ref().is_some_and(|trace| trace.is_truncated) && outcome.status == Status::Limit {
         // What is recorded is searched step by step as the paper does, and stops when the record is full: the answer is
@@ -42,7 +42,7 @@ fn searched(
     model: &Model,
     options: &Options,
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), Overflow> {
+) -> Result<(Outcome, bool), TimeOverflow> {
     if options.search == Search::ConflictDirected && !options.all {
         first_plan(model, options, termination)
     } else {
@@ -57,7 +57,7 @@ pub(crate) fn with_choices(
     choices: &Choices,
     proposed: &mut Vec<i64>,
     termination: &mut dyn Termination,
-) -> Result<Option<Outcome>, Overflow> {
+) -> Result<Option<Outcome>, TimeOverflow> {
     if !model.has_contexts {
         return Ok(None);
     }
@@ -75,7 +75,14 @@ pub(crate) fn with_choices(
     let plan = solution::plan_at(&mut engine)?;
     let stats = engine.stats;
     *proposed = engine.leaf.schedule;
-    Ok(Some(Outcome { status: Status::Plan, plans: vec![plan], failure: None, stats, trace: None }))
+    Ok(Some(Outcome {
+        status: Status::Plan,
+        plans: vec![plan],
+        failure: None,
+        stats,
+        trace: None,
+        overflow: None,
+    }))
 }
 
 /// How often the search in textual order may go back before the solver takes over.
@@ -93,7 +100,7 @@ fn first_plan(
     model: &Model,
     options: &Options,
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), Overflow> {
+) -> Result<(Outcome, bool), TimeOverflow> {
     if options.trace_events.is_some() || !model.has_contexts {
         return first_in_order(model, options, Stats::default(), termination);
     }
@@ -119,7 +126,7 @@ fn first_by_solver(
     options: &Options,
     mut stats: Stats,
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), Overflow> {
+) -> Result<(Outcome, bool), TimeOverflow> {
     let mut touching = None;
     let all_gaps = [Gaps::Trusted, Gaps::Ignored];
     for &gaps in if model.gap == 0 { &all_gaps[1..] } else { &all_gaps[..] } {
@@ -159,7 +166,7 @@ fn first_by_solver(
 }
 
 fn ended(status: Status, plans: Vec<Plan>, stats: Stats) -> Outcome {
-    Outcome { status, plans, failure: None, stats, trace: None }
+    Outcome { status, plans, failure: None, stats, trace: None, overflow: None }
 }
 
 /// One search by the solver, whose work is added to `stats`.
@@ -180,7 +187,11 @@ pub(crate) fn solve(
 
 /// The plan with these choices, where conflicting pairs are ordered by the times given. `None` if a pair that only
 /// touches is not forced to.
-fn plan_with(model: &Model, choices: Choices, orders_touching_last: bool) -> Result<Option<Plan>, Overflow> {
+fn plan_with(
+    model: &Model,
+    choices: Choices,
+    orders_touching_last: bool,
+) -> Result<Option<Plan>, TimeOverflow> {
     let proposed = choices.times.clone();
     let setup = Setup {
         jumps: true,
@@ -203,7 +214,7 @@ fn first_in_order(
     options: &Options,
     stats: Stats,
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), Overflow> {
+) -> Result<(Outcome, bool), TimeOverflow> {
     let (mut outcome, has_doubts) = run(model, options, (Gaps::Trusted, stats), termination)?;
     if outcome.status != Status::NoPlan || !has_doubts {
         return Ok((outcome, has_doubts));
@@ -225,7 +236,7 @@ fn run(
     options: &Options,
     (gaps, stats): (Gaps, Stats),
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), Overflow> {
+) -> Result<(Outcome, bool), TimeOverflow> {
     let jumps = options.search == Search::ConflictDirected;
     let setup = Setup {
         jumps,
@@ -276,6 +287,7 @@ fn run(
         failure: None,
         stats: engine.stats,
         trace: engine.recorder.take().map(|recorder| recorder.trace),
+        overflow: None,
     };
     Ok((outcome, engine.has_doubts))
 }

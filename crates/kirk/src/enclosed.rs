@@ -6,9 +6,9 @@
 //! (SPEC 5.3); where a bounded duration could entail it, touching is tried as a possibility of its own, so that what is
 //! found here loses no plan.
 
-use stn::PointId;
+use tpn::{ArcId, LabelId, NodeId};
 
-use crate::model::{INFINITE, Model};
+use crate::model::{INFINITE, Model, node};
 
 /// Larger parts are left to the search.
 const MAX_LABELS: usize = 6;
@@ -19,11 +19,11 @@ const MAX_STATES: u32 = 4_000;
 #[derive(Clone, Debug)]
 pub(crate) struct Enclosed {
     /// Its nodes; the first two are its first and last event.
-    points: Vec<u32>,
+    points: Vec<NodeId>,
     /// Its arcs.
-    arcs: Vec<u32>,
+    arcs: Vec<ArcId>,
     /// Its conflicting pairs of labels, in textual order.
-    pairs: Vec<(u32, u32)>,
+    pairs: Vec<(LabelId, LabelId)>,
 }
 
 /// The durations found for an enclosed part.
@@ -39,15 +39,15 @@ pub(crate) enum Durations {
 impl Enclosed {
     /// The part of `arcs` between two nodes; `None` if something else touches its inside, or if there is nothing to
     /// find out about it.
-    pub(crate) fn new(model: &Model, (start, end): (u32, u32), mut arcs: Vec<u32>) -> Option<Self> {
+    pub(crate) fn new(model: &Model, (start, end): (NodeId, NodeId), mut arcs: Vec<ArcId>) -> Option<Self> {
         let conditions = &model.conditions;
         arcs.sort_unstable();
         arcs.dedup();
         let mut points = vec![start, end];
-        let mut labels: Vec<u32> = Vec::new();
+        let mut labels: Vec<LabelId> = Vec::new();
         for &arc in &arcs {
             labels.extend_from_slice(conditions.labels_of(arc));
-            for node in [model.arcs[arc as usize].from, model.arcs[arc as usize].to] {
+            for node in [model.arcs[arc].from, model.arcs[arc].to] {
                 if !points.contains(&node) {
                     points.push(node);
                 }
@@ -57,18 +57,19 @@ impl Enclosed {
             }
         }
         labels.sort_unstable();
-        let is_enclosed = |&label: &u32| {
-            let label = &conditions.labels[label as usize];
-            let others = &conditions.variables[label.variable as usize].labels;
+        let is_enclosed = |&label: &LabelId| {
+            let label = &conditions.labels[label];
+            let others = &conditions.variables[label.variable].labels;
             !label.is_ask && others.iter().all(|other| labels.binary_search(other).is_ok())
         };
         // An arc at an inner node that the blocks do not account for could lead anywhere.
-        let is_inner = |node: u32| points[2..].contains(&node);
-        let mut incident = (0..).zip(&model.arcs).filter(|(_, arc)| is_inner(arc.from) || is_inner(arc.to));
+        let is_inner = |node: NodeId| points[2..].contains(&node);
+        let mut incident =
+            model.arcs.iter_enumerated().filter(|(_, arc)| is_inner(arc.from) || is_inner(arc.to));
         if !labels.iter().all(is_enclosed) || !incident.all(|(arc, _)| arcs.binary_search(&arc).is_ok()) {
             return None;
         }
-        let arc = |label: u32| conditions.labels[label as usize].arc;
+        let arc = |label: LabelId| conditions.labels[label].arc;
         let mut pairs = Vec::new();
         for (position, &left) in labels.iter().enumerate() {
             for &right in &labels[position + 1..] {
@@ -89,8 +90,8 @@ impl Enclosed {
     fn find_durations(&self, model: &Model) -> Option<Durations> {
         let mut distances = Distances::new(self.points.len());
         for &arc in &self.arcs {
-            let arc = &model.arcs[arc as usize];
-            let (from, to) = (self.local(PointId(arc.from))?, self.local(PointId(arc.to))?);
+            let arc = &model.arcs[arc];
+            let (from, to) = (self.local(arc.from)?, self.local(arc.to)?);
             let is_possible = (arc.upper == INFINITE || distances.insert(from, to, arc.upper)?)
                 && distances.insert(to, from, arc.lower.checked_neg()?)?;
             if !is_possible {
@@ -105,8 +106,8 @@ impl Enclosed {
         })
     }
 
-    fn local(&self, point: PointId) -> Option<usize> {
-        self.points.iter().position(|&node| node == point.0)
+    fn local(&self, node: NodeId) -> Option<usize> {
+        self.points.iter().position(|&known| known == node)
     }
 }
 
@@ -160,13 +161,13 @@ impl Orders<'_> {
     }
 
     /// The edge that puts one interval before another, with the weight that counts as ordered if it is entailed.
-    fn direction(&self, first: u32, then: u32) -> Option<(usize, usize, i64)> {
+    fn direction(&self, first: LabelId, then: LabelId) -> Option<(usize, usize, i64)> {
         let (_, first_end) = self.model.interval(first);
         let (then_start, _) = self.model.interval(then);
         Some((
-            self.part.local(then_start)?,
-            self.part.local(first_end)?,
-            -self.model.gap_after[first as usize],
+            self.part.local(node(then_start))?,
+            self.part.local(node(first_end))?,
+            -self.model.gap_after[first],
         ))
     }
 }

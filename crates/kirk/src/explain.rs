@@ -1,17 +1,18 @@
 //! Why there is no plan: one minimal conflict per group of choices (SPEC 5.4, 5.6).
 //!
-//! A search that records what each dead end rests on gives a sufficient set of bounds and conditions; leaving out one
-//! after the other while what remains is still contradictory makes it minimal. Where there are too many dead ends to
+//! A search that records what each failure rests on gives a sufficient set of bounds and conditions; leaving out one
+//! after the other while what remains is still contradictory makes it minimal. Where there are too many failures to
 //! list, the mission as a whole gets one reason.
 
 use rmpl::Span;
-use stn::Overflow;
-use tpn::{Choice, DecisionId, Network};
+use tpn::{Choice, DecisionId, LabelId, Network};
+use typed_index_collections::TiVec;
 
 use crate::failure::{Failure, Member, Reason};
-use crate::model::{INFINITE, Model, NONE};
+use crate::model::{INFINITE, Model};
 use crate::options::{Stats, Termination, Unlimited};
-use crate::record::DeadEnd;
+use crate::overflow::TimeOverflow;
+use crate::record::RecordedFailure;
 use crate::search::{Choices, Engine, Gaps, Halt, Setup, UNBOUNDED_BELOW};
 use crate::solver::{self, Answer};
 use crate::trace::{Constraint, CycleMember};
@@ -78,9 +79,7 @@ pub fn is_conflict(network: &Network, choices: &[Choice], members: &[Member]) ->
     let model = Model::new(network, None).ok()?;
     let mut unlimited = Unlimited;
     let mut effort = Effort::for_size(model.num_nodes, &mut unlimited);
-    let choices: Vec<(u32, u32)> =
-        choices.iter().map(|choice| (choice.decision.0, choice.alternative)).collect();
-    let mut part = Part::new(&model, &choices);
+    let mut part = Part::new(&model, choices);
     for &member in members {
         part.set(&model, member, true);
     }
@@ -92,17 +91,17 @@ pub(crate) fn explain(
     network: &Network,
     model: &Model,
     termination: &mut dyn Termination,
-) -> Result<Failure, Overflow> {
+) -> Result<Failure, TimeOverflow> {
     let mut effort = Effort::for_size(model.num_nodes, termination);
-    let setup = Setup { jumps: true, records_dead_ends: true, ..Setup::default() };
+    let setup = Setup { jumps: true, records_failures: true, ..Setup::default() };
     let mut engine = Engine::new(model, setup);
     let mut enough = |stats: &Stats| effort.is_spent(stats) || stats.backtracks > MAX_REASONS;
     let is_complete = engine.run(&mut enough)? == Halt::Exhausted;
-    let mut dead_ends = engine.dead_ends.found;
-    dead_ends.sort_by(|left, right| left.choices.cmp(&right.choices));
+    let mut failures = engine.failures.found;
+    failures.sort_by(|left, right| left.choices.cmp(&right.choices));
     let mut reasons: Vec<Reason> = Vec::new();
-    for dead_end in &dead_ends {
-        let reason = reason(network, model, dead_end, &mut effort)?;
+    for failure in &failures {
+        let reason = reason(network, model, failure, &mut effort)?;
         if !reasons.iter().any(|known| known.choices == reason.choices && known.conflict == reason.conflict) {
             reasons.push(reason);
         }
@@ -117,18 +116,18 @@ pub(crate) fn explain(
 fn reason(
     network: &Network,
     model: &Model,
-    dead_end: &DeadEnd,
+    failure: &RecordedFailure,
     effort: &mut Effort<'_>,
-) -> Result<Reason, Overflow> {
-    let mut part = Part::new(model, &dead_end.choices);
-    let mut members = dead_end.members.clone();
+) -> Result<Reason, TimeOverflow> {
+    let mut part = Part::new(model, &failure.choices);
+    let mut members = failure.members.clone();
     for &member in &members {
         part.set(model, member, true);
     }
     let mut is_minimal = part.fails(effort)? == Some(true);
     if is_minimal {
         // The last members first: what comes late in the text is told only if it matters.
-        for &member in dead_end.members.iter().rev() {
+        for &member in failure.members.iter().rev() {
             part.set(model, member, false);
             match part.fails(effort)? {
                 Some(true) => members.retain(|&kept| kept != member),
@@ -140,17 +139,13 @@ fn reason(
             }
         }
     }
-    let cycle = if is_minimal { part.first_cycle(effort)? } else { dead_end.cycle.clone() };
-    let choices: Vec<Choice> = dead_end
-        .choices
-        .iter()
-        .map(|&(decision, alternative)| Choice { decision: DecisionId(decision), alternative })
-        .collect();
+    let cycle = if is_minimal { part.first_cycle(effort)? } else { failure.cycle.clone() };
+    let choices = failure.choices.clone();
     let told =
-        wording::Told { network, kind: dead_end.kind, choices: &choices, conflict: &members, cycle: &cycle };
+        wording::Told { network, kind: failure.kind, choices: &choices, conflict: &members, cycle: &cycle };
     let message = told.message();
     let spans = spans(network, &members, &cycle);
-    Ok(Reason { message, spans, choices, kind: dead_end.kind, conflict: members, cycle, is_minimal })
+    Ok(Reason { message, spans, choices, kind: failure.kind, conflict: members, cycle, is_minimal })
 }
 
 /// The places of a conflict: its conditions, then the bounds that take time.
@@ -177,41 +172,39 @@ pub(crate) fn spans(network: &Network, members: &[Member], cycle: &[CycleMember]
 /// The planning problem that has only some of the bounds and conditions of another.
 pub(crate) struct Part {
     model: Model,
-    active_labels: Vec<bool>,
-    assumed: Vec<u32>,
+    active_labels: TiVec<LabelId, bool>,
+    assumed: TiVec<DecisionId, Option<u32>>,
 }
 
 impl Part {
-    pub(crate) fn new(whole: &Model, choices: &[(u32, u32)]) -> Self {
+    pub(crate) fn new(whole: &Model, choices: &[Choice]) -> Self {
         let mut model = whole.clone();
         model.structure = None;
         for arc in &mut model.arcs {
             (arc.lower, arc.upper) = (UNBOUNDED_BELOW, INFINITE);
         }
-        let mut assumed = vec![NONE; model.decisions.len()];
-        for &(decision, alternative) in choices {
-            assumed[decision as usize] = alternative;
+        let mut assumed: TiVec<DecisionId, Option<u32>> = vec![None; model.decisions.len()].into();
+        for choice in choices {
+            assumed[choice.decision] = Some(choice.alternative);
         }
-        Self { active_labels: vec![false; model.conditions.labels.len()], model, assumed }
+        Self { active_labels: vec![false; model.conditions.labels.len()].into(), model, assumed }
     }
 
     pub(crate) fn set(&mut self, whole: &Model, member: Member, is_in: bool) {
         match member {
-            Member::Condition(label) => self.active_labels[label.index()] = is_in,
+            Member::Condition(label) => self.active_labels[label] = is_in,
             Member::Bound(Constraint::Lower(arc)) => {
-                self.model.arcs[arc.index()].lower =
-                    if is_in { whole.arcs[arc.index()].lower } else { UNBOUNDED_BELOW };
+                self.model.arcs[arc].lower = if is_in { whole.arcs[arc].lower } else { UNBOUNDED_BELOW };
             }
             Member::Bound(Constraint::Upper(arc)) => {
-                self.model.arcs[arc.index()].upper =
-                    if is_in { whole.arcs[arc.index()].upper } else { INFINITE };
+                self.model.arcs[arc].upper = if is_in { whole.arcs[arc].upper } else { INFINITE };
             }
             Member::Bound(Constraint::Link(_) | Constraint::Order(_)) => {}
         }
     }
 
     /// Whether the part has no plan; `None` if that takes too long to find out.
-    fn fails(&self, effort: &mut Effort<'_>) -> Result<Option<bool>, Overflow> {
+    fn fails(&self, effort: &mut Effort<'_>) -> Result<Option<bool>, TimeOverflow> {
         if !effort.spend() {
             return Ok(None);
         }
@@ -249,22 +242,22 @@ impl Part {
     }
 
     /// A contradiction among the bounds of the part, if there is one to show.
-    fn first_cycle(&self, effort: &mut Effort<'_>) -> Result<Vec<CycleMember>, Overflow> {
+    fn first_cycle(&self, effort: &mut Effort<'_>) -> Result<Vec<CycleMember>, TimeOverflow> {
         let mut engine = Engine::new(&self.model, self.setup(true));
         engine.run(&mut |stats: &Stats| effort.is_spent(stats))?;
         Ok(engine
-            .dead_ends
+            .failures
             .found
             .into_iter()
-            .map(|dead_end| dead_end.cycle)
+            .map(|failure| failure.cycle)
             .find(|cycle| !cycle.is_empty())
             .unwrap_or_default())
     }
 
-    fn setup(&self, records_dead_ends: bool) -> Setup {
+    fn setup(&self, records_failures: bool) -> Setup {
         Setup {
             jumps: true,
-            records_dead_ends,
+            records_failures,
             active_labels: Some(self.active_labels.clone()),
             assumed: Some(Choices { alternatives: self.assumed.clone(), ..Choices::default() }),
             ..Setup::default()

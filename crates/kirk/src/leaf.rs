@@ -1,10 +1,12 @@
 //! Phase 2 at a complete choice: the requirements to close and the conflicting pairs to order (SPEC 5.2, 5.3).
 
 use stn::{Inconsistency, Overflow, PointId};
+use tpn::LabelId;
 
 use crate::failure::FailureKind;
-use crate::model::{Context, INFINITE, NONE};
-use crate::search::{Engine, LEVEL_TAG};
+use crate::model::{INFINITE, point};
+use crate::overflow::TimeOverflow;
+use crate::search::{Engine, Origin};
 use crate::structure::Relation;
 
 /// What the present complete choice has to satisfy.
@@ -13,9 +15,9 @@ pub(crate) struct Leaf {
     /// Whether the rest belongs to the present choice.
     pub(crate) is_ready: bool,
     /// Selected requirements, in textual order.
-    pub(crate) asks: Vec<u32>,
+    pub(crate) asks: Vec<LabelId>,
     /// Conflicting pairs of selected labels, in textual order.
-    pub(crate) pairs: Vec<(u32, u32)>,
+    pub(crate) pairs: Vec<(LabelId, LabelId)>,
     has_pairs: bool,
     /// For each pair that has been passed: whether the second comes first.
     pub(crate) is_swapped: Vec<bool>,
@@ -31,7 +33,7 @@ pub(crate) struct Leaf {
 
 impl Engine<'_> {
     /// Prepares phase 2. `false` if the selection is inconsistent, or contradicts itself on one arc.
-    pub(crate) fn make_leaf(&mut self) -> Result<bool, Overflow> {
+    pub(crate) fn make_leaf(&mut self) -> Result<bool, TimeOverflow> {
         self.stats.leaves += 1;
         self.look_harder();
         self.conflict.clear();
@@ -40,27 +42,24 @@ impl Engine<'_> {
         if self.has_structure() || self.setup.is_checking {
             self.select_chosen();
             if !self.settle_selected()? {
-                self.meet_dead_end(FailureKind::Temporal);
+                self.meet_failure(FailureKind::Temporal);
                 return Ok(false);
             }
         }
         let model = self.model;
-        let labels = 0..model.conditions.labels.len() as u32;
         self.leaf.asks.clear();
-        for label in labels {
-            if model.conditions.labels[label as usize].is_ask
-                && self.is_selected_label(label)
-                && self.is_active(label)
+        for label in model.conditions.labels.keys() {
+            if model.conditions.labels[label].is_ask && self.is_selected_label(label) && self.is_active(label)
             {
                 self.leaf.asks.push(label);
             }
         }
         for &(left, right) in &model.conditions.self_conflicting {
             if self.is_selected_label(left) && self.is_active(left) && self.is_active(right) {
-                self.blame_context(self.context(model.conditions.labels[left as usize].arc));
-                self.dead_ends.add_label(left);
-                self.dead_ends.add_label(right);
-                self.meet_dead_end(FailureKind::Threat);
+                self.add_context_to_conflict(self.context(model.conditions.labels[left].arc));
+                self.failures.add_label(left);
+                self.failures.add_label(right);
+                self.meet_failure(FailureKind::Threat);
                 return Ok(false);
             }
         }
@@ -69,7 +68,7 @@ impl Engine<'_> {
     }
 
     /// The first pair at `from` or later that is in neither order yet, with its position.
-    pub(crate) fn next_threat(&mut self, from: u32) -> Result<Option<(u32, u32, u32)>, Overflow> {
+    pub(crate) fn next_threat(&mut self, from: u32) -> Result<Option<(u32, LabelId, LabelId)>, TimeOverflow> {
         if !self.leaf.has_pairs {
             self.find_pairs();
         }
@@ -86,39 +85,39 @@ impl Engine<'_> {
 
     /// Whether the plan that the search stands at leaves room for the gap between all pairs that nesting does not order:
     /// then none of them rests on being forced to touch.
-    pub(crate) fn has_room_for_gaps(&mut self) -> Result<bool, Overflow> {
-        let checkpoint = self.stn.checkpoint();
+    pub(crate) fn has_room_for_gaps(&mut self) -> Result<bool, TimeOverflow> {
+        let (checkpoint, tag) = (self.stn.checkpoint(), self.next_tag());
         let mut inserted = Ok(());
         for position in 0..self.leaf.pairs.len() {
             let (left, right) = self.leaf.pairs[position];
             let (first, then) = if self.leaf.is_swapped[position] { (right, left) } else { (left, right) };
-            let arc = |label: u32| self.model.conditions.labels[label as usize].arc;
+            let arc = |label: LabelId| self.model.conditions.labels[label].arc;
             let is_nested = |structure: &crate::structure::Structure| {
                 structure.relation(arc(first), arc(then)) != Relation::Open
             };
             if inserted.is_ok() && !self.model.structure.as_ref().is_some_and(is_nested) {
                 let (first_end, then_start) = (self.model.interval(first).1, self.model.interval(then).0);
-                inserted = self.stn.insert(then_start, first_end, -self.model.gap, LEVEL_TAG);
+                inserted = self.stn.insert(then_start, first_end, -self.model.gap, tag);
             }
         }
         self.stn.rollback(checkpoint);
         match inserted {
             Ok(()) => Ok(true),
             Err(Inconsistency::NegativeCycle) => Ok(false),
-            Err(Inconsistency::Overflow) => Err(Overflow),
+            Err(Inconsistency::Overflow(overflow)) => Err(overflow.into()),
         }
     }
 
     /// Every conflicting pair, with the one that comes first in front. A pair that is in both orders at once, as
     /// intervals of no length at one instant are where no gap is asked for, is in the textual one: what the search met
     /// last on its way may have forced them together.
-    pub(crate) fn conflict_order(&mut self) -> Result<Vec<(u32, u32)>, Overflow> {
+    pub(crate) fn conflict_order(&mut self) -> Result<Vec<(LabelId, LabelId)>, TimeOverflow> {
         let mut ordered = self.leaf.pairs.clone();
         for (position, pair) in ordered.iter_mut().enumerate() {
             let (left, right) = *pair;
             let ((_, left_end), (right_start, _)) = (self.model.interval(left), self.model.interval(right));
             if self.leaf.is_swapped[position]
-                && !self.is_entailed(left_end, right_start, self.model.gap_after[left as usize])?
+                && !self.is_entailed(left_end, right_start, self.model.gap_after[left])?
             {
                 *pair = (right, left);
             }
@@ -139,21 +138,21 @@ impl Engine<'_> {
             self.stn.propose(self.setup.proposed.iter().copied());
         }
         let mut stack = vec![model.start];
-        self.select_node(model.start, Context::ALWAYS);
+        self.select_node(model.start, None);
         while let Some(node) = stack.pop() {
-            let decision = model.decision_of[node as usize];
-            let arcs = if decision == NONE {
-                model.out_arcs(node)
-            } else {
-                let alternative = self.chosen[decision as usize] as usize;
-                std::slice::from_ref(&model.decisions[decision as usize].alternatives[alternative])
+            let arcs = match model.decision_of[node] {
+                None => model.out_arcs(node),
+                Some(decision) => {
+                    let taken = self.chosen[decision].map(|taken| taken as usize);
+                    taken.map_or(&[][..], |taken| &model.decisions[decision].alternatives[taken..=taken])
+                }
             };
             for &arc in arcs {
-                self.is_selected_arc[arc as usize] = true;
+                self.is_selected_arc[arc] = true;
                 self.selected_arcs.push(arc);
                 self.push_arc(arc);
-                let target = model.arcs[arc as usize].to;
-                if self.select_node(target, Context::ALWAYS) {
+                let target = model.arcs[arc].to;
+                if self.select_node(target, None) {
                     stack.push(target);
                 }
             }
@@ -166,7 +165,7 @@ impl Engine<'_> {
         self.leaf.schedule.extend_from_slice(self.stn.schedule());
         self.leaf.pairs.clear();
         let conditions = &self.model.conditions;
-        for left in 0..conditions.labels.len() as u32 {
+        for left in conditions.labels.keys() {
             if !self.is_selected_label(left) || !self.is_active(left) {
                 continue;
             }
@@ -187,13 +186,12 @@ impl Engine<'_> {
     }
 
     /// Which of two intervals is over before the other begins, in every schedule (SPEC 5.3).
-    fn relation(&mut self, left: u32, right: u32) -> Result<Relation, Overflow> {
+    fn relation(&mut self, left: LabelId, right: LabelId) -> Result<Relation, TimeOverflow> {
         let (left_start, left_end) = self.model.interval(left);
         let (right_start, right_end) = self.model.interval(right);
-        let (gap_after_left, gap_after_right) =
-            (self.model.gap_after[left as usize], self.model.gap_after[right as usize]);
+        let (gap_after_left, gap_after_right) = (self.model.gap_after[left], self.model.gap_after[right]);
         if let Some(structure) = &self.model.structure {
-            let arc = |label: u32| self.model.conditions.labels[label as usize].arc;
+            let arc = |label: LabelId| self.model.conditions.labels[label].arc;
             match structure.relation(arc(left), arc(right)) {
                 Relation::Before if gap_after_left == 0 => return Ok(Relation::Before),
                 Relation::After if gap_after_right == 0 => return Ok(Relation::After),
@@ -218,7 +216,7 @@ impl Engine<'_> {
     }
 
     /// Whether the times that are given leave less than the gap between two intervals.
-    fn only_touch(&self, left: u32, right: u32) -> bool {
+    fn only_touch(&self, left: LabelId, right: LabelId) -> bool {
         let Some(order) = self.assumed_order(left, right) else { return false };
         let (first, then) = if order == 0 { (left, right) } else { (right, left) };
         let times = self.setup.assumed.as_ref().map_or(&[][..], |assumed| &assumed.times);
@@ -227,29 +225,34 @@ impl Engine<'_> {
     }
 
     /// Which of two intervals comes first, by the times that are given: 0 for the left one.
-    pub(crate) fn assumed_order(&self, left: u32, right: u32) -> Option<u32> {
+    pub(crate) fn assumed_order(&self, left: LabelId, right: LabelId) -> Option<u32> {
         let times =
             self.setup.assumed.as_ref().map(|assumed| &assumed.times).filter(|times| !times.is_empty())?;
-        let room = |first: u32, then: u32| {
+        let room = |first: LabelId, then: LabelId| {
             let (end, start) = (self.model.interval(first).1, self.model.interval(then).0);
             times[start.index()] - times[end.index()]
         };
         Some(u32::from(room(right, left) > room(left, right)))
     }
 
-    fn find_windows(&mut self) -> Result<(), Overflow> {
+    /// The tag of an edge that is only asked about.
+    fn next_tag(&self) -> stn::Tag {
+        Origin::Level(self.levels.next_key()).tag()
+    }
+
+    fn find_windows(&mut self) -> Result<(), TimeOverflow> {
         if self.leaf.has_windows {
             return Ok(());
         }
         self.leaf.has_windows = true;
-        let start = PointId(self.model.start);
+        let start = point(self.model.start);
         let Self { stn, leaf, model, .. } = self;
         leaf.num_edges = stn.num_edges();
-        stn.sweep_distances(start, &model.order, &mut leaf.from_start, &mut leaf.to_start)
+        Ok(stn.sweep_distances(start, &model.order, &mut leaf.from_start, &mut leaf.to_start)?)
     }
 
     /// The present distances of all nodes from and to the start.
-    pub(crate) fn windows_now(&mut self) -> Result<(Vec<i64>, Vec<i64>), Overflow> {
+    pub(crate) fn windows_now(&mut self) -> Result<(Vec<i64>, Vec<i64>), TimeOverflow> {
         self.find_windows()?;
         let Self { stn, leaf, model, .. } = self;
         let (mut from_start, mut to_start) = (leaf.from_start.clone(), leaf.to_start.clone());
@@ -267,15 +270,17 @@ impl Engine<'_> {
     }
 
     /// Whether every schedule has `start − end ≥ gap`.
-    fn is_entailed(&mut self, end: PointId, start: PointId, gap: i64) -> Result<bool, Overflow> {
+    fn is_entailed(&mut self, end: PointId, start: PointId, gap: i64) -> Result<bool, TimeOverflow> {
+        let tag = self.next_tag();
         let schedule = self.stn.schedule();
-        if schedule[start.index()].checked_sub(schedule[end.index()]).ok_or(Overflow)? < gap {
+        if schedule[start.index()].checked_sub(schedule[end.index()]).ok_or(Overflow { point: start })? < gap
+        {
             return Ok(false);
         }
-        match self.stn.admits(end, start, gap - 1, LEVEL_TAG) {
+        match self.stn.admits(end, start, gap - 1, tag) {
             Ok(()) => Ok(false),
             Err(Inconsistency::NegativeCycle) => Ok(true),
-            Err(Inconsistency::Overflow) => Err(Overflow),
+            Err(Inconsistency::Overflow(overflow)) => Err(overflow.into()),
         }
     }
 }

@@ -1,7 +1,12 @@
 //! The stack of choice points, sets of them as reasons of failures, and the conflicts learned from them.
 
+use fixedbitset::FixedBitSet;
 use stn::Checkpoint;
+use tpn::{Choice, DecisionId, LabelId};
+use typed_index_collections::TiVec;
 
+use crate::ids::LevelId;
+use crate::model::Alternatives;
 use crate::trace::TreeNodeId;
 
 /// A point of the search where alternatives are tried one after the other.
@@ -27,84 +32,72 @@ pub(crate) struct Level {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Decision {
-        decision: u32,
+        decision: DecisionId,
     },
     /// `position` among the requirements of the leaf; `tells` are the candidates.
     Link {
         position: u32,
-        ask: u32,
-        tells: Vec<u32>,
+        ask: LabelId,
+        tells: Vec<LabelId>,
     },
     /// `position` among the conflicting pairs of the leaf.
     Threat {
         position: u32,
-        left: u32,
-        right: u32,
+        left: LabelId,
+        right: LabelId,
     },
 }
 
 /// A set of levels.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct LevelSet {
-    words: Vec<u64>,
+    levels: FixedBitSet,
 }
 
 impl LevelSet {
     pub(crate) fn clear(&mut self) {
-        self.words.clear();
+        self.levels.clear();
     }
 
-    pub(crate) fn insert(&mut self, level: u32) {
-        let word = level as usize / 64;
-        if word >= self.words.len() {
-            self.words.resize(word + 1, 0);
-        }
-        self.words[word] |= 1 << (level % 64);
+    pub(crate) fn insert(&mut self, level: LevelId) {
+        self.levels.grow_and_insert(level.into());
     }
 
-    pub(crate) fn insert_all_below(&mut self, level: u32) {
-        for below in 0..level {
-            self.insert(below);
-        }
+    pub(crate) fn insert_all_below(&mut self, level: LevelId) {
+        let end = usize::from(level);
+        self.levels.grow(end);
+        self.levels.insert_range(..end);
     }
 
-    pub(crate) fn remove(&mut self, level: u32) {
-        if let Some(word) = self.words.get_mut(level as usize / 64) {
-            *word &= !(1 << (level % 64));
+    pub(crate) fn remove(&mut self, level: LevelId) {
+        if self.levels.contains(level.into()) {
+            self.levels.remove(level.into());
         }
     }
 
     pub(crate) fn union(&mut self, other: &Self) {
-        if other.words.len() > self.words.len() {
-            self.words.resize(other.words.len(), 0);
-        }
-        for (word, other) in self.words.iter_mut().zip(&other.words) {
-            *word |= other;
-        }
+        self.levels.union_with(&other.levels);
     }
 
-    pub(crate) fn highest(&self) -> Option<u32> {
-        let word = self.words.iter().rposition(|&word| word != 0)?;
-        Some(word as u32 * 64 + 63 - self.words[word].leading_zeros())
+    pub(crate) fn highest(&self) -> Option<LevelId> {
+        self.levels.maximum().map(LevelId::from)
     }
 
-    pub(crate) fn iter(&self) -> impl Iterator<Item = u32> + '_ {
-        (0..).zip(&self.words).flat_map(|(word, &bits)| {
-            (0..64_u32).filter(move |bit| bits >> bit & 1 == 1).map(move |bit| word * 64 + bit)
-        })
+    pub(crate) fn iter(&self) -> impl Iterator<Item = LevelId> + '_ {
+        self.levels.ones().map(LevelId::from)
     }
 }
 
 /// Choices that cannot stand together, kept with the last of them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Nogoods {
-    by_last: Vec<Vec<Nogood>>,
+    by_last: TiVec<DecisionId, Vec<Nogood>>,
 }
 
 #[derive(Clone, Debug)]
 struct Nogood {
     alternative: u32,
-    others: Vec<(u32, u32)>,
+    others: Vec<Choice>,
 }
 
 /// Longer conflicts seldom recur.
@@ -114,13 +107,13 @@ const MAX_PER_DECISION: usize = 64;
 
 impl Nogoods {
     pub(crate) fn new(num_decisions: usize) -> Self {
-        Self { by_last: vec![Vec::new(); num_decisions] }
+        Self { by_last: vec![Vec::new(); num_decisions].into() }
     }
 
     /// Learns that `choices` fail together; the last one is the one made last. `false` if it is not worth keeping.
-    pub(crate) fn learn(&mut self, choices: &[(u32, u32)]) -> bool {
-        let Some((&(decision, alternative), others)) = choices.split_last() else { return false };
-        let known = &mut self.by_last[decision as usize];
+    pub(crate) fn learn(&mut self, choices: &[Choice]) -> bool {
+        let Some((&Choice { decision, alternative }, others)) = choices.split_last() else { return false };
+        let known = &mut self.by_last[decision];
         if others.len() >= MAX_CHOICES || known.len() >= MAX_PER_DECISION {
             return false;
         }
@@ -128,15 +121,12 @@ impl Nogoods {
         true
     }
 
-    /// The other choices of a conflict that taking `alternative` would complete.
-    pub(crate) fn find(&self, chosen: &[u32], decision: u32, alternative: u32) -> Option<&[(u32, u32)]> {
+    /// The other choices of a conflict that taking an alternative would complete.
+    pub(crate) fn find(&self, chosen: &Alternatives, choice: Choice) -> Option<&[Choice]> {
         let completes = |nogood: &&Nogood| {
-            nogood.alternative == alternative
-                && nogood
-                    .others
-                    .iter()
-                    .all(|&(decision, alternative)| chosen[decision as usize] == alternative)
+            nogood.alternative == choice.alternative
+                && nogood.others.iter().all(|other| chosen[other.decision] == Some(other.alternative))
         };
-        self.by_last[decision as usize].iter().find(completes).map(|nogood| nogood.others.as_slice())
+        self.by_last[choice.decision].iter().find(completes).map(|nogood| nogood.others.as_slice())
     }
 }

@@ -1,19 +1,21 @@
 //! The Kirk planner: selection, open conditions, threats, explanations and the search trace (SPEC 5).
 //!
 //! [`plan`] answers with plans as data (`tpn::Plan`), or with why there is none. Time is exact: bounds are scaled to
-//! integers by their common denominator, and what does not fit into 64 bits is [`Status::Error`]. Nothing here checks
-//! its own answers: that is `verify`'s work.
+//! integers by their common denominator, and what does not fit into 64 bits is [`Status::Error`], with the event where
+//! that was found in [`Outcome::overflow`]. Nothing here checks its own answers: that is `verify`'s work.
 
 mod answer;
 mod conditions;
 mod enclosed;
 mod explain;
 mod failure;
+mod ids;
 mod leaf;
 mod levels;
 mod lookahead;
 mod model;
 mod options;
+mod overflow;
 mod planner;
 mod record;
 mod relax;
@@ -28,7 +30,6 @@ mod trace_lines;
 mod whole;
 mod wording;
 
-use stn::Overflow;
 use tpn::Network;
 
 pub use explain::is_conflict;
@@ -55,5 +56,5 @@ use model::Model;
 pub fn plan(network: &Network, options: &Options, termination: &mut dyn Termination) -> Outcome {
     let model = Model::new(network, options.threat_gap);
     let outcome = model.and_then(|model| answer(network, &model, options, termination));
-    outcome.map_or_else(|Overflow| Outcome::overflow(), |(outcome, _)| outcome)
+    outcome.map_or_else(Outcome::of_overflow, |(outcome, _)| outcome)
 }

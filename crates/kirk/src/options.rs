@@ -2,9 +2,10 @@
 
 use exact::Time;
 use serde::{Deserialize, Serialize};
-use tpn::Plan;
+use tpn::{Network, NodeId, Plan};
 
 use crate::failure::Failure;
+use crate::overflow::TimeOverflow;
 use crate::trace::Trace;
 
 /// How to search. Both list the same plans where all are asked for, and say of the same missions that they have none.
@@ -100,7 +101,7 @@ pub struct Stats {
     pub backtracks: u64,
     /// Choice points jumped over on the way back.
     pub jumped_over: u64,
-    /// Dead ends met.
+    /// Failures met.
     pub conflicts: u64,
     /// Nogoods learned.
     pub nogoods: u64,
@@ -140,11 +141,25 @@ pub struct Outcome {
     pub stats: Stats,
     /// The search, if it was asked for.
     pub trace: Option<Trace>,
+    /// The event at which a time did not fit, if that was the end of it.
+    pub overflow: Option<NodeId>,
 }
 
 impl Outcome {
     /// The answer where times do not fit.
-    pub(crate) fn overflow() -> Self {
-        Self { status: Status::Error, plans: Vec::new(), failure: None, stats: Stats::default(), trace: None }
+    pub(crate) fn of_overflow(overflow: TimeOverflow) -> Self {
+        Self {
+            status: Status::Error,
+            plans: Vec::new(),
+            failure: None,
+            stats: Stats::default(),
+            trace: None,
+            overflow: Some(overflow.event),
+        }
+    }
+
+    /// What does not fit, in the author's terms: a time, and the event at which that was found. `None` if all times fit.
+    pub fn overflow_message(&self, network: &Network) -> Option<String> {
+        self.overflow.map(|event| TimeOverflow::at(event).message(network))
     }
 }

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use exact::{Bound, Time};
-use stn::Overflow;
 use tpn::{ArcId, Network};
 
 use crate::answer;
-use crate::model::{Model, NONE};
+use crate::model::Model;
 use crate::options::{Options, Outcome, Search, Termination};
+use crate::overflow::TimeOverflow;
 use crate::search::Choices;
 
 /// Plans one network repeatedly. Plans are those of [`crate::plan`] on the changed network, whatever was asked before;
@@ -21,8 +21,8 @@ use crate::search::Choices;
 pub struct Planner {
     network: Network,
     threat_gap: Option<Time>,
-    /// `None` where times do not fit.
-    model: Option<Model>,
+    /// The network prepared, if times fit.
+    model: Result<Model, TimeOverflow>,
     last: Option<Searched>,
 }
 
@@ -35,14 +35,14 @@ struct Searched {
     /// Times that fitted the plan found last, by node; empty before.
     schedule: Vec<i64>,
     /// The bounds it was searched with, where they are others now.
-    changed: BTreeMap<u32, (i64, i64)>,
+    changed: BTreeMap<ArcId, (i64, i64)>,
 }
 
 impl Searched {
     /// Whether all bounds are within those that were searched with.
     fn covers(&self, model: &Model) -> bool {
         self.changed.iter().all(|(&arc, &(lower, upper))| {
-            let now = &model.arcs[arc as usize];
+            let now = &model.arcs[arc];
             now.lower >= lower && now.upper <= upper
         })
     }
@@ -51,7 +51,7 @@ impl Searched {
 impl Planner {
     /// Prepares `network`.
     pub fn new(network: Network, threat_gap: Option<Time>) -> Self {
-        let model = Model::new(&network, threat_gap).ok();
+        let model = Model::new(&network, threat_gap);
         Self { network, threat_gap, model, last: None }
     }
 
@@ -68,14 +68,17 @@ impl Planner {
         (changed.lower, changed.upper) = (lower, upper);
         let is_kept = !is_structural && self.keep_model(arc, lower, upper).is_ok_and(|is_kept| is_kept);
         if !is_kept {
-            self.model = Model::new(&self.network, self.threat_gap).ok();
+            self.model = Model::new(&self.network, self.threat_gap);
             self.last = None;
         }
     }
 
     /// Plans the network as it is now. `options.threat_gap` is that of the planner.
     pub fn plan(&mut self, options: &Options, termination: &mut dyn Termination) -> Outcome {
-        let Some(model) = &self.model else { return Outcome::overflow() };
+        let model = match &self.model {
+            Ok(model) => model,
+            Err(overflow) => return Outcome::of_overflow(*overflow),
+        };
         let is_repeatable = !options.all && options.trace_events.is_none();
         if is_repeatable
             && let Some(last) = &mut self.last
@@ -86,21 +89,24 @@ impl Planner {
         {
             return outcome;
         }
-        let Ok((outcome, has_doubts)) = answer::answer(&self.network, model, options, termination) else {
-            self.last = None;
-            return Outcome::overflow();
+        let (outcome, has_doubts) = match answer::answer(&self.network, model, options, termination) {
+            Ok(answer) => answer,
+            Err(overflow) => {
+                self.last = None;
+                return Outcome::of_overflow(overflow);
+            }
         };
         self.last = outcome.plans.first().filter(|_| is_repeatable && !has_doubts).map(|plan| {
             let mut choices = Choices {
-                alternatives: vec![NONE; model.decisions.len()],
-                carriers: vec![NONE; model.conditions.labels.len()],
+                alternatives: vec![None; model.decisions.len()].into(),
+                carriers: vec![None; model.conditions.labels.len()].into(),
                 times: Vec::new(),
             };
             for choice in &plan.choices {
-                choices.alternatives[choice.decision.index()] = choice.alternative;
+                choices.alternatives[choice.decision] = Some(choice.alternative);
             }
             for link in &plan.causal_links {
-                choices.carriers[link.ask.index()] = link.tell.0;
+                choices.carriers[link.ask] = Some(link.tell);
             }
             Searched { search: options.search, choices, schedule: Vec::new(), changed: BTreeMap::new() }
         });
@@ -108,19 +114,19 @@ impl Planner {
     }
 
     /// Changes the prepared network in place, if it can be.
-    fn keep_model(&mut self, arc: ArcId, lower: Time, upper: Bound) -> Result<bool, Overflow> {
-        let Some(model) = &mut self.model else { return Ok(false) };
-        let (lower, upper) = (model.units(lower)?, model.bound_units(upper)?);
+    fn keep_model(&mut self, arc: ArcId, lower: Time, upper: Bound) -> Result<bool, TimeOverflow> {
+        let Ok(model) = &mut self.model else { return Ok(false) };
+        let (Ok(lower), Ok(upper)) = (model.units(lower), model.bound_units(upper)) else { return Ok(false) };
         if lower < 0 {
             return Ok(false);
         }
         if let Some(last) = &mut self.last {
-            let before = &model.arcs[arc.index()];
-            last.changed.entry(arc.0).or_insert((before.lower, before.upper));
+            let before = &model.arcs[arc];
+            last.changed.entry(arc).or_insert((before.lower, before.upper));
         }
-        model.set_bounds(&self.network, arc.0, lower, upper);
+        model.set_bounds(&self.network, arc, lower, upper);
         let Some(mut structure) = model.structure.take() else { return Ok(true) };
-        let is_kept = structure.set_arc(model, arc.0)?;
+        let is_kept = structure.set_arc(model, arc)?;
         model.structure = Some(structure);
         Ok(is_kept)
     }

@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 
 use exact::{Bound, Time};
 use rmpl::Span;
-use stn::Overflow;
 use tpn::{ArcId, Network};
 
 use crate::explain::{Effort, MAX_BACKTRACKS};
 use crate::failure::{Failure, Member, Relaxation};
 use crate::model::{INFINITE, Model};
 use crate::options::{Stats, Termination};
+use crate::overflow::TimeOverflow;
 use crate::search::{Engine, Gaps, Halt, Setup};
 use crate::solver::{Answer, Part};
 use crate::trace::Constraint;
@@ -25,7 +25,7 @@ pub(crate) fn relaxations(
     model: &Model,
     failure: &Failure,
     termination: &mut dyn Termination,
-) -> Result<Vec<Relaxation>, Overflow> {
+) -> Result<Vec<Relaxation>, TimeOverflow> {
     let effort = Effort::for_size(model.num_nodes, termination);
     let mut trial = Trial { network, model: model.clone(), effort };
     let mut found: Vec<Relaxation> = Vec::new();
@@ -88,8 +88,8 @@ struct Trial<'a> {
 
 impl Trial<'_> {
     /// The value closest to the present one that gives a plan, if any does and it is found in time.
-    fn closest(&mut self, arcs: &[ArcId], is_lower: bool) -> Result<Option<i64>, Overflow> {
-        let first = &self.model.arcs[arcs[0].index()];
+    fn closest(&mut self, arcs: &[ArcId], is_lower: bool) -> Result<Option<i64>, TimeOverflow> {
+        let first = &self.model.arcs[arcs[0]];
         let (lower, upper) = (first.lower, first.upper);
         let old = if is_lower { lower } else { upper };
         let most = if is_lower { 0 } else { INFINITE };
@@ -126,13 +126,13 @@ impl Trial<'_> {
         is_lower: bool,
         value: i64,
         (lower, upper): (i64, i64),
-    ) -> Result<bool, Overflow> {
+    ) -> Result<bool, TimeOverflow> {
         if !self.effort.spend() {
             return Ok(false);
         }
         let (new_lower, new_upper) = if is_lower { (value, upper) } else { (lower, value) };
-        for arc in arcs {
-            self.model.set_bounds(self.network, arc.0, new_lower, new_upper);
+        for &arc in arcs {
+            self.model.set_bounds(self.network, arc, new_lower, new_upper);
         }
         self.model.refresh_structure()?;
         let setup = Setup { jumps: true, by_structure: true, gaps: Gaps::Trusted, ..Setup::default() };
@@ -146,8 +146,8 @@ impl Trial<'_> {
         {
             halt = Halt::Solution;
         }
-        for arc in arcs {
-            self.model.set_bounds(self.network, arc.0, lower, upper);
+        for &arc in arcs {
+            self.model.set_bounds(self.network, arc, lower, upper);
         }
         self.model.refresh_structure()?;
         Ok(halt == Halt::Solution)

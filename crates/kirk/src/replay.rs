@@ -5,10 +5,11 @@
 
 use exact::{Bound, Time};
 use serde::{Deserialize, Serialize};
-use stn::{Overflow, PointId, Stn};
+use stn::{Overflow, Stn};
 use tpn::{ArcId, CausalLink, Choice, DecisionId, LabelId, Network, NodeId, Ordering, Window};
+use typed_index_collections::TiVec;
 
-use crate::model::{INFINITE, Model};
+use crate::model::{INFINITE, Model, point};
 use crate::trace::{Constraint, CycleMember, Event, Trace, TreeNodeId};
 
 /// Replays a [`Trace`] on the network it was recorded on.
@@ -133,11 +134,11 @@ impl Replay {
 
     fn collect(&self, frames: &[Frame], result: &mut ReplayStep) {
         let model = &self.model;
-        let mut is_selected = vec![false; model.num_nodes];
-        let mut select = |node: u32, nodes: &mut Vec<NodeId>| {
-            if !is_selected[node as usize] {
-                is_selected[node as usize] = true;
-                nodes.push(NodeId(node));
+        let mut is_selected: TiVec<NodeId, bool> = vec![false; model.num_nodes].into();
+        let mut select = |node: NodeId, nodes: &mut Vec<NodeId>| {
+            if !is_selected[node] {
+                is_selected[node] = true;
+                nodes.push(node);
             }
         };
         select(model.start, &mut result.nodes);
@@ -145,13 +146,13 @@ impl Replay {
         for frame in frames {
             for &arc in &frame.arcs {
                 result.arcs.push(arc);
-                select(model.arcs[arc.index()].to, &mut result.nodes);
+                select(model.arcs[arc].to, &mut result.nodes);
             }
             result.choices.extend(frame.choice);
             result.links.extend(frame.link);
             result.orders.extend(frame.order);
         }
-        let windows = self.windows(result).unwrap_or_else(|Overflow| vec![None; model.num_nodes]);
+        let windows = self.windows(result).unwrap_or_else(|Overflow { .. }| vec![None; model.num_nodes]);
         result.windows = windows;
     }
 
@@ -161,9 +162,9 @@ impl Replay {
         let mut stn = Stn::new(model.num_nodes);
         let failed = step.cycle.iter().map(|member| member.constraint);
         let failed: Vec<Constraint> = failed.collect();
-        for arc in &step.arcs {
-            let bounds = &model.arcs[arc.index()];
-            let (from, to) = (PointId(bounds.from), PointId(bounds.to));
+        for &arc in &step.arcs {
+            let bounds = &model.arcs[arc];
+            let (from, to) = (point(bounds.from), point(bounds.to));
             // The arc just added is the one that may contradict the others: those are consistent by themselves.
             let _ = stn.insert(to, from, -bounds.lower, arc.0);
             if bounds.upper != INFINITE {
@@ -174,22 +175,18 @@ impl Replay {
             if failed.contains(&Constraint::Link(*link)) {
                 continue;
             }
-            let (ask_start, ask_end) = model.interval(link.ask.0);
-            let (tell_start, tell_end) = model.interval(link.tell.0);
+            let (ask_start, ask_end) = model.interval(link.ask);
+            let (tell_start, tell_end) = model.interval(link.tell);
             let _ = stn.insert(ask_start, tell_start, 0, 0);
             let _ = stn.insert(tell_end, ask_end, 0, 0);
         }
         for order in &step.orders {
             if !failed.contains(&Constraint::Order(*order)) {
-                let _ = stn.insert(
-                    model.interval(order.then.0).0,
-                    model.interval(order.first.0).1,
-                    -model.gap,
-                    0,
-                );
+                let _ =
+                    stn.insert(model.interval(order.then).0, model.interval(order.first).1, -model.gap, 0);
             }
         }
-        let all = stn.windows(PointId(model.start))?;
+        let all = stn.windows(point(model.start))?;
         let mut windows = vec![None; model.num_nodes];
         for node in &step.nodes {
             let window = all[node.index()];

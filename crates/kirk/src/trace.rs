@@ -181,7 +181,7 @@ pub enum TreeStatus {
     Unexplored,
     /// Entered, and left for the states below.
     Decision,
-    /// A dead end.
+    /// A failure.
     Failed,
     /// A plan.
     Solution,

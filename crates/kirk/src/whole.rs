@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use rmpl::program::LabelMode;
-use tpn::{ArcId, LabelId, Network, VariableId};
+use tpn::{LabelId, Network, VariableId};
 
 use crate::explain::{Effort, Part, spans};
 use crate::failure::{FailureKind, Member, Reason};
@@ -88,8 +88,7 @@ impl Shrinking<'_, '_> {
 /// All bounds and conditions.
 fn members(model: &Model) -> Vec<Member> {
     let mut members = Vec::new();
-    for (id, arc) in model.arcs.iter().enumerate() {
-        let id = ArcId::from_index(id);
+    for (id, arc) in model.arcs.iter_enumerated() {
         if arc.lower != UNBOUNDED_BELOW {
             members.push(Member::Bound(Constraint::Lower(id)));
         }
@@ -97,7 +96,7 @@ fn members(model: &Model) -> Vec<Member> {
             members.push(Member::Bound(Constraint::Upper(id)));
         }
     }
-    members.extend((0..model.conditions.labels.len()).map(|label| Member::Condition(LabelId(label as u32))));
+    members.extend(model.conditions.labels.keys().map(Member::Condition));
     members
 }
 

@@ -2,7 +2,7 @@
 
 use exact::Time;
 use rmpl::program::LabelMode;
-use tpn::{Arc, ArcKind, Choice, LabelId, Network, OccurrenceKind};
+use tpn::{Arc, ArcId, ArcKind, Choice, LabelId, Network, OccurrenceKind};
 
 use crate::failure::{FailureKind, Member};
 use crate::trace::{Constraint, CycleMember};
@@ -14,6 +14,15 @@ pub(crate) struct Told<'a> {
     pub(crate) choices: &'a [Choice],
     pub(crate) conflict: &'a [Member],
     pub(crate) cycle: &'a [CycleMember],
+}
+
+/// What needs time, in the order in which it is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Need {
+    /// The least duration of an arc.
+    Arc(ArcId),
+    /// The gap between conflicting intervals.
+    Gap,
 }
 
 impl Told<'_> {
@@ -112,7 +121,7 @@ impl Told<'_> {
     /// What needs more time than something else leaves it.
     fn bounds(&self) -> Option<String> {
         // In textual order, whatever way round the cycle goes.
-        let mut needs: Vec<(u32, String)> = Vec::new();
+        let mut needs: Vec<(Need, String)> = Vec::new();
         let mut allows: Vec<(String, &'static str)> = Vec::new();
         // What would have to wait.
         let mut waiting: Option<LabelId> = None;
@@ -122,7 +131,11 @@ impl Told<'_> {
                 Constraint::Lower(arc) => {
                     needed = needed.and_then(|needed| needed.checked_sub(member.weight));
                     if is_telling(self.network, member) {
-                        push_new(&mut needs, arc.0, arc_name(self.network, &self.network.arcs[arc.index()]));
+                        push_new(
+                            &mut needs,
+                            Need::Arc(arc),
+                            arc_name(self.network, &self.network.arcs[arc.index()]),
+                        );
                     }
                 }
                 Constraint::Upper(arc) => {
@@ -141,7 +154,7 @@ impl Told<'_> {
                     if member.weight != Time::ZERO {
                         push_new(
                             &mut needs,
-                            u32::MAX,
+                            Need::Gap,
                             format!("a gap of {}", shown(member.weight.checked_neg())),
                         );
                     }
@@ -241,9 +254,9 @@ fn allowing_verb(network: &Network, arc: &Arc) -> &'static str {
     }
 }
 
-fn push_new(names: &mut Vec<(u32, String)>, position: u32, name: String) {
+fn push_new(names: &mut Vec<(Need, String)>, need: Need, name: String) {
     if !names.iter().any(|(_, known)| *known == name) {
-        names.push((position, name));
+        names.push((need, name));
     }
 }
 

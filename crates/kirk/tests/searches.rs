@@ -136,10 +136,14 @@ fn time_scales() {
 fn times_that_do_not_fit_are_an_error_and_not_a_wrong_answer() {
     let huge = i64::MAX / 2;
     let text = format!("scenario S = {{ delay[{huge},{huge}]; delay[{huge},{huge}]; delay[{huge},{huge}] }}");
-    let outcome = plan(&network(&text), Search::ConflictDirected, false);
-    assert_eq!((outcome.status, outcome.plans.len()), (Status::Error, 0));
-    let outcome = plan(&network(&text), Search::Chronological, false);
-    assert_eq!((outcome.status, outcome.plans.len()), (Status::Error, 0));
+    let network = network(&text);
+    for search in [Search::ConflictDirected, Search::Chronological] {
+        let outcome = plan(&network, search, false);
+        assert_eq!((outcome.status, outcome.plans.len()), (Status::Error, 0));
+        // Two of the delays fit: only the third one's end is too late.
+        let message = outcome.overflow_message(&network).expect("a time does not fit");
+        assert!(message.ends_with("that of delay#3.end"), "{message}");
+    }
 }
 
 #[test]

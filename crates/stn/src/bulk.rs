@@ -3,7 +3,7 @@
 //! Missions are nested: in the order of their nesting most constraints run forwards (upper bounds) or backwards (lower
 //! bounds) along it, so that sweeping to and fro settles the network in a handful of passes.
 
-use crate::network::{Inconsistency, NONE, PointId, Stn};
+use crate::network::{Inconsistency, NONE, Overflow, PointId, Stn};
 
 impl Stn {
     /// Restores consistency after any number of [`Stn::push`]es. `order` lists the points that have edges, once each,
@@ -72,7 +72,7 @@ impl Stn {
             while next != NONE {
                 let edge = self.edges[next as usize];
                 let source = edge.from as usize;
-                let reached = time.checked_sub(edge.weight).ok_or(Inconsistency::Overflow)?;
+                let reached = time.checked_sub(edge.weight).ok_or(Overflow::at(source))?;
                 if reached > self.potential[source] {
                     self.potential[source] = reached;
                     self.reach[source].parent = next;

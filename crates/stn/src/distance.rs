@@ -130,7 +130,7 @@ impl Stn {
                 while next != NONE {
                     let edge = &self.edges[next as usize];
                     let target = if FORWARDS { edge.to } else { edge.from } as usize;
-                    let reached = distance.checked_add(edge.weight).ok_or(Overflow)?;
+                    let reached = distance.checked_add(edge.weight).ok_or(Overflow::at(target))?;
                     if reached < row[target] {
                         row[target] = reached;
                         self.dirty[target] = true;
@@ -183,10 +183,10 @@ impl Stn {
                     .checked_add(edge.weight)
                     .and_then(|time| time.checked_sub(self.potential[edge.to as usize]))
                     .and_then(|reduced| key.checked_add(reduced))
-                    .ok_or(Overflow)?;
+                    .ok_or(Overflow::at(target))?;
                 if reduced < self.scratch[target] {
                     self.scratch[target] = reduced;
-                    row[target] = row[point].checked_add(edge.weight).ok_or(Overflow)?;
+                    row[target] = row[point].checked_add(edge.weight).ok_or(Overflow::at(target))?;
                     self.heap.push(reduced, target as u32);
                 }
                 next = if FORWARDS { edge.next_out } else { edge.next_in };

@@ -43,7 +43,7 @@ pub fn execution_windows(
     });
     let result = match observed {
         Ok(()) => stn.windows(execution.origin).map(ExecutionWindows::Consistent),
-        Err(Inconsistency::Overflow) => Err(Overflow),
+        Err(Inconsistency::Overflow(overflow)) => Err(overflow),
         Err(Inconsistency::NegativeCycle) => {
             Ok(ExecutionWindows::Violated(stn.cycle().iter().map(|edge| edge.tag).collect()))
         }

@@ -29,12 +29,27 @@ pub enum Inconsistency {
     /// It closes a cycle of negative weight: [`Stn::cycle`] has it.
     NegativeCycle,
     /// A distance does not fit into 64 bits.
-    Overflow,
+    Overflow(Overflow),
 }
 
 /// A distance does not fit into 64 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Overflow;
+pub struct Overflow {
+    /// The time point whose distance or time it is.
+    pub point: PointId,
+}
+
+impl Overflow {
+    pub(crate) const fn at(point: usize) -> Self {
+        Self { point: PointId(point as u32) }
+    }
+}
+
+impl From<Overflow> for Inconsistency {
+    fn from(overflow: Overflow) -> Self {
+        Self::Overflow(overflow)
+    }
+}
 
 impl std::fmt::Display for Overflow {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -252,7 +267,7 @@ impl Stn {
         if let Some(upper) = upper {
             self.insert(from, to, upper, tag)?;
         }
-        let result = lower.checked_neg().ok_or(Inconsistency::Overflow);
+        let result = lower.checked_neg().ok_or(Inconsistency::Overflow(Overflow { point: to }));
         let result = result.and_then(|weight| self.insert(to, from, weight, tag));
         if result.is_err() {
             self.rollback(checkpoint);

@@ -3,7 +3,7 @@
 //! The algorithm is Cotton and Maler's (Fast and flexible difference constraint propagation for DPLL(T), 2006): a
 //! feasible potential is repaired by a Dijkstra search that visits only the points whose potential must rise.
 
-use crate::network::{CycleEdge, Inconsistency, NONE, PointId, Stn, Tag};
+use crate::network::{CycleEdge, Inconsistency, NONE, Overflow, PointId, Stn, Tag};
 
 /// How propagation reaches a point.
 #[derive(Clone, Copy, Debug)]
@@ -30,9 +30,9 @@ impl Stn {
     /// that lowering one thread of it drags along all others.
     pub(crate) fn repair(&mut self, from: u32, to: u32, weight: i64, tag: Tag) -> Result<(), Inconsistency> {
         self.changed.clear();
-        let reached = self.potential[to as usize].checked_sub(weight).ok_or(Inconsistency::Overflow)?;
+        let reached = self.potential[to as usize].checked_sub(weight).ok_or(Overflow::at(from as usize))?;
         // Kept negative, so that the heap has the point that must rise furthest first.
-        let rise = self.potential[from as usize].checked_sub(reached).ok_or(Inconsistency::Overflow)?;
+        let rise = self.potential[from as usize].checked_sub(reached).ok_or(Overflow::at(from as usize))?;
         if rise >= 0 {
             return Ok(());
         }
@@ -63,7 +63,7 @@ impl Stn {
             let old = *potential;
             let Some(new) = old.checked_sub(rise) else {
                 self.restore();
-                return Err(Inconsistency::Overflow);
+                return Err(Overflow::at(point as usize).into());
             };
             *potential = new;
             self.changed.push((point, old));
@@ -76,7 +76,7 @@ impl Stn {
                 let rise = time.and_then(|time| self.potential[source as usize].checked_sub(time));
                 let Some(rise) = rise else {
                     self.restore();
-                    return Err(Inconsistency::Overflow);
+                    return Err(Overflow::at(source as usize).into());
                 };
                 if rise >= 0 {
                     continue;

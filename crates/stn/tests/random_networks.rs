@@ -1,8 +1,8 @@
 //! Random networks with insertions and undos, against all pairs by Floyd and Warshall.
 
 use stn::{
-    Execution, ExecutionWindows, INFINITE, Inconsistency, PointId, Stn, dispatchable, execution_windows,
-    rigid_components,
+    Execution, ExecutionWindows, INFINITE, Inconsistency, Overflow, PointId, Stn, dispatchable,
+    execution_windows, rigid_components,
 };
 
 /// Splitmix64: a seeded generator that is the same everywhere.
@@ -134,7 +134,7 @@ fn insertions_and_undos_agree_with_floyd_warshall() {
                             assert!(!expected, "seed {seed}: refused a consistent edge");
                             assert_cycle(&stn, &edges, edge, seed);
                         }
-                        Err(Inconsistency::Overflow) => panic!("seed {seed}: overflow of small numbers"),
+                        Err(Inconsistency::Overflow(_)) => panic!("seed {seed}: overflow of small numbers"),
                     }
                     let schedule = stn.schedule();
                     let holds =
@@ -240,8 +240,9 @@ fn a_time_that_does_not_fit_is_reported_and_nothing_changes() {
     stn.insert(point(0), point(1), -i64::MAX / 2, 0).expect("fits");
     let before = stn.schedule().to_vec();
     let far = stn.insert(point(1), point(2), -i64::MAX / 2 - 10, 1);
-    assert_eq!(far, Err(Inconsistency::Overflow));
-    assert_eq!(stn.constrain(point(1), point(2), i64::MIN, None, 2), Err(Inconsistency::Overflow));
+    assert_eq!(far, Err(Inconsistency::Overflow(Overflow { point: point(0) })));
+    let far = stn.constrain(point(1), point(2), i64::MIN, None, 2);
+    assert_eq!(far, Err(Inconsistency::Overflow(Overflow { point: point(2) })));
     assert_eq!((stn.num_edges(), stn.schedule()), (1, before.as_slice()));
     stn.insert(point(1), point(2), -5, 3).expect("fits");
 }

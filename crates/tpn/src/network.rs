@@ -26,6 +26,18 @@ macro_rules! id {
                 Self(index as u32)
             }
         }
+
+        impl From<usize> for $name {
+            fn from(index: usize) -> Self {
+                Self::from_index(index)
+            }
+        }
+
+        impl From<$name> for usize {
+            fn from(id: $name) -> Self {
+                id.index()
+            }
+        }
     )*};
 }
 

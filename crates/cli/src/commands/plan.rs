@@ -270,7 +270,8 @@ fn outcome_text(planned: &Planned, loaded: &Loaded) -> String {
         Status::NoPlan => "no plan\n".to_owned(),
         Status::Limit => "no answer within the limit\n".to_owned(),
         Status::Error => {
-            "a time does not fit into 64 bits after scaling by the common denominator\n".to_owned()
+            let message = outcome.overflow_message(&planned.network);
+            message.map(|message| format!("{message}\n")).unwrap_or_default()
         }
     };
     for (index, plan) in outcome.plans.iter().enumerate() {

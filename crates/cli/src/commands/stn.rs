@@ -10,7 +10,7 @@ use anyhow::anyhow;
 use mission::Problem;
 use rmpl::{Code, Diagnostic, Span};
 use serde_json::{Map, Value, json};
-use stn::{Document, Inconsistency, ParseError, PointId, Window};
+use stn::{Document, Inconsistency, Overflow, ParseError, PointId, Window};
 
 use crate::input::read_text;
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
@@ -45,7 +45,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let (mut stn, consistent) = network.to_stn();
     match consistent {
         Ok(()) => {
-            let windows = if network.names.is_empty() { Vec::new() } else { stn.windows(PointId(0))? };
+            let windows = if network.names.is_empty() {
+                Vec::new()
+            } else {
+                stn.windows(PointId(0)).map_err(|overflow| too_large(&network, overflow))?
+            };
             match args.format {
                 Format::Text => print_text(&windows_text(&network, &windows))?,
                 Format::Json => {
@@ -67,7 +71,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             }
             Ok(exit(NO))
         }
-        Err(Inconsistency::Overflow) => Err(anyhow!("a time does not fit into 64 bits")),
+        Err(Inconsistency::Overflow(overflow)) => Err(too_large(&network, overflow)),
     }
 }
 
@@ -97,9 +101,13 @@ fn answer_uncertain(args: &Args, uncertain: &stnu::Document) -> anyhow::Result<E
             }
             return Ok(exit(NO));
         }
-        Err(Inconsistency::Overflow) => return Err(anyhow!("a time does not fit into 64 bits")),
+        Err(Inconsistency::Overflow(overflow)) => return Err(too_large(&network, overflow)),
     }
-    let windows = if network.names.is_empty() { Vec::new() } else { stn.windows(PointId(0))? };
+    let windows = if network.names.is_empty() {
+        Vec::new()
+    } else {
+        stn.windows(PointId(0)).map_err(|overflow| too_large(&network, overflow))?
+    };
     let answer = controllability::check(uncertain)?;
     let (is_controllable, cycle, relaxations) = controllability::json(uncertain, &answer);
     match args.format {
@@ -119,6 +127,10 @@ fn answer_uncertain(args: &Args, uncertain: &stnu::Document) -> anyhow::Result<E
         }
     }
     Ok(exit(if is_controllable { YES } else { NO }))
+}
+
+fn too_large(network: &Document, Overflow { point }: Overflow) -> anyhow::Error {
+    anyhow!("a time does not fit into 64 bits: that of {}", network.names[point.index()])
 }
 
 /// Says what is wrong with a file.

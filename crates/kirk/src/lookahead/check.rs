@@ -1,9 +1,11 @@
 //! Whether requirements can still be carried, and whether conflicting intervals still fit in some order.
 
-use stn::{Inconsistency, Overflow, PointId, Tag};
+use stn::{Inconsistency, PointId};
+use tpn::LabelId;
 
-use super::{CONSEQUENCE, HULL, LONGEST_PAUSE, Lookahead, context_of, interval, link_edges};
-use crate::model::{INFINITE, Model, NONE};
+use super::{Lookahead, MAX_PAUSE, Origin, context_of, interval, link_edges};
+use crate::model::{Alternatives, INFINITE, Model};
+use crate::overflow::TimeOverflow;
 use crate::structure::{Relation, Structure};
 
 /// What can become of one assertion for a requirement.
@@ -26,56 +28,51 @@ impl Lookahead {
     }
 
     /// Whether that is so for what a link asks for.
-    pub(crate) fn refuses_link(&self, model: &Model, ask: u32, tell: u32) -> bool {
+    pub(crate) fn refuses_link(&self, model: &Model, ask: LabelId, tell: LabelId) -> bool {
         link_edges(model, ask, tell).iter().any(|&edge| self.is_refused(edge))
     }
 
-    /// Turns a contradiction into blame.
+    /// Whether nothing is contradicted; otherwise conflict analysis finds the decisions that the contradiction rests on.
     pub(super) fn is_ok(
         &mut self,
         model: &Model,
         result: Result<(), Inconsistency>,
-    ) -> Result<bool, Overflow> {
+    ) -> Result<bool, TimeOverflow> {
         match result {
             Ok(()) => Ok(true),
-            Err(Inconsistency::Overflow) => Err(Overflow),
+            Err(Inconsistency::Overflow(overflow)) => Err(overflow.into()),
             Err(Inconsistency::NegativeCycle) => {
-                self.blame_cycle(model);
+                self.add_cycle_to_conflict(model);
                 Ok(false)
             }
         }
     }
 
-    fn blame_cycle(&mut self, model: &Model) {
+    fn add_cycle_to_conflict(&mut self, model: &Model) {
         for edge in self.stn.cycle() {
-            if edge.tag == HULL {
-                continue;
-            }
-            if edge.tag >= CONSEQUENCE {
-                self.blamed.extend_from_slice(&self.reasons[(edge.tag - CONSEQUENCE) as usize]);
-            } else {
-                let context = model.arcs[edge.tag as usize].context;
-                if context.decision != NONE {
-                    self.blamed.push(context.decision);
+            match Origin::of(edge.tag) {
+                Origin::Relaxation => {}
+                Origin::Consequence(consequence) => {
+                    self.conflict.extend_from_slice(&self.reasons[consequence]);
+                }
+                Origin::Arc(arc) => {
+                    self.conflict.extend(model.arcs[arc].context.map(|choice| choice.decision));
                 }
             }
         }
     }
 
-    fn blame_label(&mut self, model: &Model, label: u32) {
-        let context = context_of(model, label);
-        if context.decision != NONE {
-            self.blamed.push(context.decision);
-        }
+    fn add_label_to_conflict(&mut self, model: &Model, label: LabelId) {
+        self.conflict.extend(context_of(model, label).map(|choice| choice.decision));
     }
 
     pub(super) fn check_labels(
         &mut self,
         model: &Model,
         structure: &Structure,
-        chosen: &[u32],
+        chosen: &Alternatives,
         first: usize,
-    ) -> Result<bool, Overflow> {
+    ) -> Result<bool, TimeOverflow> {
         for position in 0..first {
             let label = self.labels[position];
             if !self.is_in_question(model, label) {
@@ -94,8 +91,7 @@ impl Lookahead {
                 self.guess_carrier(model, label)?;
             }
             for other in model.conditions.conflicts(label) {
-                let is_earlier = self.is_active_label[other as usize]
-                    && self.label_position[other as usize] < position as u32;
+                let is_earlier = self.is_active_label[other] && self.label_position[other] < position as u32;
                 if is_earlier && !self.check_pair(model, structure, label, other)? {
                     return Ok(false);
                 }
@@ -112,19 +108,19 @@ impl Lookahead {
             if !self.is_in_question(model, ask) {
                 continue;
             }
-            let is_left = |lookahead: &Self, tell: u32| {
-                !lookahead.is_active_label[tell as usize] || !lookahead.refuses_link(model, ask, tell)
+            let is_left = |lookahead: &Self, tell: LabelId| {
+                !lookahead.is_active_label[tell] || !lookahead.refuses_link(model, ask, tell)
             };
             let mut left = model.conditions.supporters(ask).filter(|&tell| is_left(self, tell));
             match (left.next(), left.next()) {
                 (None, _) => return false,
-                (Some(only), None) if self.is_active_label[only as usize] => {
-                    let tag = CONSEQUENCE + self.reasons.len() as Tag;
-                    self.reasons.push(Vec::new());
+                (Some(only), None) if self.is_active_label[only] => {
+                    let consequence = self.reasons.push_and_get_key(Vec::new());
+                    let tag = Origin::Consequence(consequence).tag();
                     for (from, to, weight) in link_edges(model, ask, only) {
                         self.stn.push(from, to, weight, tag);
                     }
-                    self.is_linked[ask as usize] = true;
+                    self.is_linked[ask] = true;
                 }
                 _ => {}
             }
@@ -133,8 +129,8 @@ impl Lookahead {
     }
 
     /// Whether a label is a requirement that is not linked for good.
-    fn is_in_question(&self, model: &Model, label: u32) -> bool {
-        model.conditions.labels[label as usize].is_ask && !self.is_linked[label as usize]
+    fn is_in_question(&self, model: &Model, label: LabelId) -> bool {
+        model.conditions.labels[label].is_ask && !self.is_linked[label]
     }
 
     /// Whether two conflicting intervals fit in some order.
@@ -142,29 +138,29 @@ impl Lookahead {
         &mut self,
         model: &Model,
         structure: &Structure,
-        left: u32,
-        right: u32,
-    ) -> Result<bool, Overflow> {
-        let arc = |label: u32| model.conditions.labels[label as usize].arc;
+        left: LabelId,
+        right: LabelId,
+    ) -> Result<bool, TimeOverflow> {
+        let arc = |label: LabelId| model.conditions.labels[label].arc;
         if arc(left) == arc(right) {
-            self.blamed.clear();
-            self.blame_label(model, left);
+            self.conflict.clear();
+            self.add_label_to_conflict(model, left);
             return Ok(false);
         }
         if structure.relation(arc(left), arc(right)) != Relation::Open {
             return Ok(true);
         }
         // Edges that put the left one first, and the right one first: touching is allowed for, since it may be entailed.
-        let order = |first: u32, then: u32| {
+        let order = |first: LabelId, then: LabelId| {
             let (_, first_end) = interval(model, first);
             let (then_start, _) = interval(model, then);
-            (then_start, first_end, -model.gap_after[first as usize])
+            (then_start, first_end, -model.gap_after[first])
         };
         let (left_first, right_first) = (order(left, right), order(right, left));
         if self.holds(left_first) || self.holds(right_first) {
             return Ok(true);
         }
-        self.blamed.clear();
+        self.conflict.clear();
         if self.admits(model, left_first)? {
             if self.admits(model, right_first)? {
                 return Ok(true);
@@ -176,25 +172,30 @@ impl Lookahead {
     }
 
     /// Whether some assertion can carry a requirement.
-    fn check_ask(&mut self, model: &Model, chosen: &[u32], ask: u32) -> Result<bool, Overflow> {
-        self.blamed.clear();
-        let mut only = NONE;
+    fn check_ask(
+        &mut self,
+        model: &Model,
+        chosen: &Alternatives,
+        ask: LabelId,
+    ) -> Result<bool, TimeOverflow> {
+        self.conflict.clear();
+        let mut only = None;
         for tell in model.conditions.supporters(ask) {
             match self.candidate(model, chosen, ask, tell)? {
                 Candidate::Impossible => {}
                 // What is open may be chosen later; two possibilities leave nothing to conclude.
                 Candidate::Open => return Ok(true),
-                Candidate::Possible if only != NONE => return Ok(true),
+                Candidate::Possible if only.is_some() => return Ok(true),
                 Candidate::Possible => {
-                    self.witness[ask as usize] = tell;
-                    only = tell;
+                    self.witness[ask] = Some(tell);
+                    only = Some(tell);
                 }
             }
         }
-        if only == NONE {
-            self.blame_label(model, ask);
+        let Some(only) = only else {
+            self.add_label_to_conflict(model, ask);
             return Ok(false);
-        }
+        };
         let edges = link_edges(model, ask, only);
         self.conclude(model, &[ask, only], &edges)
     }
@@ -202,9 +203,14 @@ impl Lookahead {
     /// Whether some assertion can carry a requirement that was checked before; most can still be carried as was guessed.
     ///
     /// Where that needs a thorough look and nothing follows from it, the next one is put off for twice as long.
-    fn check_ask_again(&mut self, model: &Model, chosen: &[u32], ask: u32) -> Result<bool, Overflow> {
-        let has_guess = self.guessed[ask as usize].is_some() || self.guess_carrier(model, ask)?;
-        let is_due = self.is_thorough && self.num_decided >= self.due[ask as usize].0;
+    fn check_ask_again(
+        &mut self,
+        model: &Model,
+        chosen: &Alternatives,
+        ask: LabelId,
+    ) -> Result<bool, TimeOverflow> {
+        let has_guess = self.guessed[ask].is_some() || self.guess_carrier(model, ask)?;
+        let is_due = self.is_thorough && self.num_decided >= self.due[ask].0;
         let is_settled = if is_due {
             self.is_carried(model, ask)
         } else {
@@ -217,47 +223,44 @@ impl Lookahead {
         let is_possible = self.check_ask(model, chosen, ask)?;
         if is_due {
             let has_followed = !is_possible || self.reasons.len() > num_reasons;
-            let (due, pause) = &mut self.due[ask as usize];
-            *pause = if has_followed { 0 } else { (*pause * 2 + 1).min(LONGEST_PAUSE) };
+            let (due, pause) = &mut self.due[ask];
+            *pause = if has_followed { 0 } else { (*pause * 2 + 1).min(MAX_PAUSE) };
             *due = self.num_decided + *pause;
         }
         Ok(is_possible)
     }
 
     /// Whether some selected assertion carries a requirement in the present schedule.
-    fn is_carried(&self, model: &Model, ask: u32) -> bool {
+    fn is_carried(&self, model: &Model, ask: LabelId) -> bool {
         let mut carriers = model.conditions.supporters(ask);
         carriers.any(|tell| {
-            self.is_active_label[tell as usize]
-                && link_edges(model, ask, tell).iter().all(|&edge| self.holds(edge))
+            self.is_active_label[tell] && link_edges(model, ask, tell).iter().all(|&edge| self.holds(edge))
         })
     }
 
     /// Whether the assertion found last can still carry a requirement.
-    fn can_stay(&mut self, model: &Model, chosen: &[u32], ask: u32) -> Result<bool, Overflow> {
-        let tell = self.witness[ask as usize];
-        if tell == NONE || !self.is_active_label[tell as usize] {
+    fn can_stay(&mut self, model: &Model, chosen: &Alternatives, ask: LabelId) -> Result<bool, TimeOverflow> {
+        let Some(tell) = self.witness[ask].filter(|&tell| self.is_active_label[tell]) else {
             return Ok(false);
-        }
+        };
         Ok(matches!(self.candidate(model, chosen, ask, tell)?, Candidate::Possible))
     }
 
     fn candidate(
         &mut self,
         model: &Model,
-        chosen: &[u32],
-        ask: u32,
-        tell: u32,
-    ) -> Result<Candidate, Overflow> {
-        if !self.is_active_label[tell as usize] {
+        chosen: &Alternatives,
+        ask: LabelId,
+        tell: LabelId,
+    ) -> Result<Candidate, TimeOverflow> {
+        if !self.is_active_label[tell] {
             let mut context = context_of(model, tell);
-            while context.decision != NONE {
-                let taken = chosen[context.decision as usize];
-                if taken != NONE && taken != context.alternative {
-                    self.blamed.push(context.decision);
+            while let Some(choice) = context {
+                if chosen[choice.decision].is_some_and(|taken| taken != choice.alternative) {
+                    self.conflict.push(choice.decision);
                     return Ok(Candidate::Impossible);
                 }
-                context = model.decisions[context.decision as usize].context;
+                context = model.decisions[choice.decision].context;
             }
             return Ok(Candidate::Open);
         }
@@ -266,34 +269,33 @@ impl Lookahead {
             return Ok(Candidate::Possible);
         }
         if edges.iter().any(|&edge| self.is_refused(edge)) {
-            self.blame_label(model, tell);
+            self.add_label_to_conflict(model, tell);
             return Ok(Candidate::Impossible);
         }
         // A contradiction with an edge of the link rests on the labels' own choices.
-        let admitted = self.stn.admits_all(&edges, HULL);
+        let admitted = self.stn.admits_all(&edges, Origin::Relaxation.tag());
         if self.is_ok(model, admitted)? {
             return Ok(Candidate::Possible);
         }
-        self.blame_label(model, tell);
+        self.add_label_to_conflict(model, tell);
         Ok(Candidate::Impossible)
     }
 
-    /// Adds what is left as a consequence of `blamed` and of the labels' choices. `false` if it does not fit either.
+    /// Adds what is left as a consequence of `conflict` and of the labels' choices. `false` if it does not fit either.
     fn conclude(
         &mut self,
         model: &Model,
-        labels: &[u32],
+        labels: &[LabelId],
         edges: &[(PointId, PointId, i64)],
-    ) -> Result<bool, Overflow> {
+    ) -> Result<bool, TimeOverflow> {
         for &label in labels {
-            self.blame_label(model, label);
+            self.add_label_to_conflict(model, label);
         }
-        self.blamed.sort_unstable();
-        self.blamed.dedup();
-        let tag = CONSEQUENCE + self.reasons.len() as Tag;
-        self.reasons.push(self.blamed.clone());
+        self.conflict.sort_unstable();
+        self.conflict.dedup();
+        let origin = Origin::Consequence(self.reasons.push_and_get_key(self.conflict.clone()));
         for &(from, to, weight) in edges {
-            let inserted = self.insert((from, to, weight), tag);
+            let inserted = self.insert((from, to, weight), origin);
             if !self.is_ok(model, inserted)? {
                 return Ok(false);
             }
@@ -313,12 +315,12 @@ impl Lookahead {
         schedule[to.index()].checked_sub(schedule[from.index()]).is_some_and(|distance| distance <= weight)
     }
 
-    fn admits(&mut self, model: &Model, edge: (PointId, PointId, i64)) -> Result<bool, Overflow> {
+    fn admits(&mut self, model: &Model, edge: (PointId, PointId, i64)) -> Result<bool, TimeOverflow> {
         if self.is_guided(edge) {
             return Ok(true);
         }
         let (from, to, weight) = edge;
-        let admitted = self.stn.admits(from, to, weight, HULL);
+        let admitted = self.stn.admits(from, to, weight, Origin::Relaxation.tag());
         self.is_ok(model, admitted)
     }
 }

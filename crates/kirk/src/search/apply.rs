@@ -1,27 +1,28 @@
 //! Taking an alternative of a level: choosing, linking, ordering.
 
-use stn::{Inconsistency, Overflow, PointId, Tag};
-use tpn::{CausalLink, DecisionId, LabelId, Ordering};
+use stn::{Inconsistency, PointId, Tag};
+use tpn::{CausalLink, Choice, Ordering};
 
-use super::{Engine, Gaps, LEVEL_TAG};
+use super::{Engine, Gaps, Origin};
 use crate::failure::FailureKind;
+use crate::ids::LevelId;
 use crate::levels::Kind;
-use crate::model::NONE;
+use crate::overflow::TimeOverflow;
 use crate::structure::Structure;
 use crate::trace::Event;
 
 impl Engine<'_> {
     /// Takes an alternative at a level. `false` if it fails at once; then `conflict` says why.
-    pub(super) fn apply(&mut self, depth: usize, alternative: u32) -> Result<bool, Overflow> {
-        let tag = LEVEL_TAG + depth as Tag;
+    pub(super) fn apply(&mut self, depth: LevelId, alternative: u32) -> Result<bool, TimeOverflow> {
+        let tag = Origin::Level(depth).tag();
         match self.levels[depth].kind {
-            Kind::Decision { decision } => self.choose(depth, decision, alternative),
+            Kind::Decision { decision } => self.choose(depth, Choice { decision, alternative }),
             Kind::Link { ask, ref tells, .. } => {
                 let tell = tells[alternative as usize];
                 self.stats.links_tried += 1;
                 // Windows that hold with one link do not hold with another.
                 self.leaf.has_windows = false;
-                self.log(|_| Event::TryLink { link: CausalLink { ask: LabelId(ask), tell: LabelId(tell) } });
+                self.log(|_| Event::TryLink { link: CausalLink { ask, tell } });
                 let (ask_start, ask_end) = self.model.interval(ask);
                 let (tell_start, tell_end) = self.model.interval(tell);
                 let edges = [(ask_start, tell_start, 0), (tell_end, ask_end, 0)];
@@ -31,19 +32,17 @@ impl Engine<'_> {
                 let (first, then) = if alternative == 0 { (left, right) } else { (right, left) };
                 self.leaf.is_swapped[position as usize] = alternative == 1;
                 self.stats.orderings_tried += 1;
-                self.log(|_| Event::TryOrder {
-                    order: Ordering { first: LabelId(first), then: LabelId(then) },
-                });
+                self.log(|_| Event::TryOrder { order: Ordering { first, then } });
                 let (_, first_end) = self.model.interval(first);
                 let (then_start, _) = self.model.interval(then);
                 let gap = match self.setup.gaps {
-                    Gaps::Ignored => self.model.gap_after[first as usize],
+                    Gaps::Ignored => self.model.gap_after[first],
                     Gaps::Exact | Gaps::Trusted => self.model.gap,
                 };
                 if self.insert(&[(then_start, first_end, -gap)], tag, FailureKind::Threat)? {
                     return Ok(true);
                 }
-                self.blame_touching(depth);
+                self.add_touching_to_conflict(depth);
                 Ok(false)
             }
         }
@@ -51,7 +50,7 @@ impl Engine<'_> {
 
     /// An order that fails only because of gaps could still hold by touching, if other choices forced it to: then the
     /// failure rests on all choices, because none of them does. Every order in the contradiction asks for its gap.
-    fn blame_touching(&mut self, depth: usize) {
+    fn add_touching_to_conflict(&mut self, depth: LevelId) {
         if self.setup.gaps == Gaps::Ignored {
             return;
         }
@@ -63,58 +62,57 @@ impl Engine<'_> {
         if weights.sum::<i128>() >= 0 {
             self.has_doubts = true;
             if self.setup.gaps == Gaps::Exact {
-                self.conflict.insert_all_below(depth as u32);
+                self.conflict.insert_all_below(depth);
             }
         }
     }
 
     /// By how much the order added at a level asks for more than what counts as ordered once it is entailed.
     fn excess_gap(&self, tag: Tag) -> i64 {
-        let Some(level) = tag.checked_sub(LEVEL_TAG).and_then(|depth| self.levels.get(depth as usize)) else {
-            return 0;
-        };
+        let Origin::Level(level) = Origin::of(tag) else { return 0 };
+        let Some(level) = self.levels.get(level) else { return 0 };
         let Kind::Threat { left, right, .. } = level.kind else { return 0 };
         let first = if level.next == 1 { left } else { right };
-        self.model.gap - self.model.gap_after[first as usize]
+        self.model.gap - self.model.gap_after[first]
     }
 
-    fn choose(&mut self, depth: usize, decision: u32, alternative: u32) -> Result<bool, Overflow> {
+    fn choose(&mut self, depth: LevelId, choice: Choice) -> Result<bool, TimeOverflow> {
         self.leaf.is_ready = false;
-        self.chosen[decision as usize] = alternative;
-        self.log(|_| Event::Decide { decision: DecisionId(decision), alternative });
+        let Choice { decision, alternative } = choice;
+        self.chosen[decision] = Some(alternative);
+        self.log(|_| Event::Decide { decision, alternative });
         if self.setup.is_checking {
             return Ok(true);
         }
         if self.setup.jumps
-            && let Some(others) = self.nogoods.find(&self.chosen, decision, alternative)
+            && let Some(others) = self.nogoods.find(&self.chosen, choice)
         {
-            let others: Vec<u32> = others.iter().map(|&(other, _)| other).collect();
-            self.conflict.insert(depth as u32);
+            let others: Vec<Choice> = others.to_vec();
+            self.conflict.insert(depth);
             for other in others {
-                self.blame_decision(other);
+                self.add_decision_to_conflict(other.decision);
             }
             self.log(|_| Event::Known);
             return Ok(false);
         }
         if let (Some(structure), Some(tree)) = (self.structure, &mut self.tree) {
-            let Err(block) = structure.decide(tree, &self.chosen, decision, alternative)? else {
-                return self.look_ahead(depth, structure, decision, alternative);
+            let Err(block) = structure.decide(tree, &self.chosen, choice)? else {
+                return self.look_ahead(depth, structure, choice);
             };
             let Self { tree: Some(tree), chosen, level_of, conflict, .. } = self else { return Ok(false) };
-            structure.explain(tree, chosen, block, &mut |blamed| {
-                let level = level_of[blamed as usize];
-                if level != NONE {
+            structure.explain(tree, chosen, block, &mut |decision| {
+                if let Some(level) = level_of[decision] {
                     conflict.insert(level);
                 }
             });
-            self.conflict.insert(depth as u32);
-            self.meet_dead_end(FailureKind::Temporal);
+            self.conflict.insert(depth);
+            self.meet_failure(FailureKind::Temporal);
             return Ok(false);
         }
-        let is_consistent = self.select_alternative(decision, alternative)?;
+        let is_consistent = self.select_alternative(choice)?;
         if !is_consistent {
-            self.conflict.insert(depth as u32);
-            self.meet_dead_end(FailureKind::Temporal);
+            self.conflict.insert(depth);
+            self.meet_failure(FailureKind::Temporal);
         }
         Ok(is_consistent)
     }
@@ -122,21 +120,21 @@ impl Engine<'_> {
     /// Whether what an alternative brings leaves something for phase 2.
     fn look_ahead(
         &mut self,
-        depth: usize,
+        depth: LevelId,
         structure: &Structure,
-        decision: u32,
-        alternative: u32,
-    ) -> Result<bool, Overflow> {
+        choice: Choice,
+    ) -> Result<bool, TimeOverflow> {
         let (Some(lookahead), Some(tree)) = (&mut self.lookahead, &self.tree) else { return Ok(true) };
-        if lookahead.decide(self.model, structure, tree, &self.chosen, (decision, alternative), depth)? {
+        if lookahead.decide(self.model, structure, tree, &self.chosen, choice, depth)? {
             return Ok(true);
         }
-        for position in 0..lookahead.blamed.len() {
-            let blamed = self.lookahead.as_ref().map_or(NONE, |lookahead| lookahead.blamed[position]);
-            self.blame_decision(blamed);
+        for position in 0..lookahead.conflict.len() {
+            if let Some(lookahead) = &self.lookahead {
+                self.add_decision_to_conflict(lookahead.conflict[position]);
+            }
         }
-        self.conflict.insert(depth as u32);
-        self.meet_dead_end(FailureKind::OpenCondition);
+        self.conflict.insert(depth);
+        self.meet_failure(FailureKind::OpenCondition);
         Ok(false)
     }
 
@@ -146,18 +144,18 @@ impl Engine<'_> {
         edges: &[(PointId, PointId, i64)],
         tag: Tag,
         kind: FailureKind,
-    ) -> Result<bool, Overflow> {
+    ) -> Result<bool, TimeOverflow> {
         match self.stn.insert_all(edges, tag) {
             Ok(()) => {
                 let moved = self.stn.num_changed() as u32;
                 self.log(|_| Event::Propagate { moved });
                 Ok(true)
             }
-            Err(Inconsistency::Overflow) => Err(Overflow),
+            Err(Inconsistency::Overflow(overflow)) => Err(overflow.into()),
             Err(Inconsistency::NegativeCycle) => {
                 self.log(|engine| Event::Inconsistent { cycle: crate::record::cycle_of(engine) });
-                self.blame_cycle();
-                self.meet_dead_end(kind);
+                self.add_cycle_to_conflict();
+                self.meet_failure(kind);
                 Ok(false)
             }
         }

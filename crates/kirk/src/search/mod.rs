@@ -8,28 +8,30 @@
 //! end; where the one that jumps back meets many failures, the solver takes over.
 
 mod apply;
+mod origin;
 mod retreat;
 mod setup;
 
 use std::collections::BTreeSet;
 
-use stn::{Overflow, PointId, Stn, Tag};
-use tpn::{CausalLink, DecisionId, LabelId, Ordering};
+use stn::Stn;
+use tpn::{ArcId, CausalLink, DecisionId, LabelId, NodeId, Ordering};
+use typed_index_collections::TiVec;
 
 use crate::failure::FailureKind;
+use crate::ids::LevelId;
 use crate::leaf::Leaf;
 use crate::levels::{Kind, Level, LevelSet, Nogoods};
 use crate::lookahead::Lookahead;
-use crate::model::{Context, INFINITE, Model, ModelArc, NONE};
+use crate::model::{Context, INFINITE, Model, ModelArc, point};
 use crate::options::{Stats, Termination};
-use crate::record::DeadEnds;
+use crate::overflow::TimeOverflow;
+use crate::record::FailureRecorder;
 use crate::structure::{Structure, TreeState};
 use crate::trace::{Event, Recorder, TreeChoice, TreeNodeId, TreeStatus};
 
+pub(crate) use origin::Origin;
 pub(crate) use setup::{Choices, Gaps, Halt, Setup};
-
-/// Tags from here on name levels, smaller ones arcs.
-pub(crate) const LEVEL_TAG: Tag = 1 << 31;
 
 /// The lower bound of an arc that has none; only parts of conflicts lack theirs.
 pub(crate) const UNBOUNDED_BELOW: i64 = i64::MIN;
@@ -37,33 +39,33 @@ pub(crate) const UNBOUNDED_BELOW: i64 = i64::MIN;
 enum Next {
     Choice(Kind),
     Solution,
-    DeadEnd,
+    Failure,
 }
 
 pub(crate) struct Engine<'m> {
     pub(crate) model: &'m Model,
     pub(crate) setup: Setup,
     pub(crate) stn: Stn,
-    /// The alternative of each decision, or [`NONE`].
-    pub(crate) chosen: Vec<u32>,
-    level_of: Vec<u32>,
-    pub(crate) levels: Vec<Level>,
+    /// The alternative of each decision, where one is taken.
+    pub(crate) chosen: TiVec<DecisionId, Option<u32>>,
+    level_of: TiVec<DecisionId, Option<LevelId>>,
+    pub(crate) levels: TiVec<LevelId, Level>,
     structure: Option<&'m Structure>,
     tree: Option<TreeState>,
     pub(crate) lookahead: Option<Lookahead>,
-    pub(crate) is_selected_node: Vec<bool>,
-    pub(crate) is_selected_arc: Vec<bool>,
-    pub(crate) selected_nodes: Vec<u32>,
-    pub(crate) selected_arcs: Vec<u32>,
-    frontier: BTreeSet<u32>,
+    pub(crate) is_selected_node: TiVec<NodeId, bool>,
+    pub(crate) is_selected_arc: TiVec<ArcId, bool>,
+    pub(crate) selected_nodes: Vec<NodeId>,
+    pub(crate) selected_arcs: Vec<ArcId>,
+    frontier: BTreeSet<DecisionId>,
     /// Of arcs and decisions, in networks whose structure is not known.
-    found_contexts: Vec<Context>,
-    found_decision_contexts: Vec<Context>,
+    found_contexts: TiVec<ArcId, Context>,
+    found_decision_contexts: TiVec<DecisionId, Context>,
     pub(crate) leaf: Leaf,
     /// The levels that the failure at hand rests on.
     pub(crate) conflict: LevelSet,
     nogoods: Nogoods,
-    pub(crate) dead_ends: DeadEnds,
+    pub(crate) failures: FailureRecorder,
     pub(crate) recorder: Option<Recorder>,
     at: TreeNodeId,
     pub(crate) stats: Stats,
@@ -80,7 +82,7 @@ impl<'m> Engine<'m> {
 
         let mut stn = Stn::new(model.num_nodes);
         stn.reserve(model.arcs.len() * 2 + 64);
-        stn.set_origin(PointId(model.start));
+        stn.set_origin(point(model.start));
         let stats = Stats {
             nodes: model.num_nodes as u64,
             arcs: model.arcs.len() as u64,
@@ -92,25 +94,25 @@ impl<'m> Engine<'m> {
         Self {
             model,
             stn,
-            chosen: vec![NONE; model.decisions.len()],
-            level_of: vec![NONE; model.decisions.len()],
-            levels: Vec::new(),
+            chosen: vec![None; model.decisions.len()].into(),
+            level_of: vec![None; model.decisions.len()].into(),
+            levels: TiVec::new(),
             structure,
             tree: structure.map(Structure::start),
             lookahead: structure
                 .filter(|_| !model.conditions.labels.is_empty())
                 .map(|_| Lookahead::new(model)),
-            is_selected_node: vec![false; model.num_nodes],
-            is_selected_arc: vec![false; model.arcs.len()],
+            is_selected_node: vec![false; model.num_nodes].into(),
+            is_selected_arc: vec![false; model.arcs.len()].into(),
             selected_nodes: Vec::with_capacity(model.num_nodes),
             selected_arcs: Vec::with_capacity(model.arcs.len()),
             frontier: BTreeSet::new(),
-            found_contexts: vec![Context::ALWAYS; num_arcs],
-            found_decision_contexts: vec![Context::ALWAYS; num_decisions],
+            found_contexts: vec![None; num_arcs].into(),
+            found_decision_contexts: vec![None; num_decisions].into(),
             leaf: Leaf::default(),
             conflict: LevelSet::default(),
             nogoods: Nogoods::new(model.decisions.len()),
-            dead_ends: DeadEnds::default(),
+            failures: FailureRecorder::default(),
             recorder: setup.trace_events.map(Recorder::new),
             at: 0,
             stats,
@@ -121,19 +123,19 @@ impl<'m> Engine<'m> {
     }
 
     /// Searches for the next plan.
-    pub(crate) fn run(&mut self, termination: &mut dyn Termination) -> Result<Halt, Overflow> {
+    pub(crate) fn run(&mut self, termination: &mut dyn Termination) -> Result<Halt, TimeOverflow> {
         if self.has_begun {
             // The plan found last rests on every choice made.
             self.conflict.clear();
-            self.conflict.insert_all_below(self.levels.len() as u32);
+            self.conflict.insert_all_below(self.levels.next_key());
             if !self.retreat()? {
                 return Ok(self.exhausted());
             }
         } else {
             self.has_begun = true;
             if !self.begin()? {
-                self.meet_dead_end(FailureKind::Temporal);
-                self.flush_dead_end();
+                self.meet_failure(FailureKind::Temporal);
+                self.record_failure();
                 return Ok(self.exhausted());
             }
         }
@@ -151,7 +153,7 @@ impl<'m> Engine<'m> {
                     self.push_level(kind);
                     self.try_alternatives()? || self.retreat()?
                 }
-                Next::DeadEnd => {
+                Next::Failure => {
                     self.set_status(self.at, TreeStatus::Failed);
                     self.retreat()?
                 }
@@ -186,58 +188,53 @@ impl<'m> Engine<'m> {
     }
 
     /// The innermost choice that selects an arc.
-    pub(crate) fn context(&self, arc: u32) -> Context {
-        if self.model.has_contexts {
-            self.model.arcs[arc as usize].context
-        } else {
-            self.found_contexts[arc as usize]
-        }
+    pub(crate) fn context(&self, arc: ArcId) -> Context {
+        if self.model.has_contexts { self.model.arcs[arc].context } else { self.found_contexts[arc] }
     }
 
-    pub(crate) fn is_active(&self, label: u32) -> bool {
-        self.setup.active_labels.as_ref().is_none_or(|active| active[label as usize])
+    pub(crate) fn is_active(&self, label: LabelId) -> bool {
+        self.setup.active_labels.as_ref().is_none_or(|active| active[label])
     }
 
-    pub(crate) fn is_selected_label(&self, label: u32) -> bool {
-        self.is_selected_arc[self.model.conditions.labels[label as usize].arc as usize]
+    pub(crate) fn is_selected_label(&self, label: LabelId) -> bool {
+        self.is_selected_arc[self.model.conditions.labels[label].arc]
     }
 
     /// Adds to the failure's reasons what the network's contradiction rests on.
-    pub(crate) fn blame_cycle(&mut self) {
+    pub(crate) fn add_cycle_to_conflict(&mut self) {
         for position in 0..self.stn.cycle().len() {
-            let tag = self.stn.cycle()[position].tag;
-            if tag >= LEVEL_TAG {
-                self.conflict.insert(tag - LEVEL_TAG);
-            } else {
-                self.blame_context(self.context(tag));
+            match Origin::of(self.stn.cycle()[position].tag) {
+                Origin::Level(level) => self.conflict.insert(level),
+                Origin::Arc(arc) => self.add_context_to_conflict(self.context(arc)),
             }
         }
-        if self.setup.records_dead_ends {
+        if self.setup.records_failures {
             let members = crate::record::cycle_of(self);
-            self.dead_ends.add_cycle(members);
+            self.failures.add_cycle(members);
         }
     }
 
-    pub(crate) fn blame_context(&mut self, context: Context) {
-        if context.decision != NONE {
-            self.blame_decision(context.decision);
+    pub(crate) fn add_context_to_conflict(&mut self, context: Context) {
+        if let Some(choice) = context {
+            self.add_decision_to_conflict(choice.decision);
         }
     }
 
-    pub(crate) fn push_arc(&mut self, arc: u32) {
-        let ModelArc { lower, upper, from, to, .. } = self.model.arcs[arc as usize];
+    pub(crate) fn push_arc(&mut self, arc: ArcId) {
+        let ModelArc { lower, upper, from, to, .. } = self.model.arcs[arc];
+        let (from, to, tag) = (point(from), point(to), Origin::Arc(arc).tag());
         if upper != INFINITE {
-            self.stn.push(PointId(from), PointId(to), upper, arc);
+            self.stn.push(from, to, upper, tag);
         }
         if lower != UNBOUNDED_BELOW {
-            self.stn.push(PointId(to), PointId(from), -lower, arc);
+            self.stn.push(to, from, -lower, tag);
         }
     }
 
-    pub(crate) fn meet_dead_end(&mut self, kind: FailureKind) {
+    pub(crate) fn meet_failure(&mut self, kind: FailureKind) {
         self.stats.conflicts += 1;
-        if self.setup.records_dead_ends {
-            self.dead_ends.meet(kind);
+        if self.setup.records_failures {
+            self.failures.meet(kind);
         }
     }
 
@@ -246,9 +243,8 @@ impl<'m> Engine<'m> {
         Halt::Exhausted
     }
 
-    fn blame_decision(&mut self, decision: u32) {
-        let level = self.level_of[decision as usize];
-        if level != NONE {
+    fn add_decision_to_conflict(&mut self, decision: DecisionId) {
+        if let Some(level) = self.level_of[decision] {
             self.conflict.insert(level);
         }
     }
@@ -260,7 +256,7 @@ impl<'m> Engine<'m> {
     }
 
     /// What every plan has. `false` if that alone is inconsistent.
-    fn begin(&mut self) -> Result<bool, Overflow> {
+    fn begin(&mut self) -> Result<bool, TimeOverflow> {
         self.conflict.clear();
         if self.setup.is_checking {
             return Ok(true);
@@ -278,58 +274,60 @@ impl<'m> Engine<'m> {
     }
 
     /// What to do next in the present state.
-    fn next(&mut self) -> Result<Next, Overflow> {
+    fn next(&mut self) -> Result<Next, TimeOverflow> {
         let (first_ask, first_pair) = match self.levels.last().map(|level| &level.kind) {
             None => {
-                if let Some(decision) = self.next_decision(0) {
+                if let Some(decision) = self.next_decision(None) {
                     return Ok(Next::Choice(Kind::Decision { decision }));
                 }
-                (0, 0)
+                (Some(0), 0)
             }
             Some(&Kind::Decision { decision }) => {
-                if let Some(decision) = self.next_decision(decision + 1) {
+                if let Some(decision) = self.next_decision(Some(decision)) {
                     return Ok(Next::Choice(Kind::Decision { decision }));
                 }
-                (0, 0)
+                (Some(0), 0)
             }
-            Some(&Kind::Link { position, .. }) => (position + 1, 0),
-            Some(&Kind::Threat { position, .. }) => (NONE, position + 1),
+            Some(&Kind::Link { position, .. }) => (Some(position + 1), 0),
+            Some(&Kind::Threat { position, .. }) => (None, position + 1),
         };
         if !self.leaf.is_ready && !self.make_leaf()? {
-            return Ok(Next::DeadEnd);
+            return Ok(Next::Failure);
         }
-        if let Some(&ask) = self.leaf.asks.get(first_ask as usize) {
+        if let Some(position) = first_ask
+            && let Some(&ask) = self.leaf.asks.get(position as usize)
+        {
             let conditions = &self.model.conditions;
             let assumed = self.setup.assumed.as_ref();
-            let assumed =
-                assumed.and_then(|assumed| assumed.carriers.get(ask as usize)).copied().unwrap_or(NONE);
-            let mut tells: Vec<u32> = conditions
+            let assumed = assumed.and_then(|assumed| assumed.carriers.get(ask).copied().flatten());
+            let mut tells: Vec<LabelId> = conditions
                 .supporters(ask)
-                .filter(|&tell| self.is_selected_label(tell) && (assumed == NONE || assumed == tell))
+                .filter(|&tell| self.is_selected_label(tell) && assumed.is_none_or(|assumed| assumed == tell))
                 .collect();
             if let Some(lookahead) = &self.lookahead {
                 // What windows refuse fails: it is tried last, for what that failure rests on.
                 tells.sort_by_key(|&tell| lookahead.refuses_link(self.model, ask, tell));
             }
-            return Ok(Next::Choice(Kind::Link { position: first_ask, ask, tells }));
+            return Ok(Next::Choice(Kind::Link { position, ask, tells }));
         }
         match self.next_threat(first_pair)? {
             Some((position, left, right)) => {
-                self.log(|_| Event::Threat { left: LabelId(left), right: LabelId(right) });
+                self.log(|_| Event::Threat { left, right });
                 Ok(Next::Choice(Kind::Threat { position, left, right }))
             }
             None => Ok(Next::Solution),
         }
     }
 
-    /// The first decision in textual order that is reached and open. Of a nested program it is `from` or later.
-    fn next_decision(&self, from: u32) -> Option<u32> {
+    /// The first decision in textual order that is reached and open. Of a nested program it is later than `last`.
+    fn next_decision(&self, last: Option<DecisionId>) -> Option<DecisionId> {
         if self.structure.is_none() && !self.setup.is_checking {
             return self.frontier.first().copied();
         }
-        (from..self.chosen.len() as u32).find(|&decision| {
-            let context = self.model.decisions[decision as usize].context;
-            context.decision == NONE || self.chosen[context.decision as usize] == context.alternative
+        let first = last.map_or(0, |last| last.index() + 1);
+        (first..self.chosen.len()).map(DecisionId::from_index).find(|&decision| {
+            let context = self.model.decisions[decision].context;
+            context.is_none_or(|outer| self.chosen[outer.decision] == Some(outer.alternative))
         })
     }
 
@@ -337,9 +335,9 @@ impl<'m> Engine<'m> {
         let (next, end) = match &kind {
             Kind::Decision { decision } => {
                 let assumed = self.setup.assumed.as_ref();
-                let assumed = assumed.map_or(NONE, |assumed| assumed.alternatives[*decision as usize]);
-                let count = self.model.decisions[*decision as usize].alternatives.len() as u32;
-                if assumed == NONE { (0, count) } else { (assumed, assumed + 1) }
+                let assumed = assumed.and_then(|assumed| assumed.alternatives[*decision]);
+                let count = self.model.decisions[*decision].alternatives.len() as u32;
+                assumed.map_or((0, count), |assumed| (assumed, assumed + 1))
             }
             Kind::Link { tells, .. } => (0, tells.len() as u32),
             &Kind::Threat { left, right, .. } => match self.assumed_order(left, right) {
@@ -347,9 +345,8 @@ impl<'m> Engine<'m> {
                 None => (0, 2),
             },
         };
-        let depth = self.levels.len() as u32;
         if let Kind::Decision { decision } = kind {
-            self.level_of[decision as usize] = depth;
+            self.level_of[decision] = Some(self.levels.next_key());
             self.frontier.remove(&decision);
         }
         let choices = (0..end).map(|alternative| tree_choice(&kind, alternative));
@@ -371,8 +368,8 @@ impl<'m> Engine<'m> {
 
     /// Tries the alternatives that are left at the topmost level. `false` if none stands: then the level is gone and
     /// `conflict` says what that rests on.
-    fn try_alternatives(&mut self) -> Result<bool, Overflow> {
-        let depth = self.levels.len() - 1;
+    fn try_alternatives(&mut self) -> Result<bool, TimeOverflow> {
+        let Some(depth) = self.levels.last_key() else { return Ok(false) };
         loop {
             let level = &mut self.levels[depth];
             if level.next == level.end {
@@ -388,11 +385,11 @@ impl<'m> Engine<'m> {
                 return Ok(true);
             }
             self.set_status(self.at, TreeStatus::Failed);
-            if self.setup.records_dead_ends && matches!(self.levels[depth].kind, Kind::Decision { .. }) {
-                self.flush_dead_end();
+            if self.setup.records_failures && matches!(self.levels[depth].kind, Kind::Decision { .. }) {
+                self.record_failure();
             }
             self.undo_alternative(depth);
-            self.conflict.remove(depth as u32);
+            self.conflict.remove(depth);
             let Self { levels, conflict, .. } = self;
             levels[depth].conflict.union(conflict);
         }
@@ -401,12 +398,12 @@ impl<'m> Engine<'m> {
     }
 
     /// Takes back what the present alternative of a level did.
-    fn undo_alternative(&mut self, depth: usize) {
+    fn undo_alternative(&mut self, depth: LevelId) {
         let level = &self.levels[depth];
         let checkpoint = level.checkpoint;
         if let Kind::Decision { decision } = level.kind {
             self.leaf.is_ready = false;
-            self.chosen[decision as usize] = NONE;
+            self.chosen[decision] = None;
             if let Some(tree) = &mut self.tree {
                 Structure::undo(tree, level.tree_mark);
                 if let Some(lookahead) = &mut self.lookahead {
@@ -421,44 +418,44 @@ impl<'m> Engine<'m> {
     }
 
     /// The innermost choice that reaches a decision.
-    fn decision_context(&self, decision: u32) -> Context {
+    fn decision_context(&self, decision: DecisionId) -> Context {
         if self.model.has_contexts {
-            self.model.decisions[decision as usize].context
+            self.model.decisions[decision].context
         } else {
-            self.found_decision_contexts[decision as usize]
+            self.found_decision_contexts[decision]
         }
     }
 
     /// Inserts a decision that has been reached, or an arc's context, in networks of unknown structure.
-    pub(crate) fn reach_decision(&mut self, decision: u32, context: Context) {
+    pub(crate) fn reach_decision(&mut self, decision: DecisionId, context: Context) {
         if self.structure.is_none() {
             self.frontier.insert(decision);
         }
         if !self.model.has_contexts {
-            self.found_decision_contexts[decision as usize] = context;
+            self.found_decision_contexts[decision] = context;
         }
     }
 
-    pub(crate) fn forget_decision(&mut self, decision: u32) {
+    pub(crate) fn forget_decision(&mut self, decision: DecisionId) {
         self.frontier.remove(&decision);
     }
 
-    pub(crate) fn set_found_context(&mut self, arc: u32, context: Context) {
+    pub(crate) fn set_found_context(&mut self, arc: ArcId, context: Context) {
         if !self.model.has_contexts {
-            self.found_contexts[arc as usize] = context;
+            self.found_contexts[arc] = context;
         }
     }
 }
 
 fn tree_choice(kind: &Kind, alternative: u32) -> TreeChoice {
     match kind {
-        &Kind::Decision { decision } => TreeChoice::Decision { decision: DecisionId(decision), alternative },
+        &Kind::Decision { decision } => TreeChoice::Decision { decision, alternative },
         Kind::Link { ask, tells, .. } => {
-            TreeChoice::Link(CausalLink { ask: LabelId(*ask), tell: LabelId(tells[alternative as usize]) })
+            TreeChoice::Link(CausalLink { ask: *ask, tell: tells[alternative as usize] })
         }
         &Kind::Threat { left, right, .. } => {
             let (first, then) = if alternative == 0 { (left, right) } else { (right, left) };
-            TreeChoice::Order(Ordering { first: LabelId(first), then: LabelId(then) })
+            TreeChoice::Order(Ordering { first, then })
         }
     }
 }

@@ -1,5 +1,8 @@
 //! What a search is asked for, and how it comes to a halt.
 
+use tpn::{DecisionId, LabelId};
+use typed_index_collections::TiVec;
+
 /// What a search is like.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Setup {
@@ -10,13 +13,13 @@ pub(crate) struct Setup {
     pub(crate) is_checking: bool,
     /// Use the program's structure for phase 1 if there is one; otherwise arcs are propagated as they are selected.
     pub(crate) by_structure: bool,
-    /// Keep what every dead end rests on.
-    pub(crate) records_dead_ends: bool,
+    /// Keep what every failure rests on.
+    pub(crate) records_failures: bool,
     /// Whether the search goes on after a plan, so that going back does not mean failure.
     pub(crate) is_enumerating: bool,
     pub(crate) trace_events: Option<usize>,
     /// Labels that count; all if `None`. Assertions that do not count still support.
-    pub(crate) active_labels: Option<Vec<bool>>,
+    pub(crate) active_labels: Option<TiVec<LabelId, bool>>,
     /// What has been chosen before.
     pub(crate) assumed: Option<Choices>,
     /// Order conflicting pairs that the times given leave less than the gap after all others, which may then order them
@@ -29,10 +32,10 @@ pub(crate) struct Setup {
 /// What a plan chose.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Choices {
-    /// The alternative of each decision, or [`NONE`].
-    pub(crate) alternatives: Vec<u32>,
-    /// The assertion that carries each requirement, by label, or [`NONE`]; empty if that is open.
-    pub(crate) carriers: Vec<u32>,
+    /// The alternative of each decision, where one is given.
+    pub(crate) alternatives: TiVec<DecisionId, Option<u32>>,
+    /// The assertion that carries each requirement, by label, where one is given; empty if all are open.
+    pub(crate) carriers: TiVec<LabelId, Option<LabelId>>,
     /// Times by node that tell how conflicting pairs are ordered; empty if that is open.
     pub(crate) times: Vec<i64>,
 }

@@ -3,9 +3,12 @@
 //! The event where a choice ends is no later than the latest end of an alternative that is still possible, and no earlier
 //! than the earliest; the same holds for where it begins. So an open choice counts with its relaxation.
 
+use typed_index_collections::TiVec;
+
 use super::literal::{Literal, Side};
 use super::queue::PropagationQueue;
 use super::trail::{Cause, Conflict, Trail};
+use crate::ids::{CommonBoundId, EventId};
 
 /// One way in which an alternative bounds a common event.
 #[derive(Clone, Copy, Debug)]
@@ -24,8 +27,8 @@ struct Common {
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Alternatives {
-    commons: Vec<Common>,
-    pub(super) queue: PropagationQueue,
+    commons: TiVec<CommonBoundId, Common>,
+    pub(super) queue: PropagationQueue<CommonBoundId>,
 }
 
 impl Alternatives {
@@ -37,7 +40,7 @@ impl Alternatives {
 
     pub(crate) fn propagate(&mut self, trail: &mut Trail) -> Result<(), Conflict> {
         while let Some(id) = self.queue.pop() {
-            let Common { to, ways } = &self.commons[id as usize];
+            let Common { to, ways } = &self.commons[id];
             let left = ways.iter().filter(|way| !trail.fails(way.when));
             let most = left.map(|way| trail.bound(way.from) + way.weight).max();
             if let Some(most) = most
@@ -49,13 +52,21 @@ impl Alternatives {
         Ok(())
     }
 
-    pub(crate) fn explain(&self, trail: &Trail, literal: Literal, id: u32, at: u32, reason: &mut Conflict) {
-        for way in &self.commons[id as usize].ways {
+    pub(crate) fn explain(
+        &self,
+        trail: &Trail,
+        literal: Literal,
+        id: CommonBoundId,
+        at: EventId,
+        reason: &mut Conflict,
+    ) {
+        for way in &self.commons[id].ways {
             let is_bounded = Literal::new(way.from, literal.most - way.weight);
             let holds_before = |literal: Literal| trail.bound_before(literal.side, at) <= literal.most;
             if holds_before(is_bounded) {
-                let earlier = |literal: Literal| trail.implying_event(literal).wrapping_add(1);
-                if holds_before(!way.when) && earlier(!way.when) < earlier(is_bounded) {
+                if holds_before(!way.when)
+                    && trail.implying_event(!way.when) < trail.implying_event(is_bounded)
+                {
                     reason.push(!way.when);
                 } else {
                     reason.push(is_bounded);

@@ -1,10 +1,12 @@
 //! Conflict analysis: from a conflict back to the one literal of its level that everything went through (1-UIP).
 
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::Solver;
 use super::literal::Literal;
-use super::trail::{Cause, Conflict, INITIAL};
+use super::trail::{Cause, Conflict};
+use crate::ids::EventId;
 
 /// What a conflict teaches.
 #[derive(Debug)]
@@ -19,7 +21,7 @@ pub(crate) struct Learned {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Analysis {
     /// Literals of the conflict's level that are still to be explained, by their event.
-    open: BinaryHeap<(u32, std::cmp::Reverse<i64>)>,
+    open: BinaryHeap<(EventId, Reverse<i64>)>,
     /// Literals of lower levels.
     lower: Vec<Literal>,
     reason: Conflict,
@@ -40,14 +42,14 @@ impl Solver {
             self.meet(literal, level, &mut analysis);
         }
         let decisive = loop {
-            let (event, std::cmp::Reverse(mut most)) = analysis.open.pop()?;
-            while let Some(&(same, std::cmp::Reverse(other))) = analysis.open.peek()
+            let (event, Reverse(mut most)) = analysis.open.pop()?;
+            while let Some(&(same, Reverse(other))) = analysis.open.peek()
                 && same == event
             {
                 most = most.min(other);
                 analysis.open.pop();
             }
-            let literal = Literal::new(self.trail.events[event as usize].side, most);
+            let literal = Literal::new(self.trail.events[event].side, most);
             self.bump(literal);
             if analysis.open.is_empty() {
                 break literal;
@@ -87,27 +89,23 @@ impl Solver {
     }
 
     pub(super) fn level_of(&self, literal: Literal) -> u32 {
-        let event = self.trail.implying_event(literal);
-        if event == INITIAL { 0 } else { self.trail.events[event as usize].level }
+        self.trail.implying_event(literal).map_or(0, |event| self.trail.events[event].level)
     }
 
     fn meet(&self, literal: Literal, level: u32, analysis: &mut Analysis) {
         debug_assert!(self.trail.holds(literal), "reasons hold");
-        let event = self.trail.implying_event(literal);
-        if event == INITIAL {
-            return;
-        }
-        match self.trail.events[event as usize].level {
+        let Some(event) = self.trail.implying_event(literal) else { return };
+        match self.trail.events[event].level {
             0 => {}
             lower if lower < level => analysis.lower.push(literal),
-            _ => analysis.open.push((event, std::cmp::Reverse(literal.most))),
+            _ => analysis.open.push((event, Reverse(literal.most))),
         }
     }
 
     /// Whether a literal follows from the others of lower levels.
     fn is_implied(&mut self, literal: Literal, analysis: &Analysis) -> bool {
-        let event = self.trail.implying_event(literal);
-        if event == INITIAL || self.trail.events[event as usize].cause == Cause::Decision {
+        let Some(event) = self.trail.implying_event(literal) else { return false };
+        if self.trail.events[event].cause == Cause::Decision {
             return false;
         }
         let mut reason = Vec::new();
@@ -117,15 +115,15 @@ impl Solver {
             // What came later may rest on this one.
             let is_known = known.is_ok_and(|position| {
                 let known = analysis.lower[position];
-                known.implies(part) && self.trail.implying_event(known).wrapping_add(1) <= event
+                known.implies(part) && self.trail.implying_event(known) < Some(event)
             });
             is_known || self.level_of(part) == 0
         })
     }
 
     /// Why a literal holds whose event is given: other literals that hold and imply it.
-    pub(super) fn explain(&mut self, literal: Literal, event: u32, reason: &mut Conflict) {
-        match self.trail.events[event as usize].cause {
+    pub(super) fn explain(&mut self, literal: Literal, event: EventId, reason: &mut Conflict) {
+        match self.trail.events[event].cause {
             Cause::Decision => {}
             Cause::Clause(id) => {
                 self.clauses.bump(id);
@@ -143,7 +141,7 @@ impl Solver {
             Cause::Alternatives(id) => {
                 self.alternatives.explain(&self.trail, literal, id, event, reason);
             }
-            Cause::Noted(position) => reason.extend_from_slice(self.trail.noted(position)),
+            Cause::Noted(note) => reason.extend_from_slice(self.trail.noted(note)),
         }
     }
 }

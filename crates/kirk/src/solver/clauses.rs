@@ -1,7 +1,10 @@
 //! Clauses, learned ones among them, watched by two of their literals.
 
-use super::literal::Literal;
+use typed_index_collections::TiVec;
+
+use super::literal::{Literal, Side};
 use super::trail::{Cause, Conflict, Trail};
+use crate::ids::{ClauseId, EventId};
 
 #[derive(Clone, Debug)]
 pub(crate) struct Clause {
@@ -16,24 +19,23 @@ pub(crate) struct Clause {
 #[derive(Clone, Copy, Debug)]
 struct Watch {
     most: i64,
-    clause: u32,
+    clause: ClauseId,
     /// Another literal of the clause; while it holds, there is nothing to do.
     other: Literal,
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct Clauses {
-    all: Vec<Clause>,
-    free: Vec<u32>,
-    /// By side.
-    watches: Vec<Vec<Watch>>,
+    all: TiVec<ClauseId, Clause>,
+    free: Vec<ClauseId>,
+    watches: TiVec<Side, Vec<Watch>>,
     num_learned: usize,
     increment: f64,
 }
 
 impl Clauses {
     pub(crate) fn new() -> Self {
-        Self { all: Vec::new(), free: Vec::new(), watches: Vec::new(), num_learned: 0, increment: 1.0 }
+        Self { all: TiVec::new(), free: Vec::new(), watches: TiVec::new(), num_learned: 0, increment: 1.0 }
     }
 
     pub(crate) fn resize(&mut self, num_variables: usize) {
@@ -44,12 +46,12 @@ impl Clauses {
         self.num_learned
     }
 
-    pub(crate) fn literals(&self, clause: u32) -> &[Literal] {
-        &self.all[clause as usize].literals
+    pub(crate) fn literals(&self, clause: ClauseId) -> &[Literal] {
+        &self.all[clause].literals
     }
 
     /// Adds a clause of at least two literals. The first two are watched: they must be the last ones to become false.
-    pub(crate) fn add(&mut self, literals: Vec<Literal>, num_levels: Option<u32>) -> u32 {
+    pub(crate) fn add(&mut self, literals: Vec<Literal>, num_levels: Option<u32>) -> ClauseId {
         let watched = [literals[0], literals[1]];
         let clause = Clause {
             literals: literals.into_boxed_slice(),
@@ -59,22 +61,21 @@ impl Clauses {
         };
         self.num_learned += usize::from(num_levels.is_some());
         let id = if let Some(id) = self.free.pop() {
-            self.all[id as usize] = clause;
+            self.all[id] = clause;
             id
         } else {
-            self.all.push(clause);
-            self.all.len() as u32 - 1
+            self.all.push_and_get_key(clause)
         };
         for (literal, other) in [(watched[0], watched[1]), (watched[1], watched[0])] {
             let falsified = !literal;
-            self.watches[falsified.side.index()].push(Watch { most: falsified.most, clause: id, other });
+            self.watches[falsified.side].push(Watch { most: falsified.most, clause: id, other });
         }
         id
     }
 
     /// Makes a clause outlive others.
-    pub(crate) fn bump(&mut self, clause: u32) {
-        let activity = &mut self.all[clause as usize].activity;
+    pub(crate) fn bump(&mut self, clause: ClauseId) {
+        let activity = &mut self.all[clause].activity;
         *activity += self.increment;
         if *activity > 1e100 {
             for clause in &mut self.all {
@@ -89,9 +90,9 @@ impl Clauses {
     }
 
     /// Propagates all clauses that a side's new bound concerns.
-    pub(crate) fn propagate(&mut self, trail: &mut Trail, event: u32) -> Result<(), Conflict> {
-        let event = trail.events[event as usize];
-        let side = event.side.index();
+    pub(crate) fn propagate(&mut self, trail: &mut Trail, event: EventId) -> Result<(), Conflict> {
+        let event = trail.events[event];
+        let side = event.side;
         if self.watches[side].is_empty() {
             return Ok(());
         }
@@ -107,7 +108,7 @@ impl Clauses {
                 continue;
             }
             let falsified = !Literal::new(event.side, watch.most);
-            let literals = &mut self.all[watch.clause as usize].literals;
+            let literals = &mut self.all[watch.clause].literals;
             if literals[0] == falsified {
                 literals.swap(0, 1);
             }
@@ -120,7 +121,7 @@ impl Clauses {
             if let Some(position) = replacement {
                 literals.swap(1, position);
                 let next = !literals[1];
-                self.watches[next.side.index()].push(Watch { most: next.most, clause: watch.clause, other });
+                self.watches[next.side].push(Watch { most: next.most, clause: watch.clause, other });
                 continue;
             }
             watches[kept] = Watch { other, ..watch };
@@ -140,25 +141,27 @@ impl Clauses {
 
     /// Forgets the worse half of what was learned. Only where no clause is the reason of anything: at the root.
     pub(crate) fn forget_half(&mut self) {
-        let mut learned: Vec<u32> = (0..self.all.len() as u32)
+        let mut learned: Vec<ClauseId> = self
+            .all
+            .keys()
             .filter(|&id| {
-                let clause = &self.all[id as usize];
+                let clause = &self.all[id];
                 clause.is_learned && clause.num_levels > 2 && !clause.literals.is_empty()
             })
             .collect();
         learned.sort_by(|&left, &right| {
-            let (left, right) = (&self.all[left as usize], &self.all[right as usize]);
+            let (left, right) = (&self.all[left], &self.all[right]);
             (left.num_levels.min(8).cmp(&right.num_levels.min(8)))
                 .then(right.activity.total_cmp(&left.activity))
         });
         for id in learned.split_off(learned.len() / 2) {
-            self.all[id as usize].literals = Box::default();
+            self.all[id].literals = Box::default();
             self.free.push(id);
             self.num_learned -= 1;
         }
         let clauses = &self.all;
         for watches in &mut self.watches {
-            watches.retain(|watch| !clauses[watch.clause as usize].literals.is_empty());
+            watches.retain(|watch| !clauses[watch.clause].literals.is_empty());
         }
     }
 }

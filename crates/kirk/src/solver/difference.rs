@@ -6,8 +6,11 @@
 //! cycles whose weights add up to less than zero are looked for where a bound keeps moving, because bounds would creep
 //! along them for as long as their range allows.
 
+use typed_index_collections::TiVec;
+
 use super::literal::{Literal, Side};
-use super::trail::{Cause, Conflict, INITIAL, Trail};
+use super::trail::{Cause, Conflict, Trail};
+use crate::ids::{DifferenceId, EventId};
 
 /// `to ≤ from + weight`, as a step from side to side. The literal implies that both ends exist, or it always holds and
 /// the existence of the target implies that of the source.
@@ -22,20 +25,20 @@ pub(crate) struct Difference {
 #[derive(Clone, Copy, Debug)]
 struct Step {
     to: Side,
-    id: u32,
+    id: DifferenceId,
     weight: i64,
     when: Literal,
 }
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Differences {
-    all: Vec<Difference>,
+    all: TiVec<DifferenceId, Difference>,
     /// By source.
-    steps: Vec<Vec<Step>>,
+    steps: TiVec<Side, Vec<Step>>,
     /// By the side that makes their literal hold.
-    waiting: Vec<Vec<u32>>,
+    waiting: TiVec<Side, Vec<DifferenceId>>,
     /// How often the bound of each side has moved in the present propagation.
-    moves: Vec<u32>,
+    moves: TiVec<Side, u32>,
     moved: Vec<Side>,
 }
 
@@ -49,26 +52,29 @@ impl Differences {
         self.moves.resize(num_variables * 2, 0);
     }
 
-    /// Adds a step and returns its id.
-    pub(crate) fn add(&mut self, difference: Difference) -> u32 {
-        let id = self.all.len() as u32;
+    /// Adds a step.
+    pub(crate) fn add(&mut self, difference: Difference) {
+        let id = self.all.push_and_get_key(difference);
         let Difference { from, to, weight, when } = difference;
-        self.all.push(difference);
-        self.steps[from.index()].push(Step { to, id, weight, when });
+        self.steps[from].push(Step { to, id, weight, when });
         if when != Literal::TRUE {
-            self.waiting[when.side.index()].push(id);
+            self.waiting[when.side].push(id);
         }
-        id
     }
 
-    pub(crate) fn len(&self) -> u32 {
-        self.all.len() as u32
+    /// The steps added since there were `first`.
+    pub(crate) fn since(&self, first: usize) -> impl Iterator<Item = DifferenceId> + use<> {
+        (first..self.all.len()).map(DifferenceId::from)
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.all.len()
     }
 
     /// Carries on the bound of a side, as when it has just moved.
     pub(crate) fn carry_on(&self, trail: &mut Trail, side: Side) -> Result<(), Conflict> {
         let bound = trail.bound(side);
-        self.steps[side.index()].iter().try_for_each(|&step| carry(trail, bound, step))
+        self.steps[side].iter().try_for_each(|&step| carry(trail, bound, step))
     }
 
     /// Whether the least times satisfy all constraints in force between times that exist.
@@ -87,8 +93,8 @@ impl Differences {
 
     /// How much room the constraints that wait for a literal leave: the least of them all.
     pub(crate) fn slack(&self, trail: &Trail, when: Literal) -> i64 {
-        let room = self.waiting[when.side.index()].iter().map(|&id| {
-            let Difference { from, to, weight, .. } = self.all[id as usize];
+        let room = self.waiting[when.side].iter().map(|&id| {
+            let Difference { from, to, weight, .. } = self.all[id];
             trail.bound(from) + weight + trail.bound(to.opposite())
         });
         room.min().unwrap_or(i64::MAX)
@@ -97,31 +103,31 @@ impl Differences {
     /// Starts counting moves anew.
     pub(crate) fn begin(&mut self) {
         for side in self.moved.drain(..) {
-            self.moves[side.index()] = 0;
+            self.moves[side] = 0;
         }
     }
 
     /// Looks at one step as if its source had just moved.
-    pub(crate) fn check(&self, trail: &mut Trail, id: u32) -> Result<(), Conflict> {
-        let Difference { from, to, weight, when } = self.all[id as usize];
+    pub(crate) fn check(&self, trail: &mut Trail, id: DifferenceId) -> Result<(), Conflict> {
+        let Difference { from, to, weight, when } = self.all[id];
         carry(trail, trail.bound(from), Step { to, id, weight, when })
     }
 
     /// Carries on what an event tells.
-    pub(crate) fn propagate(&mut self, trail: &mut Trail, event: u32) -> Result<(), Conflict> {
-        let side = trail.events[event as usize].side;
-        for &id in &self.waiting[side.index()] {
+    pub(crate) fn propagate(&mut self, trail: &mut Trail, event: EventId) -> Result<(), Conflict> {
+        let side = trail.events[event].side;
+        for &id in &self.waiting[side] {
             self.check(trail, id)?;
         }
-        if self.steps[side.index()].is_empty() {
+        if self.steps[side].is_empty() {
             return Ok(());
         }
         // A later event of the same side carries more.
         let bound = trail.bound(side);
-        if bound < trail.events[event as usize].most {
+        if bound < trail.events[event].most {
             return Ok(());
         }
-        let moves = &mut self.moves[side.index()];
+        let moves = &mut self.moves[side];
         *moves += 1;
         if *moves == 1 {
             self.moved.push(side);
@@ -136,15 +142,15 @@ impl Differences {
             let cause = trail.note(reason);
             return trail.set(!presence, cause);
         }
-        for &step in &self.steps[side.index()] {
+        for &step in &self.steps[side] {
             carry(trail, bound, step)?;
         }
         Ok(())
     }
 
     /// Why a literal holds that a difference is the cause of, or is refuted by.
-    pub(crate) fn explain(&self, trail: &Trail, literal: Literal, id: u32, reason: &mut Conflict) {
-        let Difference { from, weight, when, .. } = self.all[id as usize];
+    pub(crate) fn explain(&self, trail: &Trail, literal: Literal, id: DifferenceId, reason: &mut Conflict) {
+        let Difference { from, weight, when, .. } = self.all[id];
         reason.push(Literal::new(from, literal.most - weight));
         if when != Literal::TRUE {
             reason.push(when);
@@ -152,8 +158,14 @@ impl Differences {
         debug_assert!(trail.holds(Literal::new(from, literal.most - weight)), "it was carried");
     }
 
-    pub(crate) fn explain_refuted(&self, trail: &Trail, id: u32, at: u32, reason: &mut Conflict) {
-        let Difference { from, to, weight, .. } = self.all[id as usize];
+    pub(crate) fn explain_refuted(
+        &self,
+        trail: &Trail,
+        id: DifferenceId,
+        at: EventId,
+        reason: &mut Conflict,
+    ) {
+        let Difference { from, to, weight, .. } = self.all[id];
         let bound = trail.bound_before(from, at);
         // The target must reach at least one more than what the source allows.
         reason.push(Literal::new(from, bound));
@@ -161,21 +173,18 @@ impl Differences {
     }
 
     /// The literals of a cycle that the last moves of a bound went along.
-    fn negative_cycle(&self, trail: &Trail, event: u32) -> Option<Conflict> {
-        let start = trail.events[event as usize].side;
-        let (mut at, mut most) = (event, trail.events[event as usize].most);
+    fn negative_cycle(&self, trail: &Trail, event: EventId) -> Option<Conflict> {
+        let start = trail.events[event].side;
+        let (mut at, mut most) = (event, trail.events[event].most);
         let mut reason = Vec::new();
         for _ in 0..self.steps.len() {
-            let Cause::Difference(id) = trail.events[at as usize].cause else { return None };
-            let Difference { from, weight, when, .. } = self.all[id as usize];
+            let Cause::Difference(id) = trail.events[at].cause else { return None };
+            let Difference { from, weight, when, .. } = self.all[id];
             if when != Literal::TRUE {
                 reason.push(when);
             }
             most -= weight;
-            at = trail.implying_event(Literal::new(from, most));
-            if at == INITIAL {
-                return None;
-            }
+            at = trail.implying_event(Literal::new(from, most))?;
             if from == start {
                 return Some(reason);
             }

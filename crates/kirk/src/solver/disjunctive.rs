@@ -3,10 +3,14 @@
 //!
 //! Only intervals that exist for sure count. Everything is told for one direction of time and done for both.
 
+use tpn::LabelId;
+use typed_index_collections::TiVec;
+
 use super::encode::{Interval, Problem};
 use super::literal::{Literal, Side};
 use super::queue::PropagationQueue;
 use super::trail::{Conflict, Trail};
+use crate::ids::ExclusionId;
 
 /// In larger sets only overloads are looked for.
 const MAX_EDGE_FINDING: usize = 24;
@@ -22,8 +26,8 @@ struct Exclusion {
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Disjunctives {
-    sets: Vec<Exclusion>,
-    pub(super) queue: PropagationQueue,
+    sets: TiVec<ExclusionId, Exclusion>,
+    pub(super) queue: PropagationQueue<ExclusionId>,
     /// Room for the tasks that count at the moment.
     present: Vec<Task>,
 }
@@ -43,7 +47,7 @@ struct Task {
 
 impl Disjunctives {
     /// Finds sets among the labels of one variable that must be kept apart, `gap` between each two.
-    pub(crate) fn add(&mut self, problem: &Problem<'_>, labels: &[u32]) {
+    pub(crate) fn add(&mut self, problem: &Problem<'_>, labels: &[LabelId]) {
         let mut is_covered = vec![false; labels.len()];
         for (first, &seed) in labels.iter().enumerate() {
             if is_covered[first] || labels.len() > MAX_TASKS {
@@ -52,7 +56,7 @@ impl Disjunctives {
             let mut members = vec![seed];
             let mut is_gap_due = true;
             for (position, &label) in labels.iter().enumerate() {
-                if position == first || problem.intervals[label as usize].duration == 0 {
+                if position == first || problem.intervals[label].duration == 0 {
                     continue;
                 }
                 let relations =
@@ -66,7 +70,7 @@ impl Disjunctives {
             }
             if members.len() > 2 {
                 let gap = if is_gap_due { problem.least_gap() } else { 0 };
-                let tasks = members.iter().map(|&label| problem.intervals[label as usize]).collect();
+                let tasks = members.iter().map(|&label| problem.intervals[label]).collect();
                 self.add_set(Exclusion { tasks, gap });
             }
         }
@@ -81,7 +85,7 @@ impl Disjunctives {
     /// Looks at one set that waits. `false` if none does.
     pub(crate) fn propagate(&mut self, trail: &mut Trail) -> Result<bool, Conflict> {
         let Some(id) = self.queue.pop() else { return Ok(false) };
-        let set = &self.sets[id as usize];
+        let set = &self.sets[id];
         for is_forward in [true, false] {
             self.present.clear();
             for task in set.tasks.iter().filter(|task| trail.holds(task.presence)) {

@@ -3,11 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use stn::PointId;
+use tpn::{DecisionId, LabelId, NodeId, VariableId};
+use typed_index_collections::{TiSlice, TiVec};
 
 use super::alternatives::Way;
-use super::literal::{Literal, Variable};
-use super::{Item, ItemKind, Solver, interchangeable};
-use crate::model::{Context, INFINITE, Model, NONE};
+use super::literal::{Literal, Side, Variable};
+use super::{ChoicePoint, ChoicePointKind, Solver, interchangeable};
+use crate::model::{Alternatives, Context, INFINITE, Model, node};
 use crate::search::{Choices, Gaps, UNBOUNDED_BELOW};
 use crate::structure::Relation;
 
@@ -32,9 +34,9 @@ pub(crate) struct Interval {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Part<'a> {
     /// The labels that count; all if `None`. Assertions that do not count still support.
-    pub(crate) active_labels: Option<&'a [bool]>,
-    /// The alternatives of decisions that are given, or [`NONE`].
-    pub(crate) alternatives: Option<&'a [u32]>,
+    pub(crate) active_labels: Option<&'a TiSlice<LabelId, bool>>,
+    /// The alternatives of decisions, where they are given.
+    pub(crate) alternatives: Option<&'a Alternatives>,
 }
 
 /// How a planning problem is told to the solver.
@@ -42,22 +44,20 @@ pub(crate) struct Part<'a> {
 pub(crate) struct Problem<'m> {
     pub(crate) model: &'m Model,
     gaps: Gaps,
-    /// By label.
-    pub(crate) intervals: Vec<Interval>,
+    pub(crate) intervals: TiVec<LabelId, Interval>,
     /// Labels that count, in textual order.
-    pub(crate) labels_by_variable: Vec<Vec<u32>>,
+    pub(crate) labels_by_variable: TiVec<VariableId, Vec<LabelId>>,
     /// Pairs that are choice points, with the literals of both orders.
-    pub(crate) orders: BTreeMap<(u32, u32), [Literal; 2]>,
-    pub(crate) known_pairs: BTreeSet<(u32, u32)>,
-    /// By variable: whether the solver has been told which of its intervals exclude each other.
-    pub(crate) has_exclusion: Vec<bool>,
-    /// By node.
-    times: Vec<Variable>,
+    pub(crate) orders: BTreeMap<(LabelId, LabelId), [Literal; 2]>,
+    pub(crate) known_pairs: BTreeSet<(LabelId, LabelId)>,
+    /// Whether the solver has been told which intervals of each variable exclude each other.
+    pub(crate) has_exclusion: TiVec<VariableId, bool>,
+    times: TiVec<NodeId, Variable>,
     /// By decision and alternative.
-    alternatives: Vec<Vec<Literal>>,
+    alternatives: TiVec<DecisionId, Vec<Literal>>,
     /// Requirements with the assertions that may carry them.
-    carriers: Vec<(u32, Vec<(u32, Literal)>)>,
-    contexts: Vec<Context>,
+    carriers: Vec<(LabelId, Vec<(LabelId, Literal)>)>,
+    contexts: TiVec<NodeId, Context>,
 }
 
 impl<'m> Problem<'m> {
@@ -69,12 +69,12 @@ impl<'m> Problem<'m> {
         let mut problem = Self {
             model,
             gaps,
-            intervals: Vec::new(),
-            labels_by_variable: vec![Vec::new(); model.conditions.variables.len()],
+            intervals: TiVec::new(),
+            labels_by_variable: vec![Vec::new(); model.conditions.variables.len()].into(),
             orders: BTreeMap::new(),
             known_pairs: BTreeSet::new(),
-            has_exclusion: vec![false; model.conditions.variables.len()],
-            times: Vec::new(),
+            has_exclusion: vec![false; model.conditions.variables.len()].into(),
+            times: TiVec::new(),
             alternatives,
             carriers: Vec::new(),
             contexts: node_contexts(model),
@@ -98,14 +98,15 @@ impl<'m> Problem<'m> {
     pub(crate) fn solution(&self, solver: &Solver) -> Choices {
         let chosen = |options: &Vec<Literal>| {
             let taken = options.iter().position(|&option| solver.trail.holds(option));
-            taken.map_or(NONE, |taken| taken as u32)
+            taken.map(|taken| taken as u32)
         };
-        let mut carriers = vec![NONE; self.model.conditions.labels.len()];
+        let mut carriers: TiVec<LabelId, Option<LabelId>> =
+            vec![None; self.model.conditions.labels.len()].into();
         for (ask, options) in &self.carriers {
-            if solver.trail.holds(self.intervals[*ask as usize].presence)
+            if solver.trail.holds(self.intervals[*ask].presence)
                 && let Some((tell, _)) = options.iter().find(|(_, option)| solver.trail.holds(*option))
             {
-                carriers[*ask as usize] = *tell;
+                carriers[*ask] = Some(*tell);
             }
         }
         let times = self.times.iter().map(|&time| solver.trail.least(time)).collect();
@@ -113,17 +114,17 @@ impl<'m> Problem<'m> {
     }
 
     /// What must lie between the end of a labelled interval and the start of one that excludes it.
-    pub(crate) fn order_gap(&self, label: u32) -> i64 {
+    pub(crate) fn order_gap(&self, label: LabelId) -> i64 {
         if self.gaps == Gaps::Ignored { self.gap_after(label) } else { self.model.gap }
     }
 
     /// What counts as ordered where it follows from the rest.
-    pub(crate) fn gap_after(&self, label: u32) -> i64 {
-        self.model.gap_after[label as usize]
+    pub(crate) fn gap_after(&self, label: LabelId) -> i64 {
+        self.model.gap_after[label]
     }
 
     /// Whether two labels conflict and neither nesting nor a choice point orders them yet.
-    pub(crate) fn must_be_ordered(&self, pair: (u32, u32)) -> bool {
+    pub(crate) fn must_be_ordered(&self, pair: (LabelId, LabelId)) -> bool {
         let (left, right) = pair;
         self.model.conditions.conflict(left, right)
             && !self.known_pairs.contains(&pair)
@@ -131,8 +132,8 @@ impl<'m> Problem<'m> {
     }
 
     /// Whether two labels never overlap, and then whether the gap is due between them.
-    pub(crate) fn exclusion(&self, left: u32, right: u32) -> Option<bool> {
-        let arc = |label: u32| self.model.conditions.labels[label as usize].arc;
+    pub(crate) fn exclusion(&self, left: LabelId, right: LabelId) -> Option<bool> {
+        let arc = |label: LabelId| self.model.conditions.labels[label].arc;
         let structure = self.model.structure.as_ref();
         if structure.is_some_and(|structure| structure.relation(arc(left), arc(right)) != Relation::Open) {
             return Some(false);
@@ -145,9 +146,9 @@ impl<'m> Problem<'m> {
         if self.gaps == Gaps::Ignored { 0 } else { self.model.gap }
     }
 
-    fn is_nested(&self, left: u32, right: u32) -> bool {
+    fn is_nested(&self, left: LabelId, right: LabelId) -> bool {
         let Some(structure) = &self.model.structure else { return false };
-        let arc = |label: u32| self.model.conditions.labels[label as usize].arc;
+        let arc = |label: LabelId| self.model.conditions.labels[label].arc;
         match structure.relation(arc(left), arc(right)) {
             Relation::Before => self.gap_after(left) == 0,
             Relation::After => self.gap_after(right) == 0,
@@ -157,56 +158,57 @@ impl<'m> Problem<'m> {
 
     /// What makes something exist.
     fn presence(&self, context: Context) -> Literal {
-        if context.decision == NONE {
-            Literal::TRUE
-        } else {
-            self.alternatives[context.decision as usize][context.alternative as usize]
-        }
+        context
+            .map_or(Literal::TRUE, |choice| self.alternatives[choice.decision][choice.alternative as usize])
     }
 
     fn add_times(&mut self, solver: &mut Solver, (least, most): (i64, i64)) {
         let model = self.model;
-        let mut variables: Vec<Option<Variable>> = vec![None; model.num_nodes];
-        for point in &model.order {
-            let twin = model.twin[point.index()];
-            if variables[twin as usize].is_none() {
-                let presence = self.presence(self.contexts[twin as usize]);
-                let is_start = twin == model.twin[model.start as usize];
+        let mut variables: TiVec<NodeId, Option<Variable>> = vec![None; model.num_nodes].into();
+        for &point in &model.order {
+            let representative = model.representatives[node(point)];
+            if variables[representative].is_none() {
+                let presence = self.presence(self.contexts[representative]);
+                let is_start = representative == model.representatives[model.start];
                 let (least, most) = if is_start { (0, 0) } else { (least, most) };
-                variables[twin as usize] = Some(solver.variable(least, most, presence));
+                variables[representative] = Some(solver.variable(least, most, presence));
             }
         }
-        self.times = model.twin.iter().map(|&twin| variables[twin as usize].unwrap_or(Variable(0))).collect();
+        self.times = model
+            .representatives
+            .iter()
+            .map(|&representative| variables[representative].unwrap_or(Variable(0)))
+            .collect();
     }
 
     fn add_choices(&mut self, solver: &mut Solver, part: Part<'_>) {
         for (decision, options) in self.model.decisions.iter().zip(&self.alternatives) {
             let when = self.presence(decision.context);
-            let id = solver.items.len() as u32;
+            let id = solver.choice_points.next_key();
             for &option in options {
-                solver.exclusive[option.side.variable().index()] = id;
+                solver.exclusive[option.side.variable()] = Some(id);
                 solver.imply(option, when);
             }
             solver.at_least_one(options.iter().copied().chain([!when]));
-            let item = Item {
+            let choice_point = ChoicePoint {
                 when: [when, Literal::TRUE],
-                kind: ItemKind::Alternatives,
+                kind: ChoicePointKind::Alternatives,
                 options: options.clone(),
                 last: None,
             };
-            solver.add_item(item, 0.0);
+            solver.add_choice_point(choice_point, 0.0);
         }
         let Some(given) = part.alternatives else {
-            for decision in 0..self.model.decisions.len() as u32 {
+            for decision in self.model.decisions.keys() {
                 for alternative in interchangeable::repeated(self.model, decision) {
-                    solver.assert(!self.alternatives[decision as usize][alternative as usize]);
+                    solver.assert(!self.alternatives[decision][alternative as usize]);
                 }
             }
             return;
         };
         for (options, &given) in self.alternatives.iter().zip(given) {
             for (alternative, &option) in (0..).zip(options) {
-                if given != NONE && given != alternative {
+                if given.is_some_and(|given| given != alternative) {
                     solver.assert(!option);
                 }
             }
@@ -216,9 +218,9 @@ impl<'m> Problem<'m> {
     fn add_arcs(&mut self, solver: &mut Solver) {
         let model = self.model;
         // By common event: how each alternative bounds it.
-        let mut ways: BTreeMap<(u32, u32), Vec<(u32, Way)>> = BTreeMap::new();
+        let mut ways: BTreeMap<(Side, DecisionId), Vec<(u32, Way)>> = BTreeMap::new();
         for arc in &model.arcs {
-            let (from, to) = (self.times[arc.from as usize], self.times[arc.to as usize]);
+            let (from, to) = (self.times[arc.from], self.times[arc.to]);
             if from == to {
                 if arc.lower > 0 {
                     solver.assert(!self.presence(arc.context));
@@ -226,17 +228,15 @@ impl<'m> Problem<'m> {
                 continue;
             }
             let taken = self.presence(arc.context);
-            let when = |node: u32| {
-                if self.contexts[node as usize] == arc.context { Literal::TRUE } else { taken }
-            };
+            let when = |node: NodeId| if self.contexts[node] == arc.context { Literal::TRUE } else { taken };
             let (when_from, when_to) = (when(arc.from), when(arc.to));
             let mut bounds = |from: Variable, to: Variable, weight: i64, when: [Literal; 2]| {
                 solver.difference(from, to, weight, when);
                 let sides = [(from.upper(), to.upper()), (to.lower(), from.lower())];
                 for ((from, to), when) in sides.into_iter().zip(when) {
-                    if when != Literal::TRUE {
-                        let ways = ways.entry((to.0, arc.context.decision)).or_default();
-                        ways.push((arc.context.alternative, Way { from, weight, when }));
+                    if let Some(choice) = arc.context.filter(|_| when != Literal::TRUE) {
+                        let ways = ways.entry((to, choice.decision)).or_default();
+                        ways.push((choice.alternative, Way { from, weight, when }));
                     }
                 }
             };
@@ -250,15 +250,15 @@ impl<'m> Problem<'m> {
         for ((to, decision), mut ways) in ways {
             ways.sort_by_key(|&(alternative, _)| alternative);
             ways.dedup_by_key(|(alternative, _)| *alternative);
-            if ways.len() == self.alternatives[decision as usize].len() {
+            if ways.len() == self.alternatives[decision].len() {
                 let ways = ways.into_iter().map(|(_, way)| way).collect();
-                solver.alternatives.add(super::Side(to), ways);
+                solver.alternatives.add(to, ways);
             }
         }
         let Some(structure) = &model.structure else { return };
-        for decision in 0..model.decisions.len() as u32 {
+        for decision in model.decisions.keys() {
             let (from, to, lower, upper) = structure.initial_bounds(decision);
-            let (from, to) = (self.times[from as usize], self.times[to as usize]);
+            let (from, to) = (self.times[from], self.times[to]);
             if lower > upper || from == to {
                 continue;
             }
@@ -271,22 +271,22 @@ impl<'m> Problem<'m> {
 
     fn add_intervals(&mut self, solver: &mut Solver, part: Part<'_>) {
         let conditions = &self.model.conditions;
-        let is_active = |label: u32| part.active_labels.is_none_or(|active| active[label as usize]);
-        for (id, label) in (0..).zip(&conditions.labels) {
-            let arc = &self.model.arcs[label.arc as usize];
+        let is_active = |label: LabelId| part.active_labels.is_none_or(|active| active[label]);
+        for (id, label) in conditions.labels.iter_enumerated() {
+            let arc = &self.model.arcs[label.arc];
             self.intervals.push(Interval {
-                start: self.times[arc.from as usize],
-                end: self.times[arc.to as usize],
+                start: self.times[arc.from],
+                end: self.times[arc.to],
                 presence: self.presence(arc.context),
                 duration: arc.lower.max(0),
             });
             if is_active(id) {
-                self.labels_by_variable[label.variable as usize].push(id);
+                self.labels_by_variable[label.variable].push(id);
             }
         }
         for &(left, right) in &conditions.self_conflicting {
             if is_active(left) && is_active(right) {
-                solver.assert(!self.intervals[left as usize].presence);
+                solver.assert(!self.intervals[left].presence);
             }
         }
     }
@@ -299,7 +299,7 @@ impl<'m> Problem<'m> {
                 *is_contradictory = true;
             }
         };
-        let time = |point: &PointId| self.times[point.index()];
+        let time = |point: &PointId| self.times[node(*point)];
         self.model.order.iter().for_each(|point| carry(time(point).lower()));
         self.model.order.iter().rev().for_each(|point| carry(time(point).upper()));
     }
@@ -307,18 +307,18 @@ impl<'m> Problem<'m> {
     fn add_links(&mut self, solver: &mut Solver, part: Part<'_>) -> Result<(), TooLarge> {
         let conditions = &self.model.conditions;
         let mut count = 0;
-        for ask in 0..conditions.labels.len() as u32 {
-            let is_active = part.active_labels.is_none_or(|active| active[ask as usize]);
-            let asked = self.intervals[ask as usize];
-            if !conditions.labels[ask as usize].is_ask || !is_active || solver.trail.fails(asked.presence) {
+        for ask in conditions.labels.keys() {
+            let is_active = part.active_labels.is_none_or(|active| active[ask]);
+            let asked = self.intervals[ask];
+            if !conditions.labels[ask].is_ask || !is_active || solver.trail.fails(asked.presence) {
                 continue;
             }
-            let arc_of = |label: u32| conditions.labels[label as usize].arc;
+            let arc_of = |label: LabelId| conditions.labels[label].arc;
             if let Some(own) = conditions.supporters(ask).find(|&tell| arc_of(tell) == arc_of(ask)) {
                 self.carriers.push((ask, vec![(own, asked.presence)]));
                 continue;
             }
-            let tells: Vec<u32> =
+            let tells: Vec<LabelId> =
                 conditions.supporters(ask).filter(|&tell| self.can_carry(solver, ask, tell)).collect();
             count += tells.len();
             if count > MAX_LINKS {
@@ -333,7 +333,7 @@ impl<'m> Problem<'m> {
             solver.resize();
             let first = solver.differences.len();
             for &(tell, link) in &options {
-                let teller = self.intervals[tell as usize];
+                let teller = self.intervals[tell];
                 solver.imply(link, teller.presence);
                 solver.imply(link, asked.presence);
                 solver.difference(asked.start, teller.start, 0, [link; 2]);
@@ -344,8 +344,13 @@ impl<'m> Problem<'m> {
             if !is_only {
                 solver.at_least_one(literals.iter().copied().chain([!asked.presence]));
                 let when = [asked.presence, Literal::TRUE];
-                solver.add_item(
-                    Item { when, kind: ItemKind::Carriers { ask }, options: literals, last: None },
+                solver.add_choice_point(
+                    ChoicePoint {
+                        when,
+                        kind: ChoicePointKind::Carriers { ask },
+                        options: literals,
+                        last: None,
+                    },
                     0.0,
                 );
             }
@@ -358,9 +363,9 @@ impl<'m> Problem<'m> {
     }
 
     /// Whether an assertion could carry a requirement, by their alternatives, durations and windows.
-    fn can_carry(&self, solver: &Solver, ask: u32, tell: u32) -> bool {
-        let (asked, teller) = (self.intervals[ask as usize], self.intervals[tell as usize]);
-        let arc = |label: u32| &self.model.arcs[self.model.conditions.labels[label as usize].arc as usize];
+    fn can_carry(&self, solver: &Solver, ask: LabelId, tell: LabelId) -> bool {
+        let (asked, teller) = (self.intervals[ask], self.intervals[tell]);
+        let arc = |label: LabelId| &self.model.arcs[self.model.conditions.labels[label].arc];
         !solver.trail.fails(teller.presence)
             && self.are_compatible(arc(ask).context, arc(tell).context)
             && asked.duration <= arc(tell).upper
@@ -370,16 +375,18 @@ impl<'m> Problem<'m> {
 
     /// Whether two contexts can be in one plan.
     fn are_compatible(&self, mut left: Context, mut right: Context) -> bool {
-        loop {
-            if left.decision == right.decision {
-                return left.decision == NONE || left.alternative == right.alternative;
+        while let (Some(one), Some(other)) = (left, right) {
+            if one.decision == other.decision {
+                return one.alternative == other.alternative;
             }
             // The inner one of two nested decisions is the later one.
-            let is_left_inner =
-                right.decision == NONE || (left.decision != NONE && left.decision > right.decision);
-            let inner = if is_left_inner { &mut left } else { &mut right };
-            *inner = self.model.decisions[inner.decision as usize].context;
+            if one.decision > other.decision {
+                left = self.model.decisions[one.decision].context;
+            } else {
+                right = self.model.decisions[other.decision].context;
+            }
         }
+        true
     }
 }
 
@@ -403,7 +410,7 @@ fn reach(model: &Model) -> Result<(i64, i64), TooLarge> {
     Ok((if can_precede_start { -most } else { 0 }, most))
 }
 
-fn add_alternatives(model: &Model, solver: &mut Solver) -> Vec<Vec<Literal>> {
+fn add_alternatives(model: &Model, solver: &mut Solver) -> TiVec<DecisionId, Vec<Literal>> {
     let alternatives = model
         .decisions
         .iter()
@@ -413,16 +420,10 @@ fn add_alternatives(model: &Model, solver: &mut Solver) -> Vec<Vec<Literal>> {
     alternatives
 }
 
-fn node_contexts(model: &Model) -> Vec<Context> {
-    let mut contexts = vec![Context::ALWAYS; model.num_nodes];
-    for node in 0..model.num_nodes as u32 {
-        let decision = model.decision_of[node as usize];
-        contexts[node as usize] = if decision == NONE {
-            let first = model.out_arcs(node).first();
-            first.map_or(Context::ALWAYS, |&arc| model.arcs[arc as usize].context)
-        } else {
-            model.decisions[decision as usize].context
-        };
-    }
-    contexts
+fn node_contexts(model: &Model) -> TiVec<NodeId, Context> {
+    let context_of = |(node, decision): (NodeId, &Option<DecisionId>)| match *decision {
+        Some(decision) => model.decisions[decision].context,
+        None => model.out_arcs(node).first().and_then(|&arc| model.arcs[arc].context),
+    };
+    model.decision_of.iter_enumerated().map(context_of).collect()
 }

@@ -6,7 +6,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::model::{Context, Model, NONE};
+use tpn::{ArcId, DecisionId, LabelId, NodeId};
+
+use crate::model::Model;
 
 /// Larger alternatives are not compared.
 const MAX_NODES: usize = 64;
@@ -14,8 +16,8 @@ const MAX_NODES: usize = 64;
 const MAX_LABELS: usize = 2_000;
 
 /// The alternatives of `decision` that are like an earlier one.
-pub(super) fn repeated(model: &Model, decision: u32) -> Vec<u32> {
-    let count = model.decisions[decision as usize].alternatives.len() as u32;
+pub(super) fn repeated(model: &Model, decision: DecisionId) -> Vec<u32> {
+    let count = model.decisions[decision].alternatives.len() as u32;
     let mut kept: Vec<u32> = Vec::new();
     let mut repeated = Vec::new();
     for alternative in 0..count {
@@ -28,21 +30,21 @@ pub(super) fn repeated(model: &Model, decision: u32) -> Vec<u32> {
     repeated
 }
 
-fn are_alike(model: &Model, decision: u32, left: u32, right: u32) -> bool {
-    let alternatives = &model.decisions[decision as usize].alternatives;
-    let mut counterparts: BTreeMap<u32, u32> = BTreeMap::new();
-    let mut labels: Vec<(u32, u32)> = Vec::new();
-    let mut open = vec![(alternatives[left as usize], alternatives[right as usize])];
+fn are_alike(model: &Model, decision: DecisionId, left: u32, right: u32) -> bool {
+    let alternatives = &model.decisions[decision].alternatives;
+    let mut counterparts: BTreeMap<NodeId, NodeId> = BTreeMap::new();
+    let mut labels: Vec<(LabelId, LabelId)> = Vec::new();
+    let mut open: Vec<(ArcId, ArcId)> = vec![(alternatives[left as usize], alternatives[right as usize])];
     while let Some((left_arc, right_arc)) = open.pop() {
-        let (one, other) = (&model.arcs[left_arc as usize], &model.arcs[right_arc as usize]);
+        let (one, other) = (&model.arcs[left_arc], &model.arcs[right_arc]);
         let (left_labels, right_labels) =
             (model.conditions.labels_of(left_arc), model.conditions.labels_of(right_arc));
         if (one.lower, one.upper) != (other.lower, other.upper) || left_labels.len() != right_labels.len() {
             return false;
         }
         labels.extend(left_labels.iter().copied().zip(right_labels.iter().copied()));
-        let merge = model.decisions[decision as usize].merge;
-        if one.to == merge || other.to == merge {
+        let merge = model.decisions[decision].merge;
+        if Some(one.to) == merge || Some(other.to) == merge {
             if one.to != other.to {
                 return false;
             }
@@ -55,7 +57,7 @@ fn are_alike(model: &Model, decision: u32, left: u32, right: u32) -> bool {
             continue;
         }
         let (left_out, right_out) = (model.out_arcs(one.to), model.out_arcs(other.to));
-        let is_choice = |node: u32| model.decision_of[node as usize] != NONE;
+        let is_choice = |node: NodeId| model.decision_of[node].is_some();
         if left_out.len() != right_out.len()
             || is_choice(one.to) != is_choice(other.to)
             || counterparts.values().any(|&known| known == other.to)
@@ -69,14 +71,20 @@ fn are_alike(model: &Model, decision: u32, left: u32, right: u32) -> bool {
     labels.iter().all(|&(one, other)| have_same_relations(model, decision, &labels, one, other))
 }
 
-fn have_same_relations(model: &Model, decision: u32, labels: &[(u32, u32)], one: u32, other: u32) -> bool {
+fn have_same_relations(
+    model: &Model,
+    decision: DecisionId,
+    labels: &[(LabelId, LabelId)],
+    one: LabelId,
+    other: LabelId,
+) -> bool {
     let conditions = &model.conditions;
-    let (left, right) = (&conditions.labels[one as usize], &conditions.labels[other as usize]);
-    let variable = &conditions.variables[left.variable as usize];
+    let (left, right) = (&conditions.labels[one], &conditions.labels[other]);
+    let variable = &conditions.variables[left.variable];
     if left.variable != right.variable || left.is_ask != right.is_ask || variable.labels.len() > MAX_LABELS {
         return false;
     }
-    let same = |third: u32, counterpart: u32| {
+    let same = |third: LabelId, counterpart: LabelId| {
         conditions.conflict(one, third) == conditions.conflict(other, counterpart)
             && conditions.supports(one, third) == conditions.supports(other, counterpart)
             && conditions.supports(third, one) == conditions.supports(counterpart, other)
@@ -86,13 +94,13 @@ fn have_same_relations(model: &Model, decision: u32, labels: &[(u32, u32)], one:
 }
 
 /// Whether a label belongs to an alternative of a decision.
-fn is_inside(model: &Model, label: u32, decision: u32) -> bool {
-    let mut context: Context = model.arcs[model.conditions.labels[label as usize].arc as usize].context;
-    while context.decision != NONE {
-        if context.decision == decision {
+fn is_inside(model: &Model, label: LabelId, decision: DecisionId) -> bool {
+    let mut context = model.arcs[model.conditions.labels[label].arc].context;
+    while let Some(choice) = context {
+        if choice.decision == decision {
             return true;
         }
-        context = model.decisions[context.decision as usize].context;
+        context = model.decisions[choice.decision].context;
     }
     false
 }

@@ -2,9 +2,11 @@
 
 use std::collections::BTreeSet;
 
+use tpn::{LabelId, VariableId};
+
 use super::encode::{Interval, Problem};
 use super::literal::Literal;
-use super::{Item, ItemKind, Solver};
+use super::{ChoicePoint, ChoicePointKind, Solver};
 
 /// Of a variable with more pairs, only those in each other's way are added.
 const MAX_PAIRS_AT_ONCE: usize = 2_000;
@@ -12,13 +14,13 @@ const MAX_PAIRS_AT_ONCE: usize = 2_000;
 impl Solver {
     /// Adds the pairs that the present solution breaks. `false` if it breaks none.
     pub(super) fn add_pairs(&mut self, problem: &mut Problem<'_>) -> bool {
-        let mut new: BTreeSet<(u32, u32)> = BTreeSet::new();
-        let mut exclusive: Vec<usize> = Vec::new();
-        for variable in 0..problem.labels_by_variable.len() {
-            let present: Vec<u32> = problem.labels_by_variable[variable]
+        let mut new: BTreeSet<(LabelId, LabelId)> = BTreeSet::new();
+        let mut exclusive: Vec<VariableId> = Vec::new();
+        for variable in problem.labels_by_variable.keys() {
+            let present: Vec<LabelId> = problem.labels_by_variable[variable]
                 .iter()
                 .copied()
-                .filter(|&label| self.trail.holds(problem.intervals[label as usize].presence))
+                .filter(|&label| self.trail.holds(problem.intervals[label].presence))
                 .collect();
             let broken = self.broken_pairs(problem, &present);
             if broken.is_empty() {
@@ -47,16 +49,17 @@ impl Solver {
 
     /// Whether the least times keep all conflicting pairs apart and satisfy all differences in force.
     pub(super) fn is_solution(&self, problem: &Problem<'_>) -> bool {
-        let is_apart = |left: u32, right: u32| {
-            let (one, other) = (problem.intervals[left as usize], problem.intervals[right as usize]);
+        let is_apart = |left: LabelId, right: LabelId| {
+            let (one, other) = (problem.intervals[left], problem.intervals[right]);
             !self.trail.holds(one.presence)
                 || !self.trail.holds(other.presence)
                 || self.trail.least(one.end) <= self.trail.least(other.start)
                 || self.trail.least(other.end) <= self.trail.least(one.start)
         };
         let labels = &problem.labels_by_variable;
-        let is_kept =
-            |left: u32, right: u32| !problem.model.conditions.conflict(left, right) || is_apart(left, right);
+        let is_kept = |left: LabelId, right: LabelId| {
+            !problem.model.conditions.conflict(left, right) || is_apart(left, right)
+        };
         labels
             .iter()
             .all(|labels| labels.iter().all(|&left| labels.iter().all(|&right| is_kept(left, right))))
@@ -64,17 +67,17 @@ impl Solver {
     }
 
     /// Conflicting pairs that overlap in the least times, by a sweep over them.
-    fn broken_pairs(&self, problem: &Problem<'_>, present: &[u32]) -> Vec<(u32, u32)> {
-        let mut by_start: Vec<(i64, i64, u32)> = present
+    fn broken_pairs(&self, problem: &Problem<'_>, present: &[LabelId]) -> Vec<(LabelId, LabelId)> {
+        let mut by_start: Vec<(i64, i64, LabelId)> = present
             .iter()
             .map(|&label| {
-                let interval = &problem.intervals[label as usize];
+                let interval = &problem.intervals[label];
                 (self.trail.least(interval.start), self.trail.least(interval.end), label)
             })
             .collect();
         by_start.sort_unstable();
         let mut broken = Vec::new();
-        let mut running: Vec<(i64, u32)> = Vec::new();
+        let mut running: Vec<(i64, LabelId)> = Vec::new();
         for &(start, end, label) in &by_start {
             running.retain(|&(other_end, other)| other_end + problem.order_gap(other) > start);
             for &(_, other) in &running {
@@ -88,7 +91,7 @@ impl Solver {
         broken
     }
 
-    fn unordered_pairs(&self, problem: &Problem<'_>, present: &[u32]) -> Vec<(u32, u32)> {
+    fn unordered_pairs(&self, problem: &Problem<'_>, present: &[LabelId]) -> Vec<(LabelId, LabelId)> {
         let mut pairs = Vec::new();
         for (position, &left) in present.iter().enumerate() {
             for &right in &present[position + 1..] {
@@ -106,18 +109,17 @@ impl Solver {
     }
 
     /// Whether windows put one before the other, touching where that counts.
-    fn is_ordered_by_windows(&self, problem: &Problem<'_>, (left, right): (u32, u32)) -> bool {
-        let before = |first: u32, then: u32| {
-            let (first_end, then_start) =
-                (problem.intervals[first as usize].end, problem.intervals[then as usize].start);
+    fn is_ordered_by_windows(&self, problem: &Problem<'_>, (left, right): (LabelId, LabelId)) -> bool {
+        let before = |first: LabelId, then: LabelId| {
+            let (first_end, then_start) = (problem.intervals[first].end, problem.intervals[then].start);
             self.trail.most(first_end) + problem.gap_after(first) <= self.trail.least(then_start)
         };
         before(left, right) || before(right, left)
     }
 
-    fn add_pair(&mut self, problem: &mut Problem<'_>, left: u32, right: u32) {
+    fn add_pair(&mut self, problem: &mut Problem<'_>, left: LabelId, right: LabelId) {
         problem.known_pairs.insert((left, right));
-        let (one, other) = (problem.intervals[left as usize], problem.intervals[right as usize]);
+        let (one, other) = (problem.intervals[left], problem.intervals[right]);
         let when = [one.presence, other.presence];
         let left_first = self.boolean();
         // Where both exist in any case, the second order is the first one's opposite.
@@ -135,27 +137,37 @@ impl Solver {
         self.order(problem, one, other, left, left_first);
         self.order(problem, other, one, right, right_first);
         problem.orders.insert((left, right), [left_first, right_first]);
-        let kind = ItemKind::Orders { left, right };
-        self.add_item(Item { when, kind, options: vec![left_first, right_first], last: None }, 0.0);
+        let kind = ChoicePointKind::Orders { left, right };
+        self.add_choice_point(
+            ChoicePoint { when, kind, options: vec![left_first, right_first], last: None },
+            0.0,
+        );
     }
 
-    fn order(&mut self, problem: &Problem<'_>, first: Interval, then: Interval, label: u32, when: Literal) {
+    fn order(
+        &mut self,
+        problem: &Problem<'_>,
+        first: Interval,
+        then: Interval,
+        label: LabelId,
+        when: Literal,
+    ) {
         self.difference(then.start, first.end, -problem.order_gap(label), [when; 2]);
     }
 
     /// The option of a choice point to try first.
-    pub(super) fn preferred(&self, item: &Item) -> Option<Literal> {
+    pub(super) fn preferred(&self, choice_point: &ChoicePoint) -> Option<Literal> {
         let is_open = |option: &Literal| self.trail.is_open(*option);
-        if let Some(last) = item.last
-            && let Some(option) = item.options.get(last as usize)
+        if let Some(last) = choice_point.last
+            && let Some(option) = choice_point.options.get(last as usize)
             && is_open(option)
         {
             return Some(*option);
         }
-        let mut open = item.options.iter().copied().filter(is_open);
-        match item.kind {
-            ItemKind::Alternatives | ItemKind::Carriers { .. } => open.next(),
-            ItemKind::Orders { .. } => open.max_by_key(|&option| self.slack(option)),
+        let mut open = choice_point.options.iter().copied().filter(is_open);
+        match choice_point.kind {
+            ChoicePointKind::Alternatives | ChoicePointKind::Carriers { .. } => open.next(),
+            ChoicePointKind::Orders { .. } => open.max_by_key(|&option| self.slack(option)),
         }
     }
 

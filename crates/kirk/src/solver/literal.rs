@@ -9,6 +9,30 @@ pub(crate) struct Side(pub(crate) u32);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Variable(pub(crate) u32);
 
+impl From<usize> for Side {
+    fn from(index: usize) -> Self {
+        Self(index as u32)
+    }
+}
+
+impl From<Side> for usize {
+    fn from(side: Side) -> Self {
+        side.0 as Self
+    }
+}
+
+impl From<usize> for Variable {
+    fn from(index: usize) -> Self {
+        Self(index as u32)
+    }
+}
+
+impl From<Variable> for usize {
+    fn from(variable: Variable) -> Self {
+        variable.0 as Self
+    }
+}
+
 impl Variable {
     /// Its value.
     pub(crate) const fn upper(self) -> Side {
@@ -18,10 +42,6 @@ impl Variable {
     /// Its value negated.
     pub(crate) const fn lower(self) -> Side {
         Side(self.0 * 2 + 1)
-    }
-
-    pub(crate) const fn index(self) -> usize {
-        self.0 as usize
     }
 
     /// Of a Boolean: that it holds.
@@ -37,10 +57,6 @@ impl Side {
 
     pub(crate) const fn variable(self) -> Variable {
         Variable(self.0 / 2)
-    }
-
-    pub(crate) const fn index(self) -> usize {
-        self.0 as usize
     }
 
     /// Of a Boolean: the literal that this side has once it is decided.

@@ -29,6 +29,10 @@ mod literal;
 mod queue;
 mod trail;
 
+use tpn::LabelId;
+use typed_index_collections::TiVec;
+
+use crate::ids::{ChoicePointId, EventId};
 use crate::options::Stats;
 use activity::Activity;
 use alternatives::Alternatives;
@@ -53,23 +57,23 @@ pub(crate) enum Answer {
 
 /// A choice point.
 #[derive(Clone, Debug)]
-struct Item {
+struct ChoicePoint {
     /// What makes it count.
     when: [Literal; 2],
-    kind: ItemKind,
+    kind: ChoicePointKind,
     /// One of these must hold; the one taken last is tried first again.
     options: Vec<Literal>,
     last: Option<u32>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum ItemKind {
+enum ChoicePointKind {
     /// Alternatives, in textual order.
     Alternatives,
     /// Assertions that may carry a requirement.
-    Carriers { ask: u32 },
+    Carriers { ask: LabelId },
     /// Two orders of a conflicting pair.
-    Orders { left: u32, right: u32 },
+    Orders { left: LabelId, right: LabelId },
 }
 
 #[derive(Clone, Debug)]
@@ -80,25 +84,24 @@ pub(crate) struct Solver {
     alternatives: Alternatives,
     disjunctives: Disjunctives,
     /// By side of a Boolean: sides that follow.
-    implied: Vec<Vec<Side>>,
-    /// By variable: the choice point whose options exclude each other, or [`NO_ITEM`].
-    exclusive: Vec<u32>,
-    items: Vec<Item>,
-    /// By variable: the choice point that it belongs to.
-    item_of: Vec<u32>,
+    implied: TiVec<Side, Vec<Side>>,
+    /// The choice point whose options exclude each other, of variables that have one.
+    exclusive: TiVec<Variable, Option<ChoicePointId>>,
+    choice_points: TiVec<ChoicePointId, ChoicePoint>,
+    /// The choice point that a variable belongs to, if it does.
+    choice_point_of: TiVec<Variable, Option<ChoicePointId>>,
     /// By side of a Boolean: choice points that begin to count.
-    reached: Vec<Vec<u32>>,
+    reached: TiVec<Side, Vec<ChoicePointId>>,
     activity: Activity,
-    head: u32,
+    /// How many events have been propagated.
+    head: usize,
     analysis: Analysis,
     is_contradictory: bool,
     conflicts_until_restart: u64,
     restarts: u64,
-    most_learned: usize,
+    max_learned: usize,
     pub(crate) stats: Stats,
 }
-
-const NO_ITEM: u32 = u32::MAX;
 
 /// Conflicts in the unit of the restart sequence.
 const RESTART_UNIT: u64 = 64;
@@ -111,18 +114,18 @@ impl Solver {
             differences: Differences::default(),
             alternatives: Alternatives::default(),
             disjunctives: Disjunctives::default(),
-            implied: Vec::new(),
-            exclusive: Vec::new(),
-            items: Vec::new(),
-            item_of: Vec::new(),
-            reached: Vec::new(),
+            implied: TiVec::new(),
+            exclusive: TiVec::new(),
+            choice_points: TiVec::new(),
+            choice_point_of: TiVec::new(),
+            reached: TiVec::new(),
             activity: Activity::new(),
             head: 0,
             analysis: Analysis::default(),
             is_contradictory: false,
             conflicts_until_restart: RESTART_UNIT,
             restarts: 0,
-            most_learned: 4_000,
+            max_learned: 4_000,
             stats: Stats::default(),
         };
         solver.resize();
@@ -146,8 +149,8 @@ impl Solver {
         self.disjunctives.queue.resize(count);
         self.implied.resize(count * 2, Vec::new());
         self.reached.resize(count * 2, Vec::new());
-        self.exclusive.resize(count, NO_ITEM);
-        self.item_of.resize(count, NO_ITEM);
+        self.exclusive.resize(count, None);
+        self.choice_point_of.resize(count, None);
     }
 
     /// `left` implies `right`, both Booleans. At the root.
@@ -155,8 +158,8 @@ impl Solver {
         if right == Literal::TRUE || left == right {
             return;
         }
-        self.implied[left.side.index()].push(right.side);
-        self.implied[(!right).side.index()].push((!left).side);
+        self.implied[left.side].push(right.side);
+        self.implied[(!right).side].push((!left).side);
         if self.trail.holds(left) {
             self.assert(right);
         } else if self.trail.fails(right) {
@@ -191,16 +194,16 @@ impl Solver {
         }
     }
 
-    fn add_item(&mut self, item: Item, initial_activity: f64) {
-        let id = self.items.len() as u32;
-        for option in &item.options {
-            self.item_of[option.side.variable().index()] = id;
+    fn add_choice_point(&mut self, choice_point: ChoicePoint, initial_activity: f64) {
+        let id = self.choice_points.next_key();
+        for option in &choice_point.options {
+            self.choice_point_of[option.side.variable()] = Some(id);
         }
-        for when in item.when {
-            self.reached[when.side.index()].push(id);
+        for when in choice_point.when {
+            self.reached[when.side].push(id);
         }
-        let counts = item.when.iter().all(|&when| self.trail.holds(when));
-        self.items.push(item);
+        let counts = choice_point.when.iter().all(|&when| self.trail.holds(when));
+        self.choice_points.push(choice_point);
         self.activity.add(initial_activity);
         if counts {
             self.activity.insert(id);
@@ -215,8 +218,8 @@ impl Solver {
     }
 
     /// Carries on the present bounds along what has been added since `first`. At the root.
-    fn check_differences(&mut self, first: u32) {
-        for id in first..self.differences.len() {
+    fn check_differences(&mut self, first: usize) {
+        for id in self.differences.since(first) {
             if self.differences.check(&mut self.trail, id).is_err() {
                 self.is_contradictory = true;
                 return;
@@ -264,25 +267,25 @@ impl Solver {
     fn propagate(&mut self) -> Result<(), Conflict> {
         self.differences.begin();
         loop {
-            while (self.head as usize) < self.trail.events.len() {
-                let event = self.head;
+            while self.head < self.trail.events.len() {
+                let event = EventId::from(self.head);
                 self.head += 1;
-                let side = self.trail.events[event as usize].side;
+                let side = self.trail.events[event].side;
                 self.clauses.propagate(&mut self.trail, event)?;
-                for position in 0..self.implied[side.index()].len() {
-                    let implied = self.implied[side.index()][position];
+                for position in 0..self.implied[side].len() {
+                    let implied = self.implied[side][position];
                     self.trail.set(implied.decided(), trail::Cause::Implied(side))?;
                 }
                 self.exclude_others(side)?;
-                for position in 0..self.reached[side.index()].len() {
-                    self.activity.insert(self.reached[side.index()][position]);
+                for position in 0..self.reached[side].len() {
+                    self.activity.insert(self.reached[side][position]);
                 }
                 self.differences.propagate(&mut self.trail, event)?;
                 self.alternatives.queue.moved(side);
                 self.disjunctives.queue.moved(side);
             }
             self.alternatives.propagate(&mut self.trail)?;
-            if (self.head as usize) < self.trail.events.len() {
+            if self.head < self.trail.events.len() {
                 continue;
             }
             if !self.disjunctives.propagate(&mut self.trail)? {
@@ -293,12 +296,12 @@ impl Solver {
 
     /// Of alternatives at most one is taken.
     fn exclude_others(&mut self, side: Side) -> Result<(), Conflict> {
-        let item = self.exclusive[side.variable().index()];
-        if item == NO_ITEM || side != side.variable().lower() {
+        let Some(choice_point) = self.exclusive[side.variable()].filter(|_| side == side.variable().lower())
+        else {
             return Ok(());
-        }
-        for position in 0..self.items[item as usize].options.len() {
-            let other = self.items[item as usize].options[position];
+        };
+        for position in 0..self.choice_points[choice_point].options.len() {
+            let other = self.choice_points[choice_point].options[position];
             if other.side != side {
                 self.trail.set(!other, trail::Cause::Implied(side))?;
             }
@@ -335,7 +338,7 @@ impl Solver {
 
     /// A conflict whose last event left a variable no value, as the reasons of that event; it is taken back.
     fn before_crossing(&mut self, conflict: &[Literal]) -> Conflict {
-        let Some(&trail::Event { side, most, .. }) = self.trail.events.last() else {
+        let Some((event, &trail::Event { side, most, .. })) = self.trail.events.last_key_value() else {
             return conflict.to_vec();
         };
         let last = Literal::new(side, most);
@@ -343,9 +346,9 @@ impl Solver {
             return conflict.to_vec();
         }
         let mut reason: Conflict = conflict.iter().copied().filter(|&literal| literal != last).collect();
-        self.explain(last, self.trail.events.len() as u32 - 1, &mut reason);
+        self.explain(last, event, &mut reason);
         self.trail.undo_last();
-        self.head = self.head.min(self.trail.events.len() as u32);
+        self.head = self.head.min(self.trail.events.len());
         reason
     }
 
@@ -353,26 +356,25 @@ impl Solver {
         self.restarts += 1;
         self.conflicts_until_restart = RESTART_UNIT * luby(self.restarts);
         self.retract(0);
-        if self.clauses.num_learned() > self.most_learned {
+        if self.clauses.num_learned() > self.max_learned {
             self.clauses.forget_half();
-            self.most_learned += self.most_learned / 10;
+            self.max_learned += self.max_learned / 10;
         }
     }
 
     fn retract(&mut self, level: u32) {
-        let Self { trail, items, item_of, activity, .. } = self;
+        let Self { trail, choice_points, choice_point_of, activity, .. } = self;
         trail.retract(level, |event| {
             let variable = event.side.variable();
-            let item = item_of[variable.index()];
-            if item != NO_ITEM {
-                activity.insert(item);
-                let Item { options, last, .. } = &mut items[item as usize];
+            if let Some(choice_point) = choice_point_of[variable] {
+                activity.insert(choice_point);
+                let ChoicePoint { options, last, .. } = &mut choice_points[choice_point];
                 if let Some(option) = options.iter().position(|option| option.side == event.side) {
                     *last = Some(option as u32);
                 }
             }
         });
-        self.head = self.head.min(self.trail.events.len() as u32);
+        self.head = self.head.min(self.trail.events.len());
         self.alternatives.queue.forget();
         self.disjunctives.queue.forget();
     }
@@ -380,12 +382,12 @@ impl Solver {
     /// Makes the next decision. `false` if everything that counts is decided.
     fn decide(&mut self) -> bool {
         while let Some(id) = self.activity.pop() {
-            let item = &self.items[id as usize];
-            let counts = item.when.iter().all(|&when| self.trail.holds(when));
-            if !counts || item.options.iter().any(|&option| self.trail.holds(option)) {
+            let choice_point = &self.choice_points[id];
+            let counts = choice_point.when.iter().all(|&when| self.trail.holds(when));
+            if !counts || choice_point.options.iter().any(|&option| self.trail.holds(option)) {
                 continue;
             }
-            let Some(option) = self.preferred(item) else { continue };
+            let Some(option) = self.preferred(choice_point) else { continue };
             self.trail.open_level();
             // An open Boolean can be either.
             let _ = self.trail.set(option, trail::Cause::Decision);
@@ -395,9 +397,8 @@ impl Solver {
     }
 
     fn bump(&mut self, literal: Literal) {
-        let item = self.item_of[literal.side.variable().index()];
-        if item != NO_ITEM {
-            self.activity.bump(item);
+        if let Some(choice_point) = self.choice_point_of[literal.side.variable()] {
+            self.activity.bump(choice_point);
         }
     }
 }

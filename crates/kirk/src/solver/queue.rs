@@ -1,37 +1,47 @@
 //! The constraints of a theory that are still to be looked at.
 
+use typed_index_collections::TiVec;
+
 use super::literal::Side;
 
-/// Which constraints the bound of each side concerns, and which of them wait, each once. The last to come is looked at
-/// first.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct PropagationQueue {
-    /// By side.
-    concerned: Vec<Vec<u32>>,
-    is_waiting: Vec<bool>,
-    waiting: Vec<u32>,
+/// Which constraints, by their ids, the bound of each side concerns, and which of them wait, each once. The last to
+/// come is looked at first.
+#[derive(Clone, Debug)]
+pub(crate) struct PropagationQueue<Id: From<usize>> {
+    concerned: TiVec<Side, Vec<Id>>,
+    is_waiting: TiVec<Id, bool>,
+    waiting: Vec<Id>,
 }
 
-impl PropagationQueue {
+impl<Id: From<usize>> Default for PropagationQueue<Id> {
+    fn default() -> Self {
+        Self { concerned: TiVec::new(), is_waiting: TiVec::new(), waiting: Vec::new() }
+    }
+}
+
+impl<Id> PropagationQueue<Id>
+where
+    Id: Copy + From<usize>,
+    usize: From<Id>,
+{
     pub(crate) fn resize(&mut self, num_variables: usize) {
         self.concerned.resize(num_variables * 2, Vec::new());
     }
 
     /// Adds the next constraint, which the bounds of these sides concern, and lets it wait.
     pub(crate) fn add(&mut self, sides: impl IntoIterator<Item = Side>) {
-        let id = self.is_waiting.len() as u32;
+        let id = self.is_waiting.push_and_get_key(true);
         for side in sides {
-            self.concerned[side.index()].push(id);
+            self.concerned[side].push(id);
         }
-        self.is_waiting.push(true);
         self.waiting.push(id);
     }
 
     /// The bound of a side has moved.
     pub(crate) fn moved(&mut self, side: Side) {
-        for &id in &self.concerned[side.index()] {
-            if !self.is_waiting[id as usize] {
-                self.is_waiting[id as usize] = true;
+        for &id in &self.concerned[side] {
+            if !self.is_waiting[id] {
+                self.is_waiting[id] = true;
                 self.waiting.push(id);
             }
         }
@@ -40,14 +50,14 @@ impl PropagationQueue {
     /// Drops what waits: the events that it waits for are being taken back.
     pub(crate) fn forget(&mut self) {
         for id in self.waiting.drain(..) {
-            self.is_waiting[id as usize] = false;
+            self.is_waiting[id] = false;
         }
     }
 
-    /// Takes a constraint that waits, by its number in the order in which they were added.
-    pub(crate) fn pop(&mut self) -> Option<u32> {
+    /// Takes a constraint that waits.
+    pub(crate) fn pop(&mut self) -> Option<Id> {
         let id = self.waiting.pop()?;
-        self.is_waiting[id as usize] = false;
+        self.is_waiting[id] = false;
         Some(id)
     }
 }

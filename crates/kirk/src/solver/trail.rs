@@ -1,9 +1,9 @@
 //! The bounds of all variables, and the record of how they came about, by which they are taken back and explained.
 
-use super::literal::{Literal, Side, Variable};
+use typed_index_collections::TiVec;
 
-/// No event: the bound holds from the start.
-pub(crate) const INITIAL: u32 = u32::MAX;
+use super::literal::{Literal, Side, Variable};
+use crate::ids::{ClauseId, CommonBoundId, DifferenceId, EventId, NoteId};
 
 /// Why a bound holds. What else it rests on is found out only if somebody asks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,19 +11,19 @@ pub(crate) enum Cause {
     /// It was decided, or holds whatever is decided.
     Decision,
     /// All other literals of a clause are false.
-    Clause(u32),
+    Clause(ClauseId),
     /// The difference constraint carried the bound of its source on.
-    Difference(u32),
+    Difference(DifferenceId),
     /// The difference constraint would have contradicted the bounds of both its ends.
-    Refuted(u32),
+    Refuted(DifferenceId),
     /// The variable had no value left, so that it does not exist.
     Empty(Variable),
     /// This side of a Boolean was decided.
     Implied(Side),
     /// All alternatives that are left of a choice have it.
-    Alternatives(u32),
-    /// Noted when it was found: a range of [`Trail::noted`].
-    Noted(u32),
+    Alternatives(CommonBoundId),
+    /// Noted when it was found.
+    Noted(NoteId),
 }
 
 /// A bound that became tighter.
@@ -33,8 +33,8 @@ pub(crate) struct Event {
     pub(crate) level: u32,
     pub(crate) most: i64,
     pub(crate) before: i64,
-    /// The event of the bound before, or [`INITIAL`].
-    pub(crate) previous: u32,
+    /// The event of the bound before; `None` for the one that holds from the start.
+    pub(crate) previous: Option<EventId>,
     pub(crate) cause: Cause,
 }
 
@@ -43,14 +43,14 @@ pub(crate) type Conflict = Vec<Literal>;
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Trail {
-    bounds: Vec<i64>,
-    last: Vec<u32>,
-    /// By variable: what makes it exist.
-    presence: Vec<Literal>,
-    pub(crate) events: Vec<Event>,
+    bounds: TiVec<Side, i64>,
+    last: TiVec<Side, Option<EventId>>,
+    /// What makes each variable exist.
+    presence: TiVec<Variable, Literal>,
+    pub(crate) events: TiVec<EventId, Event>,
     /// The number of events, and of noted reasons, where each level begins.
     levels: Vec<(u32, u32)>,
-    noted: Vec<Box<[Literal]>>,
+    noted: TiVec<NoteId, Box<[Literal]>>,
 }
 
 impl Trail {
@@ -62,11 +62,9 @@ impl Trail {
 
     /// Adds a variable between two values, which exists where `presence` holds.
     pub(crate) fn add(&mut self, least: i64, most: i64, presence: Literal) -> Variable {
-        let variable = Variable(self.presence.len() as u32);
         self.bounds.extend([most, -least]);
-        self.last.extend([INITIAL; 2]);
-        self.presence.push(presence);
-        variable
+        self.last.extend([None; 2]);
+        self.presence.push_and_get_key(presence)
     }
 
     pub(crate) fn num_variables(&self) -> usize {
@@ -74,23 +72,23 @@ impl Trail {
     }
 
     pub(crate) fn bound(&self, side: Side) -> i64 {
-        self.bounds[side.index()]
+        self.bounds[side]
     }
 
     pub(crate) fn least(&self, variable: Variable) -> i64 {
-        -self.bounds[variable.lower().index()]
+        -self.bounds[variable.lower()]
     }
 
     pub(crate) fn most(&self, variable: Variable) -> i64 {
-        self.bounds[variable.upper().index()]
+        self.bounds[variable.upper()]
     }
 
     pub(crate) fn presence(&self, variable: Variable) -> Literal {
-        self.presence[variable.index()]
+        self.presence[variable]
     }
 
     pub(crate) fn holds(&self, literal: Literal) -> bool {
-        self.bounds[literal.side.index()] <= literal.most
+        self.bounds[literal.side] <= literal.most
     }
 
     pub(crate) fn fails(&self, literal: Literal) -> bool {
@@ -111,31 +109,29 @@ impl Trail {
 
     /// Keeps a reason for [`Cause::Noted`] until the present level is left.
     pub(crate) fn note(&mut self, reason: Vec<Literal>) -> Cause {
-        self.noted.push(reason.into_boxed_slice());
-        Cause::Noted(self.noted.len() as u32 - 1)
+        Cause::Noted(self.noted.push_and_get_key(reason.into_boxed_slice()))
     }
 
-    pub(crate) fn noted(&self, position: u32) -> &[Literal] {
-        &self.noted[position as usize]
+    pub(crate) fn noted(&self, note: NoteId) -> &[Literal] {
+        &self.noted[note]
     }
 
     /// Makes a literal hold. A variable without values left does not exist; if it must, that is a conflict.
     pub(crate) fn set(&mut self, literal: Literal, cause: Cause) -> Result<(), Conflict> {
         let Literal { side, most } = literal;
-        let before = self.bounds[side.index()];
+        let before = self.bounds[side];
         if before <= most {
             return Ok(());
         }
-        let presence = self.presence[side.variable().index()];
+        let presence = self.presence[side.variable()];
         if self.fails(presence) {
             return Ok(());
         }
-        let event = self.events.len() as u32;
-        let previous = self.last[side.index()];
-        self.events.push(Event { side, level: self.level(), most, before, previous, cause });
-        self.bounds[side.index()] = most;
-        self.last[side.index()] = event;
-        if self.bounds[side.opposite().index()] >= -most {
+        let previous = self.last[side];
+        let event = Event { side, level: self.level(), most, before, previous, cause };
+        self.bounds[side] = most;
+        self.last[side] = Some(self.events.push_and_get_key(event));
+        if self.bounds[side.opposite()] >= -most {
             return Ok(());
         }
         if self.holds(presence) {
@@ -147,8 +143,8 @@ impl Trail {
     /// Takes back the last event.
     pub(crate) fn undo_last(&mut self) -> Option<Event> {
         let event = self.events.pop()?;
-        self.bounds[event.side.index()] = event.before;
-        self.last[event.side.index()] = event.previous;
+        self.bounds[event.side] = event.before;
+        self.last[event.side] = event.previous;
         Some(event)
     }
 
@@ -163,22 +159,24 @@ impl Trail {
         self.levels.truncate(level as usize);
     }
 
-    /// The event by which a literal that holds came to hold, or [`INITIAL`].
-    pub(crate) fn implying_event(&self, literal: Literal) -> u32 {
-        let mut event = self.last[literal.side.index()];
-        while event != INITIAL && self.events[event as usize].before <= literal.most {
-            event = self.events[event as usize].previous;
+    /// The event by which a literal that holds came to hold; `None` if it holds from the start.
+    pub(crate) fn implying_event(&self, literal: Literal) -> Option<EventId> {
+        let mut last = self.last[literal.side];
+        while let Some(event) = last
+            && self.events[event].before <= literal.most
+        {
+            last = self.events[event].previous;
         }
-        event
+        last
     }
 
     /// The bound that a side had before event `at`.
-    pub(crate) fn bound_before(&self, side: Side, at: u32) -> i64 {
-        let mut bound = self.bounds[side.index()];
-        let mut event = self.last[side.index()];
-        while event != INITIAL && event >= at {
-            bound = self.events[event as usize].before;
-            event = self.events[event as usize].previous;
+    pub(crate) fn bound_before(&self, side: Side, at: EventId) -> i64 {
+        let mut bound = self.bounds[side];
+        let mut last = self.last[side];
+        while let Some(event) = last.filter(|&event| event >= at) {
+            bound = self.events[event].before;
+            last = self.events[event].previous;
         }
         bound
     }

@@ -2,40 +2,43 @@
 //!
 //! A block touches the rest of its network only in its first and its last event, so all that its inside demands is
 //! one interval for its duration. Intervals of a sequence add up, those of parallel branches and spanning bounds
-//! intersect, and a choice that is still open has the hull of its alternatives. An empty interval on the way up means
-//! that no completion of the choices made so far is consistent; this is exact once all are made, and finds most dead
-//! ends long before. One choice costs time proportional to the depth of its block.
+//! intersect, and a choice that is still open has a relaxation: the least interval that holds those of its alternatives.
+//! An empty interval on the way up means that no completion of the choices made so far is consistent; this is exact
+//! once all are made, and finds most failures long before. One choice costs time proportional to the depth of its block.
 
 mod blocks;
 mod decide;
 mod duration;
 
-use stn::Overflow;
+use tpn::{ArcId, BlockId, Choice, DecisionId, NodeId};
+use typed_index_collections::TiVec;
 
 use crate::enclosed::Enclosed;
-use crate::model::{INFINITE, Model, NONE};
+use crate::ids::EnclosedId;
+use crate::model::{INFINITE, Model};
+use crate::overflow::TimeOverflow;
 
 /// The tree, with the duration of each block before any choice.
 #[derive(Clone, Debug)]
 pub(crate) struct Structure {
     /// Children before their parents.
-    blocks: Vec<TreeBlock>,
+    blocks: TiVec<BlockId, TreeBlock>,
     /// The children of all blocks, and their own arcs; each block has its range of them.
-    children: Vec<u32>,
-    own_arcs: Vec<u32>,
-    initial: Vec<Duration>,
+    children: Vec<BlockId>,
+    own_arcs: Vec<ArcId>,
+    initial: TiVec<BlockId, Duration>,
     /// The block of each decision.
-    decision_blocks: Vec<u32>,
-    /// The block that each arc is a leaf or a spanning arc of.
-    arc_blocks: Vec<u32>,
-    root: u32,
+    decision_blocks: TiVec<DecisionId, BlockId>,
+    /// The block that each arc is a leaf or a spanning arc of; `None` for arcs between blocks.
+    arc_blocks: TiVec<ArcId, Option<BlockId>>,
+    root: BlockId,
     /// Blocks without choices whose assertions conflict only with each other.
-    enclosed: Vec<Enclosed>,
+    enclosed: TiVec<EnclosedId, Enclosed>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct TreeBlock {
-    parent: u32,
+    parent: Option<BlockId>,
     /// Where it stands among its siblings.
     position: u32,
     depth: u32,
@@ -52,15 +55,15 @@ struct TreeBlock {
     has_choices: bool,
     /// Whether a label is in it.
     has_labels: bool,
-    /// Its position in `enclosed`, or [`NONE`].
-    enclosed: u32,
+    /// What it is among the enclosed ones, if its conditions conflict only with each other.
+    enclosed: Option<EnclosedId>,
     /// Whether it is inside a block that is in `enclosed`.
     is_inside_enclosed: bool,
     /// Its first and last event.
-    ends: (u32, u32),
+    ends: (NodeId, NodeId),
     /// The arcs that lead to it from the parent's first event and from it to the parent's last or the next sibling's
-    /// first, [`NONE`] where these are the block's own.
-    around_arcs: (u32, u32),
+    /// first; `None` where these are the block's own.
+    around_arcs: (Option<ArcId>, Option<ArcId>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +74,7 @@ enum Shape {
     Intersection,
     /// Its own arc, then its child.
     Guard,
-    Choice(u32),
+    Choice(DecisionId),
 }
 
 /// The least and greatest duration of a block.
@@ -104,22 +107,22 @@ impl Duration {
     }
 }
 
-/// A part of the network of which only the duration counts.
+/// A block relaxed to the least and greatest duration that it can have, whatever is chosen in it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Hull {
-    pub(crate) from: u32,
-    pub(crate) to: u32,
+pub(crate) struct BlockRelaxation {
+    pub(crate) from: NodeId,
+    pub(crate) to: NodeId,
     pub(crate) lower: i64,
     pub(crate) upper: i64,
-    /// The choice that it is, or [`NONE`].
-    pub(crate) decision: u32,
+    /// The choice that it is; `None` for a part without labels.
+    pub(crate) decision: Option<DecisionId>,
 }
 
 /// The tree during a search.
 #[derive(Clone, Debug)]
 pub(crate) struct TreeState {
-    durations: Vec<Duration>,
-    trail: Vec<(u32, Duration)>,
+    durations: TiVec<BlockId, Duration>,
+    trail: Vec<(BlockId, Duration)>,
 }
 
 /// How one of two blocks stands to another.
@@ -135,10 +138,10 @@ pub(crate) enum Relation {
 
 impl Structure {
     /// Computes all durations anew from the model's bounds.
-    pub(crate) fn refresh(&mut self, model: &Model) -> Result<(), Overflow> {
+    pub(crate) fn refresh(&mut self, model: &Model) -> Result<(), TimeOverflow> {
         self.initial.clear();
         self.initial.resize(self.blocks.len(), Duration::NEVER);
-        for id in 0..self.blocks.len() {
+        for id in self.blocks.keys() {
             self.blocks[id].own = self.own_bounds(model, id);
             self.blocks[id].around = self.around(model, id)?;
             self.initial[id] = self.initial_duration(model, id)?;
@@ -148,55 +151,52 @@ impl Structure {
 
     /// Changes one arc's bounds in the tree, where only its own block and its ancestors depend on it. `false` if the
     /// arc is structural and everything must be refreshed.
-    pub(crate) fn set_arc(&mut self, model: &Model, arc: u32) -> Result<bool, Overflow> {
-        let mut id = self.arc_blocks[arc as usize];
-        if id == NONE {
-            return Ok(false);
-        }
-        self.blocks[id as usize].own = self.own_bounds(model, id as usize);
-        while id != NONE {
-            let duration = self.initial_duration(model, id as usize)?;
-            let is_inside_enclosed = self.blocks[id as usize].is_inside_enclosed;
-            if duration == self.initial[id as usize] && !is_inside_enclosed {
+    pub(crate) fn set_arc(&mut self, model: &Model, arc: ArcId) -> Result<bool, TimeOverflow> {
+        let Some(own) = self.arc_blocks[arc] else { return Ok(false) };
+        self.blocks[own].own = self.own_bounds(model, own);
+        let mut above = Some(own);
+        while let Some(id) = above {
+            let duration = self.initial_duration(model, id)?;
+            let is_inside_enclosed = self.blocks[id].is_inside_enclosed;
+            if duration == self.initial[id] && !is_inside_enclosed {
                 break;
             }
-            self.initial[id as usize] = duration;
-            id = self.blocks[id as usize].parent;
+            self.initial[id] = duration;
+            above = self.blocks[id].parent;
         }
         Ok(true)
     }
 
-    fn children(&self, id: usize) -> &[u32] {
+    fn children(&self, id: BlockId) -> &[BlockId] {
         let (first, count) = self.blocks[id].children;
         &self.children[first as usize..(first + count) as usize]
     }
 
-    fn child(&self, id: usize, position: u32) -> u32 {
+    fn child(&self, id: BlockId, position: u32) -> BlockId {
         self.children[(self.blocks[id].children.0 + position) as usize]
     }
 
-    fn own_arcs(&self, id: usize) -> &[u32] {
+    fn own_arcs(&self, id: BlockId) -> &[ArcId] {
         let (first, count) = self.blocks[id].own_arcs;
         &self.own_arcs[first as usize..(first + count) as usize]
     }
 
     /// The node where a decision is made.
-    pub(crate) fn decision_node(&self, decision: u32) -> u32 {
-        self.blocks[self.decision_blocks[decision as usize] as usize].ends.0
+    pub(crate) fn decision_node(&self, decision: DecisionId) -> NodeId {
+        self.blocks[self.decision_blocks[decision]].ends.0
     }
 
     /// The duration of a choice if its first possible alternative is taken.
-    pub(crate) fn first_alternative(&self, decision: u32) -> Result<Option<(i64, i64)>, Overflow> {
-        let children = self.children(self.decision_blocks[decision as usize] as usize);
-        let first = children.iter().find(|&&child| !self.initial[child as usize].is_empty());
-        let duration =
-            first.map(|&child| add(self.initial[child as usize], self.blocks[child as usize].around));
+    pub(crate) fn first_alternative(&self, decision: DecisionId) -> Result<Option<(i64, i64)>, TimeOverflow> {
+        let children = self.children(self.decision_blocks[decision]);
+        let first = children.iter().find(|&&child| !self.initial[child].is_empty());
+        let duration = first.map(|&child| self.with_around(self.initial[child], child));
         Ok(duration.transpose()?.map(|duration| (duration.lower, duration.upper())))
     }
 
     /// The first and last event of a choice, and how long it can take whatever is chosen.
-    pub(crate) fn initial_bounds(&self, decision: u32) -> (u32, u32, i64, i64) {
-        let block = self.decision_blocks[decision as usize] as usize;
+    pub(crate) fn initial_bounds(&self, decision: DecisionId) -> (NodeId, NodeId, i64, i64) {
+        let block = self.decision_blocks[decision];
         let (from, to) = self.blocks[block].ends;
         (from, to, self.initial[block].lower, self.initial[block].upper())
     }
@@ -207,116 +207,148 @@ impl Structure {
 
     /// Whether the mission has no consistent selection at all, whatever is chosen.
     pub(crate) fn is_empty(&self) -> bool {
-        self.initial[self.root as usize].is_empty()
+        self.initial[self.root].is_empty()
     }
 
-    /// Calls `arrive` with the arcs, and `hull` with the label-free parts and open choices, that an alternative brings.
+    /// Calls `arrive` with the arcs, and `relaxation` with the relaxations of label-free parts and open choices, that an
+    /// alternative brings.
     pub(crate) fn emit_alternative(
         &self,
-        (decision, alternative): (u32, u32),
-        arrive: &mut impl FnMut(u32),
-        hull: &mut impl FnMut(Hull),
+        choice: Choice,
+        arrive: &mut impl FnMut(ArcId),
+        relaxation: &mut impl FnMut(BlockRelaxation),
     ) {
-        let child = self.child(self.decision_blocks[decision as usize] as usize, alternative);
+        let child = self.child(self.decision_blocks[choice.decision], choice.alternative);
         self.emit_around(child, arrive);
-        self.emit(child, arrive, hull);
+        self.emit(child, arrive, relaxation);
     }
 
     /// The same for what every plan has.
-    pub(crate) fn emit_root(&self, arrive: &mut impl FnMut(u32), hull: &mut impl FnMut(Hull)) {
-        self.emit(self.root, arrive, hull);
+    pub(crate) fn emit_root(
+        &self,
+        arrive: &mut impl FnMut(ArcId),
+        relaxation: &mut impl FnMut(BlockRelaxation),
+    ) {
+        self.emit(self.root, arrive, relaxation);
     }
 
     /// The part without labels that a decision belongs to, as large as possible, with its present duration; `None` if
     /// the decision has labels in its alternatives.
-    pub(crate) fn label_free_part(&self, state: &TreeState, decision: u32) -> Option<(u32, Hull)> {
-        let mut id = self.decision_blocks[decision as usize];
-        if self.blocks[id as usize].has_labels {
+    pub(crate) fn label_free_part(
+        &self,
+        state: &TreeState,
+        decision: DecisionId,
+    ) -> Option<(BlockId, BlockRelaxation)> {
+        let mut id = self.decision_blocks[decision];
+        if self.blocks[id].has_labels {
             return None;
         }
-        loop {
-            let parent = self.blocks[id as usize].parent;
-            if parent == NONE || self.blocks[parent as usize].has_labels {
-                break;
-            }
+        while let Some(parent) = self.blocks[id].parent.filter(|&parent| !self.blocks[parent].has_labels) {
             id = parent;
         }
-        let (from, to) = self.blocks[id as usize].ends;
-        let duration = state.durations[id as usize];
-        Some((id, Hull { from, to, lower: duration.lower, upper: duration.upper(), decision: NONE }))
+        let (from, to) = self.blocks[id].ends;
+        let duration = state.durations[id];
+        Some((
+            id,
+            BlockRelaxation { from, to, lower: duration.lower, upper: duration.upper(), decision: None },
+        ))
     }
 
-    fn emit(&self, id: u32, arrive: &mut impl FnMut(u32), hull: &mut impl FnMut(Hull)) {
-        let block = &self.blocks[id as usize];
-        let choice = if let Shape::Choice(decision) = block.shape { decision } else { NONE };
-        if !block.has_labels || choice != NONE {
-            let duration = self.initial[id as usize];
+    fn emit(
+        &self,
+        id: BlockId,
+        arrive: &mut impl FnMut(ArcId),
+        relaxation: &mut impl FnMut(BlockRelaxation),
+    ) {
+        let block = &self.blocks[id];
+        let decision = if let Shape::Choice(decision) = block.shape { Some(decision) } else { None };
+        if !block.has_labels || decision.is_some() {
+            let duration = self.initial[id];
             let (from, to) = block.ends;
-            hull(Hull { from, to, lower: duration.lower, upper: duration.upper(), decision: choice });
+            relaxation(BlockRelaxation {
+                from,
+                to,
+                lower: duration.lower,
+                upper: duration.upper(),
+                decision,
+            });
             return;
         }
-        if block.enclosed != NONE {
-            let duration = self.initial[id as usize];
+        if block.enclosed.is_some() {
+            let duration = self.initial[id];
             let (from, to) = block.ends;
-            hull(Hull { from, to, lower: duration.lower, upper: duration.upper(), decision: NONE });
+            relaxation(BlockRelaxation {
+                from,
+                to,
+                lower: duration.lower,
+                upper: duration.upper(),
+                decision: None,
+            });
         }
-        for &arc in self.own_arcs(id as usize) {
+        for &arc in self.own_arcs(id) {
             arrive(arc);
         }
-        for &child in self.children(id as usize) {
+        for &child in self.children(id) {
             self.emit_around(child, arrive);
-            self.emit(child, arrive, hull);
+            self.emit(child, arrive, relaxation);
         }
     }
 
-    fn emit_around(&self, id: u32, arrive: &mut impl FnMut(u32)) {
-        let (enter, leave) = self.blocks[id as usize].around_arcs;
-        for arc in [enter, leave] {
-            if arc != NONE {
-                arrive(arc);
-            }
+    fn emit_around(&self, id: BlockId, arrive: &mut impl FnMut(ArcId)) {
+        let (enter, leave) = self.blocks[id].around_arcs;
+        for arc in [enter, leave].into_iter().flatten() {
+            arrive(arc);
         }
     }
 
     /// What the nesting alone says about two arcs.
-    pub(crate) fn relation(&self, left_arc: u32, right_arc: u32) -> Relation {
-        let (mut left, mut right) = (self.arc_blocks[left_arc as usize], self.arc_blocks[right_arc as usize]);
-        if left == NONE || right == NONE || left == right {
+    pub(crate) fn relation(&self, left_arc: ArcId, right_arc: ArcId) -> Relation {
+        let (Some(mut left), Some(mut right)) = (self.arc_blocks[left_arc], self.arc_blocks[right_arc])
+        else {
             return Relation::Open;
-        }
-        let (mut left_position, mut right_position) = (NONE, NONE);
+        };
+        let (mut left_position, mut right_position) = (None, None);
         while left != right {
-            let (left_block, right_block) = (&self.blocks[left as usize], &self.blocks[right as usize]);
+            let (left_block, right_block) = (&self.blocks[left], &self.blocks[right]);
             if left_block.depth >= right_block.depth {
-                (left, left_position) = (left_block.parent, left_block.position);
+                let Some(parent) = left_block.parent else { return Relation::Open };
+                (left, left_position) = (parent, Some(left_block.position));
             }
             if right_block.depth >= left_block.depth {
-                (right, right_position) = (right_block.parent, right_block.position);
-            }
-            if left == NONE || right == NONE {
-                return Relation::Open;
+                let Some(parent) = right_block.parent else { return Relation::Open };
+                (right, right_position) = (parent, Some(right_block.position));
             }
         }
-        if self.blocks[left as usize].shape != Shape::Sequence
-            || left_position == NONE
-            || right_position == NONE
-        {
-            Relation::Open
-        } else if left_position < right_position {
-            Relation::Before
-        } else {
-            Relation::After
+        match (left_position, right_position) {
+            (Some(left_position), Some(right_position)) if self.blocks[left].shape == Shape::Sequence => {
+                if left_position < right_position {
+                    Relation::Before
+                } else {
+                    Relation::After
+                }
+            }
+            _ => Relation::Open,
         }
     }
 
     /// What a block's duration and the arcs around it come to.
-    fn contribution(&self, state: &TreeState, id: u32) -> Result<Duration, Overflow> {
-        add(state.durations[id as usize], self.blocks[id as usize].around)
+    fn contribution(&self, state: &TreeState, id: BlockId) -> Result<Duration, TimeOverflow> {
+        self.with_around(state.durations[id], id)
+    }
+
+    /// The duration of a block with that of the arcs around it.
+    fn with_around(&self, duration: Duration, id: BlockId) -> Result<Duration, TimeOverflow> {
+        add(duration, self.blocks[id].around).ok_or_else(|| self.overflow(id))
+    }
+
+    /// That the duration of a block does not fit.
+    fn overflow(&self, id: BlockId) -> TimeOverflow {
+        TimeOverflow::at(self.blocks[id].ends.1)
     }
 }
 
-fn bounds(model: &Model, arc: u32) -> (i64, i64) {
-    let arc = &model.arcs[arc as usize];
+fn bounds(model: &Model, arc: ArcId) -> (i64, i64) {
+    let arc = &model.arcs[arc];
     (arc.lower, arc.upper)
 }
 
@@ -324,26 +356,28 @@ fn intersect(left: (i64, i64), right: (i64, i64)) -> (i64, i64) {
     (left.0.max(right.0), left.1.min(right.1))
 }
 
-fn add(inside: Duration, around: (i64, i64)) -> Result<Duration, Overflow> {
-    Ok(if around.1 == INFINITE {
+/// `None` if the sum does not fit.
+fn add(inside: Duration, around: (i64, i64)) -> Option<Duration> {
+    Some(if around.1 == INFINITE {
         Duration {
-            lower: inside.lower.checked_add(around.0).ok_or(Overflow)?,
+            lower: inside.lower.checked_add(around.0)?,
             upper: inside.upper,
             unbounded: inside.unbounded + 1,
         }
     } else {
         Duration {
-            lower: inside.lower.checked_add(around.0).ok_or(Overflow)?,
-            upper: inside.upper.checked_add(around.1).ok_or(Overflow)?,
+            lower: inside.lower.checked_add(around.0)?,
+            upper: inside.upper.checked_add(around.1)?,
             unbounded: inside.unbounded,
         }
     })
 }
 
-fn sum_of(left: Duration, right: Duration) -> Result<Duration, Overflow> {
-    Ok(Duration {
-        lower: left.lower.checked_add(right.lower).ok_or(Overflow)?,
-        upper: left.upper.checked_add(right.upper).ok_or(Overflow)?,
+/// `None` if the sum does not fit.
+fn sum_of(left: Duration, right: Duration) -> Option<Duration> {
+    Some(Duration {
+        lower: left.lower.checked_add(right.lower)?,
+        upper: left.upper.checked_add(right.upper)?,
         unbounded: left.unbounded + right.unbounded,
     })
 }

@@ -31,6 +31,9 @@ pub(crate) fn show(
         icon::label(ui, Icon::Error, tokens.error);
         ui.label(theme::strong(verdict).color(tokens.error));
     });
+    if let Some(message) = planning.outcome.overflow_message(network) {
+        ui.label(RichText::new(message).color(tokens.text_muted));
+    }
     let Some(failure) = &planning.outcome.failure else { return };
     for (index, reason) in failure.reasons.iter().enumerate() {
         ui.push_id(index, |ui| show_reason(ui, context, network, reason, commands));

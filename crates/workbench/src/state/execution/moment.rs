@@ -48,6 +48,7 @@ pub(super) fn at(base: &Snapshot, executed: &Executed, time: f64) -> (Snapshot, 
         failure: None,
         stats: base.planning.as_ref().map_or_else(Stats::default, |planning| planning.outcome.stats),
         trace: None,
+        overflow: None,
     };
     let planning = Planning { outcome, verdict: None, undrivable: Vec::new() };
     let snapshot = Snapshot {

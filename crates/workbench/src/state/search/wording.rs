@@ -54,7 +54,10 @@ pub fn event(network: &Network, event: &Event) -> String {
         Event::Known => "Failure: these choices contain a conflict that was learned before.".to_owned(),
         Event::Backtrack { .. } => "Back to the last choice.".to_owned(),
         Event::Backjump { because, .. } => {
-            format!("Jump back to the last choice that is to blame, one of {}.", because.len().max(1))
+            format!(
+                "Jump back to the last choice that the failure rests on, one of {}.",
+                because.len().max(1)
+            )
         }
         Event::Solution { .. } => "A plan.".to_owned(),
         Event::Exhausted => "Nothing is left to try.".to_owned(),

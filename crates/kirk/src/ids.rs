@@ -1,0 +1,51 @@
+//! The ids of what the planner numbers by itself; what the network numbers has the ids of `tpn`.
+//!
+//! Each is the position in one [`typed_index_collections::TiVec`], and one more than that in memory, so that an optional
+//! id takes no more room than an id.
+
+use std::num::NonZeroU32;
+
+macro_rules! ids {
+    ($($(#[$doc:meta])* $name:ident;)*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub(crate) struct $name(NonZeroU32);
+
+        impl From<usize> for $name {
+            fn from(index: usize) -> Self {
+                Self(NonZeroU32::MIN.saturating_add(index as u32))
+            }
+        }
+
+        impl From<$name> for usize {
+            fn from(id: $name) -> Self {
+                id.0.get() as Self - 1
+            }
+        }
+    )*};
+}
+
+ids! {
+    /// A choice point on the stack of the search, from the bottom.
+    LevelId;
+    /// A part of the program whose conditions conflict only with each other.
+    EnclosedId;
+    /// A literal among the distinct ones of its variable.
+    LiteralId;
+    /// What follows from some choices for the network of the look-ahead.
+    ConsequenceId;
+    /// A choice point of the solver.
+    ChoicePointId;
+    /// A clause of the solver, from the problem or learned.
+    ClauseId;
+    /// A difference constraint of the solver.
+    DifferenceId;
+    /// A relaxation of an open choice in the solver.
+    CommonBoundId;
+    /// A set of intervals of the solver that exclude each other.
+    ExclusionId;
+    /// A tightening of a bound on the solver's trail.
+    EventId;
+    /// A reason that was noted on the solver's trail.
+    NoteId;
+}
