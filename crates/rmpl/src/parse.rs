@@ -12,6 +12,7 @@ use rustc_hash::FxHashSet;
 use crate::analysis::local::local_diagnostics;
 use crate::analysis::{Checked, DeclarationKey, Index, Meaning, Names, Summary, check, recursion, summarize};
 use crate::diagnostic::{Diagnostic, Edit, Known, Severity};
+use crate::diagnostics::syntax;
 use crate::lower::{Item, Lowering, OptionValue};
 use crate::parser::{Scratch, parse_declaration};
 use crate::program::{Program, TimeUnit};
@@ -204,6 +205,15 @@ impl Parse {
         self.places.iter().map(|place| place.root(&self.text))
     }
 
+    /// The trees of the file's declarations, each with whether it follows the grammar. What a declaration lacks may be
+    /// reported behind it, where the next one begins.
+    pub(crate) fn declarations_by_syntax(&self) -> impl Iterator<Item = (SyntaxNode<'_>, bool)> {
+        self.places.iter().map(|place| {
+            let own = &place.declaration.diagnostics;
+            (place.root(&self.text), own.iter().all(|found| found.code != syntax::CODE))
+        })
+    }
+
     /// The trees of the declarations that touch `range`.
     pub fn declarations_in(&self, range: Span) -> impl Iterator<Item = SyntaxNode<'_>> {
         let first =
@@ -274,6 +284,8 @@ fn add(program: &mut Program, item: Item) {
     match item {
         Item::Constant(decl) => program.constants.push(decl),
         Item::Variable(decl) => program.variables.push(decl),
+        Item::Resource(decl) => program.resources.push(decl),
+        Item::Objective(decl) => program.objectives.push(decl),
         Item::Primitive(decl) => program.primitives.push(decl),
         Item::Activity(decl) => program.activities.push(decl),
         Item::Scenario(decl) => program.scenarios.push(decl),

@@ -23,8 +23,12 @@ pub struct Name {
 pub struct Program {
     /// Constants, in textual order (SPEC 14).
     pub constants: Vec<ConstantDecl>,
-    /// Declared finite-domain state variables, in textual order.
+    /// Declared finite-domain variables, in textual order: those of `var` and those of `state` (SPEC 10.1).
     pub variables: Vec<VariableDecl>,
+    /// Resources, in textual order (SPEC 11).
+    pub resources: Vec<ResourceDecl>,
+    /// What plans are to be best in; the first declaration counts (SPEC 12).
+    pub objectives: Vec<ObjectiveDecl>,
     /// Declared primitives.
     pub primitives: Vec<PrimitiveDecl>,
     /// Activity definitions.
@@ -61,18 +65,95 @@ pub struct ConstantDecl {
     pub span: Span,
 }
 
-/// `var X : {V1, V2};`
+/// `var X : {V1, V2};` or `state X : {V1, V2} = V1;`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VariableDecl {
     /// The variable.
     pub name: Name,
     /// Its domain, in textual order.
     pub values: Vec<Name>,
+    /// The value at the scenario's start, which lasts until something changes it: of a `state` only.
+    pub initial: Option<Name>,
     /// The whole declaration.
     pub span: Span,
 }
 
-/// `primitive Name(p,…)[lo,hi] moves …;`
+/// `resource NAME …;`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ResourceDecl {
+    /// The resource.
+    pub name: Name,
+    /// How much of it there is.
+    pub supply: Supply,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// How much of a resource there is (SPEC 11).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Supply {
+    /// `resource NAME;` or `resource NAME capacity 3;`: what is used is free again afterwards.
+    Reusable {
+        /// How much may be used at a time; 1 if none is given.
+        capacity: Option<Expr>,
+    },
+    /// `resource NAME 0..100 = 40;`: what is consumed is gone until something produces it.
+    Reservoir {
+        /// The level never goes below.
+        least: Expr,
+        /// The level never goes above.
+        greatest: Expr,
+        /// The level at the scenario's start.
+        level: Expr,
+    },
+}
+
+/// `objective minimize cost, maximize reward;`: the goals, the most important one first (SPEC 12).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ObjectiveDecl {
+    /// The goals.
+    pub goals: Vec<GoalDecl>,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// `minimize 2 * cost + end`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GoalDecl {
+    /// Whether more is better.
+    pub is_maximized: bool,
+    /// What is added up: each measure with its factor, which may be negative.
+    pub terms: Vec<(Rational, Measure)>,
+    /// The goal.
+    pub span: Span,
+}
+
+/// What a goal measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Measure {
+    /// What the selected activities cost.
+    Cost,
+    /// What the selected activities are rewarded with.
+    Reward,
+    /// The earliest time of the scenario's end.
+    End,
+    /// Metres driven.
+    Length,
+}
+
+impl Measure {
+    /// All of them, by the words that texts use.
+    pub const ALL: [(&'static str, Self); 4] =
+        [("cost", Self::Cost), ("reward", Self::Reward), ("end", Self::End), ("length", Self::Length)];
+
+    /// The measure that this word stands for.
+    pub fn by_name(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|(name, _)| *name == word).map(|(_, measure)| measure)
+    }
+}
+
+/// `primitive Name(p,…)[lo,hi] moves … requires … sets …;`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PrimitiveDecl {
     /// The primitive.
@@ -85,8 +166,109 @@ pub struct PrimitiveDecl {
     pub moves: Option<Moves>,
     /// The control program that the primitive runs when it is executed.
     pub runs: Option<Name>,
+    /// What each activity of it requires, in textual order (SPEC 10.1).
+    pub requires: Vec<Requirement>,
+    /// What each activity of it changes.
+    pub sets: Vec<Effect>,
+    /// The resources that each activity of it takes and gives (SPEC 11).
+    pub uses: Vec<ResourceUse>,
+    /// What each activity of it costs (SPEC 12); several add up.
+    pub costs: Vec<Amount>,
+    /// What each activity of it is rewarded with; several add up.
+    pub rewards: Vec<Expr>,
     /// The whole declaration.
     pub span: Span,
+}
+
+/// `requires ARM=OUT` or `requires at start ARM=OUT`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Requirement {
+    /// What must hold.
+    pub condition: Condition,
+    /// Whether it must hold at the activity's start only, instead of throughout.
+    pub is_at_start: bool,
+}
+
+/// `sets ARM=OUT`: changing during the activity, and so from its end on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Effect {
+    /// The state variable, perhaps `V.at`.
+    pub variable: Name,
+    /// The value, or a parameter that stands for one.
+    pub value: Name,
+    /// Both.
+    pub span: Span,
+}
+
+/// `uses Power 3`, `consumes Battery 2 per minute`, `produces Battery 5`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ResourceUse {
+    /// The resource.
+    pub resource: Name,
+    /// What happens to it.
+    pub change: Change,
+    /// How much; 1 if `uses` does not say.
+    pub amount: Option<Amount>,
+    /// The resource with its amount.
+    pub span: Span,
+}
+
+/// What an activity does to a resource.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Change {
+    /// Takes it from start to end.
+    Uses,
+    /// Takes it away at its start.
+    Consumes,
+    /// Adds to it at its end.
+    Produces,
+}
+
+impl Change {
+    /// The word of the language.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Uses => "uses",
+            Self::Consumes => "consumes",
+            Self::Produces => "produces",
+        }
+    }
+}
+
+/// `3`, `2 per minute`, `0.5 per metre`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Amount {
+    /// The number.
+    pub value: Expr,
+    /// What it is multiplied by.
+    pub per: Option<Per>,
+    /// The number with its unit.
+    pub span: Span,
+}
+
+/// What an amount is counted per.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Per {
+    /// `per second`, `per minute`, `per hour`: of the activity's duration.
+    Time(DurationUnit),
+    /// `per metre`: of the planned path.
+    Metre,
+}
+
+impl Per {
+    /// All of them, by the words that texts use.
+    pub const ALL: [(&'static str, Self); 4] = [
+        ("second", Self::Time(DurationUnit::Second)),
+        ("minute", Self::Time(DurationUnit::Minute)),
+        ("hour", Self::Time(DurationUnit::Hour)),
+        ("metre", Self::Metre),
+    ];
+
+    /// The unit that this word stands for.
+    pub fn by_name(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|(name, _)| *name == word).map(|(_, per)| per)
+    }
 }
 
 /// `moves V1, V2 speed (least, greatest)`
@@ -192,7 +374,7 @@ pub enum ExprKind {
 }
 
 /// A unit that is written behind a number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum DurationUnit {
     /// `s`
     Second,
@@ -271,10 +453,16 @@ pub enum StatementKind {
     Maintaining(Box<Statement>, Condition),
     /// `do body watching condition`
     Watching(Box<Statement>, Condition),
+    /// `a and b` as an assertion: the body asserts `a`, and for as long the condition `b` is asserted.
+    Telling(Box<Statement>, Condition),
     /// `if condition thennext body`
     IfThennext(Condition, Box<Statement>),
     /// `repeat count { … }`: so many copies of the body, one after the other.
     Repeat(Expr, Box<Statement>),
+    /// `unordered { a; b; … }`: all of them, each when it fits, no two at a time (SPEC 14).
+    Unordered(Vec<Statement>),
+    /// `do body using resource amount`: the amount, 1 if none is given, is used for the body's whole length (SPEC 11).
+    Using(Box<Statement>, Name, Option<Expr>),
     /// `Name(args)`, or a bare name that is a declared activity or primitive.
     Call(Name, Vec<Argument>),
     /// `c`, `tell c` (an assertion) or `ask c`.
@@ -320,7 +508,7 @@ pub enum ArgumentValue {
 /// (SPEC 1.3) and on substitution of formals; [`crate::program::Program`]'s users resolve it after substitution.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Condition {
-    /// The variable, the atom, or a formal that stands for one.
+    /// The variable, the atom, or a formal that stands for one; of a vehicle's place `V.at`.
     pub variable: Name,
     /// The value, or several of which the variable has one; an atom has none.
     pub values: Vec<Name>,

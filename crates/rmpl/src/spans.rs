@@ -5,9 +5,10 @@
 
 use crate::diagnostic::{Diagnostic, Edit, Fix};
 use crate::program::{
-    ActivityDecl, Argument, ArgumentValue, Bounds, Condition, ConstantDecl, ControlDecl, Expr, ExprKind,
-    HeaderBound, HeaderBounds, LocationDecl, Moves, Name, ObstacleDecl, PrimitiveDecl, Program, ScenarioDecl,
-    Statement, StatementKind, TerrainDecl, VariableDecl, VehicleDecl, World,
+    ActivityDecl, Amount, Argument, ArgumentValue, Bounds, Condition, ConstantDecl, ControlDecl, Effect,
+    Expr, ExprKind, GoalDecl, HeaderBound, HeaderBounds, LocationDecl, Moves, Name, ObjectiveDecl,
+    ObstacleDecl, PrimitiveDecl, Program, Requirement, ResourceDecl, ResourceUse, ScenarioDecl, Statement,
+    StatementKind, Supply, TerrainDecl, VariableDecl, VehicleDecl, World,
 };
 use crate::span::Span;
 
@@ -101,12 +102,21 @@ macro_rules! spans {
 }
 
 spans! {
-    Program { constants, variables, primitives, activities, scenarios, control, world }
+    Program { constants, variables, resources, objectives, primitives, activities, scenarios, control, world }
     Name { span }
     ControlDecl { text_span, span }
     ConstantDecl { name, value, span }
-    VariableDecl { name, values, span }
-    PrimitiveDecl { name, formals, bounds, moves, runs, span }
+    VariableDecl { name, values, initial, span }
+    ResourceDecl { name, supply, span }
+    ObjectiveDecl { goals, span }
+    GoalDecl { span }
+    PrimitiveDecl {
+        name, formals, bounds, moves, runs, requires, sets, uses, costs, rewards, span
+    }
+    Requirement { condition }
+    Effect { variable, value, span }
+    ResourceUse { resource, amount, span }
+    Amount { value, span }
     Moves { vehicles, span }
     ActivityDecl { name, formals, bounds, body, span }
     ScenarioDecl { name, bounds, body, span }
@@ -123,6 +133,19 @@ spans! {
     Diagnostic { span, fixes }
     Fix { edits }
     Edit { span }
+}
+
+impl Spans for Supply {
+    fn visit_spans(&mut self, visit: &mut dyn FnMut(&mut Span)) {
+        match self {
+            Self::Reusable { capacity } => capacity.visit_spans(visit),
+            Self::Reservoir { least, greatest, level } => {
+                least.visit_spans(visit);
+                greatest.visit_spans(visit);
+                level.visit_spans(visit);
+            }
+        }
+    }
 }
 
 impl Spans for HeaderBounds {
@@ -170,8 +193,12 @@ impl Spans for ArgumentValue {
 impl Spans for StatementKind {
     fn visit_spans(&mut self, visit: &mut dyn FnMut(&mut Span)) {
         match self {
-            Self::Sequence(parts) | Self::Parallel(parts) | Self::Choose(parts) => parts.visit_spans(visit),
-            Self::Maintaining(body, condition) | Self::Watching(body, condition) => {
+            Self::Sequence(parts) | Self::Parallel(parts) | Self::Choose(parts) | Self::Unordered(parts) => {
+                parts.visit_spans(visit);
+            }
+            Self::Maintaining(body, condition)
+            | Self::Watching(body, condition)
+            | Self::Telling(body, condition) => {
                 body.visit_spans(visit);
                 condition.visit_spans(visit);
             }
@@ -182,6 +209,11 @@ impl Spans for StatementKind {
             Self::Repeat(count, body) => {
                 count.visit_spans(visit);
                 body.visit_spans(visit);
+            }
+            Self::Using(body, resource, amount) => {
+                body.visit_spans(visit);
+                resource.visit_spans(visit);
+                amount.visit_spans(visit);
             }
             Self::Call(name, arguments) => {
                 name.visit_spans(visit);
@@ -230,6 +262,9 @@ mod tests {
     #[test]
     fn a_program_follows_the_edit_of_a_comment() {
         let before = "# A note.\nconst N = 2*M; const M = 3;\nprimitive B(n, c)[1,2];\n\
+             state ARM : {IN, OUT} = IN;\nresource P capacity 2; resource E 0..N = 3; objective minimize cost;\n\
+             primitive D(s)[1,2] requires ARM=OUT, V.at=s sets ARM=IN uses P 2 consumes E N per metre costs 3 rewards N;\n\
+             U() = { unordered { B(1, P); do D(s) using P N }; optional D(s) }\n\
              A() = { B(N+1, X in {a, b})[1,2*3]; if P=OK thennext B(2, Q=on) else repeat N { delay } }\n\
              scenario S = { free A(); do A() maintaining P and (Q or R) }\n";
         let after = before.replace("note", "longer note");

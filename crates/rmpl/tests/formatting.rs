@@ -101,6 +101,13 @@ fn a_declaration_with_a_mistake_is_left_alone() {
     check("primitive A( [1,2];\nprimitive   B()[1,2];\n", "primitive A( [1,2];\nprimitive B()[1,2];\n");
 }
 
+/// What is missing is reported where the next declaration begins.
+#[test]
+fn a_declaration_without_its_end_is_left_alone() {
+    let text = "scenario S = {\n  { A();  B() },\nlocation X (1, 2);\n";
+    check(text, text);
+}
+
 fn significant(text: &str) -> Vec<String> {
     let parse = parse(text);
     let tokens = parse.declarations().flat_map(SyntaxNode::tokens);

@@ -7,7 +7,7 @@ use rmpl::{Edit, Span, format, parse};
 
 const ROUNDS: u64 = 2500;
 
-const PROGRAMS: [&str; 7] = [
+const PROGRAMS: [&str; 8] = [
     include_str!("../../../assets/missions/enroute.rmpl"),
     include_str!("../../../assets/missions/causal-links.rmpl"),
     include_str!("../../../tests/conformance/c01_enroute_verbatim.rmpl"),
@@ -15,6 +15,7 @@ const PROGRAMS: [&str; 7] = [
     include_str!("../../../tests/conformance/h01_orbit_nominal.rmpl"),
     include_str!("../../../tests/suite/07-mistakes.md"),
     include_str!("../../../tests/suite/09-larger-missions.md"),
+    include_str!("../../../tests/suite/10-state-and-resources.md"),
 ];
 
 const PIECES: [&str; 20] = [

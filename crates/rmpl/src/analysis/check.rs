@@ -2,16 +2,16 @@
 
 use exact::Bound;
 
-use super::index::{DeclarationKey, Facts, Index, Namespace, Told};
+use super::index::{DeclarationKey, Facts, Index, Namespace};
 use super::names::{Names, Symbol};
 use super::structure;
-use super::summary::{Call, Definition, Literal, Summary, Use, UseKind};
+use super::summary::{Call, Definition, Summary, Use, UseKind};
 use crate::diagnostic::{Diagnostic, Known, Severity};
 use crate::diagnostics::{
-    arity, bounds, duplicate, similar, support, traverse, undefined, unknown_name, unused, value,
+    arity, bounds, duplicate, similar, traverse, undefined, unknown_name, unused, value,
 };
 use crate::lower::Item;
-use crate::program::LabelMode;
+use crate::program::Change;
 
 /// The outcome of checking one declaration.
 #[derive(Clone, Debug, Default)]
@@ -73,6 +73,12 @@ impl Meaning<'_> {
         self.index.definition(Namespace::Variable, variable).map(|definition| definition.values.as_slice())
     }
 
+    /// Whether a declared variable keeps its value until something changes it.
+    pub(crate) fn is_state(&self, variable: Symbol) -> bool {
+        let definition = self.index.definition(Namespace::Variable, variable);
+        definition.is_some_and(|definition| definition.initial.is_some())
+    }
+
     /// Whether `X_V`, with `X` and `V` given, is about `X` (SPEC 1.3).
     pub(crate) fn splits(&self, whole: Symbol, (variable, value): (Symbol, Symbol)) -> bool {
         self.domain(whole).is_none()
@@ -83,31 +89,31 @@ impl Meaning<'_> {
     }
 }
 
-struct Checker<'a> {
-    summary: &'a Summary,
-    names: &'a Names,
-    index: &'a Index,
+pub(super) struct Checker<'a> {
+    pub(super) summary: &'a Summary,
+    pub(super) names: &'a Names,
+    pub(super) index: &'a Index,
     checked: Checked,
 }
 
 impl<'a> Checker<'a> {
-    const fn meaning(&self) -> Meaning<'a> {
+    pub(super) const fn meaning(&self) -> Meaning<'a> {
         Meaning { names: self.names, index: self.index }
     }
 
-    fn push(&mut self, diagnostic: Diagnostic) {
+    pub(super) fn push(&mut self, diagnostic: Diagnostic) {
         self.checked.diagnostics.push((None, diagnostic));
     }
 
-    fn push_once(&mut self, namespace: Namespace, name: Symbol, diagnostic: Diagnostic) {
+    pub(super) fn push_once(&mut self, namespace: Namespace, name: Symbol, diagnostic: Diagnostic) {
         self.checked.diagnostics.push((Some((namespace, name)), diagnostic));
     }
 
-    fn text(&self, symbol: Symbol) -> &'a str {
+    pub(super) fn text(&self, symbol: Symbol) -> &'a str {
         self.names.text(symbol)
     }
 
-    fn nearest(&mut self, written: Symbol, namespace: Namespace) -> Option<smol_str::SmolStr> {
+    pub(super) fn nearest(&mut self, written: Symbol, namespace: Namespace) -> Option<smol_str::SmolStr> {
         self.checked.depends_on_names |= namespace.bit();
         self.names.nearest(written, self.index.defined(namespace).iter().copied())
     }
@@ -126,6 +132,7 @@ impl<'a> Checker<'a> {
                 Namespace::Callable => "primitive",
                 Namespace::Variable => "variable",
                 Namespace::Constant => "constant",
+                Namespace::Resource => "resource",
                 _ => "location",
             };
             self.push(unused::unused(what, self.text(definition.name), definition.span));
@@ -189,6 +196,14 @@ impl<'a> Checker<'a> {
                 self.number(used);
                 return;
             }
+            UseKind::Place => {
+                self.place(used);
+                return;
+            }
+            UseKind::Resource(change) => {
+                self.resource(used, change);
+                return;
+            }
             UseKind::Start => (Namespace::Location, "location"),
             UseKind::Vehicle => (Namespace::Vehicle, "vehicle"),
         };
@@ -201,6 +216,23 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// The place of a vehicle is one of the locations.
+    fn place(&mut self, used: &Use) {
+        if self.index.facts(used.name).definition(Namespace::Location).is_none() {
+            let nearest = self.nearest(used.name, Namespace::Location);
+            self.push(value::no_location(self.text(used.name), used.span, nearest.as_deref()));
+        }
+    }
+
+    fn resource(&mut self, used: &Use, change: Change) {
+        if self.index.facts(used.name).definition(Namespace::Resource).is_none() {
+            let nearest = self.nearest(used.name, Namespace::Resource);
+            let (name, start) = (self.text(used.name), self.summary.start);
+            let diagnostic = undefined::resource(name, used.span, change, nearest.as_deref(), start);
+            self.push_once(Namespace::Resource, used.name, diagnostic);
+        }
+    }
+
     /// A name in an expression that no parameter explains.
     fn number(&mut self, used: &Use) {
         if self.index.facts(used.name).definition(Namespace::Constant).is_some() {
@@ -210,132 +242,6 @@ impl<'a> Checker<'a> {
         let name = self.text(used.name);
         self.push(unknown_name::unknown(name, used.span, &self.summary.numbers, nearest.as_deref()));
     }
-
-    fn literal(&mut self, literal: &Literal) {
-        let is_call =
-            literal.is_bare && self.index.facts(literal.variable).definition(Namespace::Callable).is_some();
-        if is_call || literal.variable_is_formal {
-            return;
-        }
-        let (variable, value) = self.resolve(literal);
-        match self.meaning().domain(variable) {
-            Some(domain) => {
-                if !self.values_fit(literal, variable, value, domain) {
-                    return;
-                }
-            }
-            None => self.undeclared_variable(literal, variable),
-        }
-        self.support(literal, variable, value);
-    }
-
-    /// The variable and value of a literal; an atom has no value.
-    fn resolve(&self, literal: &Literal) -> (Symbol, Option<Symbol>) {
-        match (literal.values.first(), literal.split) {
-            (Some(&(value, _)), _) => (literal.variable, Some(value)),
-            (None, Some((variable, value))) if self.meaning().splits(literal.variable, (variable, value)) => {
-                (variable, Some(value))
-            }
-            _ => (literal.variable, None),
-        }
-    }
-
-    fn values_fit(
-        &mut self,
-        literal: &Literal,
-        variable: Symbol,
-        value: Option<Symbol>,
-        domain: &[Symbol],
-    ) -> bool {
-        if literal.value_is_formal {
-            return true;
-        }
-        let is_value = |value: Symbol| domain.contains(&value);
-        let wrong = literal.values.iter().find(|(value, _)| !is_value(*value));
-        let fits = match value {
-            Some(value) => wrong.is_none() && is_value(value),
-            None => self.names.find("true").is_some_and(is_value),
-        };
-        if !fits {
-            let values: Vec<&str> = domain.iter().map(|&value| self.text(value)).collect();
-            let name = self.text(variable);
-            let diagnostic = match wrong {
-                Some(&(value, span)) => {
-                    let nearest = self.names.nearest(value, domain.iter().copied());
-                    value::outside_domain(name, self.text(value), span, &values, nearest.as_deref())
-                }
-                None => value::no_value(name, literal.variable_span, &values),
-            };
-            self.push(diagnostic);
-        }
-        fits
-    }
-
-    /// An undeclared name that looks like a declared variable.
-    fn undeclared_variable(&mut self, literal: &Literal, variable: Symbol) {
-        let written = self.text(literal.variable);
-        if let Some((stem, value)) = literal.split.filter(|_| literal.values.is_empty()) {
-            if let Some(domain) = self.meaning().domain(stem) {
-                let values: Vec<&str> = domain.iter().map(|&value| self.text(value)).collect();
-                self.push(similar::value(written, self.text(stem), &values, literal.variable_span));
-                return;
-            }
-            if let Some(nearest) = self.nearest(stem, Namespace::Variable) {
-                let mended = format!("{nearest}_{}", self.text(value));
-                self.push(similar::variable(written, &mended, literal.variable_span));
-                return;
-            }
-        }
-        if literal.is_bare
-            && let Some(nearest) = self.nearest(variable, Namespace::Callable)
-        {
-            self.push(similar::callable(written, &nearest, literal.variable_span));
-            return;
-        }
-        if let Some(nearest) = self.nearest(variable, Namespace::Variable) {
-            self.push(similar::variable(written, &nearest, literal.variable_span));
-        }
-    }
-
-    /// An Ask that no Tell of the file can support.
-    fn support(&mut self, literal: &Literal, variable: Symbol, value: Option<Symbol>) {
-        let is_checkable = literal.mode == LabelMode::Ask
-            && !literal.value_is_formal
-            && self.index.scenarios > 0
-            && self.index.told_of_formals == 0;
-        if !is_checkable {
-            return;
-        }
-        let meaning = self.meaning();
-        let domain = meaning.domain(variable);
-        let is_about = |told: &Told| {
-            !told.is_split
-                || told.value.is_some_and(|value| match domain {
-                    Some(domain) => domain.contains(&value),
-                    None => self.index.facts(variable).compared > 0,
-                })
-        };
-        let supports = |told: &Told| {
-            let among = |told: &Told| literal.values.iter().any(|&(value, _)| told.value == Some(value));
-            told.is_any
-                || (literal.values.len() > 1 && told.negated == literal.negated && among(told))
-                || match (told.negated, literal.negated) {
-                    (false, false) | (true, true) => told.value == value,
-                    (false, true) => told.value != value,
-                    (true, false) => leaves_only(domain, told.value, value),
-                }
-        };
-        let told = &self.index.facts(variable).told;
-        if !told.iter().any(|told| is_about(told) && supports(told)) {
-            self.push(support::never(literal, self.text(literal.variable), self.names));
-        }
-    }
-}
-
-/// Whether a variable of this domain that is not `denied` must be `asked`.
-fn leaves_only(domain: Option<&[Symbol]>, denied: Option<Symbol>, asked: Option<Symbol>) -> bool {
-    let Some(&[one, other]) = domain else { return false };
-    (denied, asked) == (Some(one), Some(other)) || (denied, asked) == (Some(other), Some(one))
 }
 
 const fn is_unused(namespace: Namespace, facts: &Facts) -> bool {
@@ -343,7 +249,8 @@ const fn is_unused(namespace: Namespace, facts: &Facts) -> bool {
         Namespace::Callable => facts.calls == 0,
         Namespace::Variable => facts.literals == 0 && facts.arguments == 0,
         Namespace::Constant => facts.arguments + facts.numbers == 0,
-        Namespace::Location => facts.arguments == 0 && facts.starts == 0,
+        Namespace::Location => facts.arguments + facts.starts + facts.places == 0,
+        Namespace::Resource => facts.resources == 0,
         _ => false,
     }
 }

@@ -1,7 +1,7 @@
 //! What all declarations together declare and use, counted per name, so that one declaration can be exchanged.
 
 use super::names::{Names, Symbol};
-use super::summary::{Definition, Literal, Summary, UseKind};
+use super::summary::{Definition, Literal, Origin, Summary, UseKind};
 use crate::program::LabelMode;
 
 /// A declaration, as long as it is not parsed again.
@@ -27,10 +27,12 @@ pub(crate) enum Namespace {
     Obstacle,
     Vehicle,
     Constant,
+    Resource,
+    Objective,
 }
 
 impl Namespace {
-    pub(crate) const COUNT: usize = 9;
+    pub(crate) const COUNT: usize = 11;
 
     /// A set of namespaces with this one alone.
     pub(crate) const fn bit(self) -> u16 {
@@ -47,6 +49,8 @@ pub(crate) struct Told {
     pub(crate) is_split: bool,
     /// A parameter stands for the value.
     pub(crate) is_any: bool,
+    /// It keeps a watched condition away, which asserts nothing of a state variable.
+    pub(crate) is_watched: bool,
     count: u32,
 }
 
@@ -60,6 +64,10 @@ pub(crate) struct Facts {
     pub(crate) vehicles: u32,
     /// Uses as a number in an expression.
     pub(crate) numbers: u32,
+    /// Uses as the place of a vehicle.
+    pub(crate) places: u32,
+    /// Uses as a resource.
+    pub(crate) resources: u32,
     /// Conditions about the name, those written `X_V` included.
     pub(crate) literals: u32,
     /// Conditions that compare it with a value.
@@ -71,11 +79,21 @@ pub(crate) struct Facts {
 }
 
 /// What the check of a declaration can see of a name.
-type Visible = (u64, u64, [bool; 6]);
+type Visible = (u64, u64, [bool; 9]);
 
 impl Facts {
     fn visible(&self) -> Visible {
-        let uses = [self.calls, self.arguments, self.starts, self.numbers, self.literals, self.compared];
+        let uses = [
+            self.calls,
+            self.arguments,
+            self.starts,
+            self.vehicles,
+            self.numbers,
+            self.places,
+            self.resources,
+            self.literals,
+            self.compared,
+        ];
         let used = uses.map(|count| count > 0);
         (self.definition_fingerprint, self.told_fingerprint, used)
     }
@@ -98,6 +116,8 @@ pub(crate) struct Index {
     strict: u32,
     /// Assertions whose variable is a parameter: they may be about anything.
     pub(crate) told_of_formals: u32,
+    /// Movements of vehicles that parameters stand for: they may take any vehicle anywhere.
+    pub(crate) moves_of_formals: u32,
     global_changed_at: u32,
     /// The names defined in each namespace, in no order.
     defined: [Vec<Symbol>; Namespace::COUNT],
@@ -116,6 +136,8 @@ impl Index {
             starts: 0,
             vehicles: 0,
             numbers: 0,
+            places: 0,
+            resources: 0,
             literals: 0,
             compared: 0,
             told: Vec::new(),
@@ -216,7 +238,7 @@ impl Index {
             touched.dedup();
         }
         let before: Vec<Visible> = touched.iter().map(|&symbol| self.facts(symbol).visible()).collect();
-        let global_before = (self.scenarios > 0, self.strict > 0, self.told_of_formals > 0);
+        let global_before = self.globals();
         let names_before = names_defined(old.clone());
         let names_after = names_defined(new.clone());
         for (namespace, changed_at) in self.names_changed_at.iter_mut().enumerate() {
@@ -245,10 +267,15 @@ impl Index {
                 self.last_change = self.revision;
             }
         }
-        if global_before != (self.scenarios > 0, self.strict > 0, self.told_of_formals > 0) {
+        if global_before != self.globals() {
             self.global_changed_at = self.revision;
             self.last_change = self.revision;
         }
+    }
+
+    /// What every check can see.
+    const fn globals(&self) -> [bool; 4] {
+        [self.scenarios > 0, self.strict > 0, self.told_of_formals > 0, self.moves_of_formals > 0]
     }
 
     /// Adds what `summary` says, or takes it away.
@@ -288,6 +315,9 @@ impl Index {
         if summary.strict == Some(true) {
             step(&mut self.strict);
         }
+        if summary.moves_a_parameter {
+            step(&mut self.moves_of_formals);
+        }
         for call in &summary.calls {
             step(&mut self.facts[call.name.index()].calls);
         }
@@ -297,6 +327,8 @@ impl Index {
                 UseKind::Argument(_) => step(&mut facts.arguments),
                 UseKind::Start => step(&mut facts.starts),
                 UseKind::Vehicle => step(&mut facts.vehicles),
+                UseKind::Place => step(&mut facts.places),
+                UseKind::Resource(_) => step(&mut facts.resources),
                 UseKind::Number | UseKind::HeaderBound => step(&mut facts.numbers),
             }
         }
@@ -315,6 +347,12 @@ impl Index {
             }
             return;
         }
+        if literal.vehicle.is_some_and(|vehicle| vehicle.is_formal) {
+            if literal.mode == LabelMode::Tell && literal.origin != Origin::Watched {
+                step(&mut self.moves_of_formals);
+            }
+            return;
+        }
         step(&mut self.facts[literal.variable.index()].literals);
         if !literal.values.is_empty() {
             step(&mut self.facts[literal.variable.index()].compared);
@@ -330,6 +368,7 @@ impl Index {
             negated: literal.negated,
             is_split: false,
             is_any: literal.value_is_formal || literal.values.len() > 1,
+            is_watched: literal.origin == Origin::Watched,
             count: 0,
         };
         self.facts[literal.variable.index()].tell(told, is_added);
@@ -358,10 +397,23 @@ impl Facts {
 }
 
 impl Told {
+    /// What holds of a state variable at the scenario's start.
+    pub(crate) const fn at_first(value: Symbol) -> Self {
+        Self {
+            value: Some(value),
+            negated: false,
+            is_split: false,
+            is_any: false,
+            is_watched: false,
+            count: 1,
+        }
+    }
+
     fn fingerprint(self) -> u64 {
         let value = self.value.map_or(0, |value| value.index() as u64 + 1);
-        let flags = u64::from(self.negated) | u64::from(self.is_split) << 1 | u64::from(self.is_any) << 2;
-        (value << 3 | flags).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+        let bits = [self.negated, self.is_split, self.is_any, self.is_watched];
+        let flags = bits.into_iter().fold(0, |flags, bit| flags << 1 | u64::from(bit));
+        (value << 4 | flags).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15)
     }
 }
 
@@ -378,7 +430,9 @@ fn names_defined<'a>(
 ) -> [u64; Namespace::COUNT] {
     let mut sums = [0_u64; Namespace::COUNT];
     for definition in summaries.filter_map(|(_, summary)| summary.definition.as_ref()) {
-        let hash = (definition.name.index() as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        // Among variables, those that keep their value are a kind of their own.
+        let named = (definition.name.index() as u64) << 1 | u64::from(definition.initial.is_some());
+        let hash = (named + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let sum = &mut sums[definition.namespace as usize];
         *sum = sum.wrapping_add(hash ^ hash >> 29);
     }

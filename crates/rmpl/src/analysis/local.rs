@@ -3,11 +3,13 @@
 use exact::{Bound, Rational};
 
 use super::constant::{self, ConstantError};
+use super::names::edit_distance_at_most;
 use crate::diagnostic::Diagnostic;
-use crate::diagnostics::{bounds, choice, duplicate, mixed, option, value};
+use crate::diagnostics::{bounds, choice, duplicate, mixed, option, syntax, value};
 use crate::lower::{Item, OptionDecl, OptionValue};
 use crate::program::{
-    Bounds, Expr, HeaderBound, HeaderBounds, Name, ObstacleShape, Statement, StatementKind,
+    Bounds, Expr, GoalDecl, HeaderBound, HeaderBounds, Measure, Name, ObstacleShape, PrimitiveDecl,
+    Statement, StatementKind, VariableDecl,
 };
 use crate::span::Span;
 use crate::syntax::{Element, SyntaxKind, SyntaxNode};
@@ -33,7 +35,17 @@ struct Local {
 impl Local {
     fn item(&mut self, item: &Item) {
         match item {
-            Item::Variable(decl) => self.distinct(&decl.values, "value"),
+            Item::Variable(decl) => {
+                self.distinct(&decl.values, "value");
+                if let Some(initial) = &decl.initial {
+                    self.initial(decl, initial);
+                }
+            }
+            Item::Objective(decl) => {
+                for goal in &decl.goals {
+                    self.goal(goal);
+                }
+            }
             Item::Primitive(decl) => {
                 self.distinct(&decl.formals, "parameter");
                 self.bounds(decl.bounds.as_ref());
@@ -45,6 +57,7 @@ impl Local {
                         self.found.push(value::speeds(moves.span));
                     }
                 }
+                self.effects(decl);
             }
             Item::Activity(decl) => {
                 let mut names = decl.formals.clone();
@@ -79,7 +92,7 @@ impl Local {
                 let found = parsed.diagnostics.into_iter();
                 self.found.extend(found.map(|diagnostic| diagnostic.moved(decl.text_span.start)));
             }
-            Item::Location(_) | Item::Constant(_) => {}
+            Item::Location(_) | Item::Constant(_) | Item::Resource(_) => {}
         }
     }
 
@@ -88,6 +101,44 @@ impl Local {
             if names.iter().take(index).any(|earlier| earlier.text == name.text) {
                 self.found.push(duplicate::in_list(name, what));
             }
+        }
+    }
+
+    /// The value at the start is one of the domain.
+    fn initial(&mut self, decl: &VariableDecl, initial: &Name) {
+        let values: Vec<&str> = decl.values.iter().map(|value| value.text.as_str()).collect();
+        let written = initial.text.as_str();
+        if !values.contains(&written) {
+            let limit = (written.len() / 3).clamp(1, 3);
+            let alike = |value: &&&str| edit_distance_at_most(written, value, limit).is_some();
+            let nearest = values.iter().find(alike).copied();
+            let name = &decl.name.text;
+            self.found.push(value::outside_domain(name, written, initial.span, &values, nearest));
+        }
+    }
+
+    /// An activity changes a variable once.
+    fn effects(&mut self, decl: &PrimitiveDecl) {
+        for (index, effect) in decl.sets.iter().enumerate() {
+            let name = &effect.variable;
+            let moved = decl.moves.iter().flat_map(|moves| &moves.vehicles);
+            if decl.sets.iter().take(index).any(|earlier| earlier.variable.text == name.text) {
+                self.found.push(duplicate::effect(name));
+            } else if let Some(vehicle) = name.text.strip_suffix(".at")
+                && moved.into_iter().any(|moved| moved.text == vehicle)
+            {
+                self.found.push(duplicate::movement(name, vehicle));
+            }
+        }
+    }
+
+    /// The end may come later than a plan says, so that later is never better.
+    fn goal(&mut self, goal: &GoalDecl) {
+        let mut factors = goal.terms.iter().filter(|(_, measure)| *measure == Measure::End).map(|it| it.0);
+        let sum = factors.try_fold(Rational::ZERO, |sum: Rational, factor| sum.checked_add(factor));
+        let is_maximized = |factor: Rational| factor.is_positive() == goal.is_maximized;
+        if sum.is_some_and(|sum| sum != Rational::ZERO && is_maximized(sum)) {
+            self.found.push(syntax::end_maximized(goal.span));
         }
     }
 
@@ -175,15 +226,18 @@ impl Local {
         match &statement.kind {
             StatementKind::Sequence(parts)
             | StatementKind::Parallel(parts)
-            | StatementKind::Choose(parts) => {
+            | StatementKind::Choose(parts)
+            | StatementKind::Unordered(parts) => {
                 for part in parts {
                     self.statement(part);
                 }
             }
             StatementKind::Maintaining(body, _)
             | StatementKind::Watching(body, _)
+            | StatementKind::Telling(body, _)
             | StatementKind::IfThennext(_, body)
-            | StatementKind::Repeat(_, body) => self.statement(body),
+            | StatementKind::Repeat(_, body)
+            | StatementKind::Using(body, ..) => self.statement(body),
             StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay => {}
         }
     }

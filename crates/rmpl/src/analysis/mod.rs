@@ -4,8 +4,10 @@
 //! declaration is checked again only when something that it mentions has changed.
 
 mod check;
+mod collect;
 pub(crate) mod constant;
 mod index;
+mod literal;
 pub(crate) mod local;
 mod names;
 mod recursion;
@@ -13,7 +15,8 @@ mod structure;
 mod summary;
 
 pub(crate) use check::{Checked, Meaning, check};
+pub(crate) use collect::summarize;
 pub(crate) use index::{DeclarationKey, Index, Namespace};
 pub(crate) use names::{Names, Symbol, edit_distance_at_most};
 pub(crate) use recursion::recursion;
-pub(crate) use summary::{Call, Literal, Summary, summarize};
+pub(crate) use summary::{Call, Literal, Origin, Summary, UseKind};

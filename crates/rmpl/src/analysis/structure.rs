@@ -74,6 +74,13 @@ impl Structure<'_> {
                 let least = branches.iter().map(|branch| self.duration(branch).0).max();
                 (least.unwrap_or(Time::ZERO), Bound::Infinite)
             }
+            StatementKind::Unordered(branches) => {
+                is_leaf = false;
+                let one_by_one = branches
+                    .iter()
+                    .try_fold(Time::ZERO, |sum, branch| sum.checked_add(self.duration(branch).0));
+                (one_by_one.unwrap_or(Time::ZERO), Bound::Infinite)
+            }
             StatementKind::Choose(alternatives) => {
                 is_leaf = false;
                 let each: Vec<Interval> = alternatives.iter().map(|part| self.duration(part)).collect();
@@ -82,7 +89,9 @@ impl Structure<'_> {
             }
             StatementKind::Maintaining(body, _)
             | StatementKind::Watching(body, _)
-            | StatementKind::IfThennext(_, body) => {
+            | StatementKind::Telling(body, _)
+            | StatementKind::IfThennext(_, body)
+            | StatementKind::Using(body, ..) => {
                 is_leaf = false;
                 self.duration(body)
             }
@@ -194,22 +203,38 @@ impl Structure<'_> {
                 self.starting(body, out);
                 false
             }
+            StatementKind::Telling(body, condition) => {
+                out.push((LabelMode::Tell, condition.clone()));
+                self.starting(body, out)
+            }
             StatementKind::Watching(body, condition) => {
                 let denied = Condition { negated: !condition.negated, ..condition.clone() };
                 out.push((LabelMode::Tell, denied));
                 self.starting(body, out);
                 false
             }
+            StatementKind::Using(body, ..) => {
+                self.starting(body, out);
+                false
+            }
             StatementKind::Delay => is_instant,
-            // Only a copy begins here, and it may be none.
-            StatementKind::Choose(_) | StatementKind::Call(..) | StatementKind::Repeat(..) => false,
+            // Only a copy begins here, and it may be none; of several without order, any may be the first.
+            StatementKind::Choose(_)
+            | StatementKind::Call(..)
+            | StatementKind::Repeat(..)
+            | StatementKind::Unordered(_) => false,
         }
     }
 
     /// Whether the two can never hold together (SPEC 3.1).
     fn conflict(&self, one: &Condition, other: &Condition) -> bool {
         let (Some(one), Some(other)) = (self.resolve(one), self.resolve(other)) else { return false };
-        if one.0 != other.0 {
+        // What a state variable is before an instant and after it may differ.
+        let lasts = || {
+            let variable = self.meaning.names.find(&one.0);
+            one.0.contains('.') || variable.is_some_and(|variable| self.meaning.is_state(variable))
+        };
+        if one.0 != other.0 || lasts() {
             return false;
         }
         match (one.2, other.2) {

@@ -14,9 +14,10 @@ pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
     title: "a name is declared twice",
-    meaning: "Activities and primitives share their names, because both are called; variables, scenarios, locations, obstacles and
-vehicles each have names of their own. Within one of these kinds a name has one declaration, and so has each option.
-The parameters in one header must differ as well. The first declaration counts.",
+    meaning: "Activities and primitives share their names, because both are called, and so do `var` and `state`;
+scenarios, resources, locations, obstacles and vehicles each have names of their own. Within one of these kinds a name has one declaration, and so has each option.
+The parameters in one header must differ as well, and one activity sets a variable once. There is one objective, with all goals.
+The first declaration counts.",
     example: "primitive Drive()[20,30];
 primitive Drive()[25,40];
 scenario Day[0,60] = { Drive() }",
@@ -36,6 +37,8 @@ pub(crate) fn declaration(namespace: Namespace, name: &str, span: Span) -> Diagn
         Namespace::Terrain => "a terrain is declared before this one".to_owned(),
         Namespace::Location => format!("a location `{name}` is declared before this one"),
         Namespace::Obstacle => format!("an obstacle `{name}` is declared before this one"),
+        Namespace::Resource => format!("a resource `{name}` is declared before this one"),
+        Namespace::Objective => "an objective is declared before this one".to_owned(),
         Namespace::Vehicle => format!("a vehicle `{name}` is declared before this one"),
     };
     Diagnostic::error(CODE, span, message)
@@ -45,4 +48,16 @@ pub(crate) fn declaration(namespace: Namespace, name: &str, span: Span) -> Diagn
 /// A name that stands twice in one list.
 pub(crate) fn in_list(name: &Name, what: &str) -> Diagnostic {
     Diagnostic::error(CODE, name.span, format!("the {what} `{}` stands here twice", name.text))
+}
+
+/// A second effect on a variable.
+pub(crate) fn effect(name: &Name) -> Diagnostic {
+    Diagnostic::error(CODE, name.span, format!("the activity sets `{}` twice", name.text))
+        .with_hint("a variable has one value when the activity ends")
+}
+
+/// An effect on the place of a vehicle that the activity moves.
+pub(crate) fn movement(name: &Name, vehicle: &str) -> Diagnostic {
+    let message = format!("the activity moves `{vehicle}`, which sets `{}` already", name.text);
+    Diagnostic::error(CODE, name.span, message)
 }

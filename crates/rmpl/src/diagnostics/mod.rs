@@ -14,6 +14,7 @@ pub mod no_scenario;
 pub mod option;
 pub mod plant;
 pub mod recursion;
+pub mod resource;
 pub mod similar;
 pub mod slack;
 pub mod support;
@@ -41,6 +42,7 @@ pub const EXPLANATIONS: &[&Explanation] = &[
     &recursion::EXPLANATION,
     &no_scenario::EXPLANATION,
     &limit::EXPLANATION,
+    &resource::EXPLANATION,
     &constraint::EXPLANATION,
     &form::EXPLANATION,
     &undefined::WARNING_EXPLANATION,

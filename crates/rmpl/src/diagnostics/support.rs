@@ -13,7 +13,8 @@ pub const EXPLANATION: Explanation = Explanation {
     severity: Severity::Warning,
     title: "a condition that nothing can make true",
     meaning: "`do … maintaining c`, `if c thennext …` and `ask c` need an assertion of `c` that contains them. No assertion in the file
-can be that: every plan with this part fails. A part that is one alternative of a choice is never chosen.",
+can be that: every plan with this part fails. A part that is one alternative of a choice is never chosen. A `state` needs a change to that value, unless it
+begins with it.",
     example: "primitive Drive()[20,30];
 scenario Day[0,60] = { do { Drive() } maintaining LIGHT }",
     fix: "Assert the condition in a parallel branch, with the time for which it holds, or correct its name.",
@@ -22,7 +23,7 @@ scenario Day[0,60] = { { delay; do { Drive() } maintaining LIGHT }, LIGHT [40,40
 };
 
 /// An Ask that no Tell of the file can support.
-pub(crate) fn never(literal: &Literal, name: &str, names: &Names) -> Diagnostic {
+pub(crate) fn never(literal: &Literal, name: &str, is_state: bool, names: &Names) -> Diagnostic {
     let mut condition = match literal.values.as_slice() {
         [] => name.to_owned(),
         [(value, _)] => format!("{name}={}", names.text(*value)),
@@ -34,6 +35,10 @@ pub(crate) fn never(literal: &Literal, name: &str, names: &Names) -> Diagnostic 
     if literal.negated {
         condition = format!("not({condition})");
     }
-    Diagnostic::warning(CODE, literal.span, format!("nothing in this file can make `{condition}` true"))
-        .with_hint(format!("assert it in a parallel branch, as in `{{ delay; {condition} [10,20] }}`"))
+    let diagnostic =
+        Diagnostic::warning(CODE, literal.span, format!("nothing in this file can make `{condition}` true"));
+    if is_state {
+        return diagnostic.with_hint("it does not begin so, and no activity and no assertion makes it so");
+    }
+    diagnostic.with_hint(format!("assert it in a parallel branch, as in `{{ delay; {condition} [10,20] }}`"))
 }

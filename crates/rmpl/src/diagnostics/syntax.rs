@@ -3,6 +3,7 @@
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;
 use crate::parser::{insertion, replacement};
+use crate::program::Measure;
 use crate::span::Span;
 
 /// The code.
@@ -78,8 +79,8 @@ pub(crate) fn empty_statement(span: Span) -> Diagnostic {
 
 pub(crate) fn no_declaration(found: Found<'_>, span: Span) -> Diagnostic {
     error(span, format!("expected a declaration, {}", found.describe())).with_hint(
-        "a file holds `var`, `primitive`, `option`, `scenario`, definitions such as `Survey() = { … }`, and the \
-         world's `terrain`, `location`, `obstacle` and `vehicle`",
+        "a file holds `var`, `state`, `resource`, `const`, `primitive`, `objective`, `option`, `scenario`, definitions \
+         such as `Survey() = { … }`, and the world's `terrain`, `location`, `obstacle` and `vehicle`",
     )
 }
 
@@ -130,5 +131,65 @@ pub(crate) fn wrong_count(wanted: &str, count: usize, span: Span) -> Diagnostic 
 pub(crate) fn choice_asserted(span: Span) -> Diagnostic {
     error(span, "an assertion says what holds, and this leaves open which of several does").with_hint(
         "write `choose { a, b }` where planning is to choose; `do … watching a and b` asserts that one of them is false",
+    )
+}
+
+/// What an activity requires leaves open which of several it is.
+pub(crate) fn choice_required(span: Span) -> Diagnostic {
+    error(span, "what a primitive requires leaves no choice, and this is one of several conditions").with_hint(
+        "write `X in {V, W}` for several values of one variable, or declare a primitive for each condition and \
+         `choose` between them; `do … maintaining a or b` requires one of two conditions at a call",
+    )
+}
+
+pub(crate) fn no_single_effect(span: Span) -> Diagnostic {
+    error(span, "an effect says which one value the variable gets").with_hint("write `sets X=V`")
+}
+
+pub(crate) fn comma_before_clause(span: Span) -> Diagnostic {
+    error(span, "a comma goes on with the clause before it, and here another one begins")
+        .with_fix(replacement("Remove `,`", span, ""))
+}
+
+pub(crate) fn start_in_list(span: Span) -> Diagnostic {
+    error(span, "what is required at the start has a clause of its own").with_fix(replacement(
+        "Begin a clause with `requires`",
+        span,
+        " requires",
+    ))
+}
+
+/// `word` is `uses` or `costs`.
+pub(crate) fn per_time(word: &str, span: Span) -> Diagnostic {
+    let hint = match word {
+        "uses" => {
+            "what is used is free again at the activity's end; `consumes` and `produces` count per unit of time"
+        }
+        _ => "write what the whole activity costs, or what it costs `per metre`",
+    };
+    error(span, format!("`{word}` does not count per unit of time")).with_hint(hint)
+}
+
+pub(crate) fn using_per(span: Span) -> Diagnostic {
+    error(span, "`using` takes the same amount throughout").with_fix(replacement("Remove the unit", span, ""))
+}
+
+/// A measure that an objective does not know.
+pub(crate) fn unknown_measure(written: &str, span: Span) -> Diagnostic {
+    let diagnostic = error(span, format!("expected `cost`, `reward`, `end` or `length`, found `{written}`"));
+    let mut parts = written.split('-');
+    if written.contains('-') && parts.all(|part| Measure::by_name(part).is_some()) {
+        return diagnostic
+            .with_hint("a hyphen between letters belongs to a name: put blanks around a minus")
+            .with_fix(replacement("Put blanks around `-`", span, written.replace('-', " - ")));
+    }
+    diagnostic
+}
+
+/// A goal that is better the later the scenario ends.
+pub(crate) fn end_maximized(span: Span) -> Diagnostic {
+    error(
+        span,
+        "`end` may only be minimised: a plan says when it can end at the earliest, and any plan may end later",
     )
 }

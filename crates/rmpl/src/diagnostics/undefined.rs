@@ -3,7 +3,8 @@
 use crate::analysis::Call;
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;
-use crate::parser::replacement;
+use crate::parser::{insertion, replacement};
+use crate::program::Change;
 use crate::span::Span;
 
 /// The code under `option strict = 1;`.
@@ -16,8 +17,9 @@ pub const WARNING: Code = Code("W-UNDEF");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
-    title: "an undeclared name, where the mission asks for strictness",
-    meaning: "Under `option strict = 1;` every activity that is called must be declared as a primitive or defined, and every vehicle
+    title: "an undeclared name that must be declared",
+    meaning: "What an activity sets is a `state` or the place of a vehicle, and what it uses, consumes or produces is a `resource`: their
+declarations say what they begin with, so there is no default. Under `option strict = 1;` every activity that is called must be declared as a primitive or defined, and every vehicle
 and location that the world mentions must be declared.",
     example: "option strict = 1;
 scenario Day[0,60] = { Drive() }",
@@ -74,6 +76,72 @@ pub(crate) fn world(
         )),
         None => diagnostic,
     }
+}
+
+/// The place of something that is no vehicle.
+pub(crate) fn place(name: &str, span: Span, nearest: Option<&str>) -> Diagnostic {
+    let diagnostic = Diagnostic::error(CODE, span, format!("no vehicle `{name}` is declared"));
+    change_to(diagnostic, nearest, span).unwrap_or_else(|diagnostic| {
+        diagnostic.with_hint("only a vehicle, or a parameter that stands for one, has a place")
+    })
+}
+
+/// An effect on a `var`.
+pub(crate) fn effect_on_variable(name: &str, span: Span) -> Diagnostic {
+    let message =
+        format!("`{name}` is a `var`, which holds only where it is asserted: an activity cannot set it");
+    Diagnostic::error(CODE, span, message).with_hint(format!("declare it as `state {name} : {{…}} = …;`"))
+}
+
+/// An effect on an undeclared variable. `values` are those that the file knows, `set` is the one that is set here, and
+/// `start` is where the declaration begins.
+pub(crate) fn state(
+    name: &str,
+    span: Span,
+    values: &[&str],
+    set: Option<&str>,
+    nearest: Option<&str>,
+    start: u32,
+) -> Diagnostic {
+    let diagnostic = Diagnostic::error(CODE, span, format!("no state variable `{name}` is declared"));
+    change_to(diagnostic, nearest, span).unwrap_or_else(|diagnostic| {
+        let values = if values.is_empty() { &["NONE"] } else { values };
+        let first = values.iter().find(|value| Some(**value) != set).or(values.first()).unwrap_or(&"NONE");
+        let declaration = format!("state {name} : {{{}}} = {first};\n", values.join(", "));
+        diagnostic
+            .with_hint("what an activity sets lasts: its declaration says which values it has, and the first")
+            .with_fix(insertion(format!("Add `state {name} …`"), start, declaration))
+    })
+}
+
+/// An undeclared resource.
+pub(crate) fn resource(
+    name: &str,
+    span: Span,
+    change: Change,
+    nearest: Option<&str>,
+    start: u32,
+) -> Diagnostic {
+    let diagnostic = Diagnostic::error(CODE, span, format!("no resource `{name}` is declared"));
+    change_to(diagnostic, nearest, span).unwrap_or_else(|diagnostic| {
+        let declaration = match change {
+            Change::Uses => format!("resource {name};\n"),
+            Change::Consumes => format!("resource {name} 0..100 = 100;\n"),
+            Change::Produces => format!("resource {name} 0..100 = 0;\n"),
+        };
+        let label = format!("Add `{}`", declaration.trim());
+        diagnostic.with_fix(insertion(label, start, declaration))
+    })
+}
+
+/// With the nearest name, if there is one, as a question and a fix.
+fn change_to(diagnostic: Diagnostic, nearest: Option<&str>, span: Span) -> Result<Diagnostic, Diagnostic> {
+    let Some(nearest) = nearest else { return Err(diagnostic) };
+    Ok(diagnostic.with_hint(format!("did you mean `{nearest}`?")).with_fix(replacement(
+        format!("Change to `{nearest}`"),
+        span,
+        nearest,
+    )))
 }
 
 fn severity(span: Span, message: String, is_strict: bool) -> Diagnostic {

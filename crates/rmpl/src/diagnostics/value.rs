@@ -14,8 +14,9 @@ pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
     title: "a value outside what is allowed",
-    meaning: "A variable that is declared with a domain has no other values, and a condition on it says which value it means. Options,
-vehicle models and measures have allowed values as well.",
+    meaning: "A variable that is declared with a domain has no other values, and a condition on it says which value it means. What is
+asserted of a `state` is the one value that it gets. The place of a vehicle is one of the locations. Options, vehicle models and
+measures have allowed values as well.",
     example: "var PATH : {OPEN, SHUT};
 scenario Day[0,60] = { PATH=OPNE [10,20] }",
     fix: "Correct the value, or add it to the domain.",
@@ -46,6 +47,27 @@ pub(crate) fn no_value(variable: &str, span: Span, domain: &[&str]) -> Diagnosti
             .with_hint(format!("`{variable}` is one of {}", domain.join(", ")));
     domain.iter().take(MAX_FIXES).fold(diagnostic, |diagnostic, value| {
         diagnostic.with_fix(insertion(format!("Write `{variable}={value}`"), span.end, format!("={value}")))
+    })
+}
+
+/// The place of a vehicle that is no location.
+pub(crate) fn no_location(name: &str, span: Span, nearest: Option<&str>) -> Diagnostic {
+    let diagnostic = Diagnostic::error(CODE, span, format!("no location `{name}` is declared"))
+        .with_hint("a vehicle is at one of the locations: `location NAME (east, north);` declares one");
+    match nearest {
+        Some(nearest) => diagnostic.with_fix(replacement(format!("Change to `{nearest}`"), span, nearest)),
+        None => diagnostic,
+    }
+}
+
+/// An assertion about a state variable that leaves open which value it gets; `values` are the possible ones.
+pub(crate) fn no_single_value(variable: &str, values: &[&str], span: Span) -> Diagnostic {
+    let message = format!("`{variable}` keeps its value, so an assertion about it says which one it gets");
+    let diagnostic = Diagnostic::error(CODE, span, message)
+        .with_hint(format!("write `{variable}=…`, or `ask` where the condition is required"));
+    values.iter().take(MAX_FIXES).fold(diagnostic, |diagnostic, value| {
+        let mended = format!("{variable}={value}");
+        diagnostic.with_fix(replacement(format!("Change to `{mended}`"), span, mended))
     })
 }
 

@@ -78,6 +78,8 @@ fn runs_of_declarations(parse: &Parse) -> Vec<Fold> {
             matches!(
                 child.kind(),
                 SyntaxKind::ConstantDecl
+                    | SyntaxKind::StateDecl
+                    | SyntaxKind::ResourceDecl
                     | SyntaxKind::LocationDecl
                     | SyntaxKind::ObstacleDecl
                     | SyntaxKind::VehicleDecl

@@ -18,7 +18,7 @@ pub enum HighlightKind {
     Activity,
     /// A scenario.
     Scenario,
-    /// A state variable or an atom.
+    /// A state variable, an atom or a resource.
     Variable,
     /// A value of a variable.
     Value,
@@ -124,7 +124,7 @@ const fn of_control(kind: control::HighlightKind) -> HighlightKind {
 const fn of_name(kind: &NameKind) -> HighlightKind {
     match kind {
         NameKind::Activity | NameKind::ControlProgram => HighlightKind::Activity,
-        NameKind::Variable => HighlightKind::Variable,
+        NameKind::Variable | NameKind::Resource => HighlightKind::Variable,
         NameKind::Value(_) => HighlightKind::Value,
         NameKind::Parameter => HighlightKind::Parameter,
         NameKind::BoundName | NameKind::Constant => HighlightKind::BoundName,
@@ -151,7 +151,8 @@ fn of_token(kind: SyntaxKind) -> HighlightKind {
         | SyntaxKind::Plus
         | SyntaxKind::Minus
         | SyntaxKind::Star
-        | SyntaxKind::Slash => HighlightKind::Operator,
+        | SyntaxKind::Slash
+        | SyntaxKind::DotDot => HighlightKind::Operator,
         kind if kind.is_keyword() => HighlightKind::Keyword,
         _ => HighlightKind::Punctuation,
     }

@@ -5,6 +5,7 @@ use smol_str::SmolStr;
 
 use super::definition::references_of;
 use super::name::{NameKind, NameUse, name_at};
+use super::users::{users_of_resource, users_of_state, users_of_vehicle};
 use crate::analysis::constant::Constants;
 use crate::lower::bounds::expression;
 use crate::parse::Parse;
@@ -158,6 +159,15 @@ fn describe(parse: &Parse, name: &NameUse, evaluation: &Evaluation) -> String {
                 }
             }
             let value = || Constants::new(&parse.program()).value(&name.text);
+            let users = match kind {
+                NameKind::Variable if is_state(parse, &name.text) => users_of_state(parse, &name.text),
+                NameKind::Resource => users_of_resource(parse, &name.text),
+                NameKind::Vehicle => users_of_vehicle(parse, &name.text),
+                _ => Vec::new(),
+            };
+            if !users.is_empty() {
+                parts.push(users.join("  \n"));
+            }
             if let Some(value) = (*kind == NameKind::Constant).then(value).flatten() {
                 parts.push(format!("= **{value}**"));
             }
@@ -172,6 +182,8 @@ fn describe(parse: &Parse, name: &NameUse, evaluation: &Evaluation) -> String {
             parts.push(format!("`{}`: an undeclared condition; any value is allowed", name.text));
         }
         (_, NameKind::Value(variable)) => parts.push(format!("`{}`: a value of `{variable}`", name.text)),
+        (_, NameKind::Resource) => parts.push(format!("`{}`: an undeclared resource", name.text)),
+        (_, NameKind::Vehicle) => parts.push(format!("`{}`: an undeclared vehicle", name.text)),
         (_, NameKind::Model) => parts.push(format!("`{}`: a vehicle model", name.text)),
         (_, NameKind::ControlProgram) => parts.push(format!("`{}`: a control program", name.text)),
         _ => parts.push(format!("`{}`: a symbol", name.text)),
@@ -191,6 +203,11 @@ fn describe(parse: &Parse, name: &NameUse, evaluation: &Evaluation) -> String {
         parts.push(windows.join("\n"));
     }
     parts.join("\n\n")
+}
+
+fn is_state(parse: &Parse, name: &str) -> bool {
+    let meaning = parse.meaning();
+    meaning.names.find(name).is_some_and(|symbol| meaning.is_state(symbol))
 }
 
 /// The windows of the smallest statement around `span`.
@@ -235,7 +252,7 @@ fn word(token: SyntaxToken<'_>) -> Option<&'static str> {
         SyntaxKind::ChooseKeyword => "`choose { A, B }`: planning selects exactly one of the alternatives.",
         SyntaxKind::DoKeyword => {
             "`do A maintaining c`: A runs while `c` is required to hold. `do A watching c`: A runs while `c` is asserted \
-             to be false, and ends when `c` comes."
+             to be false, and ends when `c` comes. `do A using R n`: A uses n of the resource R throughout."
         }
         SyntaxKind::MaintainingKeyword => "`do A maintaining c`: an assertion of `c` must contain A.",
         SyntaxKind::WatchingKeyword => "`do A watching c`: the plan asserts that `c` is false during A.",
@@ -250,7 +267,9 @@ fn word(token: SyntaxToken<'_>) -> Option<&'static str> {
             "`tell c[l,u]`: asserts `c` for this long; [0,0] if no bounds are written."
         }
         SyntaxKind::AskKeyword => "`ask c[l,u]`: requires `c` for this long.",
-        SyntaxKind::VarKeyword => "`var X : {V1, V2};` declares a state variable and its values.",
+        SyntaxKind::VarKeyword => {
+            "`var X : {V1, V2};` declares a variable and its values. It is known only where it is asserted; a `state` keeps its value."
+        }
         SyntaxKind::PrimitiveKeyword => {
             "`primitive A(p)[l,u];` declares an activity that is not taken apart."
         }
@@ -259,24 +278,78 @@ fn word(token: SyntaxToken<'_>) -> Option<&'static str> {
             "`option name = value;` The options are `threat_gap`, `strict`, `time_unit` and `control_step`."
         }
         SyntaxKind::Infinity => "`inf`: no upper bound.",
-        SyntaxKind::Name => match token.text {
-            "const" => "`const NAME = e;`: a number that bounds, arguments and `repeat` may name.",
-            "repeat" => "`repeat n { A }`: n copies of A, one after the other.",
-            "free" => "`free A`: `delay; A`. A parallel branch that may start later.",
-            "else" => "`if c thennext A else B`: planning chooses A where `c` holds, or B where it does not.",
-            "and" => "`a and b`: both hold.",
-            "or" => "`a or b`: planning chooses which of the two it relies on.",
-            "in" => "`X in {V, W}`: X has one of these values.",
-            "s" | "min" | "h" | "d" | "sol" => {
-                "A unit of time: `s`, `min`, `h`, `d` (24 hours) or `sol` (88 775.244 seconds), converted exactly."
-            }
-            "moves" => "`moves V1, V2`: the activity is a traverse; the first vehicle leads.",
-            "speed" => "`speed (least, greatest)` in metres per second.",
-            "runs" => "`runs P`: executing the activity runs the control program P.",
-            "cell" => "`cell 0.6`: metres per cell of the map.",
-            "origin" => "`origin (x, y)`: where the map's south-west corner is, in metres.",
-            _ => return None,
-        },
+        SyntaxKind::Name => return word_in_its_place(token.text),
+        _ => return None,
+    })
+}
+
+/// What a word means that is one of the language only in its place.
+fn word_in_its_place(word: &str) -> Option<&'static str> {
+    Some(match word {
+        "const" => "`const NAME = e;`: a number that bounds, arguments and `repeat` may name.",
+        "state" => {
+            "`state X : {V1, V2} = V1;`: a variable that begins with V1 and keeps its value until something changes it."
+        }
+        "resource" => {
+            "`resource R;`: for one user at a time. `resource R capacity n;`: n of it can be used at a time. `resource R a..b = c;`: \
+             a store whose level is c at the start and stays between a and b."
+        }
+        "capacity" => "`resource R capacity n;`: n of it can be used at a time.",
+        "objective" => {
+            "`objective minimize cost, maximize reward;`: what plans are to be best in, the most important goal first."
+        }
+        "minimize" => "`minimize cost`: less is better.",
+        "maximize" => "`maximize reward`: more is better.",
+        "cost" => "`cost`: what the selected activities cost.",
+        "reward" => "`reward`: what the selected activities are rewarded with.",
+        "end" => "`end`: the earliest time at which the scenario can end.",
+        "length" => "`length`: the metres driven.",
+        "requires" => {
+            "`requires X=V`: the condition must hold throughout the activity; `requires at start X=V`: when it starts."
+        }
+        "sets" => "`sets X=V`: X changes during the activity and is V when it ends.",
+        "uses" => {
+            "`uses R n`: n of R is used from the activity's start to its end; 1 if no amount is written."
+        }
+        "consumes" => {
+            "`consumes R n`: n of R is gone when the activity starts. `per minute`: for each minute that it may last."
+        }
+        "produces" => {
+            "`produces R n`: R gains n when the activity ends. `per minute`: for each minute that it surely lasts."
+        }
+        "costs" => "`costs n`: what the activity adds to `cost`; `costs n per metre` counts the path.",
+        "rewards" => "`rewards n`: what the activity adds to `reward`.",
+        "per" => {
+            "`n per minute`, `per second`, `per hour`: times the duration. `n per metre`: times the length of the path."
+        }
+        "using" => {
+            "`do A using R n`: A uses n of the resource R from its start to its end; 1 if no amount is written."
+        }
+        "optional" => "`optional A`: planning chooses between A and nothing. Bounds behind it belong to A.",
+        "unordered" => {
+            "`unordered { A; B; C }`: all of them, one at a time, in the order that planning finds."
+        }
+        "at" => {
+            "`V.at`: the location where the vehicle V is. `vehicle V : MODEL at L;`: V starts at L. `requires at start c`: c must \
+             hold when the activity starts."
+        }
+        "start" => {
+            "`requires at start c`: c must hold when the activity starts, and may change while it lasts."
+        }
+        "repeat" => "`repeat n { A }`: n copies of A, one after the other.",
+        "free" => "`free A`: `delay; A`. A parallel branch that may start later.",
+        "else" => "`if c thennext A else B`: planning chooses A where `c` holds, or B where it does not.",
+        "and" => "`a and b`: both hold.",
+        "or" => "`a or b`: planning chooses which of the two it relies on.",
+        "in" => "`X in {V, W}`: X has one of these values.",
+        "s" | "min" | "h" | "d" | "sol" => {
+            "A unit of time: `s`, `min`, `h`, `d` (24 hours) or `sol` (88 775.244 seconds), converted exactly."
+        }
+        "moves" => "`moves V1, V2`: the activity is a traverse; the first vehicle leads.",
+        "speed" => "`speed (least, greatest)` in metres per second.",
+        "runs" => "`runs P`: executing the activity runs the control program P.",
+        "cell" => "`cell 0.6`: metres per cell of the map.",
+        "origin" => "`origin (x, y)`: where the map's south-west corner is, in metres.",
         _ => return None,
     })
 }

@@ -21,6 +21,7 @@ mod outline;
 mod rename;
 mod selection;
 mod signature;
+mod users;
 
 pub use brackets::matching_bracket;
 pub use comment::toggle_comment;

@@ -30,6 +30,8 @@ pub enum NameKind {
     Obstacle,
     /// A vehicle.
     Vehicle,
+    /// A resource.
+    Resource,
     /// A vehicle model.
     Model,
     /// An option.
@@ -101,14 +103,15 @@ impl<'a> Collector<'a> {
     fn node(&mut self, node: SyntaxNode<'a>) {
         let names = || node.own_tokens().filter(|token| token.kind == SyntaxKind::Name);
         match node.kind() {
-            SyntaxKind::VariableDecl => {
-                self.define(names().next(), NameKind::Variable);
-                if let (Some(variable), Some(domain)) = (names().next(), node.child(SyntaxKind::Domain)) {
-                    for value in domain.own_tokens().filter(|token| token.kind == SyntaxKind::Name) {
-                        self.add(value.span, value.text, NameKind::Value(variable.text.into()), true);
-                    }
-                }
-            }
+            SyntaxKind::VariableDecl => self.variable(node, names().next()),
+            // The first name is the word `state` itself.
+            SyntaxKind::StateDecl => self.variable(node, names().nth(1)),
+            SyntaxKind::ResourceDecl => self.define(names().nth(1), NameKind::Resource),
+            SyntaxKind::ResourceUse => self.refer(names().next(), NameKind::Resource),
+            // `using` and the resource; other words of `do` are keywords.
+            SyntaxKind::Do => self.refer(names().nth(1), NameKind::Resource),
+            SyntaxKind::Dotted => self.vehicle(names().next()),
+            SyntaxKind::Effect => self.effect(node),
             SyntaxKind::ConstantDecl => self.define(names().nth(1), NameKind::Constant),
             SyntaxKind::PrimitiveDecl => self.define(names().next(), NameKind::Activity),
             SyntaxKind::ActivityDecl => {
@@ -140,9 +143,7 @@ impl<'a> Collector<'a> {
             SyntaxKind::Runs => self.refer(names().nth(1), NameKind::ControlProgram),
             SyntaxKind::Moves => {
                 for name in names().skip(1) {
-                    let is_parameter = self.parameters.contains(&name.text);
-                    let kind = if is_parameter { NameKind::Parameter } else { NameKind::Vehicle };
-                    self.refer(Some(name), kind);
+                    self.vehicle(Some(name));
                 }
             }
             SyntaxKind::Formals => {
@@ -174,6 +175,45 @@ impl<'a> Collector<'a> {
     fn refer(&mut self, name: Option<SyntaxToken<'_>>, kind: NameKind) {
         if let Some(name) = name {
             self.add(name.span, name.text, kind, false);
+        }
+    }
+
+    /// A parameter if the name is one, otherwise a name of this kind.
+    fn refer_to(&mut self, name: SyntaxToken<'_>, kind: NameKind) {
+        let is_parameter = self.parameters.contains(&name.text);
+        self.refer(Some(name), if is_parameter { NameKind::Parameter } else { kind });
+    }
+
+    /// `var` and `state` with their values.
+    fn variable(&mut self, node: SyntaxNode<'a>, name: Option<SyntaxToken<'a>>) {
+        self.define(name, NameKind::Variable);
+        let Some(variable) = name else { return };
+        let kind = || NameKind::Value(variable.text.into());
+        let values = |kind: SyntaxKind| node.child(kind).into_iter().flat_map(SyntaxNode::own_tokens);
+        for value in values(SyntaxKind::Domain).filter(|token| token.kind == SyntaxKind::Name) {
+            self.add(value.span, value.text, kind(), true);
+        }
+        let initial = values(SyntaxKind::Initial).find(|token| token.kind == SyntaxKind::Name);
+        self.refer(initial, kind());
+    }
+
+    fn vehicle(&mut self, name: Option<SyntaxToken<'_>>) {
+        if let Some(name) = name {
+            self.refer_to(name, NameKind::Vehicle);
+        }
+    }
+
+    /// `X=V` behind `sets`
+    fn effect(&mut self, node: SyntaxNode<'a>) {
+        let mut names = node.own_tokens().filter(|token| token.kind == SyntaxKind::Name);
+        if node.child(SyntaxKind::Dotted).is_some() {
+            names.for_each(|location| self.refer_to(location, NameKind::Location));
+            return;
+        }
+        let (Some(variable), value) = (names.next(), names.next()) else { return };
+        self.refer_to(variable, NameKind::Variable);
+        if let Some(value) = value {
+            self.refer_to(value, NameKind::Value(variable.text.into()));
         }
     }
 
@@ -227,6 +267,12 @@ impl<'a> Collector<'a> {
     }
 
     fn condition(&mut self, node: SyntaxNode<'a>) {
+        if node.child(SyntaxKind::Dotted).is_some() {
+            let domain = node.child(SyntaxKind::Domain);
+            let places = domain.unwrap_or(node).own_tokens().filter(|token| token.kind == SyntaxKind::Name);
+            places.for_each(|location| self.refer_to(location, NameKind::Location));
+            return;
+        }
         if let Some(domain) = node.child(SyntaxKind::Domain) {
             self.membership(node, domain);
             return;
@@ -246,12 +292,9 @@ impl<'a> Collector<'a> {
     /// `X in {V, W}`
     fn membership(&mut self, node: SyntaxNode<'a>, domain: SyntaxNode<'a>) {
         let Some(variable) = node.token(SyntaxKind::Name) else { return };
-        let is_parameter = self.parameters.contains(&variable.text);
-        self.refer(Some(variable), if is_parameter { NameKind::Parameter } else { NameKind::Variable });
+        self.refer_to(variable, NameKind::Variable);
         for value in domain.own_tokens().filter(|token| token.kind == SyntaxKind::Name) {
-            let is_parameter = self.parameters.contains(&value.text);
-            let kind = if is_parameter { NameKind::Parameter } else { NameKind::Value(variable.text.into()) };
-            self.refer(Some(value), kind);
+            self.refer_to(value, NameKind::Value(variable.text.into()));
         }
     }
 
@@ -267,13 +310,9 @@ impl<'a> Collector<'a> {
         } else {
             self.refer(Some(variable), NameKind::Variable);
         }
-        let Some(value) = value else { return };
-        let kind = if self.parameters.contains(&value.text) {
-            NameKind::Parameter
-        } else {
-            NameKind::Value(variable.text.into())
-        };
-        self.refer(Some(value), kind);
+        if let Some(value) = value {
+            self.refer_to(value, NameKind::Value(variable.text.into()));
+        }
     }
 
     /// The variable of a condition written `X_V` (SPEC 1.3).

@@ -7,8 +7,12 @@ use crate::syntax::{SyntaxKind, SyntaxNode};
 /// What an entry of the outline is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum OutlineKind {
-    /// A state variable.
+    /// A variable that is known where it is asserted.
     Variable,
+    /// A variable that keeps its value.
+    State,
+    /// A resource.
+    Resource,
     /// A primitive.
     Primitive,
     /// An activity with a definition.
@@ -53,6 +57,8 @@ fn item(node: SyntaxNode<'_>) -> Option<OutlineItem> {
     // World declarations begin with a name that serves as their keyword.
     let (kind, nth) = match node.kind() {
         SyntaxKind::VariableDecl => (OutlineKind::Variable, 0),
+        SyntaxKind::StateDecl => (OutlineKind::State, 1),
+        SyntaxKind::ResourceDecl => (OutlineKind::Resource, 1),
         SyntaxKind::PrimitiveDecl => (OutlineKind::Primitive, 0),
         SyntaxKind::ActivityDecl => (OutlineKind::Activity, 0),
         SyntaxKind::ScenarioDecl => (OutlineKind::Scenario, 0),

@@ -38,6 +38,7 @@ pub(super) fn layout(root: SyntaxNode<'_>) -> Layout {
     layout.measure(&tokens);
     let Some(declaration) = root.children().next() else { return layout };
     layout.break_at(declaration, 0);
+    layout.break_clauses(declaration);
     if let Some(block) = declaration.child(SyntaxKind::Block)
         && (block.text().contains('\n') || layout.width(declaration) > LINE_WIDTH)
     {
@@ -65,7 +66,9 @@ impl Layout {
             | SyntaxKind::AllOf
             | SyntaxKind::AnyOf
             | SyntaxKind::NotOf
-            | SyntaxKind::ConditionGroup => Place::Condition,
+            | SyntaxKind::ConditionGroup
+            | SyntaxKind::Effect => Place::Condition,
+            SyntaxKind::Goal => Place::Expression,
             SyntaxKind::Coordinates => Place::Coordinates,
             SyntaxKind::Domain => Place::Domain,
             SyntaxKind::Argument => Place::Argument,
@@ -87,6 +90,18 @@ impl Layout {
             if !is_apart {
                 self.set(token.index as usize, place);
             }
+        }
+        if node.kind() == SyntaxKind::Goal {
+            self.note_sign(node);
+        }
+    }
+
+    /// What stands behind the sign of a goal's first term is tight: `minimize -cost`.
+    fn note_sign(&mut self, goal: SyntaxNode<'_>) {
+        let mut tokens = goal.own_tokens().skip(1);
+        let sign = tokens.next().filter(|token| matches!(token.kind, SyntaxKind::Plus | SyntaxKind::Minus));
+        if let (Some(_), Some(term)) = (sign, tokens.next()) {
+            self.set(term.index as usize, Place::Bounds);
         }
     }
 
@@ -130,6 +145,22 @@ impl Layout {
         }
     }
 
+    /// Gives each clause of a primitive a line of its own, unless all fit on one and are written so. Traverses that
+    /// require, change and cost nothing always stand on one line.
+    fn break_clauses(&mut self, declaration: SyntaxNode<'_>) {
+        let is_plain = |kind| matches!(kind, SyntaxKind::Moves | SyntaxKind::Runs);
+        let clauses: Vec<SyntaxNode<'_>> =
+            declaration.children().filter(|child| is_clause(child.kind())).collect();
+        if clauses.iter().all(|clause| is_plain(clause.kind())) {
+            return;
+        }
+        if declaration.text().contains('\n') || self.width(declaration) > LINE_WIDTH {
+            for clause in clauses {
+                self.break_at(clause, INDENT);
+            }
+        }
+    }
+
     /// Gives each step of a block or choice a line of its own.
     fn break_block(&mut self, block: SyntaxNode<'_>, indent: usize) {
         let inner = indent + INDENT;
@@ -165,6 +196,19 @@ impl Layout {
             self.break_block(block, indent);
         }
     }
+}
+
+const fn is_clause(kind: SyntaxKind) -> bool {
+    matches!(
+        kind,
+        SyntaxKind::Moves
+            | SyntaxKind::Runs
+            | SyntaxKind::Requires
+            | SyntaxKind::Sets
+            | SyntaxKind::Uses
+            | SyntaxKind::Costs
+            | SyntaxKind::Rewards
+    )
 }
 
 fn first_token(node: SyntaxNode<'_>) -> Option<usize> {

@@ -6,8 +6,7 @@
 mod layout;
 mod spacing;
 
-use crate::diagnostic::{Edit, Severity};
-use crate::diagnostics::syntax;
+use crate::diagnostic::Edit;
 use crate::parse::{Parse, parse};
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
@@ -48,16 +47,10 @@ pub fn format_edit(text: &str) -> Option<Edit> {
 }
 
 fn print(parsed: &Parse) -> String {
-    let broken: Vec<Span> = parsed
-        .diagnostics()
-        .into_iter()
-        .filter(|found| found.severity == Severity::Error && found.code == syntax::CODE)
-        .map(|found| found.span)
-        .collect();
     let mut printer = Printer { out: String::with_capacity(parsed.text().len()), ..Printer::default() };
-    for root in parsed.declarations() {
-        let is_sound = root.children().all(|child| child.kind() != SyntaxKind::Garbage)
-            && !broken.iter().any(|span| root.span().start <= span.start && span.end <= root.span().end)
+    for (root, follows_grammar) in parsed.declarations_by_syntax() {
+        let is_sound = follows_grammar
+            && root.children().all(|child| child.kind() != SyntaxKind::Garbage)
             && root.tokens().all(|token| token.kind != SyntaxKind::Unknown);
         if is_sound {
             printer.declaration(root);

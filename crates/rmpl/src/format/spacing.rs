@@ -24,8 +24,17 @@ pub(super) enum Place {
 pub(super) fn has_space_between(previous: SyntaxToken<'_>, token: SyntaxToken<'_>, place: Place) -> bool {
     use SyntaxKind as Kind;
     match (previous.kind, token.kind) {
-        (_, Kind::Comma | Kind::Semicolon | Kind::RightParen | Kind::RightBracket | Kind::Percent)
-        | (Kind::LeftParen | Kind::LeftBracket | Kind::Bang, _)
+        (
+            _,
+            Kind::Comma
+            | Kind::Semicolon
+            | Kind::RightParen
+            | Kind::RightBracket
+            | Kind::Percent
+            | Kind::Dot
+            | Kind::DotDot,
+        )
+        | (Kind::LeftParen | Kind::LeftBracket | Kind::Bang | Kind::Dot | Kind::DotDot, _)
         | (Kind::LeftBrace, Kind::RightBrace)
         | (Kind::NotKeyword, Kind::LeftParen) => false,
         (_, Kind::LeftBracket) => place == Place::SpacedBounds,

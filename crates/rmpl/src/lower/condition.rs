@@ -8,7 +8,7 @@ use crate::program::{Bounds, Condition, LabelMode, Name, Statement, StatementKin
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode};
 
-use super::{Lowering, name_of, names};
+use super::{Lowering, name_of, names, variable_in};
 
 /// A declaration grows by no more statements than this where `or` copies what it stands beside.
 const MAX_COPIED: usize = 10_000;
@@ -36,7 +36,7 @@ pub(super) const fn is_condition(kind: SyntaxKind) -> bool {
 }
 
 /// The condition of a node, if it is whole.
-fn formula(node: SyntaxNode<'_>) -> Option<Formula> {
+pub(super) fn formula(node: SyntaxNode<'_>) -> Option<Formula> {
     let parts = || node.children().filter(|child| is_condition(child.kind())).map(formula);
     match node.kind() {
         SyntaxKind::Condition => literal(node).map(Formula::Literal),
@@ -87,7 +87,7 @@ impl Formula {
 pub(super) fn literal(node: SyntaxNode<'_>) -> Option<Condition> {
     let mut negated = false;
     let mut compared = false;
-    let mut variable = None;
+    let mut variable = node.child(SyntaxKind::Dotted).and_then(|_| variable_in(node));
     let mut values: Vec<Name> = Vec::new();
     for token in node.own_tokens() {
         match token.kind {
@@ -243,8 +243,7 @@ impl Lowering<'_> {
                 let mut literals = self.told(formula)?.into_iter();
                 let first = single(literals.next()?, bounds);
                 Some(literals.fold(first, |body, literal| {
-                    let watched = Condition { negated: !literal.negated, ..literal };
-                    let kind = StatementKind::Watching(Box::new(body), watched);
+                    let kind = StatementKind::Telling(Box::new(body), literal);
                     Statement { kind, bounds: None, span }
                 }))
             }
@@ -270,13 +269,16 @@ impl Lowering<'_> {
 /// What stands directly in a statement.
 fn parts(statement: &Statement) -> &[Statement] {
     match &statement.kind {
-        StatementKind::Sequence(parts) | StatementKind::Parallel(parts) | StatementKind::Choose(parts) => {
-            parts
-        }
+        StatementKind::Sequence(parts)
+        | StatementKind::Parallel(parts)
+        | StatementKind::Choose(parts)
+        | StatementKind::Unordered(parts) => parts,
         StatementKind::Maintaining(body, _)
         | StatementKind::Watching(body, _)
+        | StatementKind::Telling(body, _)
         | StatementKind::IfThennext(_, body)
-        | StatementKind::Repeat(_, body) => std::slice::from_ref(body),
+        | StatementKind::Repeat(_, body)
+        | StatementKind::Using(body, ..) => std::slice::from_ref(body),
         StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay => &[],
     }
 }

@@ -8,7 +8,7 @@ use super::statement::signed;
 use super::{Lowering, OptionDecl, OptionValue, name_of, names};
 use crate::program::{
     ActivityDecl, ConstantDecl, ControlDecl, LocationDecl, Moves, Name, ObstacleDecl, ObstacleShape,
-    PrimitiveDecl, ScenarioDecl, TerrainDecl, VariableDecl, VehicleDecl,
+    ScenarioDecl, TerrainDecl, VariableDecl, VehicleDecl,
 };
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode};
@@ -38,7 +38,7 @@ impl Lowering<'_> {
     }
 }
 
-fn formals(node: SyntaxNode<'_>) -> Vec<Name> {
+pub(super) fn formals(node: SyntaxNode<'_>) -> Vec<Name> {
     node.child(SyntaxKind::Formals).map(|formals| names(formals).collect()).unwrap_or_default()
 }
 
@@ -52,18 +52,7 @@ pub(super) fn constant(node: SyntaxNode<'_>) -> Option<ConstantDecl> {
 pub(super) fn variable(node: SyntaxNode<'_>) -> Option<VariableDecl> {
     let name = names(node).next()?;
     let values = names(node.child(SyntaxKind::Domain)?).collect();
-    Some(VariableDecl { name, values, span: node.span() })
-}
-
-pub(super) fn primitive(node: SyntaxNode<'_>) -> Option<PrimitiveDecl> {
-    Some(PrimitiveDecl {
-        name: names(node).next()?,
-        formals: formals(node),
-        bounds: bounds_in(node),
-        moves: node.child(SyntaxKind::Moves).and_then(moves),
-        runs: node.child(SyntaxKind::Runs).and_then(|runs| names(runs).nth(1)),
-        span: node.span(),
-    })
+    Some(VariableDecl { name, values, initial: None, span: node.span() })
 }
 
 /// The text between the braces of a control block.
@@ -77,7 +66,7 @@ pub(super) fn control(node: SyntaxNode<'_>) -> Option<ControlDecl> {
     Some(ControlDecl { text: inner.into(), text_span: span, span: token.span })
 }
 
-fn moves(node: SyntaxNode<'_>) -> Option<Moves> {
+pub(super) fn moves(node: SyntaxNode<'_>) -> Option<Moves> {
     // The first name is the word `moves` itself.
     let vehicles: Vec<Name> = names(node).skip(1).collect();
     let speeds = node.child(SyntaxKind::Speed).and_then(|speed| speed.child(SyntaxKind::Coordinates));

@@ -1,8 +1,10 @@
 //! From the syntax tree to meaning: the pieces of [`crate::program`], with what is broken left out.
 
 pub(crate) mod bounds;
+mod clause;
 mod condition;
 mod declaration;
+mod lasting;
 mod statement;
 
 use exact::Rational;
@@ -10,8 +12,8 @@ use smol_str::SmolStr;
 
 use crate::diagnostic::Diagnostic;
 use crate::program::{
-    ActivityDecl, ConstantDecl, ControlDecl, LocationDecl, Name, ObstacleDecl, PrimitiveDecl, ScenarioDecl,
-    TerrainDecl, VariableDecl, VehicleDecl,
+    ActivityDecl, ConstantDecl, ControlDecl, LocationDecl, Name, ObjectiveDecl, ObstacleDecl, PrimitiveDecl,
+    ResourceDecl, ScenarioDecl, TerrainDecl, VariableDecl, VehicleDecl,
 };
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken, is_dash};
@@ -21,6 +23,8 @@ use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken, is_dash};
 pub(crate) enum Item {
     Constant(ConstantDecl),
     Variable(VariableDecl),
+    Resource(ResourceDecl),
+    Objective(ObjectiveDecl),
     Primitive(PrimitiveDecl),
     Activity(ActivityDecl),
     Scenario(ScenarioDecl),
@@ -73,7 +77,10 @@ impl Lowering<'_> {
         match node.kind() {
             SyntaxKind::ConstantDecl => declaration::constant(node).map(Item::Constant),
             SyntaxKind::VariableDecl => declaration::variable(node).map(Item::Variable),
-            SyntaxKind::PrimitiveDecl => declaration::primitive(node).map(Item::Primitive),
+            SyntaxKind::PrimitiveDecl => self.primitive(node).map(Item::Primitive),
+            SyntaxKind::StateDecl => lasting::state(node).map(Item::Variable),
+            SyntaxKind::ResourceDecl => lasting::resource(node).map(Item::Resource),
+            SyntaxKind::ObjectiveDecl => lasting::objective(node).map(Item::Objective),
             SyntaxKind::OptionDecl => declaration::option(node).map(Item::Option),
             SyntaxKind::ActivityDecl => self.activity(node).map(Item::Activity),
             SyntaxKind::ScenarioDecl => self.scenario(node).map(Item::Scenario),
@@ -94,6 +101,15 @@ fn name_of(token: SyntaxToken<'_>) -> Name {
         token.text.chars().map(|letter| if is_dash(letter) { '-' } else { letter }).collect()
     };
     Name { text, span: token.span }
+}
+
+/// The variable of a condition or an effect: that of a vehicle's place is one name `V.at`.
+fn variable_in(node: SyntaxNode<'_>) -> Option<Name> {
+    let Some(dotted) = node.child(SyntaxKind::Dotted) else { return names(node).next() };
+    let mut parts = names(dotted);
+    let (owner, part) = (parts.next()?, parts.next()?);
+    let text = SmolStr::from_iter([owner.text.as_str(), ".", part.text.as_str()]);
+    Some(Name { text, span: owner.span.cover(part.span) })
 }
 
 /// The names that stand directly in `node`, in textual order.

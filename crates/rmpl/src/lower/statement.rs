@@ -5,7 +5,7 @@ use smol_str::SmolStr;
 
 use super::bounds::{bounds_in, expression};
 use super::condition::{depth, is_condition, literal};
-use super::{Lowering, name_of};
+use super::{Lowering, name_of, names};
 use crate::program::{Argument, ArgumentValue, Condition, LabelMode, Name, Statement, StatementKind};
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode};
@@ -72,6 +72,14 @@ impl Lowering<'_> {
                 let body = self.statement(core.child(SyntaxKind::Statement)?)?;
                 StatementKind::Sequence(vec![delay, body])
             }
+            SyntaxKind::Optional => {
+                let word = core.token(SyntaxKind::Name)?;
+                let body = self.statement(core.child(SyntaxKind::Statement)?)?;
+                let nothing =
+                    Statement { kind: StatementKind::Sequence(Vec::new()), bounds: None, span: word.span };
+                StatementKind::Choose(vec![body, nothing])
+            }
+            SyntaxKind::Unordered => StatementKind::Unordered(self.steps(core.child(SyntaxKind::Block)?)),
             SyntaxKind::Call => {
                 let name = name_of(core.token(SyntaxKind::Name)?);
                 let arguments = core.child(SyntaxKind::Arguments);
@@ -127,6 +135,12 @@ impl Lowering<'_> {
 
     fn do_statement(&mut self, node: SyntaxNode<'_>) -> Option<StatementKind> {
         let body = self.statement(node.child(SyntaxKind::Statement)?)?;
+        // The words between the statement and the amount: `using` and the resource.
+        let mut words = names(node);
+        if words.next().is_some() {
+            let amount = node.children().skip(1).find_map(expression);
+            return Some(StatementKind::Using(Box::new(body), words.next()?, amount));
+        }
         let is_watching = node.token(SyntaxKind::WatchingKeyword).is_some();
         let condition = node.children().find(|child| is_condition(child.kind()))?;
         let formula = self.formula(condition, Some(&body), &[is_watching])?;

@@ -63,7 +63,7 @@ impl Parser<'_> {
         self.hush();
     }
 
-    fn at_operand(&self) -> bool {
+    pub(super) fn at_operand(&self) -> bool {
         matches!(
             self.kind,
             SyntaxKind::Number | SyntaxKind::Infinity | SyntaxKind::Name | SyntaxKind::LeftParen

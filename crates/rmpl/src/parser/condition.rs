@@ -66,6 +66,10 @@ impl Parser<'_> {
             return false;
         }
         index = self.index_after(index);
+        if self.kind_at(index) == SyntaxKind::Dot {
+            index = self.index_after(index);
+            index = self.index_after(index);
+        }
         if matches!(self.kind_at(index), SyntaxKind::Equals | SyntaxKind::NotEquals) {
             index = self.index_after(index);
             index = self.index_after(index);
@@ -131,7 +135,8 @@ impl Parser<'_> {
     }
 
     fn comparison(&mut self) {
-        if !self.eat(SyntaxKind::Name) {
+        let is_place = self.at(SyntaxKind::Name) && self.peek() == SyntaxKind::Dot;
+        if !self.variable_name() {
             let keyword = self.kind.is_keyword() && self.kind != SyntaxKind::ThennextKeyword;
             if keyword && self.peek() != SyntaxKind::LeftBrace {
                 let diagnostic = syntax::keyword_as_name(self.current_text(), self.here());
@@ -148,10 +153,37 @@ impl Parser<'_> {
             self.domain();
             return;
         }
-        if !matches!(self.kind, SyntaxKind::Equals | SyntaxKind::NotEquals) {
-            return;
+        if matches!(self.kind, SyntaxKind::Equals | SyntaxKind::NotEquals) {
+            self.bump();
+            self.value();
+        } else if is_place {
+            self.report_expected("`=` and a location");
+            self.skip_until(|parser| !parser.at(SyntaxKind::LeftParen));
         }
+    }
+
+    /// The name of a variable: that of a vehicle's place is `V.at`.
+    pub(super) fn variable_name(&mut self) -> bool {
+        if !self.at(SyntaxKind::Name) || self.peek() != SyntaxKind::Dot {
+            return self.eat(SyntaxKind::Name);
+        }
+        let node = self.open();
         self.bump();
+        self.bump();
+        let is_adjacent = self.start_of(self.current) == self.previous_end();
+        if !is_adjacent || !self.eat_word("at") {
+            self.report_expected("`at` right behind `.`: the place of a vehicle is a variable");
+            if self.at(SyntaxKind::Name) {
+                self.bump();
+                self.hush();
+            }
+        }
+        self.close(node, SyntaxKind::Dotted);
+        true
+    }
+
+    /// The value behind `=`.
+    pub(super) fn value(&mut self) {
         if self.at(SyntaxKind::Equals) {
             let diagnostic = syntax::double_equals(self.here());
             self.report(diagnostic);

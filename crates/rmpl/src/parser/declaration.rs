@@ -17,6 +17,7 @@ impl Parser<'_> {
             SyntaxKind::ScenarioKeyword => self.scenario(),
             SyntaxKind::ControlText => self.control(),
             _ if self.at_constant() => self.constant(),
+            _ if self.at_lasting_declaration() => self.lasting_declaration(),
             _ if self.at_world_declaration() => self.world_declaration(),
             _ if self.at_definition(false) => self.activity(),
             _ => self.garbage(),
@@ -134,18 +135,7 @@ impl Parser<'_> {
         if self.at(SyntaxKind::LeftBracket) {
             self.bounds();
         }
-        loop {
-            if self.at_word("moves") {
-                self.moves();
-            } else if self.at_word("runs") {
-                let runs = self.open();
-                self.bump();
-                self.declared_name("the name of a control program");
-                self.close(runs, SyntaxKind::Runs);
-            } else {
-                break;
-            }
-        }
+        self.clauses();
         if self.at(SyntaxKind::Equals) {
             let diagnostic = syntax::primitive_with_body(self.here());
             self.report(diagnostic);

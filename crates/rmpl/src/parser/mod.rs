@@ -6,11 +6,15 @@
 //! first byte without memory of what came before, which is what makes parsing after an edit local.
 
 mod bounds;
+mod clause;
 mod condition;
 mod declaration;
+mod lasting;
 mod recovery;
 mod statement;
 mod world;
+
+pub(crate) use clause::CLAUSE_WORDS;
 
 use crate::diagnostic::{Diagnostic, Fix};
 use crate::diagnostics::{lex, syntax};

@@ -61,7 +61,10 @@ impl Parser<'_> {
             | SyntaxKind::OptionKeyword => true,
             SyntaxKind::Name => {
                 self.begins_line()
-                    && (self.at_constant() || self.at_world_declaration() || self.at_definition(true))
+                    && (self.at_constant()
+                        || self.at_lasting_declaration()
+                        || self.at_world_declaration()
+                        || self.at_definition(true))
             }
             _ => false,
         }
@@ -124,6 +127,31 @@ impl Parser<'_> {
         self.at_word("const") && (self.peek() == SyntaxKind::Name || self.at_definition_of_nothing())
     }
 
+    /// Whether a state, a resource or an objective is declared here. No definition begins with two names, but a
+    /// statement may: `state and ready`.
+    pub(super) fn at_lasting_declaration(&mut self) -> bool {
+        self.at(SyntaxKind::Name)
+            && matches!(self.current_text(), "state" | "resource" | "objective")
+            && self.peek() == SyntaxKind::Name
+            && !self.at_joint()
+    }
+
+    /// Whether a word that goes on with the statement stands behind the name at the cursor.
+    pub(super) fn at_joint(&mut self) -> bool {
+        let next = self.index_after(self.current);
+        if self.kind_at(next) != SyntaxKind::Name {
+            return false;
+        }
+        match self.text_of(next) {
+            "and" | "or" | "in" | "else" => true,
+            "using" => {
+                let resource = self.index_after(next);
+                self.kind_at(resource) == SyntaxKind::Name
+            }
+            _ => false,
+        }
+    }
+
     /// Whether a world declaration begins here: its first word is a keyword only before what must follow it.
     pub(super) fn at_world_declaration(&mut self) -> bool {
         if !self.at(SyntaxKind::Name) {
@@ -153,6 +181,7 @@ impl Parser<'_> {
                 | SyntaxKind::OptionKeyword
                 | SyntaxKind::ControlText
         ) || self.at_constant()
+            || self.at_lasting_declaration()
             || self.at_world_declaration()
             || self.at_definition(false)
     }

@@ -105,7 +105,9 @@ impl Parser<'_> {
 
     fn core(&mut self) {
         let is_repeat = self.at_repeat();
-        let is_free = self.at_free();
+        let is_free = self.at_prefix("free");
+        let is_optional = self.at_prefix("optional");
+        let is_unordered = self.at_word("unordered") && self.peek() == SyntaxKind::LeftBrace;
         match self.kind {
             SyntaxKind::LeftBrace => self.block(),
             SyntaxKind::ChooseKeyword => self.choose(),
@@ -117,7 +119,9 @@ impl Parser<'_> {
                 self.close(node, SyntaxKind::Delay);
             }
             SyntaxKind::Name if is_repeat => self.repeat(),
-            SyntaxKind::Name if is_free => self.free(),
+            SyntaxKind::Name if is_free => self.prefixed(SyntaxKind::Free),
+            SyntaxKind::Name if is_optional => self.prefixed(SyntaxKind::Optional),
+            SyntaxKind::Name if is_unordered => self.unordered(),
             SyntaxKind::Name => self.call_or_assertion(),
             SyntaxKind::NotKeyword
             | SyntaxKind::Bang
@@ -202,10 +206,43 @@ impl Parser<'_> {
         if matches!(self.kind, SyntaxKind::MaintainingKeyword | SyntaxKind::WatchingKeyword) {
             self.bump();
             self.condition();
+        } else if self.at_word("using") {
+            self.using();
         } else {
-            self.report_expected_keyword("`maintaining` or `watching`", None);
+            self.report_expected_keyword("`maintaining` or `watching`, or `using` with a resource", None);
         }
         self.close(node, SyntaxKind::Do);
+    }
+
+    /// `using NAME amount`
+    fn using(&mut self) {
+        self.bump();
+        self.declared_name("the name of a resource");
+        let is_amount = match self.kind {
+            SyntaxKind::Name => {
+                let next = self.peek();
+                let is_call = matches!(next, SyntaxKind::LeftParen | SyntaxKind::Dot);
+                let is_condition = matches!(next, SyntaxKind::Equals | SyntaxKind::NotEquals);
+                let is_outer_using = self.at_word("using") && next == SyntaxKind::Name;
+                let is_else = self.at_word("else");
+                let is_other = is_call || is_condition || is_outer_using || is_else;
+                !is_other && !self.at_declaration_at_line_start()
+            }
+            SyntaxKind::Minus => true,
+            _ => self.at_operand(),
+        };
+        if is_amount {
+            self.sum();
+        }
+        if self.at_per() {
+            let unit = self.index_after(self.current);
+            let span = self.here().cover(self.span_of(unit));
+            self.report(syntax::using_per(span));
+            let node = self.open();
+            self.bump();
+            self.bump();
+            self.close(node, SyntaxKind::Skipped);
+        }
     }
 
     fn if_statement(&mut self) {
@@ -243,7 +280,7 @@ impl Parser<'_> {
                 self.arguments();
                 self.close(node, SyntaxKind::Call);
             }
-            SyntaxKind::Equals | SyntaxKind::NotEquals => self.assertion(),
+            SyntaxKind::Equals | SyntaxKind::NotEquals | SyntaxKind::Dot => self.assertion(),
             _ if self.at_joined_literal() => self.assertion(),
             _ => {
                 let node = self.open();
@@ -314,21 +351,29 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::Repeat);
     }
 
-    /// Whether `free` stands before a statement; otherwise the word is a name like any other.
-    fn at_free(&mut self) -> bool {
-        self.at_word("free")
+    /// Whether `word` stands before a statement; otherwise it is a name like any other.
+    fn at_prefix(&mut self, word: &str) -> bool {
+        self.at_word(word)
             && match self.peek() {
-                SyntaxKind::Name => !self.at_joined_literal(),
+                SyntaxKind::Name => !self.at_joint(),
                 kind => begins_only_statements(kind),
             }
     }
 
-    /// `free A`; bounds behind it bind to A.
-    fn free(&mut self) {
+    /// `free A` or `optional A`; bounds behind it bind to A.
+    fn prefixed(&mut self, kind: SyntaxKind) {
         let node = self.open();
         self.bump();
         self.nested(Self::statement);
-        self.close(node, SyntaxKind::Free);
+        self.close(node, kind);
+    }
+
+    /// `unordered { A; B }`
+    fn unordered(&mut self) {
+        let node = self.open();
+        self.bump();
+        self.block();
+        self.close(node, SyntaxKind::Unordered);
     }
 
     fn argument(&mut self) {
@@ -342,7 +387,11 @@ impl Parser<'_> {
         let is_plain_number = !is_operator && !self.at_quantity();
         match self.kind {
             SyntaxKind::Number if is_plain_number => self.bump(),
-            SyntaxKind::Name if matches!(next, SyntaxKind::Equals | SyntaxKind::NotEquals) => self.literal(),
+            SyntaxKind::Name
+                if matches!(next, SyntaxKind::Equals | SyntaxKind::NotEquals | SyntaxKind::Dot) =>
+            {
+                self.literal();
+            }
             SyntaxKind::Name if is_membership => self.literal(),
             SyntaxKind::Name if !is_operator => self.bump(),
             SyntaxKind::Number | SyntaxKind::Name | SyntaxKind::LeftParen => self.sum(),

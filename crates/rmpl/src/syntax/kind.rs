@@ -59,6 +59,10 @@ pub enum SyntaxKind {
     Star,
     /// `/`
     Slash,
+    /// `.` right behind a name: `Rover.at`
+    Dot,
+    /// `..`
+    DotDot,
     /// `choose`
     ChooseKeyword,
     /// `do`
@@ -110,6 +114,12 @@ pub enum SyntaxKind {
     ObstacleDecl,
     /// `const NAME = … ;`
     ConstantDecl,
+    /// `state X : { … } = V;`
+    StateDecl,
+    /// `resource NAME … ;`
+    ResourceDecl,
+    /// `objective … ;`
+    ObjectiveDecl,
     /// `vehicle NAME : … ;`
     VehicleDecl,
     /// Text that is no declaration; it has been reported.
@@ -132,6 +142,30 @@ pub enum SyntaxKind {
     Origin,
     /// `at NAME`
     At,
+    /// `= V` of a state variable.
+    Initial,
+    /// `capacity N` of a resource.
+    Capacity,
+    /// `N .. N = N` of a resource.
+    Range,
+    /// `minimize …` or `maximize …`
+    Goal,
+    /// `requires …`, perhaps `at start`.
+    Requires,
+    /// `sets …`
+    Sets,
+    /// `X=V` of `sets`.
+    Effect,
+    /// `uses …`, `consumes …` or `produces …`
+    Uses,
+    /// A resource of such a clause, with its amount.
+    ResourceUse,
+    /// `costs …`
+    Costs,
+    /// `rewards …`
+    Rewards,
+    /// An expression, perhaps with `per` and a unit.
+    Amount,
 
     /// `[lower, upper]`
     Bounds,
@@ -156,7 +190,7 @@ pub enum SyntaxKind {
     Choose,
     /// One alternative of a choice.
     Alternative,
-    /// `do … maintaining …` or `do … watching …`
+    /// `do … maintaining …`, `do … watching …` or `do … using …`
     Do,
     /// `if … thennext …`, perhaps with `else …`
     If,
@@ -164,6 +198,10 @@ pub enum SyntaxKind {
     Repeat,
     /// `free …`
     Free,
+    /// `optional …`
+    Optional,
+    /// `unordered { … }`
+    Unordered,
     /// `Name( … )`
     Call,
     /// `( … )` of a call.
@@ -186,6 +224,8 @@ pub enum SyntaxKind {
     NotOf,
     /// Conditions in parentheses.
     ConditionGroup,
+    /// `Rover.at` in a condition or an effect.
+    Dotted,
     /// Tokens that were skipped to recover.
     Skipped,
 }
@@ -258,6 +298,8 @@ impl SyntaxKind {
             Self::Minus => "`-`",
             Self::Star => "`*`",
             Self::Slash => "`/`",
+            Self::Dot => "`.`",
+            Self::DotDot => "`..`",
             Self::ThennextKeyword => "`thennext`",
             Self::End => "the end of the text",
             _ => "this",

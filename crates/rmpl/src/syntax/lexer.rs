@@ -35,6 +35,8 @@ pub(crate) struct Lexer<'t> {
     text: &'t str,
     position: usize,
     bracket_depth: u32,
+    /// Whether the token before is a name.
+    is_behind_name: bool,
     pub(crate) problems: Vec<LexProblem>,
 }
 
@@ -71,7 +73,7 @@ const MAX_DIGITS: usize = 15;
 
 impl<'t> Lexer<'t> {
     pub(crate) fn new(text: &'t str) -> Self {
-        Self { text, position: 0, bracket_depth: 0, problems: Vec::new() }
+        Self { text, position: 0, bracket_depth: 0, is_behind_name: false, problems: Vec::new() }
     }
 
     /// The next token's kind and the offset of its end; `End` without width when nothing is left.
@@ -89,6 +91,7 @@ impl<'t> Lexer<'t> {
         } else {
             self.punctuation(first, start)
         };
+        self.is_behind_name = kind == SyntaxKind::Name;
         (kind, self.position as u32)
     }
 
@@ -210,6 +213,11 @@ impl<'t> Lexer<'t> {
                 SyntaxKind::NotEquals
             }
             b'!' => SyntaxKind::Bang,
+            b'.' if self.byte(start + 1) == b'.' => {
+                self.position = start + 2;
+                SyntaxKind::DotDot
+            }
+            b'.' if self.is_behind_name => SyntaxKind::Dot,
             b'/' => self.slash(start),
             b'"' => self.string(start),
             _ => self.unknown(start),

@@ -44,13 +44,36 @@ impl Writer {
     }
 
     fn declaration(&mut self) {
-        match self.below(8) {
+        match self.below(13) {
             0 => self.all(&["var", "P", ":", "{", "OK", ",", "BAD", "}", ";"]),
             1 => self.all(&["primitive", "A", "(", "to", ")", "[", "1", ",", "2.5", "]", ";"]),
             2 => self.all(&["location", "SITE", "(", "1", ",", "-", "2", ")", ";"]),
             3 => self.all(&["option", "threat_gap", "=", "2", ";"]),
             4 => self.all(&["obstacle", "Rock", "circle", "(", "1", ",", "2", ",", "3", ")", ";"]),
-            5 => {
+            5 => self.all(&["state", "P", ":", "{", "OK", ",", "BAD", "}", "=", "OK", ";"]),
+            6 => self.all(&["resource", "R", "0", "..", "9", "*", "x", "=", "(", "3", ")", ";"]),
+            7 => self.all(&[
+                "objective",
+                "minimize",
+                "-",
+                "2",
+                "*",
+                "cost",
+                "+",
+                "end",
+                ",",
+                "maximize",
+                "reward",
+                ";",
+            ]),
+            8 | 9 => {
+                self.all(&["primitive", "A", "(", "to", ")", "[", "1", ",", "2.5", "]"]);
+                for _ in 0..self.below(5) {
+                    self.clause();
+                }
+                self.put(";");
+            }
+            10 => {
                 self.all(&["scenario", "Day", "[", "0", ",", "90", "]", "="]);
                 self.block(3);
             }
@@ -62,6 +85,23 @@ impl Writer {
                     self.put(";");
                 }
             }
+        }
+    }
+
+    fn clause(&mut self) {
+        match self.below(6) {
+            0 => {
+                self.put("requires");
+                if self.below(2) == 0 {
+                    self.all(&["at", "start"]);
+                }
+                self.condition();
+            }
+            1 => self.all(&["sets", "X", "=", "to", ",", "V.at", "=", "to"]),
+            2 => self.all(&["uses", "R", ",", "P", "2", "*", "to"]),
+            3 => self.all(&["consumes", "R", "(", "2", "+", "to", ")", "per", "minute"]),
+            4 => self.all(&["costs", "2", "per", "metre"]),
+            _ => self.all(&["rewards", "to"]),
         }
     }
 
@@ -81,7 +121,7 @@ impl Writer {
     }
 
     fn statement(&mut self, depth: u64) {
-        match self.below(if depth == 0 { 5 } else { 9 }) {
+        match self.below(if depth == 0 { 5 } else { 12 }) {
             0 => {
                 self.name();
                 self.all(&["(", "SITE", ",", "-", "3", ")"]);
@@ -121,6 +161,22 @@ impl Writer {
                 self.put("}");
             }
             7 => {
+                self.put("optional");
+                self.block(depth - 1);
+                self.bounds();
+            }
+            8 => {
+                self.put("unordered");
+                self.block(depth - 1);
+                self.bounds();
+            }
+            9 => {
+                self.put("do");
+                self.statement(depth - 1);
+                self.all(&["using", "R", "2", "*", "x"]);
+                self.bounds();
+            }
+            10 => {
                 self.put("do");
                 self.statement(depth - 1);
                 let word = if self.below(2) == 0 { "maintaining" } else { "watching" };
@@ -138,7 +194,7 @@ impl Writer {
     }
 
     fn condition(&mut self) {
-        match self.below(5) {
+        match self.below(6) {
             0 => {
                 self.put("not");
                 self.condition();
@@ -158,6 +214,7 @@ impl Writer {
                 self.put(operator);
                 self.name();
             }
+            4 => self.all(&["V.at", "=", "SITE"]),
             _ => self.name(),
         }
     }

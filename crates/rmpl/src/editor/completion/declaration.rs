@@ -1,0 +1,180 @@
+//! Places in the declarations that have no body, and in the clauses of primitives.
+
+use super::place::{Place, in_set, innermost, value_of};
+use crate::parser::CLAUSE_WORDS;
+use crate::program::{Measure, Per};
+use crate::syntax::{SyntaxKind, SyntaxToken};
+
+/// Places in the declarations that have no body.
+pub(super) fn in_declaration(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Option<Place> {
+    let first = context.first()?;
+    let is_open = !context.iter().any(|token| matches!(token.kind, SyntaxKind::Semicolon));
+    if !is_open {
+        return None;
+    }
+    let names = context.iter().filter(|token| token.kind == SyntaxKind::Name).count();
+    let is_constant = context.get(1).is_none_or(|second| second.kind == SyntaxKind::Name);
+    Some(match (first.kind, first.text) {
+        (SyntaxKind::OptionKeyword, _) => match last.kind {
+            SyntaxKind::OptionKeyword => Place::Option,
+            SyntaxKind::Equals => {
+                Place::OptionValue(context.get(1).map_or(String::new(), |name| name.text.to_owned()))
+            }
+            _ => Place::Nothing,
+        },
+        (SyntaxKind::PrimitiveKeyword, _) => in_primitive(context, last),
+        (SyntaxKind::Name, "state") if is_constant => in_state(context, last),
+        (SyntaxKind::Name, "resource") if is_constant => in_resource(context, last),
+        (SyntaxKind::Name, "objective") if is_constant => in_objective(last),
+        (SyntaxKind::Name, "vehicle") => match (last.kind, last.text) {
+            (SyntaxKind::Colon, _) => Place::Model,
+            (SyntaxKind::Name, "at") if names > 2 => Place::Location,
+            (SyntaxKind::Name, _) if names == 3 => Place::Words(vec!["at"]),
+            _ => Place::Nothing,
+        },
+        (SyntaxKind::Name, "const")
+            if is_constant && context.iter().any(|token| token.kind == SyntaxKind::Equals) =>
+        {
+            Place::Bound
+        }
+        (SyntaxKind::Name, "obstacle") if names == 2 => Place::Shape,
+        (SyntaxKind::Name, "terrain") => match last.kind {
+            SyntaxKind::String => Place::Words(vec!["cell", "origin"]),
+            SyntaxKind::Number => Place::Words(vec!["origin"]),
+            _ => Place::Nothing,
+        },
+        (SyntaxKind::Name, "const") if is_constant => Place::Nothing,
+        (SyntaxKind::Name, "obstacle" | "location") | (SyntaxKind::VarKeyword, _) => Place::Nothing,
+        _ => return None,
+    })
+}
+
+/// `state X : {A, B} = …`
+fn in_state(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
+    if last.kind != SyntaxKind::Equals {
+        return Place::Nothing;
+    }
+    let domain = context.iter().skip_while(|token| token.kind != SyntaxKind::LeftBrace);
+    let values = domain.filter(|token| token.kind == SyntaxKind::Name);
+    Place::Values(values.map(|token| token.text.to_owned()).collect())
+}
+
+fn in_resource(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
+    match context.len() {
+        1 => Place::Nothing,
+        2 => Place::AmountOr(vec!["capacity"]),
+        _ if is_operator(last.kind)
+            || matches!(last.kind, SyntaxKind::DotDot | SyntaxKind::Equals | SyntaxKind::LeftParen)
+            || last.text == "capacity" =>
+        {
+            Place::Amount
+        }
+        _ => Place::Nothing,
+    }
+}
+
+fn in_objective(last: SyntaxToken<'_>) -> Place {
+    match (last.kind, last.text) {
+        (SyntaxKind::Comma, _) | (SyntaxKind::Name, "objective") => {
+            Place::Words(vec!["minimize", "maximize"])
+        }
+        (SyntaxKind::Plus | SyntaxKind::Minus | SyntaxKind::Star, _)
+        | (SyntaxKind::Name, "minimize" | "maximize") => {
+            Place::Words(Measure::ALL.iter().map(|(word, _)| *word).collect())
+        }
+        _ => Place::Nothing,
+    }
+}
+
+const fn is_operator(kind: SyntaxKind) -> bool {
+    matches!(kind, SyntaxKind::Plus | SyntaxKind::Minus | SyntaxKind::Star | SyntaxKind::Slash)
+}
+
+fn in_primitive(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
+    let is_clause =
+        |token: &SyntaxToken<'_>| token.kind == SyntaxKind::Name && CLAUSE_WORDS.contains(&token.text);
+    let header = context.iter().take_while(|token| !is_clause(token)).count();
+    let word = context.iter().enumerate().rfind(|(_, token)| is_clause(token)).map(|(at, _)| at);
+    let Some(word) = word.filter(|_| header > 2) else {
+        return match (innermost(context), last.kind) {
+            (Some((SyntaxKind::LeftBracket, _)), _) => Place::Bound,
+            (None, SyntaxKind::RightParen | SyntaxKind::RightBracket) => Place::Words(CLAUSE_WORDS.to_vec()),
+            _ => Place::Nothing,
+        };
+    };
+    let clause = context.get(word..).unwrap_or_default();
+    match context.get(word).map_or("", |token| token.text) {
+        "requires" => in_requires(clause, last),
+        "sets" => match last.kind {
+            SyntaxKind::Equals => value_of(clause, clause.len() - 1),
+            SyntaxKind::Comma => Place::Effect,
+            _ if clause.len() == 1 => Place::Effect,
+            _ if clause.iter().any(|token| token.kind == SyntaxKind::Equals) => {
+                Place::Words(CLAUSE_WORDS.to_vec())
+            }
+            _ => Place::Nothing,
+        },
+        "moves" => in_moves(clause, last),
+        "runs" if clause.len() == 1 => Place::Nothing,
+        "costs" | "rewards" => in_amount(clause, last),
+        "runs" => Place::Words(CLAUSE_WORDS.to_vec()),
+        _ if clause.len() == 1 || (last.kind == SyntaxKind::Comma && innermost(clause).is_none()) => {
+            Place::Resource
+        }
+        _ => in_amount(clause.get(1..).unwrap_or_default(), last),
+    }
+}
+
+/// Behind `requires`.
+fn in_requires(clause: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
+    let words = |more: &[&'static str]| Place::Words([more, &CLAUSE_WORDS].concat());
+    match (innermost(clause), last.kind, last.text) {
+        (Some((SyntaxKind::LeftBrace, at)), ..) => in_set(clause, at).unwrap_or(Place::Nothing),
+        (_, SyntaxKind::Equals | SyntaxKind::NotEquals, _) => value_of(clause, clause.len() - 1),
+        (_, SyntaxKind::Comma | SyntaxKind::NotKeyword | SyntaxKind::Bang | SyntaxKind::LeftParen, _) => {
+            Place::Condition
+        }
+        _ if clause.len() == 1 => Place::Requirement,
+        (_, SyntaxKind::Name, "start") if clause.len() == 3 => Place::Condition,
+        (_, SyntaxKind::Name, "at") if clause.len() == 2 => words(&["start", "and", "in"]),
+        (_, SyntaxKind::Name, "and") => Place::Condition,
+        _ => words(&["and", "in"]),
+    }
+}
+
+fn in_moves(clause: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
+    match last.kind {
+        _ if innermost(clause).is_some() => Place::Nothing,
+        SyntaxKind::Comma => Place::Vehicle,
+        _ if clause.len() == 1 => Place::Vehicle,
+        SyntaxKind::Name if last.text == "speed" => Place::Nothing,
+        SyntaxKind::Name => Place::Words([&["speed"], CLAUSE_WORDS.as_slice()].concat()),
+        _ => Place::Words(CLAUSE_WORDS.to_vec()),
+    }
+}
+
+/// Where an amount stands or ends; `before` begins with what stands before it.
+fn in_amount(before: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
+    let units: Vec<&'static str> = Per::ALL.iter().map(|(word, _)| *word).collect();
+    if last.kind == SyntaxKind::Name && last.text == "per" && before.len() > 1 {
+        return Place::Words(units);
+    }
+    let is_unit = units.contains(&last.text)
+        && before.len().checked_sub(2).and_then(|at| before.get(at)).is_some_and(|it| it.text == "per");
+    if is_unit {
+        return Place::Words(CLAUSE_WORDS.to_vec());
+    }
+    let begins = before.len() == 1
+        || before
+            .len()
+            .checked_sub(2)
+            .and_then(|at| before.get(at))
+            .is_some_and(|it| it.kind == SyntaxKind::Comma);
+    if begins {
+        return Place::AmountOr(CLAUSE_WORDS.to_vec());
+    }
+    if is_operator(last.kind) || last.kind == SyntaxKind::LeftParen {
+        return Place::Amount;
+    }
+    Place::Words([&["per"], CLAUSE_WORDS.as_slice()].concat())
+}

@@ -1,0 +1,245 @@
+//! What can be written at a place.
+
+use rustc_hash::FxHashSet;
+
+use super::place::Place;
+use super::{CompletionItem, CompletionKind};
+use crate::analysis::Symbol;
+use crate::analysis::local::VEHICLE_MODELS;
+use crate::editor::cursor::declaration_at_cursor;
+use crate::editor::name::{NameKind, names_in};
+use crate::editor::outline::{OutlineItem, OutlineKind, outline};
+use crate::parse::Parse;
+
+pub(super) fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<CompletionItem> {
+    let mut items = Vec::new();
+    match place {
+        Place::File => items.extend(DECLARATIONS.iter().map(|(label, insert)| keyword(label, insert))),
+        Place::Statement => {
+            items.extend(STATEMENTS.iter().map(|(label, insert)| keyword(label, insert)));
+            calls(parse, &mut items);
+            conditions(parse, offset, &mut items);
+        }
+        Place::Condition => {
+            items.push(keyword("not", "not($0)"));
+            conditions(parse, offset, &mut items);
+        }
+        Place::Requirement => {
+            items.push(keyword("not", "not($0)"));
+            items.push(keyword("at start", "at start "));
+            conditions(parse, offset, &mut items);
+        }
+        Place::Effect => {
+            local_names(parse, offset, &NameKind::Parameter, CompletionKind::Parameter, &mut items);
+            variables(parse, &[OutlineKind::State], &mut items);
+        }
+        Place::Value(variable) => {
+            values(parse, variable, &mut items);
+            local_names(parse, offset, &NameKind::Parameter, CompletionKind::Parameter, &mut items);
+        }
+        Place::Values(values) => {
+            items.extend(values.iter().map(|value| plain(value, CompletionKind::Value)));
+        }
+        Place::Resource => declared(parse, OutlineKind::Resource, CompletionKind::Variable, &mut items),
+        Place::Amount => numbers(parse, offset, &mut items),
+        Place::AmountOr(words) => {
+            items.extend(words.iter().map(|word| keyword(word, word)));
+            numbers(parse, offset, &mut items);
+        }
+        Place::Bound => {
+            items.push(keyword("inf", "inf"));
+            numbers(parse, offset, &mut items);
+        }
+        Place::Argument => {
+            local_names(parse, offset, &NameKind::Parameter, CompletionKind::Parameter, &mut items);
+            declared(parse, OutlineKind::Location, CompletionKind::Location, &mut items);
+            declared(parse, OutlineKind::Vehicle, CompletionKind::Vehicle, &mut items);
+            declared(parse, OutlineKind::Constant, CompletionKind::Constant, &mut items);
+            declared(parse, OutlineKind::Variable, CompletionKind::Variable, &mut items);
+            declared(parse, OutlineKind::State, CompletionKind::Variable, &mut items);
+        }
+        Place::Vehicle => {
+            local_names(parse, offset, &NameKind::Parameter, CompletionKind::Parameter, &mut items);
+            declared(parse, OutlineKind::Vehicle, CompletionKind::Vehicle, &mut items);
+        }
+        Place::Location => {
+            local_names(parse, offset, &NameKind::Parameter, CompletionKind::Parameter, &mut items);
+            declared(parse, OutlineKind::Location, CompletionKind::Location, &mut items);
+        }
+        Place::Model => {
+            items.extend(VEHICLE_MODELS.iter().map(|model| plain(model, CompletionKind::Vehicle)));
+        }
+        Place::Option => {
+            let options = [
+                ("threat_gap", "threat_gap = 1;"),
+                ("strict", "strict = 1;"),
+                ("time_unit", "time_unit = second;"),
+                ("control_step", "control_step = 1;"),
+            ];
+            items.extend(options.map(|(label, insert)| CompletionItem {
+                kind: CompletionKind::Option,
+                ..keyword(label, insert)
+            }));
+        }
+        Place::OptionValue(option) => {
+            let values: &[&str] = match option.as_str() {
+                "time_unit" => &["minute", "second"],
+                "strict" => &["0", "1"],
+                _ => &["1"],
+            };
+            items.extend(values.iter().map(|value| plain(value, CompletionKind::Option)));
+        }
+        Place::Shape => {
+            items.push(keyword("circle", "circle ($0);"));
+            items.push(keyword("polygon", "polygon ($0);"));
+        }
+        Place::Words(words) => items.extend(words.iter().map(|word| keyword(word, word))),
+        Place::Nothing => {}
+    }
+    items
+}
+
+const DECLARATIONS: [(&str, &str); 12] = [
+    ("state", "state $0 : {} = ;"),
+    ("resource", "resource $0;"),
+    ("objective", "objective $0;"),
+    ("const", "const $0 = ;"),
+    ("var", "var $0 : {};"),
+    ("primitive", "primitive $0();"),
+    ("scenario", "scenario $0 = {\n}"),
+    ("option", "option $0;"),
+    ("terrain", "terrain \"$0\";"),
+    ("location", "location $0 (0, 0);"),
+    ("obstacle", "obstacle $0 circle (0, 0, 1);"),
+    ("vehicle", "vehicle $0 : ATRV at BASE;"),
+];
+
+const STATEMENTS: [(&str, &str); 14] = [
+    ("optional", "optional "),
+    ("unordered", "unordered { $0 }"),
+    ("do … using", "do { $0 } using "),
+    ("repeat", "repeat $0 { }"),
+    ("free", "free "),
+    ("if … thennext … else", "if $0 thennext  else "),
+    ("choose", "choose { $0 }"),
+    ("do … maintaining", "do { $0 } maintaining "),
+    ("do … watching", "do { $0 } watching "),
+    ("if … thennext", "if $0 thennext "),
+    ("delay", "delay[$0,inf]"),
+    ("tell", "tell "),
+    ("ask", "ask "),
+    ("not", "not($0)"),
+];
+
+fn keyword(label: &str, insert: &str) -> CompletionItem {
+    CompletionItem {
+        label: label.to_owned(),
+        kind: CompletionKind::Keyword,
+        detail: String::new(),
+        insert: insert.to_owned(),
+    }
+}
+
+fn plain(label: &str, kind: CompletionKind) -> CompletionItem {
+    CompletionItem { kind, ..keyword(label, label) }
+}
+
+/// Activities and primitives, with parentheses and the cursor at their first argument.
+fn calls(parse: &Parse, items: &mut Vec<CompletionItem>) {
+    for OutlineItem { kind, name, detail, .. } in outline(parse) {
+        let kind = match kind {
+            OutlineKind::Primitive => CompletionKind::Primitive,
+            OutlineKind::Activity => CompletionKind::Activity,
+            _ => continue,
+        };
+        let insert = if detail.starts_with("()") || !detail.starts_with('(') {
+            format!("{name}()")
+        } else {
+            format!("{name}($0)")
+        };
+        items.push(CompletionItem { label: name, kind, detail, insert });
+    }
+}
+
+/// Names that stand for numbers.
+fn numbers(parse: &Parse, offset: u32, items: &mut Vec<CompletionItem>) {
+    local_names(parse, offset, &NameKind::BoundName, CompletionKind::BoundName, items);
+    local_names(parse, offset, &NameKind::Parameter, CompletionKind::Parameter, items);
+    declared(parse, OutlineKind::Constant, CompletionKind::Constant, items);
+}
+
+/// Declared variables of these kinds, and the places of vehicles.
+fn variables(parse: &Parse, kinds: &[OutlineKind], items: &mut Vec<CompletionItem>) {
+    for OutlineItem { kind, name, detail, .. } in outline(parse) {
+        let label = match kind {
+            OutlineKind::Vehicle => format!("{name}.at"),
+            kind if kinds.contains(&kind) => name,
+            _ => continue,
+        };
+        let insert = format!("{label}=");
+        let detail = detail.trim_start_matches([':', ' ']).to_owned();
+        items.push(CompletionItem { label, kind: CompletionKind::Variable, detail, insert });
+    }
+}
+
+/// Declared variables, parameters, and the conditions that the file speaks of.
+fn conditions(parse: &Parse, offset: u32, items: &mut Vec<CompletionItem>) {
+    local_names(parse, offset, &NameKind::Parameter, CompletionKind::Parameter, items);
+    variables(parse, &[OutlineKind::Variable, OutlineKind::State], items);
+    let mut known: FxHashSet<String> = items.iter().map(|item| item.label.clone()).collect();
+    for (_, summary) in parse.summaries() {
+        // A name alone may be the very word that is being typed.
+        for literal in
+            summary.literals.iter().filter(|literal| !literal.variable_is_formal && !literal.is_bare)
+        {
+            let name = parse.meaning().names.text(literal.variable);
+            if known.insert(name.to_string()) {
+                let insert = if literal.values.is_empty() { name.to_string() } else { format!("{name}=") };
+                items.push(CompletionItem {
+                    label: name.to_string(),
+                    kind: CompletionKind::Variable,
+                    detail: String::new(),
+                    insert,
+                });
+            }
+        }
+    }
+}
+
+/// The domain of a variable; for an undeclared one, the values that the file compares it with.
+fn values(parse: &Parse, variable: &str, items: &mut Vec<CompletionItem>) {
+    let meaning = parse.meaning();
+    let Some(symbol) = meaning.names.find(variable) else { return };
+    if let Some(domain) = meaning.domain(symbol) {
+        items.extend(domain.iter().map(|value| plain(meaning.names.text(*value), CompletionKind::Value)));
+        return;
+    }
+    let mut known: FxHashSet<Symbol> = FxHashSet::default();
+    for (_, summary) in parse.summaries() {
+        let own = summary.literals.iter().filter(|literal| literal.variable == symbol);
+        for (value, _) in own.flat_map(|literal| &literal.values) {
+            let text = meaning.names.text(*value);
+            if known.insert(*value) {
+                items.push(plain(text, CompletionKind::Value));
+            }
+        }
+    }
+}
+
+fn local_names(
+    parse: &Parse,
+    offset: u32,
+    wanted: &NameKind,
+    kind: CompletionKind,
+    items: &mut Vec<CompletionItem>,
+) {
+    let root = declaration_at_cursor(parse, offset);
+    let names = root.map(|root| names_in(parse, root)).unwrap_or_default();
+    let defined = names.into_iter().filter(|name| name.is_definition && name.kind == *wanted);
+    items.extend(defined.map(|name| plain(&name.text, kind)));
+}
+
+fn declared(parse: &Parse, wanted: OutlineKind, kind: CompletionKind, items: &mut Vec<CompletionItem>) {
+    let found = outline(parse).into_iter().filter(|item| item.kind == wanted);
+    items.extend(found.map(|item| CompletionItem { detail: item.detail, ..plain(&item.name, kind) }));
+}

@@ -1,0 +1,125 @@
+//! Completion that knows the place: what can stand at the cursor, and nothing else.
+
+mod declaration;
+mod items;
+mod place;
+
+use crate::parse::Parse;
+use crate::span::Span;
+use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
+
+use super::cursor::declaration_at_cursor;
+
+use items::items;
+use place::place;
+
+/// What can be written at the cursor.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Completion {
+    /// What an item replaces: the word that is being typed.
+    pub replaces: Span,
+    /// The items that begin with what is typed (or contain it), best first.
+    pub items: Vec<CompletionItem>,
+}
+
+/// One thing that can be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CompletionItem {
+    /// What the list shows.
+    pub label: String,
+    /// What it is.
+    pub kind: CompletionKind,
+    /// More about it, in a few words.
+    pub detail: String,
+    /// What is written; `$0` marks where the cursor goes, if not behind it.
+    pub insert: String,
+}
+
+/// What an item is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CompletionKind {
+    /// A word of the language, or a piece of its grammar.
+    Keyword,
+    /// An activity with a definition.
+    Activity,
+    /// A primitive.
+    Primitive,
+    /// A state variable, an atom or a resource.
+    Variable,
+    /// A value of a variable.
+    Value,
+    /// A parameter.
+    Parameter,
+    /// A name of the header's bounds.
+    BoundName,
+    /// A constant.
+    Constant,
+    /// A location.
+    Location,
+    /// A vehicle or a model.
+    Vehicle,
+    /// An option or its value.
+    Option,
+}
+
+/// What can be written at `offset`.
+pub fn complete(parse: &Parse, offset: u32) -> Completion {
+    let around = parse.declaration_at(offset.saturating_sub(1));
+    let written =
+        declaration_at_cursor(parse, offset).filter(|root| Some(root.span()) != around.map(SyntaxNode::span));
+    let before: Vec<SyntaxToken<'_>> = written
+        .into_iter()
+        .chain(around)
+        .flat_map(SyntaxNode::tokens)
+        .filter(|token| token.span.start < offset)
+        .collect();
+    if before.last().is_some_and(|token| is_opaque(*token, offset)) {
+        return Completion { replaces: Span::new(offset, offset), items: Vec::new() };
+    }
+    let typed = before.last().filter(|token| token.span.end >= offset && is_word(token.kind));
+    let replaces = typed.map_or(Span::new(offset, offset), |token| token.span);
+    let prefix =
+        typed.map_or("", |token| token.text.get(..(offset - token.span.start) as usize).unwrap_or(""));
+    let context: Vec<SyntaxToken<'_>> = before
+        .iter()
+        .filter(|token| !token.kind.is_trivia() && token.span.start < replaces.start)
+        .copied()
+        .collect();
+    let mut items = items(parse, offset, &place(&context));
+    let rank = |item: &CompletionItem| rank(&item.label, prefix);
+    items.retain(|item| rank(item).is_some());
+    items.sort_by(|one, other| {
+        (rank(one), one.kind as u8 == CompletionKind::Keyword as u8, &one.label).cmp(&(
+            rank(other),
+            other.kind as u8 == CompletionKind::Keyword as u8,
+            &other.label,
+        ))
+    });
+    items.dedup_by(|one, other| one.label == other.label);
+    Completion { replaces, items }
+}
+
+/// Whether the cursor is in a comment, a text in quotes or a number, where nothing is completed.
+fn is_opaque(token: SyntaxToken<'_>, offset: u32) -> bool {
+    match token.kind {
+        SyntaxKind::LineComment | SyntaxKind::String | SyntaxKind::Number => token.span.end >= offset,
+        SyntaxKind::BlockComment => token.span.end > offset || !token.text.ends_with("*/"),
+        _ => false,
+    }
+}
+
+const fn is_word(kind: SyntaxKind) -> bool {
+    matches!(kind, SyntaxKind::Name | SyntaxKind::Infinity) || kind.is_keyword()
+}
+
+/// 0 for a beginning, 1 for a beginning in other case, 2 for a part; none if `label` does not fit what is typed.
+fn rank(label: &str, prefix: &str) -> Option<u8> {
+    let (lower_label, lower_prefix) = (label.to_ascii_lowercase(), prefix.to_ascii_lowercase());
+    if label.starts_with(prefix) {
+        Some(0)
+    } else if lower_label.starts_with(&lower_prefix) {
+        Some(1)
+    } else {
+        lower_label.contains(&lower_prefix).then_some(2)
+    }
+}

@@ -1,0 +1,182 @@
+//! What the tokens before the cursor say about the place.
+
+use super::declaration::in_declaration;
+use crate::syntax::{SyntaxKind, SyntaxToken};
+
+/// The place of the cursor, as far as it decides what can follow.
+pub(super) enum Place {
+    /// Between declarations.
+    File,
+    Statement,
+    Condition,
+    /// Behind `requires`.
+    Requirement,
+    /// What an activity may set.
+    Effect,
+    /// The value of this variable.
+    Value(String),
+    /// One of these values.
+    Values(Vec<String>),
+    Resource,
+    /// How much of something.
+    Amount,
+    /// The same, or one of these words.
+    AmountOr(Vec<&'static str>),
+    Bound,
+    Argument,
+    Vehicle,
+    Location,
+    Model,
+    Option,
+    OptionValue(String),
+    Shape,
+    /// One of these words.
+    Words(Vec<&'static str>),
+    /// A new name, or nothing that is known.
+    Nothing,
+}
+
+/// What the tokens before the cursor say about the place. Reads backwards to what decides; needs no sound tree.
+pub(super) fn place(context: &[SyntaxToken<'_>]) -> Place {
+    use SyntaxKind as Kind;
+    let Some(last) = context.last() else { return Place::File };
+    if last.kind == Kind::Dot {
+        return Place::Words(vec!["at"]);
+    }
+    if let Some(place) = in_declaration(context, *last) {
+        return place;
+    }
+    match innermost(context) {
+        Some((Kind::LeftBracket, _)) => return Place::Bound,
+        Some((Kind::LeftParen, at)) => {
+            let owner = at.checked_sub(1).and_then(|at| context.get(at)).map(|token| token.kind);
+            if owner == Some(Kind::Name) {
+                return Place::Argument;
+            }
+        }
+        Some((Kind::LeftBrace, at)) => {
+            if let Some(place) = in_set(context, at) {
+                return place;
+            }
+        }
+        _ if !matches!(last.kind, Kind::Semicolon | Kind::RightBrace) => return Place::Nothing,
+        _ => return Place::File,
+    }
+    if let Some(place) = behind_word(context, *last) {
+        return place;
+    }
+    match last.kind {
+        Kind::Equals | Kind::NotEquals => value_of(context, context.len() - 1),
+        Kind::MaintainingKeyword
+        | Kind::WatchingKeyword
+        | Kind::IfKeyword
+        | Kind::TellKeyword
+        | Kind::AskKeyword
+        | Kind::NotKeyword
+        | Kind::Bang
+        | Kind::LeftParen => Place::Condition,
+        Kind::LeftBrace | Kind::Semicolon | Kind::Comma | Kind::DoKeyword | Kind::ThennextKeyword => {
+            Place::Statement
+        }
+        Kind::ChooseKeyword => Place::Nothing,
+        _ => after_statement(context),
+    }
+}
+
+/// The values of the X of `X in {`, where the brace stands at `at`.
+pub(super) fn in_set(context: &[SyntaxToken<'_>], at: usize) -> Option<Place> {
+    let word = context.get(at.checked_sub(1)?)?;
+    let is_set = word.kind == SyntaxKind::Name && word.text == "in";
+    is_set.then(|| value_of(context, at - 1))
+}
+
+/// The values of the variable before `at`; those of `V.at` are the locations.
+pub(super) fn value_of(context: &[SyntaxToken<'_>], at: usize) -> Place {
+    let before = |back: usize| at.checked_sub(back).and_then(|at| context.get(at));
+    if before(2).is_some_and(|token| token.kind == SyntaxKind::Dot) {
+        return Place::Location;
+    }
+    Place::Value(before(1).map_or(String::new(), |name| name.text.to_owned()))
+}
+
+/// Behind a word that is one of the language only in its place, and stands there.
+fn behind_word(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Option<Place> {
+    use SyntaxKind as Kind;
+    if last.kind != Kind::Name {
+        return None;
+    }
+    let before = context.get(context.len().checked_sub(2)?)?.kind;
+    let begins_statement = matches!(
+        before,
+        Kind::LeftBrace | Kind::Semicolon | Kind::Comma | Kind::DoKeyword | Kind::ThennextKeyword
+    );
+    let ends = matches!(
+        before,
+        Kind::Name
+            | Kind::Number
+            | Kind::RightParen
+            | Kind::RightBracket
+            | Kind::RightBrace
+            | Kind::DelayKeyword
+    );
+    match last.text {
+        "repeat" if begins_statement => Some(Place::Bound),
+        "free" | "optional" if begins_statement => Some(Place::Statement),
+        "using" if ends => Some(Place::Resource),
+        "else" if ends => Some(Place::Statement),
+        "and" | "or" if ends => Some(Place::Condition),
+        _ => None,
+    }
+}
+
+/// Behind a whole statement or condition: the words that may go on.
+fn after_statement(context: &[SyntaxToken<'_>]) -> Place {
+    let mut depth = 0_i32;
+    for token in context.iter().rev() {
+        match token.kind {
+            SyntaxKind::RightBrace => depth += 1,
+            SyntaxKind::LeftBrace => {
+                depth -= 1;
+                if depth < 0 {
+                    break;
+                }
+            }
+            SyntaxKind::Semicolon | SyntaxKind::Comma if depth == 0 && !in_round(context, *token) => break,
+            SyntaxKind::DoKeyword if depth == 0 => {
+                return Place::Words(vec!["maintaining", "watching", "using"]);
+            }
+            SyntaxKind::IfKeyword if depth == 0 => return Place::Words(vec!["thennext", "and", "or", "in"]),
+            SyntaxKind::MaintainingKeyword | SyntaxKind::WatchingKeyword if depth == 0 => {
+                return Place::Words(vec!["and", "or", "in"]);
+            }
+            SyntaxKind::ThennextKeyword if depth == 0 => return Place::Words(vec!["else"]),
+            _ => {}
+        }
+    }
+    Place::Nothing
+}
+
+/// Whether `token` stands in parentheses or square brackets.
+fn in_round(context: &[SyntaxToken<'_>], token: SyntaxToken<'_>) -> bool {
+    let until: Vec<SyntaxToken<'_>> =
+        context.iter().take_while(|other| other.span.start < token.span.start).copied().collect();
+    innermost(&until).is_some_and(|(kind, _)| kind != SyntaxKind::LeftBrace)
+}
+
+/// The innermost bracket that is open at the end, and its index.
+pub(super) fn innermost(context: &[SyntaxToken<'_>]) -> Option<(SyntaxKind, usize)> {
+    let mut open: Vec<(SyntaxKind, usize)> = Vec::new();
+    for (at, token) in context.iter().enumerate() {
+        match token.kind {
+            SyntaxKind::LeftBrace | SyntaxKind::LeftBracket | SyntaxKind::LeftParen => {
+                open.push((token.kind, at));
+            }
+            SyntaxKind::RightBrace | SyntaxKind::RightBracket | SyntaxKind::RightParen => {
+                open.pop();
+            }
+            SyntaxKind::Semicolon => open.retain(|(kind, _)| *kind == SyntaxKind::LeftBrace),
+            _ => {}
+        }
+    }
+    open.last().copied()
+}
