@@ -21,7 +21,7 @@ pub enum ReadError {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
     /// Our own JSON (DESIGN 4.2).
-    Enroute(Network),
+    Enroute(Box<Network>),
     /// Another tool's (DESIGN 4.4).
     PlanSchema(Box<Document>),
 }
@@ -33,7 +33,7 @@ impl Source {
             && value.get("nodes").is_some()
             && value.get("arcs").is_some()
         {
-            return Ok(Self::Enroute(network_from_json(&value)?));
+            return Ok(Self::Enroute(Box::new(network_from_json(&value)?)));
         }
         Ok(Self::PlanSchema(Box::new(Document::parse(text)?)))
     }
@@ -41,7 +41,7 @@ impl Source {
     /// The network.
     pub fn into_network(self) -> Network {
         match self {
-            Self::Enroute(network) => network,
+            Self::Enroute(network) => *network,
             Self::PlanSchema(document) => document.network,
         }
     }

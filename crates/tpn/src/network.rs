@@ -3,9 +3,9 @@
 //! Ids are indices into the vectors of [`Network`]. A network is built once and then only read; path insertion makes a
 //! new one (SPEC 7.3).
 
-use exact::{Bound, Time};
+use exact::{Bound, Rational, Time};
 use rmpl::Span;
-use rmpl::program::LabelMode;
+use rmpl::program::{Change, LabelMode, Measure};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
@@ -58,6 +58,10 @@ id! {
     ValueId;
     /// A block of the program's structure.
     BlockId;
+    /// A resource.
+    ResourceId;
+    /// One use of a resource by one activity or block.
+    UseId;
 }
 
 /// A temporal plan network. A decision node has only [`ArcKind::Choice`] out-arcs, of which a plan selects exactly one;
@@ -76,6 +80,16 @@ pub struct Network {
     pub occurrences: Vec<Occurrence>,
     /// The state variables that labels speak of.
     pub variables: Vec<Variable>,
+    /// The resources that are used (SPEC 11).
+    pub resources: Vec<Resource>,
+    /// Who uses them, in textual order.
+    pub uses: Vec<Use>,
+    /// What selected arcs cost and are rewarded with (SPEC 12), in textual order.
+    pub worths: Vec<Worth>,
+    /// How long movements take at least, by where they start, as far as that is known (SPEC 10.3).
+    pub departures: Vec<Departure>,
+    /// What plans are to be best in, the most important goal first; empty if any plan will do.
+    pub objective: Vec<Goal>,
     /// The program's structure, parents after children; drawings and explanations read it.
     /// Empty for a network that came without a program.
     pub blocks: Vec<Block>,
@@ -206,6 +220,8 @@ pub struct Label {
     pub arc: ArcId,
     /// Asserted or required.
     pub mode: LabelMode,
+    /// Which part of the arc it is about.
+    pub extent: Extent,
     /// The condition.
     pub literal: Literal,
     /// The condition as the contracts print it: `PATH1=OK`, `not(PROCEED=OK)`.
@@ -214,6 +230,21 @@ pub struct Label {
     pub owner: Option<OccurrenceId>,
     /// Where the condition is written.
     pub span: Option<Span>,
+}
+
+/// Which part of its arc a label is about (SPEC 10.2).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Extent {
+    /// From the arc's start to its end.
+    #[default]
+    Whole,
+    /// The instant of the arc's start.
+    Start,
+    /// Of an assertion: the variable is changing along the arc, and has the value from its end on.
+    Effect,
+    /// Of an assertion: the value that a state variable has at the start of everything.
+    Initial,
 }
 
 /// A state variable.
@@ -225,6 +256,99 @@ pub struct Variable {
     pub values: Vec<SmolStr>,
     /// Whether `values` is all of its domain (declared, or a Boolean atom with the values `false` and `true`).
     pub closed: bool,
+    /// Whether it keeps a value until something changes it (SPEC 10); otherwise it is known only where it is asserted.
+    #[serde(default)]
+    pub is_lasting: bool,
+}
+
+/// A resource (SPEC 11).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Resource {
+    /// Its name; that of an `unordered` block is `unordered#1`.
+    pub name: SmolStr,
+    /// How much of it there is.
+    pub supply: Supply,
+    /// Where it is declared.
+    pub span: Option<Span>,
+}
+
+/// How much of a resource there is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Supply {
+    /// What is used is free again afterwards.
+    Reusable {
+        /// How much may be used at a time.
+        capacity: Rational,
+    },
+    /// What is consumed is gone until something produces it.
+    Reservoir {
+        /// The level never goes below.
+        least: Rational,
+        /// The level never goes above.
+        greatest: Rational,
+        /// The level at the start.
+        level: Rational,
+    },
+}
+
+/// What an activity or a block takes of a resource, or gives to it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Use {
+    /// Of what.
+    pub resource: ResourceId,
+    /// What happens to it.
+    pub change: Change,
+    /// How much; not negative.
+    pub amount: Rational,
+    /// How much more for each metre of the planned path.
+    pub per_metre: Rational,
+    /// It counts where this arc is selected.
+    pub arc: ArcId,
+    /// When it begins.
+    pub start: NodeId,
+    /// When it ends.
+    pub end: NodeId,
+    /// Who it is.
+    pub owner: Option<OccurrenceId>,
+    /// Where it is written.
+    pub span: Option<Span>,
+}
+
+/// What an activity costs and is rewarded with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Worth {
+    /// It counts where this arc is selected.
+    pub arc: ArcId,
+    /// Its cost, however far it drives.
+    pub cost: Rational,
+    /// Its cost for each metre of the planned path.
+    pub cost_per_metre: Rational,
+    /// Its reward.
+    pub reward: Rational,
+}
+
+/// How long a movement takes at least if it starts at one place: before its path is known by the straight line at the
+/// greatest speed, and by its path afterwards.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Departure {
+    /// Where the movement leaves its first vehicle: its label on `V.at`.
+    pub arrival: LabelId,
+    /// Where that vehicle is before.
+    pub from: ValueId,
+    /// The least duration; `None` if it cannot be driven from there.
+    pub least: Option<Time>,
+}
+
+/// One goal of an objective (SPEC 12).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Goal {
+    /// Whether more is better.
+    pub is_maximized: bool,
+    /// What is added up: each measure with its factor.
+    pub terms: Vec<(Rational, Measure)>,
+    /// Where it is written.
+    pub span: Option<Span>,
 }
 
 /// A variable restricted to a set of values.
@@ -398,7 +522,87 @@ pub enum BlockKind {
     },
 }
 
+impl Use {
+    /// When a reservoir is consumed from, or produced into.
+    pub fn moment(&self) -> NodeId {
+        if self.change == Change::Produces { self.end } else { self.start }
+    }
+}
+
+impl Label {
+    /// What it does, as its name says: `Ask`, `Tell`, `Set` or `Init`.
+    pub const fn verb(&self) -> &'static str {
+        match (self.mode, self.extent) {
+            (LabelMode::Ask, _) => "Ask",
+            (LabelMode::Tell, Extent::Effect) => "Set",
+            (LabelMode::Tell, Extent::Initial) => "Init",
+            (LabelMode::Tell, Extent::Whole | Extent::Start) => "Tell",
+        }
+    }
+
+    /// Whether a variable that keeps its value has none while this goes on.
+    pub fn is_changing(&self) -> bool {
+        self.extent == Extent::Effect
+    }
+}
+
 impl Network {
+    /// The first and the last event of what a label occupies.
+    pub fn interval(&self, label: LabelId) -> (NodeId, NodeId) {
+        let label = &self.labels[label.index()];
+        let arc = &self.arcs[label.arc.index()];
+        match label.extent {
+            Extent::Whole | Extent::Effect => (arc.from, arc.to),
+            Extent::Start | Extent::Initial => (arc.from, arc.from),
+        }
+    }
+
+    /// The event from which on what a label asserts holds (SPEC 10.2).
+    pub fn ready(&self, label: LabelId) -> NodeId {
+        let (start, end) = self.interval(label);
+        if self.labels[label.index()].is_changing() { end } else { start }
+    }
+
+    /// Whether a label is about a variable that keeps its value (SPEC 10).
+    pub fn is_lasting(&self, label: LabelId) -> bool {
+        self.variables[self.labels[label.index()].literal.variable.index()].is_lasting
+    }
+
+    /// Whether two labels may not overlap: of a variable that keeps its value, changes exclude each other and what
+    /// requires another value (SPEC 10.2); of others, conditions that cannot hold together (SPEC 3.1).
+    pub fn conflict(&self, one: LabelId, other: LabelId) -> bool {
+        let is_lasting = self.is_lasting(one);
+        let (left, right) = (&self.labels[one.index()], &self.labels[other.index()]);
+        if !is_lasting || left.literal.variable != right.literal.variable {
+            return left.literal.conflicts(&right.literal);
+        }
+        match (left.mode, right.mode) {
+            (LabelMode::Ask, LabelMode::Ask) => false,
+            (LabelMode::Tell, LabelMode::Tell) => {
+                left.is_changing() || right.is_changing() || left.literal != right.literal
+            }
+            (LabelMode::Ask, LabelMode::Tell) => {
+                right.is_changing() || !right.literal.supports(&left.literal)
+            }
+            (LabelMode::Tell, LabelMode::Ask) => left.is_changing() || !left.literal.supports(&right.literal),
+        }
+    }
+
+    /// The name of a use: `Uses(Power)@Radio#1`.
+    pub fn use_name(&self, used: UseId) -> String {
+        let used = &self.uses[used.index()];
+        let verb = match used.change {
+            Change::Uses => "Uses",
+            Change::Consumes => "Consumes",
+            Change::Produces => "Produces",
+        };
+        let resource = &self.resources[used.resource.index()].name;
+        match used.owner {
+            Some(owner) => format!("{verb}({resource})@{}", self.occurrences[owner.index()].name),
+            None => format!("{verb}({resource})@arc{}", used.arc.0),
+        }
+    }
+
     /// The name of one event of an occurrence: `Group-Wait#1.start`, `Group-Traverse-Path#1.leg2.vertex3`.
     pub fn event_name(&self, event: EventRef) -> String {
         let name = &self.occurrences[event.occurrence.index()].name;
@@ -409,14 +613,12 @@ impl Network {
         }
     }
 
-    /// The name of a labelled interval: `Ask(PATH1=OK)@Group-Traverse-Path#1`.
+    /// The name of a labelled interval: `Ask(PATH1=OK)@Group-Traverse-Path#1`, `Set(ARM=OUT)@Deploy#1`, `Init(ARM=IN)`.
     pub fn label_name(&self, label: LabelId) -> String {
         let label = &self.labels[label.index()];
-        let mode = match label.mode {
-            LabelMode::Ask => "Ask",
-            LabelMode::Tell => "Tell",
-        };
+        let mode = label.verb();
         match label.owner {
+            _ if label.extent == Extent::Initial => format!("{mode}({})", label.text),
             Some(owner) => format!("{mode}({})@{}", label.text, self.occurrences[owner.index()].name),
             None => format!("{mode}({})@arc{}", label.text, label.arc.0),
         }

@@ -9,8 +9,8 @@ use serde_json::{Map, Value, json};
 use smol_str::SmolStr;
 
 use crate::network::{
-    Arc, ArcId, ArcKind, Decision, DecisionId, EventEnd, EventRef, Label, LabelId, Network, Node, NodeId,
-    Occurrence, OccurrenceId, OccurrenceKind, Role, Variable,
+    Arc, ArcId, ArcKind, Decision, DecisionId, EventEnd, EventRef, Extent, Label, LabelId, Network, Node,
+    NodeId, Occurrence, OccurrenceId, OccurrenceKind, Resource, Role, Use, Variable, Worth,
 };
 use crate::text::kind_name;
 use crate::vocabulary::Vocabulary;
@@ -26,7 +26,8 @@ pub struct NetworkError {
 }
 
 /// The members of an `enroute-tpn/1` document: `nodes`, `arcs`, `start`, `end`, and with them `occurrences`,
-/// `variables` and `threat_gap`, so that the network can be read back and planned.
+/// `variables` and `threat_gap`, so that the network can be read back and planned; `resources`, `uses`, `worths` and
+/// `objective` where it has them.
 pub fn network_to_json(network: &Network) -> Value {
     let nodes: Vec<Value> = (network.nodes.iter().enumerate())
         .map(|(id, node)| {
@@ -54,7 +55,7 @@ pub fn network_to_json(network: &Network) -> Value {
             })
         })
         .collect();
-    json!({
+    let mut document = json!({
         "nodes": nodes,
         "arcs": arcs,
         "start": network.start.0,
@@ -62,7 +63,38 @@ pub fn network_to_json(network: &Network) -> Value {
         "occurrences": occurrences,
         "variables": network.variables,
         "threat_gap": network.threat_gap,
-    })
+    });
+    if let Value::Object(members) = &mut document {
+        let mut resources = network.resources.clone();
+        for resource in &mut resources {
+            resource.span = None;
+        }
+        let mut uses = network.uses.clone();
+        for used in &mut uses {
+            used.span = None;
+        }
+        let mut objective = network.objective.clone();
+        for goal in &mut objective {
+            goal.span = None;
+        }
+        insert_unless_empty(members, "resources", &resources);
+        insert_unless_empty(members, "uses", &uses);
+        insert_unless_empty(members, "worths", &network.worths);
+        insert_unless_empty(members, "objective", &objective);
+    }
+    document
+}
+
+fn insert_unless_empty<T: serde::Serialize>(members: &mut Map<String, Value>, name: &str, items: &[T]) {
+    if !items.is_empty() {
+        members.insert(name.to_owned(), json!(items));
+    }
+}
+
+/// A list of the document, as [`network_to_json`] wrote it; nothing if it is not there.
+fn read_list<T: serde::de::DeserializeOwned>(document: &Value, name: &str) -> Result<Vec<T>, NetworkError> {
+    let list = document.get(name).cloned();
+    list.map_or(Ok(Vec::new()), serde_json::from_value).map_err(|problem| error(name, &problem.to_string()))
 }
 
 fn arc_to_json(network: &Network, id: usize, arc: &Arc) -> Value {
@@ -70,6 +102,9 @@ fn arc_to_json(network: &Network, id: usize, arc: &Arc) -> Value {
         .map(|&label| {
             let label = &network.labels[label.index()];
             let mut members = object(json!({"type": mode_name(label.mode), "literal": label.text}));
+            if label.extent != Extent::Whole {
+                members.insert("extent".into(), json!(label.extent));
+            }
             if let Some(owner) = label.owner {
                 members.insert("owner".into(), network.occurrences[owner.index()].name.as_str().into());
             }
@@ -122,7 +157,27 @@ pub fn network_from_json(document: &Value) -> Result<Network, NetworkError> {
         Some(gap) => Time::deserialize(gap).map_err(|_| error("threat_gap", "is no exact time"))?,
         None => Time::ONE,
     };
+    let (resources, uses): (Vec<Resource>, Vec<Use>) =
+        (read_list(document, "resources")?, read_list(document, "uses")?);
+    let worths: Vec<Worth> = read_list(document, "worths")?;
+    let is_known = |used: &Use| {
+        used.resource.index() < resources.len()
+            && used.arc.index() < reader.arcs.len()
+            && used.start.index().max(used.end.index()) < reader.nodes.len()
+            && used.owner.is_none_or(|owner| owner.index() < reader.occurrences.len())
+    };
+    if !uses.iter().all(is_known) {
+        return Err(error("uses", "names a resource, an arc or a node that does not exist"));
+    }
+    if worths.iter().any(|worth| worth.arc.index() >= reader.arcs.len()) {
+        return Err(error("worths", "names an arc that does not exist"));
+    }
     Ok(Network {
+        departures: Vec::new(),
+        resources,
+        uses,
+        worths,
+        objective: read_list(document, "objective")?,
         nodes: reader.nodes,
         arcs: reader.arcs,
         labels: reader.labels,
@@ -314,7 +369,12 @@ impl Reader {
             Some(name) => self.by_name.get(name).copied(),
             None => arc_owner,
         };
-        Ok(Label { arc, mode, literal, text, owner, span: None })
+        let extent = match value.get("extent") {
+            None => Extent::Whole,
+            Some(extent) => serde_json::from_value(extent.clone())
+                .map_err(|problem| error(place, &format!("a label's `extent`: {problem}")))?,
+        };
+        Ok(Label { arc, mode, extent, literal, text, owner, span: None })
     }
 
     /// The decision of that number; numbers beyond any sensible count are refused, gaps are found at the end.

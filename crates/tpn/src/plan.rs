@@ -2,10 +2,10 @@
 //!
 //! The planner makes it and the checker reads it; neither's code is here.
 
-use exact::{Bound, Time};
+use exact::{Bound, Rational, Time};
 use serde::{Deserialize, Serialize};
 
-use crate::network::{DecisionId, LabelId};
+use crate::network::{DecisionId, Extent, LabelId, Network, NodeId, Supply, UseId};
 
 /// A plan of a [`crate::Network`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,6 +22,12 @@ pub struct Plan {
     pub conflict_order: Vec<Ordering>,
     /// The orderings that planning had to add, in the order they were added.
     pub orderings_added: Vec<Ordering>,
+    /// The orderings of resource uses that planning had to add.
+    pub uses_ordered: Vec<UseOrdering>,
+    /// How far each resource is used over all schedules, by resource.
+    pub levels: Vec<Levels>,
+    /// What the plan is worth.
+    pub quality: Quality,
     /// The window of each node relative to the start; `None` if not selected. Indexed by node.
     pub windows: Vec<Option<Window>>,
 }
@@ -33,6 +39,75 @@ pub struct Choice {
     pub decision: DecisionId,
     /// The alternative, from 0.
     pub alternative: u32,
+}
+
+/// `later − earlier ≥ least`, which planning added to a network.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Precedence {
+    /// The event that comes first.
+    pub earlier: NodeId,
+    /// The event that comes after it.
+    pub later: NodeId,
+    /// The least time between them.
+    pub least: Time,
+}
+
+impl Plan {
+    /// All that planning added to the network: what causal links, orderings and orderings of uses say about times.
+    pub fn precedences(&self, network: &Network) -> Vec<Precedence> {
+        let links = self.causal_links.iter().flat_map(|link| link.precedences(network));
+        let orderings =
+            self.orderings_added.iter().map(|ordering| self.ordering_precedence(network, ordering));
+        let uses = self.uses_ordered.iter().map(|ordering| ordering.precedence(network));
+        links.chain(orderings).chain(uses).collect()
+    }
+
+    /// The order of conflicting intervals, but for what goes without saying: what holds at first comes before everything,
+    /// and what an activity needs at its start before what it sets.
+    pub fn telling_order<'a>(&'a self, network: &'a Network) -> impl Iterator<Item = &'a Ordering> {
+        self.conflict_order.iter().filter(|order| {
+            let (first, then) = (&network.labels[order.first.index()], &network.labels[order.then.index()]);
+            first.extent != Extent::Initial && (first.owner.is_none() || first.owner != then.owner)
+        })
+    }
+
+    /// One interval ends before the other starts: with the gap that SPEC 5.3 asks for, of a variable that keeps its value
+    /// without. A change that comes before a requirement is over when what carries that one is ready (SPEC 10.2).
+    pub fn ordering_precedence(&self, network: &Network, ordering: &Ordering) -> Precedence {
+        let (earlier, later) = (network.interval(ordering.first).1, network.interval(ordering.then).0);
+        if !network.is_lasting(ordering.first) {
+            return Precedence { earlier, later, least: network.threat_gap };
+        }
+        let carried = self.causal_links.iter().find(|link| link.ask == ordering.then);
+        let later = carried.map_or(later, |link| network.ready(link.tell));
+        Precedence { earlier, later, least: Time::ZERO }
+    }
+}
+
+impl CausalLink {
+    /// The requirement lies inside the assertion; of a variable that keeps its value, it begins when that is so
+    /// (SPEC 5.2, 10.2).
+    pub fn precedences(&self, network: &Network) -> Vec<Precedence> {
+        let at_once = |earlier, later| Precedence { earlier, later, least: Time::ZERO };
+        let (ask_start, ask_end) = network.interval(self.ask);
+        if network.is_lasting(self.ask) {
+            return vec![at_once(network.ready(self.tell), ask_start)];
+        }
+        let (tell_start, tell_end) = network.interval(self.tell);
+        vec![at_once(tell_start, ask_start), at_once(ask_end, tell_end)]
+    }
+}
+
+impl UseOrdering {
+    /// When one is over, or has happened, the other begins, or happens (SPEC 11).
+    pub fn precedence(&self, network: &Network) -> Precedence {
+        let (first, then) = (&network.uses[self.first.index()], &network.uses[self.then.index()]);
+        let (earlier, later) = match network.resources[first.resource.index()].supply {
+            Supply::Reusable { .. } => (first.end, then.start),
+            Supply::Reservoir { .. } => (first.moment(), then.moment()),
+        };
+        Precedence { earlier, later, least: Time::ZERO }
+    }
 }
 
 /// An assertion that contains a requirement.
@@ -51,6 +126,46 @@ pub struct Ordering {
     pub first: LabelId,
     /// Starts after `first` has ended.
     pub then: LabelId,
+}
+
+/// Two uses of one resource, one before the other: of a reusable resource `first` ends no later than `then` starts; of a
+/// reservoir `first` happens no later than `then`, a consumption at its start and a production at its end (SPEC 11).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct UseOrdering {
+    /// The earlier one.
+    pub first: UseId,
+    /// The later one.
+    pub then: UseId,
+}
+
+/// How far a resource is used over all schedules of a plan (SPEC 11).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Levels {
+    /// Of a reusable resource: the most that is used at a time.
+    Peak(Rational),
+    /// Of a reservoir: the least and the greatest level.
+    Range {
+        /// The least level.
+        low: Rational,
+        /// The greatest level.
+        high: Rational,
+    },
+}
+
+/// What a plan is worth (SPEC 12).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Quality {
+    /// What the selected activities cost.
+    pub cost: Rational,
+    /// What they are rewarded with.
+    pub reward: Rational,
+    /// The earliest time of the scenario's end.
+    pub end: Time,
+    /// Metres driven, once paths are known.
+    pub length_m: f64,
+    /// Whether no valid plan is better, where the mission has an objective.
+    pub is_optimal: Option<bool>,
 }
 
 /// When an event may happen, in time units from the start.

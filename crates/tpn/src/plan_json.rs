@@ -6,8 +6,8 @@ use exact::{Bound, Time};
 use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
 
-use crate::network::{DecisionId, EventRef, LabelId, Network, NodeId, OccurrenceKind};
-use crate::plan::{CausalLink, Choice, Ordering, Plan, Window};
+use crate::network::{DecisionId, EventRef, LabelId, Network, NodeId, OccurrenceKind, Supply, UseId};
+use crate::plan::{CausalLink, Choice, Levels, Ordering, Plan, Quality, UseOrdering, Window};
 use crate::selection::closure;
 
 /// Why a JSON document is no plan of a network.
@@ -43,14 +43,87 @@ pub fn plan_to_json(network: &Network, plan: &Plan) -> Value {
         .flat_map(|(node, window)| node.events.iter().map(move |&event| (event, window)))
         .map(|(event, window)| (network.event_name(event), json!([window.earliest, window.latest])))
         .collect();
-    json!({
+    let mut document = json!({
         "choices": choices,
         "activities": selected_activities(network, plan),
         "causal_links": links,
         "conflict_order": conflict_order,
         "orderings_added": orderings,
         "windows": windows,
-    })
+    });
+    if let Value::Object(members) = &mut document {
+        add_resources(network, plan, members);
+    }
+    document
+}
+
+/// What a plan says of resources and of its worth, where the mission has them (SPEC 11, 12).
+fn add_resources(network: &Network, plan: &Plan, members: &mut Map<String, Value>) {
+    if !plan.levels.is_empty() {
+        let ordered = plan.uses_ordered.iter();
+        let ordered: Vec<[String; 2]> = ordered
+            .map(|ordering| [network.use_name(ordering.first), network.use_name(ordering.then)])
+            .collect();
+        members.insert("uses_ordered".into(), json!(ordered));
+        let resources: Map<String, Value> = (network.resources.iter().zip(&plan.levels))
+            .map(|(resource, &levels)| (resource.name.to_string(), levels_to_json(resource.supply, levels)))
+            .collect();
+        members.insert("resources".into(), resources.into());
+    }
+    let quality = &plan.quality;
+    if let Some(is_optimal) = quality.is_optimal {
+        members.insert("optimal".into(), is_optimal.into());
+    }
+    if !network.worths.is_empty() || quality.is_optimal.is_some() {
+        members.insert("cost".into(), json!(quality.cost));
+        members.insert("reward".into(), json!(quality.reward));
+        members.insert("end".into(), json!(quality.end));
+        members.insert("length".into(), json!(quality.length_m));
+    }
+}
+
+fn levels_to_json(supply: Supply, levels: Levels) -> Value {
+    match (supply, levels) {
+        (Supply::Reusable { capacity }, Levels::Peak(peak)) => json!({"capacity": capacity, "peak": peak}),
+        (Supply::Reservoir { least, greatest, .. }, Levels::Range { low, high }) => {
+            json!({"least": least, "greatest": greatest, "low": low, "high": high})
+        }
+        _ => Value::Null,
+    }
+}
+
+/// The levels of all resources, in the network's order, as [`plan_to_json`] writes them.
+fn levels_from_json(network: &Network, plan: &Value) -> Result<Vec<Levels>, PlanError> {
+    let Some(stated) = plan.get("resources") else { return Ok(Vec::new()) };
+    let number = |resource: &Value, member: &str| {
+        let number = resource.get(member).cloned().and_then(|number| serde_json::from_value(number).ok());
+        number.ok_or_else(|| shape(&format!("`{member}` of a resource is no exact number")))
+    };
+    let levels = network.resources.iter().map(|resource| {
+        let levels = stated
+            .get(resource.name.as_str())
+            .ok_or_else(|| shape(&format!("`resources` does not tell of `{}`", resource.name)))?;
+        match resource.supply {
+            Supply::Reusable { .. } => Ok(Levels::Peak(number(levels, "peak")?)),
+            Supply::Reservoir { .. } => {
+                Ok(Levels::Range { low: number(levels, "low")?, high: number(levels, "high")? })
+            }
+        }
+    });
+    levels.collect()
+}
+
+fn quality_from_json(plan: &Value) -> Quality {
+    let number = |member: &str| {
+        plan.get(member).cloned().and_then(|number| serde_json::from_value(number).ok()).unwrap_or_default()
+    };
+    Quality {
+        cost: number("cost"),
+        reward: number("reward"),
+        end: plan.get("end").and_then(|end| Time::deserialize(end).ok()).unwrap_or_default(),
+        length_m: plan.get("length").and_then(Value::as_f64).unwrap_or_default(),
+        is_optimal: plan.get("optimal").and_then(Value::as_bool),
+    }
 }
 
 /// The names of the primitives that the plan selects, sorted.
@@ -106,6 +179,13 @@ pub fn plan_from_json(network: &Network, plan: &Value) -> Result<Plan, PlanError
         };
         items(plan, member)?.iter().map(pair).collect()
     };
+    let mut uses_ordered = Vec::new();
+    for pair in items(plan, "uses_ordered")? {
+        let Some([Value::String(first), Value::String(then)]) = pair.as_array().map(Vec::as_slice) else {
+            return Err(shape("`uses_ordered` is a list of pairs of names"));
+        };
+        uses_ordered.push(UseOrdering { first: names.used(first)?, then: names.used(then)? });
+    }
     let mut windows: Vec<Option<Window>> = vec![None; network.nodes.len()];
     for (event, window) in members(plan, "windows")? {
         let node = names.event(event)?;
@@ -125,6 +205,9 @@ pub fn plan_from_json(network: &Network, plan: &Value) -> Result<Plan, PlanError
         causal_links,
         conflict_order: orderings("conflict_order")?,
         orderings_added: orderings("orderings_added")?,
+        uses_ordered,
+        levels: levels_from_json(network, plan)?,
+        quality: quality_from_json(plan),
         windows,
     })
 }
@@ -154,6 +237,7 @@ pub fn times_from_json(network: &Network, times: &Value) -> Result<Vec<Option<Ti
 pub struct Names {
     events: BTreeMap<String, NodeId>,
     labels: BTreeMap<String, LabelId>,
+    uses: BTreeMap<String, UseId>,
 }
 
 impl Names {
@@ -166,12 +250,22 @@ impl Names {
             }
         }
         let labels = (0..network.labels.len()).map(LabelId::from_index);
-        Self { events, labels: labels.map(|label| (network.label_name(label), label)).collect() }
+        let uses = (0..network.uses.len()).map(UseId::from_index);
+        Self {
+            events,
+            labels: labels.map(|label| (network.label_name(label), label)).collect(),
+            uses: uses.map(|used| (network.use_name(used), used)).collect(),
+        }
     }
 
     /// The node of an event.
     pub fn event(&self, name: &str) -> Result<NodeId, PlanError> {
         self.events.get(name).copied().ok_or_else(|| unknown("event", name))
+    }
+
+    /// A use of a resource.
+    pub fn used(&self, name: &str) -> Result<UseId, PlanError> {
+        self.uses.get(name).copied().ok_or_else(|| unknown("use of a resource", name))
     }
 
     /// A labelled interval.

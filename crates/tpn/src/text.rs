@@ -3,7 +3,6 @@
 use std::fmt::Write as _;
 
 use exact::Bound;
-use rmpl::program::LabelMode;
 
 use crate::network::{Arc, ArcId, ArcKind, Network, NodeId, Role};
 
@@ -93,11 +92,7 @@ fn node_title(network: &Network, node: NodeId) -> String {
 fn labels(network: &Network, arc: &Arc) -> Vec<String> {
     let one = |label: &crate::LabelId| {
         let label = &network.labels[label.index()];
-        let mode = match label.mode {
-            LabelMode::Ask => "Ask",
-            LabelMode::Tell => "Tell",
-        };
-        format!("{mode}({})", label.text)
+        format!("{}({})", label.verb(), label.text)
     };
     arc.labels.iter().map(one).collect()
 }

@@ -30,7 +30,12 @@ impl Vocabulary {
                 // Without declarations an atom is Boolean, and a compared variable is open.
                 let is_atom = value.is_none();
                 let values = if is_atom { vec!["true".into(), "false".into()] } else { Vec::new() };
-                self.variables.push(Variable { name: name.into(), values, closed: is_atom });
+                self.variables.push(Variable {
+                    name: name.into(),
+                    values,
+                    closed: is_atom,
+                    is_lasting: false,
+                });
                 self.variables.len() - 1
             }
         };

@@ -1,21 +1,26 @@
 //! The network while it grows: nodes, arcs reserved before their ends are known, and the last pass that links them.
 
+use std::collections::BTreeSet;
+
 use exact::Time;
 use rmpl::Span;
 use rmpl::program::LabelMode;
 use smol_str::SmolStr;
 
 use super::bounds::Interval;
+use super::expand::Root;
 use super::names::{Fact, Vocabulary};
 use crate::network::{
-    Arc, ArcId, ArcKind, Block, BlockId, BlockKind, Decision, DecisionId, EventEnd, EventRef, Label, LabelId,
-    Network, Node, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Role,
+    Arc, ArcId, ArcKind, Block, BlockId, BlockKind, Decision, DecisionId, EventEnd, EventRef, Extent, Goal,
+    Label, LabelId, Network, Node, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Resource, Role, Use,
+    Worth,
 };
 
 /// A label before its variable has an id.
 struct Draft {
     arc: ArcId,
     mode: LabelMode,
+    extent: Extent,
     fact: Fact,
     owner: Option<OccurrenceId>,
     span: Span,
@@ -30,6 +35,9 @@ pub(super) struct Builder {
     decisions: Vec<Decision>,
     occurrences: Vec<Occurrence>,
     blocks: Vec<Block>,
+    pub(super) resources: Vec<Resource>,
+    pub(super) uses: Vec<Use>,
+    pub(super) worths: Vec<Worth>,
     counts: std::collections::BTreeMap<SmolStr, u32>,
 }
 
@@ -143,20 +151,37 @@ impl Builder {
         (placed.start, placed.end) = (start, end);
     }
 
-    /// Labels `arc`, unless it already has the same label.
+    /// The occurrence that the next call of [`Builder::occurrence`] makes.
+    pub(super) fn next_occurrence(&self) -> OccurrenceId {
+        OccurrenceId::from_index(self.occurrences.len())
+    }
+
+    /// That occurrence, if it has been made.
+    pub(super) fn made(&self, occurrence: OccurrenceId) -> Option<OccurrenceId> {
+        (occurrence.index() < self.occurrences.len()).then_some(occurrence)
+    }
+
+    /// The arc of an occurrence.
+    pub(super) fn arc_of(&self, occurrence: OccurrenceId) -> Option<ArcId> {
+        self.occurrences[occurrence.index()].arc
+    }
+
+    /// Labels a part of `arc`, unless it already has the same label.
     pub(super) fn label(
         &mut self,
         arc: ArcId,
-        mode: LabelMode,
+        (mode, extent): (LabelMode, Extent),
         fact: Fact,
         owner: Option<OccurrenceId>,
         span: Span,
     ) {
-        let same = |draft: &Draft| draft.arc == arc && draft.mode == mode && draft.fact == fact;
+        let same = |draft: &Draft| {
+            draft.arc == arc && draft.mode == mode && draft.extent == extent && draft.fact == fact
+        };
         // Labels of one arc are drafted close together, so the scan from the back ends soon in practice; nested `do`s
         // on one arc are the only case of more than one label.
         if !self.drafts.iter().rev().take(64).any(same) {
-            self.drafts.push(Draft { arc, mode, fact, owner, span });
+            self.drafts.push(Draft { arc, mode, extent, fact, owner, span });
         }
     }
 
@@ -176,10 +201,28 @@ impl Builder {
     pub(super) fn finish(
         mut self,
         vocabulary: &Vocabulary<'_>,
-        root: BlockId,
-        (start, end): (NodeId, NodeId),
+        root: &Root,
         threat_gap: Time,
+        objective: Vec<Goal>,
     ) -> Network {
+        if let Some(arc) = root.arc {
+            let mentioned: BTreeSet<&str> =
+                self.drafts.iter().map(|draft| draft.fact.variable.as_str()).collect();
+            let initial: Vec<Draft> = vocabulary
+                .initial_values()
+                .filter(|(fact, _)| mentioned.contains(fact.variable.as_str()))
+                .map(|(fact, span)| Draft {
+                    arc,
+                    mode: LabelMode::Tell,
+                    extent: Extent::Initial,
+                    fact,
+                    owner: None,
+                    span,
+                })
+                .collect();
+            // What holds at first is told first.
+            self.drafts.splice(0..0, initial);
+        }
         self.drafts.sort_by_key(|draft| draft.arc);
         let facts: Vec<Fact> = self.drafts.iter().map(|draft| draft.fact.clone()).collect();
         let (variables, literals) = vocabulary.literals(&facts);
@@ -189,6 +232,7 @@ impl Builder {
             labels.push(Label {
                 arc: draft.arc,
                 mode: draft.mode,
+                extent: draft.extent,
                 literal,
                 text: draft.fact.text(),
                 owner: draft.owner,
@@ -222,10 +266,15 @@ impl Builder {
             decisions: self.decisions,
             occurrences: self.occurrences,
             variables,
+            resources: self.resources,
+            uses: self.uses,
+            worths: self.worths,
+            departures: Vec::new(),
+            objective,
             blocks: self.blocks,
-            root: Some(root),
-            start,
-            end,
+            root: Some(root.block),
+            start: root.start,
+            end: root.end,
             threat_gap,
         }
     }

@@ -7,6 +7,7 @@ use rmpl::{Diagnostic, Span};
 use smol_str::SmolStr;
 
 use super::bounds::{self, Interval, Values as _};
+use super::clauses::Activity;
 use super::expand::{End, Entry, Expander, Piece};
 use super::scope::{Scope, argument_text};
 use crate::network::{ArcKind, BlockKind, OccurrenceKind};
@@ -144,8 +145,9 @@ impl<'program> Expander<'program> {
             declared.and_then(|declared| declared.bounds.as_ref().map(|written| (declared, written)));
         let mut interval = call.interval;
         let mut arc_span = call.bounds_span.unwrap_or(call.span);
-        if let Some((declared, written)) = declared_bounds {
-            let scope = Scope::new(None, &declared.formals, arguments);
+        let formals = declared.map_or(&[][..], |declared| &declared.formals);
+        let scope = Scope::new(None, formals, arguments);
+        if let Some((_, written)) = declared_bounds {
             let limit = self.interval(written, &scope);
             interval = self.intersect(call, limit, written.span);
             arc_span = call.bounds_span.unwrap_or(written.span);
@@ -158,7 +160,12 @@ impl<'program> Expander<'program> {
             around.occurrence,
             call.span,
         );
-        self.leaf(occurrence, ArcKind::Activity, interval, arc_span, call.span, entry)
+        let piece = self.leaf(occurrence, ArcKind::Activity, interval, arc_span, call.span, entry);
+        if let (Some(declared), Some(arc)) = (declared, piece.arc) {
+            let activity = Activity { declared, arguments, scope: &scope, occurrence, arc, interval };
+            self.clauses(&activity, &piece, call.name.span);
+        }
+        piece
     }
 
     /// The arguments of a call after substitution, with expressions evaluated where the call stands.

@@ -1,13 +1,13 @@
 //! Conditions: `maintaining` and `watching`, the guard of an `if`, assertions and explicit requirements.
 
-use rmpl::Span;
 use rmpl::program::{Bounds, Condition, LabelMode, Statement};
+use rmpl::{Diagnostic, Span};
 
 use super::bounds::Interval;
 use super::expand::{End, Entry, Expander, Piece};
-use super::names::Fact;
+use super::names::{E_VALUE, Fact};
 use super::scope::Scope;
-use crate::network::{ArcKind, BlockKind, OccurrenceKind};
+use crate::network::{ArcKind, BlockKind, Extent, OccurrenceKind};
 
 impl<'program> Expander<'program> {
     /// `do body maintaining c` requires `c`, `do body watching c` asserts its negation (SPEC 3.7).
@@ -24,6 +24,25 @@ impl<'program> Expander<'program> {
             LabelMode::Ask => fact,
             LabelMode::Tell => fact.negation(),
         });
+        // Of what keeps its value, `watching` requires that the condition does not come about.
+        let is_lasting = fact.as_ref().is_some_and(|fact| self.vocabulary.is_lasting(&fact.variable));
+        let mode = if is_lasting { LabelMode::Ask } else { mode };
+        self.labelled(body, fact, mode, condition, span, entry, scope)
+    }
+
+    /// `body` with a label of `condition`, which says `fact`.
+    #[expect(clippy::too_many_arguments, reason = "what a label needs and what a piece needs")]
+    pub(super) fn labelled(
+        &mut self,
+        body: &'program Statement,
+        fact: Option<Fact>,
+        mode: LabelMode,
+        condition: &'program Condition,
+        span: Span,
+        entry: Entry,
+        scope: &Scope,
+    ) -> Piece {
+        let mode = (mode, Extent::Whole);
         if self.is_single_arc(body, scope) {
             let piece = self.statement(body, entry, scope);
             if let (Some(arc), Some(fact)) = (piece.arc, fact) {
@@ -61,7 +80,7 @@ impl<'program> Expander<'program> {
             self.builder.occurrence("if".into(), OccurrenceKind::Scope, Vec::new(), scope.occurrence, span);
         self.builder.own(owner, arc);
         if let Some(fact) = self.fact(condition, scope) {
-            self.builder.label(arc, LabelMode::Ask, fact, Some(owner), condition.span);
+            self.builder.label(arc, (LabelMode::Ask, Extent::Whole), fact, Some(owner), condition.span);
         }
         let piece = self.statement(body, Entry::Free, scope);
         self.builder.connect(arc, start, piece.start);
@@ -83,7 +102,10 @@ impl<'program> Expander<'program> {
     ) -> Piece {
         let interval = written.map_or(Interval::ZERO, |written| self.interval(written, scope));
         let arc_span = written.map_or(span, |written| written.span);
-        let fact = self.fact(condition, scope);
+        let fact = match mode {
+            LabelMode::Ask => self.fact(condition, scope),
+            LabelMode::Tell => self.told(condition, scope),
+        };
         let text = fact.as_ref().map_or_else(|| condition.variable.text.clone(), Fact::text);
         let activity = match mode {
             LabelMode::Ask => format!("Ask({text})"),
@@ -98,12 +120,27 @@ impl<'program> Expander<'program> {
         );
         let piece = self.leaf(occurrence, ArcKind::Assertion, interval, arc_span, span, entry);
         if let (Some(arc), Some(fact)) = (piece.arc, fact) {
-            self.builder.label(arc, mode, fact, Some(occurrence), condition.span);
+            self.builder.label(arc, (mode, Extent::Whole), fact, Some(occurrence), condition.span);
         }
         piece
     }
 
-    fn fact(&mut self, condition: &Condition, scope: &Scope) -> Option<Fact> {
+    /// What is asserted: of a variable that keeps its value, one value.
+    pub(super) fn told(&mut self, condition: &Condition, scope: &Scope) -> Option<Fact> {
+        let fact = self.fact(condition, scope)?;
+        if !self.vocabulary.is_lasting(&fact.variable) || (!fact.negated && fact.values.len() == 1) {
+            return Some(fact);
+        }
+        let message = format!(
+            "`{}` keeps the value that it is given: say which one, `{}` leaves it open",
+            fact.variable,
+            fact.text()
+        );
+        self.diagnostics.push(Diagnostic::error(E_VALUE, condition.span, message));
+        None
+    }
+
+    pub(super) fn fact(&mut self, condition: &Condition, scope: &Scope) -> Option<Fact> {
         match self.vocabulary.fact(condition, &|name| scope.argument(name)) {
             Ok(fact) => Some(fact),
             Err(error) => {

@@ -18,7 +18,9 @@ use super::constants::Constants;
 use super::names::Vocabulary;
 use super::scope::Scope;
 use super::shape::starts_with_decision;
-use crate::network::{ArcId, ArcKind, BlockId, BlockKind, Network, NodeId, OccurrenceId, OccurrenceKind};
+use crate::network::{
+    ArcId, ArcKind, BlockId, BlockKind, Network, NodeId, OccurrenceId, OccurrenceKind, ResourceId,
+};
 
 /// Networks grow no larger than this many nodes, so that a few lines of doubling calls cannot exhaust the memory.
 const MAX_NODES: usize = 500_000;
@@ -70,13 +72,18 @@ pub(super) struct Expander<'program> {
     pub(super) active: Vec<&'program str>,
     pub(super) depth: usize,
     pub(super) is_cut_off: bool,
+    /// The declared resources, by name, with their positions in the network's; `None` for one whose declaration is wrong.
+    pub(super) resources: BTreeMap<&'program str, Option<ResourceId>>,
+    pub(super) unordered_blocks: usize,
 }
 
 /// The outermost piece.
 pub(super) struct Root {
-    block: BlockId,
-    start: NodeId,
-    end: NodeId,
+    pub(super) block: BlockId,
+    pub(super) start: NodeId,
+    pub(super) end: NodeId,
+    /// An arc from the start that every plan selects, if there is one.
+    pub(super) arc: Option<ArcId>,
 }
 
 impl<'program> Expander<'program> {
@@ -89,7 +96,7 @@ impl<'program> Expander<'program> {
         for primitive in &program.primitives {
             primitives.entry(primitive.name.text.as_str()).or_insert(primitive);
         }
-        Self {
+        let mut expander = Self {
             program,
             vocabulary: Vocabulary::new(program),
             constants,
@@ -100,7 +107,11 @@ impl<'program> Expander<'program> {
             active: Vec::new(),
             depth: 0,
             is_cut_off: false,
-        }
+            resources: BTreeMap::new(),
+            unordered_blocks: 0,
+        };
+        expander.declare_resources();
+        expander
     }
 
     pub(super) fn scenario(&mut self, scenario: &'program ScenarioDecl) -> Root {
@@ -112,9 +123,14 @@ impl<'program> Expander<'program> {
             scenario.span,
         );
         let scope = Scope::new(Some(occurrence), &[], &[]);
-        let horizon = scenario.bounds.as_ref().map(|written| {
-            let interval = self.interval(written, &scope);
-            let arc = self.builder.reserve(ArcKind::Span, interval, written.span);
+        let horizon = match &scenario.bounds {
+            Some(written) => Some((self.interval(written, &scope), written.span)),
+            // What holds at first needs an arc to stand on.
+            None if self.vocabulary.initial_values().next().is_some() => Some((Interval::ANY, scenario.span)),
+            None => None,
+        };
+        let horizon = horizon.map(|(interval, span)| {
+            let arc = self.builder.reserve(ArcKind::Span, interval, span);
             self.builder.own(occurrence, arc);
             arc
         });
@@ -126,7 +142,7 @@ impl<'program> Expander<'program> {
             occurrence: Some(occurrence),
         };
         let block = self.builder.block(kind, piece.start, piece.end, Some(scenario.span));
-        Root { block, start: piece.start, end: piece.end }
+        Root { block, start: piece.start, end: piece.end, arc: horizon }
     }
 
     pub(super) fn top_activity(
@@ -163,13 +179,15 @@ impl<'program> Expander<'program> {
                 format!("there is no activity `{name}`"),
             ));
         };
-        Ok(Root { block: piece.block, start: piece.start, end: piece.end })
+        let arc = piece.occurrence.and_then(|occurrence| self.builder.arc_of(occurrence));
+        Ok(Root { block: piece.block, start: piece.start, end: piece.end, arc })
     }
 
     pub(super) fn finish(self, root: Option<Root>) -> (Option<Network>, Vec<Diagnostic>) {
+        let objective = self.objective();
         let network = root.filter(|_| !self.is_cut_off).map(|root| {
             let gap = self.program.options.threat_gap;
-            self.builder.finish(&self.vocabulary, root.block, (root.start, root.end), gap)
+            self.builder.finish(&self.vocabulary, &root, gap, objective)
         });
         (network, self.diagnostics)
     }
@@ -206,8 +224,16 @@ impl<'program> Expander<'program> {
             StatementKind::Watching(body, condition) => {
                 self.conditional(body, condition, LabelMode::Tell, span, entry, scope)
             }
+            StatementKind::Telling(body, condition) => {
+                let fact = self.told(condition, scope);
+                self.labelled(body, fact, LabelMode::Tell, condition, span, entry, scope)
+            }
             StatementKind::IfThennext(condition, body) => self.guard(condition, body, span, entry, scope),
             StatementKind::Repeat(count, body) => self.repeat(count, body, span, entry, scope),
+            StatementKind::Unordered(branches) => self.unordered(branches, span, entry, scope),
+            StatementKind::Using(body, resource, amount) => {
+                self.using(body, resource, amount.as_ref(), span, entry, scope)
+            }
             StatementKind::Call(name, arguments) => {
                 let arguments = self.arguments(arguments, scope);
                 self.call(name, &arguments, written, span, entry, scope)

@@ -6,10 +6,12 @@
 mod bounds;
 mod build;
 mod call;
+mod clauses;
 mod condition;
 mod constants;
 mod expand;
 mod names;
+mod resource;
 mod scope;
 mod shape;
 mod statics;

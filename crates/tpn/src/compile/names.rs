@@ -3,9 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use rmpl::program::{ArgumentValue, Condition, Program, Statement, StatementKind};
-use rmpl::{Code, Diagnostic};
-use smol_str::SmolStr;
+use rmpl::{Code, Diagnostic, Span};
+use smol_str::{SmolStr, format_smolstr};
 
+use super::E_UNDEF;
 use super::scope::argument_text;
 use crate::network::{Literal, ValueId, ValueSet, Variable, VariableId};
 
@@ -53,11 +54,30 @@ impl Fact {
     }
 }
 
+/// A name with the argument that it stands for; of `v.at` the vehicle before the dot may be one.
+pub(super) fn substituted(name: &SmolStr, substitute: &dyn Fn(&str) -> Option<ArgumentValue>) -> SmolStr {
+    if let Some(value) = substitute(name) {
+        return argument_text(&value);
+    }
+    match name.split_once('.') {
+        Some((owner, part)) => match substitute(owner) {
+            Some(value) => format_smolstr!("{}.{part}", argument_text(&value)),
+            None => name.clone(),
+        },
+        None => name.clone(),
+    }
+}
+
 /// What a file says of variables.
 pub(super) struct Vocabulary<'program> {
     domains: BTreeMap<&'program str, Vec<&'program str>>,
     /// Undeclared variables that some literal `X=…` of the file speaks of.
     compared: BTreeSet<&'program str>,
+    /// What the variables that keep their values are at first, in textual order: declared states, then where vehicles
+    /// stand (SPEC 10.3).
+    initial: Vec<(SmolStr, SmolStr, Span)>,
+    /// The places that vehicles can be at, by `V.at`.
+    places: BTreeMap<SmolStr, Vec<&'program str>>,
 }
 
 impl<'program> Vocabulary<'program> {
@@ -68,7 +88,29 @@ impl<'program> Vocabulary<'program> {
             let values = declared.values.iter().map(|value| value.text.as_str()).collect();
             domains.entry(declared.name.text.as_str()).or_insert(values);
         }
+        let mut initial: Vec<(SmolStr, SmolStr, Span)> = Vec::new();
+        for declared in &program.variables {
+            if let Some(value) = &declared.initial {
+                initial.push((declared.name.text.clone(), value.text.clone(), declared.name.span));
+            }
+        }
+        let locations: Vec<&str> =
+            program.world.locations.iter().map(|location| location.name.text.as_str()).collect();
+        let mut places = BTreeMap::new();
+        for vehicle in &program.world.vehicles {
+            let variable = format_smolstr!("{}.at", vehicle.name.text);
+            let mut domain = locations.clone();
+            if !domain.contains(&vehicle.start.text.as_str()) {
+                domain.push(vehicle.start.text.as_str());
+            }
+            initial.push((variable.clone(), vehicle.start.text.clone(), vehicle.name.span));
+            places.entry(variable).or_insert(domain);
+        }
         let mut compared = BTreeSet::new();
+        for primitive in &program.primitives {
+            let required = primitive.requires.iter().map(|required| &required.condition);
+            compared.extend(required.filter(|it| !it.values.is_empty()).map(|it| it.variable.text.as_str()));
+        }
         let bodies = program.activities.iter().map(|activity| &activity.body);
         for body in bodies.chain(program.scenarios.iter().map(|scenario| &scenario.body)) {
             for_each_condition(body, &mut |condition| {
@@ -77,7 +119,23 @@ impl<'program> Vocabulary<'program> {
                 }
             });
         }
-        Self { domains, compared }
+        Self { domains, compared, initial, places }
+    }
+
+    /// Whether a variable keeps its value until something changes it (SPEC 10).
+    pub(super) fn is_lasting(&self, variable: &str) -> bool {
+        self.initial.iter().any(|(name, _, _)| name == variable)
+    }
+
+    /// What holds at the start of everything, and where that is declared.
+    pub(super) fn initial_values(&self) -> impl Iterator<Item = (Fact, Span)> + '_ {
+        self.initial.iter().map(|(variable, value, span)| {
+            (Fact { variable: variable.clone(), values: vec![value.clone()], negated: false }, *span)
+        })
+    }
+
+    fn domain(&self, variable: &str) -> Option<&Vec<&'program str>> {
+        self.domains.get(variable).or_else(|| self.places.get(variable))
     }
 
     /// What `condition` says where `substitute` gives the arguments of formals.
@@ -86,8 +144,7 @@ impl<'program> Vocabulary<'program> {
         condition: &Condition,
         substitute: &dyn Fn(&str) -> Option<ArgumentValue>,
     ) -> Result<Fact, Diagnostic> {
-        let text =
-            |name: &SmolStr| substitute(name).map_or_else(|| name.clone(), |value| argument_text(&value));
+        let text = |name: &SmolStr| substituted(name, substitute);
         let negated = condition.negated;
         let written = match substitute(&condition.variable.text) {
             // A parameter that stands for a whole condition, whose own names mean something at the call.
@@ -125,7 +182,17 @@ impl<'program> Vocabulary<'program> {
     }
 
     fn check(&self, fact: &Fact, condition: &Condition) -> Result<(), Diagnostic> {
-        let Some(domain) = self.domains.get(fact.variable.as_str()) else { return Ok(()) };
+        let Some(domain) = self.domain(fact.variable.as_str()) else {
+            return match fact.variable.split_once('.') {
+                None => Ok(()),
+                Some((owner, _)) => {
+                    let message =
+                        format!("there is no vehicle `{owner}`, so nothing is known of where it is");
+                    Err(Diagnostic::error(E_UNDEF, condition.variable.span, message)
+                        .with_hint("`V.at` is where the vehicle V of `vehicle V : MODEL at PLACE;` stands"))
+                }
+            };
+        };
         let wrong = fact.values().position(|value| !domain.contains(&value));
         let Some(wrong) = wrong else { return Ok(()) };
         let span = condition.values.get(wrong).map_or(condition.span, |value| value.span);
@@ -143,7 +210,8 @@ impl<'program> Vocabulary<'program> {
         let mut tables: Vec<Table> = Vec::new();
         for fact in facts {
             let at = *ids.entry(&fact.variable).or_insert_with(|| {
-                tables.push(Table::new(&fact.variable, self.domains.get(fact.variable.as_str())));
+                let is_lasting = self.is_lasting(&fact.variable);
+                tables.push(Table::new(&fact.variable, self.domain(fact.variable.as_str()), is_lasting));
                 tables.len() - 1
             });
             tables[at].mention(fact);
@@ -170,8 +238,9 @@ struct Table {
 }
 
 impl Table {
-    fn new(name: &SmolStr, domain: Option<&Vec<&str>>) -> Self {
-        let variable = Variable { name: name.clone(), values: Vec::new(), closed: domain.is_some() };
+    fn new(name: &SmolStr, domain: Option<&Vec<&str>>, is_lasting: bool) -> Self {
+        let variable =
+            Variable { name: name.clone(), values: Vec::new(), closed: domain.is_some(), is_lasting };
         let mut table = Self { variable, values: BTreeMap::new(), has_atom: false };
         for value in domain.into_iter().flatten() {
             table.add(value);
@@ -217,18 +286,22 @@ impl Table {
 
 fn for_each_condition<'program>(statement: &'program Statement, visit: &mut dyn FnMut(&'program Condition)) {
     match &statement.kind {
-        StatementKind::Sequence(items) | StatementKind::Parallel(items) | StatementKind::Choose(items) => {
+        StatementKind::Sequence(items)
+        | StatementKind::Parallel(items)
+        | StatementKind::Choose(items)
+        | StatementKind::Unordered(items) => {
             for item in items {
                 for_each_condition(item, visit);
             }
         }
         StatementKind::Maintaining(body, condition)
         | StatementKind::Watching(body, condition)
+        | StatementKind::Telling(body, condition)
         | StatementKind::IfThennext(condition, body) => {
             visit(condition);
             for_each_condition(body, visit);
         }
-        StatementKind::Repeat(_, body) => for_each_condition(body, visit),
+        StatementKind::Repeat(_, body) | StatementKind::Using(body, ..) => for_each_condition(body, visit),
         StatementKind::Condition(_, condition) => visit(condition),
         StatementKind::Call(_, arguments) => {
             for argument in arguments {

@@ -6,7 +6,7 @@ use smol_str::{SmolStr, format_smolstr};
 
 use super::bounds::Values;
 use super::constants::Constants;
-use super::names::Fact;
+use super::names::{Fact, substituted};
 use crate::network::OccurrenceId;
 
 /// The instance that a statement is expanded in.
@@ -46,10 +46,9 @@ impl Scope {
 
     /// A condition that is handed on, with the instance's own arguments in place of its formals.
     pub(super) fn condition(&self, condition: &Condition) -> Condition {
-        let replace = |name: &Name| {
-            let text =
-                self.argument(&name.text).map_or_else(|| name.text.clone(), |value| argument_text(&value));
-            Name { text, span: name.span }
+        let replace = |name: &Name| Name {
+            text: substituted(&name.text, &|name| self.argument(name)),
+            span: name.span,
         };
         if let Some(ArgumentValue::Condition(handed)) = self.argument(&condition.variable.text)
             && condition.values.is_empty()

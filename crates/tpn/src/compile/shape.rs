@@ -18,10 +18,12 @@ impl Expander<'_> {
                 [only] => statement.bounds.is_none() && self.is_single_arc(only, scope),
                 _ => false,
             },
-            StatementKind::Maintaining(body, _) | StatementKind::Watching(body, _) => {
-                statement.bounds.is_none() && self.is_single_arc(body, scope)
-            }
+            StatementKind::Maintaining(body, _)
+            | StatementKind::Watching(body, _)
+            | StatementKind::Telling(body, _)
+            | StatementKind::Using(body, ..) => statement.bounds.is_none() && self.is_single_arc(body, scope),
             StatementKind::Parallel(_)
+            | StatementKind::Unordered(_)
             | StatementKind::Choose(_)
             | StatementKind::IfThennext(..)
             | StatementKind::Repeat(..) => false,

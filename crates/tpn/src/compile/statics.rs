@@ -80,15 +80,20 @@ pub(super) fn for_each_statement<'program>(
 ) {
     visit(statement);
     match &statement.kind {
-        StatementKind::Sequence(items) | StatementKind::Parallel(items) | StatementKind::Choose(items) => {
+        StatementKind::Sequence(items)
+        | StatementKind::Parallel(items)
+        | StatementKind::Choose(items)
+        | StatementKind::Unordered(items) => {
             for item in items {
                 for_each_statement(item, visit);
             }
         }
         StatementKind::Maintaining(body, _)
         | StatementKind::Watching(body, _)
+        | StatementKind::Telling(body, _)
         | StatementKind::IfThennext(_, body)
-        | StatementKind::Repeat(_, body) => {
+        | StatementKind::Repeat(_, body)
+        | StatementKind::Using(body, ..) => {
             for_each_statement(body, visit);
         }
         StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay => {}

@@ -10,8 +10,8 @@ use smol_str::SmolStr;
 
 use super::{Document, PlanSchemaError};
 use crate::network::{
-    Arc, ArcId, ArcKind, Decision, DecisionId, EventEnd, EventRef, Label, LabelId, Network, Node, NodeId,
-    Occurrence, OccurrenceId, OccurrenceKind, Role,
+    Arc, ArcId, ArcKind, Decision, DecisionId, EventEnd, EventRef, Extent, Label, LabelId, Network, Node,
+    NodeId, Occurrence, OccurrenceId, OccurrenceKind, Role,
 };
 use crate::vocabulary::Vocabulary;
 
@@ -32,6 +32,11 @@ pub(super) fn read(objects: Map<String, Value>) -> Result<Document, PlanSchemaEr
         decisions: reader.decisions,
         occurrences: reader.occurrences,
         variables: reader.vocabulary.variables,
+        resources: Vec::new(),
+        uses: Vec::new(),
+        worths: Vec::new(),
+        departures: Vec::new(),
+        objective: Vec::new(),
         blocks: Vec::new(),
         root: None,
         start,
@@ -415,7 +420,11 @@ impl<'file> Reader<'file> {
             let literal = self.vocabulary.literal(text).ok_or_else(wrong)?;
             let owner = self.arcs[arc.index()].occurrence;
             self.arcs[arc.index()].labels.push(LabelId::from_index(self.labels.len()));
-            self.labels.push(Label { arc, mode, literal, text: text.into(), owner, span: None });
+            let extent = match label.get("extent") {
+                None => Extent::Whole,
+                Some(extent) => serde_json::from_value(extent.clone()).map_err(|_| wrong())?,
+            };
+            self.labels.push(Label { arc, mode, extent, literal, text: text.into(), owner, span: None });
         }
         Ok(())
     }

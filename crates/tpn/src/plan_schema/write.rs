@@ -6,7 +6,7 @@ use exact::Bound;
 use rmpl::program::LabelMode;
 use serde_json::{Map, Value, json};
 
-use crate::network::{ArcId, ArcKind, BlockKind, Network, NodeId};
+use crate::network::{ArcId, ArcKind, BlockKind, Extent, Network, NodeId};
 
 /// Writes `network` in plan-schema JSON.
 ///
@@ -133,7 +133,11 @@ impl Writer<'_> {
             .map(|&label| {
                 let label = &self.network.labels[label.index()];
                 let mode = if label.mode == LabelMode::Ask { "Ask" } else { "Tell" };
-                json!({"type": mode, "literal": label.text})
+                let mut condition = json!({"type": mode, "literal": label.text});
+                if label.extent != Extent::Whole {
+                    condition["extent"] = json!(label.extent);
+                }
+                condition
             })
             .collect();
         if !conditions.is_empty() {

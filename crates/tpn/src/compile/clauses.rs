@@ -1,0 +1,134 @@
+//! The clauses of a primitive at one call of it: what it requires, changes, uses and is worth (SPEC 10.1, 11, 12).
+
+use exact::Rational;
+use rmpl::program::{ArgumentValue, Condition, LabelMode, Moves, Name, Per, PrimitiveDecl};
+use rmpl::{Code, Diagnostic, Span};
+use smol_str::{SmolStr, format_smolstr};
+
+use super::bounds::{E_BOUNDS, Interval};
+use super::expand::{Expander, Piece};
+use super::names::{Fact, substituted};
+use super::scope::Scope;
+use crate::network::{ArcId, Extent, OccurrenceId, Worth};
+
+/// One variable is set twice.
+const E_DUP: Code = Code("E-DUP");
+
+/// A call of a declared primitive.
+pub(super) struct Activity<'a> {
+    pub(super) declared: &'a PrimitiveDecl,
+    pub(super) arguments: &'a [ArgumentValue],
+    /// What the primitive's parameters stand for.
+    pub(super) scope: &'a Scope,
+    pub(super) occurrence: OccurrenceId,
+    pub(super) arc: ArcId,
+    pub(super) interval: Interval,
+}
+
+impl Expander<'_> {
+    /// Labels the activity's arc with what it requires and changes, and notes what it uses and is worth. `called` is where
+    /// the call names it.
+    pub(super) fn clauses(&mut self, activity: &Activity<'_>, piece: &Piece, called: Span) {
+        let effects = self.effects(activity, called);
+        for required in &activity.declared.requires {
+            let Some(fact) = self.fact(&required.condition, activity.scope) else { continue };
+            let is_set = effects.iter().any(|(effect, _)| effect.variable == fact.variable);
+            let extent = if required.is_at_start || is_set { Extent::Start } else { Extent::Whole };
+            let owner = Some(activity.occurrence);
+            self.builder.label(activity.arc, (LabelMode::Ask, extent), fact, owner, required.condition.span);
+        }
+        for (fact, span) in effects {
+            let owner = Some(activity.occurrence);
+            self.builder.label(activity.arc, (LabelMode::Tell, Extent::Effect), fact, owner, span);
+        }
+        for written in &activity.declared.uses {
+            self.primitive_use(activity, piece, written, called);
+        }
+        self.worth(activity);
+    }
+
+    /// What the activity changes, each with where that is written: vehicles that it moves are at its last location then.
+    fn effects(&mut self, activity: &Activity<'_>, called: Span) -> Vec<(Fact, Span)> {
+        let mut effects: Vec<(Fact, Span)> = Vec::new();
+        if let Some(moves) = &activity.declared.moves
+            && let Some(place) = self.last_location(activity.arguments)
+        {
+            for vehicle in moved(moves, activity.scope) {
+                let variable = format_smolstr!("{vehicle}.at");
+                if self.vocabulary.is_lasting(&variable)
+                    && effects.iter().all(|(known, _)| known.variable != variable)
+                {
+                    let fact = Fact { variable, values: vec![place.clone()], negated: false };
+                    effects.push((fact, moves.span));
+                }
+            }
+        }
+        for effect in &activity.declared.sets {
+            let condition = Condition {
+                variable: effect.variable.clone(),
+                values: vec![effect.value.clone()],
+                negated: false,
+                span: effect.span,
+            };
+            let Some(fact) = self.fact(&condition, activity.scope) else { continue };
+            if !self.vocabulary.is_lasting(&fact.variable) {
+                let message = format!("`{}` is no state variable, so it cannot be set", fact.variable);
+                let hint =
+                    format!("declare it: `state {} : {{{}, …}} = …;`", fact.variable, effect.value.text);
+                self.diagnostics
+                    .push(Diagnostic::error(super::E_UNDEF, effect.variable.span, message).with_hint(hint));
+            } else if effects.iter().any(|(known, _)| known.variable == fact.variable) {
+                let message = format!("`{}` sets `{}` twice", activity.declared.name.text, fact.variable);
+                let is_declared_so = effect.variable.text == fact.variable;
+                let span = if is_declared_so { effect.span } else { called };
+                self.diagnostics.push(Diagnostic::error(E_DUP, span, message));
+            } else {
+                effects.push((fact, effect.span));
+            }
+        }
+        effects
+    }
+
+    fn last_location(&self, arguments: &[ArgumentValue]) -> Option<SmolStr> {
+        let is_location =
+            |name: &SmolStr| self.program.world.locations.iter().any(|location| location.name.text == *name);
+        let names = arguments.iter().rev().filter_map(|argument| match argument {
+            ArgumentValue::Name(name) => Some(name),
+            _ => None,
+        });
+        names.into_iter().find(|name| is_location(name)).cloned()
+    }
+
+    fn worth(&mut self, activity: &Activity<'_>) {
+        let (mut cost, mut cost_per_metre, mut reward) =
+            (Rational::default(), Rational::default(), Rational::default());
+        let declared = activity.declared;
+        for amount in &declared.costs {
+            let value = self.amount(&amount.value, activity.scope);
+            let sum = if amount.per == Some(Per::Metre) { &mut cost_per_metre } else { &mut cost };
+            self.add(sum, value, amount.span);
+        }
+        for written in &declared.rewards {
+            let value = self.amount(written, activity.scope);
+            self.add(&mut reward, value, written.span);
+        }
+        if !declared.costs.is_empty() || !declared.rewards.is_empty() {
+            self.builder.worths.push(Worth { arc: activity.arc, cost, cost_per_metre, reward });
+        }
+    }
+
+    fn add(&mut self, sum: &mut Rational, value: Rational, span: Span) {
+        if let Some(total) = sum.checked_add(value) {
+            *sum = total;
+        } else {
+            let message = "these amounts are too large, or too fine, to be added exactly";
+            self.diagnostics.push(Diagnostic::error(E_BOUNDS, span, message));
+        }
+    }
+}
+
+/// The vehicles that a traverse moves, after substitution.
+fn moved(moves: &Moves, scope: &Scope) -> Vec<SmolStr> {
+    let vehicle = |name: &Name| substituted(&name.text, &|name| scope.argument(name));
+    moves.vehicles.iter().map(vehicle).collect()
+}

@@ -1,0 +1,320 @@
+//! Resources (SPEC 11): their declarations, who uses how much of them, blocks that use one for their whole length, and
+//! `unordered` blocks, whose branches share an unnamed one (SPEC 14). Objectives (SPEC 12) are read here, too.
+
+use exact::{Rational, Time};
+use rmpl::program::{self, Amount, Change, DurationUnit, Expr, Name, Per, ResourceUse, Statement};
+use rmpl::{Code, Diagnostic, Span};
+use smol_str::format_smolstr;
+
+use super::bounds::{self, E_BOUNDS, Interval};
+use super::clauses::Activity;
+use super::expand::{Entry, Expander, Piece};
+use super::{E_UNDEF, expand};
+use crate::network::{
+    ArcId, ArcKind, BlockKind, Goal, OccurrenceId, OccurrenceKind, Resource, ResourceId, Supply, Use,
+};
+
+/// More is asked of a resource than it can ever give, or something that its kind does not do.
+const E_RESOURCE: Code = Code("E-RESOURCE");
+
+impl<'program> Expander<'program> {
+    /// Evaluates the declared resources.
+    pub(super) fn declare_resources(&mut self) {
+        for declared in &self.program.resources {
+            if self.resources.contains_key(declared.name.text.as_str()) {
+                continue;
+            }
+            let supply = self.supply(&declared.supply, declared.name.span);
+            let id = supply.map(|supply| {
+                self.builder.resources.push(Resource {
+                    name: declared.name.text.clone(),
+                    supply,
+                    span: Some(declared.name.span),
+                });
+                ResourceId::from_index(self.builder.resources.len() - 1)
+            });
+            self.resources.insert(declared.name.text.as_str(), id);
+        }
+    }
+
+    fn supply(&mut self, declared: &program::Supply, span: Span) -> Option<Supply> {
+        let scope = super::scope::Scope::default();
+        match declared {
+            program::Supply::Reusable { capacity } => {
+                let capacity =
+                    capacity.as_ref().map_or(Rational::ONE, |written| self.amount(written, &scope));
+                Some(Supply::Reusable { capacity })
+            }
+            program::Supply::Reservoir { least, greatest, level } => {
+                let (lowest, highest, first) =
+                    (self.amount(least, &scope), self.amount(greatest, &scope), self.amount(level, &scope));
+                if lowest > highest {
+                    let message = format!("the least level {lowest} is above the greatest one {highest}");
+                    self.diagnostics.push(Diagnostic::error(E_BOUNDS, span, message));
+                    return None;
+                }
+                if first < lowest || first > highest {
+                    let message = format!("the level {first} at the start is outside {lowest}..{highest}");
+                    self.diagnostics.push(Diagnostic::error(E_BOUNDS, level.span, message));
+                    return None;
+                }
+                Some(Supply::Reservoir { least: lowest, greatest: highest, level: first })
+            }
+        }
+    }
+
+    /// The value of an amount, which is finite and not negative; nothing, with a diagnostic, otherwise.
+    pub(super) fn amount(&mut self, written: &Expr, scope: &super::scope::Scope) -> Rational {
+        let value = bounds::value(written, &scope.values(&self.constants)).and_then(|value| {
+            let finite = value.finite().map(Time::units).ok_or("this amount is infinite");
+            finite
+                .and_then(
+                    |amount| {
+                        if amount.is_negative() { Err("this amount is negative") } else { Ok(amount) }
+                    },
+                )
+                .map_err(|message| Diagnostic::error(E_BOUNDS, written.span, message))
+        });
+        value.unwrap_or_else(|error| {
+            self.diagnostics.push(error);
+            Rational::default()
+        })
+    }
+
+    /// A clause of a primitive at one call.
+    pub(super) fn primitive_use(
+        &mut self,
+        activity: &Activity<'_>,
+        piece: &Piece,
+        written: &ResourceUse,
+        called: Span,
+    ) {
+        let Some(resource) = self.resource(&written.resource) else { return };
+        let mut per_metre = Rational::default();
+        let amount = match &written.amount {
+            None => Rational::ONE,
+            Some(amount) => {
+                let value = self.amount(&amount.value, activity.scope);
+                match amount.per {
+                    None => value,
+                    Some(Per::Metre) => {
+                        per_metre = value;
+                        Rational::default()
+                    }
+                    Some(Per::Time(unit)) => {
+                        self.amount_over(written.change, value, unit, activity.interval, amount)
+                    }
+                }
+            }
+        };
+        let used = Use {
+            resource,
+            change: written.change,
+            amount,
+            per_metre,
+            arc: activity.arc,
+            start: piece.start,
+            end: piece.end,
+            owner: Some(activity.occurrence),
+            span: Some(written.span),
+        };
+        self.add_use(used, called, written.span);
+    }
+
+    /// An amount per time over a duration: the longest one for what is consumed, the shortest for what is produced.
+    fn amount_over(
+        &mut self,
+        change: Change,
+        value: Rational,
+        unit: DurationUnit,
+        interval: Interval,
+        written: &Amount,
+    ) -> Rational {
+        let duration =
+            if change == Change::Produces { Some(interval.lower) } else { interval.upper.finite() };
+        let is_finite = interval.upper.finite().is_some();
+        let Some(duration) = duration.filter(|_| is_finite) else {
+            let message = "an amount per time needs to know how long it takes, and this may take for ever";
+            self.diagnostics.push(
+                Diagnostic::error(E_BOUNDS, written.span, message)
+                    .with_hint("give the activity a finite upper bound, or an amount without `per`"),
+            );
+            return Rational::default();
+        };
+        let units = unit.in_units(self.program.options.time_unit);
+        let total = units
+            .and_then(|units| duration.units().checked_div(units))
+            .and_then(|times| times.checked_mul(value));
+        total.unwrap_or_else(|| {
+            let message = "this amount is too large, or too fine, to be exact";
+            self.diagnostics.push(Diagnostic::error(E_BOUNDS, written.span, message));
+            Rational::default()
+        })
+    }
+
+    fn resource(&mut self, name: &Name) -> Option<ResourceId> {
+        if let Some(known) = self.resources.get(name.text.as_str()) {
+            return *known;
+        }
+        let message = format!("there is no resource `{}`", name.text);
+        self.diagnostics.push(
+            Diagnostic::error(E_UNDEF, name.span, message)
+                .with_hint(format!("declare it: `resource {};`", name.text)),
+        );
+        None
+    }
+
+    /// Adds a use, if its resource can ever bear it. `called` is where the call stands, `written` where the use does.
+    fn add_use(&mut self, used: Use, called: Span, written: Span) {
+        let resource = &self.builder.resources[used.resource.index()];
+        let name = &resource.name;
+        let problem = match (resource.supply, used.change) {
+            (Supply::Reusable { capacity }, Change::Uses) => (used.amount > capacity).then(|| {
+                let message = format!("this uses {} of `{name}`, which has only {capacity}", used.amount);
+                (called, message)
+            }),
+            (Supply::Reservoir { least, greatest, .. }, Change::Consumes | Change::Produces) => {
+                let range = greatest.checked_sub(least).unwrap_or_default();
+                (used.amount > range).then(|| {
+                    let message = format!(
+                        "this {} {} of `{name}`, which never holds more than {range} to take or to give",
+                        used.change.word(),
+                        used.amount
+                    );
+                    (called, message)
+                })
+            }
+            (Supply::Reusable { .. }, change) => {
+                let message = format!(
+                    "`{name}` is free again after its use: it is used, and nothing {} it",
+                    change.word()
+                );
+                Some((written, message))
+            }
+            (Supply::Reservoir { .. }, Change::Uses) => {
+                Some((written, format!("`{name}` is a reservoir: it is consumed and produced, not used")))
+            }
+        };
+        if let Some((span, message)) = problem {
+            self.diagnostics.push(Diagnostic::error(E_RESOURCE, span, message));
+            return;
+        }
+        self.builder.uses.push(used);
+    }
+
+    /// `do body using resource amount`.
+    pub(super) fn using(
+        &mut self,
+        body: &'program Statement,
+        resource: &'program Name,
+        amount: Option<&'program Expr>,
+        span: Span,
+        entry: Entry,
+        scope: &super::scope::Scope,
+    ) -> Piece {
+        let resource_id = self.resource(resource);
+        let amount = amount.map_or(Rational::ONE, |written| self.amount(written, scope));
+        let add = |expander: &mut Self, piece: &Piece, arc: ArcId, owner: Option<OccurrenceId>| {
+            let Some(resource_id) = resource_id else { return };
+            let used = Use {
+                resource: resource_id,
+                change: Change::Uses,
+                amount,
+                per_metre: Rational::default(),
+                arc,
+                start: piece.start,
+                end: piece.end,
+                owner,
+                span: Some(resource.span),
+            };
+            expander.add_use(used, resource.span, resource.span);
+        };
+        if self.is_single_arc(body, scope) {
+            let piece = self.statement(body, entry, scope);
+            if let Some(arc) = piece.arc {
+                add(self, &piece, arc, piece.occurrence);
+            }
+            return piece;
+        }
+        let owner = (!self.is_instance(body, scope)).then(|| {
+            self.builder.occurrence("do".into(), OccurrenceKind::Scope, Vec::new(), scope.occurrence, span)
+        });
+        let arc = self.builder.reserve(ArcKind::Span, Interval::ANY, span);
+        let piece = self.spanned(body, false, entry, scope, Some(arc));
+        if let Some(owner) = owner {
+            self.builder.place(owner, piece.start, piece.end);
+            self.builder.own(owner, arc);
+        }
+        add(self, &piece, arc, owner.or(piece.occurrence));
+        self.scope_block(&piece, arc, span)
+    }
+
+    /// `unordered { a; b; … }`: parallel branches that start when they like, and share a resource of capacity 1.
+    pub(super) fn unordered(
+        &mut self,
+        branches: &'program [Statement],
+        span: Span,
+        entry: Entry,
+        scope: &super::scope::Scope,
+    ) -> Piece {
+        if branches.is_empty() {
+            return self.nothing(span, entry);
+        }
+        self.unordered_blocks += 1;
+        let resource = ResourceId::from_index(self.builder.resources.len());
+        self.builder.resources.push(Resource {
+            name: format_smolstr!("unordered#{}", self.unordered_blocks),
+            supply: Supply::Reusable { capacity: Rational::ONE },
+            span: Some(span),
+        });
+        let fork = self.enter(entry, expand::End::Structural, span);
+        let mut ends = Vec::with_capacity(branches.len());
+        let mut blocks = Vec::with_capacity(branches.len());
+        for branch in branches {
+            let arc = self.builder.reserve(ArcKind::Fork, Interval::ANY, branch.span);
+            let first = self.builder.next_occurrence();
+            let piece = self.statement(branch, Entry::Free, scope);
+            self.builder.connect(arc, fork, piece.start);
+            self.builder.uses.push(Use {
+                resource,
+                change: Change::Uses,
+                amount: Rational::ONE,
+                per_metre: Rational::default(),
+                arc,
+                start: piece.start,
+                end: piece.end,
+                owner: piece.occurrence.or_else(|| self.builder.made(first)),
+                span: Some(branch.span),
+            });
+            ends.push((piece.end, branch.span));
+            blocks.push(piece.block);
+        }
+        let join = self.builder.node();
+        for (end, span) in ends {
+            self.builder.arc(end, join, ArcKind::Join, Interval::ANY, span);
+        }
+        let block = self.builder.block(BlockKind::Parallel { branches: blocks }, fork, join, Some(span));
+        Piece {
+            start: fork,
+            end: join,
+            end_kind: expand::End::Structural,
+            block,
+            arc: None,
+            occurrence: None,
+        }
+    }
+
+    /// What plans are to be best in.
+    pub(super) fn objective(&self) -> Vec<Goal> {
+        let goals = self.program.objectives.first().map(|declared| declared.goals.as_slice());
+        goals
+            .unwrap_or_default()
+            .iter()
+            .map(|goal| Goal {
+                is_maximized: goal.is_maximized,
+                terms: goal.terms.clone(),
+                span: Some(goal.span),
+            })
+            .collect()
+    }
+}
