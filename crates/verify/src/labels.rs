@@ -1,6 +1,7 @@
-//! The selected labelled intervals, by variable, and which pairs of them conflict.
+//! The selected labelled intervals, and which pairs of them conflict where the variable does not last (SPEC 3.1).
 
-use tpn::{LabelId, Network, NodeId, Plan};
+use exact::Bound;
+use tpn::{Extent, LabelId, Network, NodeId, Plan};
 
 /// A selected labelled interval.
 #[derive(Clone, Copy, Debug)]
@@ -8,20 +9,29 @@ pub(crate) struct Interval {
     pub(crate) label: LabelId,
     pub(crate) start: NodeId,
     pub(crate) end: NodeId,
-    /// Its arc is `[0,0]`: it holds at one instant (SPEC 5.3).
+    /// It is one event, or its arc is `[0,0]`: it holds at one instant (SPEC 5.3).
     pub(crate) is_instant: bool,
 }
 
-/// The interval of a label.
+/// The interval of a label: what is about the start of its arc, or about the start of everything, is an instant.
 pub(crate) fn interval(network: &Network, label: LabelId) -> Interval {
-    let arc = &network.arcs[network.labels[label.index()].arc.index()];
-    let is_instant = exact::Bound::Finite(arc.lower) == exact::Bound::ZERO && arc.upper == exact::Bound::ZERO;
-    Interval { label, start: arc.from, end: arc.to, is_instant }
+    let of = &network.labels[label.index()];
+    let arc = &network.arcs[of.arc.index()];
+    let is_at_start = matches!(of.extent, Extent::Start | Extent::Initial);
+    let end = if is_at_start { arc.from } else { arc.to };
+    let has_no_length = arc.lower.is_zero() && arc.upper == Bound::ZERO;
+    Interval { label, start: arc.from, end, is_instant: is_at_start || has_no_length }
 }
 
 /// Whether the plan selects the label's arc.
 pub(crate) fn is_selected(network: &Network, plan: &Plan, label: LabelId) -> bool {
     plan.selected_arcs[network.labels[label.index()].arc.index()]
+}
+
+/// Whether the label is of a variable that keeps its value (SPEC 10).
+pub(crate) fn is_lasting(network: &Network, label: LabelId) -> bool {
+    let variable = network.labels[label.index()].literal.variable;
+    network.variables.get(variable.index()).is_some_and(|variable| variable.is_lasting)
 }
 
 /// The labels that the plan selects, in textual order.
@@ -33,10 +43,10 @@ pub(crate) fn selected(network: &Network, plan: &Plan) -> Vec<LabelId> {
 }
 
 /// Every pair of `labels` that cannot hold together, the textually earlier one first. Only labels of one variable are
-/// compared.
+/// compared, and none of a variable that lasts: [`crate::state`] is about those.
 pub(crate) fn conflicting_pairs(network: &Network, labels: &[LabelId]) -> Vec<(LabelId, LabelId)> {
     let mut by_variable: Vec<Vec<LabelId>> = vec![Vec::new(); network.variables.len()];
-    for &label in labels {
+    for &label in labels.iter().filter(|&&label| !is_lasting(network, label)) {
         if let Some(of_variable) = by_variable.get_mut(network.labels[label.index()].literal.variable.index())
         {
             of_variable.push(label);

@@ -1,13 +1,19 @@
-//! The independent checker of plans and schedules (SPEC 5.5), written from the definitions; it shares no planning code.
+//! The independent checker of plans and schedules (SPEC 5.5, 10 to 12), written from the definitions; it shares no planning
+//! code.
 //!
 //! Every check is made against the network and the plan as data. Distances come from a plain Bellman–Ford and from
 //! Dijkstra rows over exact integers, so that a mistake of the planner's own propagation cannot hide itself here.
 
+mod amounts;
+mod antichain;
+mod departure;
 mod distance;
+mod entailment;
 mod labels;
 mod plan;
 mod schedule;
 mod selection;
+mod state;
 
 use serde::{Deserialize, Serialize};
 
@@ -32,11 +38,11 @@ pub struct Violation {
     pub message: String,
     /// The events it is about, as named in all output.
     pub events: Vec<String>,
-    /// The labelled intervals it is about.
+    /// The labelled intervals and the uses of resources that it is about.
     pub intervals: Vec<String>,
 }
 
-/// The rules of SPEC 5.5.
+/// The rules of SPEC 5.5, and those of state that lasts (SPEC 10.2), resources (SPEC 11) and objectives (SPEC 12).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rule {
@@ -46,7 +52,7 @@ pub enum Rule {
     Selection,
     /// The selected arcs and the added constraints have no negative cycle.
     Temporal,
-    /// Every Ask lies inside a supporting Tell.
+    /// Every Ask lies inside a supporting Tell; of a state variable it has a producer whose value is one it allows.
     Support,
     /// Conflicting intervals do not overlap, and the plan says which comes first.
     Conflict,
@@ -54,6 +60,13 @@ pub enum Rule {
     Window,
     /// A duration of a schedule is within its bounds.
     Duration,
+    /// A state variable has a required value throughout, nothing else changes it meanwhile, its changes exclude each
+    /// other, and their order has no circle; a movement has the time that it takes from where it starts.
+    State,
+    /// A resource is never used beyond its capacity, nor its level outside its range, and a plan tells how far it goes.
+    Resource,
+    /// Cost, reward and end of a plan are what its selection and its times make them.
+    Quality,
 }
 
 impl Verdict {

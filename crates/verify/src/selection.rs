@@ -1,6 +1,6 @@
 //! Which nodes and arcs a plan's choices select, computed from the closure rule of SPEC 3.1 alone.
 
-use tpn::{ArcId, ArcKind, Network, NodeId, Plan};
+use tpn::{ArcId, ArcKind, Network, NodeId, Plan, UseId};
 
 use crate::{Rule, Verdict, Violation, node_name};
 
@@ -25,6 +25,23 @@ pub(crate) fn check_form(network: &Network, plan: &Plan) -> Result<(), Verdict> 
     expect(
         plan.choices.iter().all(|choice| choice.decision.index() < network.decisions.len()),
         "the plan names an unknown decision",
+    );
+    let is_known_use = |used: UseId| used.index() < network.uses.len();
+    expect(
+        plan.uses_ordered.iter().all(|it| is_known_use(it.first) && is_known_use(it.then)),
+        "the plan names an unknown use of a resource",
+    );
+    expect(
+        network.uses.iter().all(|it| {
+            it.resource.index() < network.resources.len()
+                && it.arc.index() < network.arcs.len()
+                && it.start.index().max(it.end.index()) < network.nodes.len()
+        }) && network.worths.iter().all(|it| it.arc.index() < network.arcs.len()),
+        "the network has a use or a worth of something unknown",
+    );
+    expect(
+        network.departures.iter().all(|it| it.arrival.index() < network.labels.len()),
+        "the network has a departure of something unknown",
     );
     if violations.is_empty() { Ok(()) } else { Err(Verdict::new(violations)) }
 }

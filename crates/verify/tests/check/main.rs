@@ -2,7 +2,12 @@
 //! refused by the right rule with the right names, and every verdict on tiny networks against brute force.
 
 mod brute_force;
+mod lasting_brute_force;
+mod lasting_oracle;
+mod lasting_schedules;
 mod missions;
 mod oracle;
 mod plan_rules;
+mod resource_rules;
 mod schedule_rules;
+mod state_rules;

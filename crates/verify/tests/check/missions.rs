@@ -1,8 +1,12 @@
 //! Networks from texts, and plans of them written out by hand. Nothing here plans.
 
-use exact::{Bound, Time};
+use exact::{Bound, Rational, Time};
+use rmpl::program::Change;
 use tpn::plan_json::Names;
-use tpn::{CausalLink, Choice, DecisionId, LabelId, Network, NodeId, Ordering, Plan, Top, Window};
+use tpn::{
+    CausalLink, Choice, DecisionId, Extent, LabelId, Levels, Network, NodeId, Ordering, Plan, Quality,
+    Supply, Top, UseId, UseOrdering, Window,
+};
 
 /// The network of the first scenario of `text`, which must have no errors.
 pub fn network(text: &str) -> Network {
@@ -27,13 +31,20 @@ pub struct Sketch<'names> {
 /// The plan of a sketch: its selection is the closure of its choices, its windows those of its constraints. Where the
 /// constraints contradict each other, and without a choice that it needs, it has no windows.
 pub fn plan(network: &Network, sketch: Sketch<'_>) -> Plan {
+    let mut plan = plan_without_windows(network, sketch);
+    plan.windows = windows(network, &plan);
+    plan
+}
+
+/// The same without its windows, for networks that are too large to work them out here.
+pub fn plan_without_windows(network: &Network, sketch: Sketch<'_>) -> Plan {
     let choices: Vec<Choice> = (sketch.choices.iter())
         .map(|&(number, alternative)| Choice { decision: DecisionId(number - 1), alternative })
         .collect();
     let (selected_nodes, selected_arcs) = closure(network, &choices);
     let ordering =
         |&(first, then): &(&str, &str)| Ordering { first: label(network, first), then: label(network, then) };
-    let mut plan = Plan {
+    Plan {
         choices,
         selected_nodes,
         selected_arcs,
@@ -42,10 +53,11 @@ pub fn plan(network: &Network, sketch: Sketch<'_>) -> Plan {
             .collect(),
         conflict_order: sketch.order.iter().map(ordering).collect(),
         orderings_added: sketch.added.iter().map(ordering).collect(),
+        uses_ordered: Vec::new(),
+        levels: Vec::new(),
+        quality: Quality::default(),
         windows: vec![None; network.nodes.len()],
-    };
-    plan.windows = windows(network, &plan);
-    plan
+    }
 }
 
 /// The labelled interval of a name.
@@ -94,16 +106,34 @@ pub fn constraints(network: &Network, plan: &Plan) -> Vec<Constraint> {
     for (arc, _) in network.arcs.iter().zip(&plan.selected_arcs).filter(|(_, selected)| **selected) {
         found.push(Constraint { from: arc.from, to: arc.to, lower: arc.lower, upper: arc.upper });
     }
-    let arc = |label: LabelId| &network.arcs[network.labels[label.index()].arc.index()];
     let mut at_least = |from: NodeId, to: NodeId, lower: Time| {
         found.push(Constraint { from, to, lower, upper: Bound::Infinite });
     };
     for link in &plan.causal_links {
-        at_least(arc(link.tell).from, arc(link.ask).from, time(0));
-        at_least(arc(link.ask).to, arc(link.tell).to, time(0));
+        at_least(ready(network, link.tell), occupied(network, link.ask).0, time(0));
+        if !is_lasting(network, link.ask) {
+            at_least(occupied(network, link.ask).1, occupied(network, link.tell).1, time(0));
+        }
     }
     for ordering in &plan.orderings_added {
-        at_least(arc(ordering.first).to, arc(ordering.then).from, network.threat_gap);
+        let (end, start) = (occupied(network, ordering.first).1, occupied(network, ordering.then).0);
+        if !is_lasting(network, ordering.first) {
+            at_least(end, start, network.threat_gap);
+            continue;
+        }
+        // What is put before a requirement is over when the requirement's own producer is ready (SPEC 10.2).
+        let own = plan.causal_links.iter().find(|link| link.ask == ordering.then);
+        at_least(end, own.map_or(start, |link| ready(network, link.tell)), time(0));
+    }
+    for ordering in &plan.uses_ordered {
+        let (from, to) = match network.resources[network.uses[ordering.first.index()].resource.index()].supply
+        {
+            Supply::Reusable { .. } => {
+                (network.uses[ordering.first.index()].end, network.uses[ordering.then.index()].start)
+            }
+            Supply::Reservoir { .. } => (moment(network, ordering.first), moment(network, ordering.then)),
+        };
+        at_least(from, to, time(0));
     }
     found
 }
@@ -154,4 +184,64 @@ pub fn time(units: i64) -> Time {
 pub fn units(time: Time) -> i64 {
     assert!(time.is_integer(), "{time} is not whole");
     time.numerator()
+}
+
+/// Whether a label is of a state variable.
+pub fn is_lasting(network: &Network, label: LabelId) -> bool {
+    network.variables[network.labels[label.index()].literal.variable.index()].is_lasting
+}
+
+/// The first and the last event of what a label occupies (SPEC 10.2).
+pub fn occupied(network: &Network, label: LabelId) -> (NodeId, NodeId) {
+    let arc = &network.arcs[network.labels[label.index()].arc.index()];
+    match network.labels[label.index()].extent {
+        Extent::Whole | Extent::Effect => (arc.from, arc.to),
+        Extent::Start => (arc.from, arc.from),
+        Extent::Initial => (network.start, network.start),
+    }
+}
+
+/// The event from which on a producer's value holds.
+pub fn ready(network: &Network, label: LabelId) -> NodeId {
+    let (start, end) = occupied(network, label);
+    if network.labels[label.index()].extent == Extent::Effect { end } else { start }
+}
+
+/// When a use changes the level of a reservoir (SPEC 11).
+pub fn moment(network: &Network, used: UseId) -> NodeId {
+    let used = &network.uses[used.index()];
+    if used.change == Change::Produces { used.end } else { used.start }
+}
+
+/// The use of a name.
+pub fn used(network: &Network, name: &str) -> UseId {
+    Names::new(network).used(name).unwrap_or_else(|problem| panic!("{problem}"))
+}
+
+/// The plan of a sketch with orderings of uses, and with what it says of resources.
+pub fn plan_of_resources(
+    network: &Network,
+    sketch: Sketch<'_>,
+    ordered: &[(&str, &str)],
+    levels: &[Levels],
+) -> Plan {
+    let mut plan = plan(network, sketch);
+    let ordering = |&(first, then): &(&str, &str)| UseOrdering {
+        first: used(network, first),
+        then: used(network, then),
+    };
+    plan.uses_ordered = ordered.iter().map(ordering).collect();
+    plan.levels = levels.to_vec();
+    plan.windows = windows(network, &plan);
+    plan
+}
+
+/// At most this much is used at a time.
+pub fn peak(amount: i64) -> Levels {
+    Levels::Peak(Rational::from_integer(amount))
+}
+
+/// The level stays between these.
+pub fn range(low: i64, high: i64) -> Levels {
+    Levels::Range { low: Rational::from_integer(low), high: Rational::from_integer(high) }
 }

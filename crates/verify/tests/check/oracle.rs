@@ -1,7 +1,7 @@
 //! The checker against brute force: random plans and random schedules of tiny missions, most of them nearly right.
 
 use tpn::generate::Rng;
-use tpn::{CausalLink, Choice, DecisionId, LabelId, Network, Ordering, Plan};
+use tpn::{CausalLink, Choice, DecisionId, LabelId, Network, Ordering, Plan, Quality};
 use verify::{check_plan, check_schedule};
 
 use crate::brute_force::{Schedule, accepts_plan, accepts_schedule, conflicting, schedules, windows};
@@ -86,6 +86,9 @@ fn random_plan(network: &Network, rng: &mut Rng) -> Plan {
         causal_links: Vec::new(),
         conflict_order: Vec::new(),
         orderings_added: Vec::new(),
+        uses_ordered: Vec::new(),
+        levels: Vec::new(),
+        quality: Quality::default(),
         windows: vec![None; network.nodes.len()],
     };
     let labels: Vec<LabelId> = (0..network.labels.len()).map(LabelId::from_index).collect();

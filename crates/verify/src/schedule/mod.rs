@@ -1,4 +1,7 @@
-//! The check of a schedule (SPEC 5.5): one time for each selected event. It needs no links and no orderings.
+//! The check of a schedule (SPEC 5.5, 10.2, 11): one time for each selected event. It needs no links and no orderings.
+
+mod resources;
+mod state;
 
 use exact::{Bound, Time};
 use rmpl::program::LabelMode;
@@ -17,6 +20,9 @@ pub fn earliest_schedule(plan: &Plan) -> Vec<Option<Time>> {
 /// A `[0,0]` interval holds at one instant, which must lie outside conflicting intervals, their start included. With a
 /// threat gap of zero the rule is that of planning (SPEC 5.3): of two conflicting intervals one ends no later than the
 /// other starts, instants and intervals without length included.
+///
+/// What happens at one instant may happen in any order that keeps the rules of state that lasts (SPEC 10.2). A reservoir is
+/// looked at after each instant, and uses without length that happen at one instant do not add up (SPEC 11).
 pub fn check_schedule(network: &Network, plan: &Plan, times: &[Option<Time>]) -> Verdict {
     if let Err(verdict) = selection::check_form(network, plan) {
         return verdict;
@@ -41,6 +47,8 @@ pub fn check_schedule(network: &Network, plan: &Plan, times: &[Option<Time>]) ->
         schedule.check_durations(&mut violations);
         schedule.check_supports(&mut violations);
         schedule.check_conflicts(&mut violations);
+        schedule.check_states(&mut violations);
+        schedule.check_resources(&mut violations);
     }
     Verdict::new(violations)
 }
@@ -79,7 +87,8 @@ impl Schedule<'_> {
     }
 
     fn check_supports(&self, violations: &mut Vec<Violation>) {
-        let selected = labels::selected(self.network, self.plan);
+        let mut selected = labels::selected(self.network, self.plan);
+        selected.retain(|&label| !labels::is_lasting(self.network, label));
         let (asks, tells): (Vec<LabelId>, Vec<LabelId>) =
             selected.iter().partition(|label| self.network.labels[label.index()].mode == LabelMode::Ask);
         for ask in asks {

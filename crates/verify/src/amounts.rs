@@ -1,0 +1,138 @@
+//! What resources hold and activities take of them, as integers: amounts multiplied by a common denominator.
+
+use exact::Rational;
+use num_integer::Integer as _;
+use tpn::{Network, NodeId, Plan, ResourceId, Supply, UseId};
+
+/// A resource with its selected uses.
+#[derive(Clone, Debug)]
+pub(crate) struct Shared {
+    pub(crate) resource: ResourceId,
+    pub(crate) supply: ScaledSupply,
+    pub(crate) uses: Vec<Taken>,
+    scale: i128,
+}
+
+/// How much of a resource there is, scaled.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum ScaledSupply {
+    Reusable { capacity: i128 },
+    Reservoir { least: i128, greatest: i128, level: i128 },
+}
+
+/// A selected use.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Taken {
+    pub(crate) used: UseId,
+    pub(crate) start: NodeId,
+    pub(crate) end: NodeId,
+    pub(crate) amount: i128,
+    /// It gives instead of taking.
+    pub(crate) is_production: bool,
+}
+
+impl Taken {
+    /// When it changes the level of a reservoir: a production at its end, a consumption at its start (SPEC 11).
+    pub(crate) fn moment(&self) -> NodeId {
+        if self.is_production { self.end } else { self.start }
+    }
+}
+
+/// A selected use with its amount not yet scaled: what takes of a reusable resource takes from start to end.
+pub(crate) fn taken(network: &Network, used: UseId, amount: i128) -> Taken {
+    let of = &network.uses[used.index()];
+    let is_production = of.change == rmpl::program::Change::Produces;
+    Taken { used, start: of.start, end: of.end, amount, is_production }
+}
+
+/// Whether the plan selects a use.
+pub(crate) fn is_selected(network: &Network, plan: &Plan, used: UseId) -> bool {
+    plan.selected_arcs[network.uses[used.index()].arc.index()]
+}
+
+impl Shared {
+    /// Every resource of the network with what the plan selects; `None` where the exact sums might not fit.
+    pub(crate) fn all(network: &Network, plan: &Plan) -> Option<Vec<Self>> {
+        let mut scales = Vec::with_capacity(network.resources.len());
+        for resource in &network.resources {
+            let amounts = match resource.supply {
+                Supply::Reusable { capacity } => vec![capacity],
+                Supply::Reservoir { least, greatest, level } => vec![least, greatest, level],
+            };
+            scales.push(amounts.into_iter().try_fold(1, common_denominator)?);
+        }
+        for used in &network.uses {
+            let scale = &mut scales[used.resource.index()];
+            *scale = common_denominator(*scale, used.amount)?;
+        }
+        let mut all: Vec<Self> = (network.resources.iter().zip(scales).enumerate())
+            .map(|(index, (resource, scale))| {
+                let supply = match resource.supply {
+                    Supply::Reusable { capacity } => {
+                        ScaledSupply::Reusable { capacity: scaled(capacity, scale) }
+                    }
+                    Supply::Reservoir { least, greatest, level } => ScaledSupply::Reservoir {
+                        least: scaled(least, scale),
+                        greatest: scaled(greatest, scale),
+                        level: scaled(level, scale),
+                    },
+                };
+                Self { resource: ResourceId::from_index(index), supply, uses: Vec::new(), scale }
+            })
+            .collect();
+        for used in (0..network.uses.len()).map(UseId::from_index) {
+            if is_selected(network, plan, used) {
+                let of = &network.uses[used.index()];
+                let shared = &mut all[of.resource.index()];
+                shared.uses.push(taken(network, used, scaled(of.amount, shared.scale)));
+            }
+        }
+        Some(all)
+    }
+
+    /// An amount as it was before scaling, if it fits.
+    pub(crate) fn unscaled(&self, amount: i128) -> Option<Rational> {
+        Rational::from_wide(amount, self.scale)
+    }
+
+    /// An amount for people.
+    pub(crate) fn show(&self, amount: i128) -> String {
+        self.unscaled(amount).map_or_else(|| format!("{amount}/{}", self.scale), |amount| amount.to_string())
+    }
+
+    /// The name of the resource.
+    pub(crate) fn name<'network>(&self, network: &'network Network) -> &'network str {
+        &network.resources[self.resource.index()].name
+    }
+}
+
+/// `Radio#1 (3), Heat#1 (2) and Lamp#1 (2)`.
+pub(crate) fn list(network: &Network, shared: &Shared, uses: &[Taken]) -> String {
+    let parts: Vec<String> = uses
+        .iter()
+        .map(|it| format!("{} ({})", user_name(network, it.used), shared.show(it.amount)))
+        .collect();
+    match parts.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
+        _ => parts.concat(),
+    }
+}
+
+/// Who uses a resource: `Radio#1`, or the use's own name.
+pub(crate) fn user_name(network: &Network, used: UseId) -> String {
+    let owner = network.uses[used.index()].owner;
+    match owner.and_then(|owner| network.occurrences.get(owner.index())) {
+        Some(owner) => owner.name.to_string(),
+        None => network.use_name(used),
+    }
+}
+
+/// Amounts have 63 bits and sums as many terms as there are uses; this leaves room for both.
+fn common_denominator(scale: i128, amount: Rational) -> Option<i128> {
+    let scale = scale.lcm(&i128::from(amount.denominator()));
+    (scale <= 1 << 40).then_some(scale)
+}
+
+fn scaled(amount: Rational, scale: i128) -> i128 {
+    i128::from(amount.numerator()) * (scale / i128::from(amount.denominator()))
+}

@@ -1,0 +1,160 @@
+//! The temporal constraints of a plan: its selected arcs, its links and all its orderings.
+
+use exact::{Bound, Time};
+use num_integer::Integer as _;
+use tpn::{ArcId, CausalLink, LabelId, Network, NodeId, Ordering, Plan, UseOrdering};
+
+use crate::departure::{self, Movement};
+use crate::distance::Edge;
+use crate::labels::{self, interval};
+use crate::{Rule, Violation, amounts, node_name};
+
+/// What put an edge into the distance graph.
+#[derive(Clone, Copy)]
+enum Reason {
+    Arc(ArcId),
+    Link(CausalLink),
+    Order(Ordering),
+    Uses(UseOrdering),
+    Departure(Movement),
+}
+
+/// The plan's temporal constraints as edges over integers: times multiplied by the common denominator.
+pub(super) struct Constraints {
+    pub(super) edges: Vec<Edge>,
+    /// What each constraint is, by the edges' `reason`.
+    reasons: Vec<Reason>,
+    pub(super) scale: i128,
+    pub(super) gap: i128,
+}
+
+impl Constraints {
+    /// `None` if the exact numbers do not fit.
+    pub(super) fn new(network: &Network, plan: &Plan) -> Option<Self> {
+        let bounds = network.arcs.iter().flat_map(|arc| [Some(arc.lower), arc.upper.finite()]);
+        let departures = network.departures.iter().map(|departure| departure.least);
+        let mut scale: i128 = 1;
+        for time in bounds.chain(departures).flatten().chain([network.threat_gap]) {
+            scale = scale.lcm(&i128::from(time.denominator()));
+            // Bounds have 63 bits and sums have as many terms as there are nodes; this leaves room for both.
+            if scale > 1 << 40 {
+                return None;
+            }
+        }
+        let mut made = Self { edges: Vec::new(), reasons: Vec::new(), scale, gap: 0 };
+        made.gap = made.scaled(network.threat_gap);
+        for (index, arc) in network.arcs.iter().enumerate() {
+            if plan.selected_arcs[index] {
+                let upper = arc.upper.finite().map(|upper| made.scaled(upper));
+                let reason = Reason::Arc(ArcId::from_index(index));
+                made.add(arc.from, arc.to, made.scaled(arc.lower), upper, reason);
+            }
+        }
+        for &link in &plan.causal_links {
+            let (ask, tell) = (interval(network, link.ask), interval(network, link.tell));
+            made.add(ready(network, link.tell), ask.start, 0, None, Reason::Link(link));
+            // What lasts need not be asserted any longer.
+            if !labels::is_lasting(network, link.ask) {
+                made.add(ask.end, tell.end, 0, None, Reason::Link(link));
+            }
+        }
+        for &ordering in &plan.orderings_added {
+            let (earlier, later, gap) = ordered_events(network, plan, ordering);
+            let gap = if gap { made.gap } else { 0 };
+            made.add(earlier, later, gap, None, Reason::Order(ordering));
+        }
+        for &ordering in &plan.uses_ordered {
+            let (earlier, later) = ordered_moments(network, ordering);
+            made.add(earlier, later, 0, None, Reason::Uses(ordering));
+        }
+        for movement in departure::of_plan(network, plan) {
+            if let Some(least) = movement.least {
+                let moving = interval(network, movement.arrival);
+                let least = made.scaled(least);
+                made.add(moving.start, moving.end, least, None, Reason::Departure(movement));
+            }
+        }
+        Some(made)
+    }
+
+    fn scaled(&self, time: Time) -> i128 {
+        i128::from(time.numerator()) * (self.scale / i128::from(time.denominator()))
+    }
+
+    fn add(&mut self, from: NodeId, to: NodeId, lower: i128, upper: Option<i128>, reason: Reason) {
+        let index = self.reasons.len() as u32;
+        self.reasons.push(reason);
+        self.edges.push(Edge { from: to.0, to: from.0, weight: -lower, reason: index });
+        if let Some(upper) = upper {
+            self.edges.push(Edge { from: from.0, to: to.0, weight: upper, reason: index });
+        }
+    }
+
+    /// A negative cycle, in the author's terms.
+    pub(super) fn describe_cycle(&self, network: &Network, cycle: &[Edge]) -> Violation {
+        let reasons: Vec<String> =
+            cycle.iter().map(|edge| describe(network, self.reasons[edge.reason as usize])).collect();
+        let events = cycle.iter().map(|edge| node_name(network, NodeId(edge.from))).collect();
+        let message = format!("these constraints contradict each other: {}", reasons.join("; "));
+        Violation::new(Rule::Temporal, message).with_events(events)
+    }
+}
+
+/// The event from which on what a label asserts holds: the end of an effect, otherwise the start.
+fn ready(network: &Network, label: LabelId) -> NodeId {
+    let interval = interval(network, label);
+    let is_effect = network.labels[label.index()].extent == tpn::Extent::Effect;
+    if is_effect { interval.end } else { interval.start }
+}
+
+/// The events that an added ordering keeps apart, and whether by the threat gap: that is for variables that do not last
+/// (SPEC 5.3). A producer that is put before a requirement ends no later than the requirement's own producer is ready
+/// (SPEC 10.2).
+fn ordered_events(network: &Network, plan: &Plan, ordering: Ordering) -> (NodeId, NodeId, bool) {
+    let earlier = interval(network, ordering.first).end;
+    let later = interval(network, ordering.then).start;
+    if !labels::is_lasting(network, ordering.first) {
+        return (earlier, later, true);
+    }
+    let own = plan.causal_links.iter().find(|link| link.ask == ordering.then);
+    (earlier, own.map_or(later, |link| ready(network, link.tell)), false)
+}
+
+/// The events that two ordered uses keep in order: the end and the start of uses of a reusable resource, the moments at
+/// which the level of a reservoir changes (SPEC 11).
+pub(super) fn ordered_moments(network: &Network, ordering: UseOrdering) -> (NodeId, NodeId) {
+    let [first, then] = [ordering.first, ordering.then].map(|used| amounts::taken(network, used, 0));
+    match network.resources[network.uses[first.used.index()].resource.index()].supply {
+        tpn::Supply::Reusable { .. } => (first.end, then.start),
+        tpn::Supply::Reservoir { .. } => (first.moment(), then.moment()),
+    }
+}
+
+fn describe(network: &Network, reason: Reason) -> String {
+    match reason {
+        Reason::Arc(arc) => {
+            let arc = &network.arcs[arc.index()];
+            let (from, to) = (node_name(network, arc.from), node_name(network, arc.to));
+            format!("{from} to {to} takes [{},{}]", Bound::Finite(arc.lower), arc.upper)
+        }
+        Reason::Link(link) if labels::is_lasting(network, link.ask) => {
+            let (ask, tell) = (network.label_name(link.ask), network.label_name(link.tell));
+            format!("{ask} begins when {tell} is ready")
+        }
+        Reason::Link(link) => {
+            format!("{} lies inside {}", network.label_name(link.ask), network.label_name(link.tell))
+        }
+        Reason::Order(order) => {
+            format!("{} comes before {}", network.label_name(order.first), network.label_name(order.then))
+        }
+        Reason::Uses(order) => {
+            format!("{} comes before {}", network.use_name(order.first), network.use_name(order.then))
+        }
+        Reason::Departure(movement) => {
+            let (arrival, before) =
+                (network.label_name(movement.arrival), network.label_name(movement.before));
+            let least = Bound::Finite(movement.least.unwrap_or_default());
+            format!("{arrival} takes at least {least} after {before}")
+        }
+    }
+}

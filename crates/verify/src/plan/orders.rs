@@ -1,0 +1,139 @@
+//! What a plan says of which conflicting interval is first, and the check of those of variables that do not last
+//! (SPEC 5.3).
+
+use std::collections::BTreeSet;
+
+use tpn::{LabelId, Network, Ordering, Plan};
+
+use super::Checker;
+use crate::labels::{self, interval};
+use crate::{Rule, Violation};
+
+/// The order of conflicts as the plan states it; each pair is accounted for by the rule that asks for it.
+pub(super) struct Stated {
+    /// Sorted, without repeats.
+    said: Vec<(LabelId, LabelId)>,
+    /// Whether each of them has been asked for.
+    is_accounted: Vec<bool>,
+    added: BTreeSet<(LabelId, LabelId)>,
+}
+
+/// What is said of a pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    /// The one that was asked for first is first.
+    InOrder,
+    /// The other one is.
+    Reversed,
+}
+
+impl Stated {
+    pub(super) fn new(plan: &Plan) -> Self {
+        let pair = |ordering: &Ordering| (ordering.first, ordering.then);
+        let mut said: Vec<(LabelId, LabelId)> = plan.conflict_order.iter().map(pair).collect();
+        said.sort_unstable();
+        said.dedup();
+        let is_accounted = vec![false; said.len()];
+        Self { said, is_accounted, added: plan.orderings_added.iter().map(pair).collect() }
+    }
+
+    fn is_said(&self, first: LabelId, then: LabelId) -> bool {
+        self.said.binary_search(&(first, then)).is_ok()
+    }
+
+    /// Whether it is said; then it has been accounted for.
+    fn take(&mut self, first: LabelId, then: LabelId) -> bool {
+        let found = self.said.binary_search(&(first, then));
+        if let Ok(index) = found {
+            self.is_accounted[index] = true;
+        }
+        found.is_ok()
+    }
+
+    /// Which of two that must be ordered is first; what is wrong, if the plan does not say exactly that.
+    pub(super) fn side(&mut self, network: &Network, one: LabelId, other: LabelId) -> Result<Side, String> {
+        let names = || (network.label_name(one), network.label_name(other));
+        match (self.take(one, other), self.take(other, one)) {
+            (true, false) => Ok(Side::InOrder),
+            (false, true) => Ok(Side::Reversed),
+            (true, true) => Err(format!("{} and {} are ordered both ways", names().0, names().1)),
+            (false, false) => {
+                Err(format!("the plan does not say which of {} and {} is first", names().0, names().1))
+            }
+        }
+    }
+
+    /// What is said of pairs that no rule asks for, and what was added without being said.
+    pub(super) fn check_rest(&self, network: &Network, plan: &Plan, violations: &mut Vec<Violation>) {
+        let mut complain = |message: String, (one, other): (LabelId, LabelId)| {
+            let is_lasting = labels::is_lasting(network, one) && labels::is_lasting(network, other);
+            let rule = if is_lasting { Rule::State } else { Rule::Conflict };
+            let names = vec![network.label_name(one), network.label_name(other)];
+            violations.push(Violation::new(rule, message).with_intervals(names));
+        };
+        let unaccounted =
+            self.said.iter().zip(&self.is_accounted).filter(|(_, is_accounted)| !**is_accounted);
+        for (&(first, then), _) in unaccounted {
+            let (first_name, then_name) = (network.label_name(first), network.label_name(then));
+            complain(
+                format!("{first_name} and {then_name} are ordered, but do not conflict or are not selected"),
+                (first, then),
+            );
+        }
+        for ordering in &plan.orderings_added {
+            // Intervals of no length at one instant are each before the other: then the stated order, which has been
+            // looked at, may be the other one.
+            if !self.is_said(ordering.first, ordering.then) && !self.is_said(ordering.then, ordering.first) {
+                let (first, then) = (network.label_name(ordering.first), network.label_name(ordering.then));
+                complain(
+                    format!("{first} was put before {then}, which the order of conflicts does not say"),
+                    (ordering.first, ordering.then),
+                );
+            }
+        }
+    }
+}
+
+impl Checker<'_> {
+    /// `before` of SPEC 5.3.
+    fn is_before(&self, first: LabelId, then: LabelId, stated: &Stated) -> bool {
+        if stated.added.contains(&(first, then)) {
+            return true;
+        }
+        let (first, then) = (interval(self.network, first), interval(self.network, then));
+        let least = if first.is_instant { self.gap } else { 0 };
+        self.entailment.is_at_least(first.end, then.start, least)
+    }
+
+    pub(super) fn check_conflicts(&self, stated: &mut Stated, violations: &mut Vec<Violation>) {
+        let network = self.network;
+        let selected = labels::selected(network, self.plan);
+        let mut complain = |message: String, (one, other): (LabelId, LabelId)| {
+            let names = vec![network.label_name(one), network.label_name(other)];
+            violations.push(Violation::new(Rule::Conflict, message).with_intervals(names));
+        };
+        for (one, other) in labels::conflicting_pairs(network, &selected) {
+            let side = stated.side(network, one, other);
+            if network.labels[one.index()].arc == network.labels[other.index()].arc {
+                let (one_name, other_name) = (network.label_name(one), network.label_name(other));
+                complain(format!("{one_name} and {other_name} are on the same arc"), (one, other));
+                continue;
+            }
+            let (first, then) = match side {
+                Ok(Side::InOrder) => (one, other),
+                Ok(Side::Reversed) => (other, one),
+                Err(problem) => {
+                    complain(problem, (one, other));
+                    continue;
+                }
+            };
+            if !self.is_before(first, then, stated) {
+                let (first_name, then_name) = (network.label_name(first), network.label_name(then));
+                complain(
+                    format!("{first_name} may overlap {then_name}, which it is said to precede"),
+                    (first, then),
+                );
+            }
+        }
+    }
+}

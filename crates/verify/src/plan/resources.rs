@@ -1,0 +1,173 @@
+//! The check of resources (SPEC 11): no schedule of the plan uses more than there is, and the plan tells how much.
+
+use tpn::{Levels, Network, Plan};
+
+use super::Checker;
+use crate::amounts::{ScaledSupply, Shared, Taken, is_selected, list, user_name};
+use crate::antichain::heaviest_antichain;
+use crate::entailment::{Precedence, Span};
+use crate::{Rule, Violation};
+
+/// Orderings of uses join two selected uses of one resource.
+pub(super) fn check_use_orderings(network: &Network, plan: &Plan, violations: &mut Vec<Violation>) {
+    for ordering in &plan.uses_ordered {
+        let [first, then] = [ordering.first, ordering.then];
+        let names = vec![network.use_name(first), network.use_name(then)];
+        let is_of_one = network.uses[first.index()].resource == network.uses[then.index()].resource;
+        let wrong = if first == then {
+            "a use is ordered with itself"
+        } else if !is_of_one {
+            "an ordering joins uses of different resources"
+        } else if !is_selected(network, plan, first) || !is_selected(network, plan, then) {
+            "an ordering joins uses that are not selected"
+        } else {
+            continue;
+        };
+        let message = format!("{wrong}: {} and {}", names[0], names[1]);
+        violations.push(Violation::new(Rule::Resource, message).with_intervals(names));
+    }
+}
+
+impl Checker<'_> {
+    /// The criteria of SPEC 11 for every resource, and what the plan says of them.
+    ///
+    /// Amounts are the network's alone: what is counted per metre is part of them once paths are inserted.
+    pub(super) fn check_resources(&self, violations: &mut Vec<Violation>) {
+        let network = self.network;
+        let Some(all) = Shared::all(network, self.plan) else {
+            let message =
+                "the amounts are too large, or their denominators too different, to be added exactly";
+            violations.push(Violation::new(Rule::Form, message));
+            return;
+        };
+        if self.plan.levels.len() != all.len() {
+            let message = format!(
+                "the plan tells how far {} resources are used, and there are {}",
+                self.plan.levels.len(),
+                all.len()
+            );
+            violations.push(Violation::new(Rule::Resource, message));
+        }
+        for shared in &all {
+            let backward = shared.uses.iter().map(|it| Span { start: it.start, end: it.end });
+            if let Some(span) = backward.into_iter().find(|span| !self.is_forward(*span)) {
+                violations.push(self.backward(span));
+                continue;
+            }
+            let levels = match shared.supply {
+                ScaledSupply::Reusable { capacity } => self.check_reusable(shared, capacity, violations),
+                ScaledSupply::Reservoir { least, greatest, level } => {
+                    self.check_reservoir(shared, [least, greatest, level], violations)
+                }
+            };
+            self.check_levels(shared, levels, violations);
+        }
+    }
+
+    fn violation_of(&self, message: String, uses: &[Taken]) -> Violation {
+        let names = uses.iter().map(|it| self.network.use_name(it.used)).collect();
+        Violation::new(Rule::Resource, message).with_intervals(names)
+    }
+
+    /// The greatest amount of uses of which no two are ordered (Policella et al. 2004). Returns it.
+    fn check_reusable(
+        &self,
+        shared: &Shared,
+        capacity: i128,
+        violations: &mut Vec<Violation>,
+    ) -> Option<Levels> {
+        let spans: Vec<Span> = shared.uses.iter().map(|it| Span { start: it.start, end: it.end }).collect();
+        let weights: Vec<i128> = shared.uses.iter().map(|it| it.amount).collect();
+        let (peak, together) = heaviest_antichain(&weights, &Precedence::new(&self.entailment, &spans));
+        if peak > capacity {
+            let mut together: Vec<Taken> = together.into_iter().map(|index| shared.uses[index]).collect();
+            together.sort_by_key(|it| it.used);
+            let message = format!(
+                "{} may use {} at the same time: {} of {}",
+                list(self.network, shared, &together),
+                shared.name(self.network),
+                shared.show(peak),
+                shared.show(capacity)
+            );
+            violations.push(self.violation_of(message, &together));
+        }
+        shared.unscaled(peak).map(Levels::Peak)
+    }
+
+    /// The least level after each consumption and the greatest after each production (Laborie 2003). Returns the least
+    /// and the greatest of them and of the level at the start.
+    fn check_reservoir(
+        &self,
+        shared: &Shared,
+        [least, greatest, level]: [i128; 3],
+        violations: &mut Vec<Violation>,
+    ) -> Option<Levels> {
+        let spans: Vec<Span> =
+            shared.uses.iter().map(|it| Span { start: it.moment(), end: it.moment() }).collect();
+        let order = Precedence::new(&self.entailment, &spans);
+        let (mut low, mut high) = (level, level);
+        for (index, event) in shared.uses.iter().enumerate() {
+            let mut reached = level;
+            for (other, another) in shared.uses.iter().enumerate() {
+                let is_no_later = other == index || order.is_before(other, index);
+                let is_no_earlier = other == index || order.is_before(index, other);
+                let may_come_first = !is_no_earlier || is_no_later;
+                // The worst case counts all that may have happened in its own direction, and of the other direction
+                // only what must have.
+                let is_counted =
+                    if another.is_production == event.is_production { may_come_first } else { is_no_later };
+                if is_counted {
+                    reached += if another.is_production { another.amount } else { -another.amount };
+                }
+            }
+            let name = shared.name(self.network);
+            let user = user_name(self.network, event.used);
+            if event.is_production {
+                high = high.max(reached);
+                if reached > greatest {
+                    let message = format!(
+                        "when {user} has produced {}, {name} may be up to {}, and its greatest level is {}",
+                        shared.show(event.amount),
+                        shared.show(reached),
+                        shared.show(greatest)
+                    );
+                    violations.push(self.violation_of(message, &[*event]));
+                }
+            } else {
+                low = low.min(reached);
+                if reached < least {
+                    let message = format!(
+                        "when {user} consumes {}, {name} may be down to {}, and its least level is {}",
+                        shared.show(event.amount),
+                        shared.show(reached),
+                        shared.show(least)
+                    );
+                    violations.push(self.violation_of(message, &[*event]));
+                }
+            }
+        }
+        Some(Levels::Range { low: shared.unscaled(low)?, high: shared.unscaled(high)? })
+    }
+
+    fn check_levels(&self, shared: &Shared, levels: Option<Levels>, violations: &mut Vec<Violation>) {
+        let stated = self.plan.levels.get(shared.resource.index()).copied();
+        if stated.is_none() || stated == levels {
+            return;
+        }
+        let message = format!(
+            "the plan says that {} {}, but it {}",
+            shared.name(self.network),
+            show(stated),
+            show(levels)
+        );
+        violations.push(Violation::new(Rule::Resource, message));
+    }
+}
+
+fn show(levels: Option<Levels>) -> String {
+    match levels {
+        Some(Levels::Peak(peak)) => format!("is used up to {peak} at a time"),
+        Some(Levels::Range { low, high }) => format!("stays within {low} and {high}"),
+        None => "goes beyond what can be told exactly".to_owned(),
+    }
+}

@@ -1,0 +1,329 @@
+//! A second checker of state that lasts and of resources, naive on purpose: the definitions of SPEC 10.2 and 11 read off
+//! all schedules in whole units, with every order of producers and every set of uses tried.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use exact::Rational;
+use rmpl::program::{Change, LabelMode};
+use tpn::{Extent, LabelId, Levels, Network, NodeId, Plan, Supply, UseId};
+
+use crate::brute_force::Schedule;
+use crate::missions::{is_lasting, moment, occupied, ready};
+
+type Pairs = BTreeSet<(LabelId, LabelId)>;
+
+fn selected(network: &Network, plan: &Plan, mode: LabelMode) -> Vec<LabelId> {
+    (0..network.labels.len())
+        .map(LabelId::from_index)
+        .filter(|&label| {
+            let of = &network.labels[label.index()];
+            of.mode == mode && plan.selected_arcs[of.arc.index()] && is_lasting(network, label)
+        })
+        .collect()
+}
+
+fn is_changing(network: &Network, label: LabelId) -> bool {
+    network.labels[label.index()].extent == Extent::Effect
+}
+
+fn is_initial(network: &Network, label: LabelId) -> bool {
+    network.labels[label.index()].extent == Extent::Initial
+}
+
+fn is_of_one(network: &Network, one: LabelId, other: LabelId) -> bool {
+    network.labels[one.index()].literal.variable == network.labels[other.index()].literal.variable
+}
+
+/// The values by number; domains of state variables are declared.
+fn values(network: &Network, label: LabelId) -> BTreeSet<u32> {
+    match &network.labels[label.index()].literal.values {
+        tpn::ValueSet::In(values) => values.iter().map(|value| value.0).collect(),
+        tpn::ValueSet::NotIn(_) => panic!("the domain of a state variable is closed"),
+    }
+}
+
+/// The pairs of rule 2.
+pub fn excluding(network: &Network, plan: &Plan) -> Vec<(LabelId, LabelId)> {
+    let producers = selected(network, plan, LabelMode::Tell);
+    let mut pairs = Vec::new();
+    for (position, &one) in producers.iter().enumerate() {
+        for &other in &producers[position + 1..] {
+            let differ = values(network, one) != values(network, other);
+            if is_of_one(network, one, other)
+                && (is_changing(network, one) || is_changing(network, other) || differ)
+            {
+                pairs.push((one, other));
+            }
+        }
+    }
+    pairs
+}
+
+/// The producers that rule 1 keeps away from a requirement with a producer of its own.
+pub fn threats(network: &Network, plan: &Plan, ask: LabelId, own: LabelId) -> Vec<LabelId> {
+    let mut producers = selected(network, plan, LabelMode::Tell);
+    producers.retain(|&it| {
+        it != own
+            && is_of_one(network, it, ask)
+            && (is_changing(network, it) || !values(network, it).is_subset(&values(network, ask)))
+    });
+    producers
+}
+
+/// The selected requirements of state variables.
+pub fn requirements(network: &Network, plan: &Plan) -> Vec<LabelId> {
+    selected(network, plan, LabelMode::Ask)
+}
+
+/// The selected producers whose value a requirement allows.
+pub fn supporters(network: &Network, plan: &Plan, ask: LabelId) -> Vec<LabelId> {
+    let mut producers = selected(network, plan, LabelMode::Tell);
+    let arc = |label: LabelId| network.labels[label.index()].arc;
+    producers.retain(|&it| {
+        // Nothing rests on its own effect.
+        let is_own = is_changing(network, it) && arc(it) == arc(ask);
+        is_of_one(network, it, ask) && values(network, it).is_subset(&values(network, ask)) && !is_own
+    });
+    producers
+}
+
+fn is_always(schedules: &[Schedule], one: NodeId, other: NodeId) -> bool {
+    schedules.iter().all(|at| at[one.index()] <= at[other.index()])
+}
+
+/// Whether SPEC 10.2 accepts a plan with these schedules, and the plan says all of it.
+pub fn accepts_states(network: &Network, plan: &Plan, schedules: &[Schedule]) -> bool {
+    let said: Pairs = plan.conflict_order.iter().map(|it| (it.first, it.then)).collect();
+    let ends = |label: LabelId| occupied(network, label);
+    // The sides of rule 2, all of them and each once.
+    let mut sides = Pairs::new();
+    let mut asked: Pairs = Pairs::new();
+    for (one, other) in excluding(network, plan) {
+        let side = match (said.contains(&(one, other)), said.contains(&(other, one))) {
+            (true, false) => (one, other),
+            (false, true) => (other, one),
+            _ => return false,
+        };
+        let is_kept = is_always(schedules, ends(side.0).1, ends(side.1).0) && !is_initial(network, side.1);
+        if !is_kept {
+            return false;
+        }
+        sides.insert(side);
+        asked.extend([(one, other), (other, one)]);
+    }
+    // Without circles: the closure has no pair both ways.
+    let mut closure = sides.clone();
+    loop {
+        let steps: Vec<(LabelId, LabelId)> = (closure.iter())
+            .flat_map(|&(a, b)| closure.iter().filter(move |it| it.0 == b).map(move |it| (a, it.1)))
+            .collect();
+        let before = closure.len();
+        closure.extend(steps);
+        if closure.len() == before {
+            break;
+        }
+    }
+    if closure.iter().any(|&(one, other)| one == other) {
+        return false;
+    }
+    let asks = requirements(network, plan);
+    let links: BTreeMap<LabelId, LabelId> =
+        plan.causal_links.iter().map(|link| (link.ask, link.tell)).collect();
+    for ask in asks {
+        let Some(&own) = links.get(&ask) else { return false };
+        if plan.causal_links.iter().filter(|link| link.ask == ask).count() != 1
+            || !supporters(network, plan, ask).contains(&own)
+            || !is_always(schedules, ready(network, own), ends(ask).0)
+        {
+            return false;
+        }
+        for threat in threats(network, plan, ask, own) {
+            let is_before = sides.contains(&(threat, own));
+            // What rule 2 put before the producer is before the requirement, too; the rest is after it.
+            let expected = if is_before { (threat, ask) } else { (ask, threat) };
+            let is_kept = if is_before {
+                is_always(schedules, ends(threat).1, ready(network, own))
+            } else {
+                is_always(schedules, ends(ask).1, ends(threat).0)
+            };
+            if !is_kept || !said.contains(&expected) || said.contains(&(expected.1, expected.0)) {
+                return false;
+            }
+            asked.insert(expected);
+        }
+    }
+    let added = plan.orderings_added.iter().map(|it| (it.first, it.then));
+    said.iter().all(|pair| asked.contains(pair))
+        && added.into_iter().all(|(one, other)| said.contains(&(one, other)) || said.contains(&(other, one)))
+}
+
+/// Whether some order of the producers and some links keep SPEC 10.2 in a schedule.
+pub fn accepts_states_at(network: &Network, plan: &Plan, at: &Schedule) -> bool {
+    let variables: BTreeSet<u32> = (0..network.variables.len() as u32).collect();
+    variables.into_iter().all(|variable| {
+        let of = |label: &LabelId| network.labels[label.index()].literal.variable.0 == variable;
+        let producers: Vec<LabelId> =
+            selected(network, plan, LabelMode::Tell).into_iter().filter(of).collect();
+        let asks: Vec<LabelId> = requirements(network, plan).into_iter().filter(of).collect();
+        permutations(&producers).iter().any(|order| keeps_order(network, plan, at, order, &asks))
+    })
+}
+
+fn keeps_order(network: &Network, plan: &Plan, at: &Schedule, order: &[LabelId], asks: &[LabelId]) -> bool {
+    let time = |node: NodeId| at[node.index()];
+    let place = |label: LabelId| order.iter().position(|&it| it == label);
+    let is_first = order.iter().skip(1).all(|&label| !is_initial(network, label));
+    let keeps_sides = excluding(network, plan).into_iter().all(|(one, other)| {
+        let (Some(at_one), Some(at_other)) = (place(one), place(other)) else { return true };
+        let (first, then) = if at_one < at_other { (one, other) } else { (other, one) };
+        time(occupied(network, first).1) <= time(occupied(network, then).0)
+    });
+    let holds = |&ask: &LabelId| {
+        supporters(network, plan, ask).into_iter().any(|own| {
+            let (start, end) = occupied(network, ask);
+            time(ready(network, own)) <= time(start)
+                && threats(network, plan, ask, own).into_iter().all(|threat| {
+                    let (from, to) = occupied(network, threat);
+                    (place(threat) < place(own) && time(to) <= time(ready(network, own)))
+                        || time(end) <= time(from)
+                })
+        })
+    };
+    is_first && keeps_sides && asks.iter().all(holds)
+}
+
+fn permutations(labels: &[LabelId]) -> Vec<Vec<LabelId>> {
+    let mut found = vec![Vec::new()];
+    for &label in labels {
+        found = (found.iter())
+            .flat_map(|order: &Vec<LabelId>| {
+                (0..=order.len()).map(move |position| {
+                    let mut longer = order.clone();
+                    longer.insert(position, label);
+                    longer
+                })
+            })
+            .collect();
+    }
+    found
+}
+
+fn uses_of(network: &Network, plan: &Plan, resource: usize) -> Vec<UseId> {
+    (0..network.uses.len())
+        .map(UseId::from_index)
+        .filter(|used| {
+            let used = &network.uses[used.index()];
+            used.resource.index() == resource && plan.selected_arcs[used.arc.index()]
+        })
+        .collect()
+}
+
+fn amount(network: &Network, used: UseId) -> i64 {
+    let amount = network.uses[used.index()].amount;
+    assert!(amount.is_integer());
+    amount.numerator()
+}
+
+/// Whether what is used stays within a resource in all schedules, by the criteria of SPEC 11; and how far it goes.
+pub fn levels(network: &Network, plan: &Plan, schedules: &[Schedule]) -> (bool, Vec<Levels>) {
+    let mut is_within = true;
+    let mut all = Vec::new();
+    for (index, resource) in network.resources.iter().enumerate() {
+        let uses = uses_of(network, plan, index);
+        match resource.supply {
+            Supply::Reusable { capacity } => {
+                let peak = peak(network, &uses, schedules);
+                is_within &= peak <= capacity.numerator();
+                all.push(Levels::Peak(Rational::from_integer(peak)));
+            }
+            Supply::Reservoir { least, greatest, level } => {
+                let (mut low, mut high) = (level.numerator(), level.numerator());
+                for &used in &uses {
+                    let reached = level.numerator() + reached(network, &uses, used, schedules);
+                    if network.uses[used.index()].change == Change::Produces {
+                        high = high.max(reached);
+                    } else {
+                        low = low.min(reached);
+                    }
+                }
+                is_within &= low >= least.numerator() && high <= greatest.numerator();
+                let [low, high] = [low, high].map(Rational::from_integer);
+                all.push(Levels::Range { low, high });
+            }
+        }
+    }
+    (is_within, all)
+}
+
+/// The greatest sum of a set of uses of which no two are entailed to be ordered.
+fn peak(network: &Network, uses: &[UseId], schedules: &[Schedule]) -> i64 {
+    let precedes = |one: UseId, other: UseId| {
+        is_always(schedules, network.uses[one.index()].end, network.uses[other.index()].start)
+    };
+    let mut peak = 0;
+    for set in 0_u32..1 << uses.len() {
+        let chosen: Vec<UseId> =
+            uses.iter().enumerate().filter(|(at, _)| set >> at & 1 == 1).map(|(_, &it)| it).collect();
+        let is_free = chosen.iter().enumerate().all(|(at, &one)| {
+            chosen[at + 1..].iter().all(|&other| !precedes(one, other) && !precedes(other, one))
+        });
+        if is_free {
+            peak = peak.max(chosen.iter().map(|&it| amount(network, it)).sum());
+        }
+    }
+    peak
+}
+
+/// How far the level is from the first one at a consumption or a production, at worst.
+fn reached(network: &Network, uses: &[UseId], event: UseId, schedules: &[Schedule]) -> i64 {
+    let produces = |used: UseId| network.uses[used.index()].change == Change::Produces;
+    let x = moment(network, event);
+    let mut sum = 0;
+    for &used in uses {
+        let at = moment(network, used);
+        let (is_no_earlier, is_no_later) = (is_always(schedules, x, at), is_always(schedules, at, x));
+        let is_equal = is_no_earlier && is_no_later;
+        let comes_after = is_no_earlier && !is_equal;
+        match (produces(event), produces(used)) {
+            (false, false) if !comes_after => sum -= amount(network, used),
+            (false, true) if is_no_later => sum += amount(network, used),
+            (true, true) if !comes_after => sum += amount(network, used),
+            (true, false) if is_no_later => sum -= amount(network, used),
+            _ => {}
+        }
+    }
+    sum
+}
+
+/// Whether SPEC 11 accepts a schedule: at every instant for what is reusable, after every instant for levels.
+pub fn accepts_resources_at(network: &Network, plan: &Plan, at: &Schedule) -> bool {
+    network.resources.iter().enumerate().all(|(index, resource)| {
+        let uses = uses_of(network, plan, index);
+        let times = |used: UseId| {
+            let used = &network.uses[used.index()];
+            (at[used.start.index()], at[used.end.index()])
+        };
+        match resource.supply {
+            Supply::Reusable { capacity } => uses.iter().all(|&counted| {
+                let (start, end) = times(counted);
+                // What contains the start of a use; a use without length is only inside what it lies strictly inside.
+                let around = |&&other: &&UseId| {
+                    let (from, to) = times(other);
+                    if start == end { from < start && start < to } else { from <= start && start < to }
+                };
+                let others: Vec<&UseId> = uses.iter().filter(around).collect();
+                let own = if start == end && !others.is_empty() { amount(network, counted) } else { 0 };
+                own + others.into_iter().map(|&it| amount(network, it)).sum::<i64>() <= capacity.numerator()
+            }),
+            Supply::Reservoir { least, greatest, level } => uses.iter().all(|&event| {
+                let now = at[moment(network, event).index()];
+                let mut reached = level.numerator();
+                for &used in uses.iter().filter(|&&it| at[moment(network, it).index()] <= now) {
+                    let is_production = network.uses[used.index()].change == Change::Produces;
+                    reached += if is_production { amount(network, used) } else { -amount(network, used) };
+                }
+                (least.numerator()..=greatest.numerator()).contains(&reached)
+            }),
+        }
+    })
+}

@@ -1,0 +1,395 @@
+//! Each rule of state that lasts (SPEC 10.2) in the check of plans: plans that keep it, and what is said of those that
+//! break it.
+
+use serde_json::Value;
+use tpn::plan_json::plan_to_json;
+use tpn::{CausalLink, Departure, Network, Ordering, Plan};
+use verify::{Rule, Violation, check_plan, check_schedule, earliest_schedule};
+
+use crate::missions::{Sketch, label, network, plan, time, windows};
+
+/// One of the conformance cases: its text and what is expected.
+macro_rules! case {
+    ($name:literal) => {
+        (
+            include_str!(concat!("../../../../tests/conformance/", $name, ".rmpl")),
+            include_str!(concat!("../../../../tests/conformance/", $name, ".json")),
+        )
+    };
+}
+
+fn violations(network: &Network, plan: &Plan) -> Vec<Violation> {
+    let verdict = check_plan(network, plan);
+    assert_eq!(verdict.valid, verdict.violations.is_empty());
+    verdict.violations
+}
+
+fn said_of(text: &str, sketch: Sketch<'_>) -> Vec<Violation> {
+    let network = network(text);
+    violations(&network, &plan(&network, sketch))
+}
+
+#[track_caller]
+fn only(found: &[Violation], rule: Rule, names: &[&str], words: &str) {
+    let [violation] = found else { panic!("not one violation: {found:#?}") };
+    let names: Vec<String> = names.iter().map(|&name| name.to_owned()).collect();
+    assert_eq!((violation.rule, &violation.intervals), (rule, &names), "{violation:?}");
+    assert!(violation.message.contains(words), "{violation:?}");
+}
+
+/// The plan of a conformance case is accepted, and so is its earliest schedule; its windows are those of the case.
+#[track_caller]
+fn accepted((text, case): (&str, &str), sketch: Sketch<'_>) {
+    let network = network(text);
+    let plan = plan(&network, sketch);
+    assert_eq!(violations(&network, &plan), []);
+    let verdict = check_schedule(&network, &plan, &earliest_schedule(&plan));
+    assert!(verdict.valid, "{:#?}", verdict.violations);
+    let case: Value = serde_json::from_str(case).expect("a case is JSON");
+    let made = plan_to_json(&network, &plan);
+    for (event, window) in case["expect"]["windows"].as_object().into_iter().flatten() {
+        assert_eq!(&made["windows"][event], window, "{event}");
+    }
+    for (event, times) in case["expect"]["earliest"].as_object().into_iter().flatten() {
+        let times = times.as_array().expect("a list of times");
+        assert!(times.contains(&made["windows"][event][0]), "{event}: {}", made["windows"][event]);
+    }
+}
+
+const DEPLOY: &str = "Set(ARM=OUT)@Deploy#1";
+const STOW: &str = "Set(ARM=IN)@Stow#1";
+const DIG: &str = "Ask(ARM=OUT)@Dig#1";
+const LOOK: &str = "Ask(ARM=IN)@Look#1";
+const FIRST: &str = "Init(ARM=IN)";
+
+#[test]
+fn values_last_across_gaps() {
+    let sketch =
+        Sketch { links: &[(DIG, DEPLOY)], order: &[(FIRST, DEPLOY), (FIRST, DIG)], ..Sketch::default() };
+    accepted(case!("s01_persistence"), sketch);
+}
+
+#[test]
+fn nothing_has_the_value_while_it_changes() {
+    let order = [(FIRST, DEPLOY), (LOOK, DEPLOY)];
+    let sketch =
+        Sketch { links: &[(LOOK, FIRST)], order: &order, added: &[(LOOK, DEPLOY)], ..Sketch::default() };
+    accepted(case!("s02_effect_while_changing"), sketch);
+    // Without the ordering nothing keeps the two apart.
+    let found = said_of(case!("s02_effect_while_changing").0, Sketch { added: &[], ..sketch });
+    only(&found, Rule::State, &[LOOK, DEPLOY], "Deploy#1 changes ARM while Look#1 requires ARM=IN");
+}
+
+const OPEN: &str = "Set(DOOR=OPEN)@Open#1";
+const CLOSE: &str = "Set(DOOR=SHUT)@Close#1";
+const BEFORE_OPEN: &str = "Ask(DOOR=SHUT)@Open#1";
+const BEFORE_CLOSE: &str = "Ask(DOOR=OPEN)@Close#1";
+const SHUT: &str = "Init(DOOR=SHUT)";
+const DOOR: Sketch<'static> = Sketch {
+    choices: &[],
+    links: &[(BEFORE_OPEN, SHUT), (BEFORE_CLOSE, OPEN)],
+    order: &[
+        (SHUT, OPEN),
+        (SHUT, CLOSE),
+        (OPEN, CLOSE),
+        (BEFORE_OPEN, OPEN),
+        (BEFORE_OPEN, CLOSE),
+        (SHUT, BEFORE_CLOSE),
+        (BEFORE_CLOSE, CLOSE),
+    ],
+    added: &[],
+};
+
+#[test]
+fn what_requires_and_sets_requires_at_its_start() {
+    accepted(case!("s03_requires_and_sets"), DOOR);
+    // What is required at the start of an activity precedes its own effect, and is always said to.
+    let order: Vec<(&str, &str)> =
+        DOOR.order.iter().copied().filter(|&pair| pair != (BEFORE_CLOSE, CLOSE)).collect();
+    let found = said_of(case!("s03_requires_and_sets").0, Sketch { order: &order, ..DOOR });
+    only(&found, Rule::State, &[BEFORE_CLOSE, CLOSE], "does not say which of");
+}
+
+const STOW_FIRST: Sketch<'static> = Sketch {
+    choices: &[],
+    links: &[(DIG, DEPLOY)],
+    order: &[(FIRST, DEPLOY), (FIRST, STOW), (STOW, DEPLOY), (FIRST, DIG), (STOW, DIG)],
+    added: &[(STOW, DEPLOY)],
+};
+const STOW_LAST: Sketch<'static> = Sketch {
+    choices: &[],
+    links: &[(DIG, DEPLOY)],
+    order: &[(FIRST, DEPLOY), (FIRST, STOW), (DEPLOY, STOW), (FIRST, DIG), (DIG, STOW)],
+    added: &[(DIG, STOW)],
+};
+
+#[test]
+fn a_threat_is_resolved_before_or_after() {
+    accepted(case!("s04_threat_both_ways"), STOW_FIRST);
+    accepted(case!("s04_threat_both_ways"), STOW_LAST);
+}
+
+/// Each entry of the plans of s04 is needed, and each pair is stated once, in the direction that holds.
+#[test]
+fn the_order_is_stated_pair_by_pair() {
+    let text = case!("s04_threat_both_ways").0;
+    for good in [STOW_FIRST, STOW_LAST] {
+        for (index, &(first, then)) in good.order.iter().enumerate() {
+            let mut fewer = good.order.to_vec();
+            fewer.remove(index);
+            let found = said_of(text, Sketch { order: &fewer, ..good });
+            let is_missing =
+                |it: &Violation| it.rule == Rule::State && it.message.contains("does not say which of");
+            assert!(found.iter().any(is_missing), "{first}, {then}: {found:#?}");
+            let mut reversed = good.order.to_vec();
+            reversed[index] = (then, first);
+            let found = said_of(text, Sketch { order: &reversed, ..good });
+            assert!(found.iter().any(|it| it.rule == Rule::State), "{first}, {then}: {found:#?}");
+            let both: Vec<(&str, &str)> = good.order.iter().copied().chain([(then, first)]).collect();
+            let found = said_of(text, Sketch { order: &both, ..good });
+            let is_both = |it: &Violation| it.rule == Rule::State && it.message.contains("both ways");
+            assert!(found.iter().any(is_both), "{first}, {then}: {found:#?}");
+        }
+        // Dig and the producer that it is linked to are no pair, nor are two requirements.
+        for more in [(DEPLOY, DIG), (DIG, DIG)] {
+            let order: Vec<(&str, &str)> = good.order.iter().copied().chain([more]).collect();
+            let found = said_of(text, Sketch { order: &order, ..good });
+            only(&found, Rule::State, &[more.0, more.1], "do not conflict");
+        }
+        let found = said_of(text, Sketch { added: &[], ..good });
+        let may_overlap = |it: &Violation| it.rule == Rule::State && it.message.contains("may overlap");
+        assert!(found.iter().any(may_overlap), "{found:#?}");
+        assert!(found.iter().all(|it| it.rule == Rule::State), "{found:#?}");
+    }
+}
+
+#[test]
+fn changes_do_not_overlap() {
+    let text = case!("s04_threat_both_ways").0;
+    // Stow is said to be first, and nothing sees to it.
+    let found = said_of(text, Sketch { added: &[], ..STOW_FIRST });
+    only(&found, Rule::State, &[STOW, DEPLOY], "Stow#1 changes ARM while Deploy#1 changes ARM");
+    let backwards = Sketch {
+        order: &[(DEPLOY, FIRST), (FIRST, STOW), (STOW, DEPLOY), (FIRST, DIG), (STOW, DIG)],
+        ..STOW_FIRST
+    };
+    let found = said_of(text, backwards);
+    let is_first =
+        |it: &Violation| it.rule == Rule::State && it.message.contains("where ARM has its first value");
+    assert!(found.iter().any(is_first), "{found:#?}");
+}
+
+#[test]
+fn requirements_are_linked_to_one_producer_of_their_value() {
+    let text = case!("s04_threat_both_ways").0;
+    let found = said_of(text, Sketch { links: &[], ..STOW_FIRST });
+    only(&found, Rule::Support, &[DIG], "nothing is linked to");
+    let found = said_of(text, Sketch { links: &[(DIG, STOW)], ..STOW_FIRST });
+    only(&found, Rule::Support, &[DIG, STOW], "does not make the requirement hold");
+    let found = said_of(text, Sketch { links: &[(DIG, DEPLOY), (DIG, DEPLOY)], ..STOW_FIRST });
+    only(&found, Rule::Support, &[DIG], "has 2 causal links");
+}
+
+/// A requirement that begins before its producer is ready contradicts the link.
+#[test]
+fn producers_are_ready_in_time() {
+    let text = "state ARM : {IN, OUT} = IN;
+        primitive Deploy() [5,5] sets ARM=OUT;
+        primitive Dig() [10,10] requires ARM=OUT;
+        scenario S [0,40] = { Deploy(), Dig() }";
+    let sketch =
+        Sketch { links: &[(DIG, DEPLOY)], order: &[(FIRST, DEPLOY), (FIRST, DIG)], ..Sketch::default() };
+    let found = said_of(text, sketch);
+    assert!(matches!(found.as_slice(), [it] if it.rule == Rule::Temporal), "{found:#?}");
+    assert!(found[0].message.contains("begins when Set(ARM=OUT)@Deploy#1 is ready"), "{found:#?}");
+}
+
+/// Not even where it has no length.
+#[test]
+fn nothing_rests_on_its_own_effect() {
+    let text = "state ARM : {IN, OUT} = IN;
+        primitive Shake() [0,0] requires ARM=OUT sets ARM=OUT; primitive Deploy() [1,1] sets ARM=OUT;
+        scenario S [0,9] = { { delay[2,2]; Shake() }, Deploy() }";
+    let (shake, needs) = ("Set(ARM=OUT)@Shake#1", "Ask(ARM=OUT)@Shake#1");
+    let order = [(FIRST, shake), (FIRST, DEPLOY), (DEPLOY, shake), (FIRST, needs), (needs, shake)];
+    let good = Sketch { links: &[(needs, DEPLOY)], order: &order, ..Sketch::default() };
+    assert_eq!(said_of(text, good), []);
+    let found = said_of(text, Sketch { links: &[(needs, shake)], ..good });
+    only(&found, Rule::Support, &[needs, shake], "does not rest on its own effect");
+    // Without Deploy no schedule is right either.
+    let network = network(&text.replace("Deploy() }", "Wait()[1,1] }"));
+    let plan = plan(&network, Sketch::default());
+    let verdict = check_schedule(&network, &plan, &earliest_schedule(&plan));
+    only(&verdict.violations, Rule::State, &[needs, FIRST], "stands against it");
+}
+
+/// The gap is for variables that do not last: what is required may begin the moment it is so.
+#[test]
+fn touching_is_allowed_whatever_the_gap() {
+    let text = "option threat_gap = 5;
+        state ARM : {IN, OUT} = IN;
+        primitive Deploy() [5,5] sets ARM=OUT;
+        primitive Stow() [5,5] sets ARM=IN;
+        scenario S [10,10] = { { delay; Deploy() }, { delay; Stow() } }";
+    let order = [(FIRST, DEPLOY), (FIRST, STOW), (DEPLOY, STOW)];
+    let good = Sketch { order: &order, added: &[(DEPLOY, STOW)], ..Sketch::default() };
+    assert_eq!(said_of(text, good), []);
+}
+
+/// An assertion keeps its value to its end, and beyond; two that say the same may overlap.
+#[test]
+fn assertions_keep_their_value_and_leave_it_behind() {
+    let text = "state GATE : {OPEN, SHUT} = SHUT;
+        primitive Pass() [2,2] requires GATE=OPEN;
+        scenario S [0,30] = { { delay[5,5]; GATE=OPEN [4,4] }, { delay[7,7]; GATE=OPEN [4,4] }, { delay[20,20]; Pass() } }";
+    let (one, two, pass, shut) = (
+        "Tell(GATE=OPEN)@Tell(GATE=OPEN)#1",
+        "Tell(GATE=OPEN)@Tell(GATE=OPEN)#2",
+        "Ask(GATE=OPEN)@Pass#1",
+        "Init(GATE=SHUT)",
+    );
+    let order = [(shut, one), (shut, two), (shut, pass)];
+    for link in [one, two] {
+        assert_eq!(said_of(text, Sketch { links: &[(pass, link)], order: &order, ..Sketch::default() }), []);
+    }
+    let with: Vec<(&str, &str)> = order.iter().copied().chain([(one, two)]).collect();
+    let found = said_of(text, Sketch { links: &[(pass, one)], order: &with, ..Sketch::default() });
+    only(&found, Rule::State, &[one, two], "do not conflict");
+}
+
+/// Several values at one instant have an order, and it decides what holds afterwards.
+#[test]
+fn ties_are_decided_by_an_order_without_circles() {
+    let text = "state X : {A, B, C} = A;
+        primitive Use() [3,3] requires X=B;
+        scenario S [0,9] = { X=A, X=B, X=C, { delay[2,2]; Use() } }";
+    let (first, a, b, c, needs) = (
+        "Init(X=A)",
+        "Tell(X=A)@Tell(X=A)#1",
+        "Tell(X=B)@Tell(X=B)#1",
+        "Tell(X=C)@Tell(X=C)#1",
+        "Ask(X=B)@Use#1",
+    );
+    let sketch = |order: &[(&str, &str)]| {
+        let fixed = [(first, b), (first, c), (first, needs)];
+        let order: Vec<(&str, &str)> = fixed.iter().chain(order).copied().collect();
+        said_of(text, Sketch { links: &[(needs, b)], order: &order, ..Sketch::default() })
+    };
+    // B is last.
+    for others in [(a, c), (c, a)] {
+        assert_eq!(sketch(&[others, (a, b), (c, b), (a, needs), (c, needs)]), []);
+    }
+    // A circle.
+    let found = sketch(&[(a, c), (c, b), (b, a), (needs, a), (c, needs)]);
+    let is_circle = |it: &Violation| it.rule == Rule::State && it.message.contains("goes round in a circle");
+    assert!(found.iter().any(is_circle), "{found:#?}");
+    // C is last, and Use requires B.
+    let found = sketch(&[(a, c), (b, c), (a, b), (a, needs), (needs, c)]);
+    only(&found, Rule::State, &[needs, c], "Tell(X=C)#1 keeps X=C while Use#1 requires X=B");
+    // The sides of Use follow from those of B.
+    let found = sketch(&[(a, c), (c, b), (a, b), (needs, a), (c, needs)]);
+    only(&found, Rule::State, &[needs, a], "is not on the side of");
+}
+
+#[test]
+fn labels_of_other_plans_are_refused() {
+    let network = network(case!("s04_threat_both_ways").0);
+    let good = plan(&network, STOW_FIRST);
+    for one in [DIG, DEPLOY, STOW, FIRST] {
+        for other in [DIG, DEPLOY, STOW, FIRST] {
+            let mut linked = good.clone();
+            linked.causal_links =
+                vec![CausalLink { ask: label(&network, one), tell: label(&network, other) }];
+            linked.windows = windows(&network, &linked);
+            let is_right = (one, other) == (DIG, DEPLOY);
+            assert_eq!(check_plan(&network, &linked).valid, is_right, "{one}, {other}");
+            let mut added = good.clone();
+            added
+                .orderings_added
+                .push(Ordering { first: label(&network, one), then: label(&network, other) });
+            added.windows = windows(&network, &added);
+            // What is stated already may be added, too.
+            let is_right = STOW_FIRST.order.contains(&(one, other));
+            assert_eq!(check_plan(&network, &added).valid, is_right, "{one}, {other} added");
+        }
+    }
+}
+
+/// Where vehicles are is a state variable (SPEC 10.3).
+#[test]
+fn one_vehicle_never_moves_twice_at_once() {
+    let text = "vehicle R : ATRV at HOME; location HOME (0, 0); location ROCK (5, 0);
+        primitive Drive(to) [4,4] moves R; primitive Dig() [3,3] requires R.at=ROCK;
+        scenario S [0,30] = { { delay; Drive(ROCK) }, { delay; Dig() }, { delay; Drive(HOME) } }";
+    let network = network(text);
+    let names: Vec<String> =
+        (0..network.labels.len()).map(|it| network.label_name(tpn::LabelId::from_index(it))).collect();
+    let (first, there, back, dig) =
+        ("Init(R.at=HOME)", "Set(R.at=ROCK)@Drive#1", "Set(R.at=HOME)@Drive#2", "Ask(R.at=ROCK)@Dig#1");
+    for name in [first, there, back, dig] {
+        assert!(names.iter().any(|it| it == name), "{name}: {names:?}");
+    }
+    let order = [(first, there), (first, back), (there, back), (first, dig), (dig, back)];
+    let good = Sketch { links: &[(dig, there)], order: &order, added: &[(dig, back)], ..Sketch::default() };
+    assert_eq!(violations(&network, &plan(&network, good)), []);
+    let found = violations(&network, &plan(&network, Sketch { added: &[], ..good }));
+    assert!(
+        found.iter().any(|it| it.message.contains("Drive#1 changes R.at while Drive#2 changes R.at")),
+        "{found:#?}"
+    );
+}
+
+/// Where a movement starts decides how long it takes at least, as far as the network knows that.
+#[test]
+fn movements_take_their_time_from_where_they_start() {
+    let text = "vehicle R : ATRV at HOME; location HOME (0, 0); location ROCK (5, 0); location HILL (9, 0);
+        primitive Drive(to) [4,10] moves R;
+        scenario S [0,30] = { { Drive(ROCK) }, { delay; Drive(HILL) } }";
+    let mut network = network(text);
+    let (first, rock, hill) = ("Init(R.at=HOME)", "Set(R.at=ROCK)@Drive#1", "Set(R.at=HILL)@Drive#2");
+    let value = |network: &Network, name: &str| {
+        let values = &network.variables[0].values;
+        let index = values.iter().position(|value| value == name).expect("a location");
+        tpn::ValueId::from_index(index)
+    };
+    let departure = |network: &Network, arrival: &str, from: &str, least: Option<i64>| Departure {
+        arrival: label(network, arrival),
+        from: value(network, from),
+        least: least.map(time),
+    };
+    let known = vec![
+        departure(&network, rock, "HOME", Some(6)),
+        departure(&network, rock, "HILL", Some(9)),
+        departure(&network, hill, "ROCK", Some(8)),
+        departure(&network, hill, "HOME", None),
+    ];
+    let order = [(first, rock), (first, hill), (rock, hill)];
+    let sketch = Sketch { order: &order, added: &[(rock, hill)], ..Sketch::default() };
+    let early = plan(&network, sketch);
+    assert_eq!(violations(&network, &early), []);
+    // Six to ROCK and eight from there to HILL, whatever it would take from elsewhere.
+    let mut slower = network.clone();
+    for (name, least) in [(rock, 6), (hill, 8)] {
+        let arc = slower.labels[label(&slower, name).index()].arc;
+        slower.arcs[arc.index()].lower = time(least);
+    }
+    let late = plan(&slower, sketch);
+    network.departures = known;
+    assert_eq!(violations(&network, &late), []);
+    let found = violations(&network, &early);
+    assert!(!found.is_empty() && found.iter().all(|it| it.rule == Rule::Window), "{found:#?}");
+    let said_at = |plan: &Plan| check_schedule(&network, plan, &earliest_schedule(plan)).violations;
+    assert_eq!(said_at(&late), []);
+    let found = said_at(&early);
+    assert_eq!(found.len(), 2, "{found:#?}");
+    only(&found[..1], Rule::State, &[rock, first], "has not the time it takes");
+    only(&found[1..], Rule::State, &[hill, rock], "has not the time it takes");
+    // The other way round HILL is driven to from HOME, which cannot be.
+    let order = [(first, rock), (first, hill), (hill, rock)];
+    let mut other = plan(&network, Sketch { order: &order, added: &[], ..Sketch::default() });
+    other.windows = early.windows.clone();
+    let found = violations(&network, &other);
+    let is_said =
+        |it: &Violation| it.rule == Rule::State && it.message.contains("cannot be driven from where Init");
+    assert!(found.iter().any(is_said), "{found:#?}");
+}
