@@ -1,8 +1,10 @@
-//! What the tests of the crates together share: the conformance cases, missions from texts, an exhaustive reference
-//! planner, random missions.
+//! What the tests of the crates together share: the conformance cases, missions from texts, exhaustive reference planners,
+//! random missions.
 
 pub mod cases;
 pub mod distances;
+pub mod lasting;
+pub mod lasting_missions;
 pub mod mission;
 pub mod random;
 pub mod reference;

@@ -10,7 +10,7 @@ use crate::overflow::TimeOverflow;
 use crate::search::{Choices, Engine, Gaps, Halt, Setup};
 use crate::solver::{Answer, Part, Problem, TooLarge};
 use crate::trace::Event;
-use crate::{explain, relax, solution};
+use crate::{demanding, explain, relax, solution};
 
 /// Plans, or explains why there is no plan; also, whether gaps alone made something fail on the way.
 pub(crate) fn answer(
@@ -19,7 +19,13 @@ pub(crate) fn answer(
     options: &Options,
     termination: &mut dyn Termination,
 ) -> Result<(Outcome, bool), TimeOverflow> {
-    let (mut outcome, mut has_doubts) = searched(model, options, termination)?;
+    let (mut outcome, mut has_doubts) =
+        if demanding::has_demands(model) || (options.best > 1 && model.has_contexts) {
+            // Nothing that was chosen before is tried again with other bounds.
+            (demanding::search(network, model, options, termination)?, true)
+        } else {
+            searched(model, options, termination)?
+        };
     if outcome.trace.as_ref().is_some_and(|trace| trace.is_truncated) && outcome.status == Status::Limit {
         // What is recorded is searched step by step as the paper does, and stops when the record is full: the answer is
         // up to a search that may take the shortcuts.
@@ -78,6 +84,7 @@ pub(crate) fn with_choices(
     Ok(Some(Outcome {
         status: Status::Plan,
         plans: vec![plan],
+        bound: None,
         failure: None,
         stats,
         trace: None,
@@ -166,7 +173,7 @@ fn first_by_solver(
 }
 
 fn ended(status: Status, plans: Vec<Plan>, stats: Stats) -> Outcome {
-    Outcome { status, plans, failure: None, stats, trace: None, overflow: None }
+    Outcome { status, plans, bound: None, failure: None, stats, trace: None, overflow: None }
 }
 
 /// One search by the solver, whose work is added to `stats`.
@@ -284,6 +291,7 @@ fn run(
     let outcome = Outcome {
         status,
         plans,
+        bound: None,
         failure: None,
         stats: engine.stats,
         trace: engine.recorder.take().map(|recorder| recorder.trace),

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use rmpl::program::LabelMode;
-use tpn::{ArcId, LabelId, Literal, Network, VariableId};
+use tpn::{ArcId, Extent, LabelId, Literal, Network, ValueId, ValueSet, VariableId};
 use typed_index_collections::TiVec;
 
 use crate::ids::LiteralId;
@@ -28,7 +28,15 @@ pub(crate) struct ModelLabel {
     literal: LiteralId,
     /// The position among the labels of its variable.
     position: u32,
+    /// Whether it is a requirement of a variable that is known only where it is asserted.
     pub(crate) is_ask: bool,
+    /// Whether its variable keeps its value (SPEC 10); all else here leaves such labels out.
+    pub(crate) is_lasting: bool,
+    pub(crate) is_changing: bool,
+    /// Of a change: the value that it gives.
+    value: Option<ValueId>,
+    /// Whether it is only about the instant at which its arc begins.
+    pub(crate) is_at_start: bool,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -69,10 +77,24 @@ impl Conditions {
                 .entry(&label.literal)
                 .or_insert_with(|| literals[variable].push_and_get_key(&label.literal));
             let position = variables[variable].labels.len() as u32;
-            let is_ask = label.mode == LabelMode::Ask;
-            let id =
-                labels.push_and_get_key(ModelLabel { arc: label.arc, variable, literal, position, is_ask });
-            variables[variable].labels.push(id);
+            let is_lasting = network.variables[usize::from(variable)].is_lasting;
+            let id = labels.push_and_get_key(ModelLabel {
+                arc: label.arc,
+                variable,
+                literal,
+                position,
+                is_ask: label.mode == LabelMode::Ask && !is_lasting,
+                is_lasting,
+                is_changing: label.is_changing(),
+                value: match &label.literal.values {
+                    ValueSet::In(values) if is_lasting => values.first().copied(),
+                    _ => None,
+                },
+                is_at_start: matches!(label.extent, Extent::Start | Extent::Initial),
+            });
+            if !is_lasting {
+                variables[variable].labels.push(id);
+            }
         }
         for (variable, literals) in variables.iter_mut().zip(&literals) {
             variable.num_literals = literals.len();
@@ -103,7 +125,33 @@ impl Conditions {
     pub(crate) fn conflict(&self, left: LabelId, right: LabelId) -> bool {
         let (left, right) = (&self.labels[left], &self.labels[right]);
         let variable = &self.variables[left.variable];
-        left.variable == right.variable && variable.conflicts[variable.cell(left.literal, right.literal)]
+        left.variable == right.variable
+            && !left.is_lasting
+            && variable.conflicts[variable.cell(left.literal, right.literal)]
+    }
+
+    /// Whether one change of a variable that keeps its value must be over before another begins (SPEC 10.2).
+    pub(crate) fn exclude(&self, left: LabelId, right: LabelId) -> bool {
+        let (left, right) = (&self.labels[left], &self.labels[right]);
+        left.variable == right.variable
+            && (left.is_changing || right.is_changing || left.literal != right.literal)
+    }
+
+    /// Whether a change gives its variable a value that requirement `ask` accepts.
+    pub(crate) fn gives(&self, change: LabelId, ask: LabelId) -> bool {
+        let (change, ask) = (&self.labels[change], &self.labels[ask]);
+        let variable = &self.variables[ask.variable];
+        change.variable == ask.variable && variable.supports[variable.cell(change.literal, ask.literal)]
+    }
+
+    /// Whether a change gives its variable this value.
+    pub(crate) fn gives_value(&self, change: LabelId, value: ValueId) -> bool {
+        self.labels[change].value == Some(value)
+    }
+
+    /// Whether requirement `ask` cannot go on during or after a change.
+    pub(crate) fn breaks(&self, change: LabelId, ask: LabelId) -> bool {
+        self.labels[change].is_changing || !self.gives(change, ask)
     }
 
     /// Whether `tell` is an assertion that makes requirement `ask` hold.
@@ -145,9 +193,7 @@ impl Conditions {
         let own = &self.labels[label];
         let variable = &self.variables[own.variable];
         let row = variable.conflicts_of(own.literal);
-        variable.labels[own.position as usize + 1..]
-            .iter()
-            .copied()
-            .filter(move |&other| row[usize::from(self.labels[other].literal)])
+        let later = variable.labels.get(own.position as usize + 1..).unwrap_or_default();
+        later.iter().copied().filter(move |&other| row[usize::from(self.labels[other].literal)])
     }
 }

@@ -5,7 +5,7 @@
 //! list, the mission as a whole gets one reason.
 
 use rmpl::Span;
-use tpn::{Choice, DecisionId, LabelId, Network};
+use tpn::{Choice, DecisionId, LabelId, Network, OccurrenceKind};
 use typed_index_collections::TiVec;
 
 use crate::failure::{Failure, Member, Reason};
@@ -16,7 +16,7 @@ use crate::record::RecordedFailure;
 use crate::search::{Choices, Engine, Gaps, Halt, Setup, UNBOUNDED_BELOW};
 use crate::solver::{self, Answer};
 use crate::trace::{Constraint, CycleMember};
-use crate::{answer, whole, wording};
+use crate::{answer, demanding, whole, wording};
 
 /// Explaining stops adding reasons after this many.
 const MAX_REASONS: u64 = 64;
@@ -93,6 +93,10 @@ pub(crate) fn explain(
     termination: &mut dyn Termination,
 ) -> Result<Failure, TimeOverflow> {
     let mut effort = Effort::for_size(model.num_nodes, termination);
+    if demanding::has_demands(model) {
+        let reasons: Vec<Reason> = whole::reason(network, model, &mut effort).into_iter().collect();
+        return Ok(Failure { is_complete: !reasons.is_empty(), reasons, relaxations: Vec::new() });
+    }
     let setup = Setup { jumps: true, records_failures: true, ..Setup::default() };
     let mut engine = Engine::new(model, setup);
     let mut enough = |stats: &Stats| effort.is_spent(stats) || stats.backtracks > MAX_REASONS;
@@ -151,7 +155,22 @@ fn reason(
 /// The places of a conflict: its conditions, then the bounds that take time.
 pub(crate) fn spans(network: &Network, members: &[Member], cycle: &[CycleMember]) -> Vec<Span> {
     let conditions = members.iter().filter_map(|member| match member {
-        Member::Condition(label) => network.labels[label.index()].span,
+        Member::Condition(label) => {
+            let label = &network.labels[label.index()];
+            let owner = label.owner.map(|owner| &network.occurrences[owner.index()]);
+            // What a clause says of an activity is told where that is called.
+            let call = owner.filter(|owner| owner.kind == OccurrenceKind::Primitive);
+            let is_clause = call.is_some_and(|call| {
+                call.span
+                    .zip(label.span)
+                    .is_none_or(|(call, own)| own.start < call.start || own.start > call.end)
+            });
+            if is_clause { call.and_then(|call| call.span).or(label.span) } else { label.span }
+        }
+        Member::Use(used) => {
+            let used = &network.uses[used.index()];
+            used.owner.and_then(|owner| network.occurrences[owner.index()].span).or(used.span)
+        }
         Member::Bound(_) => None,
     });
     let bounds = cycle.iter().filter_map(|member| match member.constraint {
@@ -173,13 +192,15 @@ pub(crate) fn spans(network: &Network, members: &[Member], cycle: &[CycleMember]
 pub(crate) struct Part {
     model: Model,
     active_labels: TiVec<LabelId, bool>,
+    active_uses: Vec<bool>,
     assumed: TiVec<DecisionId, Option<u32>>,
 }
 
 impl Part {
     pub(crate) fn new(whole: &Model, choices: &[Choice]) -> Self {
         let mut model = whole.clone();
-        model.structure = None;
+        // Without their bounds, arcs may be over before they begin.
+        (model.structure, model.nesting) = (None, None);
         for arc in &mut model.arcs {
             (arc.lower, arc.upper) = (UNBOUNDED_BELOW, INFINITE);
         }
@@ -187,12 +208,18 @@ impl Part {
         for choice in choices {
             assumed[choice.decision] = Some(choice.alternative);
         }
-        Self { active_labels: vec![false; model.conditions.labels.len()].into(), model, assumed }
+        Self {
+            active_labels: vec![false; model.conditions.labels.len()].into(),
+            active_uses: vec![false; model.demands.num_uses()],
+            model,
+            assumed,
+        }
     }
 
     pub(crate) fn set(&mut self, whole: &Model, member: Member, is_in: bool) {
         match member {
             Member::Condition(label) => self.active_labels[label] = is_in,
+            Member::Use(used) => self.active_uses[used.index()] = is_in,
             Member::Bound(Constraint::Lower(arc)) => {
                 self.model.arcs[arc].lower = if is_in { whole.arcs[arc].lower } else { UNBOUNDED_BELOW };
             }
@@ -231,8 +258,11 @@ impl Part {
         if !self.model.has_contexts || !effort.spend() {
             return None;
         }
-        let part =
-            solver::Part { active_labels: Some(&self.active_labels), alternatives: Some(&self.assumed) };
+        let part = solver::Part {
+            active_labels: Some(&self.active_labels),
+            alternatives: Some(&self.assumed),
+            active_uses: Some(&self.active_uses),
+        };
         match effort.solve(&self.model, Gaps::Trusted, part)? {
             Answer::Solved => return Some(false),
             Answer::Unsolvable if self.model.gap == 0 => return Some(true),

@@ -3,7 +3,7 @@
 use exact::{Bound, Time};
 use rmpl::{Fix, Span};
 use serde::{Deserialize, Serialize};
-use tpn::{ArcId, Choice, LabelId};
+use tpn::{ArcId, Choice, LabelId, UseId};
 
 use crate::trace::{Constraint, CycleMember};
 
@@ -30,6 +30,8 @@ pub enum FailureKind {
     OpenCondition,
     /// Conflicting conditions cannot be kept apart.
     Threat,
+    /// Activities need more of a resource than there is.
+    Resource,
 }
 
 impl FailureKind {
@@ -39,6 +41,7 @@ impl FailureKind {
             Self::Temporal => "temporal",
             Self::OpenCondition => "open-condition",
             Self::Threat => "threat",
+            Self::Resource => "resource",
         }
     }
 }
@@ -70,6 +73,8 @@ pub enum Member {
     Bound(Constraint),
     /// A condition that is required, or that conflicts with another.
     Condition(LabelId),
+    /// A use of a resource.
+    Use(UseId),
 }
 
 /// A change of one bound that makes the mission plannable.

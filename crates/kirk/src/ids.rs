@@ -42,6 +42,8 @@ ids! {
     DifferenceId;
     /// A relaxation of an open choice in the solver.
     CommonBoundId;
+    /// A weighted sum of the solver.
+    LinearId;
     /// A set of intervals of the solver that exclude each other.
     ExclusionId;
     /// A tightening of a bound on the solver's trail.

@@ -5,7 +5,10 @@
 //! that was found in [`Outcome::overflow`]. Nothing here checks its own answers: that is `verify`'s work.
 
 mod answer;
+mod antichain;
 mod conditions;
+mod demanding;
+mod demands;
 mod enclosed;
 mod explain;
 mod failure;
@@ -14,8 +17,10 @@ mod leaf;
 mod levels;
 mod lookahead;
 mod model;
+mod nesting;
 mod options;
 mod overflow;
+mod partial_order;
 mod planner;
 mod record;
 mod relax;
@@ -32,6 +37,7 @@ mod wording;
 
 use tpn::Network;
 
+pub use demanding::has_open_order;
 pub use explain::is_conflict;
 pub use failure::{Failure, FailureKind, Member, Reason, Relaxation};
 pub use options::{ExpansionLimit, Options, Outcome, Search, Stats, Status, Termination, Unlimited};

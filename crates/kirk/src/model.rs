@@ -6,8 +6,10 @@ use tpn::{ArcId, BlockKind, Choice, DecisionId, LabelId, Network, NodeId};
 use typed_index_collections::{TiSlice, TiVec};
 
 use crate::conditions::Conditions;
+use crate::demands::Demands;
+use crate::nesting::Nesting;
 use crate::overflow::TimeOverflow;
-use crate::structure::Structure;
+use crate::structure::{Relation, Structure};
 use crate::wording;
 
 /// No upper bound.
@@ -36,6 +38,9 @@ pub(crate) struct Model {
     /// Nodes in nesting order: each before those that its arcs lead to.
     pub(crate) order: Vec<PointId>,
     pub(crate) conditions: Conditions,
+    pub(crate) demands: Demands,
+    /// Present if the network has a program's structure.
+    pub(crate) nesting: Option<Nesting>,
     /// How far the end of each labelled interval must be from the start of another to count as before it (SPEC 5.3):
     /// the threat gap for instants, otherwise nothing.
     pub(crate) gap_after: TiVec<LabelId, i64>,
@@ -109,6 +114,8 @@ impl Model {
             decision_of,
             order: Vec::new(),
             conditions: Conditions::new(network),
+            demands: Demands::new(network, scale)?,
+            nesting: Nesting::new(network),
             gap_after: TiVec::new(),
             representatives: (0..network.nodes.len()).map(NodeId::from_index).collect(),
             has_contexts: false,
@@ -117,7 +124,7 @@ impl Model {
         model.order = model.nesting_order();
         model.gap_after = model.conditions.labels.keys().map(|label| model.least_gap_after(label)).collect();
         model.has_contexts = model.find_contexts(network);
-        if model.has_contexts {
+        if model.has_contexts && model.arcs.iter().all(|arc| arc.to != model.start) {
             model.structure = Structure::new(network, &model)?;
         }
         Ok(model)
@@ -165,8 +172,42 @@ impl Model {
 
     /// The start and end node of a labelled interval.
     pub(crate) fn interval(&self, label: LabelId) -> (PointId, PointId) {
-        let arc = &self.arcs[self.conditions.labels[label].arc];
-        (point(arc.from), point(arc.to))
+        let label = &self.conditions.labels[label];
+        let arc = &self.arcs[label.arc];
+        (point(arc.from), point(if label.is_at_start { arc.from } else { arc.to }))
+    }
+
+    /// Whether two contexts can be in one plan.
+    pub(crate) fn are_compatible(&self, mut left: Context, mut right: Context) -> bool {
+        while let (Some(one), Some(other)) = (left, right) {
+            if one.decision == other.decision {
+                return one.alternative == other.alternative;
+            }
+            // The inner one of two nested decisions is the later one.
+            if one.decision > other.decision {
+                left = self.decisions[one.decision].context;
+            } else {
+                right = self.decisions[other.decision].context;
+            }
+        }
+        true
+    }
+
+    /// Whether two labels can be in one plan.
+    pub(crate) fn can_be_together(&self, left: LabelId, right: LabelId) -> bool {
+        let context = |label: LabelId| self.arcs[self.conditions.labels[label].arc].context;
+        self.are_compatible(context(left), context(right))
+    }
+
+    /// How the program's structure orders the arcs of two labels, if one of them takes time, so that they cannot be in
+    /// the other order as well.
+    pub(crate) fn nested_order(&self, left: LabelId, right: LabelId) -> Relation {
+        let arc = |label: LabelId| self.conditions.labels[label].arc;
+        let takes_time = self.arcs[arc(left)].lower > 0 || self.arcs[arc(right)].lower > 0;
+        match &self.nesting {
+            Some(nesting) if takes_time => nesting.relation(arc(left), arc(right)),
+            _ => Relation::Open,
+        }
     }
 
     /// What a node is in networks that have one point for all nodes with one representative.
@@ -175,8 +216,9 @@ impl Model {
     }
 
     fn least_gap_after(&self, label: LabelId) -> i64 {
-        let arc = &self.arcs[self.conditions.labels[label].arc];
-        if arc.lower == 0 && arc.upper == 0 { self.gap } else { 0 }
+        let label = &self.conditions.labels[label];
+        let arc = &self.arcs[label.arc];
+        if label.is_at_start || (arc.lower == 0 && arc.upper == 0) { self.gap } else { 0 }
     }
 
     /// Reverse postorder of a depth-first search along the arcs.
@@ -207,7 +249,9 @@ impl Model {
 
     /// Finds the context of every arc and decision; `false` if the network is not nested as its blocks say.
     fn find_contexts(&mut self, network: &Network) -> bool {
-        if network.root.is_none() || self.arcs.iter().any(|arc| arc.lower < 0) {
+        // Arcs back to the start hold what has happened already.
+        let is_fact = |arc: &ModelArc| arc.to == network.start;
+        if network.root.is_none() || self.arcs.iter().any(|arc| arc.lower < 0 && !is_fact(arc)) {
             return false;
         }
         for block in &network.blocks {
@@ -254,6 +298,9 @@ impl Model {
                     let id = self.out_arcs[position];
                     let arc = &mut self.arcs[id];
                     arc.context = context;
+                    if arc.to == self.start {
+                        continue;
+                    }
                     let leaves_alternative = context.is_some_and(|outer| arc.to == merges[outer.decision]);
                     if leaves_alternative {
                         continue;
@@ -305,7 +352,12 @@ fn join(representatives: &mut TiSlice<NodeId, NodeId>, earlier: NodeId, later: N
 
 fn common_scale(network: &Network, gap: Time) -> Result<Scale, TimeOverflow> {
     let with_gap = Scale::UNITS.refined(gap).map_err(|Overflow| TimeOverflow::at(network.start))?;
-    network.arcs.iter().try_fold(with_gap, |scale, arc| {
+    let departures = network.departures.iter().filter_map(|departure| departure.least);
+    let with_departures = departures
+        .into_iter()
+        .try_fold(with_gap, Scale::refined)
+        .map_err(|Overflow| TimeOverflow::at(network.start))?;
+    network.arcs.iter().try_fold(with_departures, |scale, arc| {
         let scale = scale.refined(arc.lower);
         let upper = arc.upper.finite().unwrap_or_default();
         scale.and_then(|scale| scale.refined(upper)).map_err(|Overflow| TimeOverflow::at(arc.to))

@@ -1,6 +1,6 @@
 //! What planning is asked for, when it must stop, and what it answers.
 
-use exact::Time;
+use exact::{Rational, Time};
 use serde::{Deserialize, Serialize};
 use tpn::{Network, NodeId, Plan};
 
@@ -32,6 +32,8 @@ pub struct Options {
     pub all: bool,
     /// How many plans to stop at, if `all`.
     pub max_plans: usize,
+    /// So many plans that differ in their choices, the best first; without an objective, those found first (SPEC 12).
+    pub best: usize,
     /// Whether to record the search, and how many events at most.
     pub trace_events: Option<usize>,
     /// Whether to explain why there is no plan, if there is none.
@@ -47,6 +49,7 @@ impl Default for Options {
             threat_gap: None,
             all: false,
             max_plans: 10_000,
+            best: 1,
             trace_events: None,
             explain: true,
             relax: true,
@@ -135,6 +138,8 @@ pub struct Outcome {
     /// The plans: none, one (of the chronological search the canonical one, SPEC 5.4), or all distinct ones in the order
     /// they were found, the canonical one first.
     pub plans: Vec<Plan>,
+    /// Where the plan is not known to be optimal: what no plan is better than, in the first goal that is not proven.
+    pub bound: Option<Rational>,
     /// Why there is none.
     pub failure: Option<Failure>,
     /// How much work it was.
@@ -151,6 +156,7 @@ impl Outcome {
         Self {
             status: Status::Error,
             plans: Vec::new(),
+            bound: None,
             failure: None,
             stats: Stats::default(),
             trace: None,

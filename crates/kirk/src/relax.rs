@@ -14,7 +14,7 @@ use crate::overflow::TimeOverflow;
 use crate::search::{Engine, Gaps, Halt, Setup};
 use crate::solver::{Answer, Part};
 use crate::trace::Constraint;
-use crate::wording;
+use crate::{demanding, wording};
 
 /// At most so many are offered.
 const MAX_RELAXATIONS: usize = 8;
@@ -138,7 +138,9 @@ impl Trial<'_> {
         let setup = Setup { jumps: true, by_structure: true, gaps: Gaps::Trusted, ..Setup::default() };
         let Self { model, effort, .. } = self;
         let mut enough = |stats: &Stats| effort.is_spent(stats) || stats.backtracks > MAX_BACKTRACKS;
-        let mut halt = Engine::new(model, setup).run(&mut enough)?;
+        let is_demanding = demanding::has_demands(model);
+        let mut halt =
+            if is_demanding { Halt::Stopped } else { Engine::new(model, setup).run(&mut enough)? };
         if halt == Halt::Stopped
             && effort.searches > 0
             && model.has_contexts

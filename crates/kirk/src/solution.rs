@@ -3,6 +3,7 @@
 use exact::Bound;
 use tpn::{CausalLink, Choice, NodeId, Ordering, Plan, Window};
 
+use crate::demanding;
 use crate::levels::Kind;
 use crate::model::INFINITE;
 use crate::overflow::TimeOverflow;
@@ -20,7 +21,7 @@ pub(crate) fn plan_at(engine: &mut Engine<'_>) -> Result<Plan, TimeOverflow> {
             latest: if latest == INFINITE { Bound::Infinite } else { Bound::Finite(model.time(latest)) },
         })
     });
-    let windows = windows.collect();
+    let windows: Vec<Option<Window>> = windows.collect();
     let choices = engine.chosen.iter_enumerated();
     let choices = choices
         .filter_map(|(decision, alternative)| Some(Choice { decision, alternative: (*alternative)? }))
@@ -40,13 +41,24 @@ pub(crate) fn plan_at(engine: &mut Engine<'_>) -> Result<Plan, TimeOverflow> {
             }
         }
     }
+    let selected_arcs = engine.is_selected_arc.raw.clone();
+    let mut conflict_order: Vec<Ordering> =
+        conflict_order.into_iter().map(|(first, then)| Ordering { first, then }).collect();
+    let nested = demanding::nested_changes(model, &selected_arcs);
+    if !nested.is_empty() {
+        conflict_order.extend(nested);
+        conflict_order.sort_by_key(|order| (order.first.min(order.then), order.first.max(order.then)));
+    }
     Ok(Plan {
         choices,
         selected_nodes: engine.is_selected_node.raw.clone(),
-        selected_arcs: engine.is_selected_arc.raw.clone(),
         causal_links,
-        conflict_order: conflict_order.into_iter().map(|(first, then)| Ordering { first, then }).collect(),
+        conflict_order,
         orderings_added,
+        uses_ordered: Vec::new(),
+        levels: Vec::new(),
+        quality: model.demands.quality(&selected_arcs, &windows),
+        selected_arcs,
         windows,
     })
 }

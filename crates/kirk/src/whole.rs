@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use rmpl::program::LabelMode;
-use tpn::{LabelId, Network, VariableId};
+use tpn::{LabelId, Network, ResourceId, UseId, VariableId};
 
 use crate::explain::{Effort, Part, spans};
 use crate::failure::{FailureKind, Member, Reason};
@@ -26,7 +26,7 @@ pub(crate) fn reason(network: &Network, model: &Model, effort: &mut Effort<'_>) 
     if search.part.is_refuted(search.effort) != Some(true) {
         return None;
     }
-    for group in by_variable(network) {
+    for group in by_subject(network) {
         search.leave_out(&group);
     }
     let mut size = search.members.len().div_ceil(2);
@@ -97,23 +97,31 @@ fn members(model: &Model) -> Vec<Member> {
         }
     }
     members.extend(model.conditions.labels.keys().map(Member::Condition));
+    members.extend((0..model.demands.num_uses()).map(|used| Member::Use(UseId::from_index(used))));
     members
 }
 
-/// The conditions of each variable: often one variable is all that it takes.
-fn by_variable(network: &Network) -> Vec<Vec<Member>> {
+/// The conditions of each variable and the uses of each resource: often one of these is all that it takes.
+fn by_subject(network: &Network) -> Vec<Vec<Member>> {
     let mut groups: BTreeMap<VariableId, Vec<Member>> = BTreeMap::new();
     for (id, label) in network.labels.iter().enumerate() {
         groups.entry(label.literal.variable).or_default().push(Member::Condition(LabelId(id as u32)));
     }
-    groups.into_values().rev().collect()
+    let mut uses: BTreeMap<ResourceId, Vec<Member>> = BTreeMap::new();
+    for (id, used) in network.uses.iter().enumerate() {
+        uses.entry(used.resource).or_default().push(Member::Use(UseId::from_index(id)));
+    }
+    uses.into_values().rev().chain(groups.into_values().rev()).collect()
 }
 
 fn kind(network: &Network, members: &[Member]) -> FailureKind {
     let conditions = members.iter().filter_map(|member| match member {
         Member::Condition(label) => Some(network.labels[label.index()].mode),
-        Member::Bound(_) => None,
+        Member::Use(_) | Member::Bound(_) => None,
     });
+    if members.iter().any(|member| matches!(member, Member::Use(_))) {
+        return FailureKind::Resource;
+    }
     let modes: Vec<LabelMode> = conditions.collect();
     match modes.as_slice() {
         [] => FailureKind::Temporal,

@@ -1,8 +1,8 @@
 //! Reasons in the author's terms.
 
-use exact::Time;
-use rmpl::program::LabelMode;
-use tpn::{Arc, ArcId, ArcKind, Choice, LabelId, Network, OccurrenceKind};
+use exact::{Rational, Time};
+use rmpl::program::{Change, LabelMode};
+use tpn::{Arc, ArcId, ArcKind, Choice, LabelId, Network, OccurrenceKind, Supply, Use};
 
 use crate::failure::{FailureKind, Member};
 use crate::trace::{Constraint, CycleMember};
@@ -34,6 +34,7 @@ impl Told<'_> {
             }
             FailureKind::OpenCondition => self.open_condition(),
             FailureKind::Threat => self.threat(),
+            FailureKind::Resource => self.resource(),
         };
         let choices: Vec<String> = self
             .choices
@@ -46,9 +47,80 @@ impl Told<'_> {
     fn conditions(&self) -> Vec<LabelId> {
         let labels = self.conflict.iter().filter_map(|member| match member {
             Member::Condition(label) => Some(*label),
-            Member::Bound(_) => None,
+            Member::Use(_) | Member::Bound(_) => None,
         });
         labels.collect()
+    }
+
+    /// The activities that compete for a resource, what is missing, and where its level would go.
+    fn resource(&self) -> String {
+        let uses: Vec<&Use> = (self.conflict.iter())
+            .filter_map(|member| match member {
+                Member::Use(used) => Some(&self.network.uses[used.index()]),
+                _ => None,
+            })
+            .collect();
+        let Some(first) = uses.first() else { return "a resource is used too much".to_owned() };
+        let resource = &self.network.resources[first.resource.index()];
+        let names: Vec<String> = uses.iter().map(|used| use_owner(self.network, used)).collect();
+        let names_joined = joined(&names);
+        let name = &resource.name;
+        let sum = |change: Change| {
+            let amounts = uses.iter().filter(|used| used.change == change).map(|used| used.amount);
+            amounts.fold(Rational::default(), |sum, amount| sum.checked_add(amount).unwrap_or(sum))
+        };
+        let verb = if names.len() == 1 { "takes" } else { "together take" };
+        let what = match resource.supply {
+            Supply::Reusable { capacity } if capacity == Rational::ONE => {
+                format!("{names_joined} cannot have {name} one after the other")
+            }
+            Supply::Reusable { capacity } => format!(
+                "{names_joined} {verb} {} of {name}, which has {capacity}, and cannot wait for each other",
+                sum(Change::Uses),
+            ),
+            Supply::Reservoir { least, greatest, level } => {
+                let (taken, given) = (sum(Change::Consumes), sum(Change::Produces));
+                let after = level.checked_sub(taken).and_then(|level| level.checked_add(given));
+                let after = after.unwrap_or(level);
+                let (verb, amount, beyond, end) = if taken >= given {
+                    (
+                        verb,
+                        taken,
+                        least.checked_sub(after),
+                        format!("below {least}, and nothing gives enough"),
+                    )
+                } else {
+                    let verb = if names.len() == 1 { "gives" } else { "together give" };
+                    let end = format!("above {greatest}, and nothing takes enough");
+                    (verb, given, after.checked_sub(greatest), end)
+                };
+                format!(
+                    "{names_joined} {verb} {amount} of {name}: its level would go from {level} to {after}, which is {} {end} in time",
+                    beyond.unwrap_or_default()
+                )
+            }
+        };
+        match self.room() {
+            Some(bounds) => format!("{what}: {bounds}"),
+            None => what,
+        }
+    }
+
+    /// The activities that would move one vehicle at the same time, if that is what the conflict is about.
+    fn movements(&self) -> Option<String> {
+        let labels = self.conditions();
+        let variable = self.network.labels[labels.first()?.index()].literal.variable;
+        let name = self.network.variables[variable.index()].name.as_str();
+        let vehicle = name.strip_suffix(".at")?;
+        let is_movement = |label: &LabelId| {
+            let label = &self.network.labels[label.index()];
+            label.is_changing() && label.literal.variable == variable
+        };
+        if labels.len() < 2 || !labels.iter().all(is_movement) {
+            return None;
+        }
+        let names: Vec<String> = labels.iter().map(|&label| interval_name(self.network, label)).collect();
+        Some(format!("{} both move {vehicle}, which is in one place at a time", joined(&names)))
     }
 
     fn open_condition(&self) -> String {
@@ -77,6 +149,12 @@ impl Told<'_> {
     }
 
     fn threat(&self) -> String {
+        if let Some(movements) = self.movements() {
+            return match self.room() {
+                Some(bounds) => format!("{movements}: {bounds}"),
+                None => format!("{movements}, and they cannot wait for each other"),
+            };
+        }
         let mut names: Vec<String> = Vec::new();
         for label in self.conditions() {
             let name = format!(
@@ -243,6 +321,14 @@ pub(crate) fn arc_name(network: &Network, arc: &Arc) -> String {
 
 fn interval_name(network: &Network, label: LabelId) -> String {
     arc_name(network, &network.arcs[network.labels[label.index()].arc.index()])
+}
+
+/// Who uses a resource.
+fn use_owner(network: &Network, used: &Use) -> String {
+    match used.owner {
+        Some(owner) => network.occurrences[owner.index()].name.to_string(),
+        None => arc_name(network, &network.arcs[used.arc.index()]),
+    }
 }
 
 fn allowing_verb(network: &Network, arc: &Arc) -> &'static str {

@@ -76,6 +76,14 @@ impl Disjunctives {
         }
     }
 
+    /// Adds a set of intervals of which no two overlap.
+    pub(crate) fn add_tasks(&mut self, mut tasks: Vec<Interval>) {
+        tasks.retain(|task| task.duration > 0);
+        if tasks.len() > 2 && tasks.len() <= MAX_TASKS {
+            self.add_set(Exclusion { tasks, gap: 0 });
+        }
+    }
+
     fn add_set(&mut self, set: Exclusion) {
         let sides = |task: &Interval| [task.start.lower(), task.end.upper(), task.presence.side];
         self.queue.add(set.tasks.iter().flat_map(sides));

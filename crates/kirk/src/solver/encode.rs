@@ -3,13 +3,18 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use stn::PointId;
-use tpn::{DecisionId, LabelId, NodeId, VariableId};
+use tpn::{Choice, DecisionId, LabelId, NodeId, VariableId};
 use typed_index_collections::{TiSlice, TiVec};
 
 use super::alternatives::Way;
+use super::lasting::Sides;
+use super::linear;
 use super::literal::{Literal, Side, Variable};
+use super::resources::Shares;
 use super::{ChoicePoint, ChoicePointKind, Solver, interchangeable};
+use crate::demands::ModelGoal;
 use crate::model::{Alternatives, Context, INFINITE, Model, node};
+use crate::partial_order::Solution;
 use crate::search::{Choices, Gaps, UNBOUNDED_BELOW};
 use crate::structure::Relation;
 
@@ -18,7 +23,7 @@ use crate::structure::Relation;
 pub(crate) struct TooLarge;
 
 /// More possible causal links than this are not put up with.
-const MAX_LINKS: usize = 2_000_000;
+pub(super) const MAX_LINKS: usize = 2_000_000;
 
 /// A labelled interval.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +42,8 @@ pub(crate) struct Part<'a> {
     pub(crate) active_labels: Option<&'a TiSlice<LabelId, bool>>,
     /// The alternatives of decisions, where they are given.
     pub(crate) alternatives: Option<&'a Alternatives>,
+    /// The uses of resources that count; all if `None`.
+    pub(crate) active_uses: Option<&'a [bool]>,
 }
 
 /// How a planning problem is told to the solver.
@@ -52,7 +59,12 @@ pub(crate) struct Problem<'m> {
     pub(crate) known_pairs: BTreeSet<(LabelId, LabelId)>,
     /// Whether the solver has been told which intervals of each variable exclude each other.
     pub(crate) has_exclusion: TiVec<VariableId, bool>,
-    times: TiVec<NodeId, Variable>,
+    pub(super) times: TiVec<NodeId, Variable>,
+    /// When what each label asserts begins to hold.
+    pub(super) ready: TiVec<LabelId, Variable>,
+    pub(super) num_links: usize,
+    pub(super) sides: Sides,
+    pub(super) shares: Shares,
     /// By decision and alternative.
     alternatives: TiVec<DecisionId, Vec<Literal>>,
     /// Requirements with the assertions that may carry them.
@@ -75,6 +87,10 @@ impl<'m> Problem<'m> {
             known_pairs: BTreeSet::new(),
             has_exclusion: vec![false; model.conditions.variables.len()].into(),
             times: TiVec::new(),
+            ready: TiVec::new(),
+            num_links: 0,
+            sides: Sides::default(),
+            shares: Shares::default(),
             alternatives,
             carriers: Vec::new(),
             contexts: node_contexts(model),
@@ -90,6 +106,8 @@ impl<'m> Problem<'m> {
         }
         if !solver.is_contradictory {
             problem.add_links(&mut solver, part)?;
+            problem.add_lasting(&mut solver, part)?;
+            problem.add_resources(&solver, part);
         }
         Ok((problem, solver))
     }
@@ -111,6 +129,61 @@ impl<'m> Problem<'m> {
         }
         let times = self.times.iter().map(|&time| solver.trail.least(time)).collect();
         Choices { alternatives: self.alternatives.iter().map(chosen).collect(), carriers, times }
+    }
+
+    /// All that the solver's solution says.
+    pub(crate) fn whole_solution(&self, solver: &Solver) -> Solution {
+        let Choices { alternatives, carriers, times } = self.solution(solver);
+        Solution { alternatives, carriers, kept: self.kept(solver), times: times.into() }
+    }
+
+    /// Makes all conflicting pairs choice points.
+    pub(crate) fn order_all_pairs(&mut self, solver: &mut Solver) {
+        if !solver.is_contradictory {
+            solver.add_all_pairs(self);
+        }
+    }
+
+    /// Forbids the present solution, and all that differ from it only in the orders of resource uses.
+    pub(crate) fn forbid(&self, solver: &mut Solver) {
+        let mut literals = self.kept_literals(solver);
+        let own = self.alternatives.iter().flatten().chain(self.orders.values().flatten()).copied();
+        let links = self.carriers.iter().flat_map(|(_, options)| options.iter().map(|&(_, link)| link));
+        literals.extend(own.chain(links).filter(|&literal| solver.trail.holds(literal)));
+        solver.retract(0);
+        solver.at_least_one(literals.into_iter().map(|literal| !literal));
+    }
+
+    /// Forbids all plans that make these choices.
+    pub(crate) fn forbid_choices(&self, solver: &mut Solver, choices: &[Choice]) {
+        let literals = choices.iter().map(|choice| !self.presence(Some(*choice)));
+        solver.at_least_one(literals);
+    }
+
+    /// Adds that a goal's sum is at most a limit.
+    pub(crate) fn add_goal(&self, solver: &mut Solver, goal: &ModelGoal, limit: i64) {
+        solver.linears.add(self.terms(goal), limit);
+    }
+
+    /// What a goal's sum is at least, by what holds whatever is decided.
+    pub(crate) fn goal_bound(&self, solver: &Solver, goal: &ModelGoal) -> i64 {
+        let terms = self.terms(goal);
+        let sum: i128 = terms.into_iter().map(|term| linear::least(&solver.trail, term)).sum();
+        i64::try_from(sum).unwrap_or(i64::MIN)
+    }
+
+    /// The weighted variables that a goal's sum consists of.
+    fn terms(&self, goal: &ModelGoal) -> Vec<(i64, Variable)> {
+        let mut terms: BTreeMap<Variable, i64> = BTreeMap::new();
+        for &(arc, weight) in &goal.by_arc {
+            let presence = self.presence(self.model.arcs[arc].context);
+            *terms.entry(presence.side.variable()).or_default() += weight;
+        }
+        if goal.per_tick != 0 {
+            *terms.entry(self.times[self.model.demands.end]).or_default() += goal.per_tick;
+        }
+        let terms = terms.into_iter().filter(|&(_, weight)| weight != 0);
+        terms.map(|(variable, weight)| (weight, variable)).collect()
     }
 
     /// What must lie between the end of a labelled interval and the start of one that excludes it.
@@ -157,7 +230,7 @@ impl<'m> Problem<'m> {
     }
 
     /// What makes something exist.
-    fn presence(&self, context: Context) -> Literal {
+    pub(super) fn presence(&self, context: Context) -> Literal {
         context
             .map_or(Literal::TRUE, |choice| self.alternatives[choice.decision][choice.alternative as usize])
     }
@@ -191,7 +264,7 @@ impl<'m> Problem<'m> {
             }
             solver.at_least_one(options.iter().copied().chain([!when]));
             let choice_point = ChoicePoint {
-                when: [when, Literal::TRUE],
+                when: vec![when],
                 kind: ChoicePointKind::Alternatives,
                 options: options.clone(),
                 last: None,
@@ -199,6 +272,9 @@ impl<'m> Problem<'m> {
             solver.add_choice_point(choice_point, 0.0);
         }
         let Some(given) = part.alternatives else {
+            if self.model.demands.tells_alternatives_apart() {
+                return;
+            }
             for decision in self.model.decisions.keys() {
                 for alternative in interchangeable::repeated(self.model, decision) {
                     solver.assert(!self.alternatives[decision][alternative as usize]);
@@ -274,13 +350,15 @@ impl<'m> Problem<'m> {
         let is_active = |label: LabelId| part.active_labels.is_none_or(|active| active[label]);
         for (id, label) in conditions.labels.iter_enumerated() {
             let arc = &self.model.arcs[label.arc];
+            let (start, end) = (self.times[arc.from], self.times[arc.to]);
             self.intervals.push(Interval {
-                start: self.times[arc.from],
-                end: self.times[arc.to],
+                start,
+                end: if label.is_at_start { start } else { end },
                 presence: self.presence(arc.context),
-                duration: arc.lower.max(0),
+                duration: if label.is_at_start { 0 } else { arc.lower.max(0) },
             });
-            if is_active(id) {
+            self.ready.push(if label.is_changing { end } else { start });
+            if is_active(id) && !label.is_lasting {
                 self.labels_by_variable[label.variable].push(id);
             }
         }
@@ -343,16 +421,12 @@ impl<'m> Problem<'m> {
             solver.check_differences(first);
             if !is_only {
                 solver.at_least_one(literals.iter().copied().chain([!asked.presence]));
-                let when = [asked.presence, Literal::TRUE];
-                solver.add_choice_point(
-                    ChoicePoint {
-                        when,
-                        kind: ChoicePointKind::Carriers { ask },
-                        options: literals,
-                        last: None,
-                    },
-                    0.0,
-                );
+                solver.add_exclusive_choice_point(ChoicePoint {
+                    when: vec![asked.presence],
+                    kind: ChoicePointKind::Carriers { ask },
+                    options: literals,
+                    last: None,
+                });
             }
             self.carriers.push((ask, options));
             if solver.is_contradictory {
@@ -367,26 +441,15 @@ impl<'m> Problem<'m> {
         let (asked, teller) = (self.intervals[ask], self.intervals[tell]);
         let arc = |label: LabelId| &self.model.arcs[self.model.conditions.labels[label].arc];
         !solver.trail.fails(teller.presence)
-            && self.are_compatible(arc(ask).context, arc(tell).context)
+            && self.can_be_together(ask, tell)
             && asked.duration <= arc(tell).upper
             && solver.trail.least(teller.start) <= solver.trail.most(asked.start)
             && solver.trail.least(asked.end) <= solver.trail.most(teller.end)
     }
 
-    /// Whether two contexts can be in one plan.
-    fn are_compatible(&self, mut left: Context, mut right: Context) -> bool {
-        while let (Some(one), Some(other)) = (left, right) {
-            if one.decision == other.decision {
-                return one.alternative == other.alternative;
-            }
-            // The inner one of two nested decisions is the later one.
-            if one.decision > other.decision {
-                left = self.model.decisions[one.decision].context;
-            } else {
-                right = self.model.decisions[other.decision].context;
-            }
-        }
-        true
+    /// Whether two labels can be in one plan.
+    pub(super) fn can_be_together(&self, left: LabelId, right: LabelId) -> bool {
+        self.model.can_be_together(left, right)
     }
 }
 

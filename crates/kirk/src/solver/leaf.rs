@@ -47,6 +47,29 @@ impl Solver {
         true
     }
 
+    /// Makes all conflicting pairs choice points, so that solutions differ in their orders.
+    pub(super) fn add_all_pairs(&mut self, problem: &mut Problem<'_>) {
+        let exists = |label: LabelId| !self.trail.fails(problem.intervals[label].presence);
+        let mut pairs: BTreeSet<(LabelId, LabelId)> = BTreeSet::new();
+        for labels in &problem.labels_by_variable {
+            for (position, &left) in labels.iter().enumerate() {
+                let later = labels[position + 1..].iter().copied();
+                pairs.extend(later.map(|right| (left, right)).filter(|&(left, right)| {
+                    exists(left)
+                        && exists(right)
+                        && problem.can_be_together(left, right)
+                        && problem.must_be_ordered((left, right))
+                        && !self.is_ordered_by_windows(problem, (left, right))
+                }));
+            }
+        }
+        let first = self.differences.len();
+        for (left, right) in pairs {
+            self.add_pair(problem, left, right);
+        }
+        self.check_differences(first);
+    }
+
     /// Whether the least times keep all conflicting pairs apart and satisfy all differences in force.
     pub(super) fn is_solution(&self, problem: &Problem<'_>) -> bool {
         let is_apart = |left: LabelId, right: LabelId| {
@@ -139,7 +162,7 @@ impl Solver {
         problem.orders.insert((left, right), [left_first, right_first]);
         let kind = ChoicePointKind::Orders { left, right };
         self.add_choice_point(
-            ChoicePoint { when, kind, options: vec![left_first, right_first], last: None },
+            ChoicePoint { when: when.to_vec(), kind, options: vec![left_first, right_first], last: None },
             0.0,
         );
     }
@@ -158,6 +181,9 @@ impl Solver {
     /// The option of a choice point to try first.
     pub(super) fn preferred(&self, choice_point: &ChoicePoint) -> Option<Literal> {
         let is_open = |option: &Literal| self.trail.is_open(*option);
+        if self.is_in_textual_order && choice_point.kind != ChoicePointKind::Resolvers {
+            return choice_point.options.iter().copied().find(is_open);
+        }
         if let Some(last) = choice_point.last
             && let Some(option) = choice_point.options.get(last as usize)
             && is_open(option)
@@ -167,7 +193,9 @@ impl Solver {
         let mut open = choice_point.options.iter().copied().filter(is_open);
         match choice_point.kind {
             ChoicePointKind::Alternatives | ChoicePointKind::Carriers { .. } => open.next(),
-            ChoicePointKind::Orders { .. } => open.max_by_key(|&option| self.slack(option)),
+            ChoicePointKind::Orders { .. } | ChoicePointKind::Sides | ChoicePointKind::Resolvers => {
+                open.max_by_key(|&option| self.slack(option))
+            }
         }
     }
 

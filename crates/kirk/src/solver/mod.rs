@@ -24,9 +24,12 @@ mod difference;
 mod disjunctive;
 mod encode;
 mod interchangeable;
+mod lasting;
 mod leaf;
+mod linear;
 mod literal;
 mod queue;
+mod resources;
 mod trail;
 
 use tpn::LabelId;
@@ -40,10 +43,12 @@ use analysis::Analysis;
 use clauses::Clauses;
 use difference::{Difference, Differences};
 use disjunctive::Disjunctives;
+use linear::Linears;
 use literal::{Literal, Side, Variable};
 use trail::{Conflict, Trail};
 
 pub(crate) use encode::{Part, Problem, TooLarge};
+pub(crate) use lasting::Kept;
 
 /// How a search came to an end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,8 +63,8 @@ pub(crate) enum Answer {
 /// A choice point.
 #[derive(Clone, Debug)]
 struct ChoicePoint {
-    /// What makes it count.
-    when: [Literal; 2],
+    /// It counts where these hold.
+    when: Vec<Literal>,
     kind: ChoicePointKind,
     /// One of these must hold; the one taken last is tried first again.
     options: Vec<Literal>,
@@ -74,6 +79,10 @@ enum ChoicePointKind {
     Carriers { ask: LabelId },
     /// Two orders of a conflicting pair.
     Orders { left: LabelId, right: LabelId },
+    /// Two orders of changes that exclude each other.
+    Sides,
+    /// Orders of uses, one of which mends what takes too much of a resource.
+    Resolvers,
 }
 
 #[derive(Clone, Debug)]
@@ -83,13 +92,14 @@ pub(crate) struct Solver {
     differences: Differences,
     alternatives: Alternatives,
     disjunctives: Disjunctives,
+    linears: Linears,
     /// By side of a Boolean: sides that follow.
     implied: TiVec<Side, Vec<Side>>,
     /// The choice point whose options exclude each other, of variables that have one.
     exclusive: TiVec<Variable, Option<ChoicePointId>>,
     choice_points: TiVec<ChoicePointId, ChoicePoint>,
-    /// The choice point that a variable belongs to, if it does.
-    choice_point_of: TiVec<Variable, Option<ChoicePointId>>,
+    /// The choice points that a variable belongs to.
+    choice_points_of: TiVec<Variable, Vec<ChoicePointId>>,
     /// By side of a Boolean: choice points that begin to count.
     reached: TiVec<Side, Vec<ChoicePointId>>,
     activity: Activity,
@@ -100,6 +110,9 @@ pub(crate) struct Solver {
     conflicts_until_restart: u64,
     restarts: u64,
     max_learned: usize,
+    /// Whether choice points are decided in the order in which they were added, each with its first option that is left:
+    /// then the first solution is the first one in that order.
+    pub(crate) is_in_textual_order: bool,
     pub(crate) stats: Stats,
 }
 
@@ -114,10 +127,11 @@ impl Solver {
             differences: Differences::default(),
             alternatives: Alternatives::default(),
             disjunctives: Disjunctives::default(),
+            linears: Linears::default(),
             implied: TiVec::new(),
             exclusive: TiVec::new(),
             choice_points: TiVec::new(),
-            choice_point_of: TiVec::new(),
+            choice_points_of: TiVec::new(),
             reached: TiVec::new(),
             activity: Activity::new(),
             head: 0,
@@ -126,6 +140,7 @@ impl Solver {
             conflicts_until_restart: RESTART_UNIT,
             restarts: 0,
             max_learned: 4_000,
+            is_in_textual_order: false,
             stats: Stats::default(),
         };
         solver.resize();
@@ -150,7 +165,8 @@ impl Solver {
         self.implied.resize(count * 2, Vec::new());
         self.reached.resize(count * 2, Vec::new());
         self.exclusive.resize(count, None);
-        self.choice_point_of.resize(count, None);
+        self.choice_points_of.resize(count, Vec::new());
+        self.linears.queue.resize(count);
     }
 
     /// `left` implies `right`, both Booleans. At the root.
@@ -197,9 +213,12 @@ impl Solver {
     fn add_choice_point(&mut self, choice_point: ChoicePoint, initial_activity: f64) {
         let id = self.choice_points.next_key();
         for option in &choice_point.options {
-            self.choice_point_of[option.side.variable()] = Some(id);
+            let choice_points = &mut self.choice_points_of[option.side.variable()];
+            if choice_points.last() != Some(&id) {
+                choice_points.push(id);
+            }
         }
-        for when in choice_point.when {
+        for when in &choice_point.when {
             self.reached[when.side].push(id);
         }
         let counts = choice_point.when.iter().all(|&when| self.trail.holds(when));
@@ -208,6 +227,15 @@ impl Solver {
         if counts {
             self.activity.insert(id);
         }
+    }
+
+    /// Adds a choice point of which at most one option holds.
+    fn add_exclusive_choice_point(&mut self, choice_point: ChoicePoint) {
+        let id = self.choice_points.next_key();
+        for option in &choice_point.options {
+            self.exclusive[option.side.variable()] = Some(id);
+        }
+        self.add_choice_point(choice_point, 0.0);
     }
 
     /// Adds `to − from ≤ weight`: a step and its mirror, each with the literal under which it carries. At the root.
@@ -251,7 +279,9 @@ impl Solver {
                     self.stats.expanded += 1;
                 } else {
                     self.stats.leaves += 1;
-                    if !self.add_pairs(problem) {
+                    let is_broken =
+                        self.add_pairs(problem) || problem.break_circles(self) || problem.share(self);
+                    if !is_broken {
                         debug_assert!(self.is_solution(problem), "the least times fit");
                         return Answer::Solved;
                     }
@@ -283,8 +313,10 @@ impl Solver {
                 self.differences.propagate(&mut self.trail, event)?;
                 self.alternatives.queue.moved(side);
                 self.disjunctives.queue.moved(side);
+                self.linears.queue.moved(side);
             }
             self.alternatives.propagate(&mut self.trail)?;
+            self.linears.propagate(&mut self.trail)?;
             if self.head < self.trail.events.len() {
                 continue;
             }
@@ -363,10 +395,10 @@ impl Solver {
     }
 
     fn retract(&mut self, level: u32) {
-        let Self { trail, choice_points, choice_point_of, activity, .. } = self;
+        let Self { trail, choice_points, choice_points_of, activity, .. } = self;
         trail.retract(level, |event| {
             let variable = event.side.variable();
-            if let Some(choice_point) = choice_point_of[variable] {
+            for &choice_point in &choice_points_of[variable] {
                 activity.insert(choice_point);
                 let ChoicePoint { options, last, .. } = &mut choice_points[choice_point];
                 if let Some(option) = options.iter().position(|option| option.side == event.side) {
@@ -377,6 +409,7 @@ impl Solver {
         self.head = self.head.min(self.trail.events.len());
         self.alternatives.queue.forget();
         self.disjunctives.queue.forget();
+        self.linears.queue.forget();
     }
 
     /// Makes the next decision. `false` if everything that counts is decided.
@@ -397,7 +430,10 @@ impl Solver {
     }
 
     fn bump(&mut self, literal: Literal) {
-        if let Some(choice_point) = self.choice_point_of[literal.side.variable()] {
+        if self.is_in_textual_order {
+            return;
+        }
+        for &choice_point in &self.choice_points_of[literal.side.variable()] {
             self.activity.bump(choice_point);
         }
     }

@@ -1,0 +1,315 @@
+//! Plans of missions with variables that keep their values, resources or objectives (SPEC 10 to 12): the solver finds
+//! them, and each becomes a plan that holds in every schedule.
+//!
+//! Without an objective the plan is the first one in textual order, where a search in that order comes to an end soon: its
+//! choice points are decided in the order of the text, each with its first option that is left, so that the first
+//! solution is the first in that order. With an objective better and better plans are looked for, goal by goal.
+
+use exact::Rational;
+use tpn::{Choice, LabelId, Network, Ordering, Plan};
+
+use crate::model::Model;
+use crate::options::{Options, Outcome, Stats, Status, Termination};
+use crate::overflow::TimeOverflow;
+use crate::partial_order;
+use crate::search::Gaps;
+use crate::solver::{Answer, Part, Problem, Solver, TooLarge};
+use crate::structure::Relation;
+
+/// How many conflicts a search in textual order may meet before one that follows its conflicts takes over.
+const MAX_CONFLICTS_IN_ORDER: u64 = 5_000;
+
+/// Whether the network has anything that only the solver plans.
+pub(crate) fn has_demands(model: &Model) -> bool {
+    let demands = &model.demands;
+    let is_open = |variable: &crate::demands::LastingVariable| {
+        !variable.asks.is_empty() || !are_nested(model, &variable.changes)
+    };
+    !demands.resources.is_empty() || !demands.goals.is_empty() || demands.variables.iter().any(is_open)
+}
+
+/// Whether the order in which some variable that keeps its value changes is left to planning (SPEC 10.2).
+pub fn has_open_order(network: &Network) -> bool {
+    Model::new(network, None).is_ok_and(|model| {
+        model.demands.variables.iter().any(|variable| !are_nested(&model, &variable.changes))
+    })
+}
+
+/// Whether the program's structure orders all changes of a variable that exclude each other.
+fn are_nested(model: &Model, changes: &[LabelId]) -> bool {
+    changes.iter().enumerate().all(|(position, &left)| {
+        changes[position + 1..].iter().all(|&right| {
+            !model.conditions.exclude(left, right)
+                || !model.can_be_together(left, right)
+                || model.nested_order(left, right) != Relation::Open
+        })
+    })
+}
+
+/// The order of the selected changes that the program's structure orders, of a network without other demands.
+pub(crate) fn nested_changes(model: &Model, selected_arcs: &[bool]) -> Vec<Ordering> {
+    let is_selected = |label: &LabelId| selected_arcs[model.conditions.labels[*label].arc.index()];
+    let mut order = Vec::new();
+    for variable in &model.demands.variables {
+        let changes: Vec<LabelId> = variable.changes.iter().copied().filter(is_selected).collect();
+        if let Some(initial) = variable.initial {
+            let after = changes.iter().copied().filter(|&change| model.conditions.exclude(initial, change));
+            order.extend(after.map(|then| Ordering { first: initial, then }));
+        }
+        for (position, &left) in changes.iter().enumerate() {
+            for &right in &changes[position + 1..] {
+                match model.nested_order(left, right) {
+                    _ if !model.conditions.exclude(left, right) => {}
+                    Relation::Before => order.push(Ordering { first: left, then: right }),
+                    Relation::After => order.push(Ordering { first: right, then: left }),
+                    Relation::Open => {}
+                }
+            }
+        }
+    }
+    order
+}
+
+/// Plans; why there is no plan is explained elsewhere.
+pub(crate) fn search(
+    network: &Network,
+    model: &Model,
+    options: &Options,
+    termination: &mut dyn Termination,
+) -> Result<Outcome, TimeOverflow> {
+    let mut searching = Searching {
+        network,
+        model,
+        termination,
+        stats: Stats::default(),
+        is_stopped: false,
+        bound: None,
+        found: Vec::new(),
+    };
+    searching.stats.nodes = model.num_nodes as u64;
+    searching.stats.arcs = model.arcs.len() as u64;
+    searching.stats.decisions = model.decisions.len() as u64;
+    if !model.has_contexts {
+        return Err(TimeOverflow::at(model.start));
+    }
+    let (status, plans) =
+        if options.all { searching.all(options.max_plans)? } else { searching.several(options.best)? };
+    let Searching { stats, bound, .. } = searching;
+    Ok(Outcome { status, plans, bound, failure: None, stats, trace: None, overflow: None })
+}
+
+struct Searching<'a> {
+    network: &'a Network,
+    model: &'a Model,
+    termination: &'a mut dyn Termination,
+    stats: Stats,
+    is_stopped: bool,
+    /// What no plan is better than, of the first goal that is not at its optimum yet.
+    bound: Option<Rational>,
+    /// The choices of plans that have been found, where others are looked for.
+    found: Vec<Vec<Choice>>,
+}
+
+/// What came of looking for the next plan of a problem.
+enum Next {
+    Plan(Box<Plan>),
+    Nothing,
+    Stopped,
+}
+
+/// What a limit on each goal is.
+type Limits = Vec<Option<i64>>;
+
+impl<'a> Searching<'a> {
+    const fn status(&self, has_plan: bool) -> Status {
+        match (has_plan, self.is_stopped) {
+            (true, _) => Status::Plan,
+            (false, true) => Status::Limit,
+            (false, false) => Status::NoPlan,
+        }
+    }
+
+    /// The ways to treat gaps, in the order in which they are tried: a plan in which intervals are forced to touch is
+    /// found where none is that leaves room (SPEC 5.3).
+    fn gaps(&self) -> &'static [Gaps] {
+        let has_conflicts = self.model.conditions.variables.iter().any(|variable| variable.labels.len() > 1);
+        if self.model.gap == 0 || !has_conflicts { &[Gaps::Ignored] } else { &[Gaps::Trusted, Gaps::Ignored] }
+    }
+
+    fn problem(
+        &self,
+        gaps: Gaps,
+        limits: &Limits,
+        is_in_order: bool,
+    ) -> Result<(Problem<'a>, Solver), TooLarge> {
+        let (problem, mut solver) = Problem::new(self.model, gaps, Part::default())?;
+        solver.is_in_textual_order = is_in_order;
+        for choices in &self.found {
+            problem.forbid_choices(&mut solver, choices);
+        }
+        for (goal, limit) in self.model.demands.goals.iter().zip(limits) {
+            if let Some(limit) = *limit {
+                problem.add_goal(&mut solver, goal, limit);
+            }
+        }
+        Ok((problem, solver))
+    }
+
+    /// Solves, with at most so many conflicts where a number is given. `None` if these are spent, or the search was stopped.
+    fn solve(&mut self, problem: &mut Problem<'_>, solver: &mut Solver, most: Option<u64>) -> Option<bool> {
+        let before = self.stats.conflicts;
+        solver.stats = self.stats;
+        let (termination, is_stopped) = (&mut self.termination, &mut self.is_stopped);
+        let answer = solver.solve(problem, &mut |stats| {
+            *is_stopped |= termination.should_stop(stats);
+            *is_stopped || most.is_some_and(|most| stats.conflicts > before + most)
+        });
+        self.stats = solver.stats;
+        match answer {
+            Answer::Solved => Some(true),
+            Answer::Unsolvable => Some(false),
+            Answer::Stopped => None,
+        }
+    }
+
+    /// The next plan of a problem whose solutions are all looked at in turn, as long as they become plans.
+    fn next_plan(
+        &mut self,
+        model: &Model,
+        problem: &mut Problem<'_>,
+        solver: &mut Solver,
+        most: Option<u64>,
+    ) -> Result<Next, TimeOverflow> {
+        loop {
+            match self.solve(problem, solver, most) {
+                None => return Ok(Next::Stopped),
+                Some(false) => return Ok(Next::Nothing),
+                Some(true) => {}
+            }
+            let solution = problem.whole_solution(solver);
+            if let Some(plan) = partial_order::plan(self.network, model, &solution)? {
+                return Ok(Next::Plan(Box::new(plan)));
+            }
+            // Intervals that touch without need: another order, link or choice may do.
+            problem.forbid(solver);
+        }
+    }
+
+    /// So many plans that differ in their choices, the best first.
+    fn several(&mut self, count: usize) -> Result<(Status, Vec<Plan>), TimeOverflow> {
+        let mut plans: Vec<Plan> = Vec::new();
+        while plans.len() < count.max(1) && !self.is_stopped {
+            let plan = if self.model.demands.goals.is_empty() { self.first()? } else { self.best()? };
+            let Some(plan) = plan else { break };
+            self.found.push(plan.choices.clone());
+            let is_last = plan.choices.is_empty();
+            plans.push(plan);
+            if is_last {
+                break;
+            }
+        }
+        Ok((self.status(!plans.is_empty()), plans))
+    }
+
+    fn first(&mut self) -> Result<Option<Plan>, TimeOverflow> {
+        let model = self.model;
+        for &gaps in self.gaps() {
+            for most in [Some(MAX_CONFLICTS_IN_ORDER), None] {
+                let Ok((mut problem, mut solver)) = self.problem(gaps, &Vec::new(), most.is_some()) else {
+                    return Err(TimeOverflow::at(model.start));
+                };
+                match self.next_plan(model, &mut problem, &mut solver, most)? {
+                    Next::Plan(plan) => return Ok(Some(*plan)),
+                    Next::Nothing => break,
+                    Next::Stopped if self.is_stopped => return Ok(None),
+                    Next::Stopped => {}
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// Every plan that differs in its choices, its links, or the order of what excludes each other.
+    fn all(&mut self, most: usize) -> Result<(Status, Vec<Plan>), TimeOverflow> {
+        let model = self.model;
+        let mut plans: Vec<Plan> = Vec::new();
+        for &gaps in self.gaps() {
+            let Ok((mut problem, mut solver)) = self.problem(gaps, &Vec::new(), true) else {
+                return Err(TimeOverflow::at(model.start));
+            };
+            problem.order_all_pairs(&mut solver);
+            loop {
+                match self.next_plan(model, &mut problem, &mut solver, None)? {
+                    Next::Stopped => return Ok((Status::Limit, plans)),
+                    Next::Nothing => break,
+                    Next::Plan(plan) => {
+                        let is_known = plans.iter().any(|known| {
+                            (&known.choices, &known.causal_links, &known.conflict_order)
+                                == (&plan.choices, &plan.causal_links, &plan.conflict_order)
+                        });
+                        if !is_known {
+                            plans.push(*plan);
+                        }
+                        if plans.len() >= most {
+                            return Ok((Status::Limit, plans));
+                        }
+                        problem.forbid(&mut solver);
+                    }
+                }
+            }
+        }
+        let status = if plans.is_empty() { Status::NoPlan } else { Status::Plan };
+        Ok((status, plans))
+    }
+
+    /// A plan that no other one is better than, goal by goal; the best one found where the search is stopped before.
+    fn best(&mut self) -> Result<Option<Plan>, TimeOverflow> {
+        let model = self.model;
+        let mut limits: Limits = vec![None; model.demands.goals.len()];
+        let Some(mut plan) = self.any(&limits)? else {
+            return Ok(None);
+        };
+        for goal in 0..model.demands.goals.len() {
+            loop {
+                let value = model.demands.goals[goal].sum(model, &plan)?;
+                limits[goal] = Some(value - 1);
+                let Some(better) = self.any(&limits)? else {
+                    limits[goal] = Some(value);
+                    break;
+                };
+                plan = better;
+            }
+            if self.is_stopped {
+                limits[goal] = None;
+                self.bound = self.proven_bound(goal, &limits);
+                break;
+            }
+        }
+        plan.quality.is_optimal = Some(!self.is_stopped);
+        Ok(Some(plan))
+    }
+
+    /// What follows for a goal from the limits of those before it, whatever is decided.
+    fn proven_bound(&self, goal: usize, limits: &Limits) -> Option<Rational> {
+        let gaps = if self.model.gap == 0 { Gaps::Ignored } else { Gaps::Trusted };
+        let (problem, solver) = self.problem(gaps, limits, false).ok()?;
+        let goal = &self.model.demands.goals[goal];
+        Some(goal.value(problem.goal_bound(&solver, goal)))
+    }
+
+    /// A plan within the limits, the same one each time.
+    fn any(&mut self, limits: &Limits) -> Result<Option<Plan>, TimeOverflow> {
+        let model = self.model;
+        for &gaps in self.gaps() {
+            let Ok((mut problem, mut solver)) = self.problem(gaps, limits, false) else {
+                return Err(TimeOverflow::at(model.start));
+            };
+            match self.next_plan(model, &mut problem, &mut solver, None)? {
+                Next::Plan(found) => return Ok(Some(*found)),
+                Next::Nothing => {}
+                Next::Stopped => return Ok(None),
+            }
+        }
+        Ok(None)
+    }
+}

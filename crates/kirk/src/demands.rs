@@ -1,0 +1,269 @@
+//! What a plan must satisfy beyond its intervals: variables that keep their values (SPEC 10), resources (SPEC 11), and
+//! what plans are to be best in (SPEC 12), with amounts as integers.
+
+use std::collections::BTreeMap;
+
+use exact::{Rational, Scale};
+use num_integer::Integer as _;
+use rmpl::program::{Change, LabelMode, Measure};
+use tpn::{
+    ArcId, Extent, LabelId, Network, NodeId, Plan, Quality, ResourceId, Supply, UseId, ValueId, Window, Worth,
+};
+
+use crate::model::Model;
+use crate::overflow::TimeOverflow;
+
+/// A variable that keeps its value, by its labels.
+#[derive(Clone, Debug)]
+pub(crate) struct LastingVariable {
+    /// What it is at first; a network of another program may not say.
+    pub(crate) initial: Option<LabelId>,
+    /// What gives it a value later, in textual order.
+    pub(crate) changes: Vec<LabelId>,
+    /// What requires a value, in textual order.
+    pub(crate) asks: Vec<LabelId>,
+}
+
+/// A resource with all its uses; amounts are whole multiples of a common unit.
+#[derive(Clone, Debug)]
+pub(crate) struct ResourceDemand {
+    pub(crate) supply: ModelSupply,
+    /// In textual order.
+    pub(crate) uses: Vec<ModelUse>,
+    unit: i64,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum ModelSupply {
+    Reusable { capacity: i64 },
+    Reservoir { least: i64, greatest: i64, level: i64 },
+}
+
+/// One use of a resource.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ModelUse {
+    pub(crate) id: UseId,
+    pub(crate) arc: ArcId,
+    pub(crate) start: NodeId,
+    pub(crate) end: NodeId,
+    pub(crate) change: Change,
+    pub(crate) amount: i64,
+}
+
+impl ModelUse {
+    /// When a reservoir is consumed from, or produced into.
+    pub(crate) fn moment(&self) -> NodeId {
+        if self.change == Change::Produces { self.end } else { self.start }
+    }
+}
+
+impl ResourceDemand {
+    /// An amount in the mission's own terms.
+    pub(crate) fn amount(&self, units: i64) -> Rational {
+        Rational::new(units, self.unit).unwrap_or_default()
+    }
+}
+
+/// How long a movement takes at least from one place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ModelDeparture {
+    pub(crate) from: ValueId,
+    /// In ticks, rounded down; `None` if it cannot be driven.
+    pub(crate) least: Option<i64>,
+}
+
+/// A goal as a sum that is to be as small as possible.
+#[derive(Clone, Debug)]
+pub(crate) struct ModelGoal {
+    /// What each selected arc adds, in the goal's unit.
+    pub(crate) by_arc: Vec<(ArcId, i64)>,
+    /// What each tick of the scenario's end adds.
+    pub(crate) per_tick: i64,
+    /// How many of the goal's units one of the mission's is.
+    unit: i64,
+    is_maximized: bool,
+}
+
+impl ModelGoal {
+    /// What the goal is of a plan.
+    pub(crate) fn sum(&self, model: &Model, plan: &Plan) -> Result<i64, TimeOverflow> {
+        let selected = self.by_arc.iter().filter(|(arc, _)| plan.selected_arcs[arc.index()]);
+        let by_arc: i64 = selected.map(|&(_, weight)| weight).sum();
+        let overflow = |_| TimeOverflow::at(model.demands.end);
+        let end = model.units(plan.quality.end).map_err(overflow)?;
+        let sum = i128::from(by_arc) + i128::from(end) * i128::from(self.per_tick);
+        i64::try_from(sum).map_err(|_| TimeOverflow::at(model.demands.end))
+    }
+
+    /// A sum as the goal measures it.
+    pub(crate) fn value(&self, units: i64) -> Rational {
+        let value = Rational::new(units, self.unit).unwrap_or_default();
+        if self.is_maximized { value.checked_neg().unwrap_or_default() } else { value }
+    }
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct Demands {
+    /// Those that something changes or requires.
+    pub(crate) variables: Vec<LastingVariable>,
+    pub(crate) resources: Vec<ResourceDemand>,
+    /// By movement: how long it takes at least from each place that is known.
+    pub(crate) departures: BTreeMap<LabelId, Vec<ModelDeparture>>,
+    pub(crate) goals: Vec<ModelGoal>,
+    /// The last event.
+    pub(crate) end: NodeId,
+    worths: Vec<Worth>,
+}
+
+impl Demands {
+    /// What the selected activities are worth, and the earliest end.
+    pub(crate) fn quality(&self, selected_arcs: &[bool], windows: &[Option<Window>]) -> Quality {
+        let mut quality = Quality::default();
+        for worth in self.worths.iter().filter(|worth| selected_arcs[worth.arc.index()]) {
+            quality.cost = quality.cost.checked_add(worth.cost).unwrap_or(quality.cost);
+            quality.reward = quality.reward.checked_add(worth.reward).unwrap_or(quality.reward);
+        }
+        if let Some(window) = windows[self.end.index()] {
+            quality.end = window.earliest;
+        }
+        quality
+    }
+
+    /// How many uses the network has.
+    pub(crate) fn num_uses(&self) -> usize {
+        self.resources.iter().map(|resource| resource.uses.len()).sum()
+    }
+
+    /// Whether alternatives of the same shape and bounds may still be different.
+    pub(crate) fn tells_alternatives_apart(&self) -> bool {
+        !self.variables.is_empty() || !self.resources.is_empty() || !self.goals.is_empty()
+    }
+
+    /// Of a network whose times are counted in the ticks of `scale`.
+    pub(crate) fn new(network: &Network, scale: Scale) -> Result<Self, TimeOverflow> {
+        let overflow = || TimeOverflow::at(network.start);
+        let ticks = scale.ticks_per_unit();
+        Ok(Self {
+            variables: lasting_variables(network),
+            departures: departures(network, ticks).ok_or_else(overflow)?,
+            resources: resources(network)?,
+            goals: goals(network, ticks).ok_or_else(overflow)?,
+            end: network.end,
+            worths: network.worths.clone(),
+        })
+    }
+}
+
+fn lasting_variables(network: &Network) -> Vec<LastingVariable> {
+    let blank = LastingVariable { initial: None, changes: Vec::new(), asks: Vec::new() };
+    let mut variables = vec![blank; network.variables.len()];
+    for (index, label) in network.labels.iter().enumerate() {
+        let id = LabelId::from_index(index);
+        if !network.is_lasting(id) {
+            continue;
+        }
+        let variable = &mut variables[label.literal.variable.index()];
+        match (label.mode, label.extent) {
+            (LabelMode::Tell, Extent::Initial) => variable.initial = Some(id),
+            (LabelMode::Tell, _) => variable.changes.push(id),
+            (LabelMode::Ask, _) => variable.asks.push(id),
+        }
+    }
+    variables.retain(|variable| !variable.changes.is_empty() || !variable.asks.is_empty());
+    variables
+}
+
+fn resources(network: &Network) -> Result<Vec<ResourceDemand>, TimeOverflow> {
+    let mut demands = Vec::new();
+    for (index, resource) in network.resources.iter().enumerate() {
+        let id = ResourceId::from_index(index);
+        let used = || network.uses.iter().enumerate().filter(move |(_, used)| used.resource == id);
+        let supply = match resource.supply {
+            Supply::Reusable { capacity } => vec![capacity],
+            Supply::Reservoir { least, greatest, level } => vec![least, greatest, level],
+        };
+        let amounts = used().map(|(_, used)| used.amount);
+        let Some(unit) = common_unit(supply.into_iter().chain(amounts)) else {
+            return Err(TimeOverflow::at(network.start));
+        };
+        let units = |amount: Rational, at: NodeId| units(amount, unit).ok_or_else(|| TimeOverflow::at(at));
+        let start = network.start;
+        let supply = match resource.supply {
+            Supply::Reusable { capacity } => ModelSupply::Reusable { capacity: units(capacity, start)? },
+            Supply::Reservoir { least, greatest, level } => ModelSupply::Reservoir {
+                least: units(least, start)?,
+                greatest: units(greatest, start)?,
+                level: units(level, start)?,
+            },
+        };
+        let mut uses = Vec::new();
+        for (position, used) in used() {
+            uses.push(ModelUse {
+                id: UseId::from_index(position),
+                arc: used.arc,
+                start: used.start,
+                end: used.end,
+                change: used.change,
+                amount: units(used.amount, used.start)?,
+            });
+        }
+        demands.push(ResourceDemand { supply, uses, unit });
+    }
+    Ok(demands)
+}
+
+fn departures(network: &Network, ticks: i64) -> Option<BTreeMap<LabelId, Vec<ModelDeparture>>> {
+    let mut departures: BTreeMap<LabelId, Vec<ModelDeparture>> = BTreeMap::new();
+    for departure in &network.departures {
+        let least = match departure.least {
+            None => None,
+            Some(least) => Some(least.checked_mul(Rational::from_integer(ticks))?.units().floor()),
+        };
+        departures.entry(departure.arrival).or_default().push(ModelDeparture { from: departure.from, least });
+    }
+    Some(departures)
+}
+
+fn goals(network: &Network, ticks: i64) -> Option<Vec<ModelGoal>> {
+    network
+        .objective
+        .iter()
+        .map(|goal| {
+            let factor = |wanted: Measure| {
+                let of_measure = goal.terms.iter().filter(|(_, measure)| *measure == wanted);
+                of_measure.map(|(factor, _)| *factor).try_fold(Rational::default(), Rational::checked_add)
+            };
+            let sign = Rational::from_integer(if goal.is_maximized { -1 } else { 1 });
+            let (cost, reward) = (factor(Measure::Cost)?, factor(Measure::Reward)?);
+            let per_tick =
+                factor(Measure::End)?.checked_mul(sign)?.checked_div(Rational::from_integer(ticks))?;
+            let mut by_arc = Vec::new();
+            for worth in &network.worths {
+                let weight = cost.checked_mul(worth.cost)?.checked_add(reward.checked_mul(worth.reward)?)?;
+                by_arc.push((worth.arc, weight.checked_mul(sign)?));
+            }
+            let unit = common_unit(by_arc.iter().map(|&(_, weight)| weight).chain([per_tick]))?;
+            let by_arc = by_arc.into_iter().map(|(arc, weight)| Some((arc, units(weight, unit)?)));
+            Some(ModelGoal {
+                by_arc: by_arc.collect::<Option<_>>()?,
+                per_tick: units(per_tick, unit)?,
+                unit,
+                is_maximized: goal.is_maximized,
+            })
+        })
+        .collect()
+}
+
+/// The least number that makes all amounts whole, when they are multiplied by it.
+fn common_unit(amounts: impl IntoIterator<Item = Rational>) -> Option<i64> {
+    amounts.into_iter().try_fold(1_i64, |common, amount| {
+        let denominator = amount.denominator();
+        common.checked_mul(denominator / common.gcd(&denominator))
+    })
+}
+
+fn units(amount: Rational, unit: i64) -> Option<i64> {
+    let units = amount.numerator().checked_mul(unit / amount.denominator())?;
+    // Sums of many of them still fit.
+    (units.unsigned_abs() < 1 << 40).then_some(units)
+}

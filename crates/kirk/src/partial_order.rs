@@ -1,0 +1,512 @@
+//! From a solution of the solver to a plan that holds in every schedule: what the solution's times order is ordered in
+//! the plan, as far as that does not follow from the rest (a partial-order schedule, Policella et al. 2004).
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use exact::Bound;
+use rmpl::program::Change;
+use stn::{Inconsistency, PointId, Stn};
+use tpn::selection::closure;
+use tpn::{
+    ArcId, CausalLink, Choice, DecisionId, LabelId, Levels, Network, NodeId, Ordering, Plan, UseOrdering,
+    Window,
+};
+use typed_index_collections::TiVec;
+
+use crate::antichain::heaviest_antichain;
+use crate::demands::{ModelSupply, ModelUse, ResourceDemand};
+use crate::model::{Alternatives, INFINITE, Model};
+use crate::overflow::TimeOverflow;
+use crate::solver::Kept;
+
+/// What a solution chooses, and times that fit.
+#[derive(Clone, Debug)]
+pub(crate) struct Solution {
+    pub(crate) alternatives: TiVec<DecisionId, Option<u32>>,
+    /// Of variables that are known only where they are asserted: what carries each requirement.
+    pub(crate) carriers: TiVec<LabelId, Option<LabelId>>,
+    pub(crate) kept: Kept,
+    pub(crate) times: TiVec<NodeId, i64>,
+}
+
+/// The plan of a solution; `None` if intervals that the solution only lets touch are not forced to, so that the gap
+/// between them that SPEC 5.3 asks for is not there.
+pub(crate) fn plan(
+    network: &Network,
+    model: &Model,
+    solution: &Solution,
+) -> Result<Option<Plan>, TimeOverflow> {
+    let mut choices = choices(&solution.alternatives);
+    let (selected_nodes, selected_arcs) = closure(network, &choices);
+    // What is decided inside an alternative that is not taken is no part of the plan.
+    choices.retain(|choice| selected_nodes[network.decisions[choice.decision.index()].node.index()]);
+    let mut making = Making {
+        network,
+        model,
+        solution,
+        is_selected: selected_arcs.iter().copied().collect(),
+        stn: Stn::new(model.num_nodes),
+        windows: (Vec::new(), Vec::new()),
+        num_edges: 0,
+    };
+    if !making.add_arcs()? {
+        return Ok(None);
+    }
+    let causal_links = making.add_links()?;
+    making.add_departures()?;
+    making.find_windows()?;
+    let mut orderings_added = Vec::new();
+    let mut conflict_order = making.order_kept(&mut orderings_added)?;
+    if !making.order_conflicts(&mut conflict_order, &mut orderings_added)? {
+        return Ok(None);
+    }
+    conflict_order.sort_by_key(|order| (order.first.min(order.then), order.first.max(order.then)));
+    let mut uses_ordered = Vec::new();
+    for resource in &model.demands.resources {
+        making.share(resource, &mut uses_ordered)?;
+    }
+    let mut levels = Vec::with_capacity(model.demands.resources.len());
+    for resource in &model.demands.resources {
+        levels.push(making.levels(resource)?);
+    }
+    let windows = making.windows(&selected_nodes)?;
+    let quality = model.demands.quality(&selected_arcs, &windows);
+    Ok(Some(Plan {
+        choices,
+        selected_nodes,
+        selected_arcs,
+        causal_links,
+        conflict_order,
+        orderings_added,
+        uses_ordered,
+        levels,
+        quality,
+        windows,
+    }))
+}
+
+fn choices(alternatives: &Alternatives) -> Vec<Choice> {
+    let taken = alternatives.iter_enumerated();
+    taken
+        .filter_map(|(decision, &alternative)| Some(Choice { decision, alternative: alternative? }))
+        .collect()
+}
+
+struct Making<'a> {
+    network: &'a Network,
+    model: &'a Model,
+    solution: &'a Solution,
+    is_selected: TiVec<ArcId, bool>,
+    stn: Stn,
+    /// Distances from and to the start with all links and no order yet: still bounds with orders.
+    windows: (Vec<i64>, Vec<i64>),
+    num_edges: usize,
+}
+
+const fn point(node: NodeId) -> PointId {
+    PointId(node.0)
+}
+
+impl Making<'_> {
+    fn time(&self, node: NodeId) -> i64 {
+        self.solution.times[node]
+    }
+
+    fn selected_labels(&self) -> impl Iterator<Item = LabelId> + '_ {
+        let labels = self.model.conditions.labels.iter_enumerated();
+        labels.filter(|(_, label)| self.is_selected[label.arc]).map(|(id, _)| id)
+    }
+
+    /// `false` if the selected bounds contradict each other, which no solution's do.
+    fn add_arcs(&mut self) -> Result<bool, TimeOverflow> {
+        self.stn.set_origin(point(self.model.start));
+        self.stn.propose(self.solution.times.iter().copied());
+        for (id, arc) in self.model.arcs.iter_enumerated() {
+            if !self.is_selected[id] {
+                continue;
+            }
+            let (from, to) = (point(arc.from), point(arc.to));
+            if arc.upper != INFINITE {
+                self.stn.push(from, to, arc.upper, id.0);
+            }
+            self.stn.push(to, from, -arc.lower, id.0);
+        }
+        done(self.stn.settle(&self.model.order))
+    }
+
+    /// `later − earlier ≥ least`, which the solution's times satisfy. `false` if the network refuses it.
+    fn insert(&mut self, earlier: NodeId, later: NodeId, least: i64) -> Result<bool, TimeOverflow> {
+        done(self.stn.insert(point(later), point(earlier), -least, 0))
+    }
+
+    fn add_links(&mut self) -> Result<Vec<CausalLink>, TimeOverflow> {
+        let mut links: Vec<CausalLink> =
+            self.solution.kept.links.iter().map(|&(ask, tell)| CausalLink { ask, tell }).collect();
+        let carried = self.solution.carriers.iter_enumerated();
+        let carried = carried.filter_map(|(ask, &tell)| Some(CausalLink { ask, tell: tell? }));
+        links.extend(carried.filter(|link| self.is_selected[self.model.conditions.labels[link.ask].arc]));
+        links.sort_unstable();
+        for link in &links {
+            let (start, end) = self.network.interval(link.ask);
+            if self.network.is_lasting(link.ask) {
+                self.insert(self.network.ready(link.tell), start, 0)?;
+            } else {
+                let (from, to) = self.network.interval(link.tell);
+                self.insert(from, start, 0)?;
+                self.insert(end, to, 0)?;
+            }
+        }
+        Ok(links)
+    }
+
+    /// Movements take at least as long as from where the one before them ends (SPEC 10.3).
+    fn add_departures(&mut self) -> Result<(), TimeOverflow> {
+        let model = self.model;
+        for (&movement, departures) in &model.demands.departures {
+            let sides = &self.solution.kept.sides;
+            let rank = |label: LabelId| sides.iter().filter(|&&(_, then)| then == label).count();
+            let earlier = sides.iter().filter(|&&(_, then)| then == movement).map(|&(first, _)| first);
+            let last = earlier.max_by_key(|&first| rank(first));
+            let variable =
+                model.demands.variables.iter().find(|variable| variable.changes.contains(&movement));
+            let Some(before) = last.or_else(|| variable.and_then(|variable| variable.initial)) else {
+                continue;
+            };
+            let departure =
+                departures.iter().find(|departure| model.conditions.gives_value(before, departure.from));
+            if self.is_selected[model.conditions.labels[movement].arc]
+                && let Some(least) = departure.and_then(|departure| departure.least)
+            {
+                let (start, end) = self.network.interval(movement);
+                self.insert(start, end, least)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn find_windows(&mut self) -> Result<(), TimeOverflow> {
+        self.num_edges = self.stn.num_edges();
+        let (from_start, to_start) = &mut self.windows;
+        Ok(self.stn.sweep_distances(point(self.model.start), &self.model.order, from_start, to_start)?)
+    }
+
+    /// Whether every schedule has `later − earlier ≥ least`.
+    fn is_entailed(&mut self, earlier: NodeId, later: NodeId, least: i64) -> Result<bool, TimeOverflow> {
+        let (at_latest, at_earliest) = (self.windows.0[earlier.index()], self.windows.1[later.index()]);
+        let ends_by = at_latest != INFINITE
+            && at_earliest != INFINITE
+            && at_latest.checked_add(least).is_some_and(|time| time <= -at_earliest);
+        if ends_by {
+            return Ok(true);
+        }
+        let schedule = self.stn.schedule();
+        if schedule[later.index()] - schedule[earlier.index()] < least {
+            return Ok(false);
+        }
+        match self.stn.admits(point(earlier), point(later), least - 1, 0) {
+            Ok(()) => Ok(false),
+            Err(Inconsistency::NegativeCycle) => Ok(true),
+            Err(Inconsistency::Overflow(overflow)) => Err(overflow.into()),
+        }
+    }
+
+    /// Makes sure that one event is no later than another. Whether that had to be added.
+    fn ensure(&mut self, earlier: NodeId, later: NodeId) -> Result<bool, TimeOverflow> {
+        if self.is_entailed(earlier, later, 0)? {
+            return Ok(false);
+        }
+        self.insert(earlier, later, 0)
+    }
+
+    /// Orders what excludes or breaks each other among variables that keep their values (SPEC 10.2).
+    fn order_kept(&mut self, added: &mut Vec<Ordering>) -> Result<Vec<Ordering>, TimeOverflow> {
+        let network = self.network;
+        let mut order = Vec::new();
+        let mut is_before: BTreeSet<(LabelId, LabelId)> = BTreeSet::new();
+        // What follows closely first: the rest follows from that.
+        let mut sides = self.solution.kept.sides.clone();
+        sides.sort_by_key(|&(first, then)| (self.room(first, then), first, then));
+        for (first, then) in sides {
+            is_before.insert((first, then));
+            let ordering = Ordering { first, then };
+            if self.ensure(network.interval(first).1, network.interval(then).0)? {
+                added.push(ordering);
+            }
+            order.push(ordering);
+        }
+        let links: BTreeMap<LabelId, LabelId> = self.solution.kept.links.iter().copied().collect();
+        for variable in &self.model.demands.variables {
+            let is_selected = |label: &LabelId| self.is_selected[self.model.conditions.labels[*label].arc];
+            let changes: Vec<LabelId> = variable.changes.iter().copied().filter(is_selected).collect();
+            let asks: Vec<LabelId> = variable.asks.iter().copied().filter(is_selected).collect();
+            let conflicting = |one: LabelId, other: LabelId| network.conflict(one, other);
+            if let Some(initial) = variable.initial {
+                let after = changes.iter().chain(&asks).copied();
+                order.extend(
+                    after
+                        .filter(|&label| conflicting(initial, label))
+                        .map(|then| Ordering { first: initial, then }),
+                );
+            }
+            for &ask in &asks {
+                let Some(&carrier) = links.get(&ask) else { continue };
+                for &change in changes.iter().filter(|&&change| change != carrier && conflicting(ask, change))
+                {
+                    let comes_first = is_before.contains(&(change, carrier));
+                    if comes_first {
+                        order.push(Ordering { first: change, then: ask });
+                        continue;
+                    }
+                    let ordering = Ordering { first: ask, then: change };
+                    if self.ensure(network.interval(ask).1, network.interval(change).0)? {
+                        added.push(ordering);
+                    }
+                    order.push(ordering);
+                }
+            }
+        }
+        Ok(order)
+    }
+
+    /// Orders conflicting pairs of variables that are known only where they are asserted (SPEC 5.3). `false` if a pair
+    /// has no room for the gap.
+    fn order_conflicts(
+        &mut self,
+        order: &mut Vec<Ordering>,
+        added: &mut Vec<Ordering>,
+    ) -> Result<bool, TimeOverflow> {
+        let labels: Vec<LabelId> = self.selected_labels().collect();
+        let mut pairs: Vec<(i64, LabelId, LabelId)> = Vec::new();
+        for &left in &labels {
+            for right in self.model.conditions.later_conflicts(left) {
+                if self.is_selected[self.model.conditions.labels[right].arc] {
+                    let touches = self.room(left, right).max(self.room(right, left)) < self.model.gap;
+                    pairs.push((i64::from(touches), left, right));
+                }
+            }
+        }
+        // What only touches may be ordered by what follows from the others.
+        pairs.sort_unstable();
+        for (_, left, right) in pairs {
+            let (gap_left, gap_right) = (self.model.gap_after[left], self.model.gap_after[right]);
+            let (one, other) = (self.network.interval(left), self.network.interval(right));
+            if self.is_entailed(one.1, other.0, gap_left)? {
+                order.push(Ordering { first: left, then: right });
+                continue;
+            }
+            if self.is_entailed(other.1, one.0, gap_right)? {
+                order.push(Ordering { first: right, then: left });
+                continue;
+            }
+            let is_left_first = self.room(left, right) >= self.room(right, left);
+            let (first, then) = if is_left_first { (left, right) } else { (right, left) };
+            let (end, start) = (self.network.interval(first).1, self.network.interval(then).0);
+            if !self.insert(end, start, self.model.gap)? {
+                return Ok(false);
+            }
+            order.push(Ordering { first, then });
+            added.push(Ordering { first, then });
+        }
+        Ok(true)
+    }
+
+    fn room(&self, first: LabelId, then: LabelId) -> i64 {
+        self.time(self.network.interval(then).0) - self.time(self.network.interval(first).1)
+    }
+
+    /// Orders the uses of a resource so that no schedule takes more than there is.
+    fn share(&mut self, resource: &ResourceDemand, added: &mut Vec<UseOrdering>) -> Result<(), TimeOverflow> {
+        let uses: Vec<ModelUse> =
+            resource.uses.iter().filter(|used| self.is_selected[used.arc]).copied().collect();
+        match resource.supply {
+            ModelSupply::Reusable { capacity } => {
+                let total: i64 = uses.iter().map(|used| used.amount).sum();
+                if total > capacity { self.hand_on(uses, capacity, added) } else { Ok(()) }
+            }
+            ModelSupply::Reservoir { least, greatest, level } => {
+                self.keep_level(&uses, (least, greatest), level, added)
+            }
+        }
+    }
+
+    /// Each use takes what it needs from what nobody has, or from uses that are over: these end before it starts.
+    fn hand_on(
+        &mut self,
+        mut uses: Vec<ModelUse>,
+        capacity: i64,
+        added: &mut Vec<UseOrdering>,
+    ) -> Result<(), TimeOverflow> {
+        uses.sort_by_key(|used| (self.time(used.start), self.time(used.end), used.id));
+        let mut free = capacity;
+        // Uses that are over or running, with what they still have to hand on.
+        let mut held: Vec<(ModelUse, i64)> = Vec::new();
+        for used in uses {
+            let mut needed = used.amount;
+            let mut given: Vec<usize> = Vec::new();
+            for (position, &(giver, amount)) in held.iter().enumerate() {
+                if needed > 0
+                    && amount > 0
+                    && self.time(giver.end) <= self.time(used.start)
+                    && self.is_entailed(giver.end, used.start, 0)?
+                {
+                    given.push(position);
+                    needed -= amount.min(needed);
+                }
+            }
+            let taken = free.min(needed);
+            free -= taken;
+            needed -= taken;
+            // Those that end last leave most room to the others.
+            let mut others: Vec<usize> = (0..held.len())
+                .filter(|position| {
+                    let (giver, amount) = held[*position];
+                    amount > 0 && !given.contains(position) && self.time(giver.end) <= self.time(used.start)
+                })
+                .collect();
+            others.sort_by_key(|&position| std::cmp::Reverse((self.time(held[position].0.end), position)));
+            for position in others {
+                if needed == 0 {
+                    break;
+                }
+                let (giver, amount) = held[position];
+                self.insert(giver.end, used.start, 0)?;
+                added.push(UseOrdering { first: giver.id, then: used.id });
+                given.push(position);
+                needed -= amount.min(needed);
+            }
+            let mut due = used.amount - taken;
+            for position in given {
+                let handed = held[position].1.min(due);
+                held[position].1 -= handed;
+                due -= handed;
+            }
+            held.retain(|&(_, amount)| amount > 0);
+            held.push((used, used.amount));
+        }
+        Ok(())
+    }
+
+    /// Orders what is consumed and produced until no schedule leaves the range (Laborie 2003).
+    fn keep_level(
+        &mut self,
+        uses: &[ModelUse],
+        range: (i64, i64),
+        level: i64,
+        added: &mut Vec<UseOrdering>,
+    ) -> Result<(), TimeOverflow> {
+        let mut by_time: Vec<&ModelUse> = uses.iter().collect();
+        by_time.sort_by_key(|used| (self.time(used.moment()), used.id));
+        for used in by_time {
+            // First what the times order for good, then what they let happen at one time.
+            let now = self.time(used.moment());
+            let mut others: Vec<&ModelUse> = uses.iter().filter(|other| other.id != used.id).collect();
+            others.sort_by_key(|other| {
+                let then = self.time(other.moment());
+                (then == now, then.abs_diff(now), other.id)
+            });
+            for together in [false, true] {
+                for &other in &others {
+                    if self.is_in_range(uses, used, range, level)? {
+                        break;
+                    }
+                    let then = self.time(other.moment());
+                    let same_change = other.change == used.change;
+                    // Of its own kind the others come later, of the other kind before.
+                    let (first, later) = if same_change { (used, other) } else { (other, used) };
+                    let fits = if same_change { now <= then } else { then <= now };
+                    if fits && self.ensure(first.moment(), later.moment())? {
+                        added.push(UseOrdering { first: first.id, then: later.id });
+                    }
+                    if together && then == now && self.ensure(later.moment(), first.moment())? {
+                        added.push(UseOrdering { first: later.id, then: first.id });
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the level after one consumption is not too low, or after one production not too high, in any schedule.
+    fn is_in_range(
+        &mut self,
+        uses: &[ModelUse],
+        used: &ModelUse,
+        (least, greatest): (i64, i64),
+        level: i64,
+    ) -> Result<bool, TimeOverflow> {
+        let extreme = self.extreme(uses, used, level)?;
+        Ok(if used.change == Change::Produces { extreme <= greatest } else { extreme >= least })
+    }
+
+    /// The lowest level after a consumption, or the highest after a production (SPEC 11).
+    fn extreme(&mut self, uses: &[ModelUse], used: &ModelUse, level: i64) -> Result<i64, TimeOverflow> {
+        let mut extreme = level;
+        let now = used.moment();
+        for other in uses {
+            let then = other.moment();
+            let counts = if other.id == used.id {
+                true
+            } else if other.change == used.change {
+                // Unless it comes after.
+                !self.is_entailed(now, then, 0)? || self.is_entailed(then, now, 0)?
+            } else {
+                self.is_entailed(then, now, 0)?
+            };
+            if counts {
+                extreme += if other.change == Change::Produces { other.amount } else { -other.amount };
+            }
+        }
+        Ok(extreme)
+    }
+
+    fn levels(&mut self, resource: &ResourceDemand) -> Result<Levels, TimeOverflow> {
+        let uses: Vec<ModelUse> =
+            resource.uses.iter().filter(|used| self.is_selected[used.arc]).copied().collect();
+        match resource.supply {
+            ModelSupply::Reusable { .. } => {
+                let mut is_before = vec![vec![false; uses.len()]; uses.len()];
+                let mut row = Vec::new();
+                for (first, used) in uses.iter().enumerate() {
+                    self.stn.distances_to(point(used.end), &mut row)?;
+                    for (then, other) in uses.iter().enumerate() {
+                        is_before[first][then] = first != then && row[other.start.index()] <= 0;
+                    }
+                }
+                let weights: Vec<i64> = uses.iter().map(|used| used.amount).collect();
+                Ok(Levels::Peak(resource.amount(heaviest_antichain(&weights, &is_before))))
+            }
+            ModelSupply::Reservoir { level, .. } => {
+                let (mut low, mut high) = (level, level);
+                for used in &uses {
+                    let extreme = self.extreme(&uses, used, level)?;
+                    low = low.min(extreme);
+                    high = high.max(extreme);
+                }
+                Ok(Levels::Range { low: resource.amount(low), high: resource.amount(high) })
+            }
+        }
+    }
+
+    fn windows(&mut self, selected: &[bool]) -> Result<Vec<Option<Window>>, TimeOverflow> {
+        let (mut latest, mut earliest) = self.windows.clone();
+        self.stn.tighten_distances(self.num_edges, &self.model.order, &mut latest, &mut earliest)?;
+        let model = self.model;
+        let windows = selected.iter().enumerate().map(|(node, &is_selected)| {
+            let (latest, earliest) = (latest[node], earliest[node]);
+            is_selected.then(|| Window {
+                earliest: if earliest == INFINITE { model.time(0) } else { model.time(-earliest) },
+                latest: if latest == INFINITE { Bound::Infinite } else { Bound::Finite(model.time(latest)) },
+            })
+        });
+        Ok(windows.collect())
+    }
+}
+
+/// Whether the network took it.
+fn done(result: Result<(), Inconsistency>) -> Result<bool, TimeOverflow> {
+    match result {
+        Ok(()) => Ok(true),
+        Err(Inconsistency::NegativeCycle) => Ok(false),
+        Err(Inconsistency::Overflow(overflow)) => Err(overflow.into()),
+    }
+}

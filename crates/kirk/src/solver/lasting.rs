@@ -1,0 +1,383 @@
+//! Variables that keep their values (SPEC 10.2): which change comes first, which one each requirement rests on, and that
+//! nothing comes between the two.
+//!
+//! Two changes that exclude each other are ordered by a choice point. Where a requirement rests on a change, each other
+//! one that would break it comes before that change, or after the requirement.
+
+use std::collections::BTreeMap;
+
+use tpn::LabelId;
+
+use super::encode::{MAX_LINKS, Part, Problem, TooLarge};
+use super::literal::Literal;
+use super::{ChoicePoint, ChoicePointKind, Solver};
+use crate::demands::LastingVariable;
+use crate::structure::Relation;
+
+/// What the solver knows of variables that keep their values.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sides {
+    /// The literals of both orders of each pair of changes that exclude each other and that nesting does not order, the
+    /// textually earlier one first.
+    orders: BTreeMap<(LabelId, LabelId), [Literal; 2]>,
+    /// What each requirement may rest on.
+    carriers: Vec<(LabelId, Vec<(LabelId, Literal)>)>,
+}
+
+/// What a solution says of variables that keep their values.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Kept {
+    /// What each selected requirement rests on, in textual order of the requirements.
+    pub(crate) links: Vec<(LabelId, LabelId)>,
+    /// Each selected pair of changes that exclude each other, the earlier one first.
+    pub(crate) sides: Vec<(LabelId, LabelId)>,
+}
+
+impl Sides {}
+
+impl Problem<'_> {
+    /// Adds the orders and links of all variables that keep their values.
+    pub(super) fn add_lasting(&mut self, solver: &mut Solver, part: Part<'_>) -> Result<(), TooLarge> {
+        let model = self.model;
+        let is_active = |label: &LabelId| part.active_labels.is_none_or(|active| active[*label]);
+        let mut changing: Vec<Vec<LabelId>> = Vec::with_capacity(model.demands.variables.len());
+        let mut requirements: Vec<(LabelId, usize)> = Vec::new();
+        for (index, variable) in model.demands.variables.iter().enumerate() {
+            let exists = |label: &LabelId| !solver.trail.fails(self.intervals[*label].presence);
+            changing.push(variable.changes.iter().copied().filter(is_active).filter(exists).collect());
+            let asks = variable.asks.iter().copied().filter(is_active).filter(exists);
+            requirements.extend(asks.map(|ask| (ask, index)));
+        }
+        // Links come before orders, both in textual order (SPEC 5.4).
+        requirements.sort_unstable();
+        for &(ask, index) in &requirements {
+            self.add_carriers(solver, ask, &model.demands.variables[index])?;
+        }
+        let mut pairs: Vec<(LabelId, LabelId)> = Vec::new();
+        for changes in &changing {
+            for (position, &left) in changes.iter().enumerate() {
+                pairs.extend(changes[position + 1..].iter().map(|&right| (left, right)));
+            }
+        }
+        pairs.sort_unstable();
+        for (left, right) in pairs {
+            self.add_sides(solver, left, right);
+        }
+        self.add_threats(solver, &requirements, &changing);
+        for (variable, changes) in model.demands.variables.iter().zip(&changing) {
+            // Between movements that do not count the vehicle is somewhere else.
+            if variable.changes.iter().all(is_active) {
+                self.add_departures(solver, variable, changes);
+            }
+        }
+        Ok(())
+    }
+
+    /// A movement takes at least as long as it does from where the one right before it ends (SPEC 10.3).
+    fn add_departures(&mut self, solver: &mut Solver, variable: &LastingVariable, changes: &[LabelId]) {
+        let model = self.model;
+        for &movement in changes {
+            let Some(departures) = model.demands.departures.get(&movement) else { continue };
+            let moving = self.intervals[movement];
+            let mut found = vec![!moving.presence];
+            let possible = self.undominated(movement, changes, |_| true);
+            for before in variable.initial.into_iter().chain(possible.iter().copied()) {
+                if before == movement || !self.can_be_together(before, movement) {
+                    continue;
+                }
+                let is_initial = Some(before) == variable.initial;
+                let order = if is_initial { Some(Literal::TRUE) } else { self.before(before, movement) };
+                let Some(order) = order.filter(|&order| !solver.trail.fails(order)) else { continue };
+                let last = solver.boolean();
+                solver.resize();
+                solver.imply(last, order);
+                solver.imply(last, moving.presence);
+                solver.imply(last, self.intervals[before].presence);
+                for &other in changes.iter().filter(|&&other| other != movement && other != before) {
+                    // It is earlier still, or later than the movement.
+                    let earlier = (!is_initial).then(|| self.before(other, before)).flatten();
+                    let later = self.before(movement, other);
+                    let other_presence = self.intervals[other].presence;
+                    if self.can_be_together(other, movement) && self.can_be_together(other, before) {
+                        let ways = [!last, !other_presence].into_iter().chain(earlier).chain(later);
+                        solver.at_least_one(ways);
+                    }
+                }
+                let departure =
+                    departures.iter().find(|departure| model.conditions.gives_value(before, departure.from));
+                match departure.map(|departure| departure.least) {
+                    None => {}
+                    Some(None) => solver.assert(!last),
+                    Some(Some(least)) => {
+                        let first = solver.differences.len();
+                        solver.difference(moving.end, moving.start, -least, [last; 2]);
+                        solver.check_differences(first);
+                    }
+                }
+                found.push(last);
+            }
+            solver.at_least_one(found);
+        }
+    }
+
+    fn add_carriers(
+        &mut self,
+        solver: &mut Solver,
+        ask: LabelId,
+        variable: &LastingVariable,
+    ) -> Result<(), TooLarge> {
+        let asked = self.intervals[ask];
+        // Nothing that is nested before what breaks the requirement can carry it.
+        let breaks = |change: LabelId| self.model.conditions.breaks(change, ask);
+        let possible = self.undominated(ask, &variable.changes, breaks);
+        let is_broken = possible.len() < variable.changes.len();
+        let initial = variable.initial.filter(|_| !is_broken);
+        let carriers: Vec<LabelId> = initial
+            .into_iter()
+            .chain(possible)
+            .filter(|&change| self.can_give(solver, ask, change))
+            .collect();
+        self.num_links += carriers.len();
+        if self.num_links > MAX_LINKS {
+            return Err(TooLarge);
+        }
+        let is_only = carriers.len() == 1;
+        let mut options = Vec::with_capacity(carriers.len());
+        for change in carriers {
+            options.push((change, if is_only { asked.presence } else { solver.boolean() }));
+        }
+        solver.resize();
+        let first = solver.differences.len();
+        for &(change, link) in &options {
+            let given = self.intervals[change];
+            solver.imply(link, given.presence);
+            solver.imply(link, asked.presence);
+            solver.difference(asked.start, self.ready[change], 0, [link; 2]);
+        }
+        let literals: Vec<Literal> = options.iter().map(|&(_, link)| link).collect();
+        solver.check_differences(first);
+        if !is_only {
+            solver.at_least_one(literals.iter().copied().chain([!asked.presence]));
+            let kind = ChoicePointKind::Carriers { ask };
+            let when = vec![asked.presence];
+            solver.add_exclusive_choice_point(ChoicePoint { when, kind, options: literals, last: None });
+        }
+        self.sides.carriers.push((ask, options));
+        Ok(())
+    }
+
+    /// Whether a requirement could rest on a change, by their alternatives and windows.
+    fn can_give(&self, solver: &Solver, ask: LabelId, change: LabelId) -> bool {
+        let labels = &self.model.conditions.labels;
+        let (asked, given) = (self.intervals[ask], self.intervals[change]);
+        self.model.conditions.gives(change, ask)
+            // Nothing rests on its own effect.
+            && labels[change].arc != labels[ask].arc
+            && !solver.trail.fails(given.presence)
+            && self.can_be_together(ask, change)
+            && self.model.nested_order(change, ask) != Relation::After
+            && solver.trail.least(self.ready[change]) <= solver.trail.most(asked.start)
+    }
+
+    fn add_sides(&mut self, solver: &mut Solver, left: LabelId, right: LabelId) {
+        if !self.model.conditions.exclude(left, right) || !self.can_be_together(left, right) {
+            return;
+        }
+        let (one, other) = (self.intervals[left], self.intervals[right]);
+        if self.model.nested_order(left, right) != Relation::Open {
+            return;
+        }
+        let left_first = solver.boolean();
+        let presences = [one.presence, other.presence];
+        let is_certain = presences.iter().all(|&presence| solver.trail.holds(presence));
+        let right_first = if is_certain { !left_first } else { solver.boolean() };
+        solver.resize();
+        if !is_certain {
+            for order in [left_first, right_first] {
+                for presence in presences {
+                    solver.imply(order, presence);
+                }
+            }
+            solver.at_least_one([!presences[0], !presences[1], left_first, right_first]);
+        }
+        let first = solver.differences.len();
+        solver.difference(other.start, one.end, 0, [left_first; 2]);
+        solver.difference(one.start, other.end, 0, [right_first; 2]);
+        let kind = ChoicePointKind::Sides;
+        let options = vec![left_first, right_first];
+        solver.add_exclusive_choice_point(ChoicePoint {
+            when: presences.to_vec(),
+            kind,
+            options,
+            last: None,
+        });
+        solver.check_differences(first);
+        self.sides.orders.insert((left, right), [left_first, right_first]);
+    }
+
+    /// That one change comes before another that it excludes.
+    fn before(&self, first: LabelId, then: LabelId) -> Option<Literal> {
+        match self.model.nested_order(first, then) {
+            Relation::Before => Some(Literal::TRUE),
+            Relation::After => Some(!Literal::TRUE),
+            Relation::Open => {
+                let orders = self.sides.orders.get(&(first.min(then), first.max(then)))?;
+                Some(orders[usize::from(first > then)])
+            }
+        }
+    }
+
+    /// The changes that can be the last before a label: nesting puts no other one in between that comes in any case and
+    /// that counts.
+    fn undominated(
+        &self,
+        label: LabelId,
+        changes: &[LabelId],
+        counts: impl Fn(LabelId) -> bool,
+    ) -> Vec<LabelId> {
+        let model = self.model;
+        let context = |label: LabelId| model.arcs[model.conditions.labels[label].arc].context;
+        let is_certain = |change: LabelId| context(change).is_none_or(|own| Some(own) == context(label));
+        let is_between = |&change: &LabelId| {
+            counts(change) && is_certain(change) && model.nested_order(change, label) == Relation::Before
+        };
+        let last = changes.iter().rev().copied().find(is_between);
+        let is_possible =
+            |&change: &LabelId| last.is_none_or(|last| model.nested_order(change, last) != Relation::Before);
+        changes.iter().copied().filter(is_possible).collect()
+    }
+
+    /// What would break a requirement comes before what it rests on, or after it.
+    fn add_threats(
+        &mut self,
+        solver: &mut Solver,
+        requirements: &[(LabelId, usize)],
+        changing: &[Vec<LabelId>],
+    ) {
+        for (position, &(ask, variable)) in requirements.iter().enumerate() {
+            let asked = self.intervals[ask];
+            let options = self.sides.carriers[position].1.clone();
+            for &threat in &changing[variable] {
+                if !self.model.conditions.breaks(threat, ask)
+                    || !self.can_be_together(ask, threat)
+                    || self.model.nested_order(ask, threat) == Relation::Before
+                {
+                    continue;
+                }
+                let threatening = self.intervals[threat];
+                let mut is_over: Option<Literal> = None;
+                for &(change, link) in &options {
+                    if change == threat || !self.can_be_together(change, threat) {
+                        continue;
+                    }
+                    let is_before = self.before(threat, change);
+                    if is_before == Some(Literal::TRUE) {
+                        continue;
+                    }
+                    let after = *is_over.get_or_insert_with(|| {
+                        let after = solver.boolean();
+                        solver.resize();
+                        solver.imply(after, asked.presence);
+                        solver.imply(after, threatening.presence);
+                        let first = solver.differences.len();
+                        solver.difference(threatening.start, asked.end, 0, [after; 2]);
+                        solver.check_differences(first);
+                        after
+                    });
+                    let clause = [!link, !threatening.presence, after];
+                    solver.at_least_one(clause.into_iter().chain(is_before));
+                }
+            }
+        }
+    }
+
+    /// What the solver's solution says of variables that keep their values.
+    pub(crate) fn kept(&self, solver: &Solver) -> Kept {
+        let exists = |label: LabelId| solver.trail.holds(self.intervals[label].presence);
+        let mut kept = Kept::default();
+        for (ask, options) in self.sides.carriers.iter().filter(|(ask, _)| exists(*ask)) {
+            if let Some((change, _)) = options.iter().find(|(_, link)| solver.trail.holds(*link)) {
+                kept.links.push((*ask, *change));
+            }
+        }
+        for variable in &self.model.demands.variables {
+            let changes: Vec<LabelId> =
+                variable.changes.iter().copied().filter(|&change| exists(change)).collect();
+            for (position, &left) in changes.iter().enumerate() {
+                for &right in &changes[position + 1..] {
+                    if self.model.conditions.exclude(left, right)
+                        && let Some(left_first) = self.before(left, right)
+                    {
+                        let is_left_first = solver.trail.holds(left_first);
+                        kept.sides.push(if is_left_first { (left, right) } else { (right, left) });
+                    }
+                }
+            }
+        }
+        kept
+    }
+
+    /// The literals of the present solution's links and sides: a solution without one of them is another one.
+    pub(crate) fn kept_literals(&self, solver: &Solver) -> Vec<Literal> {
+        let links = self.sides.carriers.iter().flat_map(|(_, options)| options.iter().map(|&(_, link)| link));
+        let orders = self.sides.orders.values().flatten().copied();
+        links.chain(orders).filter(|&literal| solver.trail.holds(literal)).collect()
+    }
+
+    /// Forbids circles among the sides of changes without length (SPEC 10.2). `false` if there is none.
+    pub(super) fn break_circles(&self, solver: &mut Solver) -> bool {
+        let is_instant = |label: LabelId| {
+            let interval = self.intervals[label];
+            solver.trail.holds(interval.presence)
+                && solver.trail.least(interval.start) == solver.trail.least(interval.end)
+        };
+        let mut next: BTreeMap<LabelId, Vec<(LabelId, Literal)>> = BTreeMap::new();
+        for (&(left, right), &[left_first, right_first]) in &self.sides.orders {
+            if is_instant(left) && is_instant(right) {
+                if solver.trail.holds(left_first) {
+                    next.entry(left).or_default().push((right, left_first));
+                } else {
+                    next.entry(right).or_default().push((left, right_first));
+                }
+            }
+        }
+        let Some(circle) = circle(&next) else { return false };
+        solver.retract(0);
+        solver.at_least_one(circle.into_iter().map(|order| !order));
+        true
+    }
+}
+
+/// The literals along a circle, if there is one.
+fn circle(next: &BTreeMap<LabelId, Vec<(LabelId, Literal)>>) -> Option<Vec<Literal>> {
+    let mut is_done: BTreeMap<LabelId, bool> = BTreeMap::new();
+    for &start in next.keys() {
+        let mut path: Vec<(LabelId, usize, Option<Literal>)> = Vec::new();
+        is_done.entry(start).or_insert_with(|| {
+            path.push((start, 0, None));
+            false
+        });
+        while let Some((at, position, _)) = path.last_mut() {
+            let step = next.get(at).and_then(|steps| steps.get(*position)).copied();
+            *position += 1;
+            let Some((target, order)) = step else {
+                is_done.insert(*at, true);
+                path.pop();
+                continue;
+            };
+            match is_done.get(&target) {
+                Some(true) => {}
+                Some(false) => {
+                    let from = path.iter().position(|&(label, _, _)| label == target).unwrap_or(0);
+                    let along = path[from + 1..].iter().filter_map(|&(_, _, order)| order);
+                    return Some(along.chain([order]).collect());
+                }
+                None => {
+                    is_done.insert(target, false);
+                    path.push((target, 0, Some(order)));
+                }
+            }
+        }
+    }
+    None
+}

@@ -1,0 +1,287 @@
+//! Resources (SPEC 11): where a solution takes more than there is, one of the orders that would mend it must hold.
+//!
+//! Uses that together take more than a resource has are a minimal critical set, and one of them must end before another
+//! one starts (Laborie and Ghallab 1995). Of a reservoir that would run low, one of the productions that come too late
+//! must come before one of the consumptions; of one that would run over, the other way round.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use rmpl::program::Change;
+use tpn::UseId;
+
+use super::encode::{Interval, Part, Problem};
+use super::literal::{Literal, Variable};
+use super::{ChoicePoint, ChoicePointKind, Solver};
+use crate::demands::ModelSupply;
+
+/// Of larger sets of uses that exclude each other, only those in each other's way are ordered.
+const MAX_PAIRS: usize = 4_000;
+
+/// A use of a resource in the solver.
+#[derive(Clone, Copy, Debug)]
+struct Task {
+    id: UseId,
+    interval: Interval,
+    change: Change,
+    amount: i64,
+    /// Otherwise it takes nothing, but still gives.
+    is_active: bool,
+}
+
+impl Task {
+    fn moment(&self) -> Variable {
+        if self.change == Change::Produces { self.interval.end } else { self.interval.start }
+    }
+}
+
+#[derive(Clone, Debug)]
+struct Shared {
+    supply: ModelSupply,
+    tasks: Vec<Task>,
+    /// Whether uses that exclude each other are known to.
+    has_exclusion: bool,
+}
+
+/// What the solver knows of resources.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Shares {
+    all: Vec<Shared>,
+    /// That one use comes before another.
+    orders: BTreeMap<(UseId, UseId), Literal>,
+    ordered_pairs: BTreeSet<(UseId, UseId)>,
+}
+
+impl Problem<'_> {
+    pub(super) fn add_resources(&mut self, solver: &Solver, part: Part<'_>) {
+        for resource in &self.model.demands.resources {
+            let tasks = resource.uses.iter().filter(|used| used.amount > 0);
+            let tasks = tasks.map(|used| {
+                let is_active = part.active_uses.is_none_or(|active| active[used.id.index()]);
+                let arc = &self.model.arcs[used.arc];
+                let interval = Interval {
+                    start: self.times[used.start],
+                    end: self.times[used.end],
+                    presence: self.presence(arc.context),
+                    duration: if (arc.from, arc.to) == (used.start, used.end) { arc.lower.max(0) } else { 0 },
+                };
+                Task { id: used.id, interval, change: used.change, amount: used.amount, is_active }
+            });
+            let tasks: Vec<Task> = tasks.filter(|task| !solver.trail.fails(task.interval.presence)).collect();
+            self.shares.all.push(Shared { supply: resource.supply, tasks, has_exclusion: false });
+        }
+    }
+
+    /// Adds choice points where the present solution takes more of a resource than there is. `false` if it does not.
+    pub(super) fn share(&mut self, solver: &mut Solver) -> bool {
+        let mut found: Vec<Critical> = Vec::new();
+        let mut excluding: Vec<usize> = Vec::new();
+        for (index, shared) in self.shares.all.iter().enumerate() {
+            let present: Vec<Task> = (shared.tasks.iter())
+                .filter(|task| solver.trail.holds(task.interval.presence))
+                .copied()
+                .collect();
+            match shared.supply {
+                ModelSupply::Reusable { capacity } => {
+                    let active: Vec<Task> = present.into_iter().filter(|task| task.is_active).collect();
+                    let critical = overload(solver, &active, capacity);
+                    if critical.is_some() && !shared.has_exclusion {
+                        excluding.push(index);
+                    }
+                    found.extend(critical.map(Critical::Overload));
+                }
+                ModelSupply::Reservoir { least, greatest, level } => {
+                    found.extend(out_of_range(solver, &shared.tasks, (least, greatest), level));
+                }
+            }
+        }
+        if found.is_empty() {
+            return false;
+        }
+        solver.retract(0);
+        for index in excluding {
+            self.exclude(solver, index);
+        }
+        for critical in found {
+            match critical {
+                Critical::Overload(tasks) => self.resolve_overload(solver, &tasks),
+                Critical::Late { early, late } => self.resolve_late(solver, &early, &late),
+            }
+        }
+        true
+    }
+
+    /// Tells the solver of the uses that exclude each other two by two.
+    fn exclude(&mut self, solver: &mut Solver, index: usize) {
+        self.shares.all[index].has_exclusion = true;
+        let Shared { supply: ModelSupply::Reusable { capacity }, tasks, .. } = self.shares.all[index].clone()
+        else {
+            return;
+        };
+        // More than half each.
+        let large: Vec<Task> =
+            tasks.into_iter().filter(|task| task.is_active && task.amount > capacity - task.amount).collect();
+        if large.len() > 2 {
+            solver.disjunctives.add_tasks(large.iter().map(|task| task.interval).collect());
+        }
+        if large.len() * large.len() / 2 > MAX_PAIRS {
+            return;
+        }
+        for (position, left) in large.iter().enumerate() {
+            for right in &large[position + 1..] {
+                self.resolve_overload(solver, &[*left, *right]);
+            }
+        }
+    }
+
+    /// One of these uses ends before another one starts.
+    fn resolve_overload(&mut self, solver: &mut Solver, tasks: &[Task]) {
+        if let [left, right] = tasks
+            && !self.shares.ordered_pairs.insert((left.id, right.id))
+        {
+            return;
+        }
+        let mut options = Vec::new();
+        for (position, left) in tasks.iter().enumerate() {
+            for right in &tasks[position + 1..] {
+                for (first, then) in [(left, right), (right, left)] {
+                    let ends = (first.interval.end, then.interval.start);
+                    options.push(self.use_order(solver, first, then, ends));
+                }
+            }
+        }
+        add_resolvers(solver, options, tasks);
+    }
+
+    /// One of the late ones comes before one of the early ones.
+    fn resolve_late(&mut self, solver: &mut Solver, early: &[Task], late: &[Task]) {
+        let mut options = Vec::new();
+        for first in late {
+            for then in early {
+                options.push(self.use_order(solver, first, then, (first.moment(), then.moment())));
+            }
+        }
+        add_resolvers(solver, options, early);
+    }
+
+    /// The literal that one use comes before another.
+    fn use_order(
+        &mut self,
+        solver: &mut Solver,
+        first: &Task,
+        then: &Task,
+        (over, begun): (Variable, Variable),
+    ) -> Literal {
+        if let Some(&known) = self.shares.orders.get(&(first.id, then.id)) {
+            return known;
+        }
+        let order = solver.boolean();
+        solver.resize();
+        solver.imply(order, first.interval.presence);
+        solver.imply(order, then.interval.presence);
+        let differences = solver.differences.len();
+        solver.difference(begun, over, 0, [order; 2]);
+        solver.check_differences(differences);
+        self.shares.orders.insert((first.id, then.id), order);
+        order
+    }
+}
+
+/// One of these orders holds where all the tasks are present.
+fn add_resolvers(solver: &mut Solver, options: Vec<Literal>, present: &[Task]) {
+    let when: Vec<Literal> = present.iter().map(|task| task.interval.presence).collect();
+    solver.at_least_one(options.iter().copied().chain(when.iter().map(|&presence| !presence)));
+    if options.len() > 1 {
+        let kind = ChoicePointKind::Resolvers;
+        solver.add_choice_point(ChoicePoint { when, kind, options, last: None }, 0.0);
+    }
+}
+
+/// What is wrong with a solution.
+enum Critical {
+    /// These uses are too much together.
+    Overload(Vec<Task>),
+    /// Unless one of the late ones comes before one of the early ones, the early ones are too much.
+    Late { early: Vec<Task>, late: Vec<Task> },
+}
+
+/// A minimal set of uses that overlap in the least times and are too much together, if there is one: of the first
+/// instant at which that is so.
+fn overload(solver: &Solver, present: &[Task], capacity: i64) -> Option<Vec<Task>> {
+    let times =
+        |task: &Task| (solver.trail.least(task.interval.start), solver.trail.least(task.interval.end));
+    let mut by_start: Vec<&Task> = present.iter().collect();
+    by_start.sort_by_key(|task| (times(task), task.id));
+    let mut running: Vec<&Task> = Vec::new();
+    for &task in &by_start {
+        let (start, end) = times(task);
+        // What has no length counts inside another, not where that begins.
+        running.retain(|other| times(other).1 > start);
+        let together: Vec<&Task> = if start == end {
+            running.iter().copied().filter(|other| times(other).0 < start).chain([task]).collect()
+        } else {
+            running.push(task);
+            running.iter().copied().filter(|other| times(other).0 < times(other).1).collect()
+        };
+        let sum: i64 = together.iter().map(|task| task.amount).sum();
+        if sum > capacity {
+            return Some(minimal(together, sum - capacity));
+        }
+    }
+    None
+}
+
+/// Leaves out what is not needed for an excess, the smallest first.
+fn minimal(mut tasks: Vec<&Task>, mut excess: i64) -> Vec<Task> {
+    tasks.sort_by_key(|task| (task.amount, task.id));
+    tasks.retain(|task| {
+        let is_needed = task.amount >= excess;
+        if !is_needed {
+            excess -= task.amount;
+        }
+        is_needed
+    });
+    tasks.sort_by_key(|task| task.id);
+    tasks.into_iter().copied().collect()
+}
+
+/// The first instant at which a reservoir's level leaves its range. What the solution does not select may come before that
+/// in another one.
+fn out_of_range(
+    solver: &Solver,
+    tasks: &[Task],
+    (least, greatest): (i64, i64),
+    initial: i64,
+) -> Option<Critical> {
+    let time = |task: &Task| solver.trail.least(task.moment());
+    let mut by_time: Vec<&Task> =
+        tasks.iter().filter(|task| solver.trail.holds(task.interval.presence)).collect();
+    by_time.sort_by_key(|task| (time(task), task.id));
+    // What is not active counts only where it helps.
+    let (mut low, mut high) = (initial, initial);
+    let mut at = 0;
+    while at < by_time.len() {
+        let now = time(by_time[at]);
+        while at < by_time.len() && time(by_time[at]) == now {
+            let Task { change, amount, is_active, .. } = *by_time[at];
+            let gain = if change == Change::Produces { amount } else { -amount };
+            low += if is_active || gain > 0 { gain } else { 0 };
+            high += if is_active || gain < 0 { gain } else { 0 };
+            at += 1;
+        }
+        let (excess, early_change) = if low < least {
+            (least - low, Change::Consumes)
+        } else if high > greatest {
+            (high - greatest, Change::Produces)
+        } else {
+            continue;
+        };
+        let (counted, mending): (Vec<&Task>, Vec<&Task>) =
+            by_time[..at].iter().copied().partition(|task| task.change == early_change);
+        let counted = counted.into_iter().filter(|task| task.is_active).collect();
+        let is_late =
+            |task: &&Task| task.change != early_change && mending.iter().all(|counted| counted.id != task.id);
+        let late = tasks.iter().filter(is_late).copied().collect();
+        return Some(Critical::Late { early: minimal(counted, excess), late });
+    }
+    None
+}
