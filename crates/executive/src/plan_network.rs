@@ -2,7 +2,7 @@
 
 use exact::{Bound, Scale, Time};
 use stn::{Inconsistency, PointId, Stn, Window};
-use tpn::{ArcId, Network, NodeId, Plan};
+use tpn::{ArcId, Network, NodeId, Plan, Precedence};
 
 /// A plan's events as time points, with their constraints.
 #[derive(Clone, Debug)]
@@ -92,26 +92,14 @@ impl PlanNetwork {
         Ok(())
     }
 
-    /// Causal links and orderings: the constraints that planning added (SPEC 5.2, 5.3).
+    /// Causal links and orderings: the constraints that planning added (SPEC 5.2, 5.3, 10.2, 11).
     fn add_decisions(&mut self, network: &Network, plan: &Plan) -> Result<(), PlanError> {
-        let ends = |label: tpn::LabelId| {
-            let arc = &network.arcs[network.labels[label.index()].arc.index()];
-            (arc.from, arc.to)
-        };
-        let mut before = |first: NodeId, then: NodeId, gap: Time| {
-            let gap = self.scale.ticks(gap)?;
-            let (Some(first), Some(then)) = (self.point(first), self.point(then)) else {
+        for Precedence { earlier, later, least } in plan.precedences(network) {
+            let gap = self.scale.ticks(least)?;
+            let (Some(first), Some(then)) = (self.point(earlier), self.point(later)) else {
                 return Err(PlanError::Inconsistent);
             };
-            Ok(self.stn.constrain(first, then, gap, None, ADDED)?)
-        };
-        for link in &plan.causal_links {
-            let ((tell_start, tell_end), (ask_start, ask_end)) = (ends(link.tell), ends(link.ask));
-            before(tell_start, ask_start, Time::ZERO)?;
-            before(ask_end, tell_end, Time::ZERO)?;
-        }
-        for ordering in &plan.orderings_added {
-            before(ends(ordering.first).1, ends(ordering.then).0, network.threat_gap)?;
+            self.stn.constrain(first, then, gap, None, ADDED)?;
         }
         Ok(())
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use exact::Time;
 use stn::PointId;
-use tpn::{EventRef, Network, NodeId, Occurrence, Plan};
+use tpn::{EventRef, Network, NodeId, Occurrence, Plan, Precedence};
 
 use crate::dispatch::{Dispatcher, NEVER};
 use crate::plan_network::{PlanError, PlanNetwork};
@@ -85,17 +85,10 @@ fn before(network: &Network, plan: &Plan) -> Vec<Vec<NodeId>> {
             before[arc.to.index()].push(arc.from);
         }
     }
-    let ends = |label: tpn::LabelId| {
-        let arc = &network.arcs[network.labels[label.index()].arc.index()];
-        (arc.from, arc.to)
-    };
-    for link in &plan.causal_links {
-        let ((tell_start, tell_end), (ask_start, ask_end)) = (ends(link.tell), ends(link.ask));
-        for (first, then) in [(tell_start, ask_start), (ask_end, tell_end)] {
-            // Of two that come at one instant the structure says which is first.
-            if first != then && !leads_to(&before, then, first) {
-                before[then.index()].push(first);
-            }
+    for Precedence { earlier, later, .. } in plan.precedences(network) {
+        // Of two that come at one instant the structure says which is first.
+        if earlier != later && !leads_to(&before, later, earlier) {
+            before[later.index()].push(earlier);
         }
     }
     before

@@ -89,3 +89,22 @@ fn a_grabbed_event_can_be_put_back_where_it_was() {
     pinned.release(start);
     assert_eq!(pinned.windows(network.nodes.len()), plan.windows);
 }
+
+#[test]
+fn what_lasts_and_what_is_limited_holds_while_a_plan_is_executed() {
+    for source in [
+        include_str!("../../../assets/missions/arm.rmpl"),
+        "resource Battery 10..100 = 70;
+         resource Body;
+         primitive Drive()[10,20] consumes Battery 25 uses Body;
+         primitive Charge()[45,60] produces Battery 50 uses Body;
+         scenario S[0,400] = { { Drive(); delay; Drive(); delay; Drive() }, { delay; Charge() } }",
+        "resource A;
+         primitive P()[3,5] uses A;
+         scenario S[0,30] = { unordered { P(); P(); P() } }",
+    ] {
+        let (network, plan) = planned(source);
+        let pinned = PinnedPlan::new(&network, &plan).expect("the plan is consistent");
+        assert_eq!(pinned.windows(network.nodes.len()), plan.windows, "{source}");
+    }
+}

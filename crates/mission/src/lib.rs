@@ -10,7 +10,8 @@ pub mod content;
 pub mod control;
 pub mod control_run;
 mod core;
-pub mod driving;
+pub mod departures;
+mod driving;
 pub mod execution;
 pub mod ground;
 pub mod job;
@@ -32,6 +33,7 @@ pub mod simulation;
 pub mod snapshot;
 pub mod traverse;
 pub mod wire;
+pub mod worth;
 
 pub use self::core::{Core, CoreHost};
 pub use both_searches::{BothSearches, Searched};

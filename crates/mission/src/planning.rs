@@ -16,6 +16,7 @@ use terrain::{ConfigurationSpace, Terrain};
 use tpn::path::{PathLeg, TraversePath};
 use tpn::{ArcId, ArcKind, Network, OccurrenceId, Plan};
 
+use crate::departures::Departures;
 use crate::driving::{self, Drive};
 use crate::ground::{FreeSpace, Grounds};
 use crate::programs;
@@ -79,6 +80,18 @@ pub fn plan(
     stop: &mut dyn FnMut() -> bool,
 ) -> Planned {
     let mut inserted: BTreeMap<OccurrenceId, Inserted> = BTreeMap::new();
+    let ordered;
+    let problem = if problem.ground.is_some() && kirk::has_open_order(problem.network) {
+        match order_movements(problem, grounds, paths, stop) {
+            Ok(network) => {
+                ordered = Arc::new(network);
+                &Problem { network: &ordered, ..*problem }
+            }
+            Err(answer) => return conclude(problem, grounds, answer.network, answer.outcome, answer.tried),
+        }
+    } else {
+        problem
+    };
     let mut network = match problem.facts {
         Some(_) => Arc::new(with_paths(problem, &inserted)),
         None => Arc::clone(problem.network),
@@ -96,6 +109,65 @@ pub fn plan(
         network = Arc::new(with_paths(problem, &inserted));
     }
     conclude(problem, grounds, network, outcome, inserted)
+}
+
+/// What came of it where movements fit in no order.
+struct NoOrder {
+    network: Arc<Network>,
+    outcome: Outcome,
+    tried: BTreeMap<OccurrenceId, Inserted>,
+}
+
+/// The network in which movements start where they do in the first plan whose paths are all known: each path that is found
+/// tells how long its leg takes, and excludes the orders in which there is no time for it (SPEC 10.3).
+fn order_movements(
+    problem: &Problem<'_>,
+    grounds: &mut Grounds,
+    paths: &mut Paths,
+    stop: &mut dyn FnMut() -> bool,
+) -> Result<Network, Box<NoOrder>> {
+    let mut departures = Departures::new(problem.network, problem.program);
+    let mut tried: BTreeMap<OccurrenceId, Inserted> = BTreeMap::new();
+    loop {
+        let mut network = problem.network.as_ref().clone();
+        network.departures = departures.all();
+        let asked = match problem.facts {
+            Some(facts) => facts.apply(&network, problem.network.nodes.len()),
+            None => network.clone(),
+        };
+        // Without a plan, the last round tells why.
+        let options = Options { all: false, best: 1, ..problem.options };
+        let outcome = kirk::plan(&asked, &options, &mut |_: &Stats| stop());
+        let (Some(ground), Some(plan)) = (problem.ground, outcome.plans.first()) else {
+            return Err(Box::new(NoOrder { network: Arc::new(asked), outcome, tried }));
+        };
+        let routes = traverse::routes(&asked, problem.program, plan);
+        let mut is_new = false;
+        for route in &routes {
+            if departures.knows(route) {
+                continue;
+            }
+            is_new = true;
+            let legs = legs(problem, ground, grounds, paths, route);
+            departures.learn(route, legs.as_ref().ok().and_then(|legs| least_duration(problem, route, legs)));
+            if legs.is_err() {
+                let (waypoints, route) = (route.waypoints.clone(), route.clone());
+                tried.insert(route.occurrence, Inserted { waypoints, legs, route });
+            }
+        }
+        if !is_new {
+            network.departures = departures.only(&routes);
+            return Ok(network);
+        }
+    }
+}
+
+/// The least time that the legs of a route take; nothing where that does not fit, which its own bounds then decide.
+fn least_duration(problem: &Problem<'_>, route: &Route, legs: &[Leg]) -> Option<Time> {
+    let unit_seconds = problem.program.options.time_unit.seconds();
+    let Some(path) = traverse_path(route, legs, problem.ground?.1) else { return Some(Time::ZERO) };
+    let segments = tpn::path::segment_bounds(&path, unit_seconds).unwrap_or_default();
+    Some(Time::checked_sum(segments.iter().map(|segment| segment.least)).unwrap_or_default())
 }
 
 /// A network that was planned as it is, such as one that came without a program.
@@ -116,7 +188,7 @@ pub fn without_paths(network: &Arc<Network>, outcome: Outcome) -> Planned {
 /// Finds the paths that the plan needs and that are not in the network yet; whether there were any.
 fn find_paths(
     problem: &Problem<'_>,
-    (key, map): (&MapKey, &Arc<Terrain>),
+    ground: (&MapKey, &Arc<Terrain>),
     network: &Network,
     plan: &Plan,
     grounds: &mut Grounds,
@@ -128,18 +200,44 @@ fn find_paths(
         if inserted.get(&route.occurrence).is_some_and(|known| known.waypoints == route.waypoints) {
             continue;
         }
-        let space = grounds.space(key, map, &problem.program.world, route.model);
-        let mut legs = paths.legs(&route, &space, problem.seed, Preference::Roomy);
-        let does_not_fit = |legs: &Vec<Leg>| out_of_bounds(problem, &route, legs, map).is_some();
-        if legs.as_ref().is_ok_and(does_not_fit) {
-            legs = paths.legs(&route, &space, problem.seed, Preference::Shortest);
-        }
-        let legs = legs.map_err(|(leg, reason)| Undrivable { occurrence: route.occurrence, leg, reason });
+        let legs = found_legs(problem, ground, grounds, paths, &route);
         is_new = true;
         let waypoints = route.waypoints.clone();
         inserted.insert(route.occurrence, Inserted { waypoints, legs, route });
     }
     is_new
+}
+
+/// The legs of a route: the roomy ones, or the shortest where there is no time for these.
+fn found_legs(
+    problem: &Problem<'_>,
+    (key, map): (&MapKey, &Arc<Terrain>),
+    grounds: &mut Grounds,
+    paths: &mut Paths,
+    route: &Route,
+) -> Result<Vec<Leg>, Undrivable> {
+    let space = grounds.space(key, map, &problem.program.world, route.model);
+    let mut legs = paths.legs(route, &space, problem.seed, Preference::Roomy);
+    let does_not_fit = |legs: &Vec<Leg>| out_of_bounds(problem, route, legs, map).is_some();
+    if legs.as_ref().is_ok_and(does_not_fit) {
+        legs = paths.legs(route, &space, problem.seed, Preference::Shortest);
+    }
+    legs.map_err(|(leg, reason)| Undrivable { occurrence: route.occurrence, leg, reason })
+}
+
+/// The legs of a route that can be driven within its bounds.
+fn legs(
+    problem: &Problem<'_>,
+    ground: (&MapKey, &Arc<Terrain>),
+    grounds: &mut Grounds,
+    paths: &mut Paths,
+    route: &Route,
+) -> Result<Vec<Leg>, Undrivable> {
+    let legs = found_legs(problem, ground, grounds, paths, route)?;
+    match out_of_bounds(problem, route, &legs, ground.1) {
+        Some(undrivable) => Err(undrivable),
+        None => Ok(legs),
+    }
 }
 
 /// The program's network with the paths inserted, or blocked where a traverse can't be driven.
@@ -154,13 +252,30 @@ fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId, Inserted>
     let mut network = tpn::path::insert_paths(problem.network, &paths, unit_seconds)
         .unwrap_or_else(|_| problem.network.as_ref().clone());
     for (&occurrence, traverse) in inserted {
-        if traverse.legs.is_err() {
-            block(&mut network, occurrence);
+        match &traverse.legs {
+            Ok(legs) => count_metres(&mut network, occurrence, traverse::joined(legs).length_m()),
+            Err(_) => block(&mut network, occurrence),
         }
     }
     match problem.facts {
         Some(facts) => facts.apply(&network, problem.network.nodes.len()),
         None => network,
+    }
+}
+
+/// Adds what a traverse takes and costs for each metre of its path (SPEC 11, 12), rounded up.
+fn count_metres(network: &mut Network, occurrence: OccurrenceId, length_m: f64) {
+    const PARTS: u32 = 1000;
+    let Some(metres) = Rational::from_f64_up(length_m, PARTS) else { return };
+    let with = |amount: Rational, per_metre: Rational| {
+        per_metre.checked_mul(metres).and_then(|more| amount.checked_add(more)).unwrap_or(amount)
+    };
+    for used in network.uses.iter_mut().filter(|used| used.owner == Some(occurrence)) {
+        used.amount = with(used.amount, used.per_metre);
+    }
+    let arc = network.occurrences[occurrence.index()].arc;
+    for worth in network.worths.iter_mut().filter(|worth| Some(worth.arc) == arc) {
+        worth.cost = with(worth.cost, worth.cost_per_metre);
     }
 }
 
@@ -341,6 +456,9 @@ fn conclude(
         })
         .collect();
     name_blocked(&mut outcome, &network, &undrivable);
+    if let Some(plan) = outcome.plans.first_mut() {
+        plan.quality.length_m = traverses.iter().map(|traverse| traverse.length_m).sum();
+    }
     let planning = Arc::new(Planning { outcome, verdict, undrivable });
     Planned { network, planning, traverses, spaces, motions, separation_violations, warnings }
 }

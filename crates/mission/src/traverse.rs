@@ -1,13 +1,14 @@
 //! Which activities of a plan are traverses, from where to where they drive, and the paths that they take.
 
 use std::cmp::Ordering;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use exact::Rational;
 use motion::{Path, PlannerKind, Query, SearchResult, ShortcutSettings, VehicleModel};
 use nalgebra::{Point2, distance};
 use rmpl::Span;
-use rmpl::program::{Moves, Name, Program, World};
+use rmpl::program::{Moves, Name, Per, Program, World};
 use smol_str::SmolStr;
 use terrain::{ConfigurationSpace, Terrain};
 use tpn::{Network, Occurrence, OccurrenceId, OccurrenceKind, Plan};
@@ -26,6 +27,8 @@ pub struct Route {
     pub model: &'static VehicleModel,
     /// Least and greatest speed in metres per second. At a least speed of 0 the vehicle may stop on its way.
     pub speed_mps: (Rational, Rational),
+    /// The location where the leader is before, if it is at one.
+    pub from: Option<SmolStr>,
     /// The places, in order: where the leader is before, then those that the call names.
     pub waypoints: Vec<Waypoint>,
 }
@@ -55,9 +58,17 @@ pub fn routes(network: &Network, program: &Program, plan: &Plan) -> Vec<Route> {
             Some((OccurrenceId::from_index(index), moving))
         })
         .collect();
+    // Movements that take no time may have one earliest departure: the plan says which comes first.
+    let mut ranks: BTreeMap<OccurrenceId, usize> = BTreeMap::new();
+    for order in &plan.conflict_order {
+        let label = &network.labels[order.then.index()];
+        if let Some(owner) = label.owner.filter(|_| label.is_changing()) {
+            *ranks.entry(owner).or_default() += 1;
+        }
+    }
     moving.sort_by_key(|(id, _)| {
         let start = network.occurrences[id.index()].start;
-        (plan.windows[start.index()].map(|window| window.earliest), *id)
+        (plan.windows[start.index()].map(|window| window.earliest), ranks.get(id).copied(), *id)
     });
     let mut routes = Vec::new();
     for (id, moving) in moving {
@@ -128,7 +139,21 @@ fn route(
     waypoints.dedup_by(|next, before| next.position_m == before.position_m);
     let own_speed_mps = Rational::from_f64_nearest(own_mps, 1000)?;
     let speed_mps = moving.moves.speed_mps.unwrap_or((Rational::ZERO, own_speed_mps));
-    Some(Route { occurrence: id, vehicles, model, speed_mps, waypoints })
+    let from = positions[leader].as_ref().map(|before| before.name.clone());
+    Some(Route { occurrence: id, vehicles, model, speed_mps, from, waypoints })
+}
+
+/// The route of a traverse whose leader is at `place` before; `None` if it is no traverse, or no such place is known.
+pub(crate) fn route_from(
+    network: &Network,
+    program: &Program,
+    occurrence: OccurrenceId,
+    place: &str,
+) -> Option<Route> {
+    let moving = moving(program, &network.occurrences[occurrence.index()])?;
+    let place = waypoint(&program.world, place)?;
+    let positions = vec![Some(place); program.world.vehicles.len()];
+    route(network, &program.world, occurrence, &moving, &positions)
 }
 
 /// What is wrong with the `moves` clauses and calls of a program: a traverse without places or vehicles is an ordinary
@@ -152,6 +177,17 @@ pub fn check(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
             if !world.vehicles.iter().any(|it| it.name.text == *vehicle) {
                 let place = if *vehicle == written.text { written.span } else { span };
                 warn(place, format!("no vehicle is called `{vehicle}`"));
+            }
+        }
+    }
+    if world.terrain.is_none() {
+        for primitive in &program.primitives {
+            let amounts =
+                primitive.uses.iter().filter_map(|used| used.amount.as_ref()).chain(&primitive.costs);
+            for amount in amounts.filter(|amount| amount.per == Some(Per::Metre)) {
+                let message =
+                    "without a terrain there are no paths, so that an amount per metre counts as nothing";
+                found.push(rmpl::Diagnostic::warning(rmpl::Code("W-TRAVERSE"), amount.span, message));
             }
         }
     }

@@ -12,6 +12,7 @@ pub fn compare(before: &Side, after: &Side) -> Comparison {
     differences.extend(rows.iter().filter_map(|row| item_difference(row, before, after)));
     differences.extend(links(before, after));
     differences.extend(orderings(before, after));
+    differences.extend(figures(before, after));
     let paths = paths(before, after);
     // Ways that one side does not know are no difference.
     if before.ways.is_some() && after.ways.is_some() {
@@ -136,6 +137,17 @@ fn orderings(before: &Side, after: &Side) -> Vec<Difference> {
         .filter_map(|pair| {
             let (old, new) = (old.get(pair).cloned(), new.get(pair).cloned());
             (old != new).then(|| difference(Subject::Ordering, pair, old, new, Change::Rechosen))
+        })
+        .collect()
+}
+
+/// How far resources are used, and what the plans are worth.
+fn figures(before: &Side, after: &Side) -> Vec<Difference> {
+    names(&before.figures, &after.figures)
+        .into_iter()
+        .filter_map(|name| {
+            let (old, new) = (before.figures.get(name).cloned(), after.figures.get(name).cloned());
+            (old != new).then(|| difference(Subject::Figure, name, old, new, Change::Changed))
         })
         .collect()
 }

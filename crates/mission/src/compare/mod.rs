@@ -87,6 +87,8 @@ pub enum Subject {
     Link,
     /// Two conflicting intervals in their order.
     Ordering,
+    /// How far a resource is used, or what the plan is worth.
+    Figure,
     /// The way of a traverse.
     Path,
 }
@@ -102,6 +104,7 @@ impl Subject {
             Self::Delay => "delay",
             Self::Link => "link",
             Self::Ordering => "ordering",
+            Self::Figure => "figure",
             Self::Path => "path",
         }
     }

@@ -6,7 +6,8 @@ use exact::{Bound, Time};
 use nalgebra::Point2;
 use serde::Deserialize as _;
 use serde_json::Value;
-use tpn::{Network, OccurrenceKind, Ordering, Window};
+use tpn::plan_json::plan_to_json;
+use tpn::{Network, OccurrenceKind, Ordering, UseOrdering, Window};
 
 use super::Subject;
 use crate::review::schedule::scheduled;
@@ -27,6 +28,8 @@ pub struct Side {
     pub links: BTreeMap<String, String>,
     /// Conflicting intervals, the first before the second.
     pub orderings: BTreeSet<[String; 2]>,
+    /// How far resources are used and what the plan is worth, by name, as figures.
+    pub figures: BTreeMap<String, String>,
     /// The ways of traverses; `None` where they are not known, as in a plan's JSON.
     pub ways: Option<BTreeMap<String, Way>>,
 }
@@ -106,6 +109,9 @@ impl Side {
             .collect();
         let pair = |it: &Ordering| [network.label_name(it.first), network.label_name(it.then)];
         side.orderings = plan.conflict_order.iter().map(pair).collect();
+        let used = |it: &UseOrdering| [network.use_name(it.first), network.use_name(it.then)];
+        side.orderings.extend(plan.uses_ordered.iter().map(used));
+        side.figures = figures(&plan_to_json(network, plan));
         side.ways = Some(
             snapshot
                 .traverses
@@ -148,7 +154,8 @@ impl Side {
             };
             side.links.insert(name("ask")?, name("tell")?);
         }
-        for pair in list(plan, "conflict_order") {
+        side.figures = figures(plan);
+        for pair in list(plan, "conflict_order").iter().chain(list(plan, "uses_ordered")) {
             match pair.as_array().map(Vec::as_slice) {
                 Some([Value::String(first), Value::String(then)]) => {
                     side.orderings.insert([first.clone(), then.clone()]);
@@ -158,6 +165,26 @@ impl Side {
         }
         Ok(side)
     }
+}
+
+/// The figures of a plan's JSON: the levels of its resources with a name, and what it is worth.
+fn figures(plan: &Value) -> BTreeMap<String, String> {
+    let number = |value: &Value| -> Option<String> { Some(Time::deserialize(value).ok()?.readable()) };
+    let resources = plan.get("resources").and_then(Value::as_object).into_iter().flatten();
+    let levels = resources.filter(|(name, _)| !name.contains('#')).filter_map(|(name, levels)| {
+        let of = |member: &str| number(levels.get(member)?);
+        let text = match of("peak") {
+            Some(peak) => format!("at most {peak} of {}", of("capacity")?),
+            None => format!("between {} and {}", of("low")?, of("high")?),
+        };
+        Some((name.clone(), text))
+    });
+    let worth = ["cost", "reward", "end"]
+        .into_iter()
+        .filter_map(|member| Some((member.to_owned(), number(plan.get(member)?)?)));
+    let length = plan.get("length").and_then(Value::as_f64);
+    let length = length.map(|length_m| ("length".to_owned(), format!("{length_m:.1} m")));
+    levels.chain(worth).chain(length).collect()
 }
 
 /// What happens in a plan's JSON: whatever has a window for its start and one for its end.

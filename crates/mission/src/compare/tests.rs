@@ -190,3 +190,33 @@ fn a_text_worked_out_for_comparing_leaves_the_open_plan_alone() {
     core.handle(Request::Update(update(MISSION)), &mut answers);
     assert_eq!(maps(&answers), 1, "the map is not sent again");
 }
+
+#[test]
+fn plans_differ_in_how_far_they_use_resources_and_in_what_they_are_worth() {
+    let mission = |consumed: u32, cost: u32| {
+        format!(
+            "resource Battery 0..100 = 60;
+             primitive Drive()[4,8] consumes Battery {consumed} costs {cost};
+             scenario S[0,100] = {{ Drive() }}"
+        )
+    };
+    let comparison = compare(&side(&mission(20, 3)), &side(&mission(50, 3)));
+    assert_eq!(
+        found(&comparison, "Battery"),
+        [(Change::Changed, Subject::Figure, "between 40 and 60", "between 10 and 60")]
+    );
+    assert_eq!(comparison.differences.len(), 1, "{:?}", comparison.differences);
+    let comparison = compare(&side(&mission(20, 3)), &side(&mission(20, 4)));
+    assert_eq!(found(&comparison, "cost"), [(Change::Changed, Subject::Figure, "3", "4")]);
+    let saved = json!({
+        "choices": {}, "activities": [], "causal_links": [], "conflict_order": [], "windows": {},
+        "uses_ordered": [["Uses(Drill)@A#1", "Uses(Drill)@B#1"]],
+        "resources": { "Drill": { "capacity": 1, "peak": 1 }, "unordered#1": { "capacity": 1, "peak": 1 } },
+        "reward": "7/2",
+    });
+    let saved = Side::of_json("saved", &saved).expect("it is a plan");
+    let figures: Vec<(&str, &str)> =
+        saved.figures.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect();
+    assert_eq!(figures, [("Drill", "at most 1 of 1"), ("reward", "3.5")]);
+    assert_eq!(saved.orderings.len(), 1);
+}

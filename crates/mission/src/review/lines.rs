@@ -3,6 +3,7 @@
 use rmpl::{LineIndex, Severity, Span};
 use tpn::{Network, NodeId};
 
+use super::demand_lines::status_by_checker;
 use super::plan_lines::PlanLines;
 use super::{Line, Review, Section, Status, content_hash};
 use crate::request::Goal;
@@ -22,6 +23,8 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
         choices: Vec::new(),
         causal_links: Vec::new(),
         conflicts: Vec::new(),
+        states: Vec::new(),
+        resources: Vec::new(),
         events: Vec::new(),
         traverses: Vec::new(),
         separation_violations: separation_violations(snapshot, &places),
@@ -31,6 +34,8 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
         review.choices = lines.choices(stop);
         review.causal_links = lines.causal_links();
         review.conflicts = lines.conflicts();
+        review.states = lines.demands().states();
+        review.resources = lines.demands().resources();
         review.events = lines.events();
         review.traverses = lines.traverses();
     }
@@ -83,6 +88,7 @@ fn plan_section(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
     } else {
         let mut lines = vec![places.plain(Status::Passed, "there is a plan")];
         lines.extend(verdict(planning, places));
+        lines.extend(worth(planning, network, places));
         lines
     };
     lines.extend(undrivable(planning, network, places));
@@ -126,6 +132,22 @@ fn verdict(planning: &Planning, places: &Places<'_>) -> Vec<Line> {
             .collect(),
         None => vec![places.plain(Status::Failed, "the plan has not been checked independently")],
     }
+}
+
+/// What the plan is worth, as far as its mission counts anything, and whether it is known to be the best. The checker
+/// adds up the figures; that nothing is better is the planner's word, and said to be.
+fn worth(planning: &Planning, network: &Network, places: &Places<'_>) -> Option<Line> {
+    let plan = planning.outcome.plans.first()?;
+    let mut text = crate::worth::words(network, plan)?;
+    let mut status = status_by_checker(planning);
+    if let Some(standing) = crate::worth::standing(plan) {
+        text.push_str("; ");
+        text.push_str(standing);
+    }
+    if plan.quality.is_optimal == Some(false) {
+        status = status.max(Status::Attention);
+    }
+    Some(places.plain(status, format!("the plan is worth: {text}")))
 }
 
 fn undrivable(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<Line> {

@@ -4,6 +4,7 @@
 //! seed, and [`content_hash`] names them: a review with another hash is stale.
 
 mod alternatives;
+mod demand_lines;
 pub(crate) mod distances;
 mod hash;
 mod lines;
@@ -17,6 +18,7 @@ use serde::{Deserialize, Serialize};
 use tpn::{NodeId, OccurrenceId, Window};
 
 pub use alternatives::{Alternative, Fate};
+pub use demand_lines::ResourceReview;
 pub use hash::content_hash;
 pub use lines::review;
 pub use record::Record;
@@ -36,6 +38,10 @@ pub struct Review {
     pub causal_links: Vec<LinkReview>,
     /// The pairs of intervals that must not overlap.
     pub conflicts: Vec<ConflictReview>,
+    /// What keeps its value, and the movements of vehicles.
+    pub states: Vec<Line>,
+    /// The resources with their margins.
+    pub resources: Vec<ResourceReview>,
     /// The events, those with the least slack first.
     pub events: Vec<EventReview>,
     /// The traverses, in order of departure.
@@ -112,7 +118,7 @@ pub struct LinkReview {
     pub margin: TimeRange,
 }
 
-/// Two intervals that must not overlap.
+/// Two intervals that must not overlap, or two uses of a resource that must not come together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConflictReview {
     /// Which comes first.
@@ -190,6 +196,10 @@ pub enum Section {
     CausalLinks,
     /// [`Review::conflicts`].
     Conflicts,
+    /// [`Review::states`].
+    States,
+    /// [`Review::resources`].
+    Resources,
     /// [`Review::events`].
     Events,
     /// [`Review::traverses`].
@@ -202,11 +212,13 @@ pub enum Section {
 
 impl Section {
     /// All, in the order in which they are read.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 10] = [
         Self::Plan,
         Self::Choices,
         Self::CausalLinks,
         Self::Conflicts,
+        Self::States,
+        Self::Resources,
         Self::Events,
         Self::Traverses,
         Self::SeparationViolations,
@@ -220,6 +232,8 @@ impl Section {
             Self::Choices => "Choices",
             Self::CausalLinks => "Causal links",
             Self::Conflicts => "Threats and orderings",
+            Self::States => "States and vehicles",
+            Self::Resources => "Resources",
             Self::Events => "Windows and slack",
             Self::Traverses => "Traverses",
             Self::SeparationViolations => "Conflicts between vehicles",
@@ -236,6 +250,8 @@ impl Review {
             Section::Choices => self.choices.iter().map(|it| &it.line).collect(),
             Section::CausalLinks => self.causal_links.iter().map(|it| &it.line).collect(),
             Section::Conflicts => self.conflicts.iter().map(|it| &it.line).collect(),
+            Section::States => self.states.iter().collect(),
+            Section::Resources => self.resources.iter().map(|it| &it.line).collect(),
             Section::Events => self.events.iter().map(|it| &it.line).collect(),
             Section::Traverses => self.traverses.iter().map(|it| &it.line).collect(),
             Section::SeparationViolations => self.separation_violations.iter().collect(),
@@ -262,6 +278,8 @@ impl Review {
             Section::Choices => "The plan has no choice to make.",
             Section::CausalLinks => "Nothing requires a condition.",
             Section::Conflicts => "No two conditions contradict each other, so there is no threat.",
+            Section::States => "No variable keeps its value, and no vehicle moves.",
+            Section::Resources => "No resource is used.",
             Section::Traverses => "No vehicle drives.",
             Section::SeparationViolations => "No two vehicles come too near each other.",
         }

@@ -2,10 +2,11 @@
 
 use exact::Bound;
 use rmpl::Span;
-use rmpl::program::TimeUnit;
-use tpn::{EventEnd, LabelId, Network, NodeId, Plan};
+use rmpl::program::{Change, LabelMode, TimeUnit};
+use tpn::{EventEnd, Extent, LabelId, Network, NodeId, Plan};
 
 use super::alternatives::{Alternative, Examiner};
+use super::demand_lines::{DemandLines, status_by_checker};
 use super::distances::Distances;
 use super::lines::Places;
 use super::schedule::slack;
@@ -23,6 +24,8 @@ pub(super) struct PlanLines<'input> {
     plan: &'input Plan,
     distances: Distances,
     places: &'input Places<'input>,
+    /// How everything stands that the checker examines.
+    checked: Status,
 }
 
 impl<'input> PlanLines<'input> {
@@ -32,7 +35,13 @@ impl<'input> PlanLines<'input> {
         let planning = snapshot.planning.as_deref()?;
         let plan = planning.outcome.plans.first()?;
         let distances = Distances::new(network, plan)?;
-        Some(Self { snapshot, network, planning, plan, distances, places })
+        let checked = status_by_checker(planning);
+        Some(Self { snapshot, network, planning, plan, distances, places, checked })
+    }
+
+    /// The lines about what lasts and what is limited.
+    pub(super) const fn demands(&self) -> DemandLines<'input> {
+        DemandLines { network: self.network, plan: self.plan, places: self.places, status: self.checked }
     }
 
     pub(super) fn choices(&mut self, stop: &mut dyn FnMut() -> bool) -> Vec<ChoiceReview> {
@@ -58,7 +67,12 @@ impl<'input> PlanLines<'input> {
             .iter()
             .flat_map(|link| {
                 let ((ask_start, ask_end), (tell_start, tell_end)) =
-                    (self.interval(link.ask), self.interval(link.tell));
+                    (self.network.interval(link.ask), self.network.interval(link.tell));
+                if self.network.is_lasting(link.ask) {
+                    // What lasts holds until the next change.
+                    let until = self.next_change(link.tell).map_or(self.network.end, |(start, _)| start);
+                    return [(self.network.ready(link.tell), ask_start), (ask_end, until)];
+                }
                 [(tell_start, ask_start), (ask_end, tell_end)]
             })
             .collect();
@@ -67,16 +81,22 @@ impl<'input> PlanLines<'input> {
             let [lead, margin] = *ranges else { return None };
             let (lead, margin) = (lead?, margin?);
             let (ask, tell) = (self.network.label_name(link.ask), self.network.label_name(link.tell));
-            // Without any room, the slightest delay breaks the link.
-            let is_rigid = margin.greatest == Bound::ZERO;
-            let status = if is_rigid { Status::Attention } else { Status::Passed };
-            let text = format!(
-                "{} provides {} and outlasts it by {}",
-                interval_text(&tell),
-                interval_text(&ask),
-                self.range_text(margin)
-            );
-            let (start, end) = self.interval(link.ask);
+            let (status, text) = if self.network.is_lasting(link.ask) {
+                let text = self.lasting_link_text(*link, lead, margin);
+                (self.checked, text)
+            } else {
+                // Without any room, the slightest delay breaks the link.
+                let is_rigid = margin.greatest == Bound::ZERO;
+                let status = if is_rigid { self.checked.max(Status::Attention) } else { self.checked };
+                let text = format!(
+                    "{} provides {} and outlasts it by {}",
+                    interval_text(&tell),
+                    interval_text(&ask),
+                    self.range_text(margin)
+                );
+                (status, text)
+            };
+            let (start, end) = self.network.interval(link.ask);
             let names = vec![ask.clone(), tell.clone()];
             let line = self.places.line(status, text, self.label_span(link.ask), names, vec![start, end]);
             Some(LinkReview { line, ask, tell, lead, margin })
@@ -84,17 +104,52 @@ impl<'input> PlanLines<'input> {
         links.iter().zip(ranges.chunks(2)).filter_map(review).collect()
     }
 
+    /// Who makes a state what somebody needs, how long before, and who changes it after.
+    fn lasting_link_text(&self, link: tpn::CausalLink, lead: TimeRange, margin: TimeRange) -> String {
+        let owner_of = |label: LabelId| {
+            let owner = self.network.labels[label.index()].owner?;
+            Some(self.network.occurrences.get(owner.index())?.name.as_str())
+        };
+        let told = &self.network.labels[link.tell.index()];
+        let (value, lead) = (&told.text, self.range_text(lead));
+        let needs = owner_of(link.ask).unwrap_or("the mission");
+        let before = match (told.extent, owner_of(link.tell)) {
+            (Extent::Effect, Some(owner)) => format!("{owner} sets {value} {lead} before {needs} needs it"),
+            (Extent::Initial, _) | (_, None) => {
+                format!("{value} holds from the start, {lead} before {needs} needs it")
+            }
+            (_, Some(owner)) => format!("{owner} makes {value} hold {lead} before {needs} needs it"),
+        };
+        let after = match self.next_change(link.tell).map(|(_, next)| owner_of(next)) {
+            None => "nothing changes it afterwards".to_owned(),
+            Some(next) if next == Some(needs) => format!("{needs} itself changes it then"),
+            Some(next) => {
+                let margin = self.range_text(margin);
+                format!("{} changes it {margin} after that need", next.unwrap_or("the mission"))
+            }
+        };
+        format!("{before}; {after}")
+    }
+
     pub(super) fn conflicts(&mut self) -> Vec<ConflictReview> {
-        let orders = &self.plan.conflict_order;
-        let pairs: Vec<(NodeId, NodeId)> =
-            orders.iter().map(|order| (self.interval(order.first).1, self.interval(order.then).0)).collect();
+        let mut conflicts = self.ordered_labels();
+        conflicts.extend(self.ordered_uses());
+        conflicts
+    }
+
+    fn ordered_labels(&mut self) -> Vec<ConflictReview> {
+        let (plan, network) = (self.plan, self.network);
+        let orders: Vec<&tpn::Ordering> = plan.telling_order(network).collect();
+        let pairs: Vec<(NodeId, NodeId)> = orders
+            .iter()
+            .map(|order| (network.interval(order.first).1, network.interval(order.then).0))
+            .collect();
         let gaps = self.distances.between(&pairs);
         let review =
-            |((order, gap), (end, start)): ((&tpn::Ordering, &Option<TimeRange>), &(NodeId, NodeId))| {
+            |((order, gap), (end, start)): ((&&tpn::Ordering, &Option<TimeRange>), &(NodeId, NodeId))| {
                 let gap = (*gap)?;
-                let (first, then) =
-                    (self.network.label_name(order.first), self.network.label_name(order.then));
-                let is_added = self.plan.orderings_added.contains(order);
+                let (first, then) = (network.label_name(order.first), network.label_name(order.then));
+                let is_added = plan.orderings_added.contains(order);
                 let by = if is_added {
                     "the planner has put them in this order"
                 } else {
@@ -108,10 +163,68 @@ impl<'input> PlanLines<'input> {
                 );
                 let names = vec![first.clone(), then.clone()];
                 let span = self.label_span(order.first);
-                let line = self.places.line(Status::Passed, text, span, names, vec![*end, *start]);
+                let line = self.places.line(self.checked, text, span, names, vec![*end, *start]);
                 Some(ConflictReview { line, first, then, gap, is_added })
             };
         orders.iter().zip(&gaps).zip(&pairs).filter_map(review).collect()
+    }
+
+    /// The uses of resources that planning had to put in order, the parts of `unordered` blocks among them.
+    fn ordered_uses(&mut self) -> Vec<ConflictReview> {
+        let (plan, network) = (self.plan, self.network);
+        let event = |used: tpn::UseId, is_first: bool| {
+            let used = &network.uses[used.index()];
+            match (used.change, is_first) {
+                (Change::Uses, true) | (Change::Produces, _) => used.end,
+                (Change::Uses, false) | (Change::Consumes, _) => used.start,
+            }
+        };
+        let pairs: Vec<(NodeId, NodeId)> = plan
+            .uses_ordered
+            .iter()
+            .map(|order| (event(order.first, true), event(order.then, false)))
+            .collect();
+        let gaps = self.distances.between(&pairs);
+        let review =
+            |((order, gap), (end, start)): ((&tpn::UseOrdering, &Option<TimeRange>), &(NodeId, NodeId))| {
+                let gap = (*gap)?;
+                let (first, then) = (network.use_name(order.first), network.use_name(order.then));
+                let used = &network.uses[order.first.index()];
+                let resource = &network.resources[used.resource.index()].name;
+                let why = if resource.contains('#') {
+                    "as parts of one `unordered`".to_owned()
+                } else {
+                    format!("for the sake of {resource}")
+                };
+                let owner = |used: tpn::UseId| {
+                    let owner = network.uses[used.index()].owner?;
+                    Some(network.occurrences.get(owner.index())?.name.to_string())
+                };
+                let (earlier, later) = (
+                    owner(order.first).unwrap_or_else(|| first.clone()),
+                    owner(order.then).unwrap_or_else(|| then.clone()),
+                );
+                let text = format!(
+                    "{earlier} comes {} before {later}; the planner has put them in this order {why}",
+                    self.range_text(gap)
+                );
+                let line =
+                    self.places.line(self.checked, text, used.span, vec![earlier, later], vec![*end, *start]);
+                Some(ConflictReview { line, first, then, gap, is_added: true })
+            };
+        plan.uses_ordered.iter().zip(&gaps).zip(&pairs).filter_map(review).collect()
+    }
+
+    /// The first change of a variable that comes after `label`, and when it begins.
+    fn next_change(&self, label: LabelId) -> Option<(NodeId, LabelId)> {
+        let earliest = |node: NodeId| {
+            self.plan.windows.get(node.index()).copied().flatten().map(|window| window.earliest)
+        };
+        let is_told = |other: LabelId| self.network.labels[other.index()].mode == LabelMode::Tell;
+        let after =
+            self.plan.conflict_order.iter().filter(|order| order.first == label && is_told(order.then));
+        let after = after.map(|order| (self.network.interval(order.then).0, order.then));
+        after.min_by_key(|&(start, then)| (earliest(start), earliest(self.network.ready(then))))
     }
 
     pub(super) fn events(&self) -> Vec<EventReview> {
@@ -217,11 +330,6 @@ impl<'input> PlanLines<'input> {
         }
     }
 
-    fn interval(&self, label: LabelId) -> (NodeId, NodeId) {
-        let arc = &self.network.arcs[self.network.labels[label.index()].arc.index()];
-        (arc.from, arc.to)
-    }
-
     fn label_span(&self, label: LabelId) -> Option<Span> {
         self.network.labels[label.index()].span
     }
@@ -247,5 +355,8 @@ fn interval_text(name: &str) -> String {
         return owner.to_owned();
     }
     let inside = condition.split_once('(').and_then(|(_, rest)| rest.strip_suffix(')'));
+    if condition.starts_with("Set(") {
+        return format!("the change to {} by {owner}", inside.unwrap_or(condition));
+    }
     format!("{} during {owner}", inside.unwrap_or(condition))
 }

@@ -191,3 +191,89 @@ fn the_hash_follows_text_map_and_seed() {
     }
     assert_eq!(reviewed(SCENARIO), reviewed(SCENARIO));
 }
+
+const LASTING: &str = "state ARM : { IN, OUT } = IN;
+resource Battery 0..100 = 60;
+resource Power capacity 3;
+primitive Deploy()[4,8] requires ARM=IN sets ARM=OUT consumes Battery 50 uses Power 2;
+primitive Dig()[5,9] requires ARM=OUT uses Power 1;
+primitive Charge()[10,20] produces Battery 40 costs 7;
+scenario S[0,100] = { Deploy(); Dig(); Charge() }";
+
+fn texts(review: &Review, section: Section) -> Vec<String> {
+    review.lines(section).iter().map(|line| line.text.clone()).collect()
+}
+
+#[test]
+fn states_and_resources_are_reviewed_with_their_margins() {
+    let review = reviewed(LASTING);
+    assert_eq!(
+        texts(&review, Section::States),
+        [
+            "every requirement of a state rests on a change that holds: 2 requirements",
+            "ARM is IN, then OUT (Deploy#1)",
+        ]
+    );
+    assert_eq!(
+        texts(&review, Section::Resources),
+        [
+            "Battery stays between 10 and 60: 10 above its least level 0, 40 below its greatest 100",
+            "of Power, at most 2 of 3 are used at a time, 1 to spare",
+        ]
+    );
+    assert!(
+        texts(&review, Section::Plan).contains(&"the plan is worth: cost 7".to_owned()),
+        "{:?}",
+        review.plan
+    );
+    assert_eq!(review.status, Status::Passed, "{review:?}");
+    assert_eq!(
+        texts(&review, Section::CausalLinks),
+        [
+            "ARM=IN holds from the start, 0 min before Deploy#1 needs it; Deploy#1 itself changes it then",
+            "Deploy#1 sets ARM=OUT 0 min before Dig#1 needs it; nothing changes it afterwards",
+        ]
+    );
+}
+
+#[test]
+fn nothing_about_states_and_resources_has_passed_on_the_planner_s_word() {
+    let update = Update {
+        revision: 1,
+        source: LASTING.into(),
+        goal: Goal::Default,
+        search: SearchKind::default(),
+        seed: 0,
+        trace: false,
+    };
+    let mut answers = Answers::default();
+    Core::default().handle(Request::Update(update), &mut answers);
+    let snapshot = answers.0.expect("an update is always answered");
+    let with_verdict = |verdict: Option<verify::Verdict>| {
+        let planning = snapshot.planning.as_deref().expect("it was planned").clone();
+        let planning = crate::Planning { verdict, ..planning };
+        let changed = Snapshot { planning: Some(Arc::new(planning)), ..(*snapshot).clone() };
+        review(&changed, &Goal::Default, 0, &mut || false)
+    };
+    let refused = verify::Verdict { valid: false, violations: Vec::new() };
+    for (verdict, status) in [(None, Status::Attention), (Some(refused), Status::Failed)] {
+        let review = with_verdict(verdict);
+        for section in [Section::States, Section::Resources, Section::CausalLinks] {
+            let lines = review.lines(section);
+            assert!(!lines.is_empty() && lines.iter().all(|line| line.status == status), "{lines:?}");
+        }
+    }
+}
+
+#[test]
+fn a_vehicle_s_movements_come_one_after_the_other() {
+    let review = reviewed(
+        "location BASE (0, 0); location ROCK (10, 0);
+         vehicle R1 : ATRV-Jr at BASE;
+         primitive Drive(to)[1,90] moves R1;
+         scenario S[0,500] = { Drive(ROCK); Drive(BASE) }",
+    );
+    let lines = texts(&review, Section::States);
+    let wanted = "R1 makes 2 movements, one after the other: Drive#1, Drive#2".to_owned();
+    assert!(lines.contains(&wanted), "{lines:?} {:?}", review.plan);
+}

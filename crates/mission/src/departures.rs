@@ -1,0 +1,116 @@
+//! Movements whose order planning finds (SPEC 10.3): how long each takes at least from wherever its vehicle may be. Before
+//! a path is known that is the straight line at the greatest speed; what a path says holds for every plan with that leg.
+
+use std::collections::BTreeMap;
+
+use exact::{Rational, Time};
+use rmpl::program::Program;
+use smol_str::{SmolStr, format_smolstr};
+use tpn::{Departure, Extent, LabelId, Network, OccurrenceId, ValueId};
+
+use crate::traverse::{self, Route};
+
+/// How long the movements of a mission take, by where they start.
+pub(crate) struct Departures {
+    movements: Vec<Movement>,
+    /// What paths have told; `None` of what cannot be driven.
+    known: BTreeMap<(OccurrenceId, SmolStr), Option<Time>>,
+}
+
+struct Movement {
+    occurrence: OccurrenceId,
+    arrival: LabelId,
+    /// Each place, with the time that the straight line takes.
+    places: Vec<(ValueId, SmolStr, Option<Time>)>,
+}
+
+impl Departures {
+    /// Of the traverses of `network`, by straight lines.
+    pub(crate) fn new(network: &Network, program: &Program) -> Self {
+        let movements = (0..network.occurrences.len())
+            .map(OccurrenceId::from_index)
+            .filter_map(|occurrence| movement(network, program, occurrence));
+        Self { movements: movements.collect(), known: BTreeMap::new() }
+    }
+
+    /// Whether a path has told how long a route takes.
+    pub(crate) fn knows(&self, route: &Route) -> bool {
+        route.from.as_ref().is_none_or(|from| self.known.contains_key(&(route.occurrence, from.clone())))
+    }
+
+    /// Learns how long a route takes at least; `None` if it cannot be driven.
+    pub(crate) fn learn(&mut self, route: &Route, least: Option<Time>) {
+        if let Some(from) = &route.from {
+            // The exact time comes with the path; a rounder one that is a little less keeps the planner's numbers small.
+            let least = least.map(|least| round_down(least.to_f64()).unwrap_or_default());
+            self.known.insert((route.occurrence, from.clone()), least);
+        }
+    }
+
+    /// All that is known, for the planner.
+    pub(crate) fn all(&self) -> Vec<Departure> {
+        self.listed(|_, _| true)
+    }
+
+    /// What is known of these routes, each of which starts where it does and nowhere else.
+    pub(crate) fn only(&self, routes: &[Route]) -> Vec<Departure> {
+        self.listed(|occurrence, place| {
+            let route = routes.iter().find(|route| route.occurrence == occurrence);
+            route.is_none_or(|route| route.from.as_ref() == Some(place))
+        })
+    }
+
+    fn listed(&self, is_possible: impl Fn(OccurrenceId, &SmolStr) -> bool) -> Vec<Departure> {
+        let mut departures = Vec::new();
+        for movement in &self.movements {
+            for (value, place, straight) in &movement.places {
+                let known = self.known.get(&(movement.occurrence, place.clone()));
+                let least = match (known, straight) {
+                    _ if !is_possible(movement.occurrence, place) => None,
+                    (Some(&known), _) => known,
+                    (None, Some(straight)) => Some(*straight),
+                    (None, None) => continue,
+                };
+                departures.push(Departure { arrival: movement.arrival, from: *value, least });
+            }
+        }
+        departures
+    }
+}
+
+fn movement(network: &Network, program: &Program, occurrence: OccurrenceId) -> Option<Movement> {
+    let moving = traverse::moving(program, &network.occurrences[occurrence.index()])?;
+    let name = format_smolstr!("{}.at", moving.vehicles.first()?);
+    let is_arrival = |label: &&tpn::Label| {
+        label.owner == Some(occurrence)
+            && label.extent == Extent::Effect
+            && network.variables[label.literal.variable.index()].name == name
+    };
+    let position = network.labels.iter().position(|label| is_arrival(&label))?;
+    let variable = &network.variables[network.labels[position].literal.variable.index()];
+    let unit_seconds = program.options.time_unit.seconds();
+    let places = variable.values.iter().enumerate().map(|(index, place)| {
+        let route = traverse::route_from(network, program, occurrence, place);
+        (ValueId::from_index(index), place.clone(), route.and_then(|route| straight(&route, unit_seconds)))
+    });
+    Some(Movement { occurrence, arrival: LabelId::from_index(position), places: places.collect() })
+}
+
+/// The time of a route along straight lines at the greatest speed.
+fn straight(route: &Route, unit_seconds: i64) -> Option<Time> {
+    let metres: f64 = route
+        .waypoints
+        .windows(2)
+        .map(|pair| nalgebra::distance(&pair[0].position_m, &pair[1].position_m))
+        .sum();
+    let speed_mps = route.speed_mps.1.to_f64();
+    round_down(metres / speed_mps / Rational::from_integer(unit_seconds).to_f64())
+}
+
+/// A time that is no greater, in thousandths of the mission's unit.
+fn round_down(units: f64) -> Option<Time> {
+    const PARTS: i64 = 1000;
+    // What is a hair less is still a lower bound.
+    let parts = (units * PARTS as f64 * (1.0 - 1e-9)).floor();
+    (parts.is_finite() && parts < 1e15).then_some(parts as i64).and_then(|parts| Time::new(parts, PARTS))
+}

@@ -1,0 +1,46 @@
+//! What a plan is worth, in the words of people (SPEC 12): its cost, its reward and what its mission's objective counts.
+
+use rmpl::program::Measure;
+use tpn::{Network, Plan};
+
+/// What matters of the plans of a network: what the objective counts, and costs and rewards that some activity has.
+pub fn measures(network: &Network) -> Vec<Measure> {
+    let counted = |measure: Measure| {
+        let terms = network.objective.iter().flat_map(|goal| &goal.terms);
+        let is_goal = terms.into_iter().any(|(_, it)| *it == measure);
+        let is_given = network.worths.iter().any(|worth| match measure {
+            Measure::Cost => !worth.cost.is_zero() || !worth.cost_per_metre.is_zero(),
+            Measure::Reward => !worth.reward.is_zero(),
+            Measure::End | Measure::Length => false,
+        });
+        is_goal || is_given
+    };
+    let all = [Measure::Cost, Measure::Reward, Measure::End, Measure::Length];
+    all.into_iter().filter(|&measure| counted(measure)).collect()
+}
+
+/// What a plan comes to in one measure: `cost 30`, `end 45`.
+pub fn figure(plan: &Plan, measure: Measure) -> String {
+    let quality = &plan.quality;
+    match measure {
+        Measure::Cost => format!("cost {}", quality.cost.readable()),
+        Measure::Reward => format!("reward {}", quality.reward.readable()),
+        Measure::End => format!("end {}", quality.end.readable()),
+        Measure::Length => format!("{:.1} m driven", quality.length_m),
+    }
+}
+
+/// All that a plan is worth, in one line; `None` where its mission counts nothing.
+pub fn words(network: &Network, plan: &Plan) -> Option<String> {
+    let figures: Vec<String> = measures(network).into_iter().map(|it| figure(plan, it)).collect();
+    (!figures.is_empty()).then(|| figures.join(", "))
+}
+
+/// Whether a plan is known to be the best, in words; `None` without an objective.
+pub const fn standing(plan: &Plan) -> Option<&'static str> {
+    match plan.quality.is_optimal {
+        Some(true) => Some("the planner has shown that no plan is better"),
+        Some(false) => Some("planning ended before it was known whether a better plan exists"),
+        None => None,
+    }
+}

@@ -1,0 +1,119 @@
+//! Vehicles in one place at a time (SPEC 10.3): the order of sites is found, each path starts where the vehicle is, and
+//! what a path takes of a resource counts.
+
+use std::sync::Arc;
+
+use exact::Time;
+use mission::planning::{self, Planned, Problem};
+use mission::{Goal, Grounds, Paths};
+use nalgebra::{Point2, distance};
+use tpn::Levels;
+
+const WORLD: &str = "terrain \"tai-plain\" cell 0.6 origin (0, 0);
+    location BASE (10, 10); location A (30, 12); location B (50, 40); location C (15, 45);
+    location D (60, 15); location E (35, 55);
+    vehicle R1 : ATRV-Jr at BASE;
+    ";
+
+fn plan(declarations: &str) -> Planned {
+    let source = format!("{WORLD}{declarations}");
+    let parse = rmpl::parse(&source);
+    let program = parse.program();
+    let mut diagnostics = parse.diagnostics();
+    let network = mission::compile(&program, &Goal::Default, &mut diagnostics);
+    let network = Arc::new(network.unwrap_or_else(|| panic!("{diagnostics:?}")));
+    let mut grounds = Grounds::default();
+    let (ground, found) = grounds.resolve(&program.world);
+    assert!(found.is_empty(), "{found:?}");
+    let problem = Problem {
+        network: &network,
+        program: &program,
+        ground: ground.as_ref().map(|(key, map)| (key, map)),
+        options: kirk::Options::default(),
+        seed: 0,
+        facts: None,
+    };
+    planning::plan(&problem, &mut grounds, &mut Paths::default(), &mut || false)
+}
+
+/// The first and the last point of each traverse, in the order of the plan, with their times.
+fn drives(planned: &Planned) -> Vec<(Time, Time, Point2<f64>, Point2<f64>)> {
+    let plan = &planned.planning.outcome.plans[0];
+    let earliest = |node: tpn::NodeId| plan.windows[node.index()].expect("selected").earliest;
+    let mut drives: Vec<_> = planned
+        .traverses
+        .iter()
+        .map(|traverse| {
+            let occurrence = &planned.network.occurrences[traverse.occurrence.index()];
+            let first = traverse.legs.first().and_then(|leg| leg.points_m.first());
+            let last = traverse.legs.last().and_then(|leg| leg.points_m.last());
+            (
+                earliest(occurrence.start),
+                earliest(occurrence.end),
+                *first.expect("it has a path"),
+                *last.expect("it has a path"),
+            )
+        })
+        .collect();
+    drives.sort_by_key(|drive| drive.0);
+    drives
+}
+
+fn assert_driven_one_after_the_other(planned: &Planned, count: usize) {
+    let verdict = planned.planning.verdict.as_ref().expect("it is checked");
+    assert!(verdict.valid, "{verdict:?}");
+    let drives = drives(planned);
+    assert_eq!(drives.len(), count, "every movement has its path");
+    let mut at = Point2::new(10.0, 10.0);
+    let mut time = Time::ZERO;
+    for (start, end, from_m, to_m) in drives {
+        assert!(start >= time, "one vehicle drives one way at a time");
+        assert!(distance(&from_m, &at) < 1e-6, "the path starts where the vehicle is");
+        (time, at) = (end, to_m);
+    }
+}
+
+const DRIVE: &str = "primitive Drive(to) moves R1 speed (0.02, 0.5);";
+
+#[test]
+fn the_order_of_sites_is_found_where_the_textual_one_takes_too_long() {
+    let sites = |most: &str| {
+        let visits = "unordered { Drive(A); Drive(B); Drive(C); Drive(D); Drive(E) }";
+        plan(&format!("{DRIVE} scenario X[0,{most}] = {{ {visits} }}"))
+    };
+    // A, B, C, D, E takes 6.39 minutes; the shortest way, A, D, B, E, C, takes 4.03.
+    for most in ["60", "5", "4.05"] {
+        assert_driven_one_after_the_other(&sites(most), 5);
+    }
+    let failure = sites("4").planning.outcome.failure.clone().expect("there is no plan");
+    assert!(failure.reasons[0].message.contains("R1, which is in one place at a time"), "{failure:?}");
+}
+
+#[test]
+fn one_vehicle_does_not_drive_to_two_places_at_once() {
+    let at_once = plan(&format!("{DRIVE} scenario X[0,1500] = {{ Drive(A), Drive(B) }}"));
+    let failure = at_once.planning.outcome.failure.as_ref().expect("there is no plan");
+    assert_eq!(failure.reasons[0].kind, kirk::FailureKind::Threat);
+    assert!(failure.reasons[0].message.starts_with("Drive#1 and Drive#2 both move R1"), "{failure:?}");
+    let waiting = plan(&format!("{DRIVE} scenario X[0,1500] = {{ free Drive(A), free Drive(B) }}"));
+    assert_driven_one_after_the_other(&waiting, 2);
+}
+
+#[test]
+fn what_a_path_takes_for_each_metre_counts() {
+    let drive = "primitive Drive(to) moves R1 speed (0.02, 0.5) consumes Battery 0.5 per metre;";
+    let mission = |level: &str| {
+        plan(&format!(
+            "resource Battery 0..100 = {level}; {drive} scenario X[0,60] = {{ Drive(A); Drive(BASE) }}"
+        ))
+    };
+    let there_and_back = mission("50");
+    assert_driven_one_after_the_other(&there_and_back, 2);
+    let plan = &there_and_back.planning.outcome.plans[0];
+    let Levels::Range { low, .. } = plan.levels[0] else { panic!("{:?}", plan.levels) };
+    let taken = 50.0 - low.to_f64();
+    assert!((taken - 0.5 * plan.quality.length_m).abs() < 0.01, "{taken} for {} m", plan.quality.length_m);
+    let outcome = mission("15").planning.outcome.clone();
+    assert!(outcome.plans.is_empty(), "20 m there and back take 20");
+    assert_eq!(outcome.failure.expect("it is explained").reasons[0].kind, kirk::FailureKind::Resource);
+}
