@@ -2,6 +2,7 @@
 
 use display::geometry::curve_bounds;
 use display::{Measure, Piece, Point, Rect};
+use rmpl::program::Change;
 use serde::{Deserialize, Serialize};
 use tpn::{LabelId, Network, NodeId, Plan, Role};
 
@@ -54,15 +55,31 @@ pub fn causal_links(drawing: &NetworkDrawing, network: &Network, plan: &Plan) ->
     plan.causal_links.iter().enumerate().filter_map(curve).collect()
 }
 
-/// The orderings that planning added: from the first interval's end to the other's start.
+/// The orderings that planning added: from the first interval's end to the other's start. Those of the uses of resources
+/// are numbered after those of conditions.
 pub fn orderings(drawing: &NetworkDrawing, network: &Network, plan: &Plan) -> Vec<OverlayCurve> {
-    let curve = |(number, ordering): (usize, &tpn::Ordering)| {
-        let first = network.labels.get(ordering.first.index())?;
-        let then = network.labels.get(ordering.then.index())?;
-        let (from, to) = (network.arcs[first.arc.index()].to, network.arcs[then.arc.index()].from);
+    let of_labels = plan.orderings_added.iter().map(|ordering| {
+        let is_known = [ordering.first, ordering.then].iter().all(|it| it.index() < network.labels.len());
+        is_known.then(|| (network.interval(ordering.first).1, network.interval(ordering.then).0))
+    });
+    let of_uses = plan.uses_ordered.iter().map(|ordering| {
+        let [first, then] = [ordering.first, ordering.then].map(|it| network.uses.get(it.index()));
+        Some((happens(first?)[1], happens(then?)[0]))
+    });
+    let curve = |(number, ends): (usize, Option<(NodeId, NodeId)>)| {
+        let (from, to) = ends?;
         Some(between_nodes(drawing, OverlayKind::Ordering, number as u32, from, to))
     };
-    plan.orderings_added.iter().enumerate().filter_map(curve).collect()
+    of_labels.chain(of_uses).enumerate().filter_map(curve).collect()
+}
+
+/// The first and the last event of what a use does to its resource: a reservoir changes at one of them.
+fn happens(used: &tpn::Use) -> [NodeId; 2] {
+    match used.change {
+        Change::Uses => [used.start, used.end],
+        Change::Consumes => [used.start; 2],
+        Change::Produces => [used.end; 2],
+    }
 }
 
 /// Pairs of conditions that contradict each other and cannot be kept apart.

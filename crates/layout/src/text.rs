@@ -4,7 +4,7 @@ use display::{Measure, text_width_at};
 use exact::{Bound, Time};
 use rmpl::program::LabelMode;
 use smol_str::{SmolStr, format_smolstr};
-use tpn::{Arc, ArcId, ArcKind, BlockKind, LabelId, Network, OccurrenceKind};
+use tpn::{Arc, ArcId, ArcKind, BlockKind, Extent, Label, LabelId, Network, OccurrenceKind};
 
 use crate::drawing::Item;
 use crate::metrics::{TextRole, WORD_GAP, whole};
@@ -133,12 +133,25 @@ pub fn bounds_label(lower: Time, upper: Bound) -> SmolStr {
     }
 }
 
-/// A condition as the paper prints it on an arc: `Ask(PATH1=OK)`.
+/// A condition as the paper prints it on an arc: `Ask(PATH1=OK)`, and of what lasts `Set(ARM=OUT)` and `Init(ARM=IN)`.
 pub fn label_text(network: &Network, label: LabelId) -> (SmolStr, TextRole) {
     let label = &network.labels[label.index()];
-    match label.mode {
-        LabelMode::Ask => (format_smolstr!("Ask({})", label.text), TextRole::Ask),
-        LabelMode::Tell => (format_smolstr!("Tell({})", label.text), TextRole::Tell),
+    let role = match label.mode {
+        LabelMode::Ask => TextRole::Ask,
+        LabelMode::Tell => TextRole::Tell,
+    };
+    (format_smolstr!("{}({})", label.verb(), label.text), role)
+}
+
+/// What a labelled interval means for whoever has it, in words: `requires ARM=OUT throughout`.
+pub fn label_words(label: &Label) -> String {
+    let text = &label.text;
+    match (label.mode, label.extent) {
+        (LabelMode::Ask, Extent::Start) => format!("requires {text} at its start"),
+        (LabelMode::Ask, _) => format!("requires {text} throughout"),
+        (LabelMode::Tell, Extent::Effect) => format!("sets {text} at its end"),
+        (LabelMode::Tell, Extent::Initial) => format!("{text} holds at first"),
+        (LabelMode::Tell, _) => format!("asserts {text} throughout"),
     }
 }
 

@@ -10,10 +10,10 @@ use drawings::{draw, enroute, network_of, overlapping};
 use exact::{Bound, Time};
 use layout::list::map::{MapFrame, MapPath, extent_m, map_list, path_stroke};
 use layout::list::timeline::{ROW_HEIGHT, Standing, TimelineState, Track, axis_list, timeline_list};
-use layout::timeline::{Chart, ChartOptions, Grouping};
+use layout::timeline::{BarKind, Chart, ChartOptions, Grouping, RowKind};
 use layout::{Item, NetworkDrawing, NetworkState, network_list};
 use tpn::generate::{Recipe, Tightness, mission};
-use tpn::{Network, Plan, Window};
+use tpn::{Levels, Network, Plan, Quality, Window};
 
 /// A plan that selects everything, with windows by the longest ways from the start.
 fn plan_of(network: &Network) -> Plan {
@@ -33,6 +33,9 @@ fn plan_of(network: &Network) -> Plan {
         causal_links: Vec::new(),
         conflict_order: Vec::new(),
         orderings_added: Vec::new(),
+        uses_ordered: Vec::new(),
+        levels: Vec::new(),
+        quality: Quality::default(),
         windows: earliest.into_iter().map(window).collect(),
     }
 }
@@ -139,7 +142,13 @@ primitive Wait(); primitive Talk();
 scenario S = { Drive()[4,9]; { Wait()[2,30]; { Talk()[5,6]; Wait()[1,1] } }; Talk()[3,3] }";
 
 fn chart_of(network: &Network, plan: &Plan, text: &str) -> Chart {
-    let options = ChartOptions { conditions: true, delays: true, grouping: Grouping::Structure };
+    let options = ChartOptions {
+        conditions: true,
+        states: true,
+        resources: true,
+        delays: true,
+        grouping: Grouping::Structure,
+    };
     Chart::new(&rmpl::parse(text).program(), network, plan, options, &BTreeSet::new())
 }
 
@@ -150,7 +159,7 @@ fn track(chart: &Chart, frame: Rect, names: f64, notes: f64) -> Track {
     Track { frame, left, right, top: frame.min.y, start: 0.0, scale, visible }
 }
 
-fn rows_of(chart: &Chart, network: &Network, track: &Track) -> DisplayList {
+fn rows_of(chart: &Chart, shown: (&Network, &Plan), track: &Track) -> DisplayList {
     let links: Vec<_> = track.links(chart).into_iter().map(|curve| (curve, false)).collect();
     let state = TimelineState {
         now: None,
@@ -161,7 +170,7 @@ fn rows_of(chart: &Chart, network: &Network, track: &Track) -> DisplayList {
         links: &links,
         note: None,
     };
-    timeline_list(chart, network, track, 0..chart.rows.len(), &state)
+    timeline_list(chart, shown, track, 0..chart.rows.len(), &state)
 }
 
 #[test]
@@ -173,7 +182,7 @@ fn a_timeline_has_the_same_bars_in_a_panel_and_on_paper() {
         let height = ROW_HEIGHT * chart.rows.len() as f64 + 20.0;
         let panel = track(&chart, Rect::new(300.0, 80.0, 1_700.0, 80.0 + height), 190.0, 8.0);
         let paper = track(&chart, Rect::new(0.0, 0.0, 940.0, height), 230.0, 110.0);
-        let [in_panel, on_paper] = [panel, paper].map(|track| rows_of(&chart, &network, &track));
+        let [in_panel, on_paper] = [panel, paper].map(|track| rows_of(&chart, (&network, &plan), &track));
         assert_eq!(targets(&in_panel), targets(&on_paper));
         let bars = of_kind(&in_panel, TargetKind::Occurrence);
         let drawn = chart.bars.iter().filter(|bar| bar.label.is_none()).filter_map(|bar| bar.occurrence);
@@ -194,7 +203,8 @@ fn what_may_happen_is_hatched_and_what_is_certain_is_solid() {
     let network = network_of(TIMED);
     let plan = plan_of(&network);
     let chart = chart_of(&network, &plan, TIMED);
-    let list = rows_of(&chart, &network, &track(&chart, Rect::new(0.0, 0.0, 900.0, 400.0), 200.0, 8.0));
+    let list =
+        rows_of(&chart, (&network, &plan), &track(&chart, Rect::new(0.0, 0.0, 900.0, 400.0), 200.0, 8.0));
     let hatched: f64 = list
         .items()
         .iter()
@@ -207,6 +217,126 @@ fn what_may_happen_is_hatched_and_what_is_certain_is_solid() {
             assert!(bar.start[0] <= from && from < to && to <= bar.end[1]);
         }
     }
+}
+
+const LASTING: &str = "state ARM : { IN, OUT } = IN;
+resource Battery 0..100 = 60;
+resource Power capacity 3;
+primitive Deploy()[4,8] requires ARM=IN sets ARM=OUT consumes Battery 50 uses Power 2;
+primitive Dig()[5,9] requires ARM=OUT uses Power 1;
+primitive Charge()[10,20] produces Battery 40;
+scenario S = { Deploy(); Dig(); Charge() }";
+
+/// The bars of the row of this name, with what they are and when, in the earliest schedule.
+fn state_bars(chart: &Chart, name: &str) -> Vec<(BarKind, String, [f64; 2])> {
+    let row = chart.rows.iter().find(|row| row.kind == RowKind::State && row.name == name).expect("a track");
+    let bars = chart.bars[row.bars.clone()].iter();
+    bars.map(|bar| (bar.kind, bar.name.to_string(), [bar.start[0], bar.end[0]])).collect()
+}
+
+#[test]
+fn a_state_has_its_values_side_by_side_and_who_needs_them() {
+    let network = network_of(LASTING);
+    let plan = plan_of(&network);
+    let chart = chart_of(&network, &plan, LASTING);
+    let mut bars = state_bars(&chart, "ARM");
+    bars.sort_by(|left, right| left.2[0].total_cmp(&right.2[0]).then(left.2[1].total_cmp(&right.2[1])));
+    let bar = |kind, name: &str, times| (kind, name.to_owned(), times);
+    assert_eq!(
+        bars,
+        [
+            // What sets a variable needs its old value at its start alone.
+            bar(BarKind::Value, "IN", [0.0, 0.0]),
+            bar(BarKind::Need, "IN", [0.0, 0.0]),
+            bar(BarKind::Changing, "OUT", [0.0, 4.0]),
+            bar(BarKind::Need, "OUT", [4.0, 9.0]),
+            bar(BarKind::Value, "OUT", [4.0, 19.0]),
+        ]
+    );
+    let list =
+        rows_of(&chart, (&network, &plan), &track(&chart, Rect::new(0.0, 0.0, 900.0, 500.0), 200.0, 8.0));
+    let drawn = of_kind(&list, TargetKind::Label);
+    assert_eq!(drawn.len(), network.labels.len(), "each requirement and each change can be pointed at");
+    let is_hatched = |item: &&display::Item| matches!(item.fill, Some(Fill::Hatched(color)) if color.role == ColorRole::Tell);
+    assert_eq!(list.items().iter().filter(is_hatched).count(), 1, "the arm is moving once");
+    assert!(list.texts().iter().any(|text| text.text == "OUT"));
+}
+
+#[test]
+fn what_a_value_is_for_is_said_in_words() {
+    let network = network_of(LASTING);
+    let mut plan = plan_of(&network);
+    let label = |name: &str| {
+        let found = (0..network.labels.len()).map(tpn::LabelId::from_index);
+        found.into_iter().find(|&label| network.label_name(label) == name).expect("a label")
+    };
+    let (ask, tell) = (label("Ask(ARM=OUT)@Dig#1"), label("Set(ARM=OUT)@Deploy#1"));
+    plan.causal_links = vec![tpn::CausalLink { ask, tell }];
+    let chart = chart_of(&network, &plan, LASTING);
+    let words = |kind: BarKind, label: tpn::LabelId| {
+        let bar = chart.bars.iter().find(|bar| bar.kind == kind && bar.label == Some(label)).expect("a bar");
+        layout::timeline::state::words(&network, &plan, bar)
+    };
+    assert_eq!(words(BarKind::Value, tell), ["ARM is OUT, set by Deploy#1", "needed by Dig#1"]);
+    assert_eq!(words(BarKind::Changing, tell), ["ARM is changing: Deploy#1 makes it OUT"]);
+    assert_eq!(words(BarKind::Value, label("Init(ARM=IN)")), ["ARM is IN at first", "nothing needs it"]);
+    assert_eq!(
+        words(BarKind::Need, ask),
+        ["Dig#1 requires ARM=OUT throughout", "carried by Set(ARM=OUT)@Deploy#1"]
+    );
+    let link = chart.links.first().expect("the link is drawn");
+    assert_eq!(chart.bars[link.from.1].kind, BarKind::Value, "the value carries it");
+    assert_eq!(chart.bars[link.to.1].name, "Dig#1");
+}
+
+#[test]
+fn a_resource_has_its_profile_with_its_limits_and_the_plan_s_extremes() {
+    let network = network_of(LASTING);
+    let mut plan = plan_of(&network);
+    plan.levels = vec![Levels::Range { low: 10.into(), high: 50.into() }, Levels::Peak(2.into())];
+    let chart = chart_of(&network, &plan, LASTING);
+    let steps: Vec<Vec<(f64, i64)>> = chart
+        .profiles
+        .iter()
+        .map(|profile| profile.steps.iter().map(|step| (step.time, step.level.floor())).collect())
+        .collect();
+    assert_eq!(steps, [vec![(0.0, 10), (19.0, 50)], vec![(0.0, 2), (4.0, 1), (9.0, 0)]]);
+    let height = ROW_HEIGHT * chart.rows.len() as f64 + 20.0;
+    let place = track(&chart, Rect::new(0.0, 0.0, 900.0, height), 200.0, 8.0);
+    let list = rows_of(&chart, (&network, &plan), &place);
+    let written: Vec<&str> = list.texts().iter().map(|text| text.text.as_str()).collect();
+    for words in [
+        "from 10 to 50",
+        "within 0 and 100",
+        "low 10",
+        "high 50",
+        "least 0",
+        "greatest 100",
+        "at most 2 of 3",
+        "1 to spare",
+        "peak 2",
+        "capacity 3",
+    ] {
+        assert!(written.contains(&words), "{words} is missing in {written:?}");
+    }
+    // Scrolled so that its first row is above what is seen, a profile is drawn all the same.
+    let first = chart.rows.iter().position(|row| matches!(row.kind, RowKind::Profile(_))).expect("a profile");
+    let state = TimelineState {
+        now: None,
+        is_executing: false,
+        range: None,
+        row: &|_| Standing::default(),
+        bar: &|_| Standing::default(),
+        links: &[],
+        note: None,
+    };
+    let lower = timeline_list(&chart, (&network, &plan), &place, first + 1..chart.rows.len(), &state);
+    assert!(lower.texts().iter().any(|text| text.text == "low 10"));
+    let written = display::svg(&[&list], Theme::Light, "t");
+    assert!(
+        written.contains("<title>Battery: level 10; Deploy#1 consumes 50, at its start</title>"),
+        "{written}"
+    );
 }
 
 #[test]

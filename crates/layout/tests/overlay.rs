@@ -34,6 +34,9 @@ fn plan(network: &Network) -> Plan {
             first: label(network, "Tell(not(PROCEED=OK))@Group-Wait#1"),
             then: label(network, "Tell(PROCEED=OK)@Tell(PROCEED=OK)#1"),
         }],
+        uses_ordered: Vec::new(),
+        levels: Vec::new(),
+        quality: tpn::Quality::default(),
         windows: vec![
             Some(Window { earliest: Time::from(460), latest: Bound::Finite(Time::from(600)) });
             network.nodes.len()
@@ -74,11 +77,12 @@ fn an_ordering_runs_from_the_first_end_to_the_second_start() {
 fn a_negative_cycle_follows_arcs_where_there_are_any_and_closes() {
     let network = enroute();
     let drawing = draw(&network);
-    let traverse = &network.arcs[network.labels[0].arc.index()];
+    let required = network.labels[label(&network, "Ask(PATH1=OK)@Group-Traverse-Path#1").index()].arc;
+    let traverse = &network.arcs[required.index()];
     let events = [network.start, traverse.from, traverse.to, network.end];
     let curves = negative_cycle(&drawing, &network, &events);
     assert_eq!(curves.len(), events.len());
-    let arc = drawing.arc(network.labels[0].arc).expect("visible");
+    let arc = drawing.arc(required).expect("visible");
     assert_eq!(curves[1].start, arc.start);
     assert_eq!(curves[1].pieces, drawing.pieces(arc));
     let span = network.nodes[network.start.index()].out_arcs.iter();

@@ -47,6 +47,9 @@ fn as_early_as_can_be(network: &Network) -> Plan {
         causal_links: Vec::new(),
         conflict_order: Vec::new(),
         orderings_added: Vec::new(),
+        uses_ordered: Vec::new(),
+        levels: Vec::new(),
+        quality: tpn::Quality::default(),
         windows: earliest.into_iter().map(window).collect(),
     }
 }

@@ -3,6 +3,7 @@
 use exact::Bound;
 use mission::Robustness;
 use mission::review::{Alternative, EventReview, Line, Record, Review, Section, Status};
+use tpn::{Levels, Supply};
 
 use crate::escape::escaped;
 use crate::html::readable_time;
@@ -17,9 +18,10 @@ pub(crate) fn sections(review: &Review) -> String {
             continue;
         }
         out.push_str(&match section {
-            Section::Plan | Section::SeparationViolations | Section::Warnings => {
+            Section::Plan | Section::States | Section::SeparationViolations | Section::Warnings => {
                 lines(&review.lines(section))
             }
+            Section::Resources => resources(review),
             Section::Choices => choices(review),
             Section::CausalLinks => links(review),
             Section::Conflicts => conflicts(review),
@@ -167,6 +169,34 @@ fn links(review: &Review) -> String {
         ]
     });
     table(&["", "Needed", "Carried by", "#Holds before", "#Outlasts by", "Where"], rows)
+}
+
+fn resources(review: &Review) -> String {
+    let rows = review.resources.iter().map(|resource| {
+        let (supply, used) = match (resource.supply, resource.levels) {
+            (Supply::Reusable { capacity }, Levels::Peak(peak)) => {
+                (format!("capacity {}", capacity.readable()), format!("at most {}", peak.readable()))
+            }
+            (Supply::Reservoir { least, greatest, .. }, Levels::Range { low, high }) => (
+                format!("{} to {}", least.readable(), greatest.readable()),
+                format!("{} to {}", low.readable(), high.readable()),
+            ),
+            _ => (String::new(), String::new()),
+        };
+        let margin = match resource.room {
+            Some(room) => format!("{} below, {} above", resource.spare.readable(), room.readable()),
+            None => resource.spare.readable(),
+        };
+        vec![
+            status(resource.line.status),
+            escaped(&resource.name),
+            escaped(&supply),
+            escaped(&used),
+            escaped(&margin),
+            place(&resource.line),
+        ]
+    });
+    table(&["", "Resource", "There is", "Used or left in every schedule", "Margin", "Where"], rows)
 }
 
 fn conflicts(review: &Review) -> String {

@@ -49,6 +49,21 @@ pub const EXAMPLES: &[Example] = &[
         source: include_str!("../../../assets/missions/backjump.rmpl"),
     },
     Example {
+        name: "arm",
+        title: "An arm that stays out",
+        source: include_str!("../../../assets/missions/arm.rmpl"),
+    },
+    Example {
+        name: "battery",
+        title: "A battery and a charge",
+        source: include_str!("../../../assets/missions/battery.rmpl"),
+    },
+    Example {
+        name: "stations",
+        title: "Stations in any order",
+        source: include_str!("../../../assets/missions/stations.rmpl"),
+    },
+    Example {
         name: "orbit",
         title: "Into orbit",
         source: include_str!("../../../assets/missions/orbit.rmpl"),

@@ -42,6 +42,63 @@ fn an_error_in_the_text_keeps_the_last_good_network_and_says_so() {
 }
 
 #[test]
+fn a_host_page_sees_resources_and_what_a_plan_is_worth() {
+    let mut app = support::start();
+    assert!(app.json()["plan"].get("resources").is_none(), "the first mission has none");
+    let text = "resource Battery 0..100 = 60;
+        resource Drill;
+        primitive Drive()[4,8] consumes Battery 50 costs 2;
+        primitive Dig()[3,3] uses Drill rewards 9;
+        scenario S[0,100] = { Drive(); { free Dig(), free Dig() } }";
+    app.session.set_source(text);
+    app.settle();
+    let state = app.json();
+    assert_eq!(state["verdict"]["valid"], json!(true), "{state}");
+    let plan = &state["plan"];
+    assert_eq!(
+        plan["resources"],
+        json!({
+            "Battery": { "least": 0, "greatest": 100, "low": 10, "high": 60 },
+            "Drill": { "capacity": 1, "peak": 1 },
+        })
+    );
+    assert_eq!((&plan["cost"], &plan["reward"]), (&json!(2), &json!(18)));
+    // Which of the two comes first is up to planning.
+    let mut ordered: Vec<&str> =
+        plan["uses_ordered"][0].as_array().expect("a pair").iter().filter_map(Value::as_str).collect();
+    ordered.sort_unstable();
+    assert_eq!(ordered, ["Uses(Drill)@Dig#1", "Uses(Drill)@Dig#2"]);
+    assert_eq!(state["bound"], json!(null));
+}
+
+#[test]
+fn every_mission_that_comes_with_the_app_has_no_errors() {
+    let mut app = support::start();
+    for example in workbench::mission_file::EXAMPLES {
+        app.session.open(example.name).expect("it is known");
+        app.settle();
+        let state = app.json();
+        let problems = state["diagnostics"].as_array().expect("a list");
+        assert!(problems.iter().all(|it| it["severity"] != "error"), "{}: {problems:?}", example.name);
+        assert_ne!(state["status"], "broken", "{}", example.name);
+    }
+}
+
+#[test]
+fn the_battery_s_mission_charges_between_its_drives() {
+    let mut app = support::start();
+    app.session.open("battery").expect("it is known");
+    app.settle();
+    let state = app.json();
+    assert_eq!((&state["status"], &state["verdict"]["valid"]), (&json!("plan"), &json!(true)));
+    let earliest = |event: &str| -> exact::Time {
+        serde_json::from_value(state["plan"]["windows"][event][0].clone()).expect("a time")
+    };
+    assert!(earliest("Charge#1.end") <= earliest("Drive#3.start"), "{}", state["plan"]["windows"]);
+    assert!(earliest("Drive#1.start") < earliest("Charge#1.start"), "{}", state["plan"]["windows"]);
+}
+
+#[test]
 fn time_plays_to_the_end_of_the_plan_and_stops() {
     let mut app = support::start();
     app.session.dispatch("play.toggle", &json!(null)).expect("there is a plan");

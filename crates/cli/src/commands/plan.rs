@@ -15,7 +15,7 @@ use mission::{Paths, Problem};
 use rmpl::LineIndex;
 use rmpl::program::Program;
 use serde_json::{Value, json};
-use tpn::Network;
+use tpn::{Levels, Network, Supply};
 
 use crate::deadline::TimeLimit;
 use crate::ground::ground;
@@ -35,6 +35,9 @@ pub struct Args {
     /// Lists every distinct plan.
     #[arg(long)]
     all: bool,
+    /// Lists so many plans that differ in their choices, the best first.
+    #[arg(long, value_name = "K", conflicts_with = "all", value_parser = clap::value_parser!(u32).range(1..))]
+    best: Option<u32>,
     /// Stops after so many plans (with --all).
     #[arg(long, value_name = "N")]
     limit: Option<usize>,
@@ -85,7 +88,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     };
     let plan_millis = millis_since(begun);
     if let Some(file) = &args.trace {
-        let trace = planned.planning.outcome.trace.as_ref().context("the search left no trace")?;
+        let trace = planned.planning.outcome.trace.as_ref().context(
+            "there is no trace: the search for missions with states, resources or an objective is not recorded",
+        )?;
         std::fs::write(file, kirk::trace_json_lines(&planned.network, trace))
             .with_context(|| format!("cannot write {}", file.display()))?;
     }
@@ -124,6 +129,7 @@ impl Args {
             threat_gap,
             all: self.all,
             max_plans: self.limit.unwrap_or(Options::default().max_plans),
+            best: self.best.map_or(1, |count| count as usize),
             trace_events: self.trace.is_some().then_some(TRACE_EVENTS),
             ..Options::default()
         })
@@ -188,7 +194,7 @@ fn outcome_json(planned: &Planned, loaded: &Loaded, [compile_millis, plan_millis
     let world = loaded.program.as_ref().map(|program| &program.world);
     let plans: Vec<Value> =
         outcome.plans.iter().map(|plan| tpn::plan_json::plan_to_json(&planned.network, plan)).collect();
-    json!({
+    let mut body = json!({
         "status": status_name(outcome.status),
         "plans": plans,
         "verdict": planned.planning.verdict,
@@ -213,7 +219,11 @@ fn outcome_json(planned: &Planned, loaded: &Loaded, [compile_millis, plan_millis
             "leaves": stats.leaves,
             "nogoods": stats.nogoods,
         },
-    })
+    });
+    if let Some(bound) = outcome.bound {
+        body["bound"] = json!(bound);
+    }
+    body
 }
 
 fn failure_json(failure: &Failure, loaded: &Loaded) -> Value {
@@ -316,10 +326,38 @@ fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
             network.label_name(link.ask)
         ));
     }
-    for order in &plan.conflict_order {
+    for order in plan.telling_order(network) {
         let added = if plan.orderings_added.contains(order) { " (added)" } else { "" };
         let (first, then) = (network.label_name(order.first), network.label_name(order.then));
         text.push_str(&format!("order     {first} before {then}{added}\n"));
+    }
+    for order in &plan.uses_ordered {
+        let (first, then) = (network.use_name(order.first), network.use_name(order.then));
+        text.push_str(&format!("order     {first} before {then} (added)\n"));
+    }
+    for (resource, levels) in network.resources.iter().zip(&plan.levels) {
+        let name = &resource.name;
+        text.push_str(&match (resource.supply, *levels) {
+            (Supply::Reservoir { least, greatest, .. }, Levels::Range { low, high }) => {
+                format!("resource  {name}: between {low} and {high}, within {least} and {greatest}\n")
+            }
+            (Supply::Reusable { capacity }, Levels::Peak(peak)) => {
+                format!("resource  {name}: at most {peak} of {capacity} at a time\n")
+            }
+            _ => String::new(),
+        });
+    }
+    let quality = &plan.quality;
+    if !network.worths.is_empty() || quality.is_optimal.is_some() {
+        let optimal = match quality.is_optimal {
+            Some(true) => ", optimal",
+            Some(false) => ", the best found",
+            None => "",
+        };
+        text.push_str(&format!(
+            "worth     cost {}, reward {}, end {}{optimal}\n",
+            quality.cost, quality.reward, quality.end
+        ));
     }
     let mut rows: Vec<(Time, Bound, String)> = Vec::new();
     for (node, window) in network.nodes.iter().zip(&plan.windows) {

@@ -129,6 +129,12 @@ fn review_json(review: &Review) -> Value {
             "gap": range_json(it.gap),
             "added": it.is_added,
         }))).collect::<Vec<_>>(),
+        "states": plain(&review.states),
+        "resources": review.resources.iter().map(|it| line_json(&it.line, json!({
+            "resource": it.name,
+            "spare": it.spare,
+            "room": it.room,
+        }))).collect::<Vec<_>>(),
         "events": review.events.iter().map(|it| line_json(&it.line, json!({
             "event": it.name,
             "window": [it.window.earliest, it.window.latest],

@@ -6,9 +6,12 @@ use std::ops::Range;
 
 use rmpl::program::Program;
 use smol_str::SmolStr;
-use tpn::{CausalLink, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind, Ordering, Plan, Window};
+use tpn::{
+    CausalLink, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind, Ordering, Plan, UseOrdering, Window,
+};
 
-use super::{ChartOptions, group};
+use super::profile::{Profile, ProfilePart, profiles};
+use super::{ChartOptions, group, profile};
 
 /// Rows of bars, and the links between them.
 #[derive(Clone, Debug, Default)]
@@ -19,6 +22,8 @@ pub struct Chart {
     pub bars: Vec<Bar>,
     /// Causal links and orderings between bars.
     pub links: Vec<Link>,
+    /// The profiles of resources, each with rows of its own.
+    pub profiles: Vec<Profile>,
     /// The last time that is certain to matter: every finite bound of every bar.
     pub horizon: f64,
 }
@@ -47,8 +52,12 @@ pub enum RowKind {
     Heading,
     /// One activity or delay.
     Single,
-    /// The values of a state variable.
+    /// The assertions of a variable that is known only there, or what is required of it.
     Track,
+    /// The values of a variable that keeps them.
+    State,
+    /// A part of the profile of a resource.
+    Profile(ProfilePart),
 }
 
 /// An activity, condition or delay over time.
@@ -87,6 +96,19 @@ pub enum BarKind {
     Tell,
     /// A required condition.
     Ask,
+    /// A value that a variable keeps, in the earliest schedule.
+    Value,
+    /// A variable has no value while something changes it, in the earliest schedule.
+    Changing,
+    /// What is required of a variable that keeps its value, in the earliest schedule.
+    Need,
+}
+
+impl BarKind {
+    /// Whether it is part of the track of a variable that keeps its value.
+    pub const fn is_of_state(self) -> bool {
+        matches!(self, Self::Value | Self::Changing | Self::Need)
+    }
 }
 
 /// A line between two bars.
@@ -107,6 +129,8 @@ pub enum LinkKind {
     Causal(CausalLink),
     /// One interval was put before another.
     Ordering(Ordering),
+    /// One use of a resource was put before another.
+    UseOrdering(UseOrdering),
 }
 
 /// A row before it is known which rows are closed.
@@ -161,9 +185,15 @@ impl Chart {
         let mut chart = Self::default();
         let mut hidden_from: Option<(u32, usize)> = None;
         let mut gathered: Vec<Vec<Bar>> = Vec::new();
-        for item in group::items(program, network, plan, options) {
+        if options.resources {
+            chart.profiles = profiles(network, plan);
+        }
+        let items = group::items(program, network, plan, options);
+        for item in items.into_iter().chain(profile::items(&chart.profiles)) {
             if let Some((_, row)) = hidden_from.filter(|&(depth, _)| item.depth > depth) {
-                gathered[row].extend(item.bars.into_iter().filter(|bar| bar.kind != BarKind::Composite));
+                let is_gathered =
+                    |bar: &Bar| !matches!(bar.kind, BarKind::Composite | BarKind::Value | BarKind::Need);
+                gathered[row].extend(item.bars.into_iter().filter(is_gathered));
                 continue;
             }
             let is_closed = item.key.as_ref().is_some_and(|key| closed.contains(key));
@@ -188,15 +218,23 @@ impl Chart {
         for bar in &mut self.bars {
             bar.retime(plan);
         }
+        for profile in &mut self.profiles {
+            profile.retime(plan);
+        }
     }
 
     fn links_of(&self, network: &Network, plan: &Plan) -> Vec<Link> {
-        // Where the bar of a condition is, and, failing that, the bar of its owner.
+        // Where the bar of a condition is, and, failing that, the bar of its owner. A change has two: while it goes on, and
+        // with what has come of it, which carries requirements.
         let mut of_label = vec![None; network.labels.len()];
+        let mut of_change = vec![None; network.labels.len()];
         let mut of_owner = vec![None; network.occurrences.len()];
         for (row, shown) in self.rows.iter().enumerate() {
             for at in shown.bars.clone() {
                 match (self.bars[at].label, self.bars[at].occurrence) {
+                    (Some(label), _) if self.bars[at].kind == BarKind::Changing => {
+                        of_change[label.index()] = Some((row, at));
+                    }
                     (Some(label), _) => of_label[label.index()] = Some((row, at)),
                     (None, Some(owner)) if of_owner[owner.index()].is_none() => {
                         of_owner[owner.index()] = Some((row, at));
@@ -216,11 +254,21 @@ impl Chart {
             let (from, to) = (from_track(link.tell)?, to_owner(link.ask)?);
             Some(Link { kind: LinkKind::Causal(link), from, to })
         });
+        let interval =
+            |label: LabelId| of_change.get(label.index()).copied().flatten().or_else(|| from_track(label));
         let orderings = plan.orderings_added.iter().filter_map(|&ordering| {
-            let (from, to) = (from_track(ordering.first)?, from_track(ordering.then)?);
+            let (from, to) = (interval(ordering.first)?, interval(ordering.then)?);
             Some(Link { kind: LinkKind::Ordering(ordering), from, to })
         });
-        causal.chain(orderings).filter(|link| link.from != link.to).collect()
+        let place_of_use = |used: tpn::UseId| {
+            let owner = network.uses.get(used.index())?.owner?;
+            of_owner.get(owner.index()).copied().flatten()
+        };
+        let uses = plan.uses_ordered.iter().filter_map(|&ordering| {
+            let (from, to) = (place_of_use(ordering.first)?, place_of_use(ordering.then)?);
+            Some(Link { kind: LinkKind::UseOrdering(ordering), from, to })
+        });
+        causal.chain(orderings).chain(uses).filter(|link| link.from != link.to).collect()
     }
 }
 
@@ -233,6 +281,7 @@ pub fn times(plan: &Plan, events: [NodeId; 2]) -> Option<[[f64; 2]; 2]> {
 
 fn horizon(bars: &[Bar]) -> f64 {
     bars.iter()
+        .filter(|bar| bar.kind != BarKind::Value)
         .flat_map(|bar| [bar.start[1], bar.end[0], bar.end[1]])
         .filter(|time| time.is_finite())
         .fold(1.0, f64::max)

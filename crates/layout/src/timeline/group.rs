@@ -7,7 +7,7 @@ use smol_str::{SmolStr, format_smolstr};
 use tpn::{LabelId, Network, OccurrenceId, OccurrenceKind, Plan};
 
 use super::chart::{Bar, BarKind, Item, RowKind, times};
-use super::{ChartOptions, Grouping};
+use super::{ChartOptions, Grouping, state};
 use crate::threads::{thread_name, threads};
 
 /// The rows of a plan from top to bottom, parents before children.
@@ -20,6 +20,9 @@ pub(super) fn items(program: &Program, network: &Network, plan: &Plan, options: 
     };
     if options.conditions {
         items.extend(conditions(network, plan));
+    }
+    if options.states {
+        items.extend(state::items(network, plan));
     }
     items
 }
@@ -156,12 +159,13 @@ fn by_vehicle(program: &Program, network: &Network, bars: &Bars) -> Vec<Item> {
     items
 }
 
-/// A track for each state variable that the plan speaks of: its assertions above, what is required of it below, as many
+/// A track for each variable that the plan speaks of and that does not keep its value: its assertions above, what is required of it below, as many
 /// rows as it takes for none to lie over another.
 fn conditions(network: &Network, plan: &Plan) -> Vec<Item> {
     let mut tracks: Vec<Vec<Bar>> = vec![Vec::new(); network.variables.len()];
     for (index, label) in network.labels.iter().enumerate() {
-        let is_selected = plan.selected_arcs.get(label.arc.index()) == Some(&true);
+        let is_lasting = network.is_lasting(LabelId::from_index(index));
+        let is_selected = !is_lasting && plan.selected_arcs.get(label.arc.index()) == Some(&true);
         let arc = &network.arcs[label.arc.index()];
         let Some([start, end]) = times(plan, [arc.from, arc.to]).filter(|_| is_selected) else { continue };
         let kind = if label.mode == LabelMode::Tell { BarKind::Tell } else { BarKind::Ask };

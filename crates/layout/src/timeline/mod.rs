@@ -2,6 +2,8 @@
 
 mod chart;
 mod group;
+pub mod profile;
+pub mod state;
 mod ticks;
 
 use serde::{Deserialize, Serialize};
@@ -12,8 +14,12 @@ pub use ticks::Ticks;
 /// What a chart shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ChartOptions {
-    /// Conditions as tracks, one for each state variable.
+    /// Conditions as tracks, one for each variable that is known only where it is asserted.
     pub conditions: bool,
+    /// What variables that keep their values are from when to when.
+    pub states: bool,
+    /// How far resources are used.
+    pub resources: bool,
     /// Delays as bars of their own.
     pub delays: bool,
     /// By what the bars are grouped.

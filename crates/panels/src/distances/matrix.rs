@@ -6,7 +6,7 @@ use egui::RichText;
 use exact::Bound;
 use kirk::{Constraint, CycleMember};
 use theme::{size, space};
-use tpn::{ArcId, Network, NodeId, Plan};
+use tpn::{ArcId, Network, NodeId, Plan, Precedence};
 use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
 use workbench::state::selection::node_name;
@@ -114,20 +114,17 @@ fn distances(parts: &Parts<'_>) -> BTreeMap<(NodeId, NodeId), Bound> {
             shorten(arc.to, arc.from, Bound::Finite(weight));
         }
     }
-    let ends = |label: tpn::LabelId| {
-        let arc = &network.arcs[network.labels[label.index()].arc.index()];
-        (arc.from, arc.to)
-    };
-    for &link in parts.plan.causal_links.iter().filter(|&&link| closing != Some(Constraint::Link(link))) {
-        let ((tell_start, tell_end), (ask_start, ask_end)) = (ends(link.tell), ends(link.ask));
-        shorten(ask_start, tell_start, Bound::ZERO);
-        shorten(tell_end, ask_end, Bound::ZERO);
-    }
-    for &order in
-        parts.plan.orderings_added.iter().filter(|&&order| closing != Some(Constraint::Order(order)))
-    {
-        if let Some(weight) = network.threat_gap.checked_neg() {
-            shorten(ends(order.then).0, ends(order.first).1, Bound::Finite(weight));
+    let links = parts.plan.causal_links.iter();
+    let links = links.filter(|&&link| closing != Some(Constraint::Link(link)));
+    let orders = parts.plan.orderings_added.iter();
+    let orders = orders.filter(|&&order| closing != Some(Constraint::Order(order)));
+    let added = links
+        .flat_map(|link| link.precedences(network))
+        .chain(orders.map(|order| parts.plan.ordering_precedence(network, order)))
+        .chain(parts.plan.uses_ordered.iter().map(|order| order.precedence(network)));
+    for Precedence { earlier, later, least } in added {
+        if let Some(weight) = least.checked_neg() {
+            shorten(later, earlier, Bound::Finite(weight));
         }
     }
     for middle in 0..count {

@@ -195,7 +195,7 @@ fn unresolved_threats(snapshot: &Snapshot) -> Vec<[tpn::LabelId; 2]> {
         .filter_map(|reason| {
             let mut conditions = reason.conflict.iter().filter_map(|member| match member {
                 kirk::Member::Condition(label) => Some(*label),
-                kirk::Member::Bound(_) => None,
+                kirk::Member::Use(_) | kirk::Member::Bound(_) => None,
             });
             Some([conditions.next()?, conditions.next()?])
         })

@@ -2,7 +2,7 @@
 
 use exact::Bound;
 use layout::Item;
-use layout::text::bounds_label;
+use layout::text::{bounds_label, label_words};
 use tpn::{ArcKind, Network, Plan, Role};
 use workbench::state::selection::node_name;
 
@@ -13,12 +13,8 @@ pub(super) fn describe(item: Item, network: &Network, plan: Option<&Plan>) -> Op
         Item::Arc(id) => describe_arc(id, network, plan),
         Item::Label(id) => {
             let label = network.labels.get(id.index())?;
-            let mode = match label.mode {
-                rmpl::program::LabelMode::Ask => "requires",
-                rmpl::program::LabelMode::Tell => "asserts",
-            };
             let (_, arc) = describe_arc(label.arc, network, plan)?;
-            let mut lines = vec![format!("{mode} {} throughout", label.text)];
+            let mut lines = vec![label_words(label)];
             lines.extend(arc);
             Some((network.label_name(id), lines))
         }
@@ -105,7 +101,8 @@ fn describe_arc(id: tpn::ArcId, network: &Network, plan: Option<&Plan>) -> Optio
         lines.push(format!("{}({})", occurrence.activity, occurrence.arguments.join(", ")));
     }
     lines.push(format!("{} {}", kind_name(arc.kind), bounds_label(arc.lower, arc.upper)));
-    lines.extend(arc.labels.iter().map(|&label| layout::text::label_text(network, label).0.to_string()));
+    let labels = arc.labels.iter().filter_map(|label| network.labels.get(label.index()));
+    lines.extend(labels.map(label_words));
     if plan.is_some_and(|plan| plan.selected_arcs.get(id.index()) == Some(&false)) {
         lines.push("not selected by the plan".to_owned());
     }

@@ -330,7 +330,7 @@ impl NetworkPanel {
                 .filter(|(distance, _)| *distance <= reach * 0.7)
                 .min_by(|left, right| left.0.total_cmp(&right.0));
             if let Some((_, curve)) = nearest {
-                return overlay_selection(curve, plan).map(Pointed::Curve);
+                return overlay_selection(curve, network, plan).map(Pointed::Curve);
             }
         }
         let item = item?;
@@ -409,12 +409,17 @@ fn distance(curve: &OverlayCurve, point: Point, reach: f64) -> f64 {
     display::geometry::distance_point_curve(point, curve.start, &curve.pieces)
 }
 
-fn overlay_selection(curve: &OverlayCurve, plan: &Plan) -> Option<Selection> {
+fn overlay_selection(curve: &OverlayCurve, network: &Network, plan: &Plan) -> Option<Selection> {
     let number = curve.number as usize;
     match curve.kind {
         OverlayKind::CausalLink => plan.causal_links.get(number).map(|&link| Selection::Link(link)),
         OverlayKind::Ordering => {
-            plan.orderings_added.get(number).map(|&ordering| Selection::Ordering(ordering))
+            if let Some(&ordering) = plan.orderings_added.get(number) {
+                return Some(Selection::Ordering(ordering));
+            }
+            // Those of the uses of resources follow; each stands for the one that has to wait.
+            let ordering = plan.uses_ordered.get(number - plan.orderings_added.len())?;
+            network.uses.get(ordering.then.index())?.owner.map(Selection::Occurrence)
         }
         OverlayKind::NegativeCycle | OverlayKind::Threat => None,
     }

@@ -89,6 +89,7 @@ fn show_reason(
             FailureKind::Temporal => "The bounds contradict each other",
             FailureKind::OpenCondition => "A requirement cannot be met",
             FailureKind::Threat => "Conditions cannot be kept apart",
+            FailureKind::Resource => "A resource does not suffice",
         };
         let choices: Vec<String> = reason
             .choices

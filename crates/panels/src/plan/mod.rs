@@ -1,5 +1,6 @@
 //! The plan: the checker's verdict, choices, links, orderings and windows; or why there is none.
 
+mod demands;
 mod failure;
 mod windows;
 
@@ -49,9 +50,11 @@ impl Panel for PlanPanel {
                             Some(view) => show_step(ui, context, view),
                             None => show_verdict(ui, context, planning),
                         }
+                        demands::worth(ui, context, network, plan, planning);
                         show_choices(ui, context, network, plan, commands);
                         show_links(ui, context, network, plan, commands);
                         show_orderings(ui, context, network, plan, commands);
+                        demands::resources(ui, context, network, plan, commands);
                         self.windows.show(ui, context, network, plan, commands);
                     }
                     None => failure::show(ui, context, network, planning, commands),
@@ -246,7 +249,7 @@ fn show_links(
     if plan.causal_links.is_empty() {
         return;
     }
-    section(ui, context, "Causal links", "a requirement inside the assertion that carries it");
+    section(ui, context, "Causal links", "a requirement, and the assertion or change that carries it");
     rows(ui, "links", plan.causal_links.len(), |ui, index| {
         let link = plan.causal_links[index];
         let text = format!("{} ← {}", network.label_name(link.ask), network.label_name(link.tell));
@@ -262,15 +265,16 @@ fn show_orderings(
     plan: &Plan,
     commands: &mut CommandSender,
 ) {
-    if plan.conflict_order.is_empty() {
+    let orders: Vec<tpn::Ordering> = plan.telling_order(network).copied().collect();
+    if orders.is_empty() {
         return;
     }
     let added = plan.orderings_added.len();
-    let pairs = counted(plan.conflict_order.len() as u64, "conflicting pair");
+    let pairs = counted(orders.len() as u64, "conflicting pair");
     let note = format!("{pairs}, {added} ordered by planning");
     section(ui, context, "Threats and orderings", &note);
-    rows(ui, "orderings", plan.conflict_order.len(), |ui, index| {
-        let ordering = plan.conflict_order[index];
+    rows(ui, "orderings", orders.len(), |ui, index| {
+        let ordering = orders[index];
         let text =
             format!("{} before {}", network.label_name(ordering.first), network.label_name(ordering.then));
         let is_added = plan.orderings_added.contains(&ordering);

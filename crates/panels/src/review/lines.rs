@@ -92,7 +92,11 @@ fn selection(snapshot: &Snapshot, section: Section, line: &Line) -> Option<Selec
             Some(Selection::Link(CausalLink { ask: label(ask)?, tell: label(tell)? }))
         }
         (Section::Conflicts, [first, then]) => {
-            Some(Selection::Ordering(Ordering { first: label(first)?, then: label(then)? }))
+            match label(first).zip(label(then)) {
+                Some((first, then)) => Some(Selection::Ordering(Ordering { first, then })),
+                // Two uses of a resource: the one that has to wait.
+                None => Selection::by_name(snapshot, then),
+            }
         }
         (_, [first, ..]) => Selection::by_name(snapshot, first),
         (_, []) => None,

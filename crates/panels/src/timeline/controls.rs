@@ -143,9 +143,14 @@ fn switches(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let mut views = context.state.settings.views.clone();
     let view = &mut views.timeline;
     let mut changed = false;
-    for (value, name) in
-        [(&mut view.delays, "Delays"), (&mut view.conditions, "Conditions"), (&mut view.links, "Links")]
-    {
+    let all = [
+        (&mut view.delays, "Delays"),
+        (&mut view.conditions, "Conditions"),
+        (&mut view.states, "States"),
+        (&mut view.resources, "Resources"),
+        (&mut view.links, "Links"),
+    ];
+    for (value, name) in all {
         if ui.add(Button::selectable(*value, RichText::new(name).small())).clicked() {
             *value = !*value;
             changed = true;

@@ -5,6 +5,7 @@ use display::geometry::distance_point_curve;
 use egui::Pos2;
 use layout::list::timeline::LinkCurve;
 use layout::timeline::{Link, LinkKind};
+use tpn::Network;
 use workbench::state::Selection;
 
 use super::paint::Painting;
@@ -21,16 +22,30 @@ pub(super) fn at<'a>(curves: &[LinkCurve<'a>], pointer: Pos2) -> Option<&'a Link
 }
 
 /// What a click on a link selects.
-pub(super) fn selection(kind: LinkKind) -> Selection {
+pub(super) fn selection(kind: LinkKind, network: &Network) -> Selection {
     match kind {
         LinkKind::Causal(link) => Selection::Link(link),
         LinkKind::Ordering(ordering) => Selection::Ordering(ordering),
+        LinkKind::UseOrdering(ordering) => {
+            let later = network.uses.get(ordering.then.index()).and_then(|used| used.owner);
+            later.map_or(Selection::None, Selection::Occurrence)
+        }
+    }
+}
+
+/// What a link is called.
+pub(super) fn name(kind: LinkKind, network: &Network) -> String {
+    match kind {
+        LinkKind::UseOrdering(ordering) => {
+            format!("{} before {}", network.use_name(ordering.first), network.use_name(ordering.then))
+        }
+        _ => selection(kind, network).name(Some(network)),
     }
 }
 
 /// Whether a link, or a bar at one of its ends, is selected or pointed at.
 pub(super) fn is_chosen(painting: &Painting<'_>, link: &Link) -> bool {
-    let (state, own) = (painting.context.state, selection(link.kind));
+    let (state, own) = (painting.context.state, selection(link.kind, painting.network));
     let touches = |chosen: &Selection| {
         let owners = [link.from.1, link.to.1].map(|bar| painting.chart.bars[bar].occurrence);
         *chosen == own || owners.into_iter().flatten().any(|owner| *chosen == Selection::Occurrence(owner))

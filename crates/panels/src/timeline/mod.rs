@@ -10,6 +10,7 @@ mod handle;
 mod link;
 mod overview;
 mod paint;
+mod profile;
 mod view;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -19,7 +20,7 @@ use egui::{
     CursorIcon, PointerButton, Rect, Response, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 use layout::list::timeline::{LinkCurve, Standing, TimelineState, timeline_list};
-use layout::timeline::{Bar, Chart, Row, RowKind, times};
+use layout::timeline::{Bar, Chart, Row, RowKind, state, times};
 use mission::Snapshot;
 use smol_str::SmolStr;
 use tpn::{LabelId, Network, Plan};
@@ -209,6 +210,9 @@ impl TimelinePanel {
             let bars = shown.bars.clone().map(|at| (at, &painting.chart.bars[at]));
             let is_row_selected = shown.kind == RowKind::Single
                 && bars.clone().any(|(_, bar)| is_chosen(bar, &state.selection, painting.network));
+            if let RowKind::Profile(part) = shown.kind {
+                profile::show(ui, painting, index, part);
+            }
             let is_row_hovered = self.show_row(ui, painting, plan, index, is_row_selected, commands);
             of_rows.push(Standing { is_selected: is_row_selected, is_hovered: is_row_hovered });
             let mut painted_to = f32::MIN;
@@ -217,7 +221,8 @@ impl TimelinePanel {
                 let whole = if bar.is_narrowed() { place.expand2(vec2(1e4, 0.0)) } else { place };
                 // Bars that fall onto the same point of the screen are drawn once.
                 let is_seen = whole.intersects(painting.visible.expand2(vec2(4.0, 40.0)));
-                let is_merged = place.width() < 1.0 && place.right() < painted_to + 1.0;
+                let is_merged =
+                    !bar.kind.is_of_state() && place.width() < 1.0 && place.right() < painted_to + 1.0;
                 if !is_seen || is_merged {
                     continue;
                 }
@@ -230,8 +235,11 @@ impl TimelinePanel {
                     show_bar(ui, painting, plan, (index, at), is_selected, commands)
                 };
                 of_bars.insert(at, Standing { is_selected, is_hovered });
-                handles.push((index, bar, is_selected || is_hovered));
-                if is_selected && chosen.is_none() {
+                // What a variable keeps begins and ends with the activities that change it, which have bars of their own.
+                if !bar.kind.is_of_state() {
+                    handles.push((index, bar, is_selected || is_hovered));
+                }
+                if is_selected && chosen.is_none() && !bar.kind.is_of_state() {
                     chosen = Some((index, bar));
                 }
             }
@@ -248,7 +256,8 @@ impl TimelinePanel {
             links: &links,
             note: None,
         };
-        let list = timeline_list(painting.chart, painting.network, &painting.place, rows.clone(), &shown);
+        let list =
+            timeline_list(painting.chart, (painting.network, plan), &painting.place, rows.clone(), &shown);
         paint::show(ui, painting.context, &list);
         rows.for_each(|index| painting.sign(ui, index));
         // Handles come last, so that they are over the bars that they belong to.
@@ -398,14 +407,15 @@ impl TimelinePanel {
         }
         let pointed = response.hover_pos().and_then(|at| link::at(links, at));
         if response.clicked() {
-            let selection = pointed.map_or(Selection::None, |link| link::selection(link.kind));
+            let selection =
+                pointed.map_or(Selection::None, |link| link::selection(link.kind, painting.network));
             commands.send(Command::Select(selection));
         }
         if response.double_clicked() {
             commands.send(Command::ViewOf(PanelKind::Timeline, ViewAction::Fit));
         }
         if let Some(pointed) = pointed {
-            let name = link::selection(pointed.kind).name(Some(painting.network));
+            let name = link::name(pointed.kind, painting.network);
             response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text_at_pointer(name);
         }
         let pointer =
@@ -494,6 +504,7 @@ fn respond(
     response.widget_info(|| {
         let owner = bar.occurrence.and_then(|it| painting.network.occurrences.get(it.index()));
         let name = match (bar.label, owner) {
+            _ if bar.kind.is_of_state() => state::words(painting.network, plan, bar).join(", "),
             (Some(_), Some(owner)) if owner.name != bar.name => format!("{} of {}", bar.name, owner.name),
             _ => bar.name.to_string(),
         };
@@ -515,11 +526,15 @@ fn respond(
     let is_hovered = response.hovered() || is_chosen(bar, &context.state.hovered, painting.network);
     response.clone().on_hover_ui_at_pointer(|ui| {
         ui.label(theme::strong(selection.name(Some(painting.network))));
+        if bar.kind.is_of_state() {
+            for line in state::words(painting.network, plan, bar) {
+                ui.label(line);
+            }
+        }
         ui.label(bar::words(bar, plan));
         for &label in &bar.labels {
             if let Some(label) = painting.network.labels.get(label.index()) {
-                let verb = if label.mode == rmpl::program::LabelMode::Ask { "requires" } else { "asserts" };
-                ui.label(format!("{verb} {}", label.text));
+                ui.label(layout::text::label_words(label));
             }
         }
     });

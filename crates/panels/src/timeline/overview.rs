@@ -35,8 +35,9 @@ impl Silhouette {
             for bar in &chart.bars[row.bars.clone()] {
                 let kind = match bar.kind {
                     BarKind::Activity => 0,
-                    BarKind::Tell | BarKind::Ask => 1,
-                    BarKind::Composite | BarKind::Delay => continue,
+                    BarKind::Tell | BarKind::Ask | BarKind::Changing | BarKind::Need => 1,
+                    // A value lasts nearly everywhere, which says nothing from afar.
+                    BarKind::Composite | BarKind::Delay | BarKind::Value => continue,
                 };
                 piece[kind] |= parts(bar.free[0][0] / chart.horizon, bar.free[1][0] / chart.horizon);
             }

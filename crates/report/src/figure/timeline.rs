@@ -18,8 +18,13 @@ const TIMES_WIDTH: f64 = 110.0;
 const AXIS_HEIGHT: f64 = 24.0;
 
 /// What the report's timeline shows: everything, by activity.
-pub(super) const OPTIONS: ChartOptions =
-    ChartOptions { conditions: true, delays: false, grouping: Grouping::Structure };
+pub(super) const OPTIONS: ChartOptions = ChartOptions {
+    conditions: true,
+    states: true,
+    resources: true,
+    delays: false,
+    grouping: Grouping::Structure,
+};
 
 /// The timeline of the snapshot's plan; `None` without one.
 pub(crate) fn timeline(snapshot: &Snapshot) -> Option<String> {
@@ -62,6 +67,6 @@ pub(crate) fn timeline(snapshot: &Snapshot) -> Option<String> {
         links: &links,
         note: Some(&earliest),
     };
-    let rows = timeline_list(&chart, network, &track, 0..chart.rows.len(), &state);
+    let rows = timeline_list(&chart, (network, plan), &track, 0..chart.rows.len(), &state);
     Some(display::svg(&[&axis, &rows], Theme::Light, "Timeline of the plan"))
 }

@@ -175,8 +175,12 @@ impl Default for NetworkView {
 pub struct TimelineView {
     /// Causal links and orderings between bars.
     pub links: bool,
-    /// Conditions as tracks, one for each state variable.
+    /// Conditions as tracks, one for each variable that is known only where it is asserted.
     pub conditions: bool,
+    /// What variables that keep their values are from when to when.
+    pub states: bool,
+    /// How far resources are used.
+    pub resources: bool,
     /// Delays as bars of their own.
     pub delays: bool,
     /// By what the bars are grouped.
@@ -186,13 +190,26 @@ pub struct TimelineView {
 impl TimelineView {
     /// What of it a chart shows.
     pub const fn chart(&self) -> ChartOptions {
-        ChartOptions { conditions: self.conditions, delays: self.delays, grouping: self.grouping }
+        ChartOptions {
+            conditions: self.conditions,
+            states: self.states,
+            resources: self.resources,
+            delays: self.delays,
+            grouping: self.grouping,
+        }
     }
 }
 
 impl Default for TimelineView {
     fn default() -> Self {
-        Self { links: true, conditions: true, delays: false, grouping: Grouping::default() }
+        Self {
+            links: true,
+            conditions: true,
+            states: true,
+            resources: true,
+            delays: false,
+            grouping: Grouping::default(),
+        }
     }
 }
 

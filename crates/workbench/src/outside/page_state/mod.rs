@@ -17,7 +17,7 @@ use mission::paths_json::traverses_json;
 use mission::{Problem, Snapshot};
 use rmpl::diagnostic::Severity;
 use serde::Serialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 use tpn::Network;
 use tpn::plan_json::plan_to_json;
 #[cfg(test)]
@@ -69,6 +69,9 @@ pub struct PageState {
     tpn: Option<NetworkSize>,
     #[cfg_attr(test, ts(type = "Plan | null"))]
     plan: Option<Value>,
+    /// What no plan is better than, where the plan is not known to be optimal: in the first goal that is not settled.
+    #[cfg_attr(test, ts(type = "Time | null"))]
+    bound: Option<Value>,
     /// What the independent checker says of the plan.
     verdict: Option<Verdict>,
     /// Why there is no plan.
@@ -230,6 +233,7 @@ impl PageState {
             diagnostics: latest.map(|it| it.problems.iter().map(diagnostic).collect()).unwrap_or_default(),
             tpn: network.map(network_size),
             plan: plan.map(|(network, plan)| plan_to_json(network, plan)),
+            bound: planning.and_then(|planning| planning.outcome.bound).map(|bound| json!(bound)),
             verdict: planning.and_then(|planning| planning.verdict.as_ref()).map(verdict),
             failure: network.zip(failure).map(|(network, failure)| failure_of(network, failure)),
             review: review::review(state),
@@ -308,6 +312,7 @@ fn failure_of(network: &Network, failure: &kirk::Failure) -> Failure {
     let conditions =
         failure.reasons.iter().flat_map(|reason| &reason.conflict).filter_map(|member| match member {
             kirk::Member::Condition(label) => Some(network.label_name(*label)),
+            kirk::Member::Use(used) => Some(network.use_name(*used)),
             kirk::Member::Bound(_) => None,
         });
     Failure {

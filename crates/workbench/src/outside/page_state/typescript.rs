@@ -25,7 +25,25 @@ export interface Plan {
   conflict_order: [string, string][];
   orderings_added: [string, string][];
   windows: Record<string, [Time, Time]>;
+  /** Uses of resources that planning put in order; with `resources`. */
+  uses_ordered?: [string, string][];
+  /** How far each resource is used over all schedules, where the mission has any. */
+  resources?: Record<string, ResourceLevels>;
+  /** What the plan is worth, where the mission counts anything. */
+  cost?: Time;
+  reward?: Time;
+  /** The earliest time of the scenario's end. */
+  end?: Time;
+  /** Metres driven. */
+  length?: number;
+  /** Whether no plan is better; only with an objective. */
+  optimal?: boolean;
 }
+
+/** A reusable resource with the most that is used of it at a time, or a reservoir with its lowest and highest level. */
+export type ResourceLevels =
+  | { capacity: Time; peak: Time }
+  | { least: Time; greatest: Time; low: Time; high: Time };
 
 /** A path between two waypoints. Lengths in metres, durations in mission units. */
 export interface Leg {

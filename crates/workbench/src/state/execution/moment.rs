@@ -45,6 +45,7 @@ pub(super) fn at(base: &Snapshot, executed: &Executed, time: f64) -> (Snapshot, 
     let outcome = Outcome {
         status: Status::Plan,
         plans: vec![plan],
+        bound: None,
         failure: None,
         stats: base.planning.as_ref().map_or_else(Stats::default, |planning| planning.outcome.stats),
         trace: None,

@@ -168,6 +168,9 @@ fn as_plan(network: &Network, step: &ReplayStep) -> Plan {
         causal_links: step.links.clone(),
         conflict_order: step.orders.clone(),
         orderings_added: step.orders.clone(),
+        uses_ordered: Vec::new(),
+        levels: Vec::new(),
+        quality: tpn::Quality::default(),
         windows: step.windows.clone(),
     };
     plan.windows.resize(network.nodes.len(), None);

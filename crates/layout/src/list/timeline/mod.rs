@@ -1,7 +1,10 @@
 //! A plan over time as a display list: an axis, rows with their names, bars with what is certain of them, and links.
 //!
-//! Bars are solid where they go on for certain and hatched where they may, with the earliest schedule under them. The
-//! frame is that of whoever shows the chart: a [`Track`] says where times and rows lie in it.
+//! Bars are solid where they go on for certain and hatched where they may, with the earliest schedule under them. What
+//! variables keep and how far resources are used is drawn for the earliest schedule alone. The frame is that of whoever shows the chart: a [`Track`] says where times and rows lie in it.
+
+mod profile;
+mod state;
 
 use std::ops::Range;
 
@@ -11,7 +14,7 @@ use display::{
 };
 use rmpl::program::LabelMode;
 use smol_str::{SmolStr, format_smolstr};
-use tpn::Network;
+use tpn::{Extent, Network, Plan};
 
 use crate::timeline::{Bar, BarKind, Chart, Link, LinkKind, Row, RowKind, Ticks};
 
@@ -29,6 +32,8 @@ const LEAST_WIDTH: f64 = 3.0;
 const SIZES: [f64; 3] = [13.0, 11.0, 10.0];
 /// A bar with less room than this has nothing written in it.
 const LEAST_ROOM: f64 = 44.0;
+/// From the lower edge of a row to the upper and the lower edge of what needs a value.
+const NEED_EDGES: [f64; 2] = [5.0, 2.0];
 /// With more links in view than this, they are drawn thin and faint, but for those that are chosen.
 const MAX_LINKS: u32 = 60;
 /// With more than this, only those that are chosen are drawn.
@@ -114,9 +119,20 @@ impl Track {
         Rect::new(self.frame.min.x, top, self.right, top + ROW_HEIGHT)
     }
 
-    /// The rectangle of a bar: from its earliest start to its latest end.
+    /// The rectangle of a bar: from its earliest start to its latest end, or on the track of a variable that keeps its
+    /// value to its earliest one.
     pub fn bar(&self, bar: &Bar, row: Rect) -> Rect {
-        self.slot(bar, row, bar.start[0], bar.end[1])
+        match bar.kind {
+            BarKind::Need => {
+                let (from, to) = (self.x(bar.start[0]), self.x(bar.end[0]));
+                let [top, bottom] = NEED_EDGES.map(|edge| row.max.y - edge);
+                Rect::new(from, top, to.max(from + LEAST_WIDTH), bottom)
+            }
+            BarKind::Value | BarKind::Changing => {
+                self.slot(bar, row, bar.start[0], bar.end[0].max(bar.start[0]))
+            }
+            _ => self.slot(bar, row, bar.start[0], bar.end[1]),
+        }
     }
 
     /// Where the sign is that opens and closes a row.
@@ -129,6 +145,7 @@ impl Track {
         let (height, lift) = match bar.kind {
             BarKind::Composite => (6.0, 0.0),
             BarKind::Ask => (8.0, 0.0),
+            BarKind::Value | BarKind::Changing => (15.0, 2.5),
             _ => (14.0, 1.0),
         };
         let middle = row.center().y - lift;
@@ -160,7 +177,7 @@ impl Track {
                 let x = self.x(to.1.start[0]) + 3.0;
                 (Point::new(x, from.0), Point::new(x, to.0))
             }
-            LinkKind::Ordering(_) => {
+            LinkKind::Ordering(_) | LinkKind::UseOrdering(_) => {
                 (Point::new(self.x(from.1.end[0]), from.0), Point::new(self.x(to.1.start[0]), to.0))
             }
         };
@@ -218,16 +235,16 @@ pub fn axis_list(track: &Track, rect: Rect, unit: &str, now: Option<f64>) -> Dis
     list
 }
 
-/// Some rows of a chart. Linear in what is in view.
+/// Some rows of a plan's chart. Linear in what is in view.
 pub fn timeline_list(
     chart: &Chart,
-    network: &Network,
+    (network, plan): (&Network, &Plan),
     track: &Track,
     rows: Range<usize>,
     state: &TimelineState<'_>,
 ) -> DisplayList {
     let list = DisplayList::new(track.frame);
-    let mut builder = Builder { list, chart, network, track, state, measure: &approximate_text_width };
+    let mut builder = Builder { list, chart, network, plan, track, state, measure: &approximate_text_width };
     let on_track = Group { clip: Some(track.visible), ..Group::default() };
     builder.list.begin(on_track);
     builder.grid();
@@ -237,6 +254,14 @@ pub fn timeline_list(
     builder.list.line(edge[0], edge[1], Stroke::solid(ColorRole::Line, 1.0));
     for index in rows.clone() {
         builder.row(index);
+    }
+    for index in rows.clone() {
+        // A profile is drawn whole with the first of its rows that is in view.
+        if let RowKind::Profile(part) = chart.rows[index].kind
+            && (part.part == 0 || index == rows.start)
+        {
+            builder.plot(index, part, on_track);
+        }
     }
     builder.list.begin(on_track);
     for index in rows {
@@ -255,6 +280,7 @@ struct Builder<'a> {
     list: DisplayList,
     chart: &'a Chart,
     network: &'a Network,
+    plan: &'a Plan,
     track: &'a Track,
     state: &'a TimelineState<'a>,
     measure: &'a dyn Measure,
@@ -308,9 +334,13 @@ impl Builder<'_> {
             let mark = Rect::new(center.x - 3.0, center.y - 5.0, center.x + 3.0, center.y + 5.0);
             self.list.rectangle(mark, 1.0, Some(bar_role(bar.kind).into()), None);
         }
+        if let RowKind::Profile(part) = shown.kind {
+            self.profile_name(part, row, sign.max.x + 2.0);
+            return;
+        }
         let role = match (standing.is_selected, shown.kind) {
             (true, _) => ColorRole::Accent,
-            (_, RowKind::Track) => ColorRole::Tell,
+            (_, RowKind::Track | RowKind::State) => ColorRole::Tell,
             _ => ColorRole::Text,
         };
         let weight = if shown.kind == RowKind::Heading { Weight::Strong } else { Weight::Regular };
@@ -335,6 +365,12 @@ impl Builder<'_> {
             let place = self.track.bar(bar, row);
             // Bars that fall onto the same point are drawn once.
             let is_merged = place.width() < 1.0 && place.max.x < drawn_to + 1.0;
+            if bar.kind.is_of_state() && self.chart.rows[index].kind == RowKind::State {
+                if place.touches(seen) {
+                    self.state_bar(at, bar, row);
+                }
+                continue;
+            }
             if (place.touches(seen) || bar.is_narrowed()) && !is_merged {
                 drawn_to = drawn_to.max(place.max.x);
                 self.bar(at, bar, row);
@@ -389,11 +425,12 @@ impl Builder<'_> {
 
     fn outline(&self, at: usize, bar: &Bar, role: ColorRole) -> (Color, f64) {
         let standing = (self.state.bar)(at);
+        let last = if bar.kind.is_of_state() { bar.end[0] } else { bar.end[1] };
         // What runs at the time shown: its start has happened, its end has not.
         let is_running = self.state.is_executing
-            && bar.kind != BarKind::Ask
+            && !matches!(bar.kind, BarKind::Ask | BarKind::Need)
             && bar.start[0] >= bar.start[1]
-            && self.state.now.is_some_and(|now| (bar.start[0]..bar.end[1]).contains(&now));
+            && self.state.now.is_some_and(|now| (bar.start[0]..last).contains(&now));
         match (standing.is_selected, standing.is_hovered) {
             (false, _) if is_running => (ColorRole::Now.into(), 1.5),
             (true, _) => (ColorRole::Accent.into(), 1.5),
@@ -426,6 +463,9 @@ impl Builder<'_> {
         });
         let labels = bar.labels.iter().filter_map(|label| self.network.labels.get(label.index()));
         let labels = labels.map(|label| match label.mode {
+            LabelMode::Ask if label.extent == Extent::Start => {
+                (format_smolstr!("needs {} at its start", label.text), ColorRole::Ask)
+            }
             LabelMode::Ask => (format_smolstr!("needs {}", label.text), ColorRole::Ask),
             LabelMode::Tell => (format_smolstr!("sets {}", label.text), ColorRole::Tell),
         });
@@ -453,7 +493,7 @@ impl Builder<'_> {
             for (curve, _) in of_these.filter(|_| is_drawn || is_chosen) {
                 let (role, dash) = match curve.link.kind {
                     LinkKind::Causal(_) => (ColorRole::Link, Dash::Dashed),
-                    LinkKind::Ordering(_) => (ColorRole::Ordering, Dash::Dotted),
+                    LinkKind::Ordering(_) | LinkKind::UseOrdering(_) => (ColorRole::Ordering, Dash::Dotted),
                 };
                 let stroke = Stroke::solid(role, if is_chosen { 2.5 } else { 1.4 }).dashed(dash);
                 self.list.path(curve.start, &[curve.piece], PathEnd::Head, stroke);
@@ -467,8 +507,8 @@ pub const fn bar_role(kind: BarKind) -> ColorRole {
     match kind {
         BarKind::Composite => ColorRole::TextMuted,
         BarKind::Activity => ColorRole::Slack,
-        BarKind::Tell => ColorRole::Tell,
-        BarKind::Ask => ColorRole::Ask,
+        BarKind::Tell | BarKind::Value | BarKind::Changing => ColorRole::Tell,
+        BarKind::Ask | BarKind::Need => ColorRole::Ask,
         BarKind::Delay => ColorRole::TextFaint,
     }
 }

@@ -1,0 +1,143 @@
+//! The profile of a resource: what is used or left in the earliest schedule as an area under a line of steps, what is
+//! possible as lines that it must not cross, and how far it goes in any schedule as dashed lines with their numbers.
+
+use display::{Anchor, ColorRole, Dash, Fit, Group, PathEnd, Piece, Point, Rect, Stroke, Text, Weight};
+use exact::Rational;
+use smol_str::{SmolStr, format_smolstr};
+use tpn::{Levels, Supply};
+
+use super::{Builder, SIGN, SIZES, Track};
+use crate::timeline::profile::{PROFILE_ROWS, Profile, ProfilePart};
+
+/// From the edges of the rows to the plot, above and below.
+const MARGINS: (f64, f64) = (9.0, 5.0);
+/// The height of a line's number, and how far its line may lie from another with a number of its own.
+const NUMBER_HEIGHT: f64 = 12.0;
+
+impl Track {
+    /// Where the plot of a profile is, one of whose rows has this number.
+    pub fn plot(&self, row: usize, part: ProfilePart) -> Rect {
+        let first = row.saturating_sub(part.part);
+        let (top, bottom) = (self.row(first).min.y, self.row(first + PROFILE_ROWS - 1).max.y);
+        Rect::new(self.left, top + MARGINS.0, self.right, bottom - MARGINS.1)
+    }
+}
+
+impl Builder<'_> {
+    /// What is written left of a profile: its name, and its numbers below.
+    pub(super) fn profile_name(&mut self, part: ProfilePart, row: Rect, left: f64) {
+        let Some(profile) = self.chart.profiles.get(part.profile) else { return };
+        let [first, second] = profile.summary();
+        let (words, size, role) = match part.part {
+            0 => (profile.name.clone(), SIZES[0], ColorRole::Slack),
+            1 => (first, SIZES[1], ColorRole::Text),
+            _ => (second, SIZES[1], ColorRole::TextMuted),
+        };
+        let place = Rect::new(left, row.min.y, self.track.left - SIGN.1, row.max.y);
+        let text = Text::new(words, size, place).anchored(Anchor::Start, Fit::Cut);
+        let weight = if part.part == 0 { Weight::Strong } else { Weight::Regular };
+        self.list.write(Text { weight, ..text.colored(role) });
+    }
+
+    /// The plot of a profile, one of whose rows has this number.
+    pub(super) fn plot(&mut self, row: usize, part: ProfilePart, on_track: Group) {
+        let Some(profile) = self.chart.profiles.get(part.profile) else { return };
+        let plot = Plot::new(profile, self.track.plot(row, part));
+        self.list.begin(on_track);
+        self.area(profile, &plot);
+        self.lines(profile, &plot);
+    }
+
+    /// The steps, filled down to what is nothing.
+    fn area(&mut self, profile: &Profile, plot: &Plot) {
+        let seen = self.track.visible;
+        let ends = [self.track.time(seen.min.x), self.track.time(seen.max.x)];
+        let first = profile.steps.partition_point(|step| step.time <= ends[0]);
+        let steps = profile.steps[first..].iter().take_while(|step| step.time < ends[1]);
+        let begin = [(ends[0].max(0.0), profile.level_at(ends[0].max(0.0)))];
+        let steps: Vec<(f64, Rational)> = begin
+            .into_iter()
+            .chain(steps.map(|step| (step.time, step.level)).filter(|it| it.0 > 0.0))
+            .collect();
+        let next = steps.iter().skip(1).map(|step| step.0).chain([ends[1]]);
+        let mut corners: Vec<Point> = Vec::new();
+        let base = plot.y(plot.range[0]);
+        for (&(from, level), to) in steps.iter().zip(next) {
+            let (left, right, y) = (self.track.x(from), self.track.x(to), plot.y(level));
+            corners.extend([Point::new(left, y), Point::new(right, y)]);
+            let under = Rect::new(left, y, right, base);
+            if under.height() > 0.0 {
+                self.list.rectangle(under, 0.0, Some(ColorRole::Slack.mixed(0.22).into()), None);
+                self.list.entitle(format!("{}: {}", profile.name, profile.words(from).join("; ")));
+            }
+        }
+        if let [first, rest @ ..] = corners.as_slice() {
+            let pieces: Vec<Piece> = rest.iter().map(|&corner| Piece::Line(corner)).collect();
+            self.list.path(*first, &pieces, PathEnd::Open, Stroke::solid(ColorRole::Slack, 1.8));
+        }
+    }
+
+    /// What is possible, and how far the plan goes in any schedule.
+    fn lines(&mut self, profile: &Profile, plot: &Plot) {
+        let limits = match profile.supply {
+            Supply::Reusable { capacity } => vec![(capacity, "capacity")],
+            Supply::Reservoir { least, greatest, .. } => vec![(greatest, "greatest"), (least, "least")],
+        };
+        let reached = match profile.levels {
+            Some(Levels::Peak(peak)) => vec![(peak, "peak")],
+            Some(Levels::Range { low, high }) => vec![(high, "high"), (low, "low")],
+            None => Vec::new(),
+        };
+        // Where the plan uses all there is, both lines are one, and the limit's name says what it is.
+        let is_apart =
+            |level: Rational| limits.iter().all(|limit| (plot.y(limit.0) - plot.y(level)).abs() >= 1.0);
+        for &(level, word) in reached.iter().filter(|it| is_apart(it.0)) {
+            let stroke = Stroke::solid(ColorRole::Accent, 1.2).dashed(Dash::Dashed);
+            let words = format_smolstr!("{word} {}", level.readable());
+            self.level(plot, level, stroke, words, Anchor::Start);
+        }
+        for &(level, word) in &limits {
+            let is_reached = reached.iter().any(|it| it.0 == level);
+            let reached = if is_reached { ", reached" } else { "" };
+            let words = format_smolstr!("{word} {}{reached}", level.readable());
+            self.level(plot, level, Stroke::solid(ColorRole::Threat, 1.0), words, Anchor::End);
+        }
+    }
+
+    /// A line across, with its number at its left or right end where there is room.
+    fn level(&mut self, plot: &Plot, level: Rational, stroke: Stroke, words: SmolStr, anchor: Anchor) {
+        let seen = self.track.visible;
+        let (left, right) = (plot.rect.min.x.max(seen.min.x), plot.rect.max.x.min(seen.max.x));
+        let y = plot.y(level);
+        self.list.line(Point::new(left, y), Point::new(right, y), stroke);
+        // Numbers stand on their lines, those of lines at the top hang from them.
+        let top = if y - NUMBER_HEIGHT < plot.rect.min.y { y + 1.0 } else { y - NUMBER_HEIGHT - 1.0 };
+        let place = Rect::new(left + 4.0, top, right - 4.0, top + NUMBER_HEIGHT);
+        if place.width() > 60.0 {
+            let text = Text::new(words, SIZES[2], place).anchored(anchor, Fit::Overflow);
+            let plate = Some(ColorRole::Surface.faint(0.75));
+            self.list.write(Text { plate, ..text.colored(stroke.color.role) });
+        }
+    }
+}
+
+/// Where levels lie.
+struct Plot {
+    rect: Rect,
+    range: [Rational; 2],
+    low: f64,
+    scale: f64,
+}
+
+impl Plot {
+    fn new(profile: &Profile, rect: Rect) -> Self {
+        let range = profile.range();
+        let [low, high] = range.map(Rational::to_f64);
+        let scale = if high > low { rect.height() / (high - low) } else { 0.0 };
+        Self { rect, range, low, scale }
+    }
+
+    fn y(&self, level: Rational) -> f64 {
+        self.rect.max.y - (level.to_f64() - self.low) * self.scale
+    }
+}

@@ -1,0 +1,48 @@
+//! The track of a variable that keeps its value: its values side by side, hatched while it changes, and below them a
+//! strip for each thing that needs it.
+
+use display::{Anchor, ColorRole, Fill, Fit, Rect, Stroke, TargetKind, Text};
+
+use super::{Builder, LEAST_WIDTH, SIZES};
+use crate::timeline::{Bar, BarKind, state};
+
+/// A value with less room than this has nothing written in it.
+const LEAST_VALUE: f64 = 16.0;
+
+impl Builder<'_> {
+    /// A bar of a state track.
+    pub(super) fn state_bar(&mut self, at: usize, bar: &Bar, row: Rect) {
+        let Some(label) = bar.label else { return };
+        let place = self.track.bar(bar, row);
+        let role = super::bar_role(bar.kind);
+        let (color, width) = self.outline(at, bar, role);
+        let outline = Some(Stroke::solid(color, width));
+        match bar.kind {
+            BarKind::Need => self.list.rectangle(place, 1.0, Some(color.into()), None),
+            _ if place.width() < LEAST_WIDTH => {
+                let middle = place.center().x;
+                let half = LEAST_WIDTH / 2.0;
+                let mark = Rect::new(middle - half, place.min.y, middle + half, place.max.y);
+                self.list.rectangle(mark, 1.0, Some(role.mixed(0.75).into()), None)
+            }
+            BarKind::Changing => {
+                self.list.rectangle(place, 0.0, Some(role.mixed(0.06).into()), None);
+                self.list.rectangle(place, 0.0, Some(Fill::Hatched(role.mixed(0.6))), None);
+                self.list.rectangle(place.expanded(-width / 2.0), 2.0, None, outline)
+            }
+            _ => {
+                let fill = Some(role.mixed(0.18).into());
+                self.list.rectangle(place.expanded(-width / 2.0), 3.0, fill, outline)
+            }
+        }
+        .stands_for(TargetKind::Label, label.0);
+        self.list.entitle(state::words(self.network, self.plan, bar).join("; "));
+        let seen = self.track.visible;
+        let (left, right) = (place.min.x.max(seen.min.x) + 5.0, place.max.x.min(seen.max.x) - 3.0);
+        if bar.kind == BarKind::Value && right - left >= LEAST_VALUE {
+            let place = Rect::new(left, place.min.y, right, place.max.y);
+            let text = Text::new(bar.name.clone(), SIZES[1], place).anchored(Anchor::Start, Fit::Cut);
+            self.list.write(text.colored(ColorRole::Text));
+        }
+    }
+}
