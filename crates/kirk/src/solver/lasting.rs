@@ -170,12 +170,15 @@ impl Problem<'_> {
     fn can_give(&self, solver: &Solver, ask: LabelId, change: LabelId) -> bool {
         let labels = &self.model.conditions.labels;
         let (asked, given) = (self.intervals[ask], self.intervals[change]);
+        // What is nested after the requirement comes too late, unless both are at one instant.
+        let is_instant = asked.duration == 0 && (given.duration == 0 || !labels[change].is_changing);
+        let comes_too_late = !is_instant && self.model.nested_order(change, ask) == Relation::After;
         self.model.conditions.gives(change, ask)
             // Nothing rests on its own effect.
             && labels[change].arc != labels[ask].arc
             && !solver.trail.fails(given.presence)
             && self.can_be_together(ask, change)
-            && self.model.nested_order(change, ask) != Relation::After
+            && !comes_too_late
             && solver.trail.least(self.ready[change]) <= solver.trail.most(asked.start)
     }
 
