@@ -8,6 +8,7 @@
 use exact::Rational;
 use tpn::{Choice, LabelId, Network, Ordering, Plan};
 
+use crate::demands::{LastingVariable, lasting_variables};
 use crate::model::Model;
 use crate::options::{Options, Outcome, Stats, Status, Termination};
 use crate::overflow::TimeOverflow;
@@ -19,20 +20,22 @@ use crate::structure::Relation;
 /// How many conflicts a search in textual order may meet before one that follows its conflicts takes over.
 const MAX_CONFLICTS_IN_ORDER: u64 = 5_000;
 
-/// Whether the network has anything that only the solver plans.
+/// Whether the network has anything that only the solver plans. Quadratic in the changes of a variable.
 pub(crate) fn has_demands(model: &Model) -> bool {
     let demands = &model.demands;
-    let is_open = |variable: &crate::demands::LastingVariable| {
-        !variable.asks.is_empty() || !are_nested(model, &variable.changes)
-    };
+    let is_open =
+        |variable: &LastingVariable| !variable.asks.is_empty() || !are_nested(model, &variable.changes);
     !demands.resources.is_empty() || !demands.goals.is_empty() || demands.variables.iter().any(is_open)
 }
 
 /// Whether the order in which some variable that keeps its value changes is left to planning (SPEC 10.2).
 pub fn has_open_order(network: &Network) -> bool {
-    Model::new(network, None).is_ok_and(|model| {
-        model.demands.variables.iter().any(|variable| !are_nested(&model, &variable.changes))
-    })
+    // Most missions change each variable once, which needs no closer look.
+    let has_several = lasting_variables(network).iter().any(|variable| variable.changes.len() > 1);
+    has_several
+        && Model::new(network, None).is_ok_and(|model| {
+            model.demands.variables.iter().any(|variable| !are_nested(&model, &variable.changes))
+        })
 }
 
 /// Whether the program's structure orders all changes of a variable that exclude each other.
@@ -285,7 +288,8 @@ impl<'a> Searching<'a> {
                 break;
             }
         }
-        plan.quality.is_optimal = Some(!self.is_stopped);
+        let is_whole = model.demands.goals.iter().all(|goal| goal.is_whole);
+        plan.quality.is_optimal = Some(!self.is_stopped && is_whole);
         Ok(Some(plan))
     }
 
@@ -311,5 +315,33 @@ impl<'a> Searching<'a> {
             }
         }
         Ok(None)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tpn::{Top, compile};
+
+    use crate::{Options, Unlimited};
+
+    /// Whether the plan of a mission with this objective is called optimal.
+    fn is_optimal(objective: &str) -> Option<bool> {
+        let text = format!(
+            "primitive Drive()[3,5] costs 2 per metre costs 1 rewards 4; primitive Wait()[2,4] costs 1;
+             {objective} scenario S[0,20] = {{ choose {{ Drive(), Wait() }} }}"
+        );
+        let (network, diagnostics) = compile(&rmpl::parse(&text).program(), &Top::Scenario(None));
+        let network = network.unwrap_or_else(|| panic!("{diagnostics:?}"));
+        crate::plan(&network, &Options::default(), &mut Unlimited).plans[0].quality.is_optimal
+    }
+
+    #[test]
+    fn only_what_was_searched_for_is_called_optimal() {
+        assert_eq!(is_optimal(""), None);
+        assert_eq!(is_optimal("objective minimize end, maximize reward;"), Some(true));
+        // Metres are only known of planned paths, and no path is looked for because it is shorter.
+        for objective in ["minimize length", "minimize cost", "maximize reward, minimize end + length"] {
+            assert_eq!(is_optimal(&format!("objective {objective};")), Some(false), "{objective}");
+        }
     }
 }

@@ -82,6 +82,9 @@ pub(crate) struct ModelGoal {
     /// How many of the goal's units one of the mission's is.
     unit: i64,
     is_maximized: bool,
+    /// Whether the sum is all that the goal measures, so that no plan is better where none has a smaller one: metres are
+    /// only known of planned paths, and the end is the earliest one.
+    pub(crate) is_whole: bool,
 }
 
 impl ModelGoal {
@@ -154,7 +157,8 @@ impl Demands {
     }
 }
 
-fn lasting_variables(network: &Network) -> Vec<LastingVariable> {
+/// Those that something changes or requires.
+pub(crate) fn lasting_variables(network: &Network) -> Vec<LastingVariable> {
     let blank = LastingVariable { initial: None, changes: Vec::new(), asks: Vec::new() };
     let mut variables = vec![blank; network.variables.len()];
     for (index, label) in network.labels.iter().enumerate() {
@@ -244,7 +248,10 @@ fn goals(network: &Network, ticks: i64) -> Option<Vec<ModelGoal>> {
             }
             let unit = common_unit(by_arc.iter().map(|&(_, weight)| weight).chain([per_tick]))?;
             let by_arc = by_arc.into_iter().map(|(arc, weight)| Some((arc, units(weight, unit)?)));
+            let is_driven = !factor(Measure::Length)?.is_zero()
+                || (!cost.is_zero() && network.worths.iter().any(|worth| !worth.cost_per_metre.is_zero()));
             Some(ModelGoal {
+                is_whole: !is_driven && !per_tick.is_negative(),
                 by_arc: by_arc.collect::<Option<_>>()?,
                 per_tick: units(per_tick, unit)?,
                 unit,

@@ -27,7 +27,8 @@ pub(crate) fn relaxations(
     termination: &mut dyn Termination,
 ) -> Result<Vec<Relaxation>, TimeOverflow> {
     let effort = Effort::for_size(model.num_nodes, termination);
-    let mut trial = Trial { network, model: model.clone(), effort };
+    let mut trial =
+        Trial { network, model: model.clone(), is_demanding: demanding::has_demands(model), effort };
     let mut found: Vec<Relaxation> = Vec::new();
     for (arcs, is_lower) in candidates(network, failure) {
         if let Some(new) = trial.closest(&arcs, is_lower)? {
@@ -83,6 +84,8 @@ fn candidates(network: &Network, failure: &Failure) -> Vec<(Vec<ArcId>, bool)> {
 struct Trial<'a> {
     network: &'a Network,
     model: Model,
+    /// Whether only the solver plans it.
+    is_demanding: bool,
     effort: Effort<'a>,
 }
 
@@ -136,11 +139,10 @@ impl Trial<'_> {
         }
         self.model.refresh_structure()?;
         let setup = Setup { jumps: true, by_structure: true, gaps: Gaps::Trusted, ..Setup::default() };
-        let Self { model, effort, .. } = self;
+        let Self { model, effort, is_demanding, .. } = self;
         let mut enough = |stats: &Stats| effort.is_spent(stats) || stats.backtracks > MAX_BACKTRACKS;
-        let is_demanding = demanding::has_demands(model);
         let mut halt =
-            if is_demanding { Halt::Stopped } else { Engine::new(model, setup).run(&mut enough)? };
+            if *is_demanding { Halt::Stopped } else { Engine::new(model, setup).run(&mut enough)? };
         if halt == Halt::Stopped
             && effort.searches > 0
             && model.has_contexts

@@ -2,7 +2,6 @@
 
 use display::geometry::curve_bounds;
 use display::{Measure, Piece, Point, Rect};
-use rmpl::program::Change;
 use serde::{Deserialize, Serialize};
 use tpn::{LabelId, Network, NodeId, Plan, Role};
 
@@ -63,23 +62,15 @@ pub fn orderings(drawing: &NetworkDrawing, network: &Network, plan: &Plan) -> Ve
         is_known.then(|| (network.interval(ordering.first).1, network.interval(ordering.then).0))
     });
     let of_uses = plan.uses_ordered.iter().map(|ordering| {
-        let [first, then] = [ordering.first, ordering.then].map(|it| network.uses.get(it.index()));
-        Some((happens(first?)[1], happens(then?)[0]))
+        let is_known = [ordering.first, ordering.then].iter().all(|it| it.index() < network.uses.len());
+        let precedence = is_known.then(|| ordering.precedence(network))?;
+        Some((precedence.earlier, precedence.later))
     });
     let curve = |(number, ends): (usize, Option<(NodeId, NodeId)>)| {
         let (from, to) = ends?;
         Some(between_nodes(drawing, OverlayKind::Ordering, number as u32, from, to))
     };
     of_labels.chain(of_uses).enumerate().filter_map(curve).collect()
-}
-
-/// The first and the last event of what a use does to its resource: a reservoir changes at one of them.
-fn happens(used: &tpn::Use) -> [NodeId; 2] {
-    match used.change {
-        Change::Uses => [used.start, used.end],
-        Change::Consumes => [used.start; 2],
-        Change::Produces => [used.end; 2],
-    }
 }
 
 /// Pairs of conditions that contradict each other and cannot be kept apart.

@@ -33,8 +33,6 @@ pub(crate) struct Kept {
     pub(crate) sides: Vec<(LabelId, LabelId)>,
 }
 
-impl Sides {}
-
 impl Problem<'_> {
     /// Adds the orders and links of all variables that keep their values.
     pub(super) fn add_lasting(&mut self, solver: &mut Solver, part: Part<'_>) -> Result<(), TooLarge> {

@@ -7,7 +7,7 @@ use super::bounds::Interval;
 use super::expand::{End, Entry, Expander, Piece};
 use super::names::{E_VALUE, Fact};
 use super::scope::Scope;
-use crate::network::{ArcKind, BlockKind, Extent, OccurrenceKind};
+use crate::network::{ArcId, ArcKind, BlockKind, Extent, OccurrenceId, OccurrenceKind};
 
 impl<'program> Expander<'program> {
     /// `do body maintaining c` requires `c`, `do body watching c` asserts its negation (SPEC 3.7).
@@ -42,13 +42,25 @@ impl<'program> Expander<'program> {
         entry: Entry,
         scope: &Scope,
     ) -> Piece {
-        let mode = (mode, Extent::Whole);
+        let (piece, arc, owner) = self.with_arc(body, span, entry, scope);
+        if let (Some(arc), Some(fact)) = (arc, fact) {
+            self.builder.label(arc, (mode, Extent::Whole), fact, owner, condition.span);
+        }
+        piece
+    }
+
+    /// `body` with the arc that lasts as long as it does, and whose that is: its own, or one around it.
+    pub(super) fn with_arc(
+        &mut self,
+        body: &'program Statement,
+        span: Span,
+        entry: Entry,
+        scope: &Scope,
+    ) -> (Piece, Option<ArcId>, Option<OccurrenceId>) {
         if self.is_single_arc(body, scope) {
             let piece = self.statement(body, entry, scope);
-            if let (Some(arc), Some(fact)) = (piece.arc, fact) {
-                self.builder.label(arc, mode, fact, piece.occurrence, condition.span);
-            }
-            return piece;
+            let (arc, owner) = (piece.arc, piece.occurrence);
+            return (piece, arc, owner);
         }
         let owner = (!self.is_instance(body, scope)).then(|| {
             self.builder.occurrence("do".into(), OccurrenceKind::Scope, Vec::new(), scope.occurrence, span)
@@ -59,10 +71,8 @@ impl<'program> Expander<'program> {
             self.builder.place(owner, piece.start, piece.end);
             self.builder.own(owner, arc);
         }
-        if let Some(fact) = fact {
-            self.builder.label(arc, mode, fact, owner.or(piece.occurrence), condition.span);
-        }
-        self.scope_block(&piece, arc, span)
+        let owner = owner.or(piece.occurrence);
+        (self.scope_block(&piece, arc, span), Some(arc), owner)
     }
 
     /// `if c thennext body`: an instantaneous requirement before the body.

@@ -10,9 +10,7 @@ use super::bounds::{self, E_BOUNDS, Interval};
 use super::clauses::Activity;
 use super::expand::{Entry, Expander, Piece};
 use super::{E_UNDEF, expand};
-use crate::network::{
-    ArcId, ArcKind, BlockKind, Goal, OccurrenceId, OccurrenceKind, Resource, ResourceId, Supply, Use,
-};
+use crate::network::{ArcKind, BlockKind, Goal, Resource, ResourceId, Supply, Use};
 
 /// More is asked of a resource than it can ever give, or something that its kind does not do.
 const E_RESOURCE: Code = Code("E-RESOURCE");
@@ -214,8 +212,8 @@ impl<'program> Expander<'program> {
     ) -> Piece {
         let resource_id = self.resource(resource);
         let amount = amount.map_or(Rational::ONE, |written| self.amount(written, scope));
-        let add = |expander: &mut Self, piece: &Piece, arc: ArcId, owner: Option<OccurrenceId>| {
-            let Some(resource_id) = resource_id else { return };
+        let (piece, arc, owner) = self.with_arc(body, span, entry, scope);
+        if let (Some(resource_id), Some(arc)) = (resource_id, arc) {
             let used = Use {
                 resource: resource_id,
                 change: Change::Uses,
@@ -227,26 +225,9 @@ impl<'program> Expander<'program> {
                 owner,
                 span: Some(resource.span),
             };
-            expander.add_use(used, resource.span, resource.span);
-        };
-        if self.is_single_arc(body, scope) {
-            let piece = self.statement(body, entry, scope);
-            if let Some(arc) = piece.arc {
-                add(self, &piece, arc, piece.occurrence);
-            }
-            return piece;
+            self.add_use(used, resource.span, resource.span);
         }
-        let owner = (!self.is_instance(body, scope)).then(|| {
-            self.builder.occurrence("do".into(), OccurrenceKind::Scope, Vec::new(), scope.occurrence, span)
-        });
-        let arc = self.builder.reserve(ArcKind::Span, Interval::ANY, span);
-        let piece = self.spanned(body, false, entry, scope, Some(arc));
-        if let Some(owner) = owner {
-            self.builder.place(owner, piece.start, piece.end);
-            self.builder.own(owner, arc);
-        }
-        add(self, &piece, arc, owner.or(piece.occurrence));
-        self.scope_block(&piece, arc, span)
+        piece
     }
 
     /// `unordered { a; b; … }`: parallel branches that start when they like, and share a resource of capacity 1.
