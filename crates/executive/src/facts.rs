@@ -82,6 +82,7 @@ fn add_back_arc(network: &mut Network, node: NodeId, earliest: Time, latest: Tim
         to: start,
         lower: back(latest),
         upper: Bound::Finite(back(earliest)),
+        is_contingent: false,
         kind: ArcKind::Span,
         labels: Vec::new(),
         occurrence: None,

@@ -32,6 +32,8 @@ pub enum FailureKind {
     Threat,
     /// Activities need more of a resource than there is.
     Resource,
+    /// Nature can choose durations after which no times are left (SPEC 13.1).
+    Controllability,
 }
 
 impl FailureKind {
@@ -42,6 +44,7 @@ impl FailureKind {
             Self::OpenCondition => "open-condition",
             Self::Threat => "threat",
             Self::Resource => "resource",
+            Self::Controllability => "controllability",
         }
     }
 }

@@ -35,6 +35,9 @@ impl Told<'_> {
             FailureKind::OpenCondition => self.open_condition(),
             FailureKind::Threat => self.threat(),
             FailureKind::Resource => self.resource(),
+            FailureKind::Controllability => {
+                self.bounds().unwrap_or_else(|| "nature can choose durations that leave no times".to_owned())
+            }
         };
         let choices: Vec<String> = self
             .choices

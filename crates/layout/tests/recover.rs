@@ -24,6 +24,7 @@ fn bare(node_count: usize, arcs: &[(u32, u32, ArcKind)]) -> Network {
             to: NodeId(to),
             lower,
             upper,
+            is_contingent: false,
             kind,
             labels: Vec::new(),
             occurrence: None,
@@ -49,6 +50,7 @@ fn bare(node_count: usize, arcs: &[(u32, u32, ArcKind)]) -> Network {
         start: NodeId(0),
         end: NodeId(node_count as u32 - 1),
         threat_gap: Time::ONE,
+        controllability: Default::default(),
     }
 }
 

@@ -373,6 +373,7 @@ fn block(network: &mut Network, occurrence: OccurrenceId) {
             to: end,
             lower: duration,
             upper: Bound::Finite(duration),
+            is_contingent: false,
             kind: ArcKind::Path,
             labels: Vec::new(),
             occurrence: Some(occurrence),

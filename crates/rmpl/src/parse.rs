@@ -15,7 +15,7 @@ use crate::diagnostic::{Diagnostic, Edit, Known, Severity};
 use crate::diagnostics::syntax;
 use crate::lower::{Item, Lowering, OptionValue};
 use crate::parser::{Scratch, parse_declaration};
-use crate::program::{Program, TimeUnit};
+use crate::program::{Controllability, Program, TimeUnit};
 use crate::span::Span;
 use crate::syntax::{DeclarationTree, SyntaxNode};
 
@@ -300,6 +300,13 @@ fn add(program: &mut Program, item: Item) {
             }
             ("time_unit", OptionValue::Name(unit)) if unit == "minute" => {
                 program.options.time_unit = TimeUnit::Minute;
+            }
+            ("controllability", OptionValue::Name(name)) => {
+                program.options.controllability = match name.as_str() {
+                    "strong" => Controllability::Strong,
+                    "none" => Controllability::None,
+                    _ => Controllability::Dynamic,
+                };
             }
             _ => {}
         },

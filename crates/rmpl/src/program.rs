@@ -343,7 +343,9 @@ pub struct Bounds {
     pub lower: Expr,
     /// The upper bound.
     pub upper: Expr,
-    /// With the brackets.
+    /// Whether nature chooses the duration within them (SPEC 13.1).
+    pub is_contingent: bool,
+    /// With the brackets, and with `contingent`.
     pub span: Span,
 }
 
@@ -529,11 +531,32 @@ pub struct Options {
     pub time_unit: TimeUnit,
     /// How long one step of a control program takes, in mission units; above 0.
     pub control_step: Time,
+    /// What plans have to withstand of durations that nature chooses.
+    pub controllability: Controllability,
+}
+
+/// What a plan has to withstand of durations that nature chooses (SPEC 13.1).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Controllability {
+    /// There are times that satisfy all constraints whatever nature chooses.
+    Strong,
+    /// Times can be chosen as it goes, each after what was observed before it.
+    #[default]
+    Dynamic,
+    /// Nothing: the planner chooses these durations too.
+    None,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { threat_gap: Time::ONE, strict: false, time_unit: TimeUnit::Minute, control_step: Time::ONE }
+        Self {
+            threat_gap: Time::ONE,
+            strict: false,
+            time_unit: TimeUnit::Minute,
+            control_step: Time::ONE,
+            controllability: Controllability::Dynamic,
+        }
     }
 }
 

@@ -5,7 +5,7 @@
 
 use exact::{Bound, Rational, Time};
 use rmpl::Span;
-use rmpl::program::{Change, LabelMode, Measure};
+use rmpl::program::{Change, Controllability, LabelMode, Measure};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
@@ -101,6 +101,9 @@ pub struct Network {
     pub end: NodeId,
     /// The least gap between conflicting intervals that planning orders (SPEC 5.3).
     pub threat_gap: Time,
+    /// What plans have to withstand of durations that nature chooses.
+    #[serde(default)]
+    pub controllability: Controllability,
 }
 
 /// An event.
@@ -168,6 +171,9 @@ pub struct Arc {
     pub lower: Time,
     /// Greatest duration.
     pub upper: Bound,
+    /// Whether nature chooses the duration within its bounds (SPEC 13.1).
+    #[serde(default)]
+    pub is_contingent: bool,
     /// What it stands for.
     pub kind: ArcKind,
     /// Its labels.
@@ -586,6 +592,40 @@ impl Network {
             }
             (LabelMode::Tell, LabelMode::Ask) => left.is_changing() || !left.literal.supports(&right.literal),
         }
+    }
+
+    /// Whether nature chooses a duration, and the mission does not say to plan as if it did not (SPEC 13.1).
+    pub fn is_uncertain(&self, arc: ArcId) -> bool {
+        self.controllability != Controllability::None && self.arcs[arc.index()].is_contingent
+    }
+
+    /// Which events nature executes where these arcs are selected: the ends of durations that it chooses, and what is
+    /// tied to them by [0,0] (SPEC 13.1). Indexed by node; empty if there are none.
+    pub fn natures_events(&self, selected_arcs: &[bool]) -> Vec<bool> {
+        let is_selected = |arc: ArcId| selected_arcs.get(arc.index()).copied().unwrap_or(false);
+        let mut open: Vec<NodeId> = (0..self.arcs.len())
+            .map(ArcId::from_index)
+            .filter(|&arc| self.is_uncertain(arc) && is_selected(arc))
+            .map(|arc| self.arcs[arc.index()].to)
+            .collect();
+        if open.is_empty() {
+            return Vec::new();
+        }
+        let mut natures = vec![false; self.nodes.len()];
+        while let Some(node) = open.pop() {
+            if std::mem::replace(&mut natures[node.index()], true) {
+                continue;
+            }
+            let node = &self.nodes[node.index()];
+            for &id in node.in_arcs.iter().chain(&node.out_arcs) {
+                let arc = &self.arcs[id.index()];
+                let is_tie = arc.lower.is_zero() && arc.upper == Bound::ZERO && !arc.is_contingent;
+                if is_tie && is_selected(id) {
+                    open.extend([arc.from, arc.to]);
+                }
+            }
+        }
+        natures
     }
 
     /// The name of a use: `Uses(Power)@Radio#1`.

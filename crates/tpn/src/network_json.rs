@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use exact::{Bound, Time};
-use rmpl::program::LabelMode;
+use rmpl::program::{Controllability, LabelMode};
 use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
 use smol_str::SmolStr;
@@ -81,6 +81,9 @@ pub fn network_to_json(network: &Network) -> Value {
         insert_unless_empty(members, "uses", &uses);
         insert_unless_empty(members, "worths", &network.worths);
         insert_unless_empty(members, "objective", &objective);
+        if network.controllability != Controllability::Dynamic {
+            members.insert("controllability".into(), json!(network.controllability));
+        }
     }
     document
 }
@@ -120,6 +123,9 @@ fn arc_to_json(network: &Network, id: usize, arc: &Arc) -> Value {
         "kind": kind_name(arc.kind),
         "labels": labels,
     }));
+    if arc.is_contingent {
+        members.insert("contingent".into(), true.into());
+    }
     if let Some(occurrence) = arc.occurrence {
         members.insert("activity".into(), network.occurrences[occurrence.index()].name.as_str().into());
     }
@@ -157,6 +163,11 @@ pub fn network_from_json(document: &Value) -> Result<Network, NetworkError> {
         Some(gap) => Time::deserialize(gap).map_err(|_| error("threat_gap", "is no exact time"))?,
         None => Time::ONE,
     };
+    let controllability = match document.get("controllability") {
+        Some(kind) => Controllability::deserialize(kind)
+            .map_err(|_| error("controllability", "is `strong`, `dynamic` or `none`"))?,
+        None => Controllability::Dynamic,
+    };
     let (resources, uses): (Vec<Resource>, Vec<Use>) =
         (read_list(document, "resources")?, read_list(document, "uses")?);
     let worths: Vec<Worth> = read_list(document, "worths")?;
@@ -189,6 +200,7 @@ pub fn network_from_json(document: &Value) -> Result<Network, NetworkError> {
         start,
         end,
         threat_gap,
+        controllability,
     })
 }
 
@@ -308,6 +320,13 @@ impl Reader {
         if Bound::Finite(lower) > upper {
             return Err(error(&place, "`lower` is greater than `upper`"));
         }
+        let is_contingent = match value.get("contingent") {
+            Some(flag) => flag.as_bool().ok_or_else(|| error(&place, "`contingent` is `true` or `false`"))?,
+            None => false,
+        };
+        if is_contingent && (lower < Time::ZERO || upper.finite().is_none()) {
+            return Err(error(&place, "a contingent duration is within finite bounds that are not negative"));
+        }
         let kind: ArcKind =
             serde_json::from_value(value.get("kind").cloned().unwrap_or_else(|| "glue".into()))
                 .map_err(|problem| error(&place, &problem.to_string()))?;
@@ -325,8 +344,18 @@ impl Reader {
         {
             self.occurrences[occurrence.index()].arc = Some(id);
         }
-        let mut arc =
-            Arc { from, to, lower, upper, kind, labels: Vec::new(), occurrence, choice: None, span: None };
+        let mut arc = Arc {
+            from,
+            to,
+            lower,
+            upper,
+            is_contingent,
+            kind,
+            labels: Vec::new(),
+            occurrence,
+            choice: None,
+            span: None,
+        };
         for label in value.get("labels").and_then(Value::as_array).into_iter().flatten() {
             let label = self.read_label(label, id, occurrence, vocabulary, &place)?;
             arc.labels.push(LabelId::from_index(self.labels.len()));

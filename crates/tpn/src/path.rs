@@ -125,6 +125,7 @@ fn insert_path(network: &mut Network, path: &TraversePath, unit_seconds: i64) ->
             to,
             lower: least,
             upper: greatest,
+            is_contingent: false,
             kind: ArcKind::Path,
             labels: Vec::new(),
             occurrence: Some(path.occurrence),

@@ -55,9 +55,10 @@ pub struct Precedence {
 impl Plan {
     /// All that planning added to the network: what causal links, orderings and orderings of uses say about times.
     pub fn precedences(&self, network: &Network) -> Vec<Precedence> {
+        let natures = network.natures_events(&self.selected_arcs);
         let links = self.causal_links.iter().flat_map(|link| link.precedences(network));
         let orderings =
-            self.orderings_added.iter().map(|ordering| self.ordering_precedence(network, ordering));
+            self.orderings_added.iter().map(|ordering| self.ordering_precedence(network, ordering, &natures));
         let uses = self.uses_ordered.iter().map(|ordering| ordering.precedence(network));
         links.chain(orderings).chain(uses).collect()
     }
@@ -73,10 +74,19 @@ impl Plan {
 
     /// One interval ends before the other starts: with the gap that SPEC 5.3 asks for, of a variable that keeps its value
     /// without. A change that comes before a requirement is over when what carries that one is ready (SPEC 10.2).
-    pub fn ordering_precedence(&self, network: &Network, ordering: &Ordering) -> Precedence {
+    /// `natures` are the events that nature executes ([`Network::natures_events`]): before what begins at one there is no
+    /// gap (SPEC 13.1).
+    pub fn ordering_precedence(
+        &self,
+        network: &Network,
+        ordering: &Ordering,
+        natures: &[bool],
+    ) -> Precedence {
         let (earlier, later) = (network.interval(ordering.first).1, network.interval(ordering.then).0);
         if !network.is_lasting(ordering.first) {
-            return Precedence { earlier, later, least: network.threat_gap };
+            let is_natures = natures.get(later.index()).copied().unwrap_or(false);
+            let least = if is_natures { Time::ZERO } else { network.threat_gap };
+            return Precedence { earlier, later, least };
         }
         let carried = self.causal_links.iter().find(|link| link.ask == ordering.then);
         let later = carried.map_or(later, |link| network.ready(link.tell));

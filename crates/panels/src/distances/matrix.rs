@@ -118,9 +118,10 @@ fn distances(parts: &Parts<'_>) -> BTreeMap<(NodeId, NodeId), Bound> {
     let links = links.filter(|&&link| closing != Some(Constraint::Link(link)));
     let orders = parts.plan.orderings_added.iter();
     let orders = orders.filter(|&&order| closing != Some(Constraint::Order(order)));
+    let natures = network.natures_events(&parts.plan.selected_arcs);
     let added = links
         .flat_map(|link| link.precedences(network))
-        .chain(orders.map(|order| parts.plan.ordering_precedence(network, order)))
+        .chain(orders.map(|order| parts.plan.ordering_precedence(network, order, &natures)))
         .chain(parts.plan.uses_ordered.iter().map(|order| order.precedence(network)));
     for Precedence { earlier, later, least } in added {
         if let Some(weight) = least.checked_neg() {

@@ -90,6 +90,7 @@ fn show_reason(
             FailureKind::OpenCondition => "A requirement cannot be met",
             FailureKind::Threat => "Conditions cannot be kept apart",
             FailureKind::Resource => "A resource does not suffice",
+            FailureKind::Controllability => "Nature can make it fail",
         };
         let choices: Vec<String> = reason
             .choices

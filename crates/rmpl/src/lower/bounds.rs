@@ -9,7 +9,7 @@ use crate::syntax::{Element, SyntaxKind, SyntaxNode};
 pub(super) fn bounds_in(node: SyntaxNode<'_>) -> Option<Bounds> {
     let bounds = node.child(SyntaxKind::Bounds)?;
     let (lower, upper) = sides(bounds)?;
-    Some(Bounds { lower, upper, span: bounds.span() })
+    Some(Bounds { lower, upper, is_contingent: false, span: bounds.span() })
 }
 
 /// The bounds in the header of an activity: a plain name declares a bound parameter.

@@ -2,9 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use exact::Time;
 use rmpl::Span;
-use rmpl::program::LabelMode;
+use rmpl::program::{LabelMode, Options};
 use smol_str::SmolStr;
 
 use super::bounds::Interval;
@@ -70,6 +69,7 @@ impl Builder {
             to,
             lower: interval.lower,
             upper: interval.upper,
+            is_contingent: false,
             kind,
             labels: Vec::new(),
             occurrence: None,
@@ -202,7 +202,7 @@ impl Builder {
         mut self,
         vocabulary: &Vocabulary<'_>,
         root: &Root,
-        threat_gap: Time,
+        options: &Options,
         objective: Vec<Goal>,
     ) -> Network {
         if let Some(arc) = root.arc {
@@ -275,7 +275,8 @@ impl Builder {
             root: Some(root.block),
             start: root.start,
             end: root.end,
-            threat_gap,
+            threat_gap: options.threat_gap,
+            controllability: options.controllability,
         }
     }
 }

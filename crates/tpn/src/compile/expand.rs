@@ -185,10 +185,9 @@ impl<'program> Expander<'program> {
 
     pub(super) fn finish(self, root: Option<Root>) -> (Option<Network>, Vec<Diagnostic>) {
         let objective = self.objective();
-        let network = root.filter(|_| !self.is_cut_off).map(|root| {
-            let gap = self.program.options.threat_gap;
-            self.builder.finish(&self.vocabulary, &root, gap, objective)
-        });
+        let network = root
+            .filter(|_| !self.is_cut_off)
+            .map(|root| self.builder.finish(&self.vocabulary, &root, &self.program.options, objective));
         (network, self.diagnostics)
     }
 

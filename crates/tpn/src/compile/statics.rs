@@ -30,7 +30,12 @@ pub(super) fn check(program: &Program, constants: &Constants<'_>) -> Vec<Diagnos
             span,
         } = &activity.bounds
         {
-            check_bounds(&Bounds { lower: lower.clone(), upper: upper.clone(), span: *span });
+            check_bounds(&Bounds {
+                lower: lower.clone(),
+                upper: upper.clone(),
+                is_contingent: false,
+                span: *span,
+            });
         }
         for_each_statement(&activity.body, &mut |statement| {
             statement.bounds.iter().for_each(&mut check_bounds);

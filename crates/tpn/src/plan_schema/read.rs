@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use exact::{Bound, Time};
-use rmpl::program::LabelMode;
+use rmpl::program::{Controllability, LabelMode};
 use serde::Deserialize as _;
 use serde_json::{Map, Value};
 use smol_str::SmolStr;
@@ -42,6 +42,7 @@ pub(super) fn read(objects: Map<String, Value>) -> Result<Document, PlanSchemaEr
         start,
         end,
         threat_gap,
+        controllability: Controllability::Dynamic,
     };
     link(&mut network);
     Ok(Document { network, objects, node_uids, arc_uids, not_planned })
@@ -360,6 +361,7 @@ impl<'file> Reader<'file> {
             to,
             lower: bounds.0,
             upper: bounds.1,
+            is_contingent: false,
             kind,
             labels: Vec::new(),
             occurrence: None,
