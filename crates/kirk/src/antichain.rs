@@ -5,8 +5,15 @@
 
 use std::collections::VecDeque;
 
-/// The weight of the heaviest set. `is_before` is transitive; what is before each other (at one instant) is in order, too.
-pub(crate) fn heaviest_antichain(weights: &[i64], is_before: &[Vec<bool>]) -> i64 {
+/// The heaviest set.
+pub(crate) struct Antichain {
+    pub(crate) weight: i64,
+    /// Positions, in order.
+    pub(crate) members: Vec<usize>,
+}
+
+/// The heaviest set. `is_before` is transitive; what is before each other (at one instant) is in order, too.
+pub(crate) fn heaviest_antichain(weights: &[i64], is_before: &[Vec<bool>]) -> Antichain {
     let count = weights.len();
     let follows = |first: usize, then: usize| {
         // Of two at one instant the first in the list comes first.
@@ -23,10 +30,21 @@ pub(crate) fn heaviest_antichain(weights: &[i64], is_before: &[Vec<bool>]) -> i6
             }
         }
     }
-    while let Some(path) = augmenting_path(&gives, &takes, &passed, &follows) {
-        augment(&path, &mut gives, &mut takes, &mut passed);
-    }
-    weights.iter().sum::<i64>() - passed.iter().flatten().sum::<i64>()
+    let cut = loop {
+        match augmenting_path(&gives, &takes, &passed, &follows) {
+            Ok(path) => augment(&path, &mut gives, &mut takes, &mut passed),
+            Err(cut) => break cut,
+        }
+    };
+    // What can still be passed on from is in the set, unless something can be passed on to it.
+    let members = (0..count).filter(|&one| weights[one] > 0 && cut.gives[one] && !cut.takes[one]).collect();
+    Antichain { weight: weights.iter().sum::<i64>() - passed.iter().flatten().sum::<i64>(), members }
+}
+
+/// What is reached from givers that have something left, where nothing that still needs something is.
+struct Cut {
+    gives: Vec<bool>,
+    takes: Vec<bool>,
 }
 
 fn pass(gives: &mut [i64], takes: &mut [i64], passed: &mut [Vec<i64>], first: usize, then: usize) {
@@ -42,7 +60,7 @@ fn augmenting_path(
     takes: &[i64],
     passed: &[Vec<i64>],
     follows: &dyn Fn(usize, usize) -> bool,
-) -> Option<Vec<usize>> {
+) -> Result<Vec<usize>, Cut> {
     let count = gives.len();
     let mut giver_of: Vec<Option<usize>> = vec![None; count];
     let mut taker_of: Vec<Option<usize>> = vec![None; count];
@@ -68,7 +86,7 @@ fn augmenting_path(
                     at = before;
                 }
                 path.reverse();
-                return Some(path);
+                return Ok(path);
             }
             for other in 0..count {
                 if passed[other][taker] > 0 && !is_seen[other] {
@@ -79,7 +97,7 @@ fn augmenting_path(
             }
         }
     }
-    None
+    Err(Cut { gives: is_seen, takes: giver_of.iter().map(Option::is_some).collect() })
 }
 
 /// Passes as much as possible along giver, taker, giver, …, taker: from each giver to the taker behind it, and back from
@@ -116,7 +134,7 @@ mod tests {
             is_before[first][then] = true;
         }
         close(&mut is_before);
-        heaviest_antichain(weights, &is_before)
+        heaviest_antichain(weights, &is_before).weight
     }
 
     /// What comes before what comes before something comes before that.
@@ -168,7 +186,10 @@ mod tests {
                     (0..count).filter(|member| set >> member & 1 == 1).map(|member| weights[member]).sum()
                 })
                 .max();
-            assert_eq!(Some(heaviest_antichain(&weights, &is_before)), best);
+            let Antichain { weight, members } = heaviest_antichain(&weights, &is_before);
+            assert_eq!(Some(weight), best);
+            assert_eq!(members.iter().map(|&member| weights[member]).sum::<i64>(), weight);
+            assert!(members.iter().all(|&one| members.iter().all(|&other| !is_before[one][other])));
         }
     }
 }

@@ -194,6 +194,8 @@ pub(crate) struct Part {
     active_labels: TiVec<LabelId, bool>,
     active_uses: Vec<bool>,
     assumed: TiVec<DecisionId, Option<u32>>,
+    /// Whether durations that nature chooses are chosen like all others.
+    pub(crate) ignores_nature: bool,
 }
 
 impl Part {
@@ -213,6 +215,7 @@ impl Part {
             active_uses: vec![false; model.demands.num_uses()],
             model,
             assumed,
+            ignores_nature: false,
         }
     }
 
@@ -262,6 +265,7 @@ impl Part {
             active_labels: Some(&self.active_labels),
             alternatives: Some(&self.assumed),
             active_uses: Some(&self.active_uses),
+            ignores_nature: self.ignores_nature,
         };
         match effort.solve(&self.model, Gaps::Trusted, part)? {
             Answer::Solved => return Some(false),

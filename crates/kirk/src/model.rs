@@ -1,6 +1,7 @@
 //! A network prepared for planning: times as integers, flat adjacency, contexts of arcs, and conditions by variable.
 
 use exact::{Bound, Overflow, Scale, Time};
+use rmpl::program::Controllability;
 use stn::PointId;
 use tpn::{ArcId, BlockKind, Choice, DecisionId, LabelId, Network, NodeId};
 use typed_index_collections::{TiSlice, TiVec};
@@ -44,6 +45,12 @@ pub(crate) struct Model {
     /// How far the end of each labelled interval must be from the start of another to count as before it (SPEC 5.3):
     /// the threat gap for instants, otherwise nothing.
     pub(crate) gap_after: TiVec<LabelId, i64>,
+    /// Whether nature chooses the duration of some arc (SPEC 13.1).
+    pub(crate) has_uncertainty: bool,
+    /// Whether plans have to withstand nature without looking (SPEC 13.1).
+    pub(crate) is_strong: bool,
+    /// Which events nature executes in some plan.
+    pub(crate) natures_events: TiVec<NodeId, bool>,
     /// For each node one that the rules of the language keep at the same time, in the same context.
     pub(crate) representatives: TiVec<NodeId, NodeId>,
     /// Whether the contexts of arcs and decisions are known; otherwise they depend on the order of the search.
@@ -62,6 +69,10 @@ pub(crate) struct ModelArc {
     pub(crate) to: NodeId,
     /// Where the program's structure says so: what must be chosen for the arc to be selected.
     pub(crate) context: Context,
+    /// Whether nature chooses the duration.
+    pub(crate) is_uncertain: bool,
+    /// Whether it keeps both events at one time, and what is nature's at one is nature's at the other (SPEC 13.1).
+    pub(crate) is_tie: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -78,16 +89,22 @@ impl Model {
         let gap = threat_gap.unwrap_or(network.threat_gap);
         let scale = common_scale(network, gap)?;
         let mut arcs = TiVec::with_capacity(network.arcs.len());
-        for arc in &network.arcs {
+        for (id, arc) in network.arcs.iter().enumerate() {
             let overflow = |Overflow| TimeOverflow::at(arc.to);
+            let is_uncertain = network.is_uncertain(ArcId::from_index(id));
             arcs.push(ModelArc {
                 lower: scale.ticks(arc.lower).map_err(overflow)?,
                 upper: bound_ticks(scale, arc.upper).map_err(overflow)?,
                 from: arc.from,
                 to: arc.to,
                 context: None,
+                is_uncertain,
+                is_tie: !arc.is_contingent && arc.lower.is_zero() && arc.upper == Bound::ZERO,
             });
         }
+        let mut natures_events = network.natures_events(&vec![true; network.arcs.len()]);
+        let has_uncertainty = !natures_events.is_empty();
+        natures_events.resize(network.nodes.len(), false);
         let mut out_start = Vec::with_capacity(network.nodes.len() + 1);
         let mut out_arcs = Vec::with_capacity(network.arcs.len());
         let mut decision_of = TiVec::with_capacity(network.nodes.len());
@@ -117,6 +134,9 @@ impl Model {
             demands: Demands::new(network, scale)?,
             nesting: Nesting::new(network),
             gap_after: TiVec::new(),
+            has_uncertainty,
+            is_strong: network.controllability == Controllability::Strong,
+            natures_events: natures_events.into(),
             representatives: (0..network.nodes.len()).map(NodeId::from_index).collect(),
             has_contexts: false,
             structure: None,
@@ -132,7 +152,9 @@ impl Model {
 
     /// Changes the bounds of one arc, in the model's units. The structure must be refreshed afterwards.
     pub(crate) fn set_bounds(&mut self, network: &Network, arc: ArcId, lower: i64, upper: i64) {
-        (self.arcs[arc].lower, self.arcs[arc].upper) = (lower, upper);
+        let changed = &mut self.arcs[arc];
+        (changed.lower, changed.upper) = (lower, upper);
+        changed.is_tie = !changed.is_uncertain && (lower, upper) == (0, 0);
         for &label in &network.arcs[arc.index()].labels {
             self.gap_after[label] = self.least_gap_after(label);
         }
@@ -199,6 +221,11 @@ impl Model {
         self.are_compatible(context(left), context(right))
     }
 
+    /// Whether the solver's own solutions become plans, so that all of them count.
+    pub(crate) fn tells_plans_apart(&self) -> bool {
+        self.has_uncertainty || self.demands.tells_alternatives_apart()
+    }
+
     /// How the program's structure orders the arcs of two labels, if one of them takes time, so that they cannot be in
     /// the other order as well.
     pub(crate) fn nested_order(&self, left: LabelId, right: LabelId) -> Relation {
@@ -213,6 +240,13 @@ impl Model {
     /// What a node is in networks that have one point for all nodes with one representative.
     pub(crate) fn representative(&self, node: NodeId) -> PointId {
         point(self.representatives[node])
+    }
+
+    /// The gap that the rules ask for between the end of an interval and the start of another, which is `gap` unless nature
+    /// executes that start (SPEC 13.1).
+    pub(crate) fn gap_before(&self, then: LabelId, gap: i64) -> i64 {
+        let start = self.arcs[self.conditions.labels[then].arc].from;
+        if self.natures_events[start] { 0 } else { gap }
     }
 
     fn least_gap_after(&self, label: LabelId) -> i64 {

@@ -8,8 +8,8 @@ use rmpl::program::Change;
 use stn::{Inconsistency, PointId, Stn};
 use tpn::selection::closure;
 use tpn::{
-    ArcId, CausalLink, Choice, DecisionId, LabelId, Levels, Network, NodeId, Ordering, Plan, UseOrdering,
-    Window,
+    ArcId, CausalLink, Choice, DecisionId, LabelId, Levels, Network, NodeId, Ordering, Plan, Precedence,
+    UseId, UseOrdering, Window,
 };
 use typed_index_collections::TiVec;
 
@@ -26,6 +26,10 @@ pub(crate) struct Solution {
     /// Of variables that are known only where they are asserted: what carries each requirement.
     pub(crate) carriers: TiVec<LabelId, Option<LabelId>>,
     pub(crate) kept: Kept,
+    /// Conflicting pairs that were ordered by choice, the earlier one first.
+    pub(crate) orders: Vec<(LabelId, LabelId)>,
+    /// Uses of resources that were, too.
+    pub(crate) uses_ordered: Vec<(UseId, UseId)>,
     pub(crate) times: TiVec<NodeId, i64>,
 }
 
@@ -45,6 +49,7 @@ pub(crate) fn plan(
         model,
         solution,
         is_selected: selected_arcs.iter().copied().collect(),
+        natures_events: network.natures_events(&selected_arcs),
         stn: Stn::new(model.num_nodes),
         windows: (Vec::new(), Vec::new()),
         num_edges: 0,
@@ -62,8 +67,13 @@ pub(crate) fn plan(
     }
     conflict_order.sort_by_key(|order| (order.first.min(order.then), order.first.max(order.then)));
     let mut uses_ordered = Vec::new();
-    for resource in &model.demands.resources {
-        making.share(resource, &mut uses_ordered)?;
+    if making.natures_events.is_empty() {
+        for resource in &model.demands.resources {
+            making.share(resource, &mut uses_ordered)?;
+        }
+    } else {
+        // Times that fit say nothing of those that nature will choose: what was decided suffices.
+        making.keep_uses_ordered(&mut uses_ordered)?;
     }
     let mut levels = Vec::with_capacity(model.demands.resources.len());
     for resource in &model.demands.resources {
@@ -97,6 +107,8 @@ struct Making<'a> {
     model: &'a Model,
     solution: &'a Solution,
     is_selected: TiVec<ArcId, bool>,
+    /// Empty if nature executes none.
+    natures_events: Vec<bool>,
     stn: Stn,
     /// Distances from and to the start with all links and no order yet: still bounds with orders.
     windows: (Vec<i64>, Vec<i64>),
@@ -287,8 +299,10 @@ impl Making<'_> {
         }
         // What only touches may be ordered by what follows from the others.
         pairs.sort_unstable();
+        let ordered: BTreeSet<(LabelId, LabelId)> = self.solution.orders.iter().copied().collect();
         for (_, left, right) in pairs {
-            let (gap_left, gap_right) = (self.model.gap_after[left], self.model.gap_after[right]);
+            let gap_left = self.gap_before(right, self.model.gap_after[left]);
+            let gap_right = self.gap_before(left, self.model.gap_after[right]);
             let (one, other) = (self.network.interval(left), self.network.interval(right));
             if self.is_entailed(one.1, other.0, gap_left)? {
                 order.push(Ordering { first: left, then: right });
@@ -298,10 +312,14 @@ impl Making<'_> {
                 order.push(Ordering { first: right, then: left });
                 continue;
             }
-            let is_left_first = self.room(left, right) >= self.room(right, left);
+            let is_left_first = if ordered.contains(&(left, right)) == ordered.contains(&(right, left)) {
+                self.room(left, right) >= self.room(right, left)
+            } else {
+                ordered.contains(&(left, right))
+            };
             let (first, then) = if is_left_first { (left, right) } else { (right, left) };
             let (end, start) = (self.network.interval(first).1, self.network.interval(then).0);
-            if !self.insert(end, start, self.model.gap)? {
+            if !self.insert(end, start, self.gap_before(then, self.model.gap))? {
                 return Ok(false);
             }
             order.push(Ordering { first, then });
@@ -310,8 +328,26 @@ impl Making<'_> {
         Ok(true)
     }
 
+    /// No gap comes before what begins when nature says (SPEC 13.1).
+    fn gap_before(&self, then: LabelId, gap: i64) -> i64 {
+        let start = self.network.interval(then).0;
+        if self.natures_events.get(start.index()).copied().unwrap_or(false) { 0 } else { gap }
+    }
+
     fn room(&self, first: LabelId, then: LabelId) -> i64 {
         self.time(self.network.interval(then).0) - self.time(self.network.interval(first).1)
+    }
+
+    /// Orders uses as the solution does, as far as that does not follow from the rest.
+    fn keep_uses_ordered(&mut self, added: &mut Vec<UseOrdering>) -> Result<(), TimeOverflow> {
+        for &(first, then) in &self.solution.uses_ordered {
+            let ordering = UseOrdering { first, then };
+            let Precedence { earlier, later, .. } = ordering.precedence(self.network);
+            if self.ensure(earlier, later)? {
+                added.push(ordering);
+            }
+        }
+        Ok(())
     }
 
     /// Orders the uses of a resource so that no schedule takes more than there is.
@@ -473,7 +509,7 @@ impl Making<'_> {
                     }
                 }
                 let weights: Vec<i64> = uses.iter().map(|used| used.amount).collect();
-                Ok(Levels::Peak(resource.amount(heaviest_antichain(&weights, &is_before))))
+                Ok(Levels::Peak(resource.amount(heaviest_antichain(&weights, &is_before).weight)))
             }
             ModelSupply::Reservoir { level, .. } => {
                 let (mut low, mut high) = (level, level);

@@ -51,7 +51,9 @@ fn candidates(network: &Network, failure: &Failure) -> Vec<(Vec<ArcId>, bool)> {
                 _ => continue,
             };
             let bounds = &network.arcs[arc.index()];
-            if wording::is_structural(bounds.kind) || (is_lower && bounds.lower == Time::ZERO) {
+            // Of what nature chooses the range becomes narrower, of all else wider.
+            let is_at_end = is_lower && bounds.lower == Time::ZERO && !network.is_uncertain(arc);
+            if wording::is_structural(bounds.kind) || is_at_end {
                 continue;
             }
             let alone = bounds.span.is_none().then_some(arc);
@@ -69,7 +71,10 @@ fn candidates(network: &Network, failure: &Failure) -> Vec<(Vec<ArcId>, bool)> {
                 arc.span == Some(*span) && !wording::is_structural(arc.kind)
             })
             .collect();
-        let bounds = |arc: &ArcId| (network.arcs[arc.index()].lower, network.arcs[arc.index()].upper);
+        let bounds = |arc: &ArcId| {
+            let bounds = &network.arcs[arc.index()];
+            (bounds.lower, bounds.upper, bounds.is_contingent)
+        };
         if arcs.iter().any(|arc| bounds(arc) != bounds(&first)) {
             arcs.clear();
         }
@@ -94,20 +99,30 @@ impl Trial<'_> {
     fn closest(&mut self, arcs: &[ArcId], is_lower: bool) -> Result<Option<i64>, TimeOverflow> {
         let first = &self.model.arcs[arcs[0]];
         let (lower, upper) = (first.lower, first.upper);
-        let old = if is_lower { lower } else { upper };
-        let most = if is_lower { 0 } else { INFINITE };
-        if !self.plans_with(arcs, is_lower, most, (lower, upper))? {
+        let (old, most) = match (first.is_uncertain, is_lower) {
+            (false, true) => (lower, 0),
+            (false, false) => (upper, INFINITE),
+            (true, true) => (lower, upper),
+            (true, false) => (upper, lower),
+        };
+        if old == most || !self.plans_with(arcs, is_lower, most, (lower, upper))? {
             return Ok(None);
         }
         // Step away from the old value ever faster until there is a plan, then halve the gap.
         let (mut fails, mut step) = (old, 1_i64);
         let mut plans = loop {
-            let next = if is_lower { Some(old.saturating_sub(step).max(0)) } else { old.checked_add(step) };
-            let Some(next) = next.filter(|&next| next < INFINITE / 4) else { return Ok(None) };
+            let next = if most < old {
+                old.saturating_sub(step).max(most)
+            } else {
+                old.saturating_add(step).min(most)
+            };
+            if next >= INFINITE / 4 {
+                return Ok(None);
+            }
             if self.plans_with(arcs, is_lower, next, (lower, upper))? {
                 break next;
             }
-            if self.effort.searches == 0 || (is_lower && next == 0) {
+            if self.effort.searches == 0 || next == most {
                 return Ok(None);
             }
             (fails, step) = (next, step.saturating_mul(2));
@@ -162,7 +177,15 @@ fn relaxation(network: &Network, model: &Model, arcs: &[ArcId], is_lower: bool, 
     let arc = &network.arcs[arcs[0].index()];
     let new = model.time(new);
     let name = wording::arc_name(network, arc);
-    let (old, new_lower, new_upper, label) = if is_lower {
+    let is_natures = network.is_uncertain(arcs[0]);
+    let (old, new_lower, new_upper, label) = if is_natures && is_lower {
+        let label =
+            format!("it would be controllable if {name} took at least {new} instead of {}", arc.lower);
+        (Bound::Finite(arc.lower), Bound::Finite(new), arc.upper, label)
+    } else if is_natures {
+        let label = format!("it would be controllable if {name} took at most {new} instead of {}", arc.upper);
+        (arc.upper, Bound::Finite(arc.lower), Bound::Finite(new), label)
+    } else if is_lower {
         let old = Bound::Finite(arc.lower);
         let label = format!("let {name} take {} at least instead of {old}", Bound::Finite(new));
         (old, Bound::Finite(new), arc.upper, label)
@@ -184,7 +207,7 @@ fn relaxation(network: &Network, model: &Model, arcs: &[ArcId], is_lower: bool, 
 /// The change relative to the bound.
 fn cost(relaxation: &Relaxation) -> Bound {
     let (old, new) = (relaxation.old.finite().unwrap_or_default(), relaxation.new);
-    let change = if relaxation.is_lower { old.checked_sub(new) } else { new.checked_sub(old) };
+    let change = if new < old { old.checked_sub(new) } else { new.checked_sub(old) };
     let relative = change.and_then(|change| change.checked_ratio(old.max(Time::ONE)));
     relative.map_or(Bound::Infinite, |relative| Bound::Finite(Time::from_units(relative)))
 }

@@ -43,11 +43,13 @@ pub(crate) fn reason(network: &Network, model: &Model, effort: &mut Effort<'_>) 
         }
         size = if size == 1 { 0 } else { size.div_ceil(2) };
     }
-    let members = search.members;
-    if members.len() > MAX_MEMBERS {
+    if search.members.len() > MAX_MEMBERS {
         return None;
     }
-    let kind = kind(network, &members);
+    search.part.ignores_nature = true;
+    let is_natures = model.has_uncertainty && search.part.is_refuted(search.effort) == Some(false);
+    let members = search.members;
+    let kind = if is_natures { FailureKind::Controllability } else { kind(network, &members) };
     let told = wording::Told { network, kind, choices: &[], conflict: &members, cycle: &[] };
     Some(Reason {
         message: told.message(),

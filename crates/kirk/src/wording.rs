@@ -35,9 +35,7 @@ impl Told<'_> {
             FailureKind::OpenCondition => self.open_condition(),
             FailureKind::Threat => self.threat(),
             FailureKind::Resource => self.resource(),
-            FailureKind::Controllability => {
-                self.bounds().unwrap_or_else(|| "nature can choose durations that leave no times".to_owned())
-            }
+            FailureKind::Controllability => self.controllability(),
         };
         let choices: Vec<String> = self
             .choices
@@ -107,6 +105,46 @@ impl Told<'_> {
             Some(bounds) => format!("{what}: {bounds}"),
             None => what,
         }
+    }
+
+    /// What nature chooses, and what that leaves no times for.
+    fn controllability(&self) -> String {
+        let (mut natures, mut rest) = (Vec::new(), Vec::new());
+        let push = |names: &mut Vec<String>, name: String| {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        };
+        for label in self.conditions() {
+            let (label, owner) = (&self.network.labels[label.index()], interval_name(self.network, label));
+            if label.mode == LabelMode::Ask && owner != label.text.as_str() {
+                push(&mut rest, format!("{owner} requires {}", label.text));
+            }
+        }
+        for member in self.conflict {
+            let Member::Bound(Constraint::Lower(id) | Constraint::Upper(id)) = member else { continue };
+            let arc = &self.network.arcs[id.index()];
+            let name = arc_name(self.network, arc);
+            if self.network.is_uncertain(*id) {
+                let verb = if name.starts_with("the ") { "lasts" } else { "takes" };
+                push(&mut natures, format!("{name} {verb} {} to {}", arc.lower, arc.upper));
+            } else if !is_structural(arc.kind) {
+                match member {
+                    Member::Bound(Constraint::Upper(_)) => {
+                        push(&mut rest, format!("{name} {} {}", allowing_verb(self.network, arc), arc.upper));
+                    }
+                    _ if arc.lower != Time::ZERO => {
+                        push(&mut rest, format!("{name} needs at least {}", arc.lower));
+                    }
+                    _ => {}
+                }
+            }
+        }
+        let natures = joined(&natures);
+        if rest.is_empty() {
+            return format!("{natures}, as nature chooses, and no times suit all of that");
+        }
+        format!("{natures}, as nature chooses, which leaves no times for all the rest: {}", joined(&rest))
     }
 
     /// The activities that would move one vehicle at the same time, if that is what the conflict is about.

@@ -20,7 +20,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("stnu", &[]),
     ("terrain", &[]),
     ("tpn", &["rmpl"]),
-    ("kirk", &["tpn", "stn"]),
+    ("kirk", &["tpn", "stn", "stnu"]),
     ("verify", &["tpn"]),
     ("motion", &["terrain"]),
     ("hca", &["rmpl"]),
@@ -37,7 +37,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("app", &["panels"]),
     ("page", &["app"]),
     ("worker", &["mission"]),
-    ("cli", &["mission", "layout", "report", "stnu"]),
+    ("cli", &["mission", "layout", "report"]),
     ("xtask", &[]),
 ];
 

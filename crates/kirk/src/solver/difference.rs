@@ -8,7 +8,7 @@
 
 use typed_index_collections::TiVec;
 
-use super::literal::{Literal, Side};
+use super::literal::{Literal, Side, Variable};
 use super::trail::{Cause, Conflict, Trail};
 use crate::ids::{DifferenceId, EventId};
 
@@ -69,6 +69,16 @@ impl Differences {
 
     pub(crate) fn len(&self) -> usize {
         self.all.len()
+    }
+
+    /// Each constraint `to − from ≤ weight` between variables, once, with the literals under which it and its mirror carry.
+    pub(crate) fn constraints(&self) -> impl Iterator<Item = (Variable, Variable, i64, [Literal; 2])> + '_ {
+        self.all.raw.chunks_exact(2).filter_map(|pair| match pair {
+            [one, mirror] => {
+                Some((one.from.variable(), one.to.variable(), one.weight, [one.when, mirror.when]))
+            }
+            _ => None,
+        })
     }
 
     /// Carries on the bound of a side, as when it has just moved.

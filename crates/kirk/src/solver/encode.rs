@@ -44,6 +44,8 @@ pub(crate) struct Part<'a> {
     pub(crate) alternatives: Option<&'a Alternatives>,
     /// The uses of resources that count; all if `None`.
     pub(crate) active_uses: Option<&'a [bool]>,
+    /// Whether durations that nature chooses are chosen like all others.
+    pub(crate) ignores_nature: bool,
 }
 
 /// How a planning problem is told to the solver.
@@ -66,10 +68,12 @@ pub(crate) struct Problem<'m> {
     pub(super) sides: Sides,
     pub(super) shares: Shares,
     /// By decision and alternative.
-    alternatives: TiVec<DecisionId, Vec<Literal>>,
+    pub(super) alternatives: TiVec<DecisionId, Vec<Literal>>,
     /// Requirements with the assertions that may carry them.
-    carriers: Vec<(LabelId, Vec<(LabelId, Literal)>)>,
+    pub(super) carriers: Vec<(LabelId, Vec<(LabelId, Literal)>)>,
     contexts: TiVec<NodeId, Context>,
+    /// Whether solutions have to withstand what nature chooses.
+    pub(super) faces_nature: bool,
 }
 
 impl<'m> Problem<'m> {
@@ -94,6 +98,7 @@ impl<'m> Problem<'m> {
             alternatives,
             carriers: Vec::new(),
             contexts: node_contexts(model),
+            faces_nature: model.has_uncertainty && !part.ignores_nature,
         };
         problem.add_times(&mut solver, reach);
         solver.resize();
@@ -108,6 +113,10 @@ impl<'m> Problem<'m> {
             problem.add_links(&mut solver, part)?;
             problem.add_lasting(&mut solver, part)?;
             problem.add_resources(&solver, part);
+            if problem.faces_nature {
+                // What the least times keep apart nature's times may not.
+                problem.order_all_pairs(&mut solver);
+            }
         }
         Ok((problem, solver))
     }
@@ -134,7 +143,17 @@ impl<'m> Problem<'m> {
     /// All that the solver's solution says.
     pub(crate) fn whole_solution(&self, solver: &Solver) -> Solution {
         let Choices { alternatives, carriers, times } = self.solution(solver);
-        Solution { alternatives, carriers, kept: self.kept(solver), times: times.into() }
+        let orders = self.orders.iter().flat_map(|((left, right), [left_first, right_first])| {
+            [((*left, *right), *left_first), ((*right, *left), *right_first)]
+        });
+        Solution {
+            alternatives,
+            carriers,
+            kept: self.kept(solver),
+            orders: orders.filter(|&(_, order)| solver.trail.holds(order)).map(|(pair, _)| pair).collect(),
+            uses_ordered: self.uses_ordered(solver),
+            times: times.into(),
+        }
     }
 
     /// Makes all conflicting pairs choice points.
@@ -186,9 +205,14 @@ impl<'m> Problem<'m> {
         terms.map(|(variable, weight)| (weight, variable)).collect()
     }
 
-    /// What must lie between the end of a labelled interval and the start of one that excludes it.
+    /// What must lie between the end of a labelled interval and the start of one that excludes it, at most.
     pub(crate) fn order_gap(&self, label: LabelId) -> i64 {
         if self.gaps == Gaps::Ignored { self.gap_after(label) } else { self.model.gap }
+    }
+
+    /// What must lie between two labelled intervals that exclude each other, whatever else is chosen.
+    pub(crate) fn gap_between(&self, first: LabelId, then: LabelId) -> i64 {
+        self.model.gap_before(then, self.order_gap(first))
     }
 
     /// What counts as ordered where it follows from the rest.
@@ -272,7 +296,7 @@ impl<'m> Problem<'m> {
             solver.add_choice_point(choice_point, 0.0);
         }
         let Some(given) = part.alternatives else {
-            if self.model.demands.tells_alternatives_apart() {
+            if self.model.tells_plans_apart() {
                 return;
             }
             for decision in self.model.decisions.keys() {
@@ -392,7 +416,9 @@ impl<'m> Problem<'m> {
                 continue;
             }
             let arc_of = |label: LabelId| conditions.labels[label].arc;
-            if let Some(own) = conditions.supporters(ask).find(|&tell| arc_of(tell) == arc_of(ask)) {
+            // It always serves, where plans need not be told apart.
+            let own = conditions.supporters(ask).find(|&tell| arc_of(tell) == arc_of(ask));
+            if let Some(own) = own.filter(|_| !self.model.tells_plans_apart()) {
                 self.carriers.push((ask, vec![(own, asked.presence)]));
                 continue;
             }

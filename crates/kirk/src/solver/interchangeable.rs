@@ -39,7 +39,9 @@ fn are_alike(model: &Model, decision: DecisionId, left: u32, right: u32) -> bool
         let (one, other) = (&model.arcs[left_arc], &model.arcs[right_arc]);
         let (left_labels, right_labels) =
             (model.conditions.labels_of(left_arc), model.conditions.labels_of(right_arc));
-        if (one.lower, one.upper) != (other.lower, other.upper) || left_labels.len() != right_labels.len() {
+        if (one.lower, one.upper, one.is_uncertain) != (other.lower, other.upper, other.is_uncertain)
+            || left_labels.len() != right_labels.len()
+        {
             return false;
         }
         labels.extend(left_labels.iter().copied().zip(right_labels.iter().copied()));

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use tpn::{LabelId, VariableId};
 
-use super::encode::{Interval, Problem};
+use super::encode::Problem;
 use super::literal::Literal;
 use super::{ChoicePoint, ChoicePointKind, Solver};
 
@@ -157,25 +157,18 @@ impl Solver {
             }
             self.at_least_one([!when[0], !when[1], left_first, right_first]);
         }
-        self.order(problem, one, other, left, left_first);
-        self.order(problem, other, one, right, right_first);
+        for (order, (first, then), gap) in [
+            (left_first, (one, other), problem.gap_between(left, right)),
+            (right_first, (other, one), problem.gap_between(right, left)),
+        ] {
+            self.difference(then.start, first.end, -gap, [order; 2]);
+        }
         problem.orders.insert((left, right), [left_first, right_first]);
         let kind = ChoicePointKind::Orders { left, right };
         self.add_choice_point(
             ChoicePoint { when: when.to_vec(), kind, options: vec![left_first, right_first], last: None },
             0.0,
         );
-    }
-
-    fn order(
-        &mut self,
-        problem: &Problem<'_>,
-        first: Interval,
-        then: Interval,
-        label: LabelId,
-        when: Literal,
-    ) {
-        self.difference(then.start, first.end, -problem.order_gap(label), [when; 2]);
     }
 
     /// The option of a choice point to try first.

@@ -20,6 +20,7 @@ mod activity;
 mod alternatives;
 mod analysis;
 mod clauses;
+mod control;
 mod difference;
 mod disjunctive;
 mod encode;
@@ -283,7 +284,15 @@ impl Solver {
                         self.add_pairs(problem) || problem.break_circles(self) || problem.share(self);
                     if !is_broken {
                         debug_assert!(self.is_solution(problem), "the least times fit");
-                        return Answer::Solved;
+                        let stats = self.stats;
+                        match problem.withstand(self, &mut || stop(&stats)) {
+                            Some(false) => return Answer::Solved,
+                            Some(true) => {}
+                            None => {
+                                self.retract(0);
+                                return Answer::Stopped;
+                            }
+                        }
                     }
                 }
             }

@@ -19,17 +19,18 @@ const MAX_PAIRS: usize = 4_000;
 
 /// A use of a resource in the solver.
 #[derive(Clone, Copy, Debug)]
-struct Task {
-    id: UseId,
-    interval: Interval,
-    change: Change,
-    amount: i64,
+pub(super) struct Task {
+    pub(super) id: UseId,
+    pub(super) interval: Interval,
+    pub(super) change: Change,
+    pub(super) amount: i64,
     /// Otherwise it takes nothing, but still gives.
-    is_active: bool,
+    pub(super) is_active: bool,
 }
 
 impl Task {
-    fn moment(&self) -> Variable {
+    /// When it changes a reservoir's level.
+    pub(super) fn moment(&self) -> Variable {
         if self.change == Change::Produces { self.interval.end } else { self.interval.start }
     }
 }
@@ -49,6 +50,22 @@ pub(crate) struct Shares {
     /// That one use comes before another.
     orders: BTreeMap<(UseId, UseId), Literal>,
     ordered_pairs: BTreeSet<(UseId, UseId)>,
+}
+
+impl Shares {
+    pub(super) const fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    /// Each resource with its uses.
+    pub(super) fn tasks(&self) -> Vec<(ModelSupply, Vec<Task>)> {
+        self.all.iter().map(|shared| (shared.supply, shared.tasks.clone())).collect()
+    }
+
+    /// The literals of all orders.
+    pub(super) fn orders(&self) -> impl Iterator<Item = Literal> + '_ {
+        self.orders.values().copied()
+    }
 }
 
 impl Problem<'_> {
@@ -110,6 +127,12 @@ impl Problem<'_> {
         true
     }
 
+    /// Which uses the solution orders.
+    pub(super) fn uses_ordered(&self, solver: &Solver) -> Vec<(UseId, UseId)> {
+        let held = self.shares.orders.iter().filter(|(_, order)| solver.trail.holds(**order));
+        held.map(|(&pair, _)| pair).collect()
+    }
+
     /// Tells the solver of the uses that exclude each other two by two.
     fn exclude(&mut self, solver: &mut Solver, index: usize) {
         self.shares.all[index].has_exclusion = true;
@@ -134,7 +157,7 @@ impl Problem<'_> {
     }
 
     /// One of these uses ends before another one starts.
-    fn resolve_overload(&mut self, solver: &mut Solver, tasks: &[Task]) {
+    pub(super) fn resolve_overload(&mut self, solver: &mut Solver, tasks: &[Task]) {
         if let [left, right] = tasks
             && !self.shares.ordered_pairs.insert((left.id, right.id))
         {
@@ -161,6 +184,33 @@ impl Problem<'_> {
             }
         }
         add_resolvers(solver, options, early);
+    }
+
+    /// After a use the level would be out of range in some schedule: another one of its kind comes after it, or one of the
+    /// other kind before it.
+    pub(super) fn resolve_level(
+        &mut self,
+        solver: &mut Solver,
+        used: &Task,
+        counted: &[Task],
+        late: &[Task],
+    ) {
+        let after = counted.iter().map(|other| (*used, *other));
+        let before = late.iter().map(|other| (*other, *used));
+        let pairs: Vec<(Task, Task)> = before.chain(after).collect();
+        let options: Vec<Literal> = pairs
+            .iter()
+            .map(|(first, then)| self.use_order(solver, first, then, (first.moment(), then.moment())))
+            .collect();
+        let present: Vec<Task> = counted.iter().chain([used]).copied().collect();
+        add_resolvers(solver, options, &present);
+    }
+
+    /// Whether one of the orders that [`Problem::resolve_level`] offers holds already.
+    pub(super) fn is_resolved(&self, solver: &Solver, used: &Task, counted: &[Task], late: &[Task]) -> bool {
+        let after = counted.iter().map(|other| (used.id, other.id));
+        let mut pairs = late.iter().map(|other| (other.id, used.id)).chain(after);
+        pairs.any(|pair| self.shares.orders.get(&pair).is_some_and(|&order| solver.trail.holds(order)))
     }
 
     /// The literal that one use comes before another.
@@ -231,7 +281,7 @@ fn overload(solver: &Solver, present: &[Task], capacity: i64) -> Option<Vec<Task
 }
 
 /// Leaves out what is not needed for an excess, the smallest first.
-fn minimal(mut tasks: Vec<&Task>, mut excess: i64) -> Vec<Task> {
+pub(super) fn minimal(mut tasks: Vec<&Task>, mut excess: i64) -> Vec<Task> {
     tasks.sort_by_key(|task| (task.amount, task.id));
     tasks.retain(|task| {
         let is_needed = task.amount >= excess;

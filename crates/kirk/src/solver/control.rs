@@ -1,0 +1,390 @@
+//! What nature chooses (SPEC 13.1): where everything is decided, whatever it chooses must leave the executive times.
+//!
+//! The constraints in force and the durations that nature chooses are a simple temporal network with uncertainty. A
+//! semi-reducible negative cycle of it rests on literals, one of which must not hold. Resources must suffice for all
+//! times: uses that nothing orders count together.
+
+use rmpl::program::Change;
+use stn::{PointId, Stn};
+use stnu::{Link, LinkError, Part, StrongVerdict, Undecided, Verdict};
+use tpn::UseId;
+use typed_index_collections::TiVec;
+
+use super::Solver;
+use super::encode::Problem;
+use super::literal::{Literal, Variable};
+use super::resources::Task;
+use crate::antichain::heaviest_antichain;
+use crate::demands::ModelSupply;
+use crate::model::{INFINITE, ModelArc};
+use crate::search::UNBOUNDED_BELOW;
+
+/// Larger conflicts are not made minimal.
+const MAX_MINIMIZED: usize = 60;
+
+/// The constraints of a solution, with the literals that each rests on.
+struct InForce {
+    points: TiVec<Variable, Option<u32>>,
+    count: usize,
+    edges: Vec<(Edge, Vec<Literal>)>,
+}
+
+/// `to − from ≤ weight`.
+#[derive(Clone, Copy)]
+struct Edge {
+    from: u32,
+    to: u32,
+    weight: i64,
+}
+
+impl Problem<'_> {
+    /// Excludes the present solution if nature can make it fail. `Some(false)` if it cannot, `None` if nobody knows.
+    pub(super) fn withstand(&mut self, solver: &mut Solver, stop: &mut dyn FnMut() -> bool) -> Option<bool> {
+        if !self.faces_nature {
+            return Some(false);
+        }
+        let in_force = self.in_force(solver);
+        let is_broken = self.share_in_all_schedules(solver, &in_force)?;
+        if is_broken {
+            return Some(true);
+        }
+        let Some(reason) = self.failure(solver, &in_force, stop)? else { return Some(false) };
+        solver.stats.conflicts += 1;
+        solver.stats.nogoods += 1;
+        solver.retract(0);
+        solver.at_least_one(reason.into_iter().map(|literal| !literal));
+        Some(true)
+    }
+
+    fn in_force(&self, solver: &Solver) -> InForce {
+        let trail = &solver.trail;
+        let mut in_force = InForce {
+            points: vec![None; trail.num_variables()].into(),
+            count: 0,
+            edges: Vec::with_capacity(solver.differences.len()),
+        };
+        if self.model.is_strong {
+            // What is tied to an event of nature's is one with it.
+            for arc in self.ties(solver) {
+                let (from, to) = (self.times[arc.from], self.times[arc.to]);
+                let [one, other] = [from, to].map(|variable| in_force.point_of(variable));
+                in_force
+                    .points
+                    .iter_mut()
+                    .filter(|own| **own == Some(other))
+                    .for_each(|own| *own = Some(one));
+            }
+        }
+        for (from, to, weight, when) in solver.differences.constraints() {
+            let rests_on = [when[0], when[1], trail.presence(from), trail.presence(to)];
+            if rests_on.iter().all(|&literal| trail.holds(literal)) {
+                in_force.add((from, to, weight), &rests_on);
+            }
+        }
+        self.add_strict_gaps(solver, &mut in_force);
+        in_force
+    }
+
+    /// The gaps before what nature executes only with other choices than the present ones.
+    fn add_strict_gaps(&self, solver: &Solver, in_force: &mut InForce) {
+        let natures = self.natures_variables(solver);
+        let chosen: Vec<Literal> = self.chosen(solver).collect();
+        for (&(left, right), &[left_first, right_first]) in &self.orders {
+            for (first, then, order) in [(left, right, left_first), (right, left, right_first)] {
+                let (over, begun) = (self.intervals[first].end, self.intervals[then].start);
+                let gap = self.order_gap(first);
+                if solver.trail.holds(order) && gap > self.gap_between(first, then) && !natures[begun] {
+                    let rests_on: Vec<Literal> = chosen.iter().copied().chain([order]).collect();
+                    in_force.add((begun, over, -gap), &rests_on);
+                }
+            }
+        }
+    }
+
+    fn chosen<'s>(&'s self, solver: &'s Solver) -> impl Iterator<Item = Literal> + 's {
+        self.alternatives.iter().flatten().copied().filter(|&taken| solver.trail.holds(taken))
+    }
+
+    /// Which times nature chooses in the present solution: ends of its durations, and what is tied to them.
+    fn natures_variables(&self, solver: &Solver) -> TiVec<Variable, bool> {
+        let mut natures: TiVec<Variable, bool> = vec![false; solver.trail.num_variables()].into();
+        for arc in &self.model.arcs {
+            if !solver.trail.holds(self.presence(arc.context)) {
+                continue;
+            }
+            if arc.is_uncertain {
+                natures[self.times[arc.to]] = true;
+            }
+        }
+        let mut ties: Vec<(Variable, Variable)> =
+            self.ties(solver).map(|arc| (self.times[arc.from], self.times[arc.to])).collect();
+        loop {
+            let before = ties.len();
+            ties.retain(|&(from, to)| {
+                let is_natures = natures[from] || natures[to];
+                if is_natures {
+                    (natures[from], natures[to]) = (true, true);
+                }
+                !is_natures
+            });
+            if ties.len() == before {
+                return natures;
+            }
+        }
+    }
+
+    /// What keeps two times of the present solution at one.
+    fn ties<'s>(&'s self, solver: &'s Solver) -> impl Iterator<Item = &'s ModelArc> + 's {
+        self.model.arcs.iter().filter(|arc| {
+            arc.is_tie
+                && self.times[arc.from] != self.times[arc.to]
+                && solver.trail.holds(self.presence(arc.context))
+        })
+    }
+
+    /// The literals that make the present solution fail, if nature can. `None` if nobody knows.
+    #[expect(clippy::option_option, reason = "what is not known is not what there is none of")]
+    fn failure(
+        &self,
+        solver: &Solver,
+        in_force: &InForce,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Option<Option<Vec<Literal>>> {
+        let mut network = stnu::Network::new(in_force.count);
+        for &(Edge { from, to, weight }, _) in &in_force.edges {
+            network.add_edge(stnu::PointId(from), stnu::PointId(to), weight);
+        }
+        let mut presences: Vec<Literal> = Vec::new();
+        for arc in &self.model.arcs {
+            let presence = self.presence(arc.context);
+            // With one side only it is a constraint like others.
+            let is_link = arc.is_uncertain && arc.lower != UNBOUNDED_BELOW && arc.upper != INFINITE;
+            if !is_link || !solver.trail.holds(presence) {
+                continue;
+            }
+            let (Some(activation), Some(end)) =
+                (in_force.point(self.times[arc.from]), in_force.point(self.times[arc.to]))
+            else {
+                continue;
+            };
+            let mut link = Link { activation, end, lower: arc.lower, upper: arc.upper };
+            let mut added = network.add_link(link);
+            if matches!(added, Err(LinkError::EndTaken(_))) {
+                // Two ends at one time are two points at one time.
+                link.end = network.add_point();
+                network.add_edge(end, link.end, 0);
+                network.add_edge(link.end, end, 0);
+                added = network.add_link(link);
+            }
+            match added {
+                Ok(_) => presences.push(presence),
+                // Nature may choose more than no time between events that are at one time.
+                Err(_) if arc.upper > 0 => {
+                    return Some(Some(self.chosen(solver).chain([presence]).collect()));
+                }
+                Err(_) => {}
+            }
+        }
+        let of_edge =
+            |id: stnu::EdgeId| in_force.edges.get(id.index()).map(|(_, rests_on)| rests_on.as_slice());
+        let mut reason: Vec<Literal> = if self.model.is_strong {
+            match stnu::check_strong(&network) {
+                Ok(StrongVerdict::Controllable(_)) => return Some(None),
+                Ok(StrongVerdict::Uncontrollable(edges)) => {
+                    let edges = edges.into_iter().filter_map(of_edge).flatten().copied();
+                    edges.chain(presences).chain(self.chosen(solver)).collect()
+                }
+                Err(Undecided::Overflow | Undecided::Stopped) => return None,
+            }
+        } else {
+            let conflict = match stnu::check(&network, stop) {
+                Ok(Verdict::Controllable) => return Some(None),
+                Ok(Verdict::Uncontrollable(conflict)) => conflict,
+                Err(Undecided::Overflow | Undecided::Stopped) => return None,
+            };
+            let is_small = conflict.members.len() <= MAX_MINIMIZED;
+            let conflict = match is_small.then(|| stnu::minimal(&network, &conflict, stop)) {
+                Some(Ok(minimal)) => minimal,
+                Some(Err(_)) | None => conflict,
+            };
+            let mut reason = Vec::new();
+            for member in &conflict.members {
+                match member.part {
+                    Part::Edge(id) => reason.extend(of_edge(id).into_iter().flatten().copied()),
+                    Part::Lower(id) | Part::Upper(id) => reason.push(presences[id.index()]),
+                }
+            }
+            reason
+        };
+        reason.sort_unstable();
+        reason.dedup();
+        reason.retain(|&literal| literal != Literal::TRUE);
+        Some(Some(reason))
+    }
+
+    /// Adds choice points where some schedule of the present solution takes more of a resource than there is. `None` if
+    /// times do not fit.
+    fn share_in_all_schedules(&mut self, solver: &mut Solver, in_force: &InForce) -> Option<bool> {
+        if self.shares.is_empty() {
+            return Some(false);
+        }
+        let mut stn = Stn::new(in_force.count);
+        for &(Edge { from, to, weight }, _) in &in_force.edges {
+            stn.insert(PointId(from), PointId(to), weight, 0).ok()?;
+        }
+        for (supply, tasks) in self.shares.tasks() {
+            let present: Vec<Task> =
+                tasks.iter().filter(|task| solver.trail.holds(task.interval.presence)).copied().collect();
+            match supply {
+                ModelSupply::Reusable { capacity } => {
+                    let active: Vec<Task> = present.into_iter().filter(|task| task.is_active).collect();
+                    if let Some(critical) = unordered(&mut stn, in_force, &active, capacity)? {
+                        solver.retract(0);
+                        self.resolve_overload(solver, &critical);
+                        return Some(true);
+                    }
+                }
+                ModelSupply::Reservoir { least, greatest, level } => {
+                    let critical = out_of_range(&mut stn, in_force, &present, (least, greatest), level)?;
+                    let Some(Excess { used, counted, mending }) = critical else { continue };
+                    let late: Vec<Task> = tasks
+                        .iter()
+                        .filter(|task| task.change != used.change && !mending.contains(&task.id))
+                        .copied()
+                        .collect();
+                    let is_known = self.is_resolved(solver, &used, &counted, &late);
+                    let held = self.decided(solver);
+                    solver.retract(0);
+                    if is_known {
+                        // An order that would mend it holds, and events at one time undo it.
+                        solver.at_least_one(held.into_iter().map(|literal| !literal));
+                    } else {
+                        self.resolve_level(solver, &used, &counted, &late);
+                    }
+                    return Some(true);
+                }
+            }
+        }
+        Some(false)
+    }
+
+    /// All decisions that hold.
+    fn decided(&self, solver: &Solver) -> Vec<Literal> {
+        let own = self.alternatives.iter().flatten().chain(self.orders.values().flatten()).copied();
+        let links = self.carriers.iter().flat_map(|(_, options)| options.iter().map(|&(_, link)| link));
+        let shared = self.shares.orders();
+        let mut held: Vec<Literal> =
+            own.chain(links).chain(shared).filter(|&literal| solver.trail.holds(literal)).collect();
+        held.extend(self.kept_literals(solver));
+        held
+    }
+}
+
+impl InForce {
+    fn add(&mut self, (from, to, weight): (Variable, Variable, i64), rests_on: &[Literal]) {
+        let (from, to) = (self.point_of(from), self.point_of(to));
+        let mut rests_on: Vec<Literal> =
+            rests_on.iter().copied().filter(|&literal| literal != Literal::TRUE).collect();
+        rests_on.sort_unstable();
+        rests_on.dedup();
+        self.edges.push((Edge { from, to, weight }, rests_on));
+    }
+
+    fn point_of(&mut self, variable: Variable) -> u32 {
+        let count = &mut self.count;
+        *self.points[variable].get_or_insert_with(|| {
+            *count += 1;
+            *count as u32 - 1
+        })
+    }
+
+    fn point(&self, variable: Variable) -> Option<stnu::PointId> {
+        self.points[variable].map(stnu::PointId)
+    }
+}
+
+/// Whether one time is never later than others; by position in `then`.
+fn is_before(stn: &mut Stn, in_force: &InForce, first: Variable, then: &[Variable]) -> Option<Vec<bool>> {
+    let Some(first) = in_force.points[first] else { return Some(vec![false; then.len()]) };
+    let mut row = Vec::new();
+    stn.distances_to(PointId(first), &mut row).ok()?;
+    Some(then.iter().map(|&then| in_force.points[then].is_some_and(|then| row[then as usize] <= 0)).collect())
+}
+
+/// Uses that some schedule has at one time, and that are too much together, if there are any.
+#[expect(clippy::option_option, reason = "what is not known is not what there is none of")]
+fn unordered(stn: &mut Stn, in_force: &InForce, tasks: &[Task], capacity: i64) -> Option<Option<Vec<Task>>> {
+    let total: i64 = tasks.iter().map(|task| task.amount).sum();
+    if total <= capacity {
+        return Some(None);
+    }
+    let starts: Vec<Variable> = tasks.iter().map(|task| task.interval.start).collect();
+    let mut order = Vec::with_capacity(tasks.len());
+    for (position, task) in tasks.iter().enumerate() {
+        let mut row = is_before(stn, in_force, task.interval.end, &starts)?;
+        row[position] = false;
+        order.push(row);
+    }
+    let weights: Vec<i64> = tasks.iter().map(|task| task.amount).collect();
+    let antichain = heaviest_antichain(&weights, &order);
+    if antichain.weight <= capacity {
+        return Some(None);
+    }
+    let together = antichain.members.iter().map(|&member| &tasks[member]).collect();
+    Some(Some(super::resources::minimal(together, antichain.weight - capacity)))
+}
+
+/// What puts a level out of range in some schedule.
+struct Excess {
+    /// After this use it is.
+    used: Task,
+    /// Those of its kind that may come before it.
+    counted: Vec<Task>,
+    /// Those of the other kind that do.
+    mending: Vec<UseId>,
+}
+
+/// The first excess.
+#[expect(clippy::option_option, reason = "what is not known is not what there is none of")]
+fn out_of_range(
+    stn: &mut Stn,
+    in_force: &InForce,
+    tasks: &[Task],
+    (least, greatest): (i64, i64),
+    level: i64,
+) -> Option<Option<Excess>> {
+    let moments: Vec<Variable> = tasks.iter().map(Task::moment).collect();
+    let mut order = Vec::with_capacity(tasks.len());
+    for &moment in &moments {
+        order.push(is_before(stn, in_force, moment, &moments)?);
+    }
+    for (now, used) in tasks.iter().enumerate() {
+        if !used.is_active {
+            continue;
+        }
+        let (mut extreme, mut counted, mut mending) = (level, Vec::new(), Vec::new());
+        for (then, other) in tasks.iter().enumerate() {
+            let is_same = other.change == used.change;
+            let counts = if then == now {
+                true
+            } else if is_same {
+                other.is_active && (!order[now][then] || order[then][now])
+            } else {
+                order[then][now]
+            };
+            if counts {
+                extreme += if other.change == Change::Produces { other.amount } else { -other.amount };
+                if !is_same {
+                    mending.push(other.id);
+                } else if then != now {
+                    counted.push(*other);
+                }
+            }
+        }
+        let is_out = if used.change == Change::Produces { extreme > greatest } else { extreme < least };
+        if is_out {
+            return Some(Some(Excess { used: *used, counted, mending }));
+        }
+    }
+    Some(None)
+}

@@ -1,0 +1,267 @@
+//! Durations that nature chooses: the planner against all plans of the same mission without nature, of which only those
+//! with a controllable network are left; and the cases with known answers.
+
+use std::collections::BTreeSet;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use acceptance::lasting_missions::{Kind, lasting_mission};
+use acceptance::mission::{compile, try_plans};
+use acceptance::random::{crowded_mission, small_mission};
+use acceptance::{lasting, reference};
+use exact::{Bound, Time};
+use kirk::Search;
+use rmpl::program::{Controllability, LabelMode};
+use stnu::{Link, PointId, StrongVerdict, Verdict};
+use tpn::selection::closure;
+use tpn::{ArcKind, Choice, DecisionId, LabelId, Network, NodeId, Plan, Top};
+
+/// Missions of each kind that the reference finishes.
+const MISSIONS: u64 = 2_000;
+
+/// Choices, links, and what else tells plans apart: the order of conflicts, or of producers.
+type Key = (Vec<(u32, u32)>, Vec<(u32, u32)>, Vec<(u32, u32)>);
+
+/// All plans of a network with nature's durations, which the reference says of the one without.
+type Reference = fn(&Network) -> Option<Vec<Key>>;
+
+#[test]
+fn conditions_are_planned_exactly() {
+    compare_all("conditions", small_mission, conflicts, all_conflicts);
+}
+
+#[test]
+fn crowded_missions_are_planned_exactly() {
+    compare_all("crowded", crowded_mission, conflicts, all_conflicts);
+}
+
+#[test]
+fn states_are_planned_exactly() {
+    compare_all("states", |seed| lasting_mission(seed, Kind::STATES), sides, all_sides);
+}
+
+/// Compares [`MISSIONS`] missions; all must agree, and many must be decided by nature.
+#[expect(clippy::print_stdout, reason = "the count is part of the evidence")]
+fn compare_all(
+    what: &str,
+    mission: fn(u64) -> String,
+    order: fn(&Network, &Plan) -> Vec<(u32, u32)>,
+    reference: Reference,
+) {
+    let (feasible, decisive) = (AtomicU64::new(0), AtomicU64::new(0));
+    let disagreements = Mutex::new(Vec::new());
+    std::thread::scope(|scope| {
+        for worker in 0..2_u64 {
+            let (feasible, decisive, disagreements) = (&feasible, &decisive, &disagreements);
+            scope.spawn(move || {
+                let (mut seed, mut compared) = (worker, 0);
+                while compared < MISSIONS / 2 {
+                    let text = mission(seed);
+                    match compare(&text, seed, order, reference) {
+                        Ok(Some((plans, ordinary))) => {
+                            feasible.fetch_add(u64::from(plans > 0), Ordering::Relaxed);
+                            decisive.fetch_add(u64::from(plans < ordinary), Ordering::Relaxed);
+                            compared += 1;
+                        }
+                        Ok(None) => {}
+                        Err(problem) => {
+                            compared += 1;
+                            let mut disagreements = disagreements.lock().expect("no thread panics");
+                            disagreements.push(format!("seed {seed}, {problem}"));
+                        }
+                    }
+                    seed += 2;
+                }
+            });
+        }
+    });
+    let (feasible, decisive) = (feasible.into_inner(), decisive.into_inner());
+    println!(
+        "{what}: {MISSIONS} missions compared: {feasible} with plans, nature excludes plans of {decisive}"
+    );
+    let disagreements = disagreements.into_inner().expect("no thread panics");
+    let shown = &disagreements[..disagreements.len().min(3)];
+    assert!(disagreements.is_empty(), "{} missions differ, such as {shown:#?}", disagreements.len());
+    assert!(feasible > MISSIONS / 8 && decisive > MISSIONS / 10, "the missions are not mixed");
+}
+
+/// How many plans the mission has with nature and without, if the reference finishes and planning agrees with it.
+fn compare(
+    text: &str,
+    seed: u64,
+    order: fn(&Network, &Plan) -> Vec<(u32, u32)>,
+    reference: Reference,
+) -> Result<Option<(usize, usize)>, String> {
+    let (network, diagnostics) = compile(text, &Top::Scenario(None));
+    let mut network = network.ok_or_else(|| format!("does not compile: {diagnostics:?}\n{text}"))?;
+    // Which of two touching intervals comes first would depend on more than the reference tells.
+    network.threat_gap = Time::ZERO;
+    let natures = leave_to_nature(&mut network, seed);
+    if natures == 0 {
+        return Ok(None);
+    }
+    if seed.is_multiple_of(5) {
+        network.controllability = Controllability::Strong;
+    }
+    let Some(ordinary) = reference(&network) else { return Ok(None) };
+    let expected: BTreeSet<&Key> = ordinary.iter().filter(|key| is_controllable(&network, key)).collect();
+    let problem = |problem: String| format!("{natures} of nature's, {problem}\n{text}");
+    let plans = |all| try_plans(&network, Search::ConflictDirected, all).map_err(problem);
+    let outcome = plans(true)?;
+    let found: BTreeSet<Key> = outcome.plans.iter().map(|plan| key(&network, plan, order)).collect();
+    let missing = expected.iter().filter(|key| !found.contains(**key)).count();
+    let wrong = found.iter().filter(|key| !expected.contains(key)).count();
+    // Intervals at one instant are in both orders, of which the reference tells one.
+    let has_instants = network.labels.iter().any(|label| network.arcs[label.arc.index()].lower == Time::ZERO);
+    let differs = if has_instants {
+        expected.is_empty() != found.is_empty() || !found.iter().all(|key| is_controllable(&network, key))
+    } else {
+        missing > 0 || wrong > 0
+    };
+    if differs {
+        return Err(problem(format!("{missing} plans are missing, {wrong} are wrong")));
+    }
+    let first = plans(false)?;
+    let is_right = match first.plans.first() {
+        Some(plan) => is_controllable(&network, &key(&network, plan, order)),
+        None => expected.is_empty(),
+    };
+    if !is_right {
+        return Err(problem("the first plan is not one of all".to_owned()));
+    }
+    Ok(Some((expected.len(), ordinary.len())))
+}
+
+/// Leaves half of the durations that can differ to nature. How many they are.
+fn leave_to_nature(network: &mut Network, seed: u64) -> usize {
+    let mut natures = 0;
+    for (id, arc) in (0_u64..).zip(&mut network.arcs) {
+        let is_duration = matches!(arc.kind, ArcKind::Activity | ArcKind::Assertion | ArcKind::Delay);
+        let differs = arc.upper.finite().is_some_and(|upper| arc.lower < upper);
+        let is_drawn = (seed * 31 + id).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 63 == 1;
+        if is_duration && differs && is_drawn {
+            arc.is_contingent = true;
+            natures += 1;
+        }
+    }
+    natures
+}
+
+fn key(network: &Network, plan: &Plan, order: fn(&Network, &Plan) -> Vec<(u32, u32)>) -> Key {
+    let mut key: Key = (
+        plan.choices.iter().map(|it| (it.decision.0, it.alternative)).collect(),
+        plan.causal_links.iter().map(|it| (it.ask.0, it.tell.0)).collect(),
+        order(network, plan),
+    );
+    key.0.sort_unstable();
+    key.1.sort_unstable();
+    key.2.sort_unstable();
+    key
+}
+
+fn conflicts(_: &Network, plan: &Plan) -> Vec<(u32, u32)> {
+    plan.conflict_order.iter().map(|it| (it.first.0, it.then.0)).collect()
+}
+
+fn sides(network: &Network, plan: &Plan) -> Vec<(u32, u32)> {
+    let is_producer = |label: LabelId| network.labels[label.index()].mode == LabelMode::Tell;
+    let mut sides = conflicts(network, plan);
+    sides.retain(|&(first, then)| is_producer(LabelId(first)) && is_producer(LabelId(then)));
+    sides
+}
+
+fn all_conflicts(network: &Network) -> Option<Vec<Key>> {
+    let answer = reference::search(network, 1_500)?;
+    let keys = answer.plans.iter().map(|found| {
+        let mut conflicts: Vec<(u32, u32)> =
+            found.conflicts.iter().map(|it| (it.first.0, it.then.0)).collect();
+        conflicts.sort_unstable();
+        (
+            found.choices.iter().map(|it| (it.decision.0, it.alternative)).collect(),
+            found.links.iter().map(|it| (it.ask.0, it.tell.0)).collect(),
+            conflicts,
+        )
+    });
+    Some(keys.collect())
+}
+
+fn all_sides(network: &Network) -> Option<Vec<Key>> {
+    let limits = lasting::Limits { schedules: 20_000, plans: 300 };
+    let answer = lasting::search(network, limits)?;
+    Some(answer.plans.into_iter().map(|key| (key.choices, key.links, key.sides)).collect())
+}
+
+/// Whether the network of a plan is controllable as the mission asks for.
+fn is_controllable(network: &Network, (choices, links, order): &Key) -> bool {
+    let choices: Vec<Choice> = choices
+        .iter()
+        .map(|&(decision, alternative)| Choice { decision: DecisionId(decision), alternative })
+        .collect();
+    let (_, selected_arcs) = closure(network, &choices);
+    let mut uncertain = stnu::Network::new(network.nodes.len());
+    // What is tied to an event of nature's counts as nature's.
+    let mut same: Vec<usize> = (0..network.nodes.len()).collect();
+    for (arc, _) in network.arcs.iter().zip(&selected_arcs).filter(|(_, is_selected)| **is_selected) {
+        if !arc.is_contingent && arc.lower == Time::ZERO && arc.upper == Bound::ZERO {
+            let (from, to) = (same[arc.from.index()], same[arc.to.index()]);
+            same.iter_mut().filter(|own| **own == to).for_each(|own| *own = from);
+        }
+    }
+    let point = |node: NodeId| PointId(same[node.index()] as u32);
+    let units = |time: Time| {
+        (0..10_000).find(|&units| Time::from(units) == time).expect("the missions have small whole times")
+    };
+    for (arc, _) in network.arcs.iter().zip(&selected_arcs).filter(|(_, is_selected)| **is_selected) {
+        let (from, to, lower) = (point(arc.from), point(arc.to), units(arc.lower));
+        let upper = if let Bound::Finite(upper) = arc.upper { Some(units(upper)) } else { None };
+        if let Some(upper) = upper.filter(|_| arc.is_contingent) {
+            let mut link = Link { activation: from, end: to, lower, upper };
+            if uncertain.link_ending_at(to).is_some() {
+                link.end = uncertain.add_point();
+                uncertain.add_edge(to, link.end, 0);
+                uncertain.add_edge(link.end, to, 0);
+            }
+            if uncertain.add_link(link).is_err() {
+                // It begins and ends at one time, and nature may choose another.
+                return false;
+            }
+        } else {
+            uncertain.add_edge(to, from, -lower);
+            if let Some(upper) = upper {
+                uncertain.add_edge(from, to, upper);
+            }
+        }
+    }
+    let mut before = |earlier: NodeId, later: NodeId| {
+        uncertain.add_edge(point(later), point(earlier), 0);
+    };
+    for &(ask, tell) in links {
+        let (asked, told) = (network.interval(LabelId(ask)), network.interval(LabelId(tell)));
+        if network.is_lasting(LabelId(ask)) {
+            before(network.ready(LabelId(tell)), asked.0);
+        } else {
+            before(told.0, asked.0);
+            before(asked.1, told.1);
+        }
+    }
+    for &(first, then) in order {
+        let (first, then) = (LabelId(first), LabelId(then));
+        before(network.interval(first).1, network.interval(then).0);
+        if !network.is_lasting(first) {
+            continue;
+        }
+        // What would break a requirement is on the side of what it rests on.
+        for &(ask, tell) in links {
+            let (ask, tell) = (LabelId(ask), LabelId(tell));
+            if tell == first && network.conflict(ask, then) {
+                before(network.interval(ask).1, network.interval(then).0);
+            } else if tell == then && network.conflict(ask, first) {
+                before(network.interval(first).1, network.ready(tell));
+            }
+        }
+    }
+    if network.controllability == Controllability::Strong {
+        return matches!(stnu::check_strong(&uncertain), Ok(StrongVerdict::Controllable(_)));
+    }
+    stnu::check(&uncertain, &mut || false).expect("times fit") == Verdict::Controllable
+}
