@@ -20,6 +20,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("stnu", &[]),
     ("terrain", &[]),
     ("tpn", &["rmpl"]),
+    ("controllability", &["tpn", "stnu"]),
     ("kirk", &["tpn", "stn", "stnu"]),
     ("verify", &["tpn"]),
     ("motion", &["terrain"]),
@@ -48,6 +49,7 @@ const PURE: &[&str] = &[
     "stn",
     "stnu",
     "tpn",
+    "controllability",
     "kirk",
     "verify",
     "terrain",
@@ -158,7 +160,7 @@ fn everything_below<'a>(name: &'a str, layers: &BTreeMap<&'a str, &'a [&'a str]>
 #[test]
 fn the_checker_shares_no_code_with_the_planner() {
     let manifest = fs::read_to_string(root().join("crates/verify/Cargo.toml")).expect("the crate verify");
-    for planner in ["kirk", "stn"] {
+    for planner in ["kirk", "stn", "controllability"] {
         assert!(
             !manifest.lines().any(|line| line.starts_with(planner)),
             "verify must not depend on {planner}"
