@@ -302,11 +302,7 @@ fn add(program: &mut Program, item: Item) {
                 program.options.time_unit = TimeUnit::Minute;
             }
             ("controllability", OptionValue::Name(name)) => {
-                program.options.controllability = match name.as_str() {
-                    "strong" => Controllability::Strong,
-                    "none" => Controllability::None,
-                    _ => Controllability::Dynamic,
-                };
+                program.options.controllability = Controllability::by_name(&name).unwrap_or_default();
             }
             _ => {}
         },

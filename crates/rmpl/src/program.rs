@@ -548,6 +548,17 @@ pub enum Controllability {
     None,
 }
 
+impl Controllability {
+    /// All of them, by the words that texts use.
+    pub const ALL: [(&'static str, Self); 3] =
+        [("dynamic", Self::Dynamic), ("strong", Self::Strong), ("none", Self::None)];
+
+    /// What this word asks for.
+    pub fn by_name(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|(name, _)| *name == word).map(|(_, asked)| asked)
+    }
+}
+
 impl Default for Options {
     fn default() -> Self {
         Self {

@@ -41,6 +41,9 @@ pub enum PathError {
     /// A length is negative, infinite or not a number, or too long for exact time.
     #[error("a segment's length of {0} metres has no exact duration")]
     Length(String),
+    /// The lengths add up to more than exact time holds.
+    #[error("a path's segments take too long together for exact time")]
+    TooLong,
     /// The greatest speed is not positive, or the least is negative or greater.
     #[error("the speeds {0} to {1} metres per second are no range of speeds to drive at")]
     Speed(String, String),
@@ -53,6 +56,10 @@ pub enum PathError {
 /// On a slope that is too steep for the least speed, the greatest duration is that of the slope.
 /// The arc of the traverse keeps its bounds and labels and spans the path. The new events are named
 /// `X#1.leg1.vertex1`; the last vertex is the traverse's end. Time is linear in the result.
+///
+/// Of a traverse whose duration nature chooses, the path only raises the least duration to what it takes at the greatest
+/// speed (SPEC 13.1): when its vertices are passed is nature's as well, and no event of the plan's. Where that is more
+/// than the greatest duration, the arc says that it cannot be driven.
 pub fn insert_paths(
     network: &Network,
     paths: &[TraversePath],
@@ -108,6 +115,13 @@ fn insert_path(network: &mut Network, path: &TraversePath, unit_seconds: i64) ->
     let spanning = occurrence.arc.ok_or(PathError::NoTraverse)?;
     let (start, end, span) = (occurrence.start, occurrence.end, network.arcs[spanning.index()].span);
     let segments = segment_bounds(path, unit_seconds)?;
+    if network.arcs[spanning.index()].is_contingent {
+        let least =
+            Time::checked_sum(segments.iter().map(|segment| segment.least)).ok_or(PathError::TooLong)?;
+        let arc = &mut network.arcs[spanning.index()];
+        arc.lower = arc.lower.max(least);
+        return Ok(());
+    }
     network.arcs[spanning.index()].kind = ArcKind::Span;
     let count = segments.len();
     let mut from = start;

@@ -8,9 +8,10 @@ use super::structure;
 use super::summary::{Call, Definition, Summary, Use, UseKind};
 use crate::diagnostic::{Diagnostic, Known, Severity};
 use crate::diagnostics::{
-    arity, bounds, duplicate, similar, traverse, undefined, unknown_name, unused, value,
+    arity, bounds, contingent, controllability, duplicate, similar, traverse, undefined, unknown_name,
+    unused, value,
 };
-use crate::lower::Item;
+use crate::lower::{Item, OptionDecl, OptionValue};
 use crate::program::Change;
 
 /// The outcome of checking one declaration.
@@ -45,6 +46,9 @@ pub(crate) fn check(
     }
     for used in &summary.uses {
         checker.name_use(used);
+    }
+    if let Some(Item::Option(option)) = item {
+        checker.option(option);
     }
     if let Some(item) = item.filter(|_| is_sound) {
         let meaning = Meaning { names, index };
@@ -139,6 +143,14 @@ impl<'a> Checker<'a> {
         }
     }
 
+    fn option(&mut self, option: &OptionDecl) {
+        let is_ignored = option.name.text == "controllability"
+            && matches!(&option.value, OptionValue::Name(value) if value == "none");
+        if is_ignored && self.index.has_contingents() {
+            self.push(controllability::ignored(option.value_span));
+        }
+    }
+
     fn call(&mut self, number: u32, call: &Call) {
         let Some(definition) = self.index.definition(Namespace::Callable, call.name) else {
             if !call.is_bare {
@@ -149,10 +161,16 @@ impl<'a> Checker<'a> {
         if definition.arity != call.arguments {
             self.push(arity::mismatch(self.text(call.name), definition.arity, call));
         }
-        if let (Some((written, span)), Some(declared)) = (call.bounds, definition.bounds) {
+        if let Some(span) = call.contingent.filter(|_| definition.is_activity) {
+            self.push(contingent::activity(self.text(call.name), span));
+        } else if let (Some((written, span)), Some(declared)) = (call.bounds, definition.bounds) {
             let lower = written.0.max(declared.0);
             let upper = written.1.min(declared.1);
-            if Bound::Finite(lower) > upper {
+            if call.contingent.is_some() {
+                if (lower, upper) != written {
+                    self.push(bounds::outside(self.text(call.name), written, declared, span));
+                }
+            } else if Bound::Finite(lower) > upper && !definition.is_contingent {
                 self.push(bounds::disjoint(self.text(call.name), written, declared, span));
             }
         }

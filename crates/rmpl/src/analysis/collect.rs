@@ -78,6 +78,11 @@ impl Collector<'_> {
                     definition.moves = true;
                     definition.fingerprint ^= 1 << 2;
                 }
+                let is_contingent = decl.bounds.as_ref().is_some_and(|bounds| bounds.is_contingent);
+                if let Some(definition) = self.summary.definition.as_mut().filter(|_| is_contingent) {
+                    definition.is_contingent = true;
+                    definition.fingerprint ^= 1 << 3;
+                }
                 self.formals = decl.formals.iter().map(|formal| formal.text.clone()).collect();
                 self.summary.numbers.clone_from(&decl.formals);
                 self.bounds(decl.bounds.as_ref());
@@ -180,6 +185,7 @@ impl Collector<'_> {
             span: name.span,
             arity: arity as u32,
             bounds,
+            is_contingent: false,
             values,
             initial: None,
             is_activity: false,
@@ -212,6 +218,7 @@ impl Collector<'_> {
     }
 
     fn bounds(&mut self, bounds: Option<&Bounds>) {
+        self.summary.has_contingents |= bounds.is_some_and(|bounds| bounds.is_contingent);
         for side in bounds.iter().flat_map(|bounds| [&bounds.lower, &bounds.upper]) {
             self.expression(side);
         }
@@ -318,6 +325,7 @@ impl Collector<'_> {
             arguments: arguments as u32,
             has_formal_argument: false,
             bounds: bounds.and_then(|bounds| Some((constant::interval(bounds)?, bounds.span))),
+            contingent: bounds.filter(|bounds| bounds.is_contingent).map(|bounds| bounds.span),
             is_bare,
         };
         self.summary.calls.push(call);

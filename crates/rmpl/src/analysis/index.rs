@@ -118,6 +118,8 @@ pub(crate) struct Index {
     pub(crate) told_of_formals: u32,
     /// Movements of vehicles that parameters stand for: they may take any vehicle anywhere.
     pub(crate) moves_of_formals: u32,
+    /// Declarations in which nature chooses some duration.
+    contingents: u32,
     global_changed_at: u32,
     /// The names defined in each namespace, in no order.
     defined: [Vec<Symbol>; Namespace::COUNT],
@@ -150,6 +152,11 @@ impl Index {
 
     pub(crate) const fn is_strict(&self) -> bool {
         self.strict > 0
+    }
+
+    /// Whether nature chooses some duration of the file.
+    pub(crate) const fn has_contingents(&self) -> bool {
+        self.contingents > 0
     }
 
     pub(crate) const fn revision(&self) -> u32 {
@@ -274,8 +281,14 @@ impl Index {
     }
 
     /// What every check can see.
-    const fn globals(&self) -> [bool; 4] {
-        [self.scenarios > 0, self.strict > 0, self.told_of_formals > 0, self.moves_of_formals > 0]
+    const fn globals(&self) -> [bool; 5] {
+        [
+            self.scenarios > 0,
+            self.strict > 0,
+            self.told_of_formals > 0,
+            self.moves_of_formals > 0,
+            self.contingents > 0,
+        ]
     }
 
     /// Adds what `summary` says, or takes it away.
@@ -314,6 +327,9 @@ impl Index {
         }
         if summary.strict == Some(true) {
             step(&mut self.strict);
+        }
+        if summary.has_contingents {
+            step(&mut self.contingents);
         }
         if summary.moves_a_parameter {
             step(&mut self.moves_of_formals);

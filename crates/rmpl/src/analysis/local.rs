@@ -8,8 +8,8 @@ use crate::diagnostic::Diagnostic;
 use crate::diagnostics::{bounds, choice, duplicate, mixed, option, syntax, value};
 use crate::lower::{Item, OptionDecl, OptionValue};
 use crate::program::{
-    Bounds, Expr, GoalDecl, HeaderBound, HeaderBounds, Measure, Name, ObstacleShape, PrimitiveDecl,
-    Statement, StatementKind, VariableDecl,
+    Bounds, Controllability, Expr, GoalDecl, HeaderBound, HeaderBounds, Measure, Name, ObstacleShape,
+    PrimitiveDecl, Statement, StatementKind, VariableDecl,
 };
 use crate::span::Span;
 use crate::syntax::{Element, SyntaxKind, SyntaxNode};
@@ -149,7 +149,8 @@ impl Local {
             ("strict", OptionValue::Number(flag)) => *flag == Rational::ZERO || *flag == Rational::ONE,
             ("control_step", OptionValue::Number(step)) => step.is_positive(),
             ("time_unit", OptionValue::Name(unit)) => unit == "minute" || unit == "second",
-            ("threat_gap" | "strict" | "time_unit" | "control_step", _) => false,
+            ("controllability", OptionValue::Name(name)) => Controllability::by_name(name).is_some(),
+            ("threat_gap" | "strict" | "time_unit" | "control_step" | "controllability", _) => false,
             _ => {
                 self.found.push(option::unknown(&decl.name));
                 return;
@@ -160,6 +161,7 @@ impl Local {
                 "threat_gap" => "a number of time units",
                 "control_step" => "a number of time units above 0",
                 "strict" => "0 or 1",
+                "controllability" => "`dynamic`, `strong` or `none`",
                 _ => "`minute` or `second`",
             };
             self.found.push(value::option(name, wanted, decl.value_span));
@@ -188,6 +190,9 @@ impl Local {
     fn bounds(&mut self, bounds: Option<&Bounds>) {
         let Some(bounds) = bounds else { return };
         self.sides(Some(&bounds.lower), Some(&bounds.upper), bounds.span);
+        if bounds.is_contingent && constant::evaluate(&bounds.upper) == Ok(Bound::Infinite) {
+            self.found.push(bounds::unlimited(bounds.upper.span));
+        }
     }
 
     /// Checks the sides that are constants; one mistake is reported once.

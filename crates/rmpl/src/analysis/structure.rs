@@ -117,10 +117,17 @@ impl Structure<'_> {
         };
         let Some(bounds) = &statement.bounds else { return own };
         let Some(written) = constant::interval(bounds) else { return own };
+        if bounds.is_contingent {
+            return written;
+        }
         // What a declaration excludes altogether is an error of its own kind.
-        let reports = !is_leaf || !is_disjoint(own, written);
+        let reports = !is_leaf || !is_disjoint(own, written) || self.is_contingent(statement);
         if reports {
             self.compare(statement, own, written, bounds.span, true);
+        }
+        // Of what nature chooses, bounds require something and choose nothing.
+        if is_leaf && self.is_contingent(statement) {
+            return own;
         }
         let both = (own.0.max(written.0), own.1.min(written.1));
         if is_disjoint(own, written) { ANY } else { both }
@@ -148,6 +155,18 @@ impl Structure<'_> {
         let symbol = self.meaning.names.find(name);
         let definition = symbol.and_then(|symbol| self.meaning.index.definition(Namespace::Callable, symbol));
         definition.and_then(|definition| definition.bounds).unwrap_or(ANY)
+    }
+
+    /// Whether a call or a name that stands for one is of a primitive whose duration nature chooses.
+    fn is_contingent(&self, statement: &Statement) -> bool {
+        let name = match &statement.kind {
+            StatementKind::Call(name, _) => name,
+            StatementKind::Condition(_, condition) if self.called(condition).is_some() => &condition.variable,
+            _ => return false,
+        };
+        let symbol = self.meaning.names.find(&name.text);
+        let definition = symbol.and_then(|symbol| self.meaning.index.definition(Namespace::Callable, symbol));
+        definition.is_some_and(|definition| definition.is_contingent)
     }
 
     /// The duration of a bare name that is a call.

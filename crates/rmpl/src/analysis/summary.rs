@@ -20,6 +20,8 @@ pub(crate) struct Summary {
     pub(crate) call_fingerprint: u64,
     /// `Some` when this is `option strict`.
     pub(crate) strict: Option<bool>,
+    /// Nature chooses some duration in it (SPEC 13.1).
+    pub(crate) has_contingents: bool,
     /// A parameter stands for a vehicle that is moved.
     pub(crate) moves_a_parameter: bool,
     /// Where the declaration begins, behind the comments before it.
@@ -35,6 +37,8 @@ pub(crate) struct Definition {
     pub(crate) arity: u32,
     /// Constant bounds of its header.
     pub(crate) bounds: Option<(Time, Bound)>,
+    /// Nature chooses within them (SPEC 13.1).
+    pub(crate) is_contingent: bool,
     /// The domain of a variable.
     pub(crate) values: Vec<Symbol>,
     /// The first value of a state variable, or the location where a vehicle starts.
@@ -57,6 +61,8 @@ pub(crate) struct Call {
     /// A parameter of the surrounding activity is handed on.
     pub(crate) has_formal_argument: bool,
     pub(crate) bounds: Option<((Time, Bound), Span)>,
+    /// The bounds, if nature is to choose within them.
+    pub(crate) contingent: Option<Span>,
     pub(crate) is_bare: bool,
 }
 

@@ -15,8 +15,9 @@ pub const EXPLANATION: Explanation = Explanation {
     severity: Severity::Error,
     title: "bounds that no duration satisfies",
     meaning: "A lower bound is a finite time of at least 0, and an upper bound is no smaller; `inf` may only be an upper bound. The
-bounds of a call must leave something of those that the primitive or the activity declares: both hold. Bounds that
-depend on names are checked with the values that they have in the scenario.",
+bounds of a call must leave something of those that the primitive or the activity declares: both hold. Bounds within
+which nature chooses are finite, and those of a call lie within the declared ones. Bounds that depend on names are
+checked with the values that they have in the scenario.",
     example: "primitive Drive()[30,20];
 scenario Day[0,60] = { Drive() }",
     fix: "Swap the two sides, or correct one of them.",
@@ -51,6 +52,25 @@ pub(crate) fn reversed(lower: (Bound, Span), upper: (Bound, Span), span: Span) -
         ],
     };
     Diagnostic::error(CODE, span, message).with_fix(swap)
+}
+
+/// Nature chooses from finite times.
+pub fn unlimited(span: Span) -> Diagnostic {
+    Diagnostic::error(CODE, span, "nature chooses from a finite range, and this upper bound is infinite")
+        .with_hint("write the longest that it can take")
+}
+
+/// The contingent bounds of a call leave those of the declaration.
+pub fn outside(name: &str, written: (Time, Bound), declared: (Time, Bound), span: Span) -> Diagnostic {
+    let show = |(lower, upper): (Time, Bound)| format!("[{lower},{upper}]");
+    let message = format!(
+        "`{name}` is declared to last {}, and nature cannot choose from {} for this call",
+        show(declared),
+        show(written)
+    );
+    Diagnostic::error(CODE, span, message).with_hint(
+        "contingent bounds of a call lie within the declared ones: make these narrower, or those wider",
+    )
 }
 
 /// The bounds of a call exclude those of the declaration.

@@ -4,6 +4,8 @@ pub mod arity;
 pub mod bounds;
 pub mod choice;
 pub mod constraint;
+pub mod contingent;
+pub mod controllability;
 pub mod duplicate;
 pub mod encounter;
 pub mod form;
@@ -38,6 +40,7 @@ pub const EXPLANATIONS: &[&Explanation] = &[
     &arity::EXPLANATION,
     &unknown_name::EXPLANATION,
     &bounds::EXPLANATION,
+    &contingent::EXPLANATION,
     &value::EXPLANATION,
     &recursion::EXPLANATION,
     &no_scenario::EXPLANATION,
@@ -55,6 +58,7 @@ pub const EXPLANATIONS: &[&Explanation] = &[
     &slack::EXPLANATION,
     &unused::EXPLANATION,
     &option::EXPLANATION,
+    &controllability::EXPLANATION,
     &traverse::EXPLANATION,
     &encounter::EXPLANATION,
     &plant::EXPLANATION,

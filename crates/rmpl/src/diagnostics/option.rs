@@ -14,9 +14,8 @@ pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
     title: "an unknown option",
-    meaning:
-        "The option is kept, but nothing reads it. The options are `threat_gap`, `strict`, `time_unit` and
-`control_step`.",
+    meaning: "The option is kept, but nothing reads it. The options are `threat_gap`, `strict`, `time_unit`,
+`control_step` and `controllability`.",
     example: "option threat_gpa = 2;
 scenario Day[0,60] = { LIGHT [10,20] }",
     fix: "Correct its name, or remove it.",
@@ -26,7 +25,7 @@ scenario Day[0,60] = { LIGHT [10,20] }",
 
 /// An option that nothing reads.
 pub(crate) fn unknown(name: &Name) -> Diagnostic {
-    let known = ["threat_gap", "strict", "time_unit", "control_step"];
+    let known = ["threat_gap", "strict", "time_unit", "control_step", "controllability"];
     let diagnostic = Diagnostic::warning(CODE, name.span, format!("there is no option `{}`", name.text))
         .with_hint(format!("the options are {}", known.join(", ")));
     let nearest =

@@ -275,7 +275,7 @@ fn word(token: SyntaxToken<'_>) -> Option<&'static str> {
         }
         SyntaxKind::ScenarioKeyword => "`scenario S[l,u] = { … }`: what is planned, and its horizon.",
         SyntaxKind::OptionKeyword => {
-            "`option name = value;` The options are `threat_gap`, `strict`, `time_unit` and `control_step`."
+            "`option name = value;` The options are `threat_gap`, `strict`, `time_unit`, `control_step` and `controllability`."
         }
         SyntaxKind::Infinity => "`inf`: no upper bound.",
         SyntaxKind::Name => return word_in_its_place(token.text),

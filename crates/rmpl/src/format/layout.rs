@@ -94,6 +94,12 @@ impl Layout {
         if node.kind() == SyntaxKind::Goal {
             self.note_sign(node);
         }
+        if node.kind() == SyntaxKind::Bounds && node.token(SyntaxKind::Name).is_some() {
+            // A word before brackets stands apart from both sides.
+            for token in node.own_tokens().take(2) {
+                self.set(token.index as usize, Place::SpacedBounds);
+            }
+        }
     }
 
     /// What stands behind the sign of a goal's first term is tight: `minimize -cost`.

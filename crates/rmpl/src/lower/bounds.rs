@@ -2,14 +2,20 @@
 
 use smol_str::SmolStr;
 
+use crate::parser::CONTINGENT;
 use crate::program::{BinaryOp, Bounds, DurationUnit, Expr, ExprKind, HeaderBound, HeaderBounds};
-use crate::syntax::{Element, SyntaxKind, SyntaxNode};
+use crate::syntax::{Element, SyntaxKind, SyntaxNode, SyntaxToken};
 
 /// The bounds behind a construct, if they stand directly in `node` and are whole.
 pub(super) fn bounds_in(node: SyntaxNode<'_>) -> Option<Bounds> {
     let bounds = node.child(SyntaxKind::Bounds)?;
     let (lower, upper) = sides(bounds)?;
-    Some(Bounds { lower, upper, is_contingent: false, span: bounds.span() })
+    Some(Bounds { lower, upper, is_contingent: contingent_in(bounds).is_some(), span: bounds.span() })
+}
+
+/// The word before bounds within which nature chooses (SPEC 13.1).
+pub(super) fn contingent_in(bounds: SyntaxNode<'_>) -> Option<SyntaxToken<'_>> {
+    bounds.own_tokens().next().filter(|token| token.kind == SyntaxKind::Name && token.text == CONTINGENT)
 }
 
 /// The bounds in the header of an activity: a plain name declares a bound parameter.

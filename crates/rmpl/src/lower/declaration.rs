@@ -7,7 +7,7 @@ use super::bounds::{bounds_in, expression, header_bounds_in};
 use super::statement::signed;
 use super::{Lowering, OptionDecl, OptionValue, name_of, names};
 use crate::program::{
-    ActivityDecl, ConstantDecl, ControlDecl, LocationDecl, Moves, Name, ObstacleDecl, ObstacleShape,
+    ActivityDecl, Bounds, ConstantDecl, ControlDecl, LocationDecl, Moves, Name, ObstacleDecl, ObstacleShape,
     ScenarioDecl, TerrainDecl, VariableDecl, VehicleDecl,
 };
 use crate::span::Span;
@@ -19,6 +19,7 @@ const DEFAULT_CELL_M: f64 = 0.6;
 impl Lowering<'_> {
     pub(super) fn activity(&mut self, node: SyntaxNode<'_>) -> Option<ActivityDecl> {
         let name = names(node).next()?;
+        self.no_contingent(node, &format!("the activity `{}`", name.text));
         Some(ActivityDecl {
             name,
             formals: formals(node),
@@ -29,9 +30,11 @@ impl Lowering<'_> {
     }
 
     pub(super) fn scenario(&mut self, node: SyntaxNode<'_>) -> Option<ScenarioDecl> {
+        self.no_contingent(node, "the scenario");
+        let bounds = bounds_in(node).map(|bounds| Bounds { is_contingent: false, ..bounds });
         Some(ScenarioDecl {
             name: names(node).next()?,
-            bounds: bounds_in(node),
+            bounds,
             body: self.block(node.child(SyntaxKind::Block)?),
             span: node.span(),
         })

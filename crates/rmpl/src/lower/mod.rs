@@ -3,6 +3,7 @@
 pub(crate) mod bounds;
 mod clause;
 mod condition;
+mod contingent;
 mod declaration;
 mod lasting;
 mod statement;

@@ -3,7 +3,7 @@
 use exact::Rational;
 use smol_str::SmolStr;
 
-use super::bounds::{bounds_in, expression};
+use super::bounds::expression;
 use super::condition::{depth, is_condition, literal};
 use super::{Lowering, name_of, names};
 use crate::program::{Argument, ArgumentValue, Condition, LabelMode, Name, Statement, StatementKind};
@@ -41,7 +41,7 @@ impl Lowering<'_> {
 
     fn statement(&mut self, node: SyntaxNode<'_>) -> Option<Statement> {
         let core = node.children().next()?;
-        let bounds = bounds_in(node);
+        let bounds = self.chosen_by_plans(core, node);
         let span = node.span();
         let kind = match core.kind() {
             SyntaxKind::Block => {

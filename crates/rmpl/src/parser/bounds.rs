@@ -6,10 +6,41 @@ use crate::program::DurationUnit;
 use crate::span::Span;
 use crate::syntax::SyntaxKind;
 
+/// The word before the bounds of what nature chooses (SPEC 13.1).
+pub(crate) const CONTINGENT: &str = "contingent";
+
 impl Parser<'_> {
-    /// `[lower, upper]`
-    pub(super) fn bounds(&mut self) {
+    /// `[lower, upper]` or `contingent [lower, upper]`, if one of them stands here.
+    pub(super) fn bounds_if_any(&mut self) {
+        if self.at(SyntaxKind::LeftBracket) || self.at_contingent() {
+            self.bounds();
+        }
+    }
+
+    /// Whether bounds begin with their word, which is a name like any other elsewhere. Where its brackets are still to
+    /// be written, nothing else could go on here.
+    pub(super) fn at_contingent(&mut self) -> bool {
+        self.at_word(CONTINGENT)
+            && matches!(
+                self.peek(),
+                SyntaxKind::LeftBracket
+                    | SyntaxKind::Comma
+                    | SyntaxKind::Semicolon
+                    | SyntaxKind::RightBrace
+                    | SyntaxKind::MaintainingKeyword
+                    | SyntaxKind::WatchingKeyword
+                    | SyntaxKind::End
+            )
+    }
+
+    fn bounds(&mut self) {
         let node = self.open();
+        self.eat_word(CONTINGENT);
+        if !self.at(SyntaxKind::LeftBracket) {
+            self.report_expected("`[` and the least and the greatest duration that nature may choose");
+            self.close(node, SyntaxKind::Bounds);
+            return;
+        }
         let bracket = self.span_of(self.current);
         self.bump();
         self.sum();

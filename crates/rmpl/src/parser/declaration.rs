@@ -132,9 +132,7 @@ impl Parser<'_> {
         self.bump();
         self.declared_name("the name of the primitive");
         self.formals(true);
-        if self.at(SyntaxKind::LeftBracket) {
-            self.bounds();
-        }
+        self.bounds_if_any();
         self.clauses();
         if self.at(SyntaxKind::Equals) {
             let diagnostic = syntax::primitive_with_body(self.here());
@@ -165,9 +163,7 @@ impl Parser<'_> {
         let node = self.open();
         self.bump();
         self.formals(true);
-        if self.at(SyntaxKind::LeftBracket) {
-            self.bounds();
-        }
+        self.bounds_if_any();
         self.definition_body();
         self.close(node, SyntaxKind::ActivityDecl);
     }
@@ -177,9 +173,7 @@ impl Parser<'_> {
         self.bump();
         self.declared_name("the name of the scenario");
         self.formals(false);
-        if self.at(SyntaxKind::LeftBracket) {
-            self.bounds();
-        }
+        self.bounds_if_any();
         self.definition_body();
         self.close(node, SyntaxKind::ScenarioDecl);
     }

@@ -14,6 +14,7 @@ mod recovery;
 mod statement;
 mod world;
 
+pub(crate) use bounds::CONTINGENT;
 pub(crate) use clause::CLAUSE_WORDS;
 
 use crate::diagnostic::{Diagnostic, Fix};

@@ -1,6 +1,6 @@
 //! Where the parser goes on after a mistake.
 
-use super::Parser;
+use super::{CONTINGENT, Parser};
 use crate::syntax::SyntaxKind;
 
 /// How far a header is looked along, so that text without any sense is still read in linear time.
@@ -84,6 +84,12 @@ impl Parser<'_> {
         let called = self.kind_at(index) == SyntaxKind::LeftParen;
         if called {
             index = self.index_after_group(index, SyntaxKind::LeftParen, SyntaxKind::RightParen);
+        }
+        if self.kind_at(index) == SyntaxKind::Name && self.text_of(index) == CONTINGENT {
+            let bracket = self.index_after(index);
+            if self.kind_at(bracket) == SyntaxKind::LeftBracket {
+                index = bracket;
+            }
         }
         if self.kind_at(index) == SyntaxKind::LeftBracket {
             index = self.index_after_group(index, SyntaxKind::LeftBracket, SyntaxKind::RightBracket);

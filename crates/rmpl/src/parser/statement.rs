@@ -1,7 +1,7 @@
 //! Statements (SPEC 1.2, 1.3): blocks, choices, `do`, `if`, calls, assertions and delays.
 
-use super::Parser;
 use super::recovery::begins_only_statements;
+use super::{CONTINGENT, Parser};
 use crate::diagnostics::syntax;
 use crate::span::Span;
 use crate::syntax::SyntaxKind;
@@ -97,9 +97,7 @@ impl Parser<'_> {
     pub(super) fn statement(&mut self) {
         let node = self.open();
         self.core();
-        if self.at(SyntaxKind::LeftBracket) {
-            self.bounds();
-        }
+        self.bounds_if_any();
         self.close(node, SyntaxKind::Statement);
     }
 
@@ -225,7 +223,8 @@ impl Parser<'_> {
                 let is_condition = matches!(next, SyntaxKind::Equals | SyntaxKind::NotEquals);
                 let is_outer_using = self.at_word("using") && next == SyntaxKind::Name;
                 let is_else = self.at_word("else");
-                let is_other = is_call || is_condition || is_outer_using || is_else;
+                let is_bounds = self.at_word(CONTINGENT) && next == SyntaxKind::LeftBracket;
+                let is_other = is_call || is_condition || is_outer_using || is_else || is_bounds;
                 !is_other && !self.at_declaration_at_line_start()
             }
             SyntaxKind::Minus => true,

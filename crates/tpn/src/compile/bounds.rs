@@ -1,6 +1,7 @@
 //! Exact evaluation of the bounds of a program (SPEC 1.5); every overflow is an error, nothing is rounded.
 
 use exact::{Bound, BoundError, Rational, Time};
+use rmpl::diagnostics::bounds::unlimited;
 use rmpl::program::{BinaryOp, Bounds, DurationUnit, Expr, ExprKind};
 use rmpl::{Code, Diagnostic, Span};
 
@@ -31,6 +32,11 @@ impl Interval {
     /// At the same time.
     pub(super) const ZERO: Self = Self { lower: Time::ZERO, upper: Bound::ZERO };
 
+    /// Whether it allows all that `other` does.
+    pub(super) fn contains(self, other: Self) -> bool {
+        self.lower <= other.lower && self.upper >= other.upper
+    }
+
     /// What both allow, if there is anything.
     pub(super) fn intersect(self, other: Self) -> Option<Self> {
         let both = Self { lower: self.lower.max(other.lower), upper: self.upper.min(other.upper) };
@@ -48,7 +54,11 @@ impl std::fmt::Display for Interval {
 pub(super) fn interval(bounds: &Bounds, values: &dyn Values) -> Result<Interval, Diagnostic> {
     let lower = value(&bounds.lower, values)?;
     let upper = value(&bounds.upper, values)?;
-    checked_interval(lower, upper, bounds.span)
+    let interval = checked_interval(lower, upper, bounds.span)?;
+    if bounds.is_contingent && upper == Bound::Infinite {
+        return Err(unlimited(bounds.upper.span));
+    }
+    Ok(interval)
 }
 
 /// The interval of two evaluated sides, or what is wrong with it.

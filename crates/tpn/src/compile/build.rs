@@ -79,6 +79,11 @@ impl Builder {
         ArcId::from_index(self.arcs.len() - 1)
     }
 
+    /// Lets nature choose how long `arc` takes (SPEC 13.1).
+    pub(super) fn leave_to_nature(&mut self, arc: ArcId) {
+        self.arcs[arc.index()].is_contingent = true;
+    }
+
     /// A new arc whose ends [`Builder::connect`] gives.
     pub(super) fn reserve(&mut self, kind: ArcKind, interval: Interval, span: Span) -> ArcId {
         self.arc(UNKNOWN, UNKNOWN, kind, interval, span)

@@ -1,7 +1,7 @@
 //! Calls: instances of defined activities with their header bounds (SPEC 1.4), and primitives.
 
 use exact::{Bound, Rational, Time};
-use rmpl::diagnostics::recursion;
+use rmpl::diagnostics::{bounds as wording, contingent, recursion};
 use rmpl::program::{ActivityDecl, Argument, ArgumentValue, Bounds, Expr, HeaderBound, HeaderBounds, Name};
 use rmpl::{Diagnostic, Span};
 use smol_str::SmolStr;
@@ -16,8 +16,28 @@ use crate::network::{ArcKind, BlockKind, OccurrenceKind};
 pub(super) struct Invocation<'call> {
     pub(super) name: &'call Name,
     pub(super) interval: Interval,
-    pub(super) bounds_span: Option<Span>,
+    pub(super) written: Option<&'call Bounds>,
     pub(super) span: Span,
+}
+
+impl Invocation<'_> {
+    fn bounds_span(&self) -> Option<Span> {
+        self.written.map(|written| written.span)
+    }
+
+    fn is_contingent(&self) -> bool {
+        self.written.is_some_and(|written| written.is_contingent)
+    }
+}
+
+/// How long an activity takes.
+struct Duration {
+    interval: Interval,
+    is_contingent: bool,
+    /// Where it is written.
+    span: Span,
+    /// What the call requires of what nature chooses.
+    required: Option<Interval>,
 }
 
 /// Formals of a top activity stand for themselves.
@@ -37,10 +57,13 @@ impl<'program> Expander<'program> {
     ) -> Piece {
         let interval = written.map_or(Interval::ANY, |written| self.interval(written, scope));
         let callee = scope.name(&name.text);
-        let call = Invocation { name, interval, bounds_span: written.map(|written| written.span), span };
+        let call = Invocation { name, interval, written, span };
         let Some(&activity) = self.activities.get(callee.as_str()) else {
             return self.primitive(&callee, arguments, &call, entry, scope);
         };
+        if let Some(written) = written.filter(|written| written.is_contingent) {
+            self.diagnostics.push(contingent::activity(&callee, written.span));
+        }
         // Static recursion was refused before; names that are passed as arguments can still close a cycle.
         if self.active.contains(&activity.name.text.as_str()) {
             let message =
@@ -88,7 +111,7 @@ impl<'program> Expander<'program> {
         call: &Invocation<'_>,
         scope: &mut Scope,
     ) -> (Interval, Span) {
-        let call_span = call.bounds_span.unwrap_or(call.span);
+        let call_span = call.bounds_span().unwrap_or(call.span);
         let HeaderBounds::Sides { lower, upper, span } = &activity.bounds else {
             return (call.interval, call_span);
         };
@@ -127,7 +150,7 @@ impl<'program> Expander<'program> {
             }
         };
         let limits = limits_lower || limits_upper;
-        let arc_span = if limits { call.bounds_span.unwrap_or(*span) } else { call_span };
+        let arc_span = if limits { call.bounds_span().unwrap_or(*span) } else { call_span };
         (self.intersect(call, limit, *span), arc_span)
     }
 
@@ -141,17 +164,10 @@ impl<'program> Expander<'program> {
         around: &Scope,
     ) -> Piece {
         let declared = self.primitives.get(callee.as_str()).copied();
-        let declared_bounds =
-            declared.and_then(|declared| declared.bounds.as_ref().map(|written| (declared, written)));
-        let mut interval = call.interval;
-        let mut arc_span = call.bounds_span.unwrap_or(call.span);
         let formals = declared.map_or(&[][..], |declared| &declared.formals);
         let scope = Scope::new(None, formals, arguments);
-        if let Some((_, written)) = declared_bounds {
-            let limit = self.interval(written, &scope);
-            interval = self.intersect(call, limit, written.span);
-            arc_span = call.bounds_span.unwrap_or(written.span);
-        }
+        let written = declared.and_then(|declared| declared.bounds.as_ref());
+        let duration = self.duration(call, written, &scope);
         let texts = arguments.iter().map(argument_text).collect();
         let occurrence = self.builder.occurrence(
             callee.clone(),
@@ -160,12 +176,64 @@ impl<'program> Expander<'program> {
             around.occurrence,
             call.span,
         );
-        let piece = self.leaf(occurrence, ArcKind::Activity, interval, arc_span, call.span, entry);
+        let around = duration.required.map(|required| {
+            let span = call.bounds_span().unwrap_or(call.span);
+            self.builder.reserve(ArcKind::Span, required, span)
+        });
+        let piece =
+            self.leaf(occurrence, ArcKind::Activity, duration.interval, duration.span, call.span, entry);
+        if let Some(arc) = piece.arc.filter(|_| duration.is_contingent) {
+            self.builder.leave_to_nature(arc);
+        }
         if let (Some(declared), Some(arc)) = (declared, piece.arc) {
+            let both = duration.required.and_then(|required| required.intersect(duration.interval));
+            let interval = both.unwrap_or(duration.interval);
             let activity = Activity { declared, arguments, scope: &scope, occurrence, arc, interval };
             self.clauses(&activity, &piece, call.name.span);
         }
-        piece
+        let Some(around) = around else { return piece };
+        self.builder.connect(around, piece.start, piece.end);
+        let block = self.scope_block(&piece, around, call.span).block;
+        Piece { block, ..piece }
+    }
+
+    /// How long a call of a primitive takes, whose own bounds are `written`. Plain bounds of both hold; what nature
+    /// chooses, plain bounds of the call do not narrow, and its contingent ones lie within the declared (SPEC 13.1).
+    fn duration(
+        &mut self,
+        call: &Invocation<'_>,
+        written: Option<&'program Bounds>,
+        scope: &Scope,
+    ) -> Duration {
+        let own = Duration {
+            interval: call.interval,
+            is_contingent: call.is_contingent(),
+            span: call.bounds_span().unwrap_or(call.span),
+            required: None,
+        };
+        let Some(written) = written else { return own };
+        let declared = self.interval(written, scope);
+        if call.is_contingent() {
+            if !declared.contains(call.interval) {
+                let sides = |interval: Interval| (interval.lower, interval.upper);
+                self.diagnostics.push(wording::outside(
+                    &call.name.text,
+                    sides(call.interval),
+                    sides(declared),
+                    own.span,
+                ));
+            }
+            return own;
+        }
+        if written.is_contingent {
+            let required = (call.interval != Interval::ANY).then_some(call.interval);
+            return Duration { interval: declared, is_contingent: true, span: written.span, required };
+        }
+        Duration {
+            interval: self.intersect(call, declared, written.span),
+            span: call.bounds_span().unwrap_or(written.span),
+            ..own
+        }
     }
 
     /// The arguments of a call after substitution, with expressions evaluated where the call stands.
@@ -215,7 +283,7 @@ impl<'program> Expander<'program> {
                 "`{}` takes {limit}, and is called with {}: no duration is in both",
                 call.name.text, call.interval
             );
-            let span = call.bounds_span.unwrap_or(if call.span == Span::default() {
+            let span = call.bounds_span().unwrap_or(if call.span == Span::default() {
                 declared_span
             } else {
                 call.span

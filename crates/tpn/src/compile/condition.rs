@@ -129,6 +129,9 @@ impl<'program> Expander<'program> {
             span,
         );
         let piece = self.leaf(occurrence, ArcKind::Assertion, interval, arc_span, span, entry);
+        if let Some(arc) = piece.arc.filter(|_| written.is_some_and(|written| written.is_contingent)) {
+            self.builder.leave_to_nature(arc);
+        }
         if let (Some(arc), Some(fact)) = (piece.arc, fact) {
             self.builder.label(arc, (mode, Extent::Whole), fact, Some(occurrence), condition.span);
         }

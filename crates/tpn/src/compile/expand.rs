@@ -156,8 +156,7 @@ impl<'program> Expander<'program> {
         let piece = if let Some(activity) = activity {
             let interval = bounds::checked_interval(Bound::Finite(lower), upper, activity.name.span)?;
             let arguments = themselves(&activity.formals);
-            let call =
-                Invocation { name: &activity.name, interval, bounds_span: None, span: activity.name.span };
+            let call = Invocation { name: &activity.name, interval, written: None, span: activity.name.span };
             self.instance(
                 activity,
                 &arguments,
@@ -170,7 +169,7 @@ impl<'program> Expander<'program> {
             let interval = bounds::checked_interval(Bound::Finite(lower), upper, primitive.name.span)?;
             let arguments = themselves(&primitive.formals);
             let call =
-                Invocation { name: &primitive.name, interval, bounds_span: None, span: primitive.name.span };
+                Invocation { name: &primitive.name, interval, written: None, span: primitive.name.span };
             self.primitive(&primitive.name.text, &arguments, &call, Entry::Free, &Scope::default())
         } else {
             return Err(Diagnostic::error(
@@ -253,7 +252,12 @@ impl<'program> Expander<'program> {
                     scope.occurrence,
                     span,
                 );
-                self.leaf(occurrence, ArcKind::Delay, interval, arc_span, span, entry)
+                let piece = self.leaf(occurrence, ArcKind::Delay, interval, arc_span, span, entry);
+                if let Some(arc) = piece.arc.filter(|_| written.is_some_and(|written| written.is_contingent))
+                {
+                    self.builder.leave_to_nature(arc);
+                }
+                piece
             }
         }
     }

@@ -75,6 +75,7 @@ pub(super) fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<Completion
                 ("strict", "strict = 1;"),
                 ("time_unit", "time_unit = second;"),
                 ("control_step", "control_step = 1;"),
+                ("controllability", "controllability = strong;"),
             ];
             items.extend(options.map(|(label, insert)| CompletionItem {
                 kind: CompletionKind::Option,
@@ -85,6 +86,7 @@ pub(super) fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<Completion
             let values: &[&str] = match option.as_str() {
                 "time_unit" => &["minute", "second"],
                 "strict" => &["0", "1"],
+                "controllability" => &["dynamic", "strong", "none"],
                 _ => &["1"],
             };
             items.extend(values.iter().map(|value| plain(value, CompletionKind::Option)));

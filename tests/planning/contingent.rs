@@ -1,0 +1,167 @@
+//! Durations that nature chooses, in the network (SPEC 13.1): which arcs are nature's, what plain bounds require of them,
+//! and what a path makes of a drive. Known answers are worked out by hand.
+
+use acceptance::mission::{compile, error_codes, network};
+use exact::{Bound, Rational, Time};
+use rmpl::program::Controllability;
+use tpn::path::{PathLeg, TraversePath, insert_paths};
+use tpn::{ArcKind, BlockKind, Network, Top};
+
+/// Every arc that takes time or is nature's: the name of what it belongs to or its kind, and its bounds.
+fn arcs(network: &Network) -> Vec<String> {
+    let mut found = Vec::new();
+    for arc in &network.arcs {
+        let is_glue = matches!(arc.kind, ArcKind::Glue | ArcKind::Fork | ArcKind::Join);
+        if is_glue && !arc.is_contingent {
+            continue;
+        }
+        let name = arc.occurrence.map_or("-", |owner| network.occurrences[owner.index()].name.as_str());
+        let word = if arc.is_contingent { "contingent " } else { "" };
+        found.push(format!("{name} {word}[{},{}]", Bound::Finite(arc.lower), arc.upper));
+    }
+    found
+}
+
+#[track_caller]
+fn compiles_to(text: &str, wanted: &[&str]) {
+    assert_eq!(arcs(&network(text)), wanted, "{text}");
+}
+
+const DRIVE: &str = "primitive Drive() contingent [20,40]; var L : {A, B};";
+
+#[test]
+fn activities_assertions_and_delays_are_natures() {
+    compiles_to(
+        "const N = 4; primitive Drive(n) contingent [n,2*n];\
+         scenario S = { Drive(3); delay contingent [N,50%*10]; L=A contingent [1,1h]; ask L=A contingent [0,0] }",
+        &[
+            "Drive#1 contingent [3,6]",
+            "delay#1 contingent [4,5]",
+            "Tell(L=A)#1 contingent [1,60]",
+            "Ask(L=A)#1 contingent [0,0]",
+        ],
+    );
+    compiles_to(
+        "primitive Talk()[1,30]; scenario S = { Talk() contingent [2,30]; Nowhere() contingent [1,2] }",
+        &["Talk#1 contingent [2,30]", "Nowhere#1 contingent [1,2]"],
+    );
+}
+
+#[test]
+fn bounds_of_the_defined_activity_around_are_put_in() {
+    compiles_to(
+        "primitive Drive(); Survey()[l,u] = { Drive() contingent [l,u*90%] } scenario S = { Survey()[9,20] }",
+        &["Survey#1 [9,20]", "Drive#1 contingent [9,18]"],
+    );
+    // As a parameter, too.
+    compiles_to(
+        &format!("{DRIVE} Twice(A) = {{ A; A contingent [25,30] }} scenario S = {{ Twice(Drive) }}"),
+        &["Twice#1 [0,inf]", "Drive#1 contingent [20,40]", "Drive#2 contingent [25,30]"],
+    );
+}
+
+/// Nature's range stays; the bounds span the same events.
+#[test]
+fn plain_bounds_of_a_call_and_of_a_block_around_it_are_requirements() {
+    for body in ["Drive()[30,35]", "{ Drive() }[30,35]"] {
+        let text = format!("{DRIVE} scenario S = {{ {body} }}");
+        compiles_to(&text, &["- [30,35]", "Drive#1 contingent [20,40]"]);
+        let network = network(&text);
+        let [required, drive] = network.arcs.as_slice() else { panic!("two arcs") };
+        assert_eq!((required.from, required.to, required.kind), (drive.from, drive.to, ArcKind::Span));
+        assert_eq!(drive.kind, ArcKind::Activity);
+        let is_scope = |kind: &BlockKind| matches!(kind, BlockKind::Scope { arcs, .. } if arcs.len() == 1);
+        assert!(network.blocks.iter().any(|block| is_scope(&block.kind)));
+    }
+    // Where nothing is in both, the plan fails and not the compilation.
+    compiles_to(
+        &format!("{DRIVE} scenario S = {{ Drive()[1,2] }}"),
+        &["- [1,2]", "Drive#1 contingent [20,40]"],
+    );
+    // What is required while it goes on is a label of nature's arc.
+    let network =
+        network(&format!("{DRIVE} scenario S = {{ do Drive()[30,35] maintaining L=A, L=A[1,50] }}"));
+    let labelled: Vec<_> = network.labels.iter().map(|label| &network.arcs[label.arc.index()]).collect();
+    assert!(labelled.iter().any(|arc| arc.is_contingent && arc.kind == ArcKind::Activity));
+    assert!(labelled.iter().all(|arc| arc.kind != ArcKind::Span));
+}
+
+#[test]
+fn a_whole_activity_is_planned_within_bounds_that_are_required() {
+    let text = "primitive Drive() contingent [20,40];";
+    let top = |lower: i64, upper: Bound| {
+        let top = Top::Activity { name: "Drive".into(), lower: Time::from(lower), upper };
+        arcs(&compile(text, &top).0.expect("it compiles"))
+    };
+    assert_eq!(top(0, Bound::Infinite), ["Drive#1 contingent [20,40]"]);
+    assert_eq!(top(25, Bound::Finite(Time::from(30))), ["- [25,30]", "Drive#1 contingent [20,40]"]);
+}
+
+#[test]
+fn what_nature_cannot_choose_is_refused() {
+    let code =
+        |body: &str| error_codes(&format!("{DRIVE} primitive Talk(n)[n,30]; scenario S = {{ {body} }}"));
+    assert_eq!(code("Drive() contingent [10,30]"), ["E-BOUNDS"]);
+    assert_eq!(code("Drive() contingent [20,41]"), ["E-BOUNDS"]);
+    assert_eq!(code("Drive() contingent [20,40]"), [""; 0]);
+    assert_eq!(code("Talk(5) contingent [4,10]"), ["E-BOUNDS"]);
+    assert_eq!(code("Talk(5) contingent [5,10]"), [""; 0]);
+    assert_eq!(code("delay contingent [2,inf]"), ["E-BOUNDS"]);
+    assert_eq!(code("delay contingent [2,1]"), ["E-BOUNDS"]);
+    assert_eq!(code("{ Drive(); Drive() } contingent [6,9]"), ["E-CONTINGENT"]);
+    assert_eq!(code("do Drive() maintaining L=A contingent [6,9]; L=A"), ["E-CONTINGENT"]);
+    assert_eq!(error_codes("const N = inf - 1; scenario S = { delay contingent [1,N] }"), ["E-BOUNDS"]);
+    assert_eq!(error_codes("A() = { delay } scenario S = { A() contingent [1,2] }"), ["E-CONTINGENT"]);
+    assert_eq!(error_codes("A() contingent [1,2] = { delay } scenario S = { A() }"), ["E-CONTINGENT"]);
+    assert_eq!(error_codes("scenario S contingent [1,2] = { delay }"), ["E-CONTINGENT"]);
+    // What a parameter stands for is known at the call.
+    let handed = "A() = { delay } B(x) = { x contingent [1,2] } scenario S = { B(A) }";
+    assert_eq!(error_codes(handed), ["E-CONTINGENT"]);
+}
+
+#[test]
+fn the_option_is_in_the_network_and_survives_with_the_arcs_in_its_file() {
+    let text = format!("option controllability = strong; {DRIVE} scenario S = {{ Drive() }}");
+    let network = network(&text);
+    assert_eq!(network.controllability, Controllability::Strong);
+    let again = tpn::network_json::network_from_json(&tpn::network_json::network_to_json(&network)).unwrap();
+    assert_eq!(arcs(&again), ["Drive#1 contingent [20,40]"]);
+}
+
+/// 100 m at 0.05 to 0.1 m/s take 1000 to 2000 seconds, 16 2/3 to 33 1/3 minutes.
+fn with_path(bounds: &str, length_m: f64) -> Network {
+    let network = network(&format!(
+        "location FAR (100, 0); location BASE (0, 0); vehicle R : ATRV at BASE;\
+         primitive Drive(to){bounds} moves R speed (0.05, 0.1); scenario S = {{ Drive(FAR) }}"
+    ));
+    let occurrence = network.occurrences.iter().position(|it| it.name == "Drive#1").expect("the drive");
+    let speed = |hundredths: i64| Rational::new(hundredths, 100).expect("a number");
+    let path = TraversePath {
+        occurrence: tpn::OccurrenceId::from_index(occurrence),
+        legs: vec![PathLeg { segment_lengths_m: vec![length_m / 2.0; 2], slope_speeds_mps: Vec::new() }],
+        speed_mps: (speed(5), speed(10)),
+        may_stop: false,
+    };
+    insert_paths(&network, &[path], 60).expect("a sound path")
+}
+
+#[test]
+fn a_path_raises_what_a_drive_of_natures_takes_and_adds_no_event_of_its_own() {
+    let drive = |bounds: &str, length_m: f64| {
+        let network = with_path(bounds, length_m);
+        assert!(network.arcs.iter().all(|arc| arc.kind != ArcKind::Path));
+        assert_eq!(network.nodes.len(), 2);
+        let arc = network.arcs.iter().find(|arc| arc.is_contingent).expect("the drive");
+        assert_eq!(arc.kind, ArcKind::Activity);
+        (arc.lower, arc.upper)
+    };
+    let minutes = |minutes: i64| Time::from(minutes);
+    // 120 m at 0.1 m/s take 20 minutes, less than nature's least: the range stays.
+    assert_eq!(drive(" contingent [25,40]", 120.0), (minutes(25), Bound::Finite(minutes(40))));
+    // 180 m take 30.
+    assert_eq!(drive(" contingent [25,40]", 180.0), (minutes(30), Bound::Finite(minutes(40))));
+    // An ordinary traverse keeps its bounds, and has an event at each vertex.
+    let network = with_path("[25,40]", 180.0);
+    assert_eq!(network.nodes.len(), 3);
+    assert_eq!(network.arcs.iter().filter(|arc| arc.kind == ArcKind::Path).count(), 2);
+}
