@@ -4,7 +4,7 @@
 //! Planner, executive and reviews share this one reading; whether a network is controllable is `stnu`'s to say. The
 //! checker of plans has a reading of its own.
 
-use exact::{Overflow, Scale};
+use exact::{Bound, Overflow, Scale};
 use rmpl::program::Controllability;
 use stnu::{Conflict, EdgeId, Link, LinkId, Part, PointId, StrongVerdict, Undecided, Verdict};
 use tpn::{Arc, ArcId, Network, NodeId, Precedence};
@@ -30,7 +30,7 @@ pub enum Source {
     Tie(ArcId),
 }
 
-/// A plan's events as time points, with its constraints and contingent links in ticks.
+/// A plan's events as time points, with its constraints and contingent links in ticks. Ties are no constraints here.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlanNetwork {
     /// The network.
@@ -40,7 +40,8 @@ pub struct PlanNetwork {
     /// The point of the start of everything.
     pub origin: PointId,
     points: Vec<Option<PointId>>,
-    nodes: Vec<NodeId>,
+    /// By point; none for an end of a link's own.
+    nodes: Vec<Vec<NodeId>>,
     edges: Vec<Source>,
     links: Vec<ArcId>,
 }
@@ -55,8 +56,9 @@ pub struct Refutation {
 }
 
 /// The network of the arcs in `selected_arcs` (indexed by arc) and of `precedences`, in ticks of `scale`, which must
-/// count all of their times. The events are those that these arcs and precedences connect, and the start. Time is
-/// linear, but for chains of contingent durations, along which each one looks back.
+/// count all of their times. The events are those that these arcs and precedences connect, and the start; those that
+/// `[0,0]` ties to one instant are one point, and nature's if one of them is (SPEC 13.1). Time is nearly linear, but for
+/// chains of contingent durations, along which each one looks back.
 ///
 /// Durations that nature chooses are contingent links unless the mission reads them as ordinary
 /// ([`Network::is_uncertain`]). A range that is none, and one without a greatest duration, are read as ordinary bounds.
@@ -80,11 +82,21 @@ pub fn plan_network(
         is_selected[precedence.earlier.index()] = true;
         is_selected[precedence.later.index()] = true;
     }
+    let mut first: Vec<usize> = (0..network.nodes.len()).collect();
+    for (_, arc) in arcs().filter(|(_, arc)| is_tie(arc)) {
+        let (one, other) = (first_of(&mut first, arc.from.index()), first_of(&mut first, arc.to.index()));
+        first[one.max(other)] = one.min(other);
+    }
     let mut points = vec![None; network.nodes.len()];
-    let mut nodes = Vec::new();
-    for (index, _) in is_selected.iter().enumerate().filter(|(_, is_selected)| **is_selected) {
-        points[index] = Some(PointId(nodes.len() as u32));
-        nodes.push(NodeId::from_index(index));
+    let mut nodes: Vec<Vec<NodeId>> = Vec::new();
+    for index in (0..is_selected.len()).filter(|&index| is_selected[index]) {
+        // The first of those at one instant comes first, and is selected if one of them is.
+        let point = *points[first_of(&mut first, index)].get_or_insert(PointId(nodes.len() as u32));
+        points[index] = Some(point);
+        match nodes.get_mut(point.index()) {
+            Some(at_once) => at_once.push(NodeId::from_index(index)),
+            None => nodes.push(vec![NodeId::from_index(index)]),
+        }
     }
     let mut made = PlanNetwork {
         network: stnu::Network::new(nodes.len()),
@@ -108,6 +120,20 @@ pub fn plan_network(
         )?;
     }
     Ok(made)
+}
+
+/// Whether an arc says that two events happen at one instant, and nothing else (SPEC 13.1).
+fn is_tie(arc: &Arc) -> bool {
+    arc.lower.is_zero() && arc.upper == Bound::ZERO && !arc.is_contingent
+}
+
+/// The first of the events that happen at one instant with an event.
+fn first_of(first: &mut [usize], mut index: usize) -> usize {
+    while first[index] != index {
+        first[index] = first[first[index]];
+        index = first[index];
+    }
+    index
 }
 
 /// The coarsest ticks that count all bounds of a network and its gap.
@@ -149,7 +175,7 @@ impl PlanNetwork {
         }
         // Another one ends there already.
         let own = self.network.add_point();
-        self.nodes.push(arc.to);
+        self.nodes.push(Vec::new());
         // Its range was looked at, and its end is new.
         let added = self.network.add_link(Link { activation, end: own, lower, upper });
         debug_assert!(added.is_ok(), "a link with an end of its own");
@@ -171,6 +197,10 @@ impl PlanNetwork {
     }
 
     fn add_edge(&mut self, from: PointId, to: PointId, weight: i64, source: Source) {
+        // Between events at one instant only what contradicts it says anything.
+        if from == to && weight >= 0 {
+            return;
+        }
         self.network.add_edge(from, to, weight);
         self.edges.push(source);
     }
@@ -185,9 +215,10 @@ impl PlanNetwork {
         self.points.get(node.index()).copied().flatten()
     }
 
-    /// The event of a point.
-    pub fn node(&self, point: PointId) -> NodeId {
-        self.nodes[point.index()]
+    /// The events of a point, all at one instant, in their order; none for an end that a contingent duration has of its
+    /// own.
+    pub fn nodes(&self, point: PointId) -> &[NodeId] {
+        &self.nodes[point.index()]
     }
 
     /// The arc whose duration a link is.

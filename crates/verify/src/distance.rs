@@ -37,6 +37,16 @@ impl Distances {
         Ok(Self { edges, out_starts, incoming, in_starts, potential })
     }
 
+    /// The edges that leave a node.
+    pub(crate) fn edges_from(&self, node: u32) -> &[Edge] {
+        &self.edges[self.out_starts[node as usize] as usize..self.out_starts[node as usize + 1] as usize]
+    }
+
+    /// Numbers such that no edge is shorter than the difference between that of its end and that of its start.
+    pub(crate) fn potential(&self) -> &[i128] {
+        &self.potential
+    }
+
     /// Distances from `source` to every node; `None` where there is no path. O(edges · log nodes).
     pub(crate) fn row(&self, source: u32) -> Vec<Option<i128>> {
         self.dijkstra(source, None, |distances, node, visit| {

@@ -1,4 +1,4 @@
-//! The independent checker of plans and schedules (SPEC 5.5, 10 to 12), written from the definitions; it shares no planning
+//! The independent checker of plans and schedules (SPEC 5.5, 10 to 13), written from the definitions; it shares no planning
 //! code.
 //!
 //! Every check is made against the network and the plan as data. Distances come from a plain Bellman–Ford and from
@@ -6,6 +6,7 @@
 
 mod amounts;
 mod antichain;
+mod controllability;
 mod departure;
 mod distance;
 mod entailment;
@@ -14,6 +15,7 @@ mod plan;
 mod schedule;
 mod selection;
 mod state;
+mod uncertainty;
 
 use serde::{Deserialize, Serialize};
 
@@ -42,7 +44,8 @@ pub struct Violation {
     pub intervals: Vec<String>,
 }
 
-/// The rules of SPEC 5.5, and those of state that lasts (SPEC 10.2), resources (SPEC 11) and objectives (SPEC 12).
+/// The rules of SPEC 5.5, and those of state that lasts (SPEC 10.2), resources (SPEC 11), objectives (SPEC 12) and
+/// durations that nature chooses (SPEC 13.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rule {
@@ -67,6 +70,8 @@ pub enum Rule {
     Resource,
     /// Cost, reward and end of a plan are what its selection and its times make them.
     Quality,
+    /// Whatever durations nature chooses, as they are seen, execution can go on to the end.
+    Controllability,
 }
 
 impl Verdict {

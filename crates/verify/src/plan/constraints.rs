@@ -7,6 +7,7 @@ use tpn::{ArcId, CausalLink, LabelId, Network, NodeId, Ordering, Plan, UseOrderi
 use crate::departure::{self, Movement};
 use crate::distance::Edge;
 use crate::labels::{self, interval};
+use crate::uncertainty::natures_events;
 use crate::{Rule, Violation, amounts, node_name};
 
 /// What put an edge into the distance graph.
@@ -26,6 +27,8 @@ pub(super) struct Constraints {
     reasons: Vec<Reason>,
     pub(super) scale: i128,
     pub(super) gap: i128,
+    /// By arc: its bounds, the lower one raised to what a movement takes from where it starts.
+    bounds: Vec<(i128, Option<i128>)>,
 }
 
 impl Constraints {
@@ -41,15 +44,17 @@ impl Constraints {
                 return None;
             }
         }
-        let mut made = Self { edges: Vec::new(), reasons: Vec::new(), scale, gap: 0 };
+        let mut made = Self { edges: Vec::new(), reasons: Vec::new(), scale, gap: 0, bounds: Vec::new() };
         made.gap = made.scaled(network.threat_gap);
         for (index, arc) in network.arcs.iter().enumerate() {
+            let (lower, upper) = (made.scaled(arc.lower), arc.upper.finite().map(|upper| made.scaled(upper)));
+            made.bounds.push((lower, upper));
             if plan.selected_arcs[index] {
-                let upper = arc.upper.finite().map(|upper| made.scaled(upper));
                 let reason = Reason::Arc(ArcId::from_index(index));
-                made.add(arc.from, arc.to, made.scaled(arc.lower), upper, reason);
+                made.add(arc.from, arc.to, lower, upper, reason);
             }
         }
+        let natures = natures_events(network, &plan.selected_arcs);
         for &link in &plan.causal_links {
             let (ask, tell) = (interval(network, link.ask), interval(network, link.tell));
             made.add(ready(network, link.tell), ask.start, 0, None, Reason::Link(link));
@@ -60,7 +65,8 @@ impl Constraints {
         }
         for &ordering in &plan.orderings_added {
             let (earlier, later, gap) = ordered_events(network, plan, ordering);
-            let gap = if gap { made.gap } else { 0 };
+            // Before what begins at nature's event there is no gap (SPEC 13.1).
+            let gap = if gap && !natures[later.index()] { made.gap } else { 0 };
             made.add(earlier, later, gap, None, Reason::Order(ordering));
         }
         for &ordering in &plan.uses_ordered {
@@ -71,6 +77,9 @@ impl Constraints {
             if let Some(least) = movement.least {
                 let moving = interval(network, movement.arrival);
                 let least = made.scaled(least);
+                let arc = network.labels[movement.arrival.index()].arc;
+                let lower = &mut made.bounds[arc.index()].0;
+                *lower = least.max(*lower);
                 made.add(moving.start, moving.end, least, None, Reason::Departure(movement));
             }
         }
@@ -88,6 +97,44 @@ impl Constraints {
         if let Some(upper) = upper {
             self.edges.push(Edge { from: from.0, to: to.0, weight: upper, reason: index });
         }
+    }
+
+    /// What an arc takes at least, from where a movement starts.
+    pub(super) fn least(&self, arc: ArcId) -> i128 {
+        self.bounds[arc.index()].0
+    }
+
+    /// What an arc takes at most, if anything.
+    pub(super) fn greatest(&self, arc: ArcId) -> Option<i128> {
+        self.bounds[arc.index()].1
+    }
+
+    /// A time as it was before scaling, if it fits.
+    pub(super) fn unscaled(&self, scaled: i128) -> Option<Time> {
+        Time::from_wide(scaled, self.scale)
+    }
+
+    /// Whether an edge is a bound of one of some arcs, which are sorted: its own, or what a movement takes at least.
+    pub(super) fn is_range(&self, network: &Network, edge: &Edge, arcs: &[ArcId]) -> bool {
+        let arc = match self.reasons[edge.reason as usize] {
+            Reason::Arc(arc) => arc,
+            Reason::Departure(movement) => network.labels[movement.arrival.index()].arc,
+            Reason::Link(_) | Reason::Order(_) | Reason::Uses(_) => return false,
+        };
+        arcs.binary_search(&arc).is_ok()
+    }
+
+    /// What put an edge there, in the author's terms; `None` for `[0,0]` between events, which only joins the program's
+    /// parts.
+    pub(super) fn tell(&self, network: &Network, reason: u32) -> Option<String> {
+        let reason = self.reasons[reason as usize];
+        if let Reason::Arc(arc) = reason {
+            let arc = &network.arcs[arc.index()];
+            if arc.lower.is_zero() && arc.upper == Bound::ZERO {
+                return None;
+            }
+        }
+        Some(describe(network, reason))
     }
 
     /// A negative cycle, in the author's terms.

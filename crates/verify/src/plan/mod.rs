@@ -1,7 +1,8 @@
-//! The check of a plan (SPEC 5.5, 10.2, 11, 12): its selection, its constraints, its links, its orders, its windows, the
-//! resources it uses and what it is worth.
+//! The check of a plan (SPEC 5.5, 10.2, 11 to 13): its selection, its constraints, its links, its orders, its windows, the
+//! resources it uses, what it is worth, and that it withstands nature.
 
 mod constraints;
+mod controllability;
 mod orders;
 mod quality;
 mod resources;
@@ -28,7 +29,8 @@ use orders::Stated;
 /// uses of resources that the plan puts in sequence cost a short search each.
 ///
 /// Amounts of resources and costs are the network's: what is counted per metre is part of them once paths are inserted.
-/// That an optimal plan is optimal is not checked.
+/// That an optimal plan is optimal is not checked. Windows are those of the network that reads durations that nature
+/// chooses as ordinary ones.
 ///
 /// ```
 /// let parsed = rmpl::parse("scenario Day[0,60] = { Drive()[20,30] }");
@@ -81,6 +83,7 @@ pub fn check_plan(network: &Network, plan: &Plan) -> Verdict {
             checker.check_resources(&mut violations);
             checker.check_windows(&mut violations);
             checker.check_quality(&mut violations);
+            controllability::check_controllability(network, plan, &constraints, &mut violations);
         }
     }
     Verdict::new(violations)

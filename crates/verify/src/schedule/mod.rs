@@ -8,6 +8,7 @@ use rmpl::program::LabelMode;
 use tpn::{LabelId, Network, NodeId, Plan};
 
 use crate::labels::{self, Interval, interval};
+use crate::uncertainty::natures_events;
 use crate::{Rule, Verdict, Violation, node_name, selection};
 
 /// The earliest time of every selected event of `plan`, from its windows: a schedule, if the plan is valid.
@@ -19,7 +20,8 @@ pub fn earliest_schedule(plan: &Plan) -> Vec<Option<Time>> {
 ///
 /// A `[0,0]` interval holds at one instant, which must lie outside conflicting intervals, their start included. With a
 /// threat gap of zero the rule is that of planning (SPEC 5.3): of two conflicting intervals one ends no later than the
-/// other starts, instants and intervals without length included.
+/// other starts, instants and intervals without length included. An interval that begins at an event that nature
+/// executes may begin at such an instant: there is no gap before it (SPEC 13.1).
 ///
 /// What happens at one instant may happen in any order that keeps the rules of state that lasts (SPEC 10.2). A reservoir is
 /// looked at after each instant, and uses without length that happen at one instant do not add up (SPEC 11).
@@ -43,7 +45,8 @@ pub fn check_schedule(network: &Network, plan: &Plan, times: &[Option<Time>]) ->
         }
     }
     if violations.is_empty() {
-        let schedule = Schedule { network, plan, times };
+        let natures = natures_events(network, &plan.selected_arcs);
+        let schedule = Schedule { network, plan, times, natures };
         schedule.check_durations(&mut violations);
         schedule.check_supports(&mut violations);
         schedule.check_conflicts(&mut violations);
@@ -57,6 +60,8 @@ struct Schedule<'schedule> {
     network: &'schedule Network,
     plan: &'schedule Plan,
     times: &'schedule [Option<Time>],
+    /// By node, whether nature executes it.
+    natures: Vec<bool>,
 }
 
 impl Schedule<'_> {
@@ -129,10 +134,11 @@ impl Schedule<'_> {
         if self.network.threat_gap.is_zero() {
             return to > start && end > from;
         }
+        let is_natures = |interval: Interval| self.natures[interval.start.index()];
         match (one.is_instant, other.is_instant) {
-            (true, true) => from == start,
-            (true, false) => start <= from && from < end,
-            (false, true) => from <= start && start < to,
+            (true, true) => from == start && !is_natures(one) && !is_natures(other),
+            (true, false) => from < end && (start < from || (start == from && !is_natures(other))),
+            (false, true) => start < to && (from < start || (from == start && !is_natures(one))),
             (false, false) => from.max(start) < to.min(end),
         }
     }

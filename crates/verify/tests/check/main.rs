@@ -2,6 +2,8 @@
 //! refused by the right rule with the right names, and every verdict on tiny networks against brute force.
 
 mod brute_force;
+mod controllability;
+mod game;
 mod lasting_brute_force;
 mod lasting_oracle;
 mod lasting_schedules;
