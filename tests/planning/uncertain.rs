@@ -6,11 +6,11 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use acceptance::lasting_missions::{Kind, lasting_mission};
-use acceptance::mission::{compile, try_plans};
+use acceptance::mission::{compile, network, try_plans};
 use acceptance::random::{crowded_mission, small_mission};
 use acceptance::{lasting, reference};
 use exact::{Bound, Time};
-use kirk::Search;
+use kirk::{Options, Search, Unlimited};
 use rmpl::program::{Controllability, LabelMode};
 use stnu::{Link, PointId, StrongVerdict, Verdict};
 use tpn::selection::closure;
@@ -264,4 +264,41 @@ fn is_controllable(network: &Network, (choices, links, order): &Key) -> bool {
         return matches!(stnu::check_strong(&uncertain), Ok(StrongVerdict::Controllable(_)));
     }
     stnu::check(&uncertain, &mut || false).expect("times fit") == Verdict::Controllable
+}
+
+/// The kinds of failure of a mission, or nothing if it has a plan.
+fn failures(text: &str) -> Vec<&'static str> {
+    let outcome = kirk::plan(&network(text), &Options::default(), &mut Unlimited);
+    let reasons = outcome.failure.map(|failure| failure.reasons).unwrap_or_default();
+    assert_eq!(outcome.plans.is_empty(), !reasons.is_empty(), "{text}");
+    reasons.iter().map(|reason| reason.kind.name()).collect()
+}
+
+#[test]
+fn a_storm_does_not_wait_for_the_survey() {
+    let storm = |delay: &str, rest: &str| {
+        format!(
+            "var DUST : {{STORM}}; primitive Survey()[20,30];
+             scenario S[0,200] = {{ {{ {rest} do {{ Survey() }} watching DUST=STORM }},
+                                    {{ delay {delay}; DUST=STORM [10,20] }} }}"
+        )
+    };
+    assert_eq!(failures(&storm("[5,100]", "delay;")), [""; 0]);
+    // The survey waits until the storm is over.
+    assert_eq!(failures(&storm("contingent [5,100]", "delay;")), [""; 0]);
+    assert_eq!(failures(&storm("contingent [5,100]", "")), ["controllability"]);
+    assert_eq!(failures(&storm("contingent [30,100]", "")), [""; 0]);
+}
+
+#[test]
+fn a_drive_ends_when_nature_lets_it() {
+    let drive = |from: i64, to: i64| {
+        format!(
+            "primitive Drive() contingent [20,40]; scenario S[0,100] = {{ delay; Drive() [{from},{to}] }}"
+        )
+    };
+    assert_eq!(failures(&drive(30, 35)), ["controllability"]);
+    assert_eq!(failures(&drive(20, 39)), ["controllability"]);
+    assert_eq!(failures(&drive(0, 40)), [""; 0]);
+    assert_eq!(failures(&drive(41, 50)), ["temporal"]);
 }

@@ -81,7 +81,7 @@ impl Solver {
         };
         let labels = &problem.labels_by_variable;
         let is_kept = |left: LabelId, right: LabelId| {
-            !problem.model.conditions.conflict(left, right) || is_apart(left, right)
+            left == right || !problem.model.conditions.conflict(left, right) || is_apart(left, right)
         };
         labels
             .iter()
