@@ -55,6 +55,8 @@ pub enum ColorRole {
     Ordering,
     /// Threats and negative cycles.
     Threat,
+    /// What nature chooses.
+    Nature,
     /// The flexible part of a window.
     Slack,
     /// The present.
@@ -138,6 +140,7 @@ impl Theme {
             ColorRole::Tell | ColorRole::Link => (0x007555, 0x35C49A),
             ColorRole::Ask => (0x9C3F77, 0xE09BC4),
             ColorRole::Ordering => (0x9A6200, 0xF0B032),
+            ColorRole::Nature => (0x5B3FA8, 0xB49CFF),
             ColorRole::Slack => (0x2B8CCC, 0x56B4E9),
             ColorRole::Now => (0xB84300, 0xF0E442),
             ColorRole::Series(number) => SERIES[number as usize % SERIES.len()],

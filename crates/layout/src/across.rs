@@ -99,6 +99,7 @@ fn add_arc(
     drawing.arcs.push(ArcShape {
         id,
         kind: arc.kind,
+        is_contingent: network.is_uncertain(id),
         route: Route::Across,
         start,
         first_piece,

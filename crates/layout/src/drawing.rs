@@ -54,6 +54,8 @@ pub struct ArcShape {
     pub id: ArcId,
     /// What it stands for.
     pub kind: ArcKind,
+    /// Whether nature chooses the duration.
+    pub is_contingent: bool,
     /// How it is routed.
     pub route: Route,
     /// Where the curve begins.

@@ -177,7 +177,9 @@ impl Placer<'_> {
         let bounds = curve_bounds(start, kept);
         let piece_count = kept.len() as u32;
         let kind = self.network.arcs[id.index()].kind;
-        self.arcs[id.index()] = Some(ArcShape { id, kind, route, start, first_piece, piece_count, bounds });
+        let is_contingent = self.network.is_uncertain(id);
+        self.arcs[id.index()] =
+            Some(ArcShape { id, kind, is_contingent, route, start, first_piece, piece_count, bounds });
     }
 
     /// Writes an arc's texts above and below the level run between two points.

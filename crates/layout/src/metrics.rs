@@ -56,6 +56,8 @@ pub enum TextRole {
     Quiet,
     /// Bounds of a duration.
     Bounds,
+    /// The range of a duration that nature chooses.
+    Nature,
     /// Bounds that say nothing but "at once": `[0,0]`.
     ZeroBounds,
     /// A condition that an arc requires.
@@ -76,7 +78,7 @@ impl TextRole {
         match self {
             Self::Name | Self::Title => 13.0,
             Self::Quiet | Self::Node => 12.0,
-            Self::Bounds | Self::Ask | Self::Tell => 11.5,
+            Self::Bounds | Self::Nature | Self::Ask | Self::Tell => 11.5,
             Self::Window => 10.5,
             Self::ZeroBounds => 10.0,
         }
@@ -87,7 +89,7 @@ impl TextRole {
         match self {
             Self::Name | Self::Title => 17.0,
             Self::Quiet => 16.0,
-            Self::Bounds | Self::Ask | Self::Tell => 15.0,
+            Self::Bounds | Self::Nature | Self::Ask | Self::Tell => 15.0,
             Self::Window => 14.0,
             Self::Node | Self::ZeroBounds => 13.0,
         }

@@ -46,7 +46,7 @@ impl Parts {
     /// Whether texts of this role are shown.
     pub const fn shows_text(self, role: TextRole) -> bool {
         match role {
-            TextRole::Bounds | TextRole::ZeroBounds => self.bounds,
+            TextRole::Bounds | TextRole::Nature | TextRole::ZeroBounds => self.bounds,
             TextRole::Ask | TextRole::Tell => self.conditions,
             TextRole::Name | TextRole::Quiet => self.names,
             TextRole::Node | TextRole::Title | TextRole::Window => true,
@@ -92,14 +92,19 @@ fn standing(is_selected: Option<bool>) -> Standing {
 }
 
 /// The line of an arc.
-pub(crate) fn arc_stroke(kind: ArcKind, route: Route, standing: Standing) -> Stroke {
+pub(crate) fn arc_stroke(kind: ArcKind, route: Route, is_natures: bool, standing: Standing) -> Stroke {
     let is_quiet = route != Route::Along || kind == ArcKind::Path;
-    let dash = if route == Route::Across { Dash::Dotted } else { Dash::Solid };
+    let dash = match route {
+        Route::Across => Dash::Dotted,
+        _ if is_natures => Dash::Dashed,
+        Route::Along | Route::Arch => Dash::Solid,
+    };
     let (color, width) = match standing {
         Standing::Plain => (ColorRole::Path, if is_quiet { 1.1 } else { 1.5 }),
         Standing::Selected => (ColorRole::Path, if is_quiet { 1.4 } else { 2.6 }),
         Standing::Unselected => (ColorRole::PathUnselected, if is_quiet { 1.0 } else { 1.2 }),
     };
+    let color = if is_natures && standing != Standing::Unselected { ColorRole::Nature } else { color };
     Stroke { color: color.into(), width, dash }
 }
 
@@ -135,6 +140,7 @@ pub(crate) fn text_color(role: TextRole, standing: Standing) -> ColorRole {
     match role {
         TextRole::Name | TextRole::Title | TextRole::Node => ColorRole::Text,
         TextRole::Quiet | TextRole::Bounds => ColorRole::TextMuted,
+        TextRole::Nature => ColorRole::Nature,
         TextRole::ZeroBounds => ColorRole::TextFaint,
         TextRole::Ask => ColorRole::Ask,
         TextRole::Tell => ColorRole::Tell,

@@ -76,6 +76,8 @@ pub struct Tokens {
     pub link: Color32,
     /// Orderings that resolve threats.
     pub ordering: Color32,
+    /// What nature chooses.
+    pub nature: Color32,
     /// Threats and negative cycles.
     pub threat: Color32,
     /// The flexible part of a window.
@@ -169,6 +171,7 @@ impl Tokens {
             ColorRole::Link => self.link,
             ColorRole::Ordering => self.ordering,
             ColorRole::Threat => self.threat,
+            ColorRole::Nature => self.nature,
             ColorRole::Slack => self.slack,
             ColorRole::Now => self.now,
             ColorRole::Series(number) => self.series(usize::from(number)),
@@ -226,6 +229,7 @@ pub static DARK: Tokens = Tokens {
     ask: rgb(0xE0_9B_C4),
     link: rgb(0x35_C4_9A),
     ordering: rgb(0xF0_B0_32),
+    nature: rgb(0xB4_9C_FF),
     threat: rgb(0xFF_85_52),
     slack: rgb(0x56_B4_E9),
     now: rgb(0xF0_E4_42),
@@ -287,6 +291,7 @@ pub static LIGHT: Tokens = Tokens {
     ask: rgb(0x9C_3F_77),
     link: rgb(0x00_75_55),
     ordering: rgb(0x9A_62_00),
+    nature: rgb(0x5B_3F_A8),
     threat: rgb(0xB8_43_00),
     slack: rgb(0x2B_8C_CC),
     now: rgb(0xB8_43_00),
@@ -350,6 +355,7 @@ mod tests {
                 tokens.tell,
                 tokens.ask,
                 tokens.ordering,
+                tokens.nature,
                 tokens.threat,
                 syntax.keyword,
                 syntax.activity,
@@ -398,6 +404,7 @@ mod tests {
             ColorRole::Link,
             ColorRole::Ordering,
             ColorRole::Threat,
+            ColorRole::Nature,
             ColorRole::Slack,
             ColorRole::Now,
             ColorRole::Relief(200),

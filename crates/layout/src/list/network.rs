@@ -311,7 +311,7 @@ impl Builder<'_> {
         for connector in &self.drawing.connectors {
             let standing = self.standing(connector.node);
             if self.parts.shows(standing) {
-                let stroke = style::arc_stroke(ArcKind::Glue, Route::Along, standing);
+                let stroke = style::arc_stroke(ArcKind::Glue, Route::Along, false, standing);
                 list.path(connector.start, &[connector.piece], PathEnd::Open, stroke);
             }
         }
@@ -328,7 +328,7 @@ impl Builder<'_> {
     }
 
     fn arc(&self, arc: &ArcShape, standing: Standing, list: &mut DisplayList) {
-        let stroke = style::arc_stroke(arc.kind, arc.route, standing);
+        let stroke = style::arc_stroke(arc.kind, arc.route, arc.is_contingent, standing);
         // Pieces of a path have no heads: they are too short.
         let end = if arc.kind == ArcKind::Path { PathEnd::Open } else { PathEnd::Head };
         let is_connection = matches!(

@@ -7,7 +7,8 @@ use std::ops::Range;
 use rmpl::program::Program;
 use smol_str::SmolStr;
 use tpn::{
-    CausalLink, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind, Ordering, Plan, UseOrdering, Window,
+    ArcId, CausalLink, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind, Ordering, Plan, UseOrdering,
+    Window,
 };
 
 use super::profile::{Profile, ProfilePart, profiles};
@@ -79,6 +80,8 @@ pub struct Bar {
     pub end: [f64; 2],
     /// The same without pinned events.
     pub free: [[f64; 2]; 2],
+    /// The least and the greatest duration, where nature chooses it.
+    pub natures: Option<[f64; 2]>,
     /// What it requires and asserts.
     pub labels: Vec<LabelId>,
 }
@@ -270,6 +273,13 @@ impl Chart {
         });
         causal.chain(orderings).chain(uses).filter(|link| link.from != link.to).collect()
     }
+}
+
+/// The range of an arc's duration, in mission units, if nature chooses it.
+pub(super) fn natures(network: &Network, arc: Option<ArcId>) -> Option<[f64; 2]> {
+    let id = arc.filter(|&id| network.is_uncertain(id))?;
+    let arc = &network.arcs[id.index()];
+    Some([arc.lower.to_f64(), arc.upper.to_f64()])
 }
 
 /// The windows of two events, in mission units; `None` if the plan lacks one.

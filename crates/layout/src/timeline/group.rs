@@ -6,7 +6,7 @@ use rmpl::program::{LabelMode, Program};
 use smol_str::{SmolStr, format_smolstr};
 use tpn::{LabelId, Network, OccurrenceId, OccurrenceKind, Plan};
 
-use super::chart::{Bar, BarKind, Item, RowKind, times};
+use super::chart::{Bar, BarKind, Item, RowKind, natures, times};
 use super::{ChartOptions, Grouping, state};
 use crate::threads::{thread_name, threads};
 
@@ -58,6 +58,7 @@ impl Bars {
                 start,
                 end,
                 free: [start, end],
+                natures: natures(network, occurrence.arc),
                 labels,
             })
         });
@@ -178,6 +179,7 @@ fn conditions(network: &Network, plan: &Plan) -> Vec<Item> {
             start,
             end,
             free: [start, end],
+            natures: natures(network, Some(label.arc)),
             labels: Vec::new(),
         });
     }

@@ -81,6 +81,7 @@ fn bar(
         start,
         end,
         free: [start, end],
+        natures: None,
         labels: Vec::new(),
     })
 }

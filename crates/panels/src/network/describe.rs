@@ -3,6 +3,7 @@
 use exact::Bound;
 use layout::Item;
 use layout::text::{bounds_label, label_words};
+use rmpl::program::Controllability;
 use tpn::{ArcKind, Network, Plan, Role};
 use workbench::state::selection::node_name;
 
@@ -101,6 +102,12 @@ fn describe_arc(id: tpn::ArcId, network: &Network, plan: Option<&Plan>) -> Optio
         lines.push(format!("{}({})", occurrence.activity, occurrence.arguments.join(", ")));
     }
     lines.push(format!("{} {}", kind_name(arc.kind), bounds_label(arc.lower, arc.upper)));
+    if arc.is_contingent {
+        lines.push(match network.controllability {
+            Controllability::None => "contingent, and read as if the planner chose it".to_owned(),
+            _ => "contingent: nature chooses it, and the end is seen when it comes".to_owned(),
+        });
+    }
     let labels = arc.labels.iter().filter_map(|label| network.labels.get(label.index()));
     lines.extend(labels.map(label_words));
     if plan.is_some_and(|plan| plan.selected_arcs.get(id.index()) == Some(&false)) {

@@ -23,5 +23,11 @@ pub(super) fn words(bar: &Bar, plan: &Plan) -> String {
             .flatten()
             .map_or_else(String::new, |window| time_text::interval(window.earliest, window.latest))
     };
-    format!("starts {}, ends {}", interval(bar.events[0]), interval(bar.events[1]))
+    let windows = format!("starts {}, ends {}", interval(bar.events[0]), interval(bar.events[1]));
+    match bar.natures {
+        Some([least, greatest]) => {
+            format!("{windows}; how long it takes, {least} to {greatest}, is nature's choice")
+        }
+        None => windows,
+    }
 }

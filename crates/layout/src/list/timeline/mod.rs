@@ -402,10 +402,12 @@ impl Builder<'_> {
         self.list.rectangle(whole, corner, Some(role.mixed(0.16).into()), None);
         let hatched = Some(Fill::Hatched(role.mixed(0.5)));
         if let Some([from, to]) = bar.certain() {
-            for (from, to) in [(bar.start[0], from), (to, bar.end[1])] {
+            // When it ends nature says.
+            let ends = if bar.natures.is_some() { ColorRole::Nature } else { role };
+            for (from, to, role) in [(bar.start[0], from, role), (to, bar.end[1], ends)] {
                 let slot = self.track.slot(bar, row, from, to);
                 if slot.width() > 0.0 {
-                    self.list.rectangle(slot, 0.0, hatched, None);
+                    self.list.rectangle(slot, 0.0, Some(Fill::Hatched(role.mixed(0.5))), None);
                 }
             }
             let slot = self.track.slot(bar, row, from, to);
@@ -439,7 +441,7 @@ impl Builder<'_> {
         }
     }
 
-    /// The earliest schedule, which playing follows.
+    /// The earliest schedule, which playing follows, and how much longer nature may take then.
     fn earliest(&mut self, bar: &Bar, row: Rect, role: ColorRole) {
         let earliest = self.track.slot(bar, row, bar.start[0], bar.end[0].max(bar.start[0]));
         let y = earliest.max.y + 2.0;
@@ -447,6 +449,18 @@ impl Builder<'_> {
         self.list.line(Point::new(ends[0], y), Point::new(ends[1], y), Stroke::solid(role, 2.0));
         for x in ends {
             self.list.line(Point::new(x, y - 2.0), Point::new(x, y + 2.0), Stroke::solid(role, 1.0));
+        }
+        if let Some([least, greatest]) = bar.natures {
+            let range = self.track.slot(bar, row, bar.start[0] + least, bar.start[0] + greatest);
+            let stroke = Stroke::solid(ColorRole::Nature, 2.0);
+            self.list.line(
+                Point::new(range.min.x, y),
+                Point::new(range.max.x, y),
+                stroke.dashed(Dash::Dashed),
+            );
+            for x in [range.min.x, range.max.x] {
+                self.list.line(Point::new(x, y - 3.0), Point::new(x, y + 3.0), stroke);
+            }
         }
     }
 
