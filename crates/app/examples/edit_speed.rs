@@ -7,9 +7,9 @@ mod support;
 
 use std::time::Instant;
 
+use text_editing::TextCommand;
 use tpn::generate::{Recipe, Tightness, mission};
 use workbench::command::Command;
-use workbench::state::TextCommand;
 
 use figures::report;
 

@@ -6,8 +6,8 @@ mod support;
 
 use std::time::Instant;
 
+use text_editing::TextCommand;
 use workbench::command::Command;
-use workbench::state::TextCommand;
 
 use figures::report;
 

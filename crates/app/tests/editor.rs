@@ -5,9 +5,9 @@ mod support;
 use egui::{Event, ImeEvent, Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use serde_json::json;
+use text_editing::TextCommand;
 use workbench::command::Command;
 use workbench::host::Remote as _;
-use workbench::state::TextCommand;
 
 use support::App;
 
@@ -157,6 +157,17 @@ fn completion_offers_the_values_of_a_variable_and_tab_takes_the_chosen_one() {
     let text = app.harness.state().source();
     assert!(text.contains("LAMP=ON }") || text.contains("LAMP=OFF }"), "{text}");
     assert!(app.harness.query_by_role_and_label(Role::Button, "ON").is_none());
+}
+
+#[test]
+fn a_click_on_a_completion_takes_it_and_the_text_keeps_the_keyboard() {
+    let mut app = editing("var LAMP : {ON, OFF};\nscenario S = { LAMP$0 }");
+    app.type_text("=");
+    app.harness.get_by_role_and_label(Role::Button, "OFF").click();
+    app.settle();
+    assert_eq!(app.text(), "var LAMP : {ON, OFF};\nscenario S = { LAMP=OFF$0 }");
+    app.type_text("!");
+    assert_eq!(app.text(), "var LAMP : {ON, OFF};\nscenario S = { LAMP=OFF!$0 }");
 }
 
 #[test]

@@ -3,10 +3,10 @@
 mod automaton;
 mod compare;
 mod distances;
-mod editor;
 mod empty;
 mod execution;
 pub mod keyboard_navigation;
+mod mission_text;
 mod network;
 mod outline;
 mod painter;
@@ -22,8 +22,8 @@ mod timeline;
 
 use workbench::state::settings::ThemeChoice;
 
-pub use editor::{editor_id, show_markdown, typed_text};
 pub use empty::show_empty;
+pub use mission_text::{editor_id, typed_text};
 pub use panel::{Context, Panel};
 pub use plan::counted;
 pub use registry::Panels;

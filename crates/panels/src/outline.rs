@@ -3,10 +3,10 @@
 use egui::{RichText, Role, ScrollArea, Sense, Ui, WidgetInfo};
 use rmpl::Span;
 use rmpl::program::Program;
+use text_editing::TextCommand;
 use theme::{Tokens, space};
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, EditorCommand};
-use workbench::state::TextCommand;
 
 use crate::{Context, Panel, keyboard_navigation, show_empty};
 

@@ -1,14 +1,15 @@
 //! What is wrong with the text: a list that leads to the places, offers fixes and explains.
 
+use editor::Severity;
 use egui::{RichText, Role, ScrollArea, Sense, Ui, WidgetInfo};
 use mission::Problem;
-use rmpl::{Severity, Span};
-use theme::icon::{self, Icon};
-use theme::{Tokens, space};
+use rmpl::Span;
+use text_editing::{EditKind, TextCommand};
+use theme::icon;
+use theme::space;
 use workbench::Dialog;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, EditorCommand};
-use workbench::state::{EditKind, TextCommand};
 
 use crate::{Context, Panel, keyboard_navigation, show_empty};
 
@@ -62,12 +63,12 @@ impl Panel for ProblemsPanel {
     }
 }
 
-/// The sign and the colour of a severity; the sign alone tells them apart.
-pub fn severity_sign(tokens: &Tokens, severity: Severity) -> (Icon, egui::Color32) {
-    match severity {
-        Severity::Error => (Icon::Error, tokens.error),
-        Severity::Warning => (Icon::Warning, tokens.warning),
-        Severity::Note => (Icon::Info, tokens.info),
+/// How bad a problem is, for the editor and for whoever shows its sign.
+pub const fn severity(of: rmpl::Severity) -> Severity {
+    match of {
+        rmpl::Severity::Error => Severity::Error,
+        rmpl::Severity::Warning => Severity::Warning,
+        rmpl::Severity::Note => Severity::Note,
     }
 }
 
@@ -81,7 +82,7 @@ fn selected_span(context: &Context<'_>) -> Option<Span> {
 
 fn show_row(ui: &mut Ui, context: &Context<'_>, problem: &Problem, is_selected: bool) -> egui::Response {
     let tokens = context.tokens;
-    let (sign, color) = severity_sign(tokens, problem.severity);
+    let (sign, color) = severity(problem.severity).sign(tokens);
     let body = egui::TextStyle::Body.resolve(ui.style());
     let small = egui::TextStyle::Small.resolve(ui.style());
     let width = ui.available_width();

@@ -53,7 +53,7 @@ fn create(kind: PanelKind) -> Box<dyn Panel> {
         PanelKind::Compare => Box::new(crate::compare::ComparePanel::default()),
         PanelKind::Execution => Box::new(crate::execution::ExecutionPanel::default()),
         PanelKind::Robustness => Box::new(crate::robustness::RobustnessPanel),
-        PanelKind::Editor => Box::new(crate::editor::EditorPanel::default()),
+        PanelKind::Editor => Box::new(crate::mission_text::EditorPanel::default()),
         PanelKind::Plan => Box::new(crate::plan::PlanPanel::default()),
         PanelKind::Timeline => Box::new(crate::timeline::TimelinePanel::default()),
     }

@@ -4,9 +4,11 @@
 //! Everything that draws takes its looks from here; this knows nothing of missions.
 
 pub mod icon;
+mod markdown;
 mod style;
 mod tokens;
 
+pub use markdown::show_markdown;
 #[cfg(not(target_arch = "wasm32"))]
 pub use style::FONTS;
 pub use style::{apply, install_fonts, strong, strong_family};

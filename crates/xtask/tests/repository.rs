@@ -31,10 +31,12 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("display", &[]),
     ("layout", &["display", "tpn", "hca"]),
     ("report", &["mission", "layout"]),
-    ("workbench", &["mission", "layout", "report"]),
+    ("text_editing", &["rmpl"]),
+    ("workbench", &["mission", "layout", "report", "text_editing"]),
     ("theme", &["display"]),
+    ("editor", &["text_editing", "theme"]),
     ("terrain_view", &["workbench", "theme"]),
-    ("panels", &["workbench", "terrain_view"]),
+    ("panels", &["workbench", "terrain_view", "editor"]),
     ("app", &["panels"]),
     ("page", &["app"]),
     ("worker", &["mission"]),
@@ -61,6 +63,7 @@ const PURE: &[&str] = &[
     "display",
     "layout",
     "report",
+    "text_editing",
     "workbench",
 ];
 

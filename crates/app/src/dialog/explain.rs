@@ -1,7 +1,8 @@
 //! What a kind of problem means, with an example and its mending: the language's manual page.
 
 use egui::{Frame, Margin, RichText, ScrollArea, Ui};
-use panels::{Context, show_markdown};
+use panels::Context;
+use theme::show_markdown;
 use theme::space;
 use workbench::command::{Command, CommandSender};
 

@@ -3,9 +3,9 @@
 use egui::{Rect, Role, Sense, Ui, WidgetInfo};
 use hca::{Automaton, CompositeKind, LocationKind};
 use layout::{AutomatonDrawing, AutomatonItem};
+use text_editing::TextCommand;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, ViewAction};
-use workbench::state::TextCommand;
 
 use super::{Drawn, Shown, legend, log, marks};
 use crate::Context;

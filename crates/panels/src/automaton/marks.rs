@@ -3,7 +3,7 @@
 use hca::{Automaton, CompositeId, CompositeKind, LocationId, TransitionId};
 use layout::AutomatonItem;
 use rmpl::Span;
-use workbench::state::document::Caret;
+use text_editing::Caret;
 
 /// Where something on the drawing is written; for a transition its guard.
 pub(super) fn span_of(automaton: &Automaton, item: AutomatonItem) -> Option<Span> {

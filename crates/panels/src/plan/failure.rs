@@ -3,11 +3,11 @@
 use egui::{Frame, Margin, RichText, Stroke, Ui};
 use kirk::{FailureKind, Reason, Status};
 use mission::Planning;
+use text_editing::EditKind;
 use theme::icon::{self, Icon};
 use theme::space;
 use tpn::Network;
 use workbench::command::{Command, CommandSender, EditorCommand};
-use workbench::state::EditKind;
 use workbench::state::selection::alternative_text;
 
 use crate::Context;

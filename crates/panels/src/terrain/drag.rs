@@ -8,10 +8,11 @@ use rmpl::program::{ObstacleShape, Program};
 use smol_str::SmolStr;
 use terrain_view::pick::Scene;
 use terrain_view::scene;
+use text_editing::EditKind;
 use workbench::command::{Command, CommandSender};
+use workbench::state::Selection;
 use workbench::state::placing::{VehicleStart, place};
 use workbench::state::terrain::TerrainCommand;
-use workbench::state::{EditKind, Selection};
 
 /// A drag under way.
 #[derive(Clone, Debug, PartialEq)]

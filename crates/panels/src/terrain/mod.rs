@@ -26,12 +26,13 @@ use terrain_view::flight::Flight;
 use terrain_view::gpu::TerrainImage;
 use terrain_view::pick::Scene;
 use terrain_view::{driving, frame, navigate, scene};
+use text_editing::EditKind;
 use theme::space;
 use tpn::OccurrenceId;
 use workbench::command::{Command, CommandSender};
+use workbench::state::Selection;
 use workbench::state::settings::TerrainView;
 use workbench::state::terrain::{TerrainCommand, Tool};
-use workbench::state::{EditKind, Selection};
 
 use crate::{Context, Panel, show_empty};
 use clearance::Clearance;

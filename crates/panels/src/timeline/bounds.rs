@@ -6,8 +6,8 @@ use egui::{CursorIcon, Rect, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, p
 use exact::Time;
 use layout::timeline::Bar;
 use rmpl::{Edit, Span};
+use text_editing::EditKind;
 use workbench::command::{Command, CommandSender};
-use workbench::state::EditKind;
 use workbench::state::playback::{bound, number};
 
 use super::handle::round_time;

@@ -7,6 +7,7 @@ mod specs;
 use mission::{Goal, SearchKind};
 use rmpl::{Edit, Span};
 use smol_str::SmolStr;
+use text_editing::{EditKind, Find, TextCommand};
 
 use crate::Dialog;
 use crate::PanelKind;
@@ -15,14 +16,13 @@ use crate::state::automaton::AutomatonCommand;
 use crate::state::chance::ChanceCommand;
 use crate::state::compare::CompareCommand;
 use crate::state::documents::ScheduleForm;
-use crate::state::editor::Find;
 use crate::state::execution::ExecutionCommand;
 use crate::state::program_chance::ProgramChanceCommand;
 use crate::state::review::ReviewCommand;
 use crate::state::search::SearchCommand;
 use crate::state::settings::ThemeChoice;
 use crate::state::terrain::TerrainCommand;
-use crate::state::{EditKind, PinCommand, Selection, TextCommand, ToastKind, Views};
+use crate::state::{PinCommand, Selection, ToastKind, Views};
 use crate::transport::TransportCommand;
 use crate::workspace::Workspace;
 

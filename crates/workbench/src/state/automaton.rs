@@ -12,11 +12,11 @@ use hca::VariableId;
 use mission::{ContentKey, ControlRun, ControlStanding};
 use plant::ComponentId;
 use smol_str::SmolStr;
+use text_editing::Document;
 
 pub use mission::control_run::{ControlProgram as Program, Input, Moment, PlantMoment};
 
 use crate::mission_file;
-use crate::state::document::Document;
 use crate::state::program_chance::ProgramChanceState;
 
 /// The program of the text, if it is one, and its run.

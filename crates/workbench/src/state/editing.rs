@@ -4,13 +4,12 @@
 
 use rmpl::Span;
 use rmpl::editor;
+use text_editing::{Caret, EditKind, Find, TextCommand};
 
 use crate::PanelKind;
 use crate::command::EditorCommand;
-use crate::state::document::Caret;
-use crate::state::editor::Find;
 use crate::state::folding::Folding;
-use crate::state::{AppState, EditKind, Effect, Selection, TextCommand, ToastKind};
+use crate::state::{AppState, Effect, Selection, ToastKind};
 
 impl AppState {
     pub(super) fn type_text(&mut self, command: &TextCommand) {

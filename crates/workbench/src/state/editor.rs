@@ -2,6 +2,7 @@
 
 use rmpl::editor::CompletionKind;
 use rmpl::{Edit, Span};
+use text_editing::Find;
 
 use crate::state::folding::Folding;
 
@@ -27,25 +28,6 @@ pub struct Reveal {
     pub span: Span,
     /// Whether it is moved to the middle even when it is visible at an edge.
     pub center: bool,
-}
-
-/// The find bar.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Find {
-    /// What is looked for.
-    pub query: String,
-    /// What replaces it.
-    pub replacement: String,
-    /// Whether the replacement row is open.
-    pub replacing: bool,
-    /// Whether the query is a regular expression.
-    pub is_regex: bool,
-    /// Whether upper and lower case differ.
-    pub case_sensitive: bool,
-    /// Whether only whole words match.
-    pub whole_words: bool,
-    /// Whether the query field is to take the focus.
-    pub wants_focus: bool,
 }
 
 /// A list at the caret.

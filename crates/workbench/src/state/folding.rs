@@ -5,8 +5,7 @@ use std::ops::Range;
 
 use rmpl::Parse;
 use rmpl::editor::{FoldKind, folds};
-
-use crate::state::document::{Caret, Document};
+use text_editing::{Caret, Document, Rows};
 
 /// What is folded. A piece is known by what its first line says, so it stays folded while the text around it changes.
 #[derive(Clone, Debug, Default)]
@@ -27,63 +26,6 @@ pub struct Region {
     pub first_line: usize,
     /// The lines that disappear.
     pub hidden: Range<usize>,
-}
-
-/// Which line stands in which row of the editor. Both count from 0.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Rows {
-    /// The lines that have no row: disjoint, in order.
-    hidden: Vec<Range<usize>>,
-}
-
-impl Rows {
-    /// The row of a line; for a line without one, the row before it.
-    pub fn row_of(&self, line: usize) -> usize {
-        let mut row = line;
-        for hidden in self.hidden.iter().take_while(|hidden| hidden.start <= line) {
-            row -= if line < hidden.end { line - hidden.start + 1 } else { hidden.len() };
-        }
-        row
-    }
-
-    /// The line in a row.
-    pub fn line_of(&self, row: usize) -> usize {
-        let mut line = row;
-        for hidden in &self.hidden {
-            if hidden.start > line {
-                break;
-            }
-            line += hidden.len();
-        }
-        line
-    }
-
-    /// How many rows so many lines take.
-    pub fn count(&self, num_lines: usize) -> usize {
-        num_lines - self.hidden.iter().map(Range::len).sum::<usize>()
-    }
-
-    /// The lines that are folded away around this one.
-    pub fn hiding(&self, line: usize) -> Option<Range<usize>> {
-        self.hidden.iter().find(|hidden| hidden.contains(&line)).cloned()
-    }
-
-    /// Whether the lines after this one are folded away.
-    pub fn is_folded_at(&self, line: usize) -> bool {
-        self.hidden.iter().any(|hidden| hidden.start == line + 1)
-    }
-
-    fn new(mut hidden: Vec<Range<usize>>) -> Self {
-        hidden.sort_by_key(|range| (range.start, range.end));
-        let mut joined: Vec<Range<usize>> = Vec::new();
-        for range in hidden {
-            match joined.last_mut() {
-                Some(last) if range.start <= last.end => last.end = last.end.max(range.end),
-                _ => joined.push(range),
-            }
-        }
-        Self { hidden: joined }
-    }
 }
 
 impl Folding {
@@ -226,21 +168,13 @@ mod tests {
     }
 
     #[test]
-    fn rows_and_lines_are_each_other_s_inverse_but_for_what_is_hidden() {
-        let rows = Rows::new(vec![7..9, 1..3, 2..5]);
-        assert_eq!(rows.count(10), 4);
-        assert_eq!((0..4).map(|row| rows.line_of(row)).collect::<Vec<_>>(), [0, 5, 6, 9]);
-        assert_eq!((0..10).map(|line| rows.row_of(line)).collect::<Vec<_>>(), [0, 0, 0, 0, 0, 1, 2, 2, 2, 3]);
-    }
-
-    #[test]
     fn a_block_folds_to_its_first_and_last_line() {
         let (document, parse) = opened();
         let mut folding = Folding::default();
         assert!(folding.toggle(0, &document, &parse));
-        assert_eq!(folding.rows().hidden, Rows::new(vec![Range { start: 1, end: 6 }]).hidden);
+        assert_eq!(*folding.rows(), Rows::new(vec![Range { start: 1, end: 6 }]));
         assert!(folding.toggle(0, &document, &parse));
-        assert_eq!(folding.rows().hidden, [] as [Range<usize>; 0]);
+        assert_eq!(*folding.rows(), Rows::default());
         assert!(!folding.toggle(1, &document, &parse));
     }
 
@@ -249,14 +183,14 @@ mod tests {
         let (mut document, parse) = opened();
         let mut folding = Folding::default();
         folding.toggle(2, &document, &parse);
-        assert_eq!(folding.rows().hidden, Rows::new(vec![Range { start: 3, end: 5 }]).hidden);
+        assert_eq!(*folding.rows(), Rows::new(vec![Range { start: 3, end: 5 }]));
         document.replace_all(&format!("// first\n{TEXT}"));
         folding.follow(&mut document, Some(&rmpl::parse(&format!("// first\n{TEXT}"))));
-        assert_eq!(folding.rows().hidden, Rows::new(vec![Range { start: 4, end: 6 }]).hidden);
+        assert_eq!(*folding.rows(), Rows::new(vec![Range { start: 4, end: 6 }]));
         let changed = TEXT.replace("choose {", "choose  {");
         document.replace_all(&changed);
         folding.follow(&mut document, Some(&rmpl::parse(&changed)));
-        assert_eq!(folding.rows().hidden, [] as [Range<usize>; 0]);
+        assert_eq!(*folding.rows(), Rows::default());
     }
 
     #[test]
@@ -280,7 +214,7 @@ mod tests {
         document.set_caret(at(&document, 4));
         folding.follow(&mut document, Some(&parse));
         assert_eq!(document.line_at(document.caret().head), 4);
-        assert_eq!(folding.rows().hidden, [] as [Range<usize>; 0]);
+        assert_eq!(*folding.rows(), Rows::default());
     }
 
     #[test]
@@ -288,11 +222,11 @@ mod tests {
         let (document, parse) = opened();
         let mut folding = Folding::default();
         folding.fold_around(3, &document, &parse);
-        assert_eq!(folding.rows().hidden, Rows::new(vec![Range { start: 3, end: 5 }]).hidden);
+        assert_eq!(*folding.rows(), Rows::new(vec![Range { start: 3, end: 5 }]));
         folding.fold_around(2, &document, &parse);
-        assert_eq!(folding.rows().hidden, Rows::new(vec![Range { start: 1, end: 6 }]).hidden);
+        assert_eq!(*folding.rows(), Rows::new(vec![Range { start: 1, end: 6 }]));
         folding.unfold_all();
         folding.fold_all(&document, &parse);
-        assert_eq!(folding.rows().hidden, Rows::new(vec![Range { start: 1, end: 6 }]).hidden);
+        assert_eq!(*folding.rows(), Rows::new(vec![Range { start: 1, end: 6 }]));
     }
 }

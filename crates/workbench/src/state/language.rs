@@ -3,9 +3,8 @@
 use rmpl::control::{ParsedControl, is_control_text};
 use rmpl::editor::{self, Evaluation, EventWindow, Invocation};
 use rmpl::{Edit, Parse, Span};
+use text_editing::{Document, difference};
 use tpn::{OccurrenceKind, Plan};
-
-use crate::state::document::{Document, difference};
 
 /// The text as the language sees it.
 #[derive(Debug)]

@@ -220,9 +220,9 @@ mod tests {
     use super::*;
 
     fn after(text: &str, thing: &NewThing) -> String {
-        let mut document = crate::state::Document::new(text);
+        let mut document = text_editing::Document::new(text);
         let declared = declare(text, &rmpl::parse(text).program(), thing);
-        document.edit(&declared.edits, crate::state::EditKind::Single, None);
+        document.edit(&declared.edits, text_editing::EditKind::Single, None);
         let declared_text = document.text().to_owned();
         document.undo();
         assert_eq!(document.text(), text, "one step back is the text as it was");
@@ -278,9 +278,9 @@ mod tests {
     fn a_vehicle_is_moved_to_a_location_or_to_a_new_one() {
         let program = rmpl::parse(WORLD).program();
         let moved = |start| {
-            let mut document = crate::state::Document::new(WORLD);
+            let mut document = text_editing::Document::new(WORLD);
             let edits = move_start(WORLD, &program, "Rover1", &start).expect("it is declared");
-            document.edit(&edits, crate::state::EditKind::Single, None);
+            document.edit(&edits, text_editing::EditKind::Single, None);
             document.text().to_owned()
         };
         assert_eq!(moved(VehicleStart::Location("P1".into())), WORLD.replace("ATRV at A", "ATRV at P1"));

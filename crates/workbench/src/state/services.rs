@@ -1,14 +1,13 @@
 //! The editor's language services: completion, quick fixes, definitions, references, renaming, formatting.
 
 use rmpl::{Parse, editor};
+use text_editing::{Caret, Document, EditKind, TextCommand, is_name_character};
 
 use crate::Dialog;
-use crate::state::document::{Caret, Document};
 use crate::state::editing::span_of;
 use crate::state::editor::{Popup, PopupAction, PopupItem, PopupKind};
 use crate::state::folding::Folding;
-use crate::state::typing::is_name_character;
-use crate::state::{AppState, EditKind, TextCommand, ToastKind};
+use crate::state::{AppState, ToastKind};
 
 /// Characters that begin a place where something known can be written.
 const OPENERS: [char; 4] = ['=', '(', '[', ':'];

@@ -8,10 +8,10 @@ use nalgebra::Point2;
 use rmpl::Span;
 use smol_str::SmolStr;
 use terrain::Terrain;
+use text_editing::{Caret, EditKind};
 
 use crate::PanelKind;
 use crate::command::ViewAction;
-use crate::state::document::{Caret, EditKind};
 use crate::state::growth::{Growth, GrowthCommand, GrowthInput};
 use crate::state::placing::{self, NewThing, VehicleStart};
 use crate::state::{AppState, Selection, Snapshots, ToastKind};

@@ -1,12 +1,13 @@
 //! The text.
 
+use text_editing::TextCommand;
+
 use super::arguments::{number_argument, text_argument};
 use super::available::{with_redo, with_undo};
 use super::{ALT, ALT_SHIFT, CTRL, CTRL_SHIFT, PLAIN, called, keys, plain, when};
 use crate::command::chord::Key;
 use crate::command::registry::{CommandSpec, Group, Scope};
 use crate::command::{Command, EditorCommand};
-use crate::state::TextCommand;
 
 /// In the order of the menus.
 pub(super) const COMMANDS: &[CommandSpec] = &[

@@ -4,10 +4,9 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use egui::text::{CCursor, LayoutJob, TextFormat};
-use egui::{Color32, FontId, Galley, Stroke, Ui};
-use rmpl::Span;
+use egui::{FontId, Galley, Stroke, Ui};
 
-use crate::Context;
+use crate::{EditorView, Highlight};
 
 /// A laid-out line.
 pub(crate) struct LineLayout {
@@ -19,15 +18,15 @@ pub(crate) struct LineLayout {
 }
 
 impl LineLayout {
-    /// Lays out the line that covers `bytes`. `colors` are coloured parts of the text in textual order.
+    /// Lays out the line that covers `bytes`. `highlights` are in textual order.
     pub(crate) fn new(
         ui: &Ui,
-        context: &Context<'_>,
+        view: &EditorView<'_>,
         font: &FontId,
         bytes: Range<usize>,
-        colors: &[(Span, Color32)],
+        highlights: &[Highlight],
     ) -> Self {
-        let document = &context.state.document;
+        let document = view.document;
         let text = document.text().get(bytes.clone()).unwrap_or_default();
         let plain = |color| TextFormat::simple(font.clone(), color);
         let mut job = LayoutJob::default();
@@ -37,21 +36,20 @@ impl LineLayout {
                 job.append(part, 0.0, format);
             }
         };
-        let first = colors.partition_point(|(span, _)| span.end as usize <= bytes.start);
-        for (span, color) in colors[first..].iter().take_while(|(span, _)| (span.start as usize) < bytes.end)
-        {
-            let start = (span.start as usize).max(done);
-            let end = (span.end as usize).min(bytes.end);
+        let first = highlights.partition_point(|highlight| highlight.bytes.end <= bytes.start);
+        for highlight in highlights[first..].iter().take_while(|it| it.bytes.start < bytes.end) {
+            let start = highlight.bytes.start.max(done);
+            let end = highlight.bytes.end.min(bytes.end);
             if start < end {
-                append(done..start, plain(context.tokens.text));
-                append(start..end, plain(*color));
+                append(done..start, plain(view.tokens.text));
+                append(start..end, plain(highlight.color));
                 done = end;
             }
         }
-        append(done..bytes.end, plain(context.tokens.text));
-        let composed = Self::compose(context, &bytes, &mut job, font);
+        append(done..bytes.end, plain(view.tokens.text));
+        let composed = Self::compose(view, &bytes, &mut job, font);
         if job.text.is_empty() {
-            job.append("", 0.0, plain(context.tokens.text));
+            job.append("", 0.0, plain(view.tokens.text));
         }
         job.keep_trailing_whitespace = true;
         debug_assert!(job.text.len() >= text.len());
@@ -60,20 +58,20 @@ impl LineLayout {
 
     /// Inserts composed text at the caret, if it stands in this line.
     fn compose(
-        context: &Context<'_>,
+        view: &EditorView<'_>,
         bytes: &Range<usize>,
         job: &mut LayoutJob,
         font: &FontId,
     ) -> Option<(usize, usize)> {
-        let text = &context.state.editor.composition;
-        let head = context.state.document.caret().head;
+        let text = view.composition;
+        let head = view.document.caret().head;
         if text.is_empty() || !(bytes.start..=bytes.end).contains(&head) {
             return None;
         }
         let before = std::mem::take(job);
         let at = head - bytes.start;
-        let mut format = TextFormat::simple(font.clone(), context.tokens.text);
-        format.underline = Stroke::new(1.0, context.tokens.accent);
+        let mut format = TextFormat::simple(font.clone(), view.tokens.text);
+        format.underline = Stroke::new(1.0, view.tokens.accent);
         let mut inserted = false;
         for section in &before.sections {
             let range = section.byte_range.start.0..section.byte_range.end.0;
@@ -97,25 +95,25 @@ impl LineLayout {
     }
 
     /// How far right of the line's start a byte of the document stands; behind composed text at its place.
-    pub(crate) fn x_of(&self, context: &Context<'_>, offset: usize) -> f32 {
+    pub(crate) fn x_of(&self, view: &EditorView<'_>, offset: usize) -> f32 {
         let offset = offset.clamp(self.bytes.start, self.bytes.end);
-        let text = context.state.document.text();
+        let text = view.document.text();
         let mut characters = text.get(self.bytes.start..offset).map_or(0, |before| before.chars().count());
         if self.composed.is_some_and(|(at, _)| offset >= at) {
-            characters += context.state.editor.composition.chars().count();
+            characters += view.composition.chars().count();
         }
         self.galley.pos_from_cursor(CCursor::new(characters)).left()
     }
 
     /// The byte of the document nearest to `x`, measured from the line's start.
-    pub(crate) fn offset_at(&self, context: &Context<'_>, x: f32) -> usize {
+    pub(crate) fn offset_at(&self, view: &EditorView<'_>, x: f32) -> usize {
         let cursor = self.galley.cursor_from_pos(egui::vec2(x, 1.0));
         let mut character = cursor.index.0;
-        let text = context.state.document.text().get(self.bytes.clone()).unwrap_or_default();
+        let text = view.document.text().get(self.bytes.clone()).unwrap_or_default();
         if let Some((at, _)) = self.composed {
-            let before = context.state.document.text().get(self.bytes.start..at);
+            let before = view.document.text().get(self.bytes.start..at);
             let before = before.map_or(0, |before| before.chars().count());
-            let composed = context.state.editor.composition.chars().count();
+            let composed = view.composition.chars().count();
             if character > before {
                 character = character.saturating_sub(composed).max(before);
             }

@@ -1,11 +1,13 @@
-//! The mission text: what the author typed, where the caret is, and an exact history of edits.
+//! The text: what the author typed, where the caret is, and an exact history of edits.
 //!
 //! Offsets are bytes and always lie on character boundaries; lines count from 0 and end in `\n` only. What keys do to
-//! the text is in [`crate::state::typing`].
+//! the text is in [`TextCommand`](crate::TextCommand).
 
 use std::sync::Arc;
 
 use rmpl::{Edit, Span};
+
+use crate::history::{Change, EditKind, Step, joins};
 
 /// Where text is selected: from `anchor`, where the selection began, to `head`, where the caret is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,19 +42,6 @@ impl Caret {
     }
 }
 
-/// How an edit joins the edits before it in the history.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EditKind {
-    /// Typed characters: a word and the blanks before it are undone as one.
-    Typing,
-    /// Deleted characters next to each other are undone as one.
-    Deleting,
-    /// A dragged number or place: the whole drag, known by this number, is undone as one.
-    Drag(u64),
-    /// Undone alone.
-    Single,
-}
-
 /// The text with its caret and its history.
 #[derive(Debug)]
 pub struct Document {
@@ -65,23 +54,6 @@ pub struct Document {
     undo: Vec<Step>,
     redo: Vec<Step>,
     may_join: bool,
-}
-
-/// Edits that are undone together, with the carets before and after.
-#[derive(Clone, Debug)]
-struct Step {
-    kind: EditKind,
-    changes: Vec<Change>,
-    before: Caret,
-    after: Caret,
-}
-
-/// One replacement, applied after the ones before it in its step.
-#[derive(Clone, Debug)]
-struct Change {
-    start: usize,
-    removed: String,
-    inserted: String,
 }
 
 impl Document {
@@ -315,35 +287,6 @@ impl Document {
     }
 }
 
-/// Whether `next` is undone together with `last`.
-fn joins(last: &Step, next: &Step) -> bool {
-    if last.kind != next.kind {
-        return false;
-    }
-    let (Some(before), [change]) = (last.changes.last(), next.changes.as_slice()) else {
-        return matches!(next.kind, EditKind::Drag(_));
-    };
-    match next.kind {
-        EditKind::Drag(_) => true,
-        EditKind::Single => false,
-        EditKind::Deleting => {
-            let backwards = change.start + change.removed.len() == before.start;
-            let forwards = change.start == before.start;
-            (backwards || forwards) && !change.removed.contains('\n')
-        }
-        EditKind::Typing => {
-            let adjacent = change.start == before.start + before.inserted.len();
-            let ends_blank = before.inserted.ends_with(char::is_whitespace);
-            let starts_word = change.inserted.starts_with(|c: char| !c.is_whitespace());
-            adjacent
-                && change.removed.is_empty()
-                && !change.inserted.contains('\n')
-                && !before.inserted.contains('\n')
-                && !(ends_blank && starts_word)
-        }
-    }
-}
-
 /// Where `offset` ends up when `removed` bytes at `start` become `inserted` bytes.
 fn moved(offset: usize, start: usize, removed: usize, inserted: usize) -> usize {
     if offset < start {
@@ -356,7 +299,7 @@ fn moved(offset: usize, start: usize, removed: usize, inserted: usize) -> usize 
 }
 
 /// The smallest single replacement that turns `old` into `new`.
-pub(crate) fn difference(old: &str, new: &str) -> Edit {
+pub fn difference(old: &str, new: &str) -> Edit {
     // Bytes first, because they are quick to compare; then back to character boundaries.
     let same = |(left, right): &(u8, u8)| left == right;
     let common = old.bytes().zip(new.bytes()).take_while(same).count();
@@ -384,7 +327,7 @@ fn line_starts(text: &str) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::state::typing::{Motion, TextCommand};
+    use crate::{Motion, TextCommand};
 
     fn apply(document: &mut Document, commands: &[TextCommand]) {
         for command in commands {

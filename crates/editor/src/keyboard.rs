@@ -1,96 +1,106 @@
 //! What keys, clipboard, input methods and screen readers ask of the editor while it has the focus.
 
 use egui::{Context, Event, EventFilter, Id, ImeEvent, Key, Modifiers};
-use workbench::command::{Command, EditorCommand};
-use workbench::state::{AppState, Motion, TextCommand};
+use text_editing::{Motion, TextCommand};
 
-/// The editor's widget id: who has the focus while the author types.
-pub fn editor_id() -> Id {
-    Id::unique("mission text editor")
-}
+use crate::EditorAction;
 
 /// The keys that the editor keeps for itself while it has the focus.
-pub(super) const EVENT_FILTER: EventFilter =
+pub(crate) const EVENT_FILTER: EventFilter =
     EventFilter { tab: true, horizontal_arrows: true, vertical_arrows: true, escape: false };
 
 /// Lines that a page key moves.
 const PAGE_LINES: usize = 24;
 
-/// Takes what is typed into the editor out of the input and answers it as commands, in order.
-pub fn typed_text(context: &Context, state: &AppState) -> Vec<Command> {
-    let id = editor_id();
-    let mut commands = Vec::new();
+/// What the editor is doing while keys come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Keyboard {
+    /// The editor's id.
+    pub id: Id,
+    /// Whether an input method is composing text.
+    pub is_composing: bool,
+    /// Whether a list is open at the caret.
+    pub has_popup: bool,
+    /// Whether assistive technologies may give the editor the keyboard.
+    pub can_take_focus: bool,
+}
+
+/// Takes what is typed into the editor out of the input. Returns what that asks for, in order.
+pub fn typed(context: &Context, keyboard: &Keyboard) -> Vec<EditorAction> {
+    let id = keyboard.id;
+    let mut actions = Vec::new();
     context.input_mut(|input| {
         input.consume_accesskit_action_requests(id, |request| {
-            let command = assistive(request, state);
-            let is_ours = command.is_some();
-            commands.extend(command);
+            let action = assistive(request, keyboard);
+            let is_ours = action.is_some();
+            actions.extend(action);
             is_ours
         });
     });
     if !context.memory(|memory| memory.has_focus(id)) {
-        return commands;
+        return actions;
     }
     let events = context.input(|input| input.filtered_events(&EVENT_FILTER));
-    let is_composing = !state.editor.composition.is_empty();
-    let mut has_popup = state.editor.popup.is_some();
+    let mut has_popup = keyboard.has_popup;
     for event in &events {
-        let in_popup = popup_command(event).filter(|_| has_popup);
-        let command = in_popup.map(Command::Editor).or_else(|| command_of(event, is_composing));
-        // Only the first command of a frame can mean the list: whatever it does, the list may be gone then. Keys that
-        // are let go, and the pointer, leave it.
-        if let Some(command) = &command {
-            has_popup &= matches!(command, Command::Editor(EditorCommand::MoveInPopup(_)));
+        let in_popup = popup_action(event).filter(|_| has_popup);
+        let action = in_popup.or_else(|| action_of(event, keyboard.is_composing));
+        // Only the first action of a frame can mean the list: whatever it does, the list may be gone then. Keys that are
+        // let go, and the pointer, leave it.
+        if let Some(action) = &action {
+            has_popup &= matches!(action, EditorAction::MoveInPopup(_));
         }
-        commands.extend(command);
+        actions.extend(action);
     }
-    commands
+    actions
 }
 
-fn assistive(request: &egui::accesskit::ActionRequest, state: &AppState) -> Option<Command> {
+fn assistive(request: &egui::accesskit::ActionRequest, keyboard: &Keyboard) -> Option<EditorAction> {
     use egui::accesskit::{Action, ActionData};
     match (request.action, &request.data) {
-        (Action::SetValue, Some(ActionData::Value(text))) => Some(Command::SetSource(text.to_string())),
+        (Action::SetValue, Some(ActionData::Value(text))) => Some(EditorAction::SetText(text.to_string())),
         (Action::ReplaceSelectedText, Some(ActionData::Value(text))) => {
-            Some(Command::Text(TextCommand::Paste(text.to_string())))
+            Some(EditorAction::Text(TextCommand::Paste(text.to_string())))
         }
-        (Action::Focus, _) if state.dialog.is_none() => Some(Command::Editor(EditorCommand::Focus)),
+        (Action::Focus, _) if keyboard.can_take_focus => Some(EditorAction::Focus),
         _ => None,
     }
 }
 
 /// What a key does to the list at the caret.
-fn popup_command(event: &Event) -> Option<EditorCommand> {
+fn popup_action(event: &Event) -> Option<EditorAction> {
     let Event::Key { key, pressed: true, modifiers, .. } = event else { return None };
     if !modifiers.is_none() {
         return None;
     }
     match key {
-        Key::ArrowDown => Some(EditorCommand::MoveInPopup(1)),
-        Key::ArrowUp => Some(EditorCommand::MoveInPopup(-1)),
-        Key::PageDown => Some(EditorCommand::MoveInPopup(8)),
-        Key::PageUp => Some(EditorCommand::MoveInPopup(-8)),
-        Key::Enter | Key::Tab => Some(EditorCommand::TakeFromPopup(None)),
+        Key::ArrowDown => Some(EditorAction::MoveInPopup(1)),
+        Key::ArrowUp => Some(EditorAction::MoveInPopup(-1)),
+        Key::PageDown => Some(EditorAction::MoveInPopup(8)),
+        Key::PageUp => Some(EditorAction::MoveInPopup(-8)),
+        Key::Enter | Key::Tab => Some(EditorAction::TakeFromPopup(None)),
         _ => None,
     }
 }
 
-fn command_of(event: &Event, is_composing: bool) -> Option<Command> {
+fn action_of(event: &Event, is_composing: bool) -> Option<EditorAction> {
     match event {
         Event::Text(text) if !text.is_empty() && text != "\n" && text != "\r" => {
-            Some(Command::Text(TextCommand::Insert(text.clone())))
+            Some(EditorAction::Text(TextCommand::Insert(text.clone())))
         }
-        Event::Paste(text) if !text.is_empty() => Some(Command::Text(TextCommand::Paste(text.clone()))),
-        Event::Copy => Some(Command::Editor(EditorCommand::CopySelection { cut: false })),
-        Event::Cut => Some(Command::Editor(EditorCommand::CopySelection { cut: true })),
+        Event::Paste(text) if !text.is_empty() => Some(EditorAction::Text(TextCommand::Paste(text.clone()))),
+        Event::Copy => Some(EditorAction::Copy { cut: false }),
+        Event::Cut => Some(EditorAction::Copy { cut: true }),
         Event::Ime(ImeEvent::Preedit { text, .. }) => {
-            (is_composing || !text.is_empty()).then(|| Command::Editor(EditorCommand::Compose(text.clone())))
+            (is_composing || !text.is_empty()).then(|| EditorAction::Compose(text.clone()))
         }
         Event::Ime(ImeEvent::Commit(text)) if !text.is_empty() => {
-            Some(Command::Text(TextCommand::Insert(text.clone())))
+            Some(EditorAction::Text(TextCommand::Insert(text.clone())))
         }
-        Event::Ime(ImeEvent::Commit(_)) => Some(Command::Editor(EditorCommand::Compose(String::new()))),
-        Event::Key { key, pressed: true, modifiers, .. } => text_command(*key, *modifiers).map(Command::Text),
+        Event::Ime(ImeEvent::Commit(_)) => Some(EditorAction::Compose(String::new())),
+        Event::Key { key, pressed: true, modifiers, .. } => {
+            text_command(*key, *modifiers).map(EditorAction::Text)
+        }
         _ => None,
     }
 }

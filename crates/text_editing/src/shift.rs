@@ -4,7 +4,7 @@ use rmpl::Span;
 
 /// How one text became another: a single replacement that covers all changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Shift {
+pub struct Shift {
     start: usize,
     removed: usize,
     inserted: usize,
@@ -12,7 +12,7 @@ pub(crate) struct Shift {
 
 impl Shift {
     /// The change from `old` to `new`.
-    pub(crate) fn between(old: &str, new: &str) -> Self {
+    pub fn between(old: &str, new: &str) -> Self {
         let (old, new) = (old.as_bytes(), new.as_bytes());
         let prefix = old.iter().zip(new).take_while(|(left, right)| left == right).count();
         let rest = old[prefix..].iter().rev().zip(new[prefix..].iter().rev());
@@ -21,10 +21,10 @@ impl Shift {
     }
 
     /// No change.
-    pub(crate) const NONE: Self = Self { start: 0, removed: 0, inserted: 0 };
+    pub const NONE: Self = Self { start: 0, removed: 0, inserted: 0 };
 
     /// Where a span of the old text is in the new one; `None` if all of it was replaced.
-    pub(crate) fn span(self, span: Span) -> Option<Span> {
+    pub fn span(self, span: Span) -> Option<Span> {
         let (start, end) = (self.offset(span.start as usize, true), self.offset(span.end as usize, false));
         let survives = start < end || span.start == span.end;
         survives.then(|| Span::new(start as u32, end as u32))

@@ -1,16 +1,15 @@
 //! The find bar above the text.
 
 use egui::{Button, Frame, Key, Margin, RichText, TextEdit, Ui};
+use text_editing::Find;
 use theme::icon::{self, Icon};
 use theme::space;
-use workbench::command::{Command, CommandSender, EditorCommand};
-use workbench::state::editor::Find;
 
-use crate::Context;
+use crate::{EditorAction, EditorView};
 
-/// Shows the find bar; what changes in it is sent as a whole.
-pub(crate) fn show(ui: &mut Ui, context: &Context<'_>, find: &Find, commands: &mut CommandSender) {
-    let tokens = context.tokens;
+/// Shows the find bar; what changes in it is told as a whole.
+pub(crate) fn show(ui: &mut Ui, view: &EditorView<'_>, find: &Find, actions: &mut Vec<EditorAction>) {
+    let tokens = view.tokens;
     let mut changed = find.clone();
     changed.wants_focus = false;
     Frame::new().fill(tokens.raised).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
@@ -18,15 +17,15 @@ pub(crate) fn show(ui: &mut Ui, context: &Context<'_>, find: &Find, commands: &m
             let sign = if find.replacing { Icon::ChevronDown } else { Icon::ChevronRight };
             let toggle = icon::button(ui, tokens, sign, "Replace row");
             changed.replacing ^= toggle.clicked();
-            query_field(ui, find, &mut changed, commands);
+            query_field(ui, find, &mut changed, actions);
             toggle_button(ui, "Aa", "Match case", &mut changed.case_sensitive);
             toggle_button(ui, "ab", "Whole words", &mut changed.whole_words);
             toggle_button(ui, ".*", "Regular expression", &mut changed.is_regex);
-            ui.label(RichText::new(outcome(context, find)).small().color(tokens.text_muted));
+            ui.label(RichText::new(outcome(view, find)).small().color(tokens.text_muted));
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                button(ui, context, Icon::Close, "Close find bar", EditorCommand::CloseFind, commands);
-                button(ui, context, Icon::Down, "Next match", EditorCommand::FindNext, commands);
-                button(ui, context, Icon::Up, "Previous match", EditorCommand::FindPrevious, commands);
+                button(ui, view, Icon::Close, "Close find bar", EditorAction::CloseFind, actions);
+                button(ui, view, Icon::Down, "Next match", EditorAction::FindNext, actions);
+                button(ui, view, Icon::Up, "Previous match", EditorAction::FindPrevious, actions);
             });
         });
         if find.replacing {
@@ -37,21 +36,21 @@ pub(crate) fn show(ui: &mut Ui, context: &Context<'_>, find: &Find, commands: &m
                     .desired_width(200.0);
                 ui.add(field).accessible_name("Replace by");
                 if ui.button("Replace").clicked() {
-                    commands.send(Command::Editor(EditorCommand::ReplaceOne));
+                    actions.push(EditorAction::ReplaceOne);
                 }
                 if ui.button("Replace all").clicked() {
-                    commands.send(Command::Editor(EditorCommand::ReplaceAll));
+                    actions.push(EditorAction::ReplaceAll);
                 }
             });
         }
     });
     ui.add_space(-space::XS);
     if changed != *find {
-        commands.send(Command::Editor(EditorCommand::SetFind(changed)));
+        actions.push(EditorAction::SetFind(changed));
     }
 }
 
-fn query_field(ui: &mut Ui, find: &Find, changed: &mut Find, commands: &mut CommandSender) {
+fn query_field(ui: &mut Ui, find: &Find, changed: &mut Find, actions: &mut Vec<EditorAction>) {
     let field = TextEdit::singleline(&mut changed.query).hint_text("Find").desired_width(200.0);
     let field = ui.add(field).accessible_name("Find");
     if find.wants_focus {
@@ -59,8 +58,8 @@ fn query_field(ui: &mut Ui, find: &Find, changed: &mut Find, commands: &mut Comm
     }
     let (enter, shift) = ui.input(|input| (input.key_pressed(Key::Enter), input.modifiers.shift));
     if field.lost_focus() && enter {
-        let step = if shift { EditorCommand::FindPrevious } else { EditorCommand::FindNext };
-        commands.send(Command::Editor(step));
+        let step = if shift { EditorAction::FindPrevious } else { EditorAction::FindNext };
+        actions.push(step);
         field.request_focus();
     }
 }
@@ -73,24 +72,24 @@ fn toggle_button(ui: &mut Ui, sign: &str, name: &str, value: &mut bool) {
 
 fn button(
     ui: &mut Ui,
-    context: &Context<'_>,
+    view: &EditorView<'_>,
     sign: Icon,
     name: &str,
-    command: EditorCommand,
-    commands: &mut CommandSender,
+    action: EditorAction,
+    actions: &mut Vec<EditorAction>,
 ) {
-    if icon::button(ui, context.tokens, sign, name).clicked() {
-        commands.send(Command::Editor(command));
+    if icon::button(ui, view.tokens, sign, name).clicked() {
+        actions.push(action);
     }
 }
 
 /// "2 of 7", or what is wrong with the pattern.
-fn outcome(context: &Context<'_>, find: &Find) -> String {
+fn outcome(view: &EditorView<'_>, find: &Find) -> String {
     let pattern = match find.pattern() {
         Ok(pattern) => pattern,
         Err(reason) => return reason,
     };
-    let document = &context.state.document;
+    let document = view.document;
     let caret = document.caret().range();
     let mut count = 0;
     let mut current = 0;

@@ -6,7 +6,7 @@
 use rmpl::{Edit, Span};
 use unicode_segmentation::{GraphemeCursor, UnicodeSegmentation as _};
 
-use crate::state::document::{Caret, Document, EditKind};
+use crate::{Caret, Document, EditKind};
 
 /// Blanks per level of indentation, as the formatter writes them.
 pub const INDENT: &str = "  ";

@@ -3,7 +3,24 @@
 use regex::{Regex, RegexBuilder};
 use rmpl::{Edit, Span};
 
-use crate::state::editor::Find;
+/// The find bar.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Find {
+    /// What is looked for.
+    pub query: String,
+    /// What replaces it.
+    pub replacement: String,
+    /// Whether the replacement row is open.
+    pub replacing: bool,
+    /// Whether the query is a regular expression.
+    pub is_regex: bool,
+    /// Whether upper and lower case differ.
+    pub case_sensitive: bool,
+    /// Whether only whole words match.
+    pub whole_words: bool,
+    /// Whether the query field is to take the focus.
+    pub wants_focus: bool,
+}
 
 /// What the find bar looks for, ready to search.
 #[derive(Clone, Debug)]

@@ -1,0 +1,44 @@
+//! What the editor's user wants, as commands of the workbench.
+
+use editor::{EditorAction, Keyboard};
+use egui::{Context, Id};
+use workbench::PanelKind;
+use workbench::command::{Command, EditorCommand};
+use workbench::state::AppState;
+
+/// The editor's widget id: who has the focus while the author types.
+pub fn editor_id() -> Id {
+    Id::unique("mission text editor")
+}
+
+/// Takes what is typed into the editor out of the input and answers it as commands, in order.
+pub fn typed_text(context: &Context, state: &AppState) -> Vec<Command> {
+    let keyboard = Keyboard {
+        id: editor_id(),
+        is_composing: !state.editor.composition.is_empty(),
+        has_popup: state.editor.popup.is_some(),
+        can_take_focus: state.dialog.is_none(),
+    };
+    editor::typed(context, &keyboard).into_iter().map(command).collect()
+}
+
+/// The command for what the editor's user wants.
+pub(super) fn command(action: EditorAction) -> Command {
+    Command::Editor(match action {
+        EditorAction::Text(command) => return Command::Text(command),
+        EditorAction::SetText(text) => return Command::SetSource(text),
+        EditorAction::Press => return Command::Activate(PanelKind::Editor),
+        EditorAction::Compose(text) => EditorCommand::Compose(text),
+        EditorAction::Copy { cut } => EditorCommand::CopySelection { cut },
+        EditorAction::Focus => EditorCommand::Focus,
+        EditorAction::ToggleFold(line) => EditorCommand::ToggleFold(line),
+        EditorAction::MoveInPopup(steps) => EditorCommand::MoveInPopup(steps),
+        EditorAction::TakeFromPopup(index) => EditorCommand::TakeFromPopup(index),
+        EditorAction::SetFind(find) => EditorCommand::SetFind(find),
+        EditorAction::CloseFind => EditorCommand::CloseFind,
+        EditorAction::FindNext => EditorCommand::FindNext,
+        EditorAction::FindPrevious => EditorCommand::FindPrevious,
+        EditorAction::ReplaceOne => EditorCommand::ReplaceOne,
+        EditorAction::ReplaceAll => EditorCommand::ReplaceAll,
+    })
+}

@@ -1,0 +1,19 @@
+//! A text that is edited: its lines, its caret and an exact history, what editing keys do to it, finding and replacing,
+//! and which of its lines are folded away.
+//!
+//! Everything here is a pure change of data: no key, no pointer and no pixel. The widget that shows such a text is the
+//! crate `editor`.
+
+mod document;
+mod find;
+mod history;
+mod rows;
+mod shift;
+mod typing;
+
+pub use document::{Caret, Document, difference};
+pub use find::{Find, Pattern};
+pub use history::EditKind;
+pub use rows::Rows;
+pub use shift::Shift;
+pub use typing::{INDENT, Motion, TextCommand, is_name_character, word_at};
