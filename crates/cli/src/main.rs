@@ -2,6 +2,7 @@
 
 mod commands;
 mod deadline;
+mod diagnostics;
 mod ground;
 mod input;
 mod load;

@@ -1,6 +1,6 @@
 //! How every command answers: exit status, JSON documents with diagnostics, and text for people (DESIGN 4.2).
 
-use std::io::{IsTerminal as _, Write as _};
+use std::io::Write as _;
 use std::process::ExitCode;
 
 use clap::ValueEnum;
@@ -69,42 +69,6 @@ pub fn print_text(text: &str) -> anyhow::Result<()> {
 /// Prints a line on standard error; where that is closed, there is nobody to tell.
 pub fn print_error(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
-}
-
-/// Prints diagnostics on standard error with the lines they are about, coloured only on a terminal.
-pub fn print_problems(name: &str, source: &str, problems: &[Problem]) -> anyhow::Result<()> {
-    let colored = std::io::stderr().is_terminal();
-    let mut text = String::new();
-    for problem in problems {
-        text.push_str(&describe(name, source, problem, colored));
-    }
-    std::io::stderr().lock().write_all(text.as_bytes())?;
-    Ok(())
-}
-
-fn describe(name: &str, source: &str, problem: &Problem, colored: bool) -> String {
-    let (word, color) = match problem.severity {
-        Severity::Error => ("error", "\x1b[1;31m"),
-        Severity::Warning => ("warning", "\x1b[1;33m"),
-        Severity::Note => ("note", "\x1b[1;36m"),
-    };
-    let (on, off) = if colored { (color, "\x1b[0m") } else { ("", "") };
-    let line_text = source.lines().nth(problem.line as usize - 1).unwrap_or("");
-    let in_span = source.get(problem.span.range()).unwrap_or("");
-    let first_line = in_span.lines().next().unwrap_or("");
-    let marks = "^".repeat(first_line.chars().count().max(1));
-    let margin = problem.line.to_string();
-    let blank = " ".repeat(margin.len());
-    let before: String = line_text
-        .chars()
-        .take(problem.column as usize - 1)
-        .map(|character| if character == '\t' { '\t' } else { ' ' })
-        .collect();
-    let hint = problem.hint.as_ref().map(|hint| format!("{blank} = hint: {hint}\n")).unwrap_or_default();
-    format!(
-        "{on}{word}[{}]{off}: {}\n{blank}--> {name}:{}:{}\n{blank} |\n{margin} | {line_text}\n{blank} | {before}{on}{marks}{off}\n{hint}",
-        problem.code, problem.message, problem.line, problem.column
-    )
 }
 
 /// Whether any of `problems` is an error.

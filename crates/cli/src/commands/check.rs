@@ -7,8 +7,9 @@ use anyhow::Context as _;
 use mission::{Goal, Problem};
 use serde_json::json;
 
+use crate::diagnostics::print_problems;
 use crate::input::read_text;
-use crate::output::{Format, WRONG, YES, any_error, document, exit, print_json, print_problems, print_text};
+use crate::output::{Format, WRONG, YES, any_error, document, exit, print_json, print_text};
 
 /// Reports mistakes in mission and program files.
 #[derive(clap::Args)]

@@ -11,11 +11,10 @@ use serde_json::{Value, json};
 use tpn::Window;
 
 use crate::deadline::TimeLimit;
+use crate::diagnostics::print_problems;
 use crate::input::read_text;
 use crate::load::Target;
-use crate::output::{
-    Format, NO, WRONG, YES, any_error, document, exit, print_json, print_problems, print_text,
-};
+use crate::output::{Format, NO, WRONG, YES, any_error, document, exit, print_json, print_text};
 use crate::worked_out::{WorkedOut, work_out_text};
 
 /// Compares two plans: what was added, removed, moved, re-chosen or done otherwise.

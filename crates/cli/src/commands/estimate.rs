@@ -10,8 +10,9 @@ use plant::{Belief, EstimateError, Model, State, conflicts, update_best, update_
 use serde::Deserialize;
 use serde_json::{Value, json};
 
+use crate::diagnostics::print_problems;
 use crate::input::{read_json, read_text};
-use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
+use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_text};
 
 /// The search for likely states gives up after this many nodes.
 const MAX_NODES: u32 = 1_000_000;

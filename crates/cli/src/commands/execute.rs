@@ -12,9 +12,10 @@ use serde_json::{Map, Value, json};
 use tpn::{Network, Plan, Window};
 
 use crate::deadline::TimeLimit;
+use crate::diagnostics::print_problems;
 use crate::input::read_json;
 use crate::load::{Loaded, Target};
-use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
+use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
 
 /// Says what remains possible of a plan once some of its events have happened.
 #[derive(clap::Args)]

@@ -12,8 +12,9 @@ use report::export;
 use serde_json::json;
 
 use crate::deadline::TimeLimit;
+use crate::diagnostics::print_problems;
 use crate::load::Target;
-use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
+use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
 use crate::worked_out::{WorkedOut, work_out};
 
 /// Writes a plan's schedule for other tools.

@@ -8,8 +8,9 @@ use hca::{Automaton, Element, Vocabulary};
 use mission::Problem;
 use serde_json::{Value, json};
 
+use crate::diagnostics::print_problems;
 use crate::input::read_text;
-use crate::output::{Format, WRONG, YES, any_error, document, exit, print_json, print_problems, print_text};
+use crate::output::{Format, WRONG, YES, any_error, document, exit, print_json, print_text};
 
 /// Compiles a control program to a hierarchical constraint automaton.
 #[derive(clap::Args)]

@@ -18,11 +18,10 @@ use serde_json::{Value, json};
 use tpn::{Levels, Network, Supply};
 
 use crate::deadline::TimeLimit;
+use crate::diagnostics::print_problems;
 use crate::ground::ground;
 use crate::load::{Loaded, Target, parse_threat_gap};
-use crate::output::{
-    Format, LIMIT, NO, WRONG, YES, any_error, document, exit, print_json, print_problems, print_text,
-};
+use crate::output::{Format, LIMIT, NO, WRONG, YES, any_error, document, exit, print_json, print_text};
 
 /// Plans a mission: which alternatives, which causal links, which orderings, and the window of every event.
 #[derive(clap::Args)]

@@ -8,9 +8,10 @@ use mission::review::{Line, Record, Review, Section, Status, TimeRange, review};
 use serde_json::{Value, json};
 
 use crate::deadline::TimeLimit;
+use crate::diagnostics::print_problems;
 use crate::input::read_text;
 use crate::load::Target;
-use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
+use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
 use crate::worked_out::{WorkedOut, work_out};
 
 /// Reviews a mission: a checklist of its plan, and a report that prints and needs no network.

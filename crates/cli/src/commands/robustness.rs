@@ -13,10 +13,11 @@ use mission::{Paths, RobustnessSettings, Tally, Uncertainty};
 use serde::{Deserialize, Serialize};
 
 use crate::deadline::{TimeIsUp, TimeLimit};
+use crate::diagnostics::print_problems;
 use crate::ground::ground;
 use crate::input::{read_json, read_text};
 use crate::load::Target;
-use crate::output::{Format, NO, WRONG, YES, exit, print_problems, print_text};
+use crate::output::{Format, NO, WRONG, YES, exit, print_text};
 
 /// Executes a mission's plan many times with chance: how often it reaches its end, and what breaks it.
 ///

@@ -12,8 +12,9 @@ use executive::model_based::{
 use mission::Problem;
 use serde_json::{Map, Value, json};
 
+use crate::diagnostics::print_problems;
 use crate::input::read_text;
-use crate::output::{Format, LIMIT, WRONG, YES, document, exit, print_json, print_problems, print_text};
+use crate::output::{Format, LIMIT, WRONG, YES, document, exit, print_json, print_text};
 
 /// Runs a control program against a plant model: commands, estimates and what happens.
 #[derive(clap::Args)]

@@ -14,10 +14,11 @@ use serde_json::{Value, json};
 use tpn::Network;
 
 use crate::deadline::TimeLimit;
+use crate::diagnostics::print_problems;
 use crate::ground::ground;
 use crate::input::read_json;
 use crate::load::Target;
-use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
+use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
 
 /// Executes a mission's plan in the simulated world, planning again when the plan cannot be kept.
 #[derive(clap::Args)]

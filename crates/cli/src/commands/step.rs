@@ -10,8 +10,9 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use smol_str::SmolStr;
 
+use crate::diagnostics::print_problems;
 use crate::input::{read_json, read_text};
-use crate::output::{Format, WRONG, YES, document, exit, print_json, print_problems, print_text};
+use crate::output::{Format, WRONG, YES, document, exit, print_json, print_text};
 
 /// Runs a control program on given state estimates, step by step.
 #[derive(clap::Args)]

@@ -12,8 +12,9 @@ use rmpl::{Code, Diagnostic, Span};
 use serde_json::{Map, Value, json};
 use stn::{Document, Inconsistency, Overflow, ParseError, PointId, Window};
 
+use crate::diagnostics::print_problems;
 use crate::input::read_text;
-use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
+use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
 
 /// The file is not a network in the format.
 const E_STN: Code = Code("E-STN");

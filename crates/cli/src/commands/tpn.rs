@@ -8,8 +8,9 @@ use serde_json::json;
 use tpn::Network;
 use tpn::interchange::Source;
 
+use crate::diagnostics::print_problems;
 use crate::load::{Loaded, Target};
-use crate::output::{Format, WRONG, YES, document, exit, print_json, print_problems, print_text};
+use crate::output::{Format, WRONG, YES, document, exit, print_json, print_text};
 
 /// Compiles a mission to its temporal plan network.
 #[derive(clap::Args)]

@@ -11,10 +11,11 @@ use tpn::plan_json::{PlanError, plan_from_json, selected_activities, stated_acti
 use tpn::{EventEnd, Network};
 
 use crate::deadline::TimeLimit;
+use crate::diagnostics::print_problems;
 use crate::ground::ground;
 use crate::input::read_json;
 use crate::load::{Loaded, Target, parse_threat_gap};
-use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_problems, print_text};
+use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
 
 /// Checks a plan against a mission or a network, from the definitions.
 #[derive(clap::Args)]
