@@ -87,33 +87,14 @@ fn letters(text: &str) -> u64 {
 /// The number of insertions, deletions, replacements and swaps of neighbours from one name to the other, ignoring
 /// case, if it is at most `limit`. Names that differ only in digits at the same places are different on purpose.
 pub(crate) fn edit_distance_at_most(left: &str, right: &str, limit: usize) -> Option<usize> {
-    let (left, right) = (left.as_bytes(), right.as_bytes());
-    if left.len().abs_diff(right.len()) > limit || differ_in_digits_only(left, right) {
+    let (left_bytes, right_bytes) = (left.as_bytes(), right.as_bytes());
+    // Names of very different lengths are most of all pairs, and need no closer look.
+    if left.len().abs_diff(right.len()) > limit || differ_in_digits_only(left_bytes, right_bytes) {
         return None;
     }
-    let width = right.len() + 1;
-    let mut before_previous = vec![0; width];
-    let mut previous: Vec<usize> = (0..width).collect();
-    let mut current = vec![0; width];
-    for (i, a) in left.iter().map(u8::to_ascii_lowercase).enumerate() {
-        current[0] = i + 1;
-        for (j, b) in right.iter().map(u8::to_ascii_lowercase).enumerate() {
-            let replace = previous[j] + usize::from(a != b);
-            let mut best = replace.min(previous[j + 1] + 1).min(current[j] + 1);
-            let swapped = i > 0
-                && j > 0
-                && left[i - 1].eq_ignore_ascii_case(&b)
-                && right[j - 1].eq_ignore_ascii_case(&a)
-                && a != b;
-            if swapped {
-                best = best.min(before_previous[j - 1] + 1);
-            }
-            current[j + 1] = best;
-        }
-        std::mem::swap(&mut before_previous, &mut previous);
-        std::mem::swap(&mut previous, &mut current);
-    }
-    previous.last().copied().filter(|&distance| distance <= limit)
+    let lowercase = |name: &str| name.chars().map(|c| c.to_ascii_lowercase()).collect::<SmolStr>();
+    let distance = strsim::osa_distance(&lowercase(left), &lowercase(right));
+    (distance <= limit).then_some(distance)
 }
 
 /// `PATH1` and `PATH2` are no misspellings of each other.

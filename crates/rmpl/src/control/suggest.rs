@@ -1,49 +1,48 @@
 //! The name that an author probably meant.
 
+/// Longer names are compared by this many of their first letters.
+const MAX_LETTERS: usize = 64;
+
 /// The one of `known` nearest to `word`, when it is near enough to be a slip of the fingers.
 ///
-/// Distance is the number of letters inserted, removed, replaced or swapped with a neighbour, where case counts half.
+/// Distance is the number of letters inserted, removed, replaced or swapped with a neighbour, whatever their case; of
+/// two that are equally near it is the one whose case agrees better, and then the first in the alphabet.
 pub fn nearest<'name>(word: &str, known: impl IntoIterator<Item = &'name str>) -> Option<&'name str> {
     let most = match word.chars().count() {
-        0..=1 => 1,
-        2 => 2,
-        3..=5 => 3,
-        _ => 5,
+        0..=1 => 0,
+        2..=5 => 1,
+        _ => 2,
     };
+    let written = Letters::of(word);
     known
         .into_iter()
         .filter(|name| *name != word)
-        .map(|name| (distance(word, name), name))
-        .filter(|&(distance, _)| distance <= most)
-        .min_by_key(|&(distance, name)| (distance, name))
+        .filter_map(|name| Some((written.distance(&Letters::of(name), most)?, name)))
+        .min()
         .map(|(_, name)| name)
 }
 
-/// Twice the optimal-string-alignment distance, with a difference in case alone counting one.
-fn distance(left: &str, right: &str) -> usize {
-    let left: Vec<char> = left.chars().take(64).collect();
-    let right: Vec<char> = right.chars().take(64).collect();
-    let width = right.len() + 1;
-    let mut table = vec![0; (left.len() + 1) * width];
-    let at = |row: usize, column: usize| row * width + column;
-    for row in 0..=left.len() {
-        for column in 0..width {
-            table[at(row, column)] = if row == 0 || column == 0 {
-                2 * (row + column)
-            } else {
-                let (a, b) = (left[row - 1], right[column - 1]);
-                let change = if a == b { 0 } else { 1 + usize::from(!a.eq_ignore_ascii_case(&b)) };
-                let mut best = (table[at(row - 1, column - 1)] + change)
-                    .min(table[at(row - 1, column)] + 2)
-                    .min(table[at(row, column - 1)] + 2);
-                if row > 1 && column > 1 && a == right[column - 2] && left[row - 2] == b {
-                    best = best.min(table[at(row - 2, column - 2)] + 2);
-                }
-                best
-            };
-        }
+/// The letters of a name that are compared: as they are, in lower case, and how many there are.
+struct Letters {
+    exact: String,
+    lowercase: String,
+    count: usize,
+}
+
+impl Letters {
+    fn of(name: &str) -> Self {
+        let exact: String = name.chars().take(MAX_LETTERS).collect();
+        Self { lowercase: exact.to_ascii_lowercase(), count: exact.chars().count(), exact }
     }
-    table[at(left.len(), right.len())]
+
+    /// The distances whatever the case and with it, if the first is at most `most`.
+    fn distance(&self, other: &Self, most: usize) -> Option<(usize, usize)> {
+        if self.count.abs_diff(other.count) > most {
+            return None;
+        }
+        let distance = strsim::osa_distance(&self.lowercase, &other.lowercase);
+        (distance <= most).then(|| (distance, strsim::osa_distance(&self.exact, &other.exact)))
+    }
 }
 
 #[cfg(test)]
@@ -55,5 +54,14 @@ mod tests {
         assert_eq!(nearest("Stanby", ["Off", "Standby", "Firing"]), Some("Standby"));
         assert_eq!(nearest("firing", ["Off", "Standby", "Firing"]), Some("Firing"));
         assert_eq!(nearest("Camera", ["Off", "Standby", "Firing"]), None);
+        assert_eq!(nearest("Of", ["Off", "On"]), Some("Off"));
+        assert_eq!(nearest("X", ["Y"]), None);
+    }
+
+    #[test]
+    fn case_alone_is_no_mistake_that_counts_but_decides_between_equals() {
+        assert_eq!(nearest("STANDBY", ["Off", "Standby", "Firing"]), Some("Standby"));
+        assert_eq!(nearest("Fire1", ["fire2", "Fire3"]), Some("Fire3"));
+        assert_eq!(nearest("Fire1", ["Fire3", "Fire2"]), Some("Fire2"));
     }
 }
