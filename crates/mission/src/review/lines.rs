@@ -84,7 +84,7 @@ fn plan_section(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
         return vec![places.plain(Status::Failed, why)];
     };
     let mut lines = if planning.outcome.plans.is_empty() {
-        failure(planning, places)
+        failure(planning, network, places)
     } else {
         let mut lines = vec![places.plain(Status::Passed, "there is a plan")];
         lines.extend(verdict(planning, places));
@@ -95,12 +95,12 @@ fn plan_section(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
     lines
 }
 
-fn failure(planning: &Planning, places: &Places<'_>) -> Vec<Line> {
-    let what = match planning.outcome.status {
-        kirk::Status::Limit => "planning was stopped before it had an answer",
-        kirk::Status::Error => "a time does not fit into 64 bits after scaling by the common denominator",
-        kirk::Status::NoPlan | kirk::Status::Plan => "there is no plan",
-    };
+fn failure(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<Line> {
+    let outcome = &planning.outcome;
+    let what = outcome.overflow_message(network).unwrap_or_else(|| match outcome.status {
+        kirk::Status::Limit => "planning was stopped before it had an answer".to_owned(),
+        kirk::Status::NoPlan | kirk::Status::Plan | kirk::Status::Error => "there is no plan".to_owned(),
+    });
     let mut lines = vec![places.plain(Status::Failed, what)];
     if let Some(failure) = &planning.outcome.failure {
         lines.extend(failure.reasons.iter().map(|reason| {

@@ -153,6 +153,18 @@ fn a_mission_without_a_plan_says_why_and_what_would_help() {
 }
 
 #[test]
+fn a_time_that_does_not_fit_is_said_to_with_its_event() {
+    let huge = i64::MAX / 2;
+    let source =
+        format!("scenario S = {{ delay[{huge},{huge}]; delay[{huge},{huge}]; delay[{huge},{huge}] }}");
+    let review = reviewed(&source);
+    let line = &review.plan[0];
+    assert_eq!(line.status, Status::Failed);
+    // Two of the delays fit: only the third one's end is too late.
+    assert!(line.text.ends_with("that of delay#3.end"), "{}", line.text);
+}
+
+#[test]
 fn errors_of_the_text_fail_the_review_at_their_line() {
     let review = reviewed("scenario S[0,10] = { Nothing-Here( }");
     assert_eq!(review.status, Status::Failed);
