@@ -11,8 +11,9 @@ use executive::{
     ActivityExecutor, AsPlanned, Disturbance, Ending, Entry, Facts, PlanError, Replanner, RunOutcome, Script,
     Stage, World, run_stage,
 };
-use kirk::Status;
+use rmpl::Edit;
 use rmpl::program::Program;
+use rmpl::spans::Spans as _;
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 use tpn::{Network, Plan, Window};
@@ -162,6 +163,13 @@ impl Execution {
         Self { revision, script, log: ran.outcome.log, ending: ran.outcome.ending, plans, drives: ran.drives }
     }
 
+    /// Moves all places through an edit of the text that left the mission as it is.
+    pub(crate) fn follow(&mut self, edit: &Edit) {
+        for executed in &mut self.plans {
+            Arc::make_mut(&mut executed.network).follow(edit);
+        }
+    }
+
     /// The plan that was followed at `time`, and its number from 0.
     pub fn plan_at(&self, time: f64) -> Option<(usize, &Executed)> {
         let is_made = |plan: &&Executed| plan.from.to_f64() <= time + 1e-9;
@@ -218,21 +226,19 @@ impl Replanner for WithPaths<'_, '_> {
         let problem = Problem { facts: Some(facts), options, ..*self.problem };
         let planned = planning::plan(&problem, self.grounds, self.paths, &mut || false);
         let outcome = &planned.planning.outcome;
-        match outcome.plans.first() {
-            Some(plan) => {
-                let found = (Arc::clone(&planned.network), plan.clone());
-                if let Some(courses) = self.courses {
-                    courses.borrow_mut().learn(self.problem.program, &planned);
-                }
-                self.replanned.push(planned);
-                Ok(found)
+        if let Some(plan) = outcome.plans.first() {
+            let found = (Arc::clone(&planned.network), plan.clone());
+            if let Some(courses) = self.courses {
+                courses.borrow_mut().learn(self.problem.program, &planned);
             }
-            None if outcome.status == Status::Error => Err("a time does not fit into 64 bits".to_owned()),
-            None => {
-                let reasons = outcome.failure.iter().flat_map(|failure| &failure.reasons);
-                let messages: Vec<&str> = reasons.map(|reason| reason.message.as_str()).take(3).collect();
-                Err(format!("there is no plan from here: {}", messages.join("; ")))
-            }
+            self.replanned.push(planned);
+            return Ok(found);
         }
+        if let Some(message) = outcome.overflow_message(&planned.network) {
+            return Err(message);
+        }
+        let reasons = outcome.failure.iter().flat_map(|failure| &failure.reasons);
+        let messages: Vec<&str> = reasons.map(|reason| reason.message.as_str()).take(3).collect();
+        Err(format!("there is no plan from here: {}", messages.join("; ")))
     }
 }

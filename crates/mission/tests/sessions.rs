@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
+use exact::Time;
+use executive::{Disturbance, Script};
 use mission::control_run::{Input, Moment};
 use mission::wire::{Reader, Writer};
 use mission::{
-    ContentKey, ControlProgram, ControlRun, ControlStanding, Core, CoreHost, Goal, GrowthStanding,
+    ContentKey, ControlProgram, ControlRun, ControlStanding, Core, CoreHost, Execution, Goal, GrowthStanding,
     PathGrowth, Request, Response, Snapshot, Update,
 };
 
@@ -15,6 +17,7 @@ struct Collected {
     snapshots: Vec<Arc<Snapshot>>,
     standings: Vec<ControlStanding>,
     growths: Vec<GrowthStanding>,
+    executions: Vec<Arc<Execution>>,
     /// Looks until the job is superseded.
     patience: Option<u32>,
     /// Milliseconds between two looks.
@@ -44,6 +47,7 @@ impl CoreHost for Collected {
             Response::Snapshot(snapshot) => self.snapshots.push(snapshot),
             Response::ControlRun(standing) => self.standings.push(*standing),
             Response::PathGrowth(standing) => self.growths.push(*standing),
+            Response::Execution(run) => self.executions.push(run),
             _ => {}
         }
     }
@@ -332,4 +336,48 @@ fn the_growth_of_a_tree_goes_on_and_is_the_search_itself() {
     let mut again = Collected::default();
     core.handle(Request::GrowPath(held), &mut again);
     assert!(again.growths[0].is_complete && again.growths[0].steps.is_empty());
+}
+
+const ERRAND: &str = "primitive Walk()[5,20]; primitive Rest()[1,9]; scenario S[0,40] = { Walk(); Rest() }";
+
+/// The run of `source` when the walk takes so long.
+fn walked(core: &mut Core, revision: u64, source: &str, duration: i64) -> Arc<Execution> {
+    let update = Update {
+        revision,
+        source: source.into(),
+        goal: Goal::Default,
+        search: mission::SearchKind::default(),
+        seed: 1,
+        trace: false,
+    };
+    let disturbance = Disturbance::Duration { activity: "Walk#1".into(), duration: Time::from(duration) };
+    let script = Script { disturbances: vec![disturbance] };
+    let mut collected = Collected::default();
+    core.handle(Request::Execute { update, script }, &mut collected);
+    assert_eq!(collected.executions.len(), 1);
+    collected.executions.remove(0)
+}
+
+#[test]
+fn a_run_is_kept_as_long_as_its_plan() {
+    let mut core = Core::default();
+    let first = walked(&mut core, 1, ERRAND, 7);
+    let other = walked(&mut core, 1, ERRAND, 9);
+    assert_ne!(other.log, first.log);
+    let again = walked(&mut core, 1, ERRAND, 7);
+    assert!(Arc::ptr_eq(&again, &first), "it was run again");
+    let changed = ERRAND.replace("Rest()[1,9]", "Rest()[2,9]");
+    let changed_run = walked(&mut core, 2, &changed, 7);
+    assert_eq!(*changed_run, *walked(&mut Core::default(), 2, &changed, 7));
+    assert_ne!(changed_run.log, first.log);
+}
+
+#[test]
+fn a_run_that_is_kept_moves_with_an_edit_of_a_comment() {
+    let mut core = Core::default();
+    let first = walked(&mut core, 1, ERRAND, 7);
+    let commented = format!("// A note.\n{ERRAND}");
+    let moved = walked(&mut core, 2, &commented, 7);
+    assert_eq!(*moved, *walked(&mut Core::default(), 2, &commented, 7));
+    assert_ne!(moved.plans[0].network, first.plans[0].network, "its places are those of the new text");
 }

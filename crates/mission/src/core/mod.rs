@@ -4,6 +4,7 @@
 //! kept by their inputs. The caller gives the clock, is asked whether to go on, and gets answers as stages complete.
 
 mod control_run;
+mod executions;
 mod path_growth;
 mod planned;
 mod running;

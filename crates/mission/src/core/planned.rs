@@ -9,6 +9,7 @@ use rmpl::spans::Spans as _;
 use terrain::Terrain;
 use tpn::Network;
 
+use super::executions::Executions;
 use super::{ContentKey, Core, CoreHost, Keyed, Keys, Reading, TRACE_EVENTS};
 use crate::planning::{self, Planned};
 use crate::request::Update;
@@ -25,6 +26,7 @@ pub(super) struct Last {
     seed: u64,
     pub(super) planned: Planned,
     pub(super) shown: Shown,
+    pub(super) executions: Executions,
 }
 
 /// What is shown of a plan.
@@ -91,6 +93,7 @@ impl Last {
             Arc::make_mut(&mut self.planned.planning).follow(edit);
         }
         self.planned.warnings.follow(edit);
+        self.executions.follow(edit);
         self.shown.network.value = Arc::clone(&self.planned.network);
         self.shown.planning.value = Arc::clone(&self.planned.planning);
     }
@@ -139,6 +142,8 @@ impl Core {
         let structure = network.key;
         let network = Arc::clone(&network.value);
         let seed = update.seed;
-        Some(self.last.insert(Last { structure, network, program, map, options, seed, planned, shown }))
+        let executions = Executions::default();
+        let last = Last { structure, network, program, map, options, seed, planned, shown, executions };
+        Some(self.last.insert(last))
     }
 }

@@ -54,6 +54,10 @@ impl Core {
         let revision = update.revision;
         let Some(evaluated) = self.evaluate(update, host) else { return };
         let executed = evaluated.and_then(|evaluated| {
+            // The plan that is kept is that of the text, and so are its runs.
+            if let Some(run) = self.last.as_mut().and_then(|last| last.executions.find(&script, revision)) {
+                return Ok(run);
+            }
             let unknown = execution::unknown(&evaluated.network, &evaluated.program, &script.disturbances);
             if !unknown.is_empty() {
                 return Err(format!("the mission has no {}", unknown.join(", ")));
@@ -66,11 +70,16 @@ impl Core {
             let disturbances = &script.disturbances;
             execution::execute(&problem, &evaluated.planned, disturbances, &mut self.grounds, &mut self.paths)
                 .ok_or_else(|| NO_PLAN.to_owned())?
-                .map(|ran| Execution::new(revision, script, &evaluated.program, &evaluated.planned, ran))
+                .map(|ran| {
+                    let (program, planned) = (&evaluated.program, &evaluated.planned);
+                    let run = Arc::new(Execution::new(revision, script, program, planned, ran));
+                    self.last.iter_mut().for_each(|last| last.executions.keep(Arc::clone(&run)));
+                    run
+                })
                 .map_err(|error| error.to_string())
         });
         host.answer(match executed {
-            Ok(execution) => Response::Execution(Arc::new(execution)),
+            Ok(run) => Response::Execution(run),
             Err(reason) => Response::NotExecuted { revision, reason },
         });
     }
