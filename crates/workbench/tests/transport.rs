@@ -141,3 +141,78 @@ fn a_growth_has_the_keys_while_the_user_is_on_the_terrain() {
     app.run(Command::Terrain(TerrainCommand::Growth(GrowthCommand::Close)));
     assert_eq!(app.session.state().track(), Track::Plan);
 }
+
+/// Lets time go by; returns the seconds after which the next frame is due.
+fn wait(app: &mut App, seconds: f64) -> Option<f64> {
+    app.world.now_secs.set(app.world.now_secs.get() + seconds);
+    app.session.begin_frame()
+}
+
+#[test]
+fn what_plays_goes_on_by_itself_and_asks_for_frames_as_long_as_it_plays() {
+    for track in ALL {
+        let mut app = driving(track);
+        drive(&mut app, TransportCommand::Start);
+        app.settle();
+        let start = places(&app);
+        for _ in 0..20 {
+            wait(&mut app, 0.25);
+        }
+        assert_eq!(places(&app), start, "{track:?} does not play");
+        app.session.apply(vec![Command::Transport(TransportCommand::TogglePlaying)]);
+        let due = wait(&mut app, 0.0);
+        assert!(due.is_some_and(|secs| secs <= 0.05), "{track:?}: {due:?}");
+        for _ in 0..20 {
+            wait(&mut app, 0.25);
+        }
+        let later = places(&app);
+        for (place, (before, after)) in start.into_iter().zip(later).enumerate() {
+            assert_eq!(after > before, place == index(track), "{track:?}: {start:?} to {later:?}");
+        }
+    }
+}
+
+#[test]
+fn time_goes_as_fast_as_it_is_set_within_limits_and_a_hidden_page_goes_on_where_it_was() {
+    let mut app = driving(Track::Plan);
+    app.session.apply(vec![Command::Transport(TransportCommand::TogglePlaying)]);
+    let gone = |app: &mut App, seconds: f64| {
+        let before = app.session.state().playback.time;
+        wait(app, seconds);
+        app.session.state().playback.time - before
+    };
+    // A whole mission takes half a minute.
+    let normal = gone(&mut app, 0.15);
+    let end = app.session.state().playback.end;
+    assert!((normal - end * 0.15 / 30.0).abs() < 1e-9, "{normal} of {end}");
+    app.session.apply(vec![Command::SetRate(4.0)]);
+    let faster = gone(&mut app, 0.15);
+    assert!((faster - 4.0 * normal).abs() < 1e-9, "{faster} and {normal}");
+    app.session.apply(vec![Command::SetRate(1.0)]);
+    let hidden = gone(&mut app, 3600.0);
+    assert!((hidden - end * 0.25 / 30.0).abs() < 1e-9, "{hidden} of {end}");
+    for (asked, rate) in [(1e9, 64.0), (1e-9, 0.125), (2.0, 2.0)] {
+        app.session.apply(vec![Command::SetRate(asked)]);
+        assert_eq!(app.session.state().playback.rate, rate);
+    }
+}
+
+#[test]
+fn a_step_of_time_goes_to_the_next_event_and_playing_at_the_end_starts_over() {
+    let mut app = driving(Track::Plan);
+    app.run(Command::OpenSource {
+        name: "errand".into(),
+        source: "scenario S[0,40] = { delay[5,20]; delay[3,9] }".into(),
+    });
+    let mut times = Vec::new();
+    for _ in 0..3 {
+        drive(&mut app, TransportCommand::Step(true));
+        times.push(app.session.state().playback.time);
+    }
+    assert_eq!(times, [5.0, 8.0, 8.0]);
+    drive(&mut app, TransportCommand::Step(false));
+    assert_eq!(app.session.state().playback.time, 5.0);
+    drive(&mut app, TransportCommand::End);
+    app.session.apply(vec![Command::Transport(TransportCommand::TogglePlaying)]);
+    assert_eq!((app.session.state().playback.time, app.session.state().is_playing()), (0.0, true));
+}
