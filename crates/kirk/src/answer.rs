@@ -38,6 +38,7 @@ pub(crate) fn answer(
         let mut failure = explain::explain(network, model, termination)?;
         if options.relax {
             failure.relaxations = relax::relaxations(network, model, &failure, termination)?;
+            failure.is_of_gap = relax::has_plan_without_gap(network, model, options, termination)?;
         }
         outcome.failure = Some(failure);
     }

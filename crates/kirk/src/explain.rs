@@ -95,7 +95,12 @@ pub(crate) fn explain(
     let mut effort = Effort::for_size(model.num_nodes, termination);
     if demanding::has_demands(model) {
         let reasons: Vec<Reason> = whole::reason(network, model, &mut effort).into_iter().collect();
-        return Ok(Failure { is_complete: !reasons.is_empty(), reasons, relaxations: Vec::new() });
+        return Ok(Failure {
+            is_complete: !reasons.is_empty(),
+            reasons,
+            relaxations: Vec::new(),
+            is_of_gap: false,
+        });
     }
     let setup = Setup { jumps: true, records_failures: true, ..Setup::default() };
     let mut engine = Engine::new(model, setup);
@@ -112,9 +117,9 @@ pub(crate) fn explain(
     }
     if !is_complete && let Some(reason) = whole::reason(network, model, &mut effort) {
         reasons.insert(0, reason);
-        return Ok(Failure { reasons, is_complete: true, relaxations: Vec::new() });
+        return Ok(Failure { reasons, is_complete: true, relaxations: Vec::new(), is_of_gap: false });
     }
-    Ok(Failure { reasons, is_complete, relaxations: Vec::new() })
+    Ok(Failure { reasons, is_complete, relaxations: Vec::new(), is_of_gap: false })
 }
 
 fn reason(

@@ -18,6 +18,9 @@ pub struct Failure {
     /// Changes of one bound each that make the mission plannable, the smallest relative change first.
     /// Every one has been planned.
     pub relaxations: Vec<Relaxation>,
+    /// Whether the mission has a plan if conflicting intervals may touch, without the gap of SPEC 5.3; found by planning.
+    #[serde(default)]
+    pub is_of_gap: bool,
 }
 
 /// What kind of contradiction.
@@ -99,7 +102,22 @@ pub struct Relaxation {
     pub label: String,
 }
 
+/// What [`Failure::is_of_gap`] offers, as an imperative.
+pub const GAP_LABEL: &str = "let conflicting conditions touch: option threat_gap = 0;";
+
 impl Failure {
+    /// The changes that give a plan, in the author's terms.
+    pub fn labels(&self) -> Vec<&str> {
+        let gap = self.is_of_gap.then_some(GAP_LABEL);
+        gap.into_iter().chain(self.relaxations.iter().map(|change| change.label.as_str())).collect()
+    }
+
+    /// The option that takes the gap away, as an edit of the text, if that gives a plan.
+    pub fn gap_fix(&self, source: &str) -> Option<Fix> {
+        let edit = || rmpl::editor::set_option(&rmpl::parse(source), "threat_gap", "0");
+        self.is_of_gap.then(|| Fix { label: GAP_LABEL.to_owned(), edits: vec![edit()] })
+    }
+
     /// The kinds of all reasons, without repeats.
     pub fn kinds(&self) -> Vec<FailureKind> {
         let mut kinds: Vec<FailureKind> = self.reasons.iter().map(|reason| reason.kind).collect();
@@ -114,11 +132,12 @@ impl Relaxation {
     pub fn fix(&self, source: &str) -> Option<Fix> {
         let span = self.span?;
         let text = source.get(span.range())?;
-        let inside = text.strip_prefix('[')?.strip_suffix(']')?;
+        let open = text.find('[').filter(|&open| matches!(text[..open].trim_end(), "" | "contingent"))?;
+        let inside = text[open + 1..].strip_suffix(']')?;
         let comma = top_level_comma(inside)?;
         let (lower, upper) = (&inside[..comma], &inside[comma + 1..]);
         let (side, offset) = if self.is_lower { (lower, 0) } else { (upper, comma + 1) };
-        let start = span.start as usize + 1 + offset + (side.len() - side.trim_start().len());
+        let start = span.start as usize + open + 1 + offset + (side.len() - side.trim_start().len());
         let end = start + side.trim().len();
         let edit = rmpl::Edit { span: Span::new(start as u32, end as u32), text: self.new.decimal()? };
         Some(Fix { label: self.label.clone(), edits: vec![edit] })

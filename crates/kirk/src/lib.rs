@@ -39,7 +39,7 @@ use tpn::Network;
 
 pub use demanding::has_open_order;
 pub use explain::is_conflict;
-pub use failure::{Failure, FailureKind, Member, Reason, Relaxation};
+pub use failure::{Failure, FailureKind, GAP_LABEL, Member, Reason, Relaxation};
 pub use options::{ExpansionLimit, Options, Outcome, Search, Stats, Status, Termination, Unlimited};
 pub use planner::Planner;
 pub use replay::{Replay, ReplayStep};

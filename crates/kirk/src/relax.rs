@@ -9,12 +9,12 @@ use tpn::{ArcId, Network};
 use crate::explain::{Effort, MAX_BACKTRACKS};
 use crate::failure::{Failure, Member, Relaxation};
 use crate::model::{INFINITE, Model};
-use crate::options::{Stats, Termination};
+use crate::options::{Options, Search, Stats, Status, Termination};
 use crate::overflow::TimeOverflow;
 use crate::search::{Engine, Gaps, Halt, Setup};
 use crate::solver::{Answer, Part};
 use crate::trace::Constraint;
-use crate::{demanding, wording};
+use crate::{answer, demanding, wording};
 
 /// At most so many are offered.
 const MAX_RELAXATIONS: usize = 8;
@@ -38,6 +38,38 @@ pub(crate) fn relaxations(
     found.sort_by(|left, right| cost(left).cmp(&cost(right)).then(left.arc.cmp(&right.arc)));
     found.truncate(MAX_RELAXATIONS);
     Ok(found)
+}
+
+/// Planning without the gap may meet so many conflicts.
+const MAX_CONFLICTS: u64 = 10_000;
+
+/// Whether there is a plan if conflicting intervals may touch.
+pub(crate) fn has_plan_without_gap(
+    network: &Network,
+    model: &Model,
+    options: &Options,
+    termination: &mut dyn Termination,
+) -> Result<bool, TimeOverflow> {
+    let has_conflicts = model.conditions.variables.iter().any(|variable| variable.labels.len() > 1);
+    if model.gap == 0 || !has_conflicts {
+        return Ok(false);
+    }
+    let options = Options {
+        search: Search::ConflictDirected,
+        all: false,
+        best: 1,
+        explain: false,
+        relax: false,
+        trace_events: None,
+        threat_gap: Some(Time::ZERO),
+        ..*options
+    };
+    let mut enough = |stats: &Stats| {
+        termination.should_stop(stats) || stats.conflicts.max(stats.backtracks) > MAX_CONFLICTS
+    };
+    let without = Model::new(network, options.threat_gap)?;
+    let (outcome, _) = answer::answer(network, &without, &options, &mut enough)?;
+    Ok(outcome.status == Status::Plan)
 }
 
 /// Bounds of the conflicts, those with the same text together.

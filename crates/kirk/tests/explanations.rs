@@ -149,3 +149,24 @@ fn a_job_shop_one_below_its_optimum_is_explained() {
         failure.relaxations
     );
 }
+
+#[test]
+fn a_plan_that_only_the_gap_prevents_is_offered() {
+    let idiom = "var GO : {OK, NO}; primitive Wait()[5,30]; primitive Explore()[2,2];
+        scenario S[0,60] = { { do { Wait() } watching GO=OK; if GO=OK thennext Explore() }, { delay[5,20]; GO=OK[10,10] } }"
+        .to_owned();
+    let failure = kirk::plan(&network(&idiom), &Options::default(), &mut Unlimited).failure;
+    let failure = failure.expect("the wait is over a gap before GO, and the guard is asked within it");
+    assert!(failure.is_of_gap, "{failure:?}");
+    assert_eq!(failure.labels()[0], kirk::GAP_LABEL);
+    let fix = failure.gap_fix(&idiom).expect("it is offered");
+    let edit = &fix.edits[0];
+    let mut mended = idiom.clone();
+    mended.replace_range(edit.span.range(), &edit.text);
+    assert!(mended.contains("option threat_gap = 0;"), "{mended}");
+    assert!(kirk::plan(&network(&mended), &Options::default(), &mut Unlimited).failure.is_none(), "{mended}");
+    // What has no plan anyway has none without a gap.
+    let none = "primitive A()[5,9]; scenario S[0,3] = { A() }";
+    let failure = kirk::plan(&network(none), &Options::default(), &mut Unlimited).failure.expect("too short");
+    assert!(!failure.is_of_gap && failure.gap_fix(none).is_none());
+}

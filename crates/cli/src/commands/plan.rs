@@ -261,6 +261,7 @@ fn failure_json(failure: &Failure, loaded: &Loaded) -> Value {
         "reasons": reasons,
         "complete": failure.is_complete,
         "relaxations": relaxations,
+        "gap": failure.is_of_gap,
     })
 }
 
@@ -387,8 +388,8 @@ fn failure_text(failure: &Failure, loaded: &Loaded) -> String {
     if !failure.is_complete {
         text.push_str("there are more reasons than are listed\n");
     }
-    for relaxation in &failure.relaxations {
-        text.push_str(&format!("it would have a plan: {}\n", relaxation.label));
+    for label in failure.labels() {
+        text.push_str(&format!("it would have a plan: {label}\n"));
     }
     text
 }

@@ -108,6 +108,10 @@ fn failure(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<L
             let span = reason.spans.first().copied();
             places.line(Status::Failed, reason.message.clone(), span, names, Vec::new())
         }));
+        if failure.is_of_gap {
+            let text = format!("it would have a plan: {}", kirk::GAP_LABEL);
+            lines.push(places.line(Status::Attention, text, None, Vec::new(), Vec::new()));
+        }
         lines.extend(failure.relaxations.iter().map(|change| {
             let text = format!("it would have a plan: {}", change.label);
             places.line(Status::Attention, text, change.span, Vec::new(), Vec::new())

@@ -42,11 +42,20 @@ pub(crate) fn show(
         let note = "There are more combinations of choices than can be listed; all of them fail.";
         ui.label(RichText::new(note).color(tokens.text_muted));
     }
-    if failure.relaxations.is_empty() {
+    if failure.labels().is_empty() {
         return;
     }
     section(ui, context, "What would give a plan", "each change alone, the smallest first");
     let source = context.snapshot.map(|snapshot| snapshot.source.as_ref()).unwrap_or_default();
+    if let Some(fix) = failure.gap_fix(source) {
+        ui.horizontal(|ui| {
+            icon::label(ui, Icon::Fix, tokens.accent);
+            let button = ui.add_enabled(!context.is_stale, egui::Button::new(&fix.label).wrap());
+            if button.accessible_name(format!("Fix: {}", fix.label)).clicked() {
+                commands.send(Command::Edit { edits: fix.edits, kind: EditKind::Single });
+            }
+        });
+    }
     for relaxation in &failure.relaxations {
         let fix = relaxation.fix(source);
         ui.horizontal(|ui| {

@@ -1,6 +1,7 @@
 //! Quick fixes at a place.
 
-use crate::diagnostic::{Diagnostic, Fix};
+use super::outline::{OutlineKind, outline};
+use crate::diagnostic::{Diagnostic, Edit, Fix};
 use crate::parse::Parse;
 use crate::span::Span;
 
@@ -14,4 +15,18 @@ pub fn fixes_at(parse: &Parse, range: Span) -> Vec<(Diagnostic, Fix)> {
             fixes.into_iter().map(move |fix| (found.clone(), fix))
         })
         .collect()
+}
+
+/// Gives an option a value: where it is set, or else in a line of its own before the first declaration with a name.
+pub fn set_option(parse: &Parse, name: &str, value: &str) -> Edit {
+    let declarations = outline(parse);
+    let text = format!("option {name} = {value};");
+    let set = declarations.iter().find(|item| item.kind == OutlineKind::Option && item.name == name);
+    match (set, declarations.first()) {
+        (Some(set), _) => Edit { span: set.span, text },
+        (None, first) => {
+            let start = first.map_or(0, |first| first.span.start);
+            Edit { span: Span::new(start, start), text: format!("{text}\n") }
+        }
+    }
 }

@@ -318,7 +318,7 @@ fn failure_of(network: &Network, failure: &kirk::Failure) -> Failure {
     Failure {
         reasons: reasons.collect(),
         conditions: conditions.collect(),
-        relaxations: failure.relaxations.iter().map(|it| it.label.clone()).collect(),
+        relaxations: failure.labels().into_iter().map(str::to_owned).collect(),
     }
 }
 
