@@ -1,6 +1,6 @@
 //! Who carries an activity out: between its start, which the plan decides, and its end, which is reported.
 
-use exact::{Overflow, Time};
+use exact::{Overflow, Rational, Time};
 use tpn::{EventRef, Network, OccurrenceId};
 
 use crate::log::Entry;
@@ -14,6 +14,9 @@ pub struct ActivityExecution {
     pub entries: Vec<Entry>,
     /// After how long a traverse passes the vertices of its path, in order; one that is not listed is passed as planned.
     pub passes: Vec<(EventRef, Time)>,
+    /// After how long a traverse has driven how many metres more than its path has, or fewer, in order of time: as soon as
+    /// it has driven more, and when it is there.
+    pub extra_metres: Vec<(Time, Rational)>,
 }
 
 /// When an activity will be over.

@@ -1,8 +1,13 @@
 //! A network with what has happened so far, for planning again (SPEC 6.2): executed events keep their times, all
 //! others come later, and the world's news replace what the program said.
 
-use exact::{Bound, Time};
-use tpn::{Arc, ArcId, ArcKind, EventRef, Network, NodeId, OccurrenceId, Role};
+use exact::{Bound, Rational, Time};
+use rmpl::program::{Change, LabelMode};
+use smol_str::format_smolstr;
+use tpn::{
+    Arc, ArcId, ArcKind, EventRef, Extent, Label, LabelId, Literal, Network, Node, NodeId, Occurrence,
+    OccurrenceId, OccurrenceKind, Plan, ResourceId, Role, Use, UseId, ValueId, ValueSet, VariableId,
+};
 
 /// What has happened and what is known at a moment.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,6 +22,10 @@ pub struct Facts {
     pub durations: Vec<(OccurrenceId, Time)>,
     /// Conditions that begin at this time.
     pub begins: Vec<(OccurrenceId, Time)>,
+    /// Values that the world gave to variables that last, and when.
+    pub states: Vec<(VariableId, ValueId, Time)>,
+    /// By how much levels changed that nobody planned to change, and when.
+    pub levels: Vec<(ResourceId, Rational, Time)>,
 }
 
 /// A lower bound that binds nothing: no mission is longer.
@@ -67,7 +76,54 @@ impl Facts {
                 add_back_arc(&mut changed, start, time.max(self.now), time.max(self.now));
             }
         }
+        for &(variable, value, at) in &self.states {
+            add_state(&mut changed, variable, value, at);
+        }
+        for &(resource, by, at) in &self.levels {
+            add_level(&mut changed, resource, by, at);
+        }
         changed
+    }
+
+    /// How many events of the world's own a network with these facts ends with.
+    pub fn num_world_events(&self) -> usize {
+        self.states.len() + self.levels.len()
+    }
+
+    /// The world's own events in a network with these facts, and when they happened.
+    pub fn world_nodes(&self, network: &Network) -> impl Iterator<Item = (Time, NodeId)> + '_ {
+        let first = network.nodes.len() - self.num_world_events();
+        let times = self.states.iter().map(|&(.., at)| at).chain(self.levels.iter().map(|&(.., at)| at));
+        times.enumerate().map(move |(index, at)| (at, NodeId::from_index(first + index)))
+    }
+
+    /// A network and its plan without what these facts have added to it; what they say of durations stays.
+    pub fn remove(&self, network: &mut Network, plan: &mut Plan) {
+        let num_nodes = network.nodes.len() - self.num_world_events();
+        let is_own =
+            |arc: &Arc| arc.to != network.start && arc.from.index() < num_nodes && arc.to.index() < num_nodes;
+        let num_arcs = network.arcs.iter().rposition(is_own).map_or(0, |last| last + 1);
+        let num_labels = network.labels.len() - self.states.len();
+        let num_uses = network.uses.len() - self.levels.len();
+        network.nodes.truncate(num_nodes);
+        network.arcs.truncate(num_arcs);
+        network.labels.truncate(num_labels);
+        network.uses.truncate(num_uses);
+        network.occurrences.truncate(network.occurrences.len() - self.num_world_events());
+        for node in &mut network.nodes {
+            node.out_arcs.retain(|arc| arc.index() < num_arcs);
+            node.in_arcs.retain(|arc| arc.index() < num_arcs);
+        }
+        let is_label = |label: LabelId| label.index() < num_labels;
+        let is_use = |used: UseId| used.index() < num_uses;
+        plan.selected_nodes.truncate(num_nodes);
+        plan.windows.truncate(num_nodes);
+        plan.selected_arcs.truncate(num_arcs);
+        plan.causal_links.retain(|link| is_label(link.ask) && is_label(link.tell));
+        for orders in [&mut plan.conflict_order, &mut plan.orderings_added] {
+            orders.retain(|order| is_label(order.first) && is_label(order.then));
+        }
+        plan.uses_ordered.retain(|order| is_use(order.first) && is_use(order.then));
     }
 }
 
@@ -91,6 +147,83 @@ fn add_back_arc(network: &mut Network, node: NodeId, earliest: Time, latest: Tim
     });
     network.nodes[node.index()].out_arcs.push(id);
     network.nodes[start.index()].in_arcs.push(id);
+}
+
+/// An event of the world at a time that has come, with an arc that begins at it. Planning takes it as one more event that
+/// keeps its time; nothing else is tied to it.
+fn add_world_event(network: &mut Network, at: Time) -> (NodeId, ArcId, OccurrenceId) {
+    let node = NodeId::from_index(network.nodes.len());
+    network.nodes.push(Node { role: Role::Event, ..Node::default() });
+    let forth = ArcId::from_index(network.arcs.len());
+    let start = network.start;
+    network.arcs.push(Arc {
+        from: start,
+        to: node,
+        lower: at,
+        upper: Bound::Finite(at),
+        kind: ArcKind::Span,
+        labels: Vec::new(),
+        occurrence: None,
+        choice: None,
+        span: None,
+    });
+    network.nodes[start.index()].out_arcs.push(forth);
+    network.nodes[node.index()].in_arcs.push(forth);
+    let back = ArcId::from_index(network.arcs.len());
+    add_back_arc(network, node, at, at);
+    let owner = OccurrenceId::from_index(network.occurrences.len());
+    let count = network.occurrences.iter().filter(|it| it.activity == WORLD).count() + 1;
+    network.occurrences.push(Occurrence {
+        name: format_smolstr!("{WORLD}#{count}"),
+        activity: WORLD.into(),
+        kind: OccurrenceKind::Scope,
+        start: node,
+        end: node,
+        arc: None,
+        arguments: Vec::new(),
+        parent: None,
+        span: None,
+    });
+    (node, back, owner)
+}
+
+/// Who does what disturbances do, in explanations.
+const WORLD: &str = "the-world";
+
+/// A variable that lasts has a value from a time on.
+fn add_state(network: &mut Network, variable: VariableId, value: ValueId, at: Time) {
+    let (_, arc, owner) = add_world_event(network, at);
+    let of = &network.variables[variable.index()];
+    let text = format_smolstr!("{}={}", of.name, of.values[value.index()]);
+    let id = LabelId::from_index(network.labels.len());
+    network.labels.push(Label {
+        arc,
+        mode: LabelMode::Tell,
+        extent: Extent::Start,
+        literal: Literal { variable, values: ValueSet::In(vec![value]) },
+        text,
+        owner: Some(owner),
+        span: None,
+    });
+    network.arcs[arc.index()].labels.push(id);
+}
+
+/// A level changes by so much.
+fn add_level(network: &mut Network, resource: ResourceId, by: Rational, at: Time) {
+    let (node, arc, owner) = add_world_event(network, at);
+    let change = if by.is_negative() { Change::Consumes } else { Change::Produces };
+    let amount = if by.is_negative() { by.checked_neg().unwrap_or_default() } else { by };
+    network.uses.push(Use {
+        resource,
+        change,
+        amount,
+        per_metre: Rational::ZERO,
+        arc,
+        start: node,
+        end: node,
+        owner: Some(owner),
+        span: None,
+    });
 }
 
 fn set_duration(network: &mut Network, occurrence: OccurrenceId, duration: Time) {

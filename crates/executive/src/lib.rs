@@ -13,6 +13,7 @@ pub mod progress;
 pub mod run;
 pub mod stage;
 pub mod world;
+mod world_state;
 
 pub use activity_execution::{ActivityExecution, ActivityExecutor, AsPlanned, Ends};
 pub use dispatch::Dispatcher;
@@ -23,4 +24,4 @@ pub use plan_network::{PlanError, PlanNetwork};
 pub use progress::{Observations, Progress, progress};
 pub use run::{Replanner, RunOutcome, run, run_stage};
 pub use stage::{ExecutedPlan, Stage};
-pub use world::{Disturbance, Script, World};
+pub use world::{Disturbance, Script, World, WorldChange};

@@ -1,6 +1,6 @@
 //! What happened in a run, in order. A log with its mission, seed and disturbances replays exactly.
 
-use exact::Time;
+use exact::{Rational, Time};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
@@ -30,6 +30,24 @@ pub enum Happening {
         /// What was done.
         text: String,
     },
+    /// A variable that lasts changes (SPEC 10).
+    State {
+        /// Its name; that of a vehicle's place is `Rover1.at`.
+        variable: SmolStr,
+        /// The value from now on; absent while it is changing.
+        value: Option<SmolStr>,
+        /// The activity or assertion that changes it; absent if it is the world.
+        by: Option<SmolStr>,
+    },
+    /// How far a resource is used changes (SPEC 11).
+    Level {
+        /// Its name.
+        resource: SmolStr,
+        /// The level of a reservoir; of another resource what is in use.
+        level: Rational,
+        /// The activity that takes or gives; absent if it is the world.
+        by: Option<SmolStr>,
+    },
     /// The plan can no longer be kept.
     Violation {
         /// The event that broke it.
@@ -49,6 +67,19 @@ pub enum Happening {
     },
     /// The mission is over.
     Finished,
+}
+
+impl Happening {
+    /// A change of the world's state for people: `ARM=OUT by Deploy#1`; `None` for anything else.
+    pub fn state_words(&self) -> Option<String> {
+        let (what, by) = match self {
+            Self::State { variable, value: Some(value), by } => (format!("{variable}={value}"), by),
+            Self::State { variable, value: None, by } => (format!("{variable} is changing"), by),
+            Self::Level { resource, level, by } => (format!("{resource} is at {}", level.readable()), by),
+            _ => return None,
+        };
+        Some(format!("{what} by {}", by.as_deref().unwrap_or("the world")))
+    }
 }
 
 /// How a run ended.

@@ -4,13 +4,15 @@
 //! log. Start events call their activities, and events that only the plan restricts happen as early as they may. What
 //! the world decides comes when the world says so: if that is outside the event's window, the plan is violated.
 
+mod states;
+
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
-use exact::{Overflow, Time};
+use exact::{Overflow, Rational, Time};
 use smol_str::SmolStr;
 use stn::PointId;
-use tpn::{EventEnd, EventRef, Network, NodeId, OccurrenceId, OccurrenceKind, Plan};
+use tpn::{EventEnd, EventRef, Network, NodeId, OccurrenceId, OccurrenceKind, Plan, ResourceId};
 
 use crate::activity_execution::{ActivityExecutor, AsPlanned, Ends};
 use crate::dispatch::SettleError;
@@ -19,6 +21,8 @@ use crate::log::{Ending, Entry, Happening};
 use crate::plan_network::PlanError;
 use crate::stage::{ExecutedPlan, Stage};
 use crate::world::World;
+use crate::world_state::WorldState;
+use states::Odometer;
 
 /// Makes a new plan from facts.
 pub trait Replanner {
@@ -69,6 +73,7 @@ pub fn run_stage(
     replanner: &mut dyn Replanner,
 ) -> Result<RunOutcome, PlanError> {
     let mut run = Run {
+        state: WorldState::new(&stage.network),
         stage,
         num_program_nodes,
         world,
@@ -78,6 +83,10 @@ pub fn run_stage(
         coming: VecDeque::new(),
         executions: BTreeMap::new(),
         passes: Vec::new(),
+        odometers: VecDeque::new(),
+        extra_m: BTreeMap::new(),
+        num_changes: 0,
+        off_plan: BTreeMap::new(),
         news: Facts::default(),
         plans: Vec::new(),
     };
@@ -100,6 +109,16 @@ struct Run<'a> {
     executions: BTreeMap<OccurrenceId, Ends>,
     /// After how long from their traverse's start path vertices are passed.
     passes: Vec<(EventRef, Time)>,
+    /// What is so in the world.
+    state: WorldState,
+    /// How far the traverses under way will have driven, in order of time.
+    odometers: VecDeque<Odometer>,
+    /// How many metres more than their paths have traverses have driven so far.
+    extra_m: BTreeMap<OccurrenceId, Rational>,
+    /// How many of the world's changes have happened.
+    num_changes: usize,
+    /// How far reservoirs have come off the present plan by what nobody planned.
+    off_plan: BTreeMap<ResourceId, Rational>,
     /// What the world has made known against the plan, kept over all replans.
     news: Facts,
     /// The plans that were given up.
@@ -153,10 +172,18 @@ impl Run<'_> {
                 self.write(Happening::Stopped { reason: "nothing can happen any more".to_owned() });
                 return Ok(Ending::Stopped);
             };
-            self.advance(next.time);
-            let violation = match next.violation {
+            let now = self.now;
+            let violation = match self.let_world_act(next.time)? {
                 Some(violation) => Some(violation),
-                None => self.happen(next.point)?,
+                // What is next may be otherwise now.
+                None if self.now > now => continue,
+                None => {
+                    self.advance(next.time);
+                    match next.violation {
+                        Some(violation) => Some(violation),
+                        None => self.happen(next.point)?,
+                    }
+                }
             };
             let Some(violation) = violation else { continue };
             let Violation { name, reason, news, is_final } = violation;
@@ -175,6 +202,9 @@ impl Run<'_> {
 
     /// Time goes on; what is seen of the activities under way is written down.
     fn advance(&mut self, time: Time) {
+        if time > self.now {
+            self.state.advance();
+        }
         while let Some((occurrence, entry)) = self.coming.pop_front_if(|(_, entry)| entry.time <= time) {
             let end = self.stage.network.occurrences[occurrence.index()].end;
             if self.stage.times[end.index()].is_none() {
@@ -372,7 +402,8 @@ impl Run<'_> {
             }
             (OccurrenceKind::Assertion, EventEnd::End) => {
                 let Some(started) = started else { return Ok(None) };
-                match self.world.withdrawn_at(occurrence) {
+                let overridden = self.world.overridden_at(&self.stage.network, occurrence, started);
+                match self.world.withdrawn_at(occurrence).into_iter().chain(overridden).min() {
                     Some(at) if at >= started && at < planned => {
                         let held = at.checked_sub(started).ok_or(Overflow)?;
                         ByWorld::At(at, News::Duration(event.occurrence, held))
@@ -410,6 +441,7 @@ impl Run<'_> {
             self.write(Happening::Executed { name });
             self.begin(event)?;
         }
+        self.change_states(node);
         Ok(None)
     }
 
@@ -417,12 +449,14 @@ impl Run<'_> {
     fn begin(&mut self, event: EventRef) -> Result<(), PlanError> {
         let occurrence = self.stage.occurrence(event);
         let is_start = occurrence.kind == OccurrenceKind::Primitive && event.end == EventEnd::Start;
-        let too_late = |_: Overflow| PlanError::TooLate { event: format!("{}.end", occurrence.name) };
+        let end = format!("{}.end", occurrence.name);
+        let too_late = |_: Overflow| PlanError::TooLate { event: end.clone() };
         if !is_start || self.world.duration(&self.stage.network, occurrence).map_err(too_late)?.is_some() {
             return Ok(());
         }
         let execution =
             self.executor.start(&self.stage.network, event.occurrence, self.now).map_err(too_late)?;
+        self.expect_metres(event.occurrence, &execution).map_err(too_late)?;
         self.executions.insert(event.occurrence, execution.ends);
         self.passes.extend(execution.passes);
         for entry in execution.entries {
@@ -462,8 +496,10 @@ impl Run<'_> {
             let index = stage.network.nodes.iter().position(|node| node.events.contains(&event))?;
             Some((time, NodeId::from_index(index)))
         });
-        let past: Vec<(Time, NodeId)> = happened.chain(passed).collect();
+        let past: Vec<(Time, NodeId)> =
+            happened.chain(passed).chain(facts.world_nodes(&stage.network)).collect();
         let kept = stage.enter_past(past);
+        self.off_plan.clear();
         let before = std::mem::replace(&mut self.stage, stage);
         self.plans.push(before.close());
         Ok(kept.err().map(|node| format!("the new plan does not keep {} in the past", self.stage.name(node))))

@@ -8,6 +8,7 @@ use tpn::{EventRef, Network, NodeId, Occurrence, Plan, Precedence};
 
 use crate::dispatch::{Dispatcher, NEVER};
 use crate::plan_network::{PlanError, PlanNetwork};
+use crate::world_state::Effects;
 
 /// A plan made ready for dispatch: the dispatchable form, in ticks fine enough for all times that the world brings.
 ///
@@ -18,6 +19,8 @@ pub struct Stage {
     pub(crate) plan: Plan,
     pub(crate) made: PlanNetwork,
     pub(crate) dispatcher: Dispatcher,
+    /// What its events do to states and levels.
+    pub(crate) effects: Effects,
     /// When each node happened.
     pub(crate) times: Vec<Option<Time>>,
     /// When this plan was made.
@@ -34,7 +37,8 @@ impl Stage {
         let dispatcher = Dispatcher::new(&mut made)?;
         let times = vec![None; network.nodes.len()];
         let before = before(&network, &plan);
-        Ok(Self { network, plan, made, dispatcher, times, from: Time::ZERO, before })
+        let effects = Effects::new(&network, &plan);
+        Ok(Self { network, plan, made, dispatcher, effects, times, from: Time::ZERO, before })
     }
 
     /// The window of a point in mission units; no latest time if it is not bounded.
@@ -47,6 +51,17 @@ impl Stage {
     /// would let an end come before its start.
     pub(crate) fn is_next(&self, node: NodeId) -> bool {
         self.before[node.index()].iter().all(|before| self.times[before.index()].is_some())
+    }
+
+    /// Whether one event comes no later than another in every schedule that is left, as far as its arcs and orderings or
+    /// their windows say so.
+    pub(crate) fn precedes(&self, one: NodeId, other: NodeId) -> bool {
+        let window = |node: NodeId| self.made.point(node).map(|point| self.window(point));
+        let by_windows = || match (window(one), window(other)) {
+            (Some((_, Some(latest))), Some((earliest, _))) => latest <= earliest,
+            _ => false,
+        };
+        one == other || by_windows() || leads_to(&self.before, one, other)
     }
 
     pub(crate) fn occurrence(&self, event: EventRef) -> &Occurrence {

@@ -4,10 +4,11 @@
 use std::collections::BTreeMap;
 
 use exact::{Overflow, Rational, Time};
+use rmpl::program::LabelMode;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 use smol_str::SmolStr;
-use tpn::{Network, Occurrence, OccurrenceKind};
+use tpn::{Network, Occurrence, OccurrenceKind, ValueId};
 
 /// Something that goes otherwise than planned. Times and durations are in mission units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -52,6 +53,25 @@ pub enum Disturbance {
         /// When it begins.
         at: Time,
     },
+    /// A variable that lasts has another value from a time on, until something changes it. While an activity changes it,
+    /// nothing comes of this. A running assertion of another value ends.
+    State {
+        /// Its name.
+        variable: SmolStr,
+        /// One of its values.
+        value: SmolStr,
+        /// Since when.
+        at: Time,
+    },
+    /// A reservoir is at another level at a time.
+    Level {
+        /// Its name.
+        resource: SmolStr,
+        /// The level, within the reservoir's range.
+        level: Rational,
+        /// When.
+        at: Time,
+    },
     /// Something stands in the world from a time on that is not on the map. Vehicles see it when it is in their range.
     Obstacle {
         /// Since when.
@@ -84,7 +104,9 @@ impl Disturbance {
                 Some(activity)
             }
             Self::Withdrawn { condition, .. } | Self::Late { condition, .. } => Some(condition),
-            Self::Obstacle { .. } | Self::VehicleSlow { .. } => None,
+            Self::State { .. } | Self::Level { .. } | Self::Obstacle { .. } | Self::VehicleSlow { .. } => {
+                None
+            }
         }
     }
 
@@ -104,6 +126,8 @@ impl Disturbance {
             }
             Self::Withdrawn { at, .. }
             | Self::Late { at, .. }
+            | Self::State { at, .. }
+            | Self::Level { at, .. }
             | Self::Obstacle { at, .. }
             | Self::VehicleSlow { from: at, .. }
                 if at.is_negative() =>
@@ -151,6 +175,40 @@ pub struct World {
     slow: BTreeMap<SmolStr, Rational>,
     withdrawn: BTreeMap<SmolStr, Time>,
     late: BTreeMap<SmolStr, Time>,
+    /// In order of time.
+    changes: Vec<WorldChange>,
+}
+
+/// What the world makes of a variable that lasts or of a reservoir.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WorldChange {
+    /// A variable has this value.
+    State {
+        /// When.
+        at: Time,
+        /// The variable.
+        variable: SmolStr,
+        /// The value.
+        value: SmolStr,
+    },
+    /// A reservoir is at this level.
+    Level {
+        /// When.
+        at: Time,
+        /// The reservoir.
+        resource: SmolStr,
+        /// The level.
+        level: Rational,
+    },
+}
+
+impl WorldChange {
+    /// When it happens.
+    pub const fn at(&self) -> Time {
+        match self {
+            Self::State { at, .. } | Self::Level { at, .. } => *at,
+        }
+    }
 }
 
 impl World {
@@ -172,13 +230,25 @@ impl World {
                 Disturbance::Late { condition, at } => {
                     world.late.insert(condition, at);
                 }
+                Disturbance::State { variable, value, at } => {
+                    world.changes.push(WorldChange::State { at, variable, value });
+                }
+                Disturbance::Level { resource, level, at } => {
+                    world.changes.push(WorldChange::Level { at, resource, level });
+                }
                 // What vehicles meet is for whoever drives them, what components do for whoever runs their programs.
                 Disturbance::Obstacle { .. }
                 | Disturbance::VehicleSlow { .. }
                 | Disturbance::Fault { .. } => {}
             }
         }
+        world.changes.sort_by_key(WorldChange::at);
         world
+    }
+
+    /// What it makes of states and levels, in order of time.
+    pub fn changes(&self) -> &[WorldChange] {
+        &self.changes
     }
 
     /// How long an occurrence really takes, where that is not for the executive to decide.
@@ -200,12 +270,32 @@ impl World {
         let absolute = self.durations.values().chain(self.withdrawn.values()).chain(self.late.values());
         let slow = network.occurrences.iter().filter(|occurrence| self.slow.contains_key(&occurrence.name));
         let slow = slow.filter_map(|occurrence| self.duration(network, occurrence).transpose());
-        absolute.map(|&time| Ok(time)).chain(slow).collect()
+        let changes = self.changes.iter().map(|change| Ok(change.at()));
+        absolute.map(|&time| Ok(time)).chain(changes).chain(slow).collect()
     }
 
     /// When a condition is withdrawn.
     pub fn withdrawn_at(&self, occurrence: &Occurrence) -> Option<Time> {
         self.withdrawn.get(&occurrence.name).copied()
+    }
+
+    /// When the world first gives a variable that an assertion keeps, from `since` on, another value.
+    pub fn overridden_at(&self, network: &Network, occurrence: &Occurrence, since: Time) -> Option<Time> {
+        let arc = &network.arcs[occurrence.arc?.index()];
+        let is_other = |change: &&WorldChange| {
+            let WorldChange::State { at, variable, value } = change else { return false };
+            *at > since
+                && arc.labels.iter().any(|label| {
+                    let literal = &network.labels[label.index()].literal;
+                    let of = &network.variables[literal.variable.index()];
+                    let given = of.values.iter().position(|known| known == value).map(ValueId::from_index);
+                    of.is_lasting
+                        && of.name == *variable
+                        && network.labels[label.index()].mode == LabelMode::Tell
+                        && given.is_some_and(|given| !literal.values.contains(given))
+                })
+        };
+        self.changes.iter().find(is_other).map(WorldChange::at)
     }
 
     /// Before when a condition does not begin.

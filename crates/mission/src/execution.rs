@@ -6,7 +6,7 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
-use exact::{Bound, Time};
+use exact::{Bound, Rational, Time};
 use executive::{
     ActivityExecutor, AsPlanned, Disturbance, Ending, Entry, Facts, PlanError, Replanner, RunOutcome, Script,
     Stage, World, run_stage,
@@ -16,7 +16,7 @@ use rmpl::program::Program;
 use rmpl::spans::Spans as _;
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
-use tpn::{Network, Plan, Window};
+use tpn::{Network, Plan, Supply, Window};
 
 use crate::ground::Grounds;
 use crate::planning::{self, Planned, Problem};
@@ -65,8 +65,8 @@ pub struct Executed {
 pub struct Ran {
     /// How it went.
     pub outcome: RunOutcome,
-    /// What each replan gave, in order.
-    pub replanned: Vec<Planned>,
+    /// What each replan started from and gave, in order.
+    pub replanned: Vec<(Facts, Planned)>,
     /// The traverses as they were driven, in order of departure; none where durations are only drawn.
     pub drives: Vec<SimulatedDrive>,
 }
@@ -127,32 +127,83 @@ pub(crate) fn execute_stage(
     Ok(Ran { outcome, replanned: replanner.replanned, drives: Vec::new() })
 }
 
-/// What disturbances are about that the mission does not have: activities, conditions and vehicles.
-pub fn unknown(network: &Network, program: &Program, disturbances: &[Disturbance]) -> Vec<SmolStr> {
+/// Whether disturbances are about what the mission has; if not, what is wrong with them.
+pub fn check_disturbances(
+    network: &Network,
+    program: &Program,
+    programs: &Programs,
+    disturbances: &[Disturbance],
+) -> Result<(), String> {
     let is_unknown = |name: &&SmolStr| !program.world.vehicles.iter().any(|it| it.name.text == **name);
     let vehicles = disturbances.iter().filter_map(Disturbance::vehicle).filter(is_unknown).cloned();
-    World::unknown(network, disturbances).into_iter().chain(vehicles).collect()
+    let unknown: Vec<SmolStr> = World::unknown(network, disturbances).into_iter().chain(vehicles).collect();
+    if !unknown.is_empty() {
+        return Err(format!("the mission has no {}", unknown.join(", ")));
+    }
+    let unknown = programs.unknown_faults(network, disturbances);
+    if !unknown.is_empty() {
+        return Err(format!("the mission has no {}", unknown.join(", ")));
+    }
+    disturbances.iter().try_for_each(|disturbance| match disturbance {
+        Disturbance::State { variable, value, .. } => check_state(network, variable, value),
+        Disturbance::Level { resource, level, .. } => check_level(network, resource, *level),
+        _ => Ok(()),
+    })
+}
+
+/// Whether a disturbance may give a variable a value.
+fn check_state(network: &Network, variable: &SmolStr, value: &SmolStr) -> Result<(), String> {
+    let known = network.variables.iter().find(|known| known.name == *variable);
+    let known = known.ok_or_else(|| format!("nothing in the mission depends on a variable {variable}"))?;
+    if !known.is_lasting {
+        return Err(format!("{variable} is known only where it is asserted: withdraw an assertion instead"));
+    }
+    if variable.ends_with(".at") {
+        return Err(format!("{variable} follows from where the vehicle drives, and nothing else changes it"));
+    }
+    if !known.values.contains(value) {
+        return Err(format!("{variable} is never {value}: it is one of {}", known.values.join(", ")));
+    }
+    Ok(())
+}
+
+/// Whether a disturbance may bring a resource to a level.
+fn check_level(network: &Network, resource: &SmolStr, level: Rational) -> Result<(), String> {
+    let known = network.resources.iter().find(|known| known.name == *resource);
+    let known = known.ok_or_else(|| format!("nothing in the mission uses a resource {resource}"))?;
+    match known.supply {
+        Supply::Reusable { .. } => Err(format!("{resource} is no reservoir, so that it has no level")),
+        Supply::Reservoir { least, greatest, .. } if !(least..=greatest).contains(&level) => {
+            Err(format!("the level of {resource} is from {} to {}", least.readable(), greatest.readable()))
+        }
+        Supply::Reservoir { .. } => Ok(()),
+    }
 }
 
 impl Execution {
     /// What a run of `planned` under `script` comes to.
     pub fn new(revision: u64, script: Script, program: &Program, planned: &Planned, ran: Ran) -> Self {
         let last_times = ran.outcome.last().times.clone();
-        let all_planned = std::iter::once(planned).chain(&ran.replanned);
+        let none = Facts::default();
+        let replanned = ran.replanned.iter().map(|(facts, planned)| (facts, planned));
+        let all_planned = std::iter::once((&none, planned)).chain(replanned);
+        let last_facts = ran.replanned.last().map_or(0, |(facts, _)| facts.num_world_events());
+        let last_times = &last_times[..last_times.len() - last_facts];
         let plans = ran
             .outcome
             .plans
             .into_iter()
             .zip(all_planned)
-            .map(|(executed, planned)| {
-                let shared = executed.times.len().min(last_times.len());
+            .map(|(executed, (facts, planned))| {
+                let (network, plan) = without_facts(facts, &executed.network, executed.plan);
+                let shared = network.nodes.len().min(last_times.len());
                 let times: Vec<Option<Time>> = executed
                     .times
                     .iter()
+                    .take(network.nodes.len())
                     .enumerate()
                     .map(|(index, &time)| time.or_else(|| last_times[..shared].get(index).copied().flatten()))
                     .collect();
-                let (network, plan) = without_facts(&executed.network, executed.plan);
                 let as_run = with_times(&plan, &times);
                 let traverses = planned.traverses.clone();
                 let mut motions = planning::motions_of(program, &network, &as_run, planned);
@@ -183,19 +234,13 @@ impl Execution {
     }
 }
 
-/// A network without the arcs by which facts hold events in the past: nothing else leads back to the start.
-fn without_facts(network: &Arc<Network>, mut plan: Plan) -> (Arc<Network>, Plan) {
-    let own = network.arcs.iter().rposition(|arc| arc.to != network.start).map_or(0, |last| last + 1);
-    if own == network.arcs.len() {
+/// A network without what holds it to facts: arcs that lead back to the start, and the world's own events.
+fn without_facts(facts: &Facts, network: &Arc<Network>, mut plan: Plan) -> (Arc<Network>, Plan) {
+    if network.arcs.iter().all(|arc| arc.to != network.start) {
         return (Arc::clone(network), plan);
     }
     let mut stripped = network.as_ref().clone();
-    stripped.arcs.truncate(own);
-    plan.selected_arcs.truncate(own);
-    for node in &mut stripped.nodes {
-        node.out_arcs.retain(|arc| arc.index() < own);
-        node.in_arcs.retain(|arc| arc.index() < own);
-    }
+    facts.remove(&mut stripped, &mut plan);
     (Arc::new(stripped), plan)
 }
 
@@ -214,7 +259,7 @@ struct WithPaths<'run, 'input> {
     problem: &'run Problem<'input>,
     grounds: &'run mut Grounds,
     paths: &'run mut Paths,
-    replanned: Vec<Planned>,
+    replanned: Vec<(Facts, Planned)>,
     /// Where those who drive look for their paths.
     courses: Option<&'run RefCell<Courses>>,
 }
@@ -231,7 +276,7 @@ impl Replanner for WithPaths<'_, '_> {
             if let Some(courses) = self.courses {
                 courses.borrow_mut().learn(self.problem.program, &planned);
             }
-            self.replanned.push(planned);
+            self.replanned.push((facts.clone(), planned));
             return Ok(found);
         }
         if let Some(message) = outcome.overflow_message(&planned.network) {

@@ -11,10 +11,10 @@ use executive::Facts;
 use kirk::{Constraint, CycleMember, Options, Outcome, Stats, Status};
 use motion::{SegmentTiming, SpeedLimits};
 use rmpl::Diagnostic;
-use rmpl::program::{Program, World};
+use rmpl::program::{Change, Program, World};
 use terrain::{ConfigurationSpace, Terrain};
 use tpn::path::{PathLeg, TraversePath};
-use tpn::{ArcId, ArcKind, Network, OccurrenceId, Plan};
+use tpn::{ArcId, ArcKind, Network, OccurrenceId, Plan, Supply};
 
 use crate::departures::Departures;
 use crate::driving::{self, Drive};
@@ -98,17 +98,54 @@ pub fn plan(
     };
     let mut outcome;
     let mut rounds = 0;
+    // Once it is known which paths matter, resources without an upper limit have theirs again.
+    let mut has_limits = false;
     loop {
-        outcome = kirk::plan(&network, &problem.options, &mut |_: &Stats| stop());
+        let without_limits =
+            problem.ground.filter(|_| !has_limits).and_then(|_| without_upper_limits(&network, &inserted));
+        let asked = without_limits.as_ref().unwrap_or(&network);
+        outcome = kirk::plan(asked, &problem.options, &mut |_: &Stats| stop());
         rounds += 1;
         let (Some(ground), Some(found)) = (problem.ground, outcome.plans.first()) else { break };
-        if rounds > MAX_ROUNDS || !find_paths(problem, ground, &network, found, grounds, paths, &mut inserted)
-        {
+        let is_new = rounds <= MAX_ROUNDS
+            && find_paths(problem, ground, &network, found, grounds, paths, &mut inserted);
+        if is_new {
+            network = Arc::new(with_paths(problem, &inserted));
+        } else if without_limits.is_some() {
+            has_limits = true;
+        } else {
             break;
         }
-        network = Arc::new(with_paths(problem, &inserted));
     }
     conclude(problem, grounds, network, outcome, inserted)
+}
+
+/// The network with reservoirs that never run over, where that may be due to metres that are not known yet: what a path takes
+/// of a reservoir also makes room in it. `None` where all that matters is known.
+fn without_upper_limits(
+    network: &Arc<Network>,
+    inserted: &BTreeMap<OccurrenceId, Inserted>,
+) -> Option<Arc<Network>> {
+    let is_open = |used: &tpn::Use| {
+        used.change == Change::Consumes
+            && used.per_metre.is_positive()
+            && used.owner.is_some_and(|owner| !inserted.contains_key(&owner))
+    };
+    let mut relaxed: Option<Network> = None;
+    for (index, resource) in network.resources.iter().enumerate() {
+        let own = || network.uses.iter().filter(|used| used.resource.index() == index);
+        let Supply::Reservoir { least, level, .. } = resource.supply else { continue };
+        if !own().any(is_open) {
+            continue;
+        }
+        let gains = own().filter(|used| used.change == Change::Produces).map(|used| used.amount);
+        let highest = gains.into_iter().try_fold(level, Rational::checked_add);
+        if let Some(greatest) = highest.filter(|&highest| highest > level) {
+            let relaxed = relaxed.get_or_insert_with(|| network.as_ref().clone());
+            relaxed.resources[index].supply = Supply::Reservoir { least, greatest, level };
+        }
+    }
+    relaxed.map(Arc::new)
 }
 
 /// What came of it where movements fit in no order.
@@ -135,11 +172,13 @@ fn order_movements(
             Some(facts) => facts.apply(&network, problem.network.nodes.len()),
             None => network.clone(),
         };
+        let asked = Arc::new(asked);
+        let asked = without_upper_limits(&asked, &tried).unwrap_or(asked);
         // Without a plan, the last round tells why.
         let options = Options { all: false, best: 1, ..problem.options };
         let outcome = kirk::plan(&asked, &options, &mut |_: &Stats| stop());
         let (Some(ground), Some(plan)) = (problem.ground, outcome.plans.first()) else {
-            return Err(Box::new(NoOrder { network: Arc::new(asked), outcome, tried }));
+            return Err(Box::new(NoOrder { network: asked, outcome, tried }));
         };
         let routes = traverse::routes(&asked, problem.program, plan);
         let mut is_new = false;

@@ -12,7 +12,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use exact::{Overflow, Time};
+use exact::{Overflow, Rational, Time};
 use executive::{ActivityExecution, ActivityExecutor, Disturbance, Ends, Entry, Happening};
 use motion::FineWorld;
 use nalgebra::Point2;
@@ -152,6 +152,8 @@ pub(crate) struct Driving<'run> {
 const MIN_ROCK_M: f64 = 0.4;
 /// Durations are whole multiples of this fraction of a second.
 const TICKS_PER_SECOND: u32 = 10;
+/// Metres driven are whole multiples of this fraction of a metre.
+const PARTS_PER_METRE: u32 = 1000;
 impl<'run> Driving<'run> {
     /// For one run of `problem` on `map`.
     pub(crate) fn new(
@@ -191,7 +193,7 @@ impl ActivityExecutor for Driving<'_> {
         if let Err(reason) = &reached {
             trip.entries.push((trip.convoy.time_s(), format!("{reason}, and gives up")));
         }
-        let Trip { frames, entries, passes, reroutes, least_clearance_m, convoy, .. } = trip;
+        let Trip { frames, entries, passes, reroutes, least_clearance_m, convoy, extra_metres, .. } = trip;
         let time_s = convoy.time_s();
         let unit_seconds = self.problem.program.options.time_unit.seconds();
         let units = |seconds: f64| {
@@ -217,10 +219,15 @@ impl ActivityExecutor for Driving<'_> {
             Ok(Entry { time, happening: Happening::Progress { name: name.clone(), text } })
         };
         let pass = |(event, seconds): (EventRef, f64)| Ok((event, units(seconds)?));
+        let extra = |(seconds, metres): (f64, f64)| {
+            let metres = Rational::from_f64_up(metres, PARTS_PER_METRE).ok_or(Overflow)?;
+            Ok((units(seconds)?, metres))
+        };
         Ok(ActivityExecution {
             ends: reached.map_or_else(Ends::Never, |()| Ends::NotBefore(duration)),
             entries: entries.into_iter().map(entry).collect::<Result<_, _>>()?,
             passes: passes.into_iter().map(pass).collect::<Result<_, _>>()?,
+            extra_metres: extra_metres.into_iter().map(extra).collect::<Result<_, _>>()?,
         })
     }
 

@@ -388,6 +388,14 @@ impl ValueSet {
         }
     }
 
+    /// Whether a value is one of these.
+    pub fn contains(&self, value: ValueId) -> bool {
+        match self {
+            Self::In(values) => values.binary_search(&value).is_ok(),
+            Self::NotIn(values) => values.binary_search(&value).is_err(),
+        }
+    }
+
     /// Whether every value of `self` is in `other`.
     pub fn is_subset(&self, other: &Self) -> bool {
         match (self, other) {

@@ -28,8 +28,8 @@ pub struct Args {
     /// Seeds path planning.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// What goes otherwise than planned: {"disturbances": [{"kind": "duration" | "slow" | "withdrawn" | "late" | "obstacle" |
-    /// "vehicle-slow", …}…]}; `docs/simulation.md` lists their members.
+    /// What goes otherwise than planned: {"disturbances": [{"kind": "duration" | "slow" | "withdrawn" | "late" | "state" |
+    /// "level" | "obstacle" | "vehicle-slow", …}…]}; `docs/simulation.md` lists their members.
     #[arg(long, value_name = "D.json")]
     disturb: Option<PathBuf>,
     #[command(flatten)]
@@ -51,11 +51,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
         return Ok(exit(WRONG));
     };
-    let unknown = execution::unknown(&network, program, &disturbances);
-    anyhow::ensure!(unknown.is_empty(), "no activity, condition or vehicle is called {}", unknown.join(", "));
     let (programs, _) = mission::programs::Programs::compile(program);
-    let unknown = programs.unknown_faults(&network, &disturbances);
-    anyhow::ensure!(unknown.is_empty(), "the mission has no {}", unknown.join(", "));
+    execution::check_disturbances(&network, program, &programs, &disturbances).map_err(anyhow::Error::msg)?;
     let (mut grounds, ground) = ground(&args.target.file, &program.world)?;
     let mut paths = Paths::default();
     let problem = Problem {
@@ -122,6 +119,9 @@ fn line(entry: &Entry) -> String {
     let text = match &entry.happening {
         Happening::Executed { name } => name.to_string(),
         Happening::Progress { name, text } => format!("  {name}: {text}"),
+        Happening::State { .. } | Happening::Level { .. } => {
+            format!("  {}", entry.happening.state_words().unwrap_or_default())
+        }
         Happening::Violation { reason, .. } => format!("VIOLATION  {reason}"),
         Happening::Replanned { changes } if changes.is_empty() => {
             "planned again, with the same choices".to_owned()

@@ -58,14 +58,8 @@ impl Core {
             if let Some(run) = self.last.as_mut().and_then(|last| last.executions.find(&script, revision)) {
                 return Ok(run);
             }
-            let unknown = execution::unknown(&evaluated.network, &evaluated.program, &script.disturbances);
-            if !unknown.is_empty() {
-                return Err(format!("the mission has no {}", unknown.join(", ")));
-            }
-            let unknown = evaluated.programs.unknown_faults(&evaluated.network, &script.disturbances);
-            if !unknown.is_empty() {
-                return Err(format!("the mission has no {}", unknown.join(", ")));
-            }
+            let Evaluated { network, program, programs, .. } = &evaluated;
+            execution::check_disturbances(network, program, programs, &script.disturbances)?;
             let problem = evaluated.problem(update);
             let disturbances = &script.disturbances;
             execution::execute(&problem, &evaluated.planned, disturbances, &mut self.grounds, &mut self.paths)

@@ -25,6 +25,8 @@ const EARLY: f64 = 0.985;
 /// Vehicles give up after so many other ways, and after so many times the time that they were to take.
 const MAX_REROUTES: u32 = 12;
 const MAX_TIMES: f64 = 4.0;
+/// Metres beyond the path are counted by so many.
+const COUNTED_M: f64 = 5.0;
 
 /// One traverse under way.
 pub(super) struct Trip<'a> {
@@ -54,6 +56,11 @@ pub(super) struct Trip<'a> {
     pub(super) entries: Vec<(f64, String)>,
     pub(super) passes: Vec<(EventRef, f64)>,
     pub(super) reroutes: u32,
+    /// How far the leader has driven, in metres.
+    driven_m: f64,
+    /// How many metres that is more than its path has, with seconds from the start: every so often,
+    /// and in the end.
+    pub(super) extra_metres: Vec<(f64, f64)>,
     pub(super) least_clearance_m: f64,
 }
 
@@ -168,6 +175,8 @@ impl<'a> Trip<'a> {
             entries: Vec::new(),
             passes: Vec::new(),
             reroutes: 0,
+            driven_m: 0.0,
+            extra_metres: Vec::new(),
             least_clearance_m: f64::INFINITY,
         }
     }
@@ -192,7 +201,10 @@ impl<'a> Trip<'a> {
                 .collect();
             let most: Vec<f64> = (0..self.models.len()).map(|index| self.greatest_speed_mps(index)).collect();
             let around = Surroundings { world: &self.world, has_changed, maps: &self.maps, others: &others };
+            let before = self.convoy.state(0).position_m;
             let steps = self.convoy.step(&around, self.pace_mps(), &most);
+            self.driven_m += distance(&before, &self.convoy.state(0).position_m);
+            self.note_extra_metres();
             self.note_passes();
             self.note_clearance();
             for (vehicle, (event, _)) in steps.iter().enumerate() {
@@ -202,7 +214,17 @@ impl<'a> Trip<'a> {
             }
             self.record_all(&steps);
         }
+        self.extra_metres.push((self.convoy.time_s(), self.driven_m - self.course.drive.path.length_m()));
         Ok(())
+    }
+
+    /// What the leader drives beyond its path counts soon after it is driven.
+    fn note_extra_metres(&mut self) {
+        let extra_m = self.driven_m - self.course.drive.path.length_m();
+        let known_m = self.extra_metres.last().map_or(0.0, |&(_, metres)| metres);
+        if extra_m >= known_m + COUNTED_M {
+            self.extra_metres.push((self.convoy.time_s(), extra_m));
+        }
     }
 
     /// The speed at which the leader is there when the traverse is to end, within the traverse's speeds.

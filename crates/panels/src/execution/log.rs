@@ -34,6 +34,9 @@ fn row(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, entry: &Entry, comm
     let (text, color) = match &entry.happening {
         Happening::Executed { name } => (name.to_string(), tokens.text),
         Happening::Progress { name, text } => (format!("{name}: {text}"), tokens.text_muted),
+        Happening::State { .. } | Happening::Level { .. } => {
+            (entry.happening.state_words().unwrap_or_default(), tokens.text_muted)
+        }
         Happening::Violation { reason, .. } => (format!("✗ {reason}"), tokens.error),
         Happening::Replanned { changes } if changes.is_empty() => {
             ("→ planned again, with the same choices".to_owned(), tokens.warning)
@@ -64,6 +67,7 @@ fn subject(shown: Shown<'_>, entry: &Entry) -> Option<Selection> {
             name.rsplit_once('.').map_or(name.as_str(), |(occurrence, _)| occurrence)
         }
         Happening::Progress { name, .. } => name.as_str(),
+        Happening::State { by: Some(name), .. } | Happening::Level { by: Some(name), .. } => name.as_str(),
         _ => return None,
     };
     let index = shown.network.occurrences.iter().position(|occurrence| occurrence.name == name)?;

@@ -316,7 +316,11 @@ impl AppState {
                 // There can be any number of these, and the earlier ones are the past.
                 && !matches!(
                     known,
-                    Disturbance::Obstacle { .. } | Disturbance::VehicleSlow { .. } | Disturbance::Fault { .. }
+                    Disturbance::Obstacle { .. }
+                        | Disturbance::VehicleSlow { .. }
+                        | Disturbance::Fault { .. }
+                        | Disturbance::State { .. }
+                        | Disturbance::Level { .. }
                 )
                 && std::mem::discriminant(known) == std::mem::discriminant(&disturbance)
         };
@@ -389,6 +393,10 @@ pub fn disturbance_text(disturbance: &Disturbance) -> String {
         Disturbance::VehicleSlow { vehicle, factor, from, until } => {
             let (from, until) = (time(*from), time(*until));
             format!("{vehicle} drives at {factor} of its speed from {from} to {until}")
+        }
+        Disturbance::State { variable, value, at } => format!("{variable} becomes {value} at {}", time(*at)),
+        Disturbance::Level { resource, level, at } => {
+            format!("{resource} is at {} at {}", level.readable(), time(*at))
         }
         Disturbance::Withdrawn { condition, at } => format!("{condition} is withdrawn at {}", time(*at)),
         Disturbance::Late { condition, at } => format!("{condition} comes at {} at the earliest", time(*at)),

@@ -1,0 +1,376 @@
+//! What the world does to states and levels while a plan runs, and what of the plan that breaks (SPEC 6.2, 10, 11).
+//!
+//! A plan keeps its states and resources by itself: its causal links and orderings hold in every schedule. What breaks them
+//! comes from outside: disturbances, and vehicles that drive farther than planned. A change that something still to come
+//! relies on breaks the plan at once, so that there is time to plan again.
+
+use exact::{Overflow, Rational, Time};
+use rmpl::program::Change;
+use tpn::{NodeId, OccurrenceId, OccurrenceKind, ResourceId, Supply, UseId, ValueId, VariableId};
+
+use super::{News, Run, Violation, shown};
+use crate::activity_execution::ActivityExecution;
+use crate::plan_network::PlanError;
+use crate::world::WorldChange;
+use crate::world_state::Lack;
+
+/// A traverse has driven so many metres more than its path has.
+pub(super) struct Odometer {
+    at: Time,
+    occurrence: OccurrenceId,
+    extra_m: Rational,
+}
+
+impl Run<'_> {
+    /// Lets the world go on until `until`, or until it breaks the plan.
+    pub(super) fn let_world_act(&mut self, until: Time) -> Result<Option<Violation>, PlanError> {
+        loop {
+            let driven = self.odometers.front().map(|odometer| odometer.at);
+            let changed = self.world.changes().get(self.num_changes).map(WorldChange::at);
+            let next = driven.into_iter().chain(changed).min().filter(|&at| at <= until);
+            if next.unwrap_or(until) > self.now
+                && let Some(violation) = self.lack()
+            {
+                return Ok(Some(violation));
+            }
+            let Some(at) = next else { return Ok(None) };
+            self.advance(at);
+            let violation = if driven == Some(at) { self.count_metres() } else { self.change_world()? };
+            if violation.is_some() {
+                return Ok(violation);
+            }
+        }
+    }
+
+    /// Takes in how far a traverse that starts now will have driven, and when.
+    pub(super) fn expect_metres(
+        &mut self,
+        occurrence: OccurrenceId,
+        execution: &ActivityExecution,
+    ) -> Result<(), Overflow> {
+        for &(after, extra_m) in &execution.extra_metres {
+            let at = self.now.checked_add(after).ok_or(Overflow)?;
+            let place = self.odometers.partition_point(|before| before.at <= at);
+            self.odometers.insert(place, Odometer { at, occurrence, extra_m });
+        }
+        Ok(())
+    }
+
+    /// What happens to an event's states and levels is written down, and what is required just then is looked at.
+    pub(super) fn change_states(&mut self, node: NodeId) {
+        let stage = &self.stage;
+        let happenings = self.state.happen(&stage.network, &stage.plan, &stage.effects, node);
+        for &requirement in &stage.effects.requirements {
+            let (start, end) = stage.network.interval(requirement);
+            if end == node && stage.times[start.index()] == Some(self.now) {
+                self.state.need_now(requirement);
+            }
+        }
+        for happening in happenings {
+            self.write(happening);
+        }
+    }
+
+    /// What is not as it must be when the present instant is over.
+    fn lack(&self) -> Option<Violation> {
+        let network = &self.stage.network;
+        let has_come = |node: NodeId| self.stage.times[node.index()].is_some();
+        let is_under_way = |label| {
+            let (start, end) = network.interval(label);
+            has_come(start) && !has_come(end)
+        };
+        let now = shown(self.now);
+        let (node, reason) = match self.state.lack(network, &self.stage.effects, is_under_way)? {
+            Lack::Value(label) => {
+                let of = &network.labels[label.index()];
+                let variable = of.literal.variable;
+                let is = self.state.words(network, variable);
+                let name = &network.variables[variable.index()].name;
+                let reason =
+                    format!("{} needs {}, and {name} is {is} at {now}", self.needing(label), of.text);
+                (network.interval(label).0, reason)
+            }
+            Lack::Level(resource) => {
+                let of = &network.resources[resource.index()];
+                let (name, level) = (&of.name, self.state.level(resource));
+                let limit = match of.supply {
+                    Supply::Reusable { capacity } => format!("of which there is {}", capacity.readable()),
+                    Supply::Reservoir { least, .. } if level < least => {
+                        format!("below its least level of {}", least.readable())
+                    }
+                    Supply::Reservoir { greatest, .. } => {
+                        format!("above its greatest level of {}", greatest.readable())
+                    }
+                };
+                (network.start, format!("{name} is at {} at {now}, {limit}", level.readable()))
+            }
+        };
+        let name = self.stage.name(node).into();
+        Some(Violation { name, reason, news: News::None, is_final: false })
+    }
+
+    /// Who a requirement belongs to.
+    fn needing(&self, label: tpn::LabelId) -> String {
+        let network = &self.stage.network;
+        let owner = network.labels[label.index()].owner;
+        owner.map_or_else(
+            || network.label_name(label),
+            |owner| network.occurrences[owner.index()].name.to_string(),
+        )
+    }
+
+    /// A traverse has driven farther than planned, or is there and has driven less: what it takes for each metre counts.
+    fn count_metres(&mut self) -> Option<Violation> {
+        let Odometer { occurrence, extra_m, .. } = self.odometers.pop_front()?;
+        let before_m = self.extra_m.insert(occurrence, extra_m).unwrap_or_default();
+        let more_m = extra_m.checked_sub(before_m)?;
+        let network = std::sync::Arc::clone(&self.stage.network);
+        let cause = format!(
+            "{} has driven {} m {} than planned",
+            network.occurrences[occurrence.index()].name,
+            magnitude(extra_m).readable(),
+            if extra_m.is_negative() { "less" } else { "more" }
+        );
+        let mut violation = None;
+        for used in network.uses.iter().filter(|used| used.owner == Some(occurrence)) {
+            let Supply::Reservoir { greatest, .. } = network.resources[used.resource.index()].supply else {
+                continue;
+            };
+            let Some(amount) = used.per_metre.checked_mul(more_m).filter(|amount| !amount.is_zero()) else {
+                continue;
+            };
+            let is_gain = used.change == Change::Produces;
+            let mut by = if is_gain { amount } else { amount.checked_neg().unwrap_or_default() };
+            if !is_gain && by.is_positive() {
+                // What was not taken after all fills a reservoir, and no more.
+                let room = greatest.checked_sub(self.state.level(used.resource)).unwrap_or_default();
+                by = by.min(room.max(Rational::ZERO));
+            }
+            let found = self.move_level(used.resource, by, Some(occurrence), Some(&cause));
+            violation = violation.or(found);
+        }
+        violation
+    }
+
+    /// A disturbance of a state or a level happens.
+    fn change_world(&mut self) -> Result<Option<Violation>, PlanError> {
+        let Some(change) = self.world.changes().get(self.num_changes) else { return Ok(None) };
+        self.num_changes += 1;
+        let network = std::sync::Arc::clone(&self.stage.network);
+        match change {
+            WorldChange::State { variable, value, .. } => {
+                let is_named = |it: &tpn::Variable| it.is_lasting && it.name == *variable;
+                let Some(index) = network.variables.iter().position(is_named) else { return Ok(None) };
+                let variable = VariableId::from_index(index);
+                let known = network.variables[index].values.iter().position(|known| known == value);
+                let Some(value) = known.map(ValueId::from_index) else { return Ok(None) };
+                let Some(happening) = self.state.set_value(&network, variable, value) else {
+                    return Ok(None);
+                };
+                self.write(happening);
+                self.news.states.retain(|&(known, _, at)| (known, at) != (variable, self.now));
+                self.news.states.push((variable, value, self.now));
+                self.end_assertions(variable, value)?;
+                Ok(self.lost_requirement(variable, value))
+            }
+            WorldChange::Level { resource, level, .. } => {
+                let is_named = |it: &tpn::Resource| it.name == *resource;
+                let Some(index) = network.resources.iter().position(is_named) else { return Ok(None) };
+                let resource = ResourceId::from_index(index);
+                let by = level.checked_sub(self.state.level(resource)).unwrap_or_default();
+                Ok(self.move_level(resource, by, None, None))
+            }
+        }
+    }
+
+    /// Assertions under way that a value contradicts are over, for planning as well.
+    fn end_assertions(&mut self, variable: VariableId, value: ValueId) -> Result<(), PlanError> {
+        let network = std::sync::Arc::clone(&self.stage.network);
+        for (index, occurrence) in network.occurrences.iter().enumerate() {
+            let Some(arc) = occurrence.arc.filter(|_| occurrence.kind == OccurrenceKind::Assertion) else {
+                continue;
+            };
+            let started = self.stage.times[occurrence.start.index()];
+            let has_ended = self.stage.times[occurrence.end.index()].is_some();
+            let Some(started) = started.filter(|&started| !has_ended && started < self.now) else { continue };
+            let is_contradicted = network.arcs[arc.index()].labels.iter().any(|label| {
+                let label = &network.labels[label.index()];
+                label.mode == rmpl::program::LabelMode::Tell
+                    && label.literal.variable == variable
+                    && !label.literal.values.contains(value)
+            });
+            if is_contradicted {
+                let held = self.now.checked_sub(started).ok_or(Overflow)?;
+                self.learn(News::Duration(OccurrenceId::from_index(index), held));
+            }
+        }
+        Ok(())
+    }
+
+    /// What relied on the value that a variable had, if something did: the first such requirement that still goes on, or is
+    /// to come.
+    fn lost_requirement(&self, variable: VariableId, value: ValueId) -> Option<Violation> {
+        let (network, effects) = (&self.stage.network, &self.stage.effects);
+        let has_come = |node: NodeId| self.stage.times[node.index()].is_some();
+        let earliest = |node: NodeId| self.stage.made.point(node).map(|point| self.stage.window(point).0);
+        let mut first: Option<(Time, tpn::LabelId)> = None;
+        for &label in &effects.requirements {
+            let literal = &network.labels[label.index()].literal;
+            let (start, end) = network.interval(label);
+            if literal.variable != variable || literal.values.contains(value) || has_come(end) {
+                continue;
+            }
+            let carrier = effects.carriers.get(&label);
+            let (Some(from), Some(until)) = (earliest(start), earliest(end)) else { continue };
+            let is_given_later = carrier.is_some_and(|&carrier| !has_come(network.ready(carrier)));
+            // What can be over this very instant may not mind.
+            let may_be_over = has_come(start) && until <= self.now;
+            if !is_given_later && !may_be_over && first.is_none_or(|(earlier, _)| from < earlier) {
+                first = Some((from, label));
+            }
+        }
+        let (from, label) = first?;
+        let (start, end) = network.interval(label);
+        let when = if has_come(start) {
+            format!("until {}", shown(earliest(end)?))
+        } else {
+            format!("at {}", shown(from.max(self.now)))
+        };
+        let of = &network.variables[variable.index()];
+        let reason = format!(
+            "{} needs {} {when}, and {} became {} at {}",
+            self.needing(label),
+            network.labels[label.index()].text,
+            of.name,
+            of.values.get(value.index()).map_or("", |value| value.as_str()),
+            shown(self.now)
+        );
+        Some(Violation { name: self.stage.name(start).into(), reason, news: News::None, is_final: false })
+    }
+
+    /// A reservoir's level changes otherwise than planned: the plan is broken if it does not keep the level in its range any
+    /// more, whatever the schedule.
+    fn move_level(
+        &mut self,
+        resource: ResourceId,
+        by: Rational,
+        owner: Option<OccurrenceId>,
+        cause: Option<&str>,
+    ) -> Option<Violation> {
+        let network = std::sync::Arc::clone(&self.stage.network);
+        let happening = self.state.move_level(&network, resource, by, owner)?;
+        self.write(happening);
+        self.news.levels.push((resource, by, self.now));
+        let off = self.off_plan.entry(resource).or_default();
+        *off = off.checked_add(by).unwrap_or(*off);
+        let off = *off;
+        let Supply::Reservoir { least, greatest, .. } = network.resources[resource.index()].supply else {
+            return None;
+        };
+        let mut coming: Vec<(Time, UseId)> = Vec::new();
+        for &used in &self.stage.effects.moves {
+            let of = &network.uses[used.index()];
+            let has_come = self.stage.times[of.moment().index()].is_some();
+            let point = self.stage.made.point(of.moment());
+            if let Some(point) = point.filter(|_| of.resource == resource && !has_come) {
+                coming.push((self.stage.window(point).0.max(self.now), used));
+            }
+        }
+        if self.keeps_range(resource, &coming, (least, greatest)) {
+            return None;
+        }
+        let name = &network.resources[resource.index()].name;
+        let stands = format!(
+            "{name} is at {} at {}, {} {} than planned{}",
+            self.state.level(resource).readable(),
+            shown(self.now),
+            magnitude(off).readable(),
+            if off.is_negative() { "less" } else { "more" },
+            cause.map_or_else(String::new, |cause| format!(", for {cause}"))
+        );
+        let (node, reason) = match self.first_out_of_range(resource, coming, (least, greatest)) {
+            Some((at, used, level)) => {
+                let of = &network.uses[used.index()];
+                let who = of.owner.map_or_else(
+                    || network.use_name(used),
+                    |owner| network.occurrences[owner.index()].name.to_string(),
+                );
+                let (verb, with, limit) = if level < least {
+                    ("needs", "of", format!("below {}", least.readable()))
+                } else {
+                    ("gives", "to", format!("above {}", greatest.readable()))
+                };
+                let (amount, level) = (of.amount.readable(), level.readable());
+                let at = shown(at);
+                let text = format!(
+                    "{who} {verb} {amount} {with} {name} at {at}, which would take it to {level}, {limit}: {stands}"
+                );
+                (of.moment(), text)
+            }
+            None => {
+                let (least, greatest) = (least.readable(), greatest.readable());
+                let text = format!(
+                    "{stands}: the plan no longer keeps it between {least} and {greatest} in every schedule"
+                );
+                (network.start, text)
+            }
+        };
+        Some(Violation { name: self.stage.name(node).into(), reason, news: News::None, is_final: false })
+    }
+
+    /// Whether what is to come keeps a level in its range in every schedule (SPEC 11), from where it is now.
+    fn keeps_range(
+        &self,
+        resource: ResourceId,
+        coming: &[(Time, UseId)],
+        (least, greatest): (Rational, Rational),
+    ) -> bool {
+        let network = &self.stage.network;
+        let is_gain = |used: UseId| network.uses[used.index()].change == Change::Produces;
+        let moment = |used: UseId| network.uses[used.index()].moment();
+        coming.iter().all(|&(_, at)| {
+            let counts = |&&(_, other): &&(Time, UseId)| {
+                if is_gain(other) == is_gain(at) {
+                    // What comes later in every schedule, and not at the same instant in all, does not count.
+                    let is_later = self.stage.precedes(moment(at), moment(other));
+                    !is_later || self.stage.precedes(moment(other), moment(at))
+                } else {
+                    self.stage.precedes(moment(other), moment(at))
+                }
+            };
+            let level =
+                coming.iter().filter(counts).try_fold(self.state.level(resource), |level, &(_, used)| {
+                    let amount = network.uses[used.index()].amount;
+                    if is_gain(used) { level.checked_add(amount) } else { level.checked_sub(amount) }
+                });
+            level.is_none_or(|level| if is_gain(at) { level <= greatest } else { level >= least })
+        })
+    }
+
+    /// Where the level first leaves its range if all that is to come comes as early as it may.
+    fn first_out_of_range(
+        &self,
+        resource: ResourceId,
+        mut coming: Vec<(Time, UseId)>,
+        (least, greatest): (Rational, Rational),
+    ) -> Option<(Time, UseId, Rational)> {
+        coming.sort_unstable();
+        let mut level = self.state.level(resource);
+        for (index, &(at, used)) in coming.iter().enumerate() {
+            let of = &self.stage.network.uses[used.index()];
+            let by = if of.change == Change::Produces { Some(of.amount) } else { of.amount.checked_neg() };
+            level = level.checked_add(by?)?;
+            // Only the level after an instant counts.
+            let is_last = coming.get(index + 1).is_none_or(|&(next, _)| next > at);
+            if is_last && !(least..=greatest).contains(&level) {
+                return Some((at, used, level));
+            }
+        }
+        None
+    }
+}
+
+/// A number without its sign.
+fn magnitude(number: Rational) -> Rational {
+    if number.is_negative() { number.checked_neg().unwrap_or_default() } else { number }
+}

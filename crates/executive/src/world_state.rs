@@ -1,0 +1,311 @@
+//! What is so in the simulated world while a plan is executed: the value of each variable that lasts, the place of each
+//! vehicle among them (`V.at`), what is in use of each resource, and the level of each reservoir.
+//!
+//! It follows from what has happened alone and knows nothing of the plan's proofs: what an activity needs is compared with
+//! what there is. As SPEC 10.2 and 11 say, the order of what happens at one instant is for nobody to see: values and levels
+//! are looked at between instants.
+
+use std::collections::BTreeMap;
+
+use exact::Rational;
+use rmpl::program::{Change, LabelMode};
+use smol_str::SmolStr;
+use tpn::{
+    Extent, LabelId, Network, NodeId, OccurrenceId, Plan, ResourceId, Supply, UseId, ValueId, ValueSet,
+    VariableId,
+};
+
+use crate::log::Happening;
+
+/// What events do to the world, and what they ask of it, by event.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Effects {
+    by_node: BTreeMap<NodeId, Vec<Effect>>,
+    /// What the plan requires of variables that last.
+    pub(crate) requirements: Vec<LabelId>,
+    /// The producer of each requirement, as the plan has it.
+    pub(crate) carriers: BTreeMap<LabelId, LabelId>,
+    /// What the plan takes of reservoirs and gives to them.
+    pub(crate) moves: Vec<UseId>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Effect {
+    /// What is in use is free again.
+    Frees(UseId),
+    /// The variable has the value that a label gives, and keeps it.
+    Gives(LabelId),
+    /// A reservoir's level changes.
+    Moves(UseId),
+    /// The variable begins to change.
+    Changes(LabelId),
+    /// A reusable resource is in use.
+    Takes(UseId),
+}
+
+impl Effects {
+    pub(crate) fn new(network: &Network, plan: &Plan) -> Self {
+        let mut effects = Self {
+            carriers: plan.causal_links.iter().map(|link| (link.ask, link.tell)).collect(),
+            ..Self::default()
+        };
+        let mut add = |node: NodeId, effect: Effect| effects.by_node.entry(node).or_default().push(effect);
+        for id in (0..network.labels.len()).map(LabelId::from_index) {
+            let label = &network.labels[id.index()];
+            if !plan.selected_arcs[label.arc.index()] || !network.is_lasting(id) {
+                continue;
+            }
+            match (label.mode, label.extent) {
+                (LabelMode::Ask, _) => effects.requirements.push(id),
+                (LabelMode::Tell, Extent::Initial) => {}
+                (LabelMode::Tell, _) => {
+                    if label.is_changing() && network.interval(id).0 != network.ready(id) {
+                        add(network.interval(id).0, Effect::Changes(id));
+                    }
+                    add(network.ready(id), Effect::Gives(id));
+                }
+            }
+        }
+        for id in (0..network.uses.len()).map(UseId::from_index) {
+            let used = &network.uses[id.index()];
+            if !plan.selected_arcs[used.arc.index()] {
+                continue;
+            }
+            if used.change == Change::Uses {
+                add(used.start, Effect::Takes(id));
+                add(used.end, Effect::Frees(id));
+            } else {
+                add(used.moment(), Effect::Moves(id));
+                effects.moves.push(id);
+            }
+        }
+        for list in effects.by_node.values_mut() {
+            list.sort_unstable();
+        }
+        effects
+    }
+}
+
+/// The value of a variable that lasts.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Held {
+    value: Option<ValueId>,
+    /// What gave it; nothing for the world.
+    by: Option<LabelId>,
+    /// What is changing it.
+    changing: Vec<LabelId>,
+    /// What it was at some moment of the present instant.
+    seen: Vec<ValueId>,
+}
+
+/// The world's state at the present instant.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct WorldState {
+    /// By variable.
+    held: Vec<Held>,
+    /// By resource: of a reservoir its level, of another what is in use.
+    levels: Vec<Rational>,
+    /// Requirements that lasted no time and are of the present instant.
+    momentary: Vec<LabelId>,
+}
+
+/// Something that is not as an activity needs it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Lack {
+    /// A requirement without its value.
+    Value(LabelId),
+    /// A resource outside its range, or of which more is in use than there is.
+    Level(ResourceId),
+}
+
+impl WorldState {
+    /// The state at the start.
+    pub(crate) fn new(network: &Network) -> Self {
+        let mut held = vec![Held::default(); network.variables.len()];
+        for label in network.labels.iter().filter(|label| label.extent == Extent::Initial) {
+            let held: &mut Held = &mut held[label.literal.variable.index()];
+            held.value = value_of(&label.literal.values);
+            held.seen.extend(held.value);
+        }
+        let level = |supply: &Supply| match *supply {
+            Supply::Reservoir { level, .. } => level,
+            Supply::Reusable { .. } => Rational::ZERO,
+        };
+        let levels = network.resources.iter().map(|resource| level(&resource.supply)).collect();
+        Self { held, levels, momentary: Vec::new() }
+    }
+
+    /// The value of a variable; `None` while it changes, and of one that does not last.
+    pub(crate) fn value(&self, variable: VariableId) -> Option<ValueId> {
+        let held = self.held.get(variable.index())?;
+        held.value.filter(|_| held.changing.is_empty())
+    }
+
+    /// Whether something is changing a variable.
+    pub(crate) fn is_changing(&self, variable: VariableId) -> bool {
+        self.held.get(variable.index()).is_some_and(|held| !held.changing.is_empty())
+    }
+
+    /// The level of a reservoir, or what is in use of another resource.
+    pub(crate) fn level(&self, resource: ResourceId) -> Rational {
+        self.levels.get(resource.index()).copied().unwrap_or_default()
+    }
+
+    /// Time goes on: what held between two values at the last instant is forgotten.
+    pub(crate) fn advance(&mut self) {
+        self.momentary.clear();
+        for held in &mut self.held {
+            held.seen.clear();
+            held.seen.extend(held.value.filter(|_| held.changing.is_empty()));
+        }
+    }
+
+    /// An event happens. Returns what changes.
+    pub(crate) fn happen(
+        &mut self,
+        network: &Network,
+        plan: &Plan,
+        effects: &Effects,
+        node: NodeId,
+    ) -> Vec<Happening> {
+        let mut happenings = Vec::new();
+        for &effect in effects.by_node.get(&node).into_iter().flatten() {
+            match effect {
+                Effect::Changes(label) => {
+                    let of = &network.labels[label.index()];
+                    self.held[of.literal.variable.index()].changing.push(label);
+                    happenings.push(self.value_shown(network, of.literal.variable, of.owner));
+                }
+                Effect::Gives(label) => {
+                    let of = &network.labels[label.index()];
+                    self.give(plan, label, of.literal.variable, value_of(&of.literal.values));
+                    happenings.push(self.value_shown(network, of.literal.variable, of.owner));
+                }
+                Effect::Takes(id) | Effect::Frees(id) | Effect::Moves(id) => {
+                    let used = &network.uses[id.index()];
+                    let is_more = match effect {
+                        Effect::Takes(_) => true,
+                        Effect::Frees(_) => false,
+                        _ => used.change == Change::Produces,
+                    };
+                    let by = if is_more { Some(used.amount) } else { used.amount.checked_neg() };
+                    happenings.extend(self.move_level(
+                        network,
+                        used.resource,
+                        by.unwrap_or_default(),
+                        used.owner,
+                    ));
+                }
+            }
+        }
+        happenings
+    }
+
+    /// A label gives its value. Of two without length at one instant the plan says which is the later one.
+    fn give(&mut self, plan: &Plan, label: LabelId, variable: VariableId, value: Option<ValueId>) {
+        let held = &mut self.held[variable.index()];
+        held.changing.retain(|&changing| changing != label);
+        held.seen.extend(value);
+        let is_before = |later: LabelId| {
+            plan.conflict_order.iter().any(|order| order.first == label && order.then == later)
+        };
+        if !held.by.is_some_and(is_before) {
+            (held.value, held.by) = (value, Some(label));
+        }
+    }
+
+    /// The world gives a variable a value. Returns what changes: nothing where an activity is changing it, which will give
+    /// it its own value in the end.
+    pub(crate) fn set_value(
+        &mut self,
+        network: &Network,
+        variable: VariableId,
+        value: ValueId,
+    ) -> Option<Happening> {
+        let held = self.held.get_mut(variable.index()).filter(|held| held.changing.is_empty())?;
+        (held.value, held.by) = (Some(value), None);
+        held.seen.push(value);
+        Some(self.value_shown(network, variable, None))
+    }
+
+    /// A level changes by so much. Returns how it stands then; nothing of resources that no text declares, and where the
+    /// amount does not count.
+    pub(crate) fn move_level(
+        &mut self,
+        network: &Network,
+        resource: ResourceId,
+        by: Rational,
+        owner: Option<OccurrenceId>,
+    ) -> Option<Happening> {
+        let level = self.levels.get_mut(resource.index())?;
+        *level = level.checked_add(by).unwrap_or(*level);
+        let of = &network.resources[resource.index()];
+        // The order of an `unordered` block is no resource of the mission.
+        (!by.is_zero() && !of.name.contains('#')).then(|| Happening::Level {
+            resource: of.name.clone(),
+            level: *level,
+            by: owner.map(|owner| network.occurrences[owner.index()].name.clone()),
+        })
+    }
+
+    fn value_shown(&self, network: &Network, variable: VariableId, owner: Option<OccurrenceId>) -> Happening {
+        let of = &network.variables[variable.index()];
+        Happening::State {
+            variable: of.name.clone(),
+            value: self.value(variable).and_then(|value| of.values.get(value.index()).cloned()),
+            by: owner.map(|owner| network.occurrences[owner.index()].name.clone()),
+        }
+    }
+
+    /// A requirement that lasts no time is of the present instant.
+    pub(crate) fn need_now(&mut self, requirement: LabelId) {
+        self.momentary.push(requirement);
+    }
+
+    /// What is not as it must be when the present instant is over. `is_under_way` tells which requirements go on.
+    pub(crate) fn lack(
+        &self,
+        network: &Network,
+        effects: &Effects,
+        is_under_way: impl Fn(LabelId) -> bool,
+    ) -> Option<Lack> {
+        let holds = |label: &LabelId| {
+            let literal = &network.labels[label.index()].literal;
+            self.value(literal.variable).is_some_and(|value| literal.values.contains(value))
+        };
+        let held = |label: &LabelId| {
+            let literal = &network.labels[label.index()].literal;
+            self.held[literal.variable.index()].seen.iter().any(|&value| literal.values.contains(value))
+        };
+        let momentary = self.momentary.iter().find(|label| !held(label));
+        let lasting = || effects.requirements.iter().find(|label| is_under_way(**label) && !holds(label));
+        if let Some(&label) = momentary.or_else(lasting) {
+            return Some(Lack::Value(label));
+        }
+        let is_kept = |(supply, &level): (&Supply, &Rational)| match *supply {
+            Supply::Reusable { capacity } => level <= capacity,
+            Supply::Reservoir { least, greatest, .. } => (least..=greatest).contains(&level),
+        };
+        let supplies = network.resources.iter().map(|resource| &resource.supply);
+        let lacking = supplies.zip(&self.levels).position(|one| !is_kept(one))?;
+        Some(Lack::Level(ResourceId::from_index(lacking)))
+    }
+
+    /// What a variable is, for people: `IN`, `changing`.
+    pub(crate) fn words(&self, network: &Network, variable: VariableId) -> SmolStr {
+        let named = |value: ValueId| network.variables[variable.index()].values.get(value.index()).cloned();
+        match self.value(variable) {
+            Some(value) => named(value).unwrap_or_default(),
+            None if self.is_changing(variable) => "changing".into(),
+            None => "not known".into(),
+        }
+    }
+}
+
+/// The one value that an assertion names.
+fn value_of(values: &ValueSet) -> Option<ValueId> {
+    match values {
+        ValueSet::In(values) => values.first().copied(),
+        ValueSet::NotIn(_) => None,
+    }
+}
