@@ -161,6 +161,7 @@ fn add_world_event(network: &mut Network, at: Time) -> (NodeId, ArcId, Occurrenc
         to: node,
         lower: at,
         upper: Bound::Finite(at),
+        is_contingent: false,
         kind: ArcKind::Span,
         labels: Vec::new(),
         occurrence: None,

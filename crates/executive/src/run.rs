@@ -500,6 +500,8 @@ impl Run<'_> {
             happened.chain(passed).chain(facts.world_nodes(&stage.network)).collect();
         let kept = stage.enter_past(past);
         self.off_plan.clear();
+        let times = &stage.times;
+        self.state.follow(&stage.network, &stage.plan, |node| times[node.index()].is_some());
         let before = std::mem::replace(&mut self.stage, stage);
         self.plans.push(before.close());
         Ok(kept.err().map(|node| format!("the new plan does not keep {} in the past", self.stage.name(node))))

@@ -11,8 +11,8 @@ use exact::Rational;
 use rmpl::program::{Change, LabelMode};
 use smol_str::SmolStr;
 use tpn::{
-    Extent, LabelId, Network, NodeId, OccurrenceId, Plan, ResourceId, Supply, UseId, ValueId, ValueSet,
-    VariableId,
+    Extent, LabelId, Network, NodeId, OccurrenceId, Plan, Resource, ResourceId, Supply, UseId, ValueId,
+    ValueSet, VariableId,
 };
 
 use crate::log::Happening;
@@ -135,6 +135,26 @@ impl WorldState {
         Self { held, levels, momentary: Vec::new() }
     }
 
+    /// Another plan is followed from now on: orders that are no resources of the mission are its own.
+    pub(crate) fn follow(&mut self, network: &Network, plan: &Plan, has_happened: impl Fn(NodeId) -> bool) {
+        let start = Self::new(network).levels;
+        self.levels.resize(start.len(), Rational::ZERO);
+        for (index, _) in network.resources.iter().enumerate().filter(|(_, it)| is_unnamed(it)) {
+            let own = network.uses.iter().filter(|used| used.resource.index() == index);
+            let mut level = start[index];
+            for used in own.filter(|used| plan.selected_arcs[used.arc.index()]) {
+                let by = match used.change {
+                    Change::Uses if has_happened(used.start) && !has_happened(used.end) => Some(used.amount),
+                    Change::Produces if has_happened(used.end) => Some(used.amount),
+                    Change::Consumes if has_happened(used.start) => used.amount.checked_neg(),
+                    _ => None,
+                };
+                level = by.and_then(|by| level.checked_add(by)).unwrap_or(level);
+            }
+            self.levels[index] = level;
+        }
+    }
+
     /// The value of a variable; `None` while it changes, and of one that does not last.
     pub(crate) fn value(&self, variable: VariableId) -> Option<ValueId> {
         let held = self.held.get(variable.index())?;
@@ -240,8 +260,7 @@ impl WorldState {
         let level = self.levels.get_mut(resource.index())?;
         *level = level.checked_add(by).unwrap_or(*level);
         let of = &network.resources[resource.index()];
-        // The order of an `unordered` block is no resource of the mission.
-        (!by.is_zero() && !of.name.contains('#')).then(|| Happening::Level {
+        (!by.is_zero() && !is_unnamed(of)).then(|| Happening::Level {
             resource: of.name.clone(),
             level: *level,
             by: owner.map(|owner| network.occurrences[owner.index()].name.clone()),
@@ -300,6 +319,11 @@ impl WorldState {
             None => "not known".into(),
         }
     }
+}
+
+/// Whether a resource stands for an order, such as that of the parts of an `unordered` block, and not for one of the mission.
+fn is_unnamed(resource: &Resource) -> bool {
+    resource.name.contains('#')
 }
 
 /// The one value that an assertion names.

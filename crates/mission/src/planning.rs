@@ -19,8 +19,11 @@ use tpn::{ArcId, ArcKind, Network, OccurrenceId, Plan, Supply};
 use crate::departures::Departures;
 use crate::driving::{self, Drive};
 use crate::ground::{FreeSpace, Grounds};
+use crate::listing::{self, Listed};
+use crate::meetings;
 use crate::programs;
 use crate::separation;
+use crate::simulation::nearest_free;
 use crate::snapshot::{
     Leg, MapKey, PathFigures, Planning, SeparationViolation, Traverse, Undrivable, VehicleMotion,
 };
@@ -50,6 +53,8 @@ pub struct Planned {
     pub network: Arc<Network>,
     /// What planning found.
     pub planning: Arc<Planning>,
+    /// Other plans that were asked for, each with its own paths; of missions without ground these are in `planning`.
+    pub others: Vec<Listed>,
     /// The plan's traverses.
     pub traverses: Vec<Traverse>,
     /// Where the vehicles of each traverse can be.
@@ -66,14 +71,46 @@ pub struct Planned {
 const MAX_ROUNDS: usize = 64;
 
 /// A traverse as it stands in the network: its way, and its legs, or why it can't be driven.
-struct Inserted {
-    waypoints: Vec<Waypoint>,
-    legs: Result<Vec<Leg>, Undrivable>,
-    route: Route,
+pub(crate) struct Inserted {
+    pub(crate) waypoints: Vec<Waypoint>,
+    pub(crate) legs: Result<Vec<Leg>, Undrivable>,
+    pub(crate) route: Route,
 }
 
 /// Plans `problem`. When `stop` says so before there is an answer, the outcome's status is [`Status::Limit`].
 pub fn plan(
+    problem: &Problem<'_>,
+    grounds: &mut Grounds,
+    paths: &mut Paths,
+    stop: &mut dyn FnMut() -> bool,
+) -> Planned {
+    if !listing::is_listing(problem) {
+        return plan_first(problem, grounds, paths, stop);
+    }
+    let options = Options { all: false, best: 1, ..problem.options };
+    let mut planned = plan_first(&Problem { options, ..*problem }, grounds, paths, stop);
+    if has_plan(&planned.planning.outcome) {
+        listing::add_plans(problem, &mut planned, grounds, paths, stop);
+    }
+    planned
+}
+
+/// Plans `problem` with the paths of its first plan, whose vehicles keep apart as far as the mission's bounds allow.
+fn plan_first(
+    problem: &Problem<'_>,
+    grounds: &mut Grounds,
+    paths: &mut Paths,
+    stop: &mut dyn FnMut() -> bool,
+) -> Planned {
+    let planned = plan_paths(problem, grounds, paths, stop);
+    if planned.separation_violations.is_empty() || stop() {
+        return planned;
+    }
+    meetings::kept_apart(problem, planned, &mut |problem| plan_paths(problem, grounds, paths, stop))
+}
+
+/// Plans `problem` with the paths of its first plan; others that are asked for have theirs only as far as they share them.
+fn plan_paths(
     problem: &Problem<'_>,
     grounds: &mut Grounds,
     paths: &mut Paths,
@@ -122,7 +159,7 @@ pub fn plan(
 
 /// The network with reservoirs that never run over, where that may be due to metres that are not known yet: what a path takes
 /// of a reservoir also makes room in it. `None` where all that matters is known.
-fn without_upper_limits(
+pub(crate) fn without_upper_limits(
     network: &Arc<Network>,
     inserted: &BTreeMap<OccurrenceId, Inserted>,
 ) -> Option<Arc<Network>> {
@@ -202,7 +239,7 @@ fn order_movements(
 }
 
 /// The least time that the legs of a route take; nothing where that does not fit, which its own bounds then decide.
-fn least_duration(problem: &Problem<'_>, route: &Route, legs: &[Leg]) -> Option<Time> {
+pub(crate) fn least_duration(problem: &Problem<'_>, route: &Route, legs: &[Leg]) -> Option<Time> {
     let unit_seconds = problem.program.options.time_unit.seconds();
     let Some(path) = traverse_path(route, legs, problem.ground?.1) else { return Some(Time::ZERO) };
     let segments = tpn::path::segment_bounds(&path, unit_seconds).unwrap_or_default();
@@ -212,10 +249,11 @@ fn least_duration(problem: &Problem<'_>, route: &Route, legs: &[Leg]) -> Option<
 /// A network that was planned as it is, such as one that came without a program.
 pub fn without_paths(network: &Arc<Network>, outcome: Outcome) -> Planned {
     let verdict = outcome.plans.first().map(|plan| verify::check_plan(network, plan));
-    let planning = Arc::new(Planning { outcome, verdict, undrivable: Vec::new() });
+    let planning = Arc::new(Planning { outcome, verdict, undrivable: Vec::new(), left_out: Vec::new() });
     Planned {
         network: Arc::clone(network),
         planning,
+        others: Vec::new(),
         traverses: Vec::new(),
         spaces: Vec::new(),
         motions: Vec::new(),
@@ -256,6 +294,7 @@ fn found_legs(
     route: &Route,
 ) -> Result<Vec<Leg>, Undrivable> {
     let space = grounds.space(key, map, &problem.program.world, route.model);
+    let route = &on_free_ground(route, &space);
     let mut legs = paths.legs(route, &space, problem.seed, Preference::Roomy);
     let does_not_fit = |legs: &Vec<Leg>| out_of_bounds(problem, route, legs, map).is_some();
     if legs.as_ref().is_ok_and(does_not_fit) {
@@ -264,8 +303,17 @@ fn found_legs(
     legs.map_err(|(leg, reason)| Undrivable { occurrence: route.occurrence, leg, reason })
 }
 
+/// A route whose ends are free where they are not the locations themselves but places beside them.
+fn on_free_ground(route: &Route, space: &FreeSpace) -> Route {
+    let mut route = route.clone();
+    for place in route.waypoints.iter_mut().filter(|place| place.slot > 0) {
+        place.position_m = nearest_free(&space.exact, place.position_m).unwrap_or(place.position_m);
+    }
+    route
+}
+
 /// The legs of a route that can be driven within its bounds.
-fn legs(
+pub(crate) fn legs(
     problem: &Problem<'_>,
     ground: (&MapKey, &Arc<Terrain>),
     grounds: &mut Grounds,
@@ -280,7 +328,7 @@ fn legs(
 }
 
 /// The program's network with the paths inserted, or blocked where a traverse can't be driven.
-fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId, Inserted>) -> Network {
+pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId, Inserted>) -> Network {
     let map = problem.ground.map(|(_, map)| map);
     let paths: Vec<TraversePath> = inserted
         .values()
@@ -499,8 +547,9 @@ fn conclude(
     if let Some(plan) = outcome.plans.first_mut() {
         plan.quality.length_m = traverses.iter().map(|traverse| traverse.length_m).sum();
     }
-    let planning = Arc::new(Planning { outcome, verdict, undrivable });
-    Planned { network, planning, traverses, spaces, motions, separation_violations, warnings }
+    let planning = Arc::new(Planning { outcome, verdict, undrivable, left_out: Vec::new() });
+    let others = Vec::new();
+    Planned { network, planning, others, traverses, spaces, motions, separation_violations, warnings }
 }
 
 /// Where the vehicles are over time when `plan` is driven along the traverses of `planned`.

@@ -22,6 +22,7 @@ use terrain::{Obstacle, Terrain};
 use tpn::{EventRef, Network, OccurrenceId};
 
 use self::trip::Trip;
+pub(crate) use self::way::nearest_free;
 use crate::driving::Drive;
 use crate::ground;
 use crate::planning::{self, Planned, Problem};

@@ -13,6 +13,7 @@ use smol_str::SmolStr;
 use tpn::{Network, OccurrenceId};
 
 use crate::content::PartKeys;
+use crate::listing::LeftOut;
 use crate::problem::Problem;
 
 /// One revision of a mission, as far as it has been evaluated.
@@ -64,6 +65,8 @@ pub struct Planning {
     pub verdict: Option<verify::Verdict>,
     /// Traverses whose alternatives were given up because no path fits, with the reason.
     pub undrivable: Vec<Undrivable>,
+    /// Plans that would be listed where several are asked for, but cannot be driven.
+    pub left_out: Vec<LeftOut>,
 }
 
 /// A traverse that could not be driven.

@@ -15,6 +15,7 @@ use tpn::{Network, Occurrence, OccurrenceId, OccurrenceKind, Plan};
 
 use crate::ground::FreeSpace;
 use crate::snapshot::Leg;
+use crate::standing;
 
 /// A traverse of a plan: who drives, and through which places.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,14 +41,19 @@ pub struct Waypoint {
     pub name: SmolStr,
     /// In metres.
     pub position_m: Point2<f64>,
+    /// Which place of the location that is, where several vehicles stand there: 0 for the location itself.
+    pub slot: usize,
 }
 
 /// The routes of the traverses that `plan` selects, in order of their earliest departure. Each vehicle starts where its
 /// previous movement left it, or from its own start (SPEC 1.8).
 pub fn routes(network: &Network, program: &Program, plan: &Plan) -> Vec<Route> {
     let world = &program.world;
-    let mut positions: Vec<Option<Waypoint>> =
-        world.vehicles.iter().map(|vehicle| waypoint(world, &vehicle.start.text)).collect();
+    let spacing_m = standing::spacing_m(program);
+    let starts = world.vehicles.iter().zip(standing::start_slots(program));
+    let mut positions: Vec<Option<Waypoint>> = starts
+        .map(|(vehicle, slot)| Some(waypoint(world, &vehicle.start.text)?.at_slot(slot, spacing_m)))
+        .collect();
     let mut moving: Vec<(OccurrenceId, Moving<'_>)> = network
         .occurrences
         .iter()
@@ -72,8 +78,17 @@ pub fn routes(network: &Network, program: &Program, plan: &Plan) -> Vec<Route> {
     });
     let mut routes = Vec::new();
     for (id, moving) in moving {
-        let Some(route) = route(network, world, id, &moving, &positions) else { continue };
-        if let Some(last) = route.waypoints.last() {
+        let Some(mut route) = route(network, world, id, &moving, &positions) else { continue };
+        if let Some(last) = route.waypoints.last_mut() {
+            // What stands there already stays where it is.
+            let others =
+                positions.iter().enumerate().filter(|(vehicle, _)| !route.vehicles.contains(vehicle));
+            let taken: Vec<usize> = (others.filter_map(|(_, place)| place.as_ref()))
+                .filter(|place| place.name == last.name)
+                .map(|place| place.slot)
+                .collect();
+            let free = (0..taken.len()).find(|slot| !taken.contains(slot)).unwrap_or(taken.len());
+            *last = last.at_slot(free, spacing_m);
             for &vehicle in &route.vehicles {
                 positions[vehicle] = Some(last.clone());
             }
@@ -105,7 +120,15 @@ pub fn moving<'program>(program: &'program Program, occurrence: &Occurrence) -> 
 
 fn waypoint(world: &World, name: &str) -> Option<Waypoint> {
     let location = world.locations.iter().find(|location| location.name.text == name)?;
-    Some(Waypoint { name: location.name.text.clone(), position_m: location.position_m.into() })
+    Some(Waypoint { name: location.name.text.clone(), position_m: location.position_m.into(), slot: 0 })
+}
+
+impl Waypoint {
+    /// Another place at the same location, whose middle this one is.
+    fn at_slot(&self, slot: usize, spacing_m: f64) -> Self {
+        let position_m = standing::place_m(self.position_m, slot, spacing_m);
+        Self { name: self.name.clone(), position_m, slot }
+    }
 }
 
 fn route(

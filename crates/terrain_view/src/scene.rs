@@ -129,12 +129,16 @@ pub fn vehicle_pose(snapshot: &Snapshot, vehicle: usize, time: f64) -> Option<(V
     if let Some((motion, (position, heading))) = motion.and_then(|motion| Some((motion, motion.at(time)?))) {
         return Some((place(position), smooth_heading(motion, time).unwrap_or(heading as f32)));
     }
+    // Vehicles that share a start stand beside each other.
+    let start_m = mission::standing::start_m(&snapshot.program, vehicle)?;
     let world = &snapshot.program.world;
     let start = &world.vehicles.get(vehicle)?.start.text;
-    let location = world.locations.iter().find(|location| location.name.text == *start)?;
-    // Vehicles that share a start are drawn beside each other.
-    let before = world.vehicles.iter().take(vehicle).filter(|other| other.start.text == *start).count();
-    Some((place(location.position_m) + Vec2::new(0.0, -2.0 * before as f32), 0.0))
+    let slots = mission::standing::start_slots(&snapshot.program);
+    // Those that drive off together are drawn behind each other.
+    let is_with =
+        |other: &usize| world.vehicles[*other].start.text == *start && slots[*other] == slots[vehicle];
+    let before = (0..vehicle).filter(is_with).count();
+    Some((place(start_m) + Vec2::new(0.0, -2.0 * before as f32), 0.0))
 }
 
 /// The direction in which a moving vehicle turns its nose: it takes corners of its path over a short way, as wheels do.

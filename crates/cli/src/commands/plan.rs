@@ -191,8 +191,8 @@ fn outcome_json(planned: &Planned, loaded: &Loaded, [compile_millis, plan_millis
     let outcome = &planned.planning.outcome;
     let stats = &outcome.stats;
     let world = loaded.program.as_ref().map(|program| &program.world);
-    let plans: Vec<Value> =
-        outcome.plans.iter().map(|plan| tpn::plan_json::plan_to_json(&planned.network, plan)).collect();
+    let plan_json = |(network, plan): (&Network, &tpn::Plan)| tpn::plan_json::plan_to_json(network, plan);
+    let plans: Vec<Value> = all_plans(planned).map(plan_json).collect();
     let mut body = json!({
         "status": status_name(outcome.status),
         "plans": plans,
@@ -202,6 +202,10 @@ fn outcome_json(planned: &Planned, loaded: &Loaded, [compile_millis, plan_millis
             "activity": planned.network.occurrences[undrivable.occurrence.index()].name,
             "leg": undrivable.leg,
             "reason": undrivable.reason,
+        })).collect::<Vec<_>>(),
+        "left_out": planned.planning.left_out.iter().map(|left_out| json!({
+            "choices": choices_json(&left_out.choices),
+            "reason": left_out.reason,
         })).collect::<Vec<_>>(),
         "traverses": world.map(|world| traverses_json(&planned.traverses, &planned.network, world)),
         "encounters": world.map(|world| separation_violations_json(&planned.separation_violations, world)),
@@ -223,6 +227,12 @@ fn outcome_json(planned: &Planned, loaded: &Loaded, [compile_millis, plan_millis
         body["bound"] = json!(bound);
     }
     body
+}
+
+/// All plans that were asked for, each with its network.
+fn all_plans(planned: &Planned) -> impl Iterator<Item = (&Network, &tpn::Plan)> {
+    let own = planned.planning.outcome.plans.iter().map(|plan| (planned.network.as_ref(), plan));
+    own.chain(planned.others.iter().map(|listed| (listed.network.as_ref(), &listed.plan)))
 }
 
 fn failure_json(failure: &Failure, loaded: &Loaded) -> Value {
@@ -284,11 +294,12 @@ fn outcome_text(planned: &Planned, loaded: &Loaded) -> String {
             message.map(|message| format!("{message}\n")).unwrap_or_default()
         }
     };
-    for (index, plan) in outcome.plans.iter().enumerate() {
-        if outcome.plans.len() > 1 {
-            text.push_str(&format!("plan {} of {}\n", index + 1, outcome.plans.len()));
+    let count = all_plans(planned).count();
+    for ((network, plan), number) in all_plans(planned).zip(1..) {
+        if count > 1 {
+            text.push_str(&format!("plan {number} of {count}\n"));
         }
-        text.push_str(&plan_text(&planned.network, plan));
+        text.push_str(&plan_text(network, plan));
     }
     if let Some(verdict) = &planned.planning.verdict {
         if verdict.valid {
@@ -304,6 +315,13 @@ fn outcome_text(planned: &Planned, loaded: &Loaded) -> String {
     for undrivable in &planned.planning.undrivable {
         let name = &planned.network.occurrences[undrivable.occurrence.index()].name;
         text.push_str(&format!("{name} can't be driven {}\n", undrivable.reason));
+    }
+    for left_out in &planned.planning.left_out {
+        let taken = |choice: &tpn::Choice| {
+            format!("{} = {}", Network::decision_name(choice.decision), choice.alternative)
+        };
+        let choices: Vec<String> = left_out.choices.iter().map(taken).collect();
+        text.push_str(&format!("left out  {}: {}\n", choices.join(", "), left_out.reason));
     }
     text.push_str(&stats_text(outcome));
     text

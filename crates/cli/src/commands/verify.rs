@@ -4,8 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use mission::Paths;
-use mission::planning;
+use mission::{Paths, listing, planning};
 use serde_json::{Value, json};
 use tpn::plan_json::{PlanError, plan_from_json, selected_activities, stated_activities};
 use tpn::{EventEnd, Network};
@@ -88,7 +87,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 fn check(args: &Args, loaded: &Loaded, network: &Network, stated: &Value) -> anyhow::Result<Vec<Value>> {
     let extended;
     let network = if names_path_vertices(stated) {
-        extended = with_paths(args, loaded, network)?;
+        extended = with_paths(args, loaded, network, stated)?;
         &*extended
     } else {
         network
@@ -125,8 +124,22 @@ fn names_path_vertices(stated: &Value) -> bool {
     windows.is_some_and(|windows| windows.keys().any(|event| event.contains(".leg")))
 }
 
+/// A plan less what it says of paths.
+fn without_path_vertices(stated: &Value) -> Value {
+    let mut stated = stated.clone();
+    if let Some(windows) = stated.get_mut("windows").and_then(Value::as_object_mut) {
+        windows.retain(|event, _| !event.contains(".leg"));
+    }
+    stated
+}
+
 /// The network with the paths that planning finds, which the seed determines.
-fn with_paths(args: &Args, loaded: &Loaded, network: &Network) -> anyhow::Result<Arc<Network>> {
+fn with_paths(
+    args: &Args,
+    loaded: &Loaded,
+    network: &Network,
+    stated: &Value,
+) -> anyhow::Result<Arc<Network>> {
     let network = Arc::new(network.clone());
     let Some(program) = &loaded.program else { return Ok(network) };
     let has_paths = |network: &Network| {
@@ -145,9 +158,18 @@ fn with_paths(args: &Args, loaded: &Loaded, network: &Network) -> anyhow::Result
         seed: args.seed,
         facts: None,
     };
+    let mut paths = Paths::default();
     let deadline = args.time_limit.start();
     let mut stop = || deadline.is_over();
-    let planned = planning::plan(&problem, &mut grounds, &mut Paths::default(), &mut stop);
+    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut stop);
     deadline.check(&planned.planning.outcome)?;
+    // Another plan than the first one has paths of its own.
+    let is_own = |plan: tpn::Plan| verify::check_plan(&planned.network, &plan).valid;
+    if !plan_from_json(&planned.network, stated).is_ok_and(is_own)
+        && let Ok(plan) = plan_from_json(&network, &without_path_vertices(stated))
+    {
+        let found = listing::network_of(&problem, &plan, &mut grounds, &mut paths);
+        return Ok(Arc::new(found.map_err(anyhow::Error::msg)?));
+    }
     Ok(planned.network)
 }

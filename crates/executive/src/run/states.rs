@@ -288,8 +288,20 @@ impl Run<'_> {
             if off.is_negative() { "less" } else { "more" },
             cause.map_or_else(String::new, |cause| format!(", for {cause}"))
         );
-        let (node, reason) = match self.first_out_of_range(resource, coming, (least, greatest)) {
-            Some((at, used, level)) => {
+        Some(self.lost_range(resource, coming, (least, greatest), &stands))
+    }
+
+    /// That a level will not stay in its range: what takes it out of it, if what is to come comes as early as it may.
+    fn lost_range(
+        &self,
+        resource: ResourceId,
+        coming: Vec<(Time, UseId)>,
+        (least, greatest): (Rational, Rational),
+        stands: &str,
+    ) -> Violation {
+        let network = &self.stage.network;
+        let (node, reason) =
+            if let Some((at, used, level)) = self.first_out_of_range(resource, coming, (least, greatest)) {
                 let of = &network.uses[used.index()];
                 let who = of.owner.map_or_else(
                     || network.use_name(used),
@@ -300,22 +312,16 @@ impl Run<'_> {
                 } else {
                     ("gives", "to", format!("above {}", greatest.readable()))
                 };
-                let (amount, level) = (of.amount.readable(), level.readable());
-                let at = shown(at);
-                let text = format!(
-                    "{who} {verb} {amount} {with} {name} at {at}, which would take it to {level}, {limit}: {stands}"
-                );
-                (of.moment(), text)
-            }
-            None => {
-                let (least, greatest) = (least.readable(), greatest.readable());
-                let text = format!(
-                    "{stands}: the plan no longer keeps it between {least} and {greatest} in every schedule"
-                );
+                let name = &network.resources[resource.index()].name;
+                let (amount, level, at) = (of.amount.readable(), level.readable(), shown(at));
+                let taken = format!("which would take it to {level}, {limit}");
+                (of.moment(), format!("{who} {verb} {amount} {with} {name} at {at}, {taken}: {stands}"))
+            } else {
+                let range = format!("between {} and {}", least.readable(), greatest.readable());
+                let text = format!("{stands}: the plan no longer keeps it {range} in every schedule");
                 (network.start, text)
-            }
-        };
-        Some(Violation { name: self.stage.name(node).into(), reason, news: News::None, is_final: false })
+            };
+        Violation { name: self.stage.name(node).into(), reason, news: News::None, is_final: false }
     }
 
     /// Whether what is to come keeps a level in its range in every schedule (SPEC 11), from where it is now.

@@ -11,6 +11,7 @@ use super::distances::Distances;
 use super::lines::Places;
 use super::schedule::slack;
 use super::{ChoiceReview, ConflictReview, EventReview, Fate, LinkReview, Status, TimeRange, TraverseReview};
+use crate::meetings;
 use crate::snapshot::{Planning, Snapshot};
 
 /// Vehicles that pass obstacles nearer than this, in metres, deserve a look.
@@ -190,11 +191,13 @@ impl<'input> PlanLines<'input> {
                 let gap = (*gap)?;
                 let (first, then) = (network.use_name(order.first), network.use_name(order.then));
                 let used = &network.uses[order.first.index()];
-                let resource = &network.resources[used.resource.index()].name;
-                let why = if resource.contains('#') {
+                let resource = &network.resources[used.resource.index()];
+                let why = if meetings::is_way(resource) {
+                    "so that they do not meet".to_owned()
+                } else if resource.name.contains('#') {
                     "as parts of one `unordered`".to_owned()
                 } else {
-                    format!("for the sake of {resource}")
+                    format!("for the sake of {}", resource.name)
                 };
                 let owner = |used: tpn::UseId| {
                     let owner = network.uses[used.index()].owner?;

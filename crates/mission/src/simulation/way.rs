@@ -5,7 +5,7 @@ use nalgebra::{Point2, UnitComplex, Vector2};
 use terrain::ConfigurationSpace;
 
 /// The place itself, or the nearest free one around it: what a vehicle has come close to fills whole cells.
-pub(super) fn nearest_free(space: &ConfigurationSpace, here: Point2<f64>) -> Option<Point2<f64>> {
+pub(crate) fn nearest_free(space: &ConfigurationSpace, here: Point2<f64>) -> Option<Point2<f64>> {
     const DIRECTIONS: u32 = 24;
     const RING_M: f64 = 0.2;
     if space.is_free(here) {

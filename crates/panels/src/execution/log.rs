@@ -66,8 +66,9 @@ fn subject(shown: Shown<'_>, entry: &Entry) -> Option<Selection> {
         Happening::Executed { name } | Happening::Violation { name, .. } => {
             name.rsplit_once('.').map_or(name.as_str(), |(occurrence, _)| occurrence)
         }
-        Happening::Progress { name, .. } => name.as_str(),
-        Happening::State { by: Some(name), .. } | Happening::Level { by: Some(name), .. } => name.as_str(),
+        Happening::Progress { name, .. }
+        | Happening::State { by: Some(name), .. }
+        | Happening::Level { by: Some(name), .. } => name.as_str(),
         _ => return None,
     };
     let index = shown.network.occurrences.iter().position(|occurrence| occurrence.name == name)?;

@@ -1,0 +1,245 @@
+//! Several plans with their paths (SPEC 10.3, 12): each plan that is listed is planned again with the paths of its own
+//! traverses, which start where its movements do, and left out if it cannot be driven.
+//!
+//! The plans are found with what is known of movements without paths, as lower bounds: no plan that can be driven is missed.
+//! Plans with the same choices and the same ways share one planning again.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use exact::{Bound, Time};
+use kirk::{Options, Stats, Status};
+use serde::{Deserialize, Serialize};
+use smol_str::SmolStr;
+use tpn::{Choice, Network, OccurrenceId, Plan};
+
+use crate::departures::Departures;
+use crate::ground::Grounds;
+use crate::planning::{self, Inserted, Planned, Problem};
+use crate::traverse::{self, Paths, Route};
+
+/// A plan beside the first one, with its own paths.
+#[derive(Clone, Debug)]
+pub struct Listed {
+    /// The network with the paths of its traverses, and with its choices alone.
+    pub network: Arc<Network>,
+    /// The plan.
+    pub plan: Plan,
+}
+
+/// A plan that would be listed if it could be driven.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LeftOut {
+    /// Its choices.
+    pub choices: Vec<Choice>,
+    /// Why it cannot be driven, for the author.
+    pub reason: String,
+}
+
+/// Ways to drive that are looked at, at most: each combination of choices and ways of all its traverses is one.
+const MAX_WAYS: usize = 64;
+
+/// Whether the plans that `problem` asks for are listed here: those of missions that move vehicles over ground.
+pub(crate) fn is_listing(problem: &Problem<'_>) -> bool {
+    let options = &problem.options;
+    let is_moving = |occurrence| traverse::moving(problem.program, occurrence).is_some();
+    (options.all || options.best > 1)
+        && problem.ground.is_some()
+        && problem.facts.is_none()
+        && problem.network.occurrences.iter().any(is_moving)
+}
+
+/// Adds to `planned`, which has the first plan, all others that `problem` asks for.
+pub(crate) fn add_plans(
+    problem: &Problem<'_>,
+    planned: &mut Planned,
+    grounds: &mut Grounds,
+    paths: &mut Paths,
+    stop: &mut dyn FnMut() -> bool,
+) {
+    let mut network = problem.network.as_ref().clone();
+    network.departures = Departures::new(problem.network, problem.program).all();
+    let network = Arc::new(network);
+    let inserted = BTreeMap::new();
+    let relaxed = planning::without_upper_limits(&network, &inserted).unwrap_or_else(|| Arc::clone(&network));
+    let found = kirk::plan(&relaxed, &problem.options, &mut |_: &Stats| stop());
+    let mut listing = Listing {
+        problem,
+        ways: BTreeMap::new(),
+        is_cut: found.status == Status::Limit,
+        left_out: Vec::new(),
+    };
+    let first = planned.planning.outcome.plans.first().cloned();
+    let mut listed: Vec<Listed> = Vec::new();
+    for plan in &found.plans {
+        if stop() {
+            listing.is_cut = true;
+            break;
+        }
+        let mut known = first.iter().chain(listed.iter().map(|listed| &listed.plan));
+        if known.any(|known| is_same(&problem.options, known, plan)) {
+            continue;
+        }
+        match listing.driven(plan, grounds, paths, stop) {
+            Some(Ok(found)) => listed.push(found),
+            Some(Err(reason)) => listing.left_out.push(LeftOut { choices: plan.choices.clone(), reason }),
+            None => listing.is_cut = true,
+        }
+    }
+    let planning = Arc::make_mut(&mut planned.planning);
+    planned.others = listed;
+    planning.left_out = listing.left_out;
+    if listing.is_cut && planning.outcome.status == Status::Plan {
+        planning.outcome.status = Status::Limit;
+    }
+}
+
+/// Whether a list has two plans as one: with `--best` those of the same choices.
+fn is_same(options: &Options, one: &Plan, other: &Plan) -> bool {
+    let is_alike =
+        one.causal_links == other.causal_links && one.conflict_order == other.conflict_order || !options.all;
+    one.choices == other.choices && is_alike
+}
+
+/// What tells ways to drive from each other: the choices, and the places that each traverse passes.
+type Way = (Vec<Choice>, Vec<(OccurrenceId, Vec<SmolStr>)>);
+
+/// A network with the paths of one way, and its plans.
+type OfWay = (Arc<Network>, Vec<Plan>);
+
+struct Listing<'run, 'input> {
+    problem: &'run Problem<'input>,
+    /// The plans of each way with its paths, or why it cannot be driven.
+    ways: BTreeMap<Way, Result<OfWay, String>>,
+    is_cut: bool,
+    left_out: Vec<LeftOut>,
+}
+
+impl Listing<'_, '_> {
+    /// A plan with the paths of its traverses; why there is none. `None` if that was not looked at.
+    fn driven(
+        &mut self,
+        plan: &Plan,
+        grounds: &mut Grounds,
+        paths: &mut Paths,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Option<Result<Listed, String>> {
+        let routes = traverse::routes(self.problem.network, self.problem.program, plan);
+        let places = |route: &Route| {
+            let names = route.waypoints.iter().map(|place| place.name.clone()).collect();
+            (route.occurrence, names)
+        };
+        let mut of_routes: Vec<_> = routes.iter().map(places).collect();
+        of_routes.sort();
+        let way = (plan.choices.clone(), of_routes);
+        if !self.ways.contains_key(&way) {
+            if self.ways.len() >= MAX_WAYS {
+                return None;
+            }
+            let plans = self.plans_of_way(plan, routes, grounds, paths, stop);
+            self.ways.insert(way.clone(), plans);
+        }
+        let options = &self.problem.options;
+        Some(match self.ways.get(&way)? {
+            Ok((network, plans)) => {
+                let same = plans.iter().find(|known| is_same(options, known, plan));
+                let listed = |plan: &Plan| Listed { network: Arc::clone(network), plan: plan.clone() };
+                same.map(listed).ok_or_else(|| "in this order there is no time for its drives".to_owned())
+            }
+            Err(reason) => Err(reason.clone()),
+        })
+    }
+
+    /// All plans with the choices of `plan` and paths along its routes.
+    fn plans_of_way(
+        &self,
+        plan: &Plan,
+        routes: Vec<Route>,
+        grounds: &mut Grounds,
+        paths: &mut Paths,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Result<OfWay, String> {
+        let mut network = restricted(self.problem.network, &plan.choices);
+        network.departures = Departures::new(self.problem.network, self.problem.program).only(&routes);
+        let network = Arc::new(network);
+        let ways: Vec<_> = routes.iter().map(|route| (route.occurrence, route.waypoints.clone())).collect();
+        let problem = Problem { network: &network, ..*self.problem };
+        let inserted = inserted(&problem, routes, grounds, paths)?;
+        let with_paths = Arc::new(planning::with_paths(&problem, &inserted));
+        let options =
+            Options { explain: false, relax: false, trace_events: None, best: 1, ..problem.options };
+        let outcome = kirk::plan(&with_paths, &options, &mut |_: &Stats| stop());
+        if outcome.plans.is_empty() {
+            return Err(no_time(&problem, &inserted));
+        }
+        let length_m = inserted
+            .values()
+            .filter_map(|it| Some(traverse::joined(it.legs.as_ref().ok()?).length_m()))
+            .sum();
+        let is_valid = |plan: &Plan| {
+            let own = traverse::routes(&with_paths, self.problem.program, plan);
+            own.iter().all(|route| ways.contains(&(route.occurrence, route.waypoints.clone())))
+                && verify::check_plan(&with_paths, plan).valid
+        };
+        let mut plans: Vec<Plan> = outcome.plans.into_iter().filter(is_valid).collect();
+        for plan in &mut plans {
+            plan.quality.length_m = length_m;
+        }
+        Ok((with_paths, plans))
+    }
+}
+
+/// That there is no time for some drives, and how much each of them takes.
+fn no_time(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId, Inserted>) -> String {
+    let least = |it: &Inserted| {
+        let least = planning::least_duration(problem, &it.route, it.legs.as_ref().ok()?)?;
+        let name = &problem.network.occurrences[it.route.occurrence.index()].name;
+        Some(format!("{name} takes at least {:.1}", least.to_f64()))
+    };
+    let drives: Vec<String> = inserted.values().filter_map(least).collect();
+    format!("there is no plan with the paths of its drives: {}", drives.join(", "))
+}
+
+/// The network with these choices: the arcs to other alternatives would have to take at least one unit and at most none.
+fn restricted(network: &Network, choices: &[Choice]) -> Network {
+    let mut network = network.clone();
+    for choice in choices {
+        let alternatives = network.decisions[choice.decision.index()].alternatives.clone();
+        for (_, arc) in (0..).zip(alternatives).filter(|&(number, _)| number != choice.alternative) {
+            network.arcs[arc.index()].lower = Time::ONE;
+            network.arcs[arc.index()].upper = Bound::ZERO;
+        }
+    }
+    network
+}
+
+/// The network of `problem` with the paths of a plan's traverses; why there is none.
+pub fn network_of(
+    problem: &Problem<'_>,
+    plan: &Plan,
+    grounds: &mut Grounds,
+    paths: &mut Paths,
+) -> Result<Network, String> {
+    let routes = traverse::routes(problem.network, problem.program, plan);
+    Ok(planning::with_paths(problem, &inserted(problem, routes, grounds, paths)?))
+}
+
+/// The paths of these routes; why there are none.
+fn inserted(
+    problem: &Problem<'_>,
+    routes: Vec<Route>,
+    grounds: &mut Grounds,
+    paths: &mut Paths,
+) -> Result<BTreeMap<OccurrenceId, Inserted>, String> {
+    let mut inserted = BTreeMap::new();
+    let Some(ground) = problem.ground else { return Ok(inserted) };
+    for route in routes {
+        let legs = planning::legs(problem, ground, grounds, paths, &route).map_err(|undrivable| {
+            let name = &problem.network.occurrences[route.occurrence.index()].name;
+            format!("{name} can't be driven {}", undrivable.reason)
+        })?;
+        let waypoints = route.waypoints.clone();
+        inserted.insert(route.occurrence, Inserted { waypoints, legs: Ok(legs), route });
+    }
+    Ok(inserted)
+}
