@@ -165,3 +165,108 @@ fn a_path_raises_what_a_drive_of_natures_takes_and_adds_no_event_of_its_own() {
     assert_eq!(network.nodes.len(), 3);
     assert_eq!(network.arcs.iter().filter(|arc| arc.kind == ArcKind::Path).count(), 2);
 }
+
+#[test]
+fn texts_and_drawings_of_networks_say_what_is_natures() {
+    let network = network(&format!("{DRIVE} scenario S = {{ Drive()[30,35] }}"));
+    let text = tpn::text::to_text(&network);
+    assert!(text.contains("[20,40] contingent act Drive#1"), "{text}");
+    assert!(text.contains("[30,35] span"), "{text}");
+    let dot = tpn::text::to_dot(&network);
+    assert!(dot.contains("[20,40] contingent\\nDrive#1"), "{dot}");
+}
+
+// --- 13.3 ----------------------------------------------------------------------------------------------------------
+
+/// The places of the warnings, and the text with the one fix of each applied.
+fn exogenous(text: &str) -> (Vec<&str>, String) {
+    let (_, diagnostics) = compile(text, &Top::Scenario(None));
+    let diagnostics: Vec<_> = diagnostics.into_iter().filter(|it| it.code.0 == "W-EXOGENOUS").collect();
+    let places = diagnostics.iter().map(|it| &text[it.span.range()]).collect();
+    let mut edits: Vec<_> = diagnostics.iter().flat_map(|it| &it.fixes).flat_map(|it| &it.edits).collect();
+    edits.sort_by_key(|edit| edit.span.start);
+    let mut mended = text.to_owned();
+    for edit in edits.into_iter().rev() {
+        mended.replace_range(edit.span.range(), &edit.text);
+    }
+    (places, mended)
+}
+
+/// The branch beside one that calls something.
+fn world(branch: &str) -> String {
+    format!(
+        "const N = 5; const M = 300s; var L : {{A, B}}; var K : {{C, D}}; primitive Dig()[4,4];\n\
+         scenario S [0,60] = {{ {{ delay; Dig() }}, {branch} }}"
+    )
+}
+
+/// The branch is warned of at `place`; its fix makes it `mended`, of which `left` is still open.
+#[track_caller]
+fn warned(branch: &str, place: &str, mended: &str, left: &[&str]) {
+    let text = world(branch);
+    let (places, after) = exogenous(&text);
+    assert_eq!(places, [place], "{branch}");
+    assert_eq!(after, world(mended), "{branch}");
+    assert_eq!(exogenous(&after).0, left, "{after}");
+}
+
+#[test]
+fn a_branch_that_calls_nothing_and_leaves_a_choice_is_the_worlds() {
+    let mends = |branch: &str, place: &str, mended: &str| warned(branch, place, mended, &[]);
+    mends("{ delay [5,20]; L=A [10,10] }", "[5,20]", "{ delay contingent [5,20]; L=A [10,10] }");
+    mends("{ delay[5,20]; L=A [10,10] }", "[5,20]", "{ delay contingent [5,20]; L=A [10,10] }");
+    mends("L=A[10,20]", "[10,20]", "L=A contingent [10,20]");
+    mends("ask L=A [10,20]", "[10,20]", "ask L=A contingent [10,20]");
+    mends(
+        "{ delay[1,1]; L=A [N,2*N]; L=B [1,2] }",
+        "[N,2*N]",
+        "{ delay[1,1]; L=A contingent [N,2*N]; L=B contingent [1,2] }",
+    );
+    // Inside whatever it is built of, and with the word already in some places.
+    mends(
+        "repeat 2 { choose { delay [1,2], delay contingent [2,3] } }",
+        "[1,2]",
+        "repeat 2 { choose { delay contingent [1,2], delay contingent [2,3] } }",
+    );
+    mends("L=A and K=C[1,2]", "[1,2]", "L=A and K=C contingent [1,2]");
+}
+
+/// Nature chooses from finite bounds: what has none, the author has to say.
+#[test]
+fn a_wait_without_an_end_leaves_a_choice_that_no_fix_can_take() {
+    warned("{ delay; L=A [10,10] }", "delay", "{ delay; L=A [10,10] }", &["delay"]);
+    warned("{ delay[5,inf]; L=A [10,10] }", "[5,inf]", "{ delay[5,inf]; L=A [10,10] }", &["[5,inf]"]);
+    warned("{ delay; L=A [10,12] }", "delay", "{ delay; L=A contingent [10,12] }", &["delay"]);
+    let (_, diagnostics) = compile(&world("{ delay; L=A [10,12] }"), &Top::Scenario(None));
+    let found = diagnostics.iter().find(|it| it.code.0 == "W-EXOGENOUS").and_then(|it| it.hint.as_deref());
+    assert!(found.is_some_and(|hint| hint.contains("`delay contingent [0,30]`")), "{found:?}");
+}
+
+#[test]
+fn a_branch_that_leaves_no_choice_or_acts_for_the_mission_is_none_of_the_worlds() {
+    let none = |branch: &str| {
+        let text = world(branch);
+        let (_, diagnostics) = compile(&text, &Top::Scenario(None));
+        assert!(diagnostics.iter().all(|it| it.code.0 != "W-EXOGENOUS"), "{branch}: {diagnostics:?}");
+    };
+    none("{ delay [30,30]; L=A [15,15] }");
+    none("{ delay [N,5]; L=A [M,N]; L=B }");
+    none("{ delay contingent [5,20]; L=A contingent [10,12] }");
+    none("{ delay [5,20]; L=A [10,10]; Dig() }");
+    none("{ delay [5,20]; Dig }");
+    none("{ delay [5,20]; choose { L=A, { L=A; Dig() } } }");
+}
+
+#[test]
+fn every_branch_of_the_worlds_is_told_of_once_and_a_scenario_of_one_branch_has_one() {
+    let (places, _) = exogenous(
+        "var L : {A, B}; var K : {C, D}; primitive Dig()[4,4];\
+         scenario S = { Dig(), { delay[1,2]; L=A [3,4] }, K=C [5,6] }",
+    );
+    assert_eq!(places, ["[1,2]", "[5,6]"]);
+    assert_eq!(exogenous("var L : {A, B}; scenario S = { delay[1,2]; L=A [3,4] }").0, ["[1,2]"]);
+    // What is planned for an activity has no scenario.
+    let text = "var L : {A, B}; Wait() = { delay[1,2]; L=A [3,4] }";
+    let (_, diagnostics) = compile(text, &Top::activity("Wait"));
+    assert!(diagnostics.iter().all(|it| it.code.0 != "W-EXOGENOUS"), "{diagnostics:?}");
+}

@@ -399,7 +399,7 @@ fn captions(network: &Network, tree: &Tree, options: &Options, measure: &dyn Mea
         let count = part.block.map_or(0, |block| hidden_counts[block.index()]);
         let events = if count == 1 { "1 event".to_owned() } else { format!("{count} events") };
         let detail: smol_str::SmolStr = match arc.map(|arc| &network.arcs[arc.index()]) {
-            Some(arc) => format!("{} · {events}", crate::text::bounds_label(arc.lower, arc.upper)).into(),
+            Some(arc) => format!("{} · {events}", crate::text::arc_bounds_label(arc)).into(),
             None => events.into(),
         };
         captions.push(Caption {

@@ -133,6 +133,12 @@ pub fn bounds_label(lower: Time, upper: Bound) -> SmolStr {
     }
 }
 
+/// The bounds of an arc, and that nature chooses within them: `[20,40] contingent`.
+pub fn arc_bounds_label(arc: &Arc) -> SmolStr {
+    let bounds = bounds_label(arc.lower, arc.upper);
+    if arc.is_contingent { format_smolstr!("{bounds} contingent") } else { bounds }
+}
+
 /// A condition as the paper prints it on an arc: `Ask(PATH1=OK)`, and of what lasts `Set(ARM=OUT)` and `Init(ARM=IN)`.
 pub fn label_text(network: &Network, label: LabelId) -> (SmolStr, TextRole) {
     let label = &network.labels[label.index()];
@@ -156,7 +162,7 @@ pub fn label_words(label: &Label) -> String {
 }
 
 fn bounds_text(arc: &Arc, options: &Options) -> Option<(SmolStr, TextRole)> {
-    let text = bounds_label(arc.lower, arc.upper);
+    let text = arc_bounds_label(arc);
     let at_once = arc.lower.is_zero() && arc.upper == Bound::ZERO;
     if at_once && arc.occurrence.is_none() {
         return options.zero_bounds.then_some((text, TextRole::ZeroBounds));

@@ -1,8 +1,12 @@
 //! Durations that nature chooses: where they are written, what the program says of them, and that their word is not taken
 //! from a mission that uses it as a name (SPEC 13.1).
 
+mod fixture;
+
+use fixture::fixture;
+use rmpl::editor::{self, Evaluation, EventWindow, HighlightKind};
 use rmpl::program::{Bounds, Controllability, Program, Statement, StatementKind};
-use rmpl::{Severity, format, parse};
+use rmpl::{Severity, Span, format, parse};
 
 #[track_caller]
 fn program(text: &str) -> Program {
@@ -172,4 +176,122 @@ fn formatting_is_stable_and_puts_one_blank_around_the_word() {
         "scenario S = { Drive() contingent [1,2]; delay contingent [1,2]; X=Y contingent [1,2] }\n"
     );
     assert_eq!(format(&formatted), formatted);
+}
+
+const HEAD: &str = "const LONG = 40;\nvar LIGHT : {ON, OFF};\nlocation BASE (0, 0);\n\
+                    primitive Drive(to) contingent [LONG/2,LONG];\nprimitive Dig()[1,2];\n";
+
+/// What completing offers at the cursor, with what it writes.
+fn offered(line: &str) -> Vec<(String, String)> {
+    let fixture = fixture(&format!("{HEAD}{line}\n"));
+    let completion = editor::complete(&parse(&fixture.text), fixture.cursor);
+    completion.items.into_iter().map(|item| (item.label, item.insert)).collect()
+}
+
+#[test]
+fn the_word_is_offered_where_bounds_may_stand_and_nowhere_else() {
+    let template = ("contingent".to_owned(), "contingent [$0,]".to_owned());
+    for line in [
+        "primitive Talk(x) $0",
+        "primitive Talk(x) cont$0",
+        "M() = { Dig() $0 }",
+        "M() = { LIGHT=ON $0 }",
+        "M() = { ask LIGHT=ON co$0 }",
+        "M() = { delay $0 }",
+        "M() = { Dig(); do Dig() $0 }",
+        "M() = { if LIGHT=ON thennext Dig() $0 }",
+    ] {
+        assert!(offered(line).contains(&template), "{line}: {:?}", offered(line));
+    }
+    for line in [
+        "primitive Talk(x)[1,2] $0",
+        "primitive Talk(x) contingent $0",
+        "M() = { Dig()[1,2] $0 }",
+        "M() = { Dig() contingent $0 }",
+        "M() = { { Dig() } $0 }",
+        "M() = { do Dig() maintaining LIGHT=ON $0 }",
+        "M() = { if LIGHT=ON $0 }",
+        "M() = { $0 }",
+        "M() = { Drive($0) }",
+    ] {
+        assert!(offered(line).iter().all(|(label, _)| label != "contingent"), "{line}: {:?}", offered(line));
+    }
+    let delay = ("delay contingent".to_owned(), "delay contingent [$0,]".to_owned());
+    assert!(offered("M() = { $0 }").contains(&delay));
+}
+
+#[test]
+fn the_option_and_its_values_are_offered() {
+    assert!(offered("option $0").iter().any(|(label, _)| label == "controllability"));
+    let mut values: Vec<String> = offered("option controllability = $0").into_iter().map(|it| it.0).collect();
+    values.sort();
+    assert_eq!(values, ["dynamic", "none", "strong"]);
+}
+
+#[track_caller]
+fn hovered(line: &str, evaluation: &Evaluation) -> (String, String) {
+    let fixture = fixture(&format!("{HEAD}{line}"));
+    let hover = editor::hover(&parse(&fixture.text), fixture.cursor, evaluation).expect("a hover");
+    (fixture.text[hover.span.range()].to_owned(), hover.markdown)
+}
+
+#[test]
+fn hovering_tells_what_nature_chooses_and_what_is_left_to_the_executive() {
+    let nothing = Evaluation::default();
+    for line in ["M() = { Dig() con$0tingent [1+1,LONG] }", "primitive Talk() con$0tingent[2,LONG];"] {
+        let (word, markdown) = hovered(line, &nothing);
+        assert_eq!(word, "contingent");
+        assert!(markdown.contains("nature chooses how long it takes"), "{markdown}");
+        assert!(markdown.contains("decides when it starts"), "{markdown}");
+        assert!(markdown.contains("**2** at least and **40** at most"), "{markdown}");
+    }
+    // What depends on the call is not shown as one value; where the plan is known, its windows are.
+    let line = "M()[l,u] = { Dig() con$0tingent [l,u] }";
+    let at = format!("{HEAD}{line}").find("Dig() con").expect("there") as u32;
+    let window = EventWindow {
+        span: Span::new(at, at + 22),
+        event: "Dig#1.end".into(),
+        earliest: exact::Time::from(1),
+        latest: exact::Bound::Finite(exact::Time::from(9)),
+    };
+    let evaluation = Evaluation { invocations: Vec::new(), windows: vec![window] };
+    let (_, markdown) = hovered(line, &evaluation);
+    assert!(!markdown.contains("at most."), "{markdown}");
+    assert!(markdown.contains("Dig#1.end in [1,9]"), "{markdown}");
+    let (_, markdown) = hovered("M() = { Dri$0ve(BASE) }", &nothing);
+    assert!(markdown.contains("primitive Drive(to) contingent [LONG/2,LONG]"), "{markdown}");
+    assert!(markdown.contains("Nature chooses how long it takes"), "{markdown}");
+    let (_, markdown) = hovered("M() = { Di$0g() }", &nothing);
+    assert!(!markdown.contains("Nature"), "{markdown}");
+    let (_, markdown) = hovered("optio$0n strict = 1;", &nothing);
+    assert!(markdown.contains("`controllability`"), "{markdown}");
+}
+
+#[test]
+fn the_word_is_shown_as_one_and_signatures_and_outlines_hold_it() {
+    let text =
+        format!("{HEAD}primitive contingent();\nM() = {{ contingent() contingent [1,2]; Drive(BASE) }}");
+    let parsed = parse(&text);
+    let whole = Span::new(0, text.len() as u32);
+    let kinds: Vec<HighlightKind> = editor::highlight(&parsed, whole)
+        .into_iter()
+        .filter(|it| &text[it.span.range()] == "contingent")
+        .map(|it| it.kind)
+        .collect();
+    assert_eq!(
+        kinds,
+        [HighlightKind::Keyword, HighlightKind::Activity, HighlightKind::Activity, HighlightKind::Keyword]
+    );
+    let inside = text.find("BASE) }").expect("the call") as u32;
+    let signature = editor::signature_at(&parsed, inside).expect("a signature");
+    assert_eq!(signature.label, "primitive Drive(to) contingent [LONG/2,LONG]");
+    assert_eq!(&signature.label[signature.parameters[0].range()], "to");
+    let outline = editor::outline(&parsed);
+    let drive = outline.iter().find(|item| item.name == "Drive").expect("it is declared");
+    assert_eq!(drive.detail, "(to) contingent [LONG/2,LONG]");
+    // The name is renamed everywhere, and the word stays.
+    let call = text.find("contingent() contingent").expect("the call") as u32;
+    let edits = editor::rename(&parsed, call + 1, "nature").expect("it is a name");
+    assert_eq!(edits.len(), 2);
+    assert!(editor::rename(&parsed, call + 15, "nature").is_err());
 }

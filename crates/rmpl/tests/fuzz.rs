@@ -7,7 +7,7 @@ use rmpl::{Edit, Span, format, parse};
 
 const ROUNDS: u64 = 2500;
 
-const PROGRAMS: [&str; 8] = [
+const PROGRAMS: [&str; 9] = [
     include_str!("../../../assets/missions/enroute.rmpl"),
     include_str!("../../../assets/missions/causal-links.rmpl"),
     include_str!("../../../tests/conformance/c01_enroute_verbatim.rmpl"),
@@ -16,9 +16,10 @@ const PROGRAMS: [&str; 8] = [
     include_str!("../../../tests/suite/07-mistakes.md"),
     include_str!("../../../tests/suite/09-larger-missions.md"),
     include_str!("../../../tests/suite/10-state-and-resources.md"),
+    include_str!("../../../tests/suite/11-what-nature-chooses.md"),
 ];
 
-const PIECES: [&str; 20] = [
+const PIECES: [&str; 21] = [
     "{",
     "}",
     "[",
@@ -37,6 +38,7 @@ const PIECES: [&str; 20] = [
     "∞",
     "–",
     "choose",
+    " contingent ",
     "99999999999999999999",
     "\u{feff}",
 ];

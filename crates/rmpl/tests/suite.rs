@@ -119,8 +119,16 @@ fn a_formatted_block_is_what_formatting_the_block_before_it_gives() {
 fn every_kind_of_diagnostic_occurs_in_the_manual() {
     let manual: String = blocks().into_iter().map(|block| block.text).collect();
     // Reported by compilation or by planning, or about control programs.
-    let elsewhere =
-        ["E-NOSCENARIO", "E-LIMIT", "E-RESOURCE", "E-FORM", "E-CONSTRAINT", "W-ENCOUNTER", "W-PLANT"];
+    let elsewhere = [
+        "E-NOSCENARIO",
+        "E-LIMIT",
+        "E-RESOURCE",
+        "E-FORM",
+        "E-CONSTRAINT",
+        "W-ENCOUNTER",
+        "W-EXOGENOUS",
+        "W-PLANT",
+    ];
     for page in rmpl::diagnostics::EXPLANATIONS {
         assert!(
             elsewhere.contains(&page.code.0) || manual.contains(page.code.0),

@@ -35,7 +35,7 @@ pub fn to_text(network: &Network) -> String {
 /// What stands on an arc: its bounds, its labels and its activity.
 fn arc_text(network: &Network, id: ArcId) -> String {
     let arc = &network.arcs[id.index()];
-    let mut text = format!("[{},{}] {}", Bound::Finite(arc.lower), arc.upper, kind_name(arc.kind));
+    let mut text = format!("{} {}", bounds_text(arc), kind_name(arc.kind));
     if let Some((decision, alternative)) = arc.choice {
         let _ = write!(text, " {} = {alternative}", Network::decision_name(decision));
     }
@@ -61,7 +61,7 @@ pub fn to_dot(network: &Network) -> String {
         let _ = writeln!(text, "  n{index} [shape={shape}, label={}, tooltip={tooltip}];", quote(&name));
     }
     for arc in &network.arcs {
-        let mut label = format!("[{},{}]", Bound::Finite(arc.lower), arc.upper);
+        let mut label = bounds_text(arc);
         for condition in labels(network, arc) {
             let _ = write!(label, "\n{condition}");
         }
@@ -95,6 +95,12 @@ fn labels(network: &Network, arc: &Arc) -> Vec<String> {
         format!("{}({})", label.verb(), label.text)
     };
     arc.labels.iter().map(one).collect()
+}
+
+/// The bounds of an arc, and that nature chooses within them.
+fn bounds_text(arc: &Arc) -> String {
+    let word = if arc.is_contingent { " contingent" } else { "" };
+    format!("[{},{}]{word}", Bound::Finite(arc.lower), arc.upper)
 }
 
 /// The kind as the contracts write it.

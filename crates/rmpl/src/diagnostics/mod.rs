@@ -8,6 +8,7 @@ pub mod contingent;
 pub mod controllability;
 pub mod duplicate;
 pub mod encounter;
+pub mod exogenous;
 pub mod form;
 pub mod lex;
 pub mod limit;
@@ -59,6 +60,7 @@ pub const EXPLANATIONS: &[&Explanation] = &[
     &unused::EXPLANATION,
     &option::EXPLANATION,
     &controllability::EXPLANATION,
+    &exogenous::EXPLANATION,
     &traverse::EXPLANATION,
     &encounter::EXPLANATION,
     &plant::EXPLANATION,

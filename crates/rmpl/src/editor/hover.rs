@@ -7,7 +7,7 @@ use super::definition::references_of;
 use super::name::{NameKind, NameUse, name_at};
 use super::users::{users_of_resource, users_of_state, users_of_vehicle};
 use crate::analysis::constant::Constants;
-use crate::lower::bounds::expression;
+use crate::lower::bounds::{contingent_in, expression};
 use crate::parse::Parse;
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
@@ -67,9 +67,38 @@ pub fn hover(parse: &Parse, offset: u32, evaluation: &Evaluation) -> Option<Hove
     }
     let root = parse.declaration_at(offset)?;
     let token = root.tokens().find(|token| token.span.start <= offset && offset < token.span.end)?;
+    if let Some(markdown) = contingent(parse, root, token, evaluation) {
+        return Some(Hover { span: token.span, markdown });
+    }
     let markdown = word(token)?.to_owned();
     Some(Hover { span: token.span, markdown })
 }
+
+/// What nature may do within the bounds whose word `token` is, and what is left to the executive.
+fn contingent(
+    parse: &Parse,
+    root: SyntaxNode<'_>,
+    token: SyntaxToken<'_>,
+    evaluation: &Evaluation,
+) -> Option<String> {
+    let bounds = root.path_to(token.span.end).into_iter().rfind(|node| node.kind() == SyntaxKind::Bounds)?;
+    let word = contingent_in(bounds).filter(|word| word.span == token.span)?;
+    let mut lines = vec![CONTINGENT_MEANING.to_owned()];
+    let constants = Constants::new(&parse.program());
+    let mut sides = bounds.children().map(|side| constants.evaluate(&expression(side)?, &|_| None));
+    if let (Some(Some(least)), Some(Some(most))) = (sides.next(), sides.next()) {
+        lines.push(format!("Nature takes **{least}** at least and **{most}** at most."));
+    }
+    let windows = windows_at(evaluation, word.span);
+    if !windows.is_empty() {
+        lines.push(windows.join("\n"));
+    }
+    Some(lines.join("\n\n"))
+}
+
+/// What the word before bounds means.
+const CONTINGENT_MEANING: &str = "`contingent [l,u]`: nature chooses how long it takes, while it goes on. The executive decides when it starts, sees \
+    when it ends, and may act at that very instant; a plan has to withstand every choice.";
 
 /// The values of the smallest expression around `offset` in every invocation of its activity.
 fn hover_bound(parse: &Parse, offset: u32, evaluation: &Evaluation) -> Option<Hover> {
@@ -152,11 +181,20 @@ fn describe(parse: &Parse, name: &NameUse, evaluation: &Evaluation) -> String {
     let mut parts = Vec::new();
     match (definition, &name.kind) {
         (Some(place), kind) if !kind.is_local() => {
+            let declared = parse.declaration_at(place.start).and_then(|root| root.children().next());
+            let is_natures = declared.and_then(|it| contingent_in(it.child(SyntaxKind::Bounds)?)).is_some();
             if let Some((header, comments)) = parse.declaration_at(place.start).and_then(header) {
                 parts.push(format!("```rmpl\n{header}\n```"));
                 if !comments.is_empty() {
                     parts.push(comments);
                 }
+            }
+            if is_natures && *kind == NameKind::Activity {
+                parts.push(
+                    "Nature chooses how long it takes. Bounds of a call without `contingent` only require something \
+                     of that."
+                        .to_owned(),
+                );
             }
             let value = || Constants::new(&parse.program()).value(&name.text);
             let users = match kind {

@@ -220,9 +220,10 @@ impl Writer {
     }
 
     fn bounds(&mut self) {
-        match self.below(4) {
+        match self.below(5) {
             0 => self.all(&["[", "l", "*", "90", "%", ",", "u", "-", "(", "l", "+", "1", ")", "]"]),
             1 => self.all(&["[", "0", ",", "inf", "]"]),
+            2 => self.all(&["contingent", "[", "l", ",", "2", "*", "l", "]"]),
             _ => {}
         }
     }

@@ -9,6 +9,7 @@ mod call;
 mod clauses;
 mod condition;
 mod constants;
+mod exogenous;
 mod expand;
 mod names;
 mod resource;
@@ -78,7 +79,10 @@ pub fn compile(program: &Program, top: &Top) -> (Option<Network>, Vec<Diagnostic
     let mut expander = Expander::new(program, constants);
     let root = match top {
         Top::Scenario(name) => find_scenario(program, name.as_ref())
-            .map(|scenario| expander.scenario(scenario))
+            .map(|scenario| {
+                diagnostics.extend(exogenous::check(scenario, &expander.constants));
+                expander.scenario(scenario)
+            })
             .map_err(|error| diagnostics.push(error)),
         Top::Activity { name, lower, upper } => {
             expander.top_activity(name, *lower, *upper).map_err(|error| diagnostics.push(error))

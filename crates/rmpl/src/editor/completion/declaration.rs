@@ -1,7 +1,7 @@
 //! Places in the declarations that have no body, and in the clauses of primitives.
 
 use super::place::{Place, in_set, innermost, value_of};
-use crate::parser::CLAUSE_WORDS;
+use crate::parser::{CLAUSE_WORDS, CONTINGENT};
 use crate::program::{Measure, Per};
 use crate::syntax::{SyntaxKind, SyntaxToken};
 
@@ -98,7 +98,8 @@ fn in_primitive(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
     let Some(word) = word.filter(|_| header > 2) else {
         return match (innermost(context), last.kind) {
             (Some((SyntaxKind::LeftBracket, _)), _) => Place::Bound,
-            (None, SyntaxKind::RightParen | SyntaxKind::RightBracket) => Place::Words(CLAUSE_WORDS.to_vec()),
+            (None, SyntaxKind::RightParen) => Place::Words([&[CONTINGENT], CLAUSE_WORDS.as_slice()].concat()),
+            (None, SyntaxKind::RightBracket) => Place::Words(CLAUSE_WORDS.to_vec()),
             _ => Place::Nothing,
         };
     };

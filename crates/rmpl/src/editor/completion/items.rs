@@ -10,6 +10,7 @@ use crate::editor::cursor::declaration_at_cursor;
 use crate::editor::name::{NameKind, names_in};
 use crate::editor::outline::{OutlineItem, OutlineKind, outline};
 use crate::parse::Parse;
+use crate::parser::CONTINGENT;
 
 pub(super) fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<CompletionItem> {
     let mut items = Vec::new();
@@ -95,7 +96,10 @@ pub(super) fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<Completion
             items.push(keyword("circle", "circle ($0);"));
             items.push(keyword("polygon", "polygon ($0);"));
         }
-        Place::Words(words) => items.extend(words.iter().map(|word| keyword(word, word))),
+        Place::Words(words) => {
+            let template = |word| if word == CONTINGENT { "contingent [$0,]" } else { word };
+            items.extend(words.iter().map(|word| keyword(word, template(word))));
+        }
         Place::Nothing => {}
     }
     items
@@ -116,7 +120,7 @@ const DECLARATIONS: [(&str, &str); 12] = [
     ("vehicle", "vehicle $0 : ATRV at BASE;"),
 ];
 
-const STATEMENTS: [(&str, &str); 14] = [
+const STATEMENTS: [(&str, &str); 15] = [
     ("optional", "optional "),
     ("unordered", "unordered { $0 }"),
     ("do … using", "do { $0 } using "),
@@ -128,6 +132,7 @@ const STATEMENTS: [(&str, &str); 14] = [
     ("do … watching", "do { $0 } watching "),
     ("if … thennext", "if $0 thennext "),
     ("delay", "delay[$0,inf]"),
+    ("delay contingent", "delay contingent [$0,]"),
     ("tell", "tell "),
     ("ask", "ask "),
     ("not", "not($0)"),

@@ -1,6 +1,7 @@
 //! What the tokens before the cursor say about the place.
 
 use super::declaration::in_declaration;
+use crate::parser::CONTINGENT;
 use crate::syntax::{SyntaxKind, SyntaxToken};
 
 /// The place of the cursor, as far as it decides what can follow.
@@ -131,6 +132,16 @@ fn behind_word(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Option<Pla
 
 /// Behind a whole statement or condition: the words that may go on.
 fn after_statement(context: &[SyntaxToken<'_>]) -> Place {
+    // Bounds follow a call, a condition or a delay that has none yet.
+    let may_be_natures = context.last().is_some_and(|last| match last.kind {
+        SyntaxKind::RightParen | SyntaxKind::Number | SyntaxKind::DelayKeyword => true,
+        SyntaxKind::Name => last.text != CONTINGENT,
+        _ => false,
+    });
+    let with_bounds = |words: &[&'static str]| {
+        let bounds = may_be_natures.then_some(CONTINGENT);
+        words.iter().copied().chain(bounds).collect::<Vec<_>>()
+    };
     let mut depth = 0_i32;
     for token in context.iter().rev() {
         match token.kind {
@@ -143,17 +154,17 @@ fn after_statement(context: &[SyntaxToken<'_>]) -> Place {
             }
             SyntaxKind::Semicolon | SyntaxKind::Comma if depth == 0 && !in_round(context, *token) => break,
             SyntaxKind::DoKeyword if depth == 0 => {
-                return Place::Words(vec!["maintaining", "watching", "using"]);
+                return Place::Words(with_bounds(&["maintaining", "watching", "using"]));
             }
             SyntaxKind::IfKeyword if depth == 0 => return Place::Words(vec!["thennext", "and", "or", "in"]),
             SyntaxKind::MaintainingKeyword | SyntaxKind::WatchingKeyword if depth == 0 => {
                 return Place::Words(vec!["and", "or", "in"]);
             }
-            SyntaxKind::ThennextKeyword if depth == 0 => return Place::Words(vec!["else"]),
+            SyntaxKind::ThennextKeyword if depth == 0 => return Place::Words(with_bounds(&["else"])),
             _ => {}
         }
     }
-    Place::Nothing
+    if may_be_natures { Place::Words(with_bounds(&[])) } else { Place::Nothing }
 }
 
 /// Whether `token` stands in parentheses or square brackets.
