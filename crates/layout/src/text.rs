@@ -167,10 +167,7 @@ fn bounds_text(arc: &Arc, options: &Options) -> Option<(SmolStr, TextRole)> {
     if at_once && arc.occurrence.is_none() {
         return options.zero_bounds.then_some((text, TextRole::ZeroBounds));
     }
-    if arc.is_contingent {
-        return Some((format_smolstr!("nature {text}"), TextRole::Nature));
-    }
-    Some((text, TextRole::Bounds))
+    Some((text, if arc.is_contingent { TextRole::Nature } else { TextRole::Bounds }))
 }
 
 /// The name written on an arc; assertions are named by their labels.
