@@ -50,7 +50,7 @@ fn bare(node_count: usize, arcs: &[(u32, u32, ArcKind)]) -> Network {
         start: NodeId(0),
         end: NodeId(node_count as u32 - 1),
         threat_gap: Time::ONE,
-        controllability: Default::default(),
+        controllability: rmpl::program::Controllability::default(),
     }
 }
 
