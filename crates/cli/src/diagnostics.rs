@@ -6,7 +6,7 @@
 use std::io::{IsTerminal as _, Write as _};
 
 use annotate_snippets::{
-    AnnotationKind, Level, Origin, Renderer, Snippet, normalize_untrusted_str, renderer::DEFAULT_TERM_WIDTH,
+    AnnotationKind, Level, Renderer, Snippet, normalize_untrusted_str, renderer::DEFAULT_TERM_WIDTH,
 };
 use mission::Problem;
 use rmpl::{LineIndex, Severity};
@@ -37,15 +37,21 @@ fn describe(renderer: &Renderer, name: &str, source: &str, lines: &LineIndex, pr
     };
     let (excerpt, marked) = excerpt(source, lines, problem);
     let line = problem.line as usize;
-    let origin = Origin::path(harmless(name)).line(line).char_column(problem.column as usize);
-    let snippet = Snippet::source(excerpt).line_start(line).annotation(AnnotationKind::Primary.span(marked));
+    let name = normalize_untrusted_str(&harmless(name));
+    let told = format!("{name}:{line}:{}", excerpt[..marked.start].chars().count() + 1);
+    let snippet = Snippet::source(excerpt)
+        .line_start(line)
+        .path(name.as_str())
+        .annotation(AnnotationKind::Primary.span(marked));
     let title = level.primary_title(harmless(&problem.message)).id(problem.code.as_str());
     let hint = problem
         .hint
         .as_deref()
         .map(|hint| Level::HELP.with_name("hint").message(normalize_untrusted_str(&harmless(hint))));
-    let report = title.element(origin).element(snippet).elements(hint);
-    format!("{}\n", renderer.render(&[report]))
+    let text = renderer.render(&[title.element(snippet).elements(hint)]);
+    // The renderer counts columns from the start of what it was given, which may be less than the line.
+    let place = format!("{name}:{line}:{}", problem.column);
+    format!("{}\n", if told == place { text } else { text.replacen(&told, &place, 1) })
 }
 
 /// The part of a line that a problem is about, and which of its bytes are marked. Of a place of several lines this is
