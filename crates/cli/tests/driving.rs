@@ -102,3 +102,62 @@ fn a_mission_drives_over_a_map_file_that_lies_beside_it() {
     assert_eq!(output.status.code(), Some(2), "{output:?}");
     assert!(String::from_utf8_lossy(&output.stderr).contains("the terrain \"broken.pgm\" cannot be used"));
 }
+
+/// A rover with a choice of places on flat ground.
+const PLACES: &str = "terrain \"tai-plain\" cell 0.6 origin (0, 0);
+    location BASE (10, 10); location A (30, 12); location B (50, 40); location C (15, 45);
+    obstacle ROCK circle (30, 25, 8);
+    vehicle R1 : ATRV-Jr at BASE;
+    primitive Drive(to) moves R1 speed (0.02, 0.5);
+    ";
+
+#[test]
+fn every_plan_that_is_listed_is_accepted_by_the_checker_with_its_own_paths() {
+    let mission = file(
+        "places.rmpl",
+        &format!("{PLACES} scenario S[0,60] = {{ choose {{ Drive(A), Drive(B) }}; Drive(C) }}"),
+    );
+    let output = enroute(&["plan", &mission, "--all", "--format", "json"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let mut document = answer(&output);
+    assert_eq!(document["plans"].as_array().map(Vec::len), Some(2));
+    assert_eq!(document["left_out"], json!([]));
+    let plans = file("places.json", &document.to_string());
+    let output = enroute(&["verify", &mission, &plans]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    // The second plan takes longer than the first one: with other times it is none.
+    document["plans"][1]["windows"] = document["plans"][0]["windows"].clone();
+    let plans = file("other-places.json", &document.to_string());
+    let output = enroute(&["verify", &mission, &plans]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+}
+
+#[test]
+fn a_disturbed_level_is_in_the_log_and_one_out_of_range_is_refused() {
+    let text = format!(
+        "{PLACES} resource Battery 0..100 = 50; primitive Nap()[5,5] consumes Battery 1;
+        scenario S[0,60] = {{ Drive(A); Nap() }}"
+    );
+    let mission = file("battery.rmpl", &text);
+    let disturbed = |level: &str| {
+        let script = format!(
+            "{{\"disturbances\": [{{\"kind\": \"level\", \"resource\": \"Battery\", \"level\": {level}, \"at\": 0.1}}]}}"
+        );
+        enroute(&["simulate", &mission, "--disturb", &file("level.json", &script), "--format", "json"])
+    };
+    let output = disturbed("20");
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let run = answer(&output);
+    let log = run["log"].as_array().expect("a log");
+    assert!(
+        log.contains(
+            &json!({ "time": 0.1, "event": "level", "resource": "Battery", "level": 20, "by": null })
+        )
+    );
+    let places: Vec<&Value> =
+        log.iter().filter(|entry| entry["variable"] == "R1.at").map(|entry| &entry["value"]).collect();
+    assert_eq!(places, [&Value::Null, &json!("A")]);
+    let refused = disturbed("101");
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("the level of Battery is from 0 to 100"));
+}

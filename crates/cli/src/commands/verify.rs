@@ -86,7 +86,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 /// that is no plan at all is an error of the call.
 fn check(args: &Args, loaded: &Loaded, network: &Network, stated: &Value) -> anyhow::Result<Vec<Value>> {
     let extended;
-    let network = if names_path_vertices(stated) {
+    let network = if names_path_vertices(stated) || orders_ways(stated) || drives(loaded, network, stated) {
         extended = with_paths(args, loaded, network, stated)?;
         &*extended
     } else {
@@ -122,6 +122,20 @@ fn check(args: &Args, loaded: &Loaded, network: &Network, stated: &Value) -> any
 fn names_path_vertices(stated: &Value) -> bool {
     let windows = stated.get("windows").and_then(Value::as_object);
     windows.is_some_and(|windows| windows.keys().any(|event| event.contains(".leg")))
+}
+
+/// Whether what the plan says of times may follow from paths without vertices: its mission moves vehicles, and without paths
+/// it is not valid.
+fn drives(loaded: &Loaded, network: &Network, stated: &Value) -> bool {
+    let moves = loaded.program.iter().flat_map(|program| &program.primitives).any(|it| it.moves.is_some());
+    let is_valid = |plan: tpn::Plan| verify::check_plan(network, &plan).valid;
+    moves && !plan_from_json(network, stated).is_ok_and(is_valid)
+}
+
+/// Whether the plan has orders of traverses that would meet, which are not in the network of the text alone.
+fn orders_ways(stated: &Value) -> bool {
+    let resources = stated.get("resources").and_then(Value::as_object);
+    resources.is_some_and(|resources| resources.keys().any(|name| name.starts_with("way#")))
 }
 
 /// A plan less what it says of paths.
