@@ -70,6 +70,7 @@ impl Facts {
                 None => add_back_arc(&mut changed, node, self.now, Time::from(LONG)),
             }
         }
+        self.hold_natures(&mut changed, &times);
         for &(occurrence, time) in &self.begins {
             let start = changed.occurrences[occurrence.index()].start;
             if times[start.index()].is_none() {
@@ -124,6 +125,22 @@ impl Facts {
             orders.retain(|order| is_label(order.first) && is_label(order.then));
         }
         plan.uses_ordered.retain(|order| is_use(order.first) && is_use(order.then));
+    }
+}
+
+impl Facts {
+    /// Of a duration that nature chooses what is over is known, and of one under way how long it takes at least.
+    fn hold_natures(&self, network: &mut Network, times: &[Option<Time>]) {
+        for arc in network.arcs.iter_mut().filter(|arc| arc.is_contingent) {
+            let Some(began) = times[arc.from.index()] else { continue };
+            let ended = times[arc.to.index()];
+            let Some(lasted) = ended.unwrap_or(self.now).checked_sub(began) else { continue };
+            if ended.is_some() {
+                (arc.lower, arc.upper) = (lasted, Bound::Finite(lasted));
+            } else if Bound::Finite(lasted) <= arc.upper {
+                arc.lower = arc.lower.max(lasted);
+            }
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 //! Nothing here reads a clock: time is the mission's, exact, and moves from event to event.
 
 pub mod activity_execution;
+mod adversary;
 pub mod dispatch;
 pub mod facts;
 pub mod log;
@@ -12,6 +13,7 @@ pub mod plan_network;
 pub mod progress;
 pub mod run;
 pub mod stage;
+pub mod uncertain_dispatch;
 pub mod world;
 mod world_state;
 
@@ -24,4 +26,5 @@ pub use plan_network::{PlanError, PlanNetwork};
 pub use progress::{Observations, Progress, progress};
 pub use run::{Replanner, RunOutcome, run, run_stage};
 pub use stage::{ExecutedPlan, Stage};
+pub use uncertain_dispatch::UncertainDispatch;
 pub use world::{Disturbance, Script, World, WorldChange};

@@ -9,12 +9,14 @@ mod states;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
-use exact::{Overflow, Rational, Time};
+use exact::{Bound, Overflow, Rational, Time};
+use rmpl::program::Controllability;
 use smol_str::SmolStr;
 use stn::PointId;
-use tpn::{EventEnd, EventRef, Network, NodeId, OccurrenceId, OccurrenceKind, Plan, ResourceId};
+use tpn::{ArcId, EventEnd, EventRef, Network, NodeId, OccurrenceId, OccurrenceKind, Plan, ResourceId};
 
 use crate::activity_execution::{ActivityExecutor, AsPlanned, Ends};
+use crate::adversary::Adversary;
 use crate::dispatch::SettleError;
 use crate::facts::Facts;
 use crate::log::{Ending, Entry, Happening};
@@ -72,8 +74,10 @@ pub fn run_stage(
     executor: &mut dyn ActivityExecutor,
     replanner: &mut dyn Replanner,
 ) -> Result<RunOutcome, PlanError> {
+    let adversary = Adversary::of(world, &stage)?;
     let mut run = Run {
         state: WorldState::new(&stage.network),
+        adversary,
         stage,
         num_program_nodes,
         world,
@@ -123,6 +127,8 @@ struct Run<'a> {
     news: Facts,
     /// The plans that were given up.
     plans: Vec<ExecutedPlan>,
+    /// Who makes the present plan fail, if somebody does.
+    adversary: Option<Adversary>,
 }
 
 /// What comes next.
@@ -146,6 +152,15 @@ enum News {
     None,
     Duration(OccurrenceId, Time),
     Begins(OccurrenceId, Time),
+}
+
+/// What decides when a node happens.
+#[derive(Clone, Copy)]
+enum Decider {
+    /// Nature, which ends this duration there.
+    Nature(ArcId),
+    /// What the world makes of this event.
+    Event(EventRef),
 }
 
 /// When the world lets something happen.
@@ -238,8 +253,8 @@ impl Run<'_> {
             if self.stage.times[node.index()].is_some() {
                 continue;
             }
-            let is_settled = self.stage.dispatcher.is_settled(point);
-            if !is_settled && !self.stage.dispatcher.is_enabled(point) {
+            let is_settled = self.stage.dispatch.is_settled(point);
+            if !is_settled && !self.stage.dispatch.is_enabled(point) {
                 continue;
             }
             // What the world reports comes whether it is its turn or not.
@@ -247,17 +262,75 @@ impl Run<'_> {
             if !is_driven && !self.stage.is_next(node) {
                 continue;
             }
-            let (component, offset) = self.stage.dispatcher.component(point);
+            let (component, offset) = self.stage.dispatch.component(point);
             let waits = driven.get(&component).is_some_and(|&first| first <= offset);
             if !is_settled && waits && !is_driven {
                 continue;
             }
             let Some(next) = self.candidate(point, node)? else { continue };
-            if best.as_ref().is_none_or(|best| next.time < best.time) {
+            // At one instant what nature does is seen before the executive goes on.
+            let key = |next: &Next| (next.time, !self.is_natures(self.stage.made.node(next.point)));
+            if best.as_ref().is_none_or(|best| key(&next) < key(best)) {
                 best = Some(next);
             }
         }
-        Ok(best)
+        match &self.adversary {
+            Some(adversary) => self.opposed(adversary, best),
+            None => Ok(best),
+        }
+    }
+
+    /// Whether nature ends a duration at a node.
+    fn is_natures(&self, node: NodeId) -> bool {
+        let asked = self.stage.network.controllability != Controllability::None || self.adversary.is_some();
+        asked && self.stage.natures.contains_key(&node)
+    }
+
+    /// When nature ends a duration that it chooses, from all that is known of it.
+    fn by_nature(&self, id: ArcId) -> Result<Option<ByWorld>, Overflow> {
+        let arc = &self.stage.network.arcs[id.index()];
+        let Some(started) = self.stage.times[arc.from.index()].filter(|_| self.adversary.is_none()) else {
+            return Ok(None);
+        };
+        let Some(occurrence) = arc.occurrence else {
+            return Ok(Some(ByWorld::At(started.checked_add(arc.lower).ok_or(Overflow)?, News::None)));
+        };
+        let described = &self.stage.network.occurrences[occurrence.index()];
+        let chosen = match (self.world.duration(&self.stage.network, described)?, arc.upper) {
+            (Some(given), _) => given,
+            (None, Bound::Finite(upper)) => self.world.chosen(described, [arc.lower, upper]),
+            (None, Bound::Infinite) => arc.lower,
+        };
+        let duration = match self.executions.get(&occurrence) {
+            Some(Ends::Never(reason)) => return Ok(Some(ByWorld::Never(reason.clone()))),
+            Some(Ends::After(duration)) => *duration,
+            // Whoever is early waits until nature lets it be over.
+            Some(Ends::NotBefore(duration)) => chosen.max(*duration),
+            Some(Ends::AsPlanned) | None => chosen,
+        };
+        let at = started.checked_add(duration).ok_or(Overflow)?;
+        Ok(Some(ByWorld::At(at, News::Duration(occurrence, duration))))
+    }
+
+    /// What decides when a node happens besides the plan, in order: nature's durations that end there, then its events.
+    fn deciders(&self, node: NodeId) -> Vec<Decider> {
+        let arcs = self.stage.natures.get(&node).filter(|_| self.is_natures(node));
+        let natures = arcs.into_iter().flatten().map(|&arc| Decider::Nature(arc));
+        let events = self.stage.network.nodes[node.index()].events.iter();
+        let own = events.filter(|event| {
+            // When nature ends it was said above; what is asserted may still be withdrawn.
+            let occurrence = self.stage.occurrence(**event);
+            let is_end = event.end == EventEnd::End && occurrence.kind != OccurrenceKind::Assertion;
+            !(is_end && arcs.zip(occurrence.arc).is_some_and(|(arcs, arc)| arcs.contains(&arc)))
+        });
+        natures.chain(own.map(|&event| Decider::Event(event))).collect()
+    }
+
+    fn decision(&self, decider: &Decider, planned: Time) -> Result<Option<ByWorld>, Overflow> {
+        match *decider {
+            Decider::Nature(arc) => self.by_nature(arc),
+            Decider::Event(event) => self.by_world(event, planned),
+        }
     }
 
     /// The components of which some member's time is not for the executive to choose, with the earliest such member's
@@ -265,8 +338,8 @@ impl Run<'_> {
     fn driven(&self) -> Result<BTreeMap<usize, i64>, PlanError> {
         let mut driven = BTreeMap::new();
         for point in self.stage.made.all_points() {
-            if !self.stage.dispatcher.is_settled(point) && self.is_driven(point)? {
-                let (component, offset) = self.stage.dispatcher.component(point);
+            if !self.stage.dispatch.is_settled(point) && self.is_driven(point)? {
+                let (component, offset) = self.stage.dispatch.component(point);
                 let first = driven.entry(component).or_insert(offset);
                 *first = offset.min(*first);
             }
@@ -278,8 +351,11 @@ impl Run<'_> {
     fn is_driven(&self, point: PointId) -> Result<bool, PlanError> {
         let planned = self.stage.window(point).0.max(self.now);
         let node = self.stage.made.node(point);
-        for &event in &self.stage.network.nodes[node.index()].events {
-            let decided = self.by_world(event, planned).map_err(|_| self.too_large(node))?;
+        if self.is_natures(node) {
+            return Ok(true);
+        }
+        for decider in self.deciders(node) {
+            let decided = self.decision(&decider, planned).map_err(|_| self.too_large(node))?;
             if decided.is_some_and(|decided| !matches!(decided, ByWorld::Free)) {
                 return Ok(true);
             }
@@ -301,8 +377,8 @@ impl Run<'_> {
             let name = self.stage.name(node).into();
             Next { point, time, violation: Some(Violation { name, reason, news, is_final: false }) }
         };
-        for &event in &self.stage.network.nodes[node.index()].events {
-            let decided = self.by_world(event, time).map_err(|_| self.too_large(node))?;
+        for decider in self.deciders(node) {
+            let decided = self.decision(&decider, time).map_err(|_| self.too_large(node))?;
             let Some(decided) = decided else { return Ok(None) };
             match decided {
                 ByWorld::Free => {}
@@ -321,13 +397,36 @@ impl Run<'_> {
                 }
             }
         }
-        if time < earliest {
-            return Ok(Some(violation(time, self.too_early(node, time, earliest), known)));
+        Ok(Some(self.at(point, time, known)))
+    }
+
+    /// A point happens at a time that may be outside its window; what is learnt then.
+    fn at(&self, point: PointId, time: Time, news: News) -> Next {
+        let node = self.stage.made.node(point);
+        let (earliest, latest) = self.stage.window(point);
+        let (time, reason) = match latest {
+            _ if time < earliest => (time, self.too_early(node, time, earliest)),
+            Some(latest) if time > latest => (latest.max(self.now), self.too_late(node, latest, None)),
+            _ => return Next { point, time, violation: None },
+        };
+        let name = self.stage.name(node).into();
+        Next { point, time, violation: Some(Violation { name, reason, news, is_final: false }) }
+    }
+
+    /// What nature does against the executive, given what that would do next.
+    fn opposed(&self, adversary: &Adversary, best: Option<Next>) -> Result<Option<Next>, PlanError> {
+        if best.as_ref().is_some_and(|best| best.violation.is_some()) {
+            return Ok(best);
         }
-        if let Some(latest) = latest.filter(|&latest| time > latest) {
-            return Ok(Some(violation(latest.max(self.now), self.too_late(node, latest, None), known)));
-        }
-        Ok(Some(Next { point, time, violation: None }))
+        let next = best.as_ref().map(|best| (self.stage.made.node(best.point), best.time));
+        let Some((arc, time)) = adversary.answer(&self.stage, self.now, next)? else { return Ok(best) };
+        let described = &self.stage.network.arcs[arc.index()];
+        let Some(point) = self.stage.made.point(described.to) else { return Ok(best) };
+        let began = self.stage.times[described.from.index()];
+        let lasted = began.and_then(|began| time.checked_sub(began));
+        let news = described.occurrence.zip(lasted);
+        let news = news.map_or(News::None, |(occurrence, lasted)| News::Duration(occurrence, lasted));
+        Ok(Some(self.at(point, time, news)))
     }
 
     fn too_early(&self, node: NodeId, time: Time, earliest: Time) -> String {
@@ -425,7 +524,7 @@ impl Run<'_> {
         let node = self.stage.made.node(point);
         // Ticks are fine enough for all times that the world and the executor bring.
         let ticks = self.stage.made.scale().ticks(self.now).map_err(|_| self.too_large(node))?;
-        match self.stage.dispatcher.settle(point, ticks) {
+        match self.stage.dispatch.settle(point, ticks) {
             Ok(()) => {}
             Err(SettleError::Overflow(point)) => return Err(self.too_large(self.stage.made.node(point))),
             Err(SettleError::OutOfWindow { .. }) => {
@@ -451,6 +550,10 @@ impl Run<'_> {
         let is_start = occurrence.kind == OccurrenceKind::Primitive && event.end == EventEnd::Start;
         let end = format!("{}.end", occurrence.name);
         let too_late = |_: Overflow| PlanError::TooLate { event: end.clone() };
+        // Whose end an adversary chooses is known only when it ends.
+        if self.adversary.is_some() && self.is_natures(occurrence.end) {
+            return Ok(());
+        }
         if !is_start || self.world.duration(&self.stage.network, occurrence).map_err(too_late)?.is_some() {
             return Ok(());
         }
@@ -502,6 +605,7 @@ impl Run<'_> {
         self.off_plan.clear();
         let times = &stage.times;
         self.state.follow(&stage.network, &stage.plan, |node| times[node.index()].is_some());
+        self.adversary = Adversary::of(self.world, &stage)?;
         let before = std::mem::replace(&mut self.stage, stage);
         self.plans.push(before.close());
         Ok(kept.err().map(|node| format!("the new plan does not keep {} in the past", self.stage.name(node))))

@@ -1,13 +1,15 @@
 //! One plan under execution, between two replans.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use exact::Time;
 use stn::PointId;
-use tpn::{EventRef, Network, NodeId, Occurrence, Plan, Precedence};
+use tpn::{ArcId, EventRef, Network, NodeId, Occurrence, Plan, Precedence};
 
-use crate::dispatch::{Dispatcher, NEVER};
+use crate::dispatch::{Dispatcher, NEVER, SettleError};
 use crate::plan_network::{PlanError, PlanNetwork};
+use crate::uncertain_dispatch::UncertainDispatch;
 use crate::world_state::Effects;
 
 /// A plan made ready for dispatch: the dispatchable form, in ticks fine enough for all times that the world brings.
@@ -18,9 +20,12 @@ pub struct Stage {
     pub(crate) network: Arc<Network>,
     pub(crate) plan: Plan,
     pub(crate) made: PlanNetwork,
-    pub(crate) dispatcher: Dispatcher,
     /// What its events do to states and levels.
     pub(crate) effects: Effects,
+    pub(crate) dispatch: Dispatch,
+    /// The durations that nature chooses, whether or not the mission asks to withstand that, by the events where they
+    /// end.
+    pub(crate) natures: BTreeMap<NodeId, Vec<ArcId>>,
     /// When each node happened.
     pub(crate) times: Vec<Option<Time>>,
     /// When this plan was made.
@@ -34,16 +39,22 @@ impl Stage {
     pub fn new(network: Arc<Network>, plan: Plan, grid: &[Time]) -> Result<Self, PlanError> {
         let mut made = PlanNetwork::new(&network, &plan)?;
         made.refine_for(&network, &plan, grid)?;
-        let dispatcher = Dispatcher::new(&mut made)?;
+        let dispatch = Dispatch::new(&network, &plan, &mut made)?;
+        let mut natures: BTreeMap<NodeId, Vec<ArcId>> = BTreeMap::new();
+        for (index, arc) in network.arcs.iter().enumerate().filter(|(_, arc)| arc.is_contingent) {
+            if plan.selected_arcs[index] {
+                natures.entry(arc.to).or_default().push(ArcId::from_index(index));
+            }
+        }
         let times = vec![None; network.nodes.len()];
         let before = before(&network, &plan);
         let effects = Effects::new(&network, &plan);
-        Ok(Self { network, plan, made, dispatcher, effects, times, from: Time::ZERO, before })
+        Ok(Self { network, plan, made, dispatch, effects, natures, times, from: Time::ZERO, before })
     }
 
     /// The window of a point in mission units; no latest time if it is not bounded.
     pub(crate) fn window(&self, point: PointId) -> (Time, Option<Time>) {
-        let (earliest, latest) = self.dispatcher.window(point);
+        let (earliest, latest) = self.dispatch.window(point);
         (self.made.time(earliest), (latest != NEVER).then(|| self.made.time(latest)))
     }
 
@@ -75,12 +86,25 @@ impl Stage {
     /// Enters what happened before this plan was made. Fails for a plan that does not keep it, with the node.
     pub(crate) fn enter_past(&mut self, mut past: Vec<(Time, NodeId)>) -> Result<(), NodeId> {
         past.sort();
-        for (time, node) in past {
+        for &(time, node) in &past {
             self.times[node.index()] = Some(time);
-            let point = self.made.point(node).zip(self.made.scale().ticks(time).ok());
-            let settled = point.map(|(point, ticks)| self.dispatcher.settle(point, ticks));
-            if !matches!(settled, Some(Ok(()))) {
-                return Err(node);
+        }
+        let mut at_once = past.as_slice();
+        while let Some(&(time, first)) = at_once.first() {
+            let (now, later) = at_once.split_at(at_once.partition_point(|&(other, _)| other == time));
+            at_once = later;
+            // Of what came at one instant some may have to be entered before others.
+            let mut left: Vec<NodeId> = now.iter().map(|&(_, node)| node).collect();
+            let ticks = self.made.scale().ticks(time).map_err(|_| first)?;
+            while let Some(&next) = left.first() {
+                let before = left.len();
+                left.retain(|&node| {
+                    let point = self.made.point(node);
+                    !point.is_some_and(|point| self.dispatch.settle(point, ticks).is_ok())
+                });
+                if left.len() == before {
+                    return Err(next);
+                }
             }
         }
         Ok(())
@@ -89,6 +113,64 @@ impl Stage {
     /// What is left of it when it is over.
     pub(crate) fn close(self) -> ExecutedPlan {
         ExecutedPlan { from: self.from, network: self.network, plan: self.plan, times: self.times }
+    }
+}
+
+/// Which events may happen now, and what an event that happened leaves possible.
+#[derive(Clone, Debug)]
+pub(crate) enum Dispatch {
+    /// All durations are the executive's to choose, or the plan does not withstand nature.
+    Certain(Dispatcher),
+    /// Nature chooses some, and the plan withstands that.
+    Uncertain(UncertainDispatch),
+}
+
+impl Dispatch {
+    fn new(network: &Network, plan: &Plan, made: &mut PlanNetwork) -> Result<Self, PlanError> {
+        let mut arcs = (0..network.arcs.len()).map(ArcId::from_index);
+        if arcs.any(|arc| plan.selected_arcs[arc.index()] && network.is_uncertain(arc))
+            && let Some(dispatch) = UncertainDispatch::new(network, plan, made)?
+        {
+            return Ok(Self::Uncertain(dispatch));
+        }
+        Ok(Self::Certain(Dispatcher::new(made)?))
+    }
+
+    /// When a point may happen: its earliest and latest tick, [`NEVER`] if there is no latest.
+    pub(crate) fn window(&self, point: PointId) -> (i64, i64) {
+        match self {
+            Self::Certain(dispatch) => dispatch.window(point),
+            Self::Uncertain(dispatch) => dispatch.window(point),
+        }
+    }
+
+    /// What a point happens together with, and how many ticks after the first of that.
+    pub(crate) fn component(&self, point: PointId) -> (usize, i64) {
+        match self {
+            Self::Certain(dispatch) => dispatch.component(point),
+            Self::Uncertain(dispatch) => (dispatch.component(point), 0),
+        }
+    }
+
+    pub(crate) fn is_settled(&self, point: PointId) -> bool {
+        match self {
+            Self::Certain(dispatch) => dispatch.is_settled(point),
+            Self::Uncertain(dispatch) => dispatch.is_settled(point),
+        }
+    }
+
+    pub(crate) fn is_enabled(&self, point: PointId) -> bool {
+        match self {
+            Self::Certain(dispatch) => dispatch.is_enabled(point),
+            Self::Uncertain(dispatch) => dispatch.is_enabled(point),
+        }
+    }
+
+    pub(crate) fn settle(&mut self, point: PointId, ticks: i64) -> Result<(), SettleError> {
+        match self {
+            Self::Certain(dispatch) => dispatch.settle(point, ticks),
+            Self::Uncertain(dispatch) => dispatch.settle(point, ticks),
+        }
     }
 }
 

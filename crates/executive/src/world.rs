@@ -14,9 +14,9 @@ use tpn::{Network, Occurrence, OccurrenceKind, ValueId};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Disturbance {
-    /// An activity takes this long, whatever its bounds say.
+    /// An activity takes this long, or another duration that nature chooses, whatever its bounds say.
     Duration {
-        /// The occurrence, such as `Group-Transmit#1`.
+        /// The occurrence, such as `Group-Transmit#1`; `delay#1` where nature chooses that.
         activity: SmolStr,
         /// Its duration.
         duration: Time,
@@ -177,6 +177,9 @@ pub struct World {
     late: BTreeMap<SmolStr, Time>,
     /// In order of time.
     changes: Vec<WorldChange>,
+    /// How long nature makes things take.
+    chosen: BTreeMap<SmolStr, Time>,
+    is_adversary: bool,
 }
 
 /// What the world makes of a variable that lasts or of a reservoir.
@@ -251,13 +254,39 @@ impl World {
         &self.changes
     }
 
+    /// The same world, in which nature chooses these durations where it may choose: those of other occurrences of which it
+    /// chooses are the least that they may be. What is outside a range is brought inside.
+    #[must_use]
+    pub fn with_chosen(mut self, chosen: BTreeMap<SmolStr, Time>) -> Self {
+        self.chosen = chosen;
+        self
+    }
+
+    /// The same world, in which nature makes a plan fail that can be made to: one that is not controllable. Of others it
+    /// chooses the durations as it would otherwise.
+    #[must_use]
+    pub const fn with_adversary(mut self) -> Self {
+        self.is_adversary = true;
+        self
+    }
+
+    /// Whether nature is to make plans fail.
+    pub const fn is_adversary(&self) -> bool {
+        self.is_adversary
+    }
+
+    /// How long nature makes something take that takes from `lower` to `upper`.
+    pub fn chosen(&self, occurrence: &Occurrence, [lower, upper]: [Time; 2]) -> Time {
+        self.chosen.get(&occurrence.name).map_or(lower, |&chosen| chosen.min(upper).max(lower))
+    }
+
     /// How long an occurrence really takes, where that is not for the executive to decide.
     pub fn duration(&self, network: &Network, occurrence: &Occurrence) -> Result<Option<Time>, Overflow> {
-        if occurrence.kind != OccurrenceKind::Primitive {
-            return Ok(None);
-        }
         if let Some(&duration) = self.durations.get(&occurrence.name) {
             return Ok(Some(duration));
+        }
+        if occurrence.kind != OccurrenceKind::Primitive {
+            return Ok(None);
         }
         let Some(factor) = self.slow.get(&occurrence.name).filter(|factor| factor.is_positive()) else {
             return Ok(None);
@@ -268,6 +297,7 @@ impl World {
     /// All times and durations that it brings into a run of `network`: ticks must be fine enough for them.
     pub fn times(&self, network: &Network) -> Result<Vec<Time>, Overflow> {
         let absolute = self.durations.values().chain(self.withdrawn.values()).chain(self.late.values());
+        let absolute = absolute.chain(self.chosen.values());
         let slow = network.occurrences.iter().filter(|occurrence| self.slow.contains_key(&occurrence.name));
         let slow = slow.filter_map(|occurrence| self.duration(network, occurrence).transpose());
         let changes = self.changes.iter().map(|change| Ok(change.at()));
@@ -312,6 +342,16 @@ impl World {
             .cloned()
             .collect()
     }
+}
+
+/// The durations that nature chooses in `network`, with their ranges: of activities, assertions and delays, in textual
+/// order. Those that the mission reads as ordinary are among them.
+pub fn natures_ranges(network: &Network) -> impl Iterator<Item = (&Occurrence, [Time; 2])> {
+    network.occurrences.iter().filter_map(|occurrence| {
+        let arc = &network.arcs[occurrence.arc?.index()];
+        let upper = arc.upper.finite().filter(|_| arc.is_contingent)?;
+        Some((occurrence, [arc.lower.min(upper), upper]))
+    })
 }
 
 /// The least time for a traverse: its path at full speed, or its lower bound where it has none.

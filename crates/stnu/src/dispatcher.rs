@@ -5,6 +5,7 @@
 //! allows can be followed to the end.
 
 use std::fmt;
+use std::ops::Deref;
 
 use crate::dispatchable::{Dispatchable, Wait};
 use crate::network::{LinkId, PointId};
@@ -80,10 +81,10 @@ impl fmt::Display for DispatchError {
 
 impl std::error::Error for DispatchError {}
 
-/// A run of a dispatchable network.
+/// A run of a dispatchable network, which it holds in whatever way its caller likes.
 #[derive(Clone, Debug)]
-pub struct Dispatcher<'a> {
-    form: &'a Dispatchable,
+pub struct Dispatcher<F> {
+    form: F,
     /// By point, the edges that start there and that end there, as positions.
     out: Vec<Vec<u32>>,
     into: Vec<Vec<u32>>,
@@ -94,28 +95,34 @@ pub struct Dispatcher<'a> {
     now: i64,
 }
 
-impl<'a> Dispatcher<'a> {
+impl<F: Deref<Target = Dispatchable>> Dispatcher<F> {
     /// A run that begins at `now`, before anything has happened.
-    pub fn new(form: &'a Dispatchable, now: i64) -> Self {
+    pub fn new(form: F, now: i64) -> Self {
         let points = form.network.num_points();
-        let mut dispatcher = Self {
+        let (mut out, mut into, mut waits) =
+            (vec![Vec::new(); points], vec![Vec::new(); points], vec![Vec::new(); points]);
+        for (position, edge) in (0..).zip(&form.edges) {
+            out[edge.from.index()].push(position);
+            into[edge.to.index()].push(position);
+        }
+        for wait in &form.waits {
+            waits[wait.point.index()].push(*wait);
+        }
+        Self {
             form,
-            out: vec![Vec::new(); points],
-            into: vec![Vec::new(); points],
-            waits: vec![Vec::new(); points],
+            out,
+            into,
+            waits,
             times: vec![None; points],
             lower: vec![None; points],
             upper: vec![None; points],
             now,
-        };
-        for (position, edge) in (0..).zip(&form.edges) {
-            dispatcher.out[edge.from.index()].push(position);
-            dispatcher.into[edge.to.index()].push(position);
         }
-        for wait in &form.waits {
-            dispatcher.waits[wait.point.index()].push(*wait);
-        }
-        dispatcher
+    }
+
+    /// The network that is dispatched.
+    pub fn form(&self) -> &Dispatchable {
+        &self.form
     }
 
     /// The present.
@@ -133,7 +140,7 @@ impl<'a> Dispatcher<'a> {
         self.times.iter().all(Option::is_some)
     }
 
-    fn points(&self) -> impl Iterator<Item = PointId> + use<> {
+    fn points(&self) -> impl Iterator<Item = PointId> + use<F> {
         (0..self.times.len() as u32).map(PointId)
     }
 

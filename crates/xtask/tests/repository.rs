@@ -26,7 +26,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("motion", &["terrain"]),
     ("hca", &["rmpl"]),
     ("plant", &["rmpl"]),
-    ("executive", &["kirk", "motion", "hca", "plant"]),
+    ("executive", &["kirk", "controllability", "motion", "hca", "plant"]),
     ("mission", &["executive", "verify"]),
     ("display", &[]),
     ("layout", &["display", "tpn", "hca"]),
