@@ -14,6 +14,7 @@ pub mod progress;
 pub mod run;
 pub mod stage;
 pub mod uncertain_dispatch;
+mod uncertain_progress;
 pub mod world;
 mod world_state;
 
@@ -23,7 +24,7 @@ pub use facts::Facts;
 pub use log::{Ending, Entry, Happening};
 pub use pinned::PinnedPlan;
 pub use plan_network::{PlanError, PlanNetwork};
-pub use progress::{Observations, Progress, progress};
+pub use progress::{Observations, Progress, Waiting, progress};
 pub use run::{Replanner, RunOutcome, run, run_stage};
 pub use stage::{ExecutedPlan, Stage};
 pub use uncertain_dispatch::UncertainDispatch;

@@ -2,9 +2,10 @@
 
 use exact::{Bound, Time};
 use stn::{Execution, ExecutionWindows};
-use tpn::{Network, NodeId, Plan, Window};
+use tpn::{ArcId, Network, NodeId, Plan, Window};
 
 use crate::plan_network::{ADDED, PlanError, PlanNetwork};
+use crate::uncertain_progress::uncertain_progress;
 
 /// What is known at a moment.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,13 +19,25 @@ pub struct Observations {
 /// What remains possible.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Progress {
-    /// The windows of all selected events, by node.
-    Consistent(Vec<Option<Window>>),
+    /// The windows of all selected events, by node, and what waits for nature, in the order of nodes.
+    Consistent(Vec<Option<Window>>, Vec<Waiting>),
     /// The plan is violated; why, naming events and times.
     Violated(Vec<String>),
 }
 
-/// The windows of `plan` after `observed`.
+/// An event that could happen earlier if nature ended something earlier (SPEC 13.2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Waiting {
+    /// What waits.
+    pub event: NodeId,
+    /// For the end of which duration.
+    pub natures: ArcId,
+    /// Or until this time.
+    pub until: Time,
+}
+
+/// The windows of `plan` after `observed`. Where nature chooses durations they are those of its dispatch: at the earliest
+/// as if nature ended early what is waited for.
 ///
 /// Events that are not reported have not happened, with two exceptions: an event whose time follows from what was
 /// reported (its window is a single moment that has come), and one that must have come before something reported.
@@ -69,7 +82,10 @@ pub fn progress(network: &Network, plan: &Plan, observed: &Observations) -> Resu
             for point in made.all_points() {
                 by_node[made.node(point).index()] = Some(made.window(windows[point.index()]));
             }
-            Progress::Consistent(by_node)
+            match uncertain_progress(network, plan, &made, &by_node, observed)? {
+                Some(progress) => progress,
+                None => Progress::Consistent(by_node, Vec::new()),
+            }
         }
         ExecutionWindows::Violated(tags) => {
             let mut reasons = explain(network, &made, observed, &tags);

@@ -352,7 +352,12 @@ impl Run<'_> {
         let planned = self.stage.window(point).0.max(self.now);
         let node = self.stage.made.node(point);
         if self.is_natures(node) {
-            return Ok(true);
+            // Nobody waits for the end of what has not begun.
+            let began = |arc: &ArcId| {
+                let from = self.stage.network.arcs[arc.index()].from;
+                self.stage.times[from.index()].is_some()
+            };
+            return Ok(self.stage.natures.get(&node).is_some_and(|arcs| arcs.iter().all(began)));
         }
         for decider in self.deciders(node) {
             let decided = self.decision(&decider, planned).map_err(|_| self.too_large(node))?;

@@ -155,6 +155,9 @@ pub struct Script {
     /// In any order; of two of a kind about one thing the later counts.
     #[serde(deserialize_with = "sound")]
     pub disturbances: Vec<Disturbance>,
+    /// Whether nature chooses durations so as to break the plan, and ends of ranges where it cannot.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub adversary: bool,
 }
 
 /// Reads disturbances and refuses those that mean nothing.

@@ -52,7 +52,7 @@ fn windows_after_partial_execution_are_those_of_the_suite() {
                 assert_eq!(update["consistent"], false, "{title}");
                 assert!(!reasons.is_empty(), "{title}");
             }
-            Progress::Consistent(windows) => {
+            Progress::Consistent(windows, _) => {
                 assert_eq!(update["consistent"], true, "{title}");
                 for (event, expected) in update["windows"].as_object().expect("windows") {
                     let window = windows[node(&network, event).index()].expect("selected");
@@ -69,7 +69,7 @@ fn observations_between_the_units_of_the_mission_are_exact() {
     let (network, plan) = planned("primitive A()[1,3]; primitive B()[2,5]; scenario S[4,6] = { A(); B() }");
     let half = Time::new(5, 2).expect("a fraction");
     let observed = Observations { executed: vec![(node(&network, "A#1.end"), half)], now: half };
-    let Ok(Progress::Consistent(windows)) = progress(&network, &plan, &observed) else {
+    let Ok(Progress::Consistent(windows, _)) = progress(&network, &plan, &observed) else {
         panic!("consistent")
     };
     let end = windows[node(&network, "B#1.end").index()].expect("selected");

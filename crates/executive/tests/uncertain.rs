@@ -163,7 +163,7 @@ fn plans_that_are_not_controllable_fail_against_the_adversary_and_only_they_do()
         if refuted.is_some() {
             lost += 1;
             assert_eq!(outcome.ending, Ending::Stopped, "seed {seed}: {refuted:?}");
-            assert_eq!(violations(&outcome).len(), 1, "seed {seed}");
+            assert_eq!(violations(&outcome).len(), 1, "seed {seed}: {:?}", outcome.log);
         } else {
             kept += 1;
             assert_eq!(outcome.ending, Ending::Finished, "seed {seed}: {:?}", violations(&outcome));
@@ -233,4 +233,72 @@ fn planning_again_keeps_what_nature_has_ended_and_what_is_under_way() {
         );
     }
     assert!(replanned > 15 && finished > 5, "{replanned} planned again, {finished} finished");
+}
+
+fn named(network: &Network, name: &str) -> tpn::NodeId {
+    let is_named = |node: &tpn::Node| node.events.iter().any(|&event| network.event_name(event) == name);
+    tpn::NodeId::from_index(network.nodes.iter().position(is_named).unwrap_or_else(|| panic!("{name}")))
+}
+
+/// Dig begins at the earliest 3 before the drive is over, whenever that is, and no later than at 17.
+fn waiting() -> (Network, Plan) {
+    let source = "primitive Drive()contingent[5,20]; primitive Dig()[1,1]; \
+                  scenario S = { Drive(), { delay[0,inf]; Dig() }[0,18] }";
+    let mut network = compiled(source);
+    let mut plan = first_plan(&network).expect("nothing keeps them apart");
+    let (drive, dig) = (named(&network, "Drive#1.end"), named(&network, "Dig#1.start"));
+    // Drive is over no later than 3 after the dig begins.
+    let id = tpn::ArcId::from_index(network.arcs.len());
+    network.arcs.push(tpn::Arc {
+        from: dig,
+        to: drive,
+        lower: Time::from(-30),
+        upper: Bound::Finite(Time::from(3)),
+        is_contingent: false,
+        kind: tpn::ArcKind::Span,
+        labels: Vec::new(),
+        occurrence: None,
+        choice: None,
+        span: None,
+    });
+    network.nodes[dig.index()].out_arcs.push(id);
+    network.nodes[drive.index()].in_arcs.push(id);
+    plan.selected_arcs.push(true);
+    (network, plan)
+}
+
+#[test]
+fn what_waits_for_nature_is_told_with_its_time() {
+    let (network, plan) = waiting();
+    let drive = ["Drive#1.start", "Drive#1.end"].map(|name| named(&network, name));
+    let dig = named(&network, "Dig#1.start");
+    let at = |times: &[(tpn::NodeId, i64)], now: i64| {
+        let executed = times.iter().map(|&(node, time)| (node, Time::from(time))).collect();
+        let observed = executive::Observations { executed, now: Time::from(now) };
+        executive::progress(&network, &plan, &observed).expect("small times")
+    };
+    let window = |earliest: i64, latest: i64| {
+        Some(tpn::Window { earliest: Time::from(earliest), latest: Bound::Finite(Time::from(latest)) })
+    };
+    // Nothing but the start: the drive takes until 20 at most, and Dig has to wait until 3 before that.
+    let executive::Progress::Consistent(windows, waits) = at(&[(drive[0], 0)], 2) else {
+        panic!("consistent")
+    };
+    assert_eq!(windows[drive[1].index()], window(5, 20));
+    assert_eq!(windows[dig.index()], window(5, 17));
+    let [wait] = waits.as_slice() else { panic!("{waits:?}") };
+    assert_eq!((wait.event, wait.until), (dig, Time::from(17)));
+    assert_eq!(network.arcs[wait.natures.index()].to, drive[1]);
+    // It is over at 8: nothing waits any longer.
+    let executive::Progress::Consistent(windows, waits) = at(&[(drive[0], 0), (drive[1], 8)], 9) else {
+        panic!("consistent")
+    };
+    assert_eq!(waits, []);
+    assert_eq!(windows[dig.index()], window(9, 17));
+    // Outside its range, and too early a dig, which nature may still break.
+    assert!(matches!(at(&[(drive[0], 0), (drive[1], 21)], 21), executive::Progress::Violated(_)));
+    let executive::Progress::Violated(reasons) = at(&[(drive[0], 0), (dig, 10)], 10) else {
+        panic!("violated")
+    };
+    assert!(reasons.iter().any(|reason| reason.contains("as nature chooses")), "{reasons:?}");
 }

@@ -19,6 +19,7 @@ use smol_str::SmolStr;
 use tpn::{Network, Plan, Supply, Window};
 
 use crate::ground::Grounds;
+use crate::nature::{self, Nature};
 use crate::planning::{self, Planned, Problem};
 use crate::programs::{ProgramPerformer, Programs};
 use crate::simulation::{self, Courses, Driving, SimulatedDrive};
@@ -72,20 +73,32 @@ pub struct Ran {
 }
 
 /// Executes the plan of `planned`, which `problem` gave; `None` if it has no plan. Vehicles drive their traverses in
-/// simulation, as late as that makes them.
+/// simulation, as late as that makes them; what nature chooses is drawn by the seed of `problem`.
 pub fn execute(
     problem: &Problem<'_>,
     planned: &Planned,
-    disturbances: &[Disturbance],
+    script: &Script,
     grounds: &mut Grounds,
     paths: &mut Paths,
 ) -> Option<Result<Ran, PlanError>> {
     let plan = planned.planning.outcome.plans.first()?.clone();
-    let world = World::new(disturbances);
+    let disturbances = &script.disturbances;
+    let nature = if script.adversary { Nature::Adversary } else { Nature::Chance };
+    let chosen = match nature::choose(&planned.network, problem.seed, nature, &|_| None) {
+        Ok(chosen) => chosen,
+        Err(overflow) => return Some(Err(overflow.into())),
+    };
+    let mut world = World::new(disturbances).with_chosen(chosen.clone());
+    if script.adversary {
+        world = world.with_adversary();
+    }
     let courses = RefCell::new(Courses::default());
     courses.borrow_mut().learn(problem.program, planned);
     let mut driving =
         problem.ground.map(|(_, map)| Driving::new(problem, map, disturbances, &courses, problem.seed));
+    if let Some(driving) = &mut driving {
+        driving.hurry(chosen);
+    }
     let (programs, _) = Programs::compile(problem.program);
     let mut as_planned = AsPlanned;
     let others: &mut dyn ActivityExecutor = match &mut driving {

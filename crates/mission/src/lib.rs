@@ -19,6 +19,7 @@ pub mod json_text;
 pub mod link;
 pub mod listing;
 pub mod meetings;
+mod nature;
 pub mod path_growth;
 pub mod paths_json;
 pub mod planning;

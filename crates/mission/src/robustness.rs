@@ -15,7 +15,7 @@ use smol_str::SmolStr;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Uncertainty {
-    /// How long activities take.
+    /// How long activities take, and other durations that nature chooses: those are brought into their ranges.
     pub durations: BTreeMap<SmolStr, Distribution>,
     /// Conditions that may come late.
     pub late: BTreeMap<SmolStr, Incident>,
@@ -29,6 +29,9 @@ pub struct Uncertainty {
     pub traverses: Traverses,
     /// What vehicles that drive meet and the map does not show.
     pub rocks: Rocks,
+    /// Whether nature chooses its durations so as to break the plan, and ends of ranges where it cannot.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub adversary: bool,
 }
 
 /// Where the durations of traverses come from.
@@ -73,7 +76,8 @@ impl Rocks {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Others {
-    /// Anything between their bounds, all equally likely, if both are finite and the plan does not end them itself.
+    /// Anything between their bounds, all equally likely, if both are finite and the plan does not end them itself. In a
+    /// mission that says which durations nature chooses, these alone; all others are as the plan wants.
     #[default]
     Uniform,
     /// As long as the plan wants.

@@ -1,9 +1,11 @@
 //! One run with chance: what is drawn, and what it adds to the tally.
 
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use exact::{Bound, Overflow, Time};
+use executive::world::natures_ranges;
 use executive::{
     ActivityExecutor, AsPlanned, Disturbance, Ending, Entry, Happening, PlanError, RunOutcome, Stage, World,
 };
@@ -11,10 +13,11 @@ use motion::Path;
 use plant::Random;
 use rmpl::program::{LabelMode, Program};
 use smol_str::SmolStr;
-use tpn::{Network, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Plan};
+use tpn::{ArcId, Network, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Plan};
 
 use crate::execution::{self, Ran};
 use crate::ground::Grounds;
+use crate::nature::{self, Nature};
 use crate::planning::{Planned, Problem};
 use crate::programs::{ProgramPerformer, Programs};
 use crate::robustness::{
@@ -38,6 +41,9 @@ pub struct Sampler {
     /// The traverses that are driven; none if their durations are drawn.
     courses: Option<Courses>,
     rocks: Rocks,
+    nature: Nature,
+    /// What is said of the durations that nature chooses.
+    natures: Vec<(SmolStr, Distribution)>,
 }
 
 impl Sampler {
@@ -56,6 +62,7 @@ impl Sampler {
             courses
         });
         let durations = durations(network, uncertainty, &programs, courses.as_ref());
+        let natures = natures(network, uncertainty);
         let late = incidents(network, &uncertainty.late);
         let withdrawn = incidents(network, &uncertainty.withdrawn);
         let part = Time::ONE.checked_div(PER_UNIT).unwrap_or_default();
@@ -63,6 +70,7 @@ impl Sampler {
         grid.extend(courses.as_ref().map(|_| simulation::granularity(program)));
         let incidents = late.iter().chain(&withdrawn).map(|(_, incident)| incident.at);
         grid.extend(durations.iter().map(|&(_, it)| it).chain(incidents).map(Distribution::least));
+        grid.extend(natures.iter().map(|&(_, it)| it).map(Distribution::least));
         let stage = Stage::new(Arc::clone(network), plan.clone(), &grid);
         let windows = windows(network, plan);
         Some(stage.map(|stage| Self {
@@ -75,6 +83,8 @@ impl Sampler {
             faults: uncertainty.faults,
             courses,
             rocks: uncertainty.rocks,
+            nature: if uncertainty.adversary { Nature::Adversary } else { Nature::Chance },
+            natures,
         }))
     }
 
@@ -89,7 +99,11 @@ impl Sampler {
         tally: &mut Tally,
     ) -> Result<(), PlanError> {
         let disturbances = self.draw(settings.seed, number)?;
-        let world = World::new(&disturbances);
+        let chosen = self.chosen(problem.network, run_seed(settings.seed, number))?;
+        let mut world = World::new(&disturbances).with_chosen(chosen.clone());
+        if self.nature == Nature::Adversary {
+            world = world.with_adversary();
+        }
         // Faults are drawn apart from the rest, so that they do not change it.
         let seed = Random::new(run_seed(settings.seed, number) ^ FAULTS).next_bits();
         let fault_seed = (self.faults == Faults::ByChance).then_some(seed);
@@ -97,6 +111,9 @@ impl Sampler {
         let mut driving = courses.as_ref().zip(problem.ground).map(|(courses, (_, map))| {
             Driving::new(problem, map, &disturbances, courses, run_seed(settings.seed, number))
         });
+        if let Some(driving) = &mut driving {
+            driving.hurry(chosen);
+        }
         let mut as_planned = AsPlanned;
         let others: &mut dyn ActivityExecutor = match &mut driving {
             Some(driving) => driving,
@@ -112,6 +129,17 @@ impl Sampler {
             courses.as_ref(),
         )?;
         self.count(&ran, number, tally)
+    }
+
+    /// What nature chooses in the run of a seed.
+    fn chosen(&self, network: &Network, seed: u64) -> Result<BTreeMap<SmolStr, Time>, PlanError> {
+        let named = |occurrence: &Occurrence| {
+            self.natures
+                .iter()
+                .find(|(name, _)| *name == occurrence.name)
+                .map(|&(_, distribution)| distribution)
+        };
+        Ok(nature::choose(network, seed, self.nature, &named)?)
     }
 
     /// What goes otherwise than planned in run `number`.
@@ -223,9 +251,17 @@ fn durations(
     programs: &Programs,
     driven: Option<&Courses>,
 ) -> Vec<(SmolStr, Distribution)> {
+    let is_natures = |occurrence: &Occurrence| {
+        let is_chosen = |arc: ArcId| {
+            network.is_uncertain(arc) || (uncertainty.adversary && network.arcs[arc.index()].is_contingent)
+        };
+        occurrence.arc.is_some_and(is_chosen)
+    };
+    // Whoever says what nature chooses leaves the rest to the plan.
+    let is_told = network.occurrences.iter().any(is_natures);
     let primitives = network.occurrences.iter().enumerate();
     primitives
-        .filter(|(_, occurrence)| occurrence.kind == OccurrenceKind::Primitive)
+        .filter(|(_, occurrence)| occurrence.kind == OccurrenceKind::Primitive && !is_natures(occurrence))
         .filter(|(_, occurrence)| programs.system(&occurrence.activity).is_none())
         .filter_map(|(index, occurrence)| {
             let named = uncertainty.durations.get(&occurrence.name);
@@ -233,10 +269,23 @@ fn durations(
             let distribution = match (named, uncertainty.others) {
                 (Some(named), _) => *named,
                 (None, Others::Planned) => return None,
+                (None, _) if is_told => return None,
                 (None, _) if driven.is_some_and(|it| it.has(OccurrenceId::from_index(index))) => return None,
                 (None, Others::Uniform) => by_bounds(network, OccurrenceId::from_index(index))?,
             };
             Some((occurrence.name.clone(), distribution))
+        })
+        .collect()
+}
+
+/// What is said of durations that nature chooses: by the name of the occurrence, or without its count.
+fn natures(network: &Network, uncertainty: &Uncertainty) -> Vec<(SmolStr, Distribution)> {
+    natures_ranges(network)
+        .map(|(occurrence, [lower, upper])| {
+            let said = &uncertainty.durations;
+            let named = said.get(&occurrence.name).or_else(|| said.get(&occurrence.activity));
+            let named = named.or_else(|| said.get(base(&occurrence.name)));
+            (occurrence.name.clone(), named.copied().unwrap_or(Distribution::Uniform(lower, upper)))
         })
         .collect()
 }
@@ -316,7 +365,13 @@ impl Uncertainty {
                         || base(&occurrence.name) == *name)
             })
         };
-        let activities = self.durations.keys().filter(|name| !is_known(name, OccurrenceKind::Primitive));
+        let is_natures = |name: &SmolStr| {
+            natures_ranges(network)
+                .any(|(it, _)| it.name == *name || it.activity == *name || base(&it.name) == *name)
+        };
+        let activities = self.durations.keys();
+        let activities =
+            activities.filter(|name| !is_known(name, OccurrenceKind::Primitive) && !is_natures(name));
         let conditions = self
             .late
             .keys()

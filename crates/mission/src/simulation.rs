@@ -18,6 +18,7 @@ use motion::FineWorld;
 use nalgebra::Point2;
 use rmpl::program::Program;
 use serde::{Deserialize, Serialize};
+use smol_str::SmolStr;
 use terrain::{Obstacle, Terrain};
 use tpn::{EventRef, Network, OccurrenceId};
 
@@ -147,6 +148,8 @@ pub(crate) struct Driving<'run> {
     /// Where vehicles are that have driven, with their headings.
     stand: BTreeMap<u32, (Point2<f64>, f64)>,
     drives: Vec<SimulatedDrive>,
+    /// How long traverses take whose durations nature chooses, by name.
+    chosen: BTreeMap<SmolStr, Time>,
 }
 
 /// Rocks that a range sensor sees are at least this large, in metres: smaller ones are below its plane.
@@ -167,8 +170,13 @@ impl<'run> Driving<'run> {
         let declared = &problem.program.world.obstacles;
         let obstacles: Vec<Obstacle> = declared.iter().map(|it| ground::obstacle(&it.shape)).collect();
         let world = FineWorld::new(map, &obstacles, MIN_ROCK_M);
-        let (stand, drives) = (BTreeMap::new(), Vec::new());
-        Self { problem, map, disturbances, courses, seed, world, stand, drives }
+        let (stand, drives, chosen) = (BTreeMap::new(), Vec::new(), BTreeMap::new());
+        Self { problem, map, disturbances, courses, seed, world, stand, drives, chosen }
+    }
+
+    /// Drives at the speed that durations need which nature chose, by the names of their occurrences.
+    pub(crate) fn hurry(&mut self, chosen: BTreeMap<SmolStr, Time>) {
+        self.chosen = chosen;
     }
 
     /// What was driven, in order of departure.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use exact::Time;
-use executive::{Disturbance, Ending, Happening};
+use executive::{Disturbance, Ending, Happening, Script};
 use mission::execution::{self, Ran};
 use mission::planning::{self, Problem};
 use mission::{Goal, Grounds, Paths};
@@ -33,7 +33,8 @@ fn execute(source: &str, disturbances: &[Disturbance]) -> (Arc<Network>, Ran) {
     };
     let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
-    let ran = execution::execute(&problem, &planned, disturbances, &mut grounds, &mut paths);
+    let script = Script { disturbances: disturbances.to_vec(), ..Script::default() };
+    let ran = execution::execute(&problem, &planned, &script, &mut grounds, &mut paths);
     (Arc::clone(&network), ran.expect("there is a plan").expect("its times fit"))
 }
 

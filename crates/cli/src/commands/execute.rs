@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use anyhow::Context as _;
 use exact::Time;
-use executive::{Observations, Progress};
+use executive::{Observations, Progress, Waiting};
 use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
 use tpn::{Network, Plan, Window};
@@ -55,7 +55,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     };
     let observed = observations(network, &read_json(&args.observe)?)?;
     let progress = executive::progress(network, &plan, &observed)?;
-    let is_consistent = matches!(progress, Progress::Consistent(_));
+    let is_consistent = matches!(progress, Progress::Consistent(..));
     match args.format {
         Format::Json => {
             print_json(&document("execute", &loaded.problems, progress_json(network, &progress)))?;
@@ -101,14 +101,30 @@ fn named_windows(network: &Network, windows: &[Option<Window>]) -> BTreeMap<Stri
     named
 }
 
+/// The event that waits, and the event of nature's that it waits for.
+fn names(network: &Network, wait: &Waiting) -> (String, String) {
+    let natures = network.arcs[wait.natures.index()].to;
+    let name = |node| tpn::plan_json::node_name(network, node);
+    (name(wait.event), name(natures))
+}
+
+fn wait_json(network: &Network, wait: &Waiting) -> Value {
+    let (event, natures) = names(network, wait);
+    json!({ "event": event, "for": natures, "until": wait.until })
+}
+
 fn progress_json(network: &Network, progress: &Progress) -> Value {
     match progress {
-        Progress::Consistent(windows) => {
+        Progress::Consistent(windows, waits) => {
             let windows: Map<String, Value> = named_windows(network, windows)
                 .into_iter()
                 .map(|(name, window)| (name, json!([window.earliest, window.latest])))
                 .collect();
-            json!({ "consistent": true, "windows": windows, "violations": [] })
+            let mut body = json!({ "consistent": true, "windows": windows, "violations": [] });
+            if !waits.is_empty() {
+                body["waits"] = waits.iter().map(|wait| wait_json(network, wait)).collect();
+            }
+            body
         }
         Progress::Violated(reasons) => json!({ "consistent": false, "windows": {}, "violations": reasons }),
     }
@@ -116,17 +132,19 @@ fn progress_json(network: &Network, progress: &Progress) -> Value {
 
 fn progress_text(network: &Network, plan: &Plan, progress: &Progress) -> String {
     match progress {
-        Progress::Consistent(windows) => {
+        Progress::Consistent(windows, waits) => {
             let named = named_windows(network, windows);
             let before = named_windows(network, &plan.windows);
             let widest = named.keys().map(|name| name.chars().count()).max().unwrap_or(0);
-            named
-                .iter()
-                .map(|(name, window)| {
-                    let changed = if before.get(name) == Some(window) { "" } else { "  changed" };
-                    format!("{name:<widest$}  [{}, {}]{changed}\n", window.earliest, window.latest)
-                })
-                .collect()
+            let lines = named.iter().map(|(name, window)| {
+                let changed = if before.get(name) == Some(window) { "" } else { "  changed" };
+                format!("{name:<widest$}  [{}, {}]{changed}\n", window.earliest, window.latest)
+            });
+            let waits = waits.iter().map(|wait| {
+                let (event, natures) = names(network, wait);
+                format!("{event} waits for {natures}, or for {}\n", wait.until)
+            });
+            lines.chain(waits).collect()
         }
         Progress::Violated(reasons) => {
             let mut text = "the plan can no longer be kept\n".to_owned();

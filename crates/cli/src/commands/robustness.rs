@@ -48,6 +48,9 @@ pub struct Args {
     /// Lets vehicles drive their traverses in simulation instead of drawing how long they take: far slower.
     #[arg(long)]
     drive: bool,
+    /// Lets nature choose its durations so as to break the plan: ends of ranges, where nothing breaks it.
+    #[arg(long)]
+    adversary: bool,
     #[command(flatten)]
     time_limit: TimeLimit,
     /// For whom the answer is; json is one line.
@@ -148,6 +151,7 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
     if args.drive {
         uncertainty.traverses = Traverses::Driven;
     }
+    uncertainty.adversary |= args.adversary;
     let unknown = uncertainty.unknown_names(&network);
     ensure!(unknown.is_empty(), "no activity or condition is called {}", unknown.join(", "));
     if let Some(name) = uncertainty.unsound() {

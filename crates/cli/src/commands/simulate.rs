@@ -32,6 +32,9 @@ pub struct Args {
     /// "level" | "obstacle" | "vehicle-slow", …}…]}; `docs/simulation.md` lists their members.
     #[arg(long, value_name = "D.json")]
     disturb: Option<PathBuf>,
+    /// Lets nature choose its durations so as to break the plan: ends of ranges, where nothing breaks it.
+    #[arg(long)]
+    adversary: bool,
     #[command(flatten)]
     time_limit: TimeLimit,
     /// For whom the answer is.
@@ -42,17 +45,19 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let loaded = args.target.load()?;
-    let disturbances = match &args.disturb {
-        Some(file) => read_json::<Script>(file)?.disturbances,
-        None => Vec::new(),
+    let mut script = match &args.disturb {
+        Some(file) => read_json::<Script>(file)?,
+        None => Script::default(),
     };
+    script.adversary |= args.adversary;
+    let disturbances = &script.disturbances;
     let program = loaded.program.as_ref().context("only a mission text can be simulated, not a network")?;
     let Some(network) = loaded.network.clone().map(Arc::new) else {
         print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
         return Ok(exit(WRONG));
     };
     let (programs, _) = mission::programs::Programs::compile(program);
-    execution::check_disturbances(&network, program, &programs, &disturbances).map_err(anyhow::Error::msg)?;
+    execution::check_disturbances(&network, program, &programs, disturbances).map_err(anyhow::Error::msg)?;
     let (mut grounds, ground) = ground(&args.target.file, &program.world)?;
     let mut paths = Paths::default();
     let problem = Problem {
@@ -66,8 +71,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let deadline = args.time_limit.start();
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || deadline.is_over());
     deadline.check(&planned.planning.outcome)?;
-    let Some(outcome) = execution::execute(&problem, &planned, &disturbances, &mut grounds, &mut paths)
-    else {
+    let Some(outcome) = execution::execute(&problem, &planned, &script, &mut grounds, &mut paths) else {
         match args.format {
             Format::Text => print_text("the mission has no plan to execute; `enroute plan` says why\n")?,
             Format::Json => {

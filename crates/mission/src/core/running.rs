@@ -61,8 +61,7 @@ impl Core {
             let Evaluated { network, program, programs, .. } = &evaluated;
             execution::check_disturbances(network, program, programs, &script.disturbances)?;
             let problem = evaluated.problem(update);
-            let disturbances = &script.disturbances;
-            execution::execute(&problem, &evaluated.planned, disturbances, &mut self.grounds, &mut self.paths)
+            execution::execute(&problem, &evaluated.planned, &script, &mut self.grounds, &mut self.paths)
                 .ok_or_else(|| NO_PLAN.to_owned())?
                 .map(|ran| {
                     let (program, planned) = (&evaluated.program, &evaluated.planned);

@@ -1,5 +1,7 @@
 //! One traverse as it is driven, from its start until its last vehicle is there or none can go on.
 
+use std::collections::BTreeMap;
+
 use exact::{Rational, Time};
 use executive::Disturbance;
 use motion::{
@@ -7,6 +9,7 @@ use motion::{
     RangeScan, ShortcutSettings, Surroundings, VehicleModel,
 };
 use nalgebra::{Point2, Vector2, distance};
+use smol_str::SmolStr;
 use terrain::{CellState, ConfigurationSpace, Obstacle, Terrain};
 use tpn::{ArcKind, EventEnd, EventRef, Network, OccurrenceId};
 
@@ -160,7 +163,7 @@ impl<'a> Trip<'a> {
             convoy: Convoy::new(members, drive.spacing_m, driving.seed),
             map: driving.map,
             vertices: passed_m.into_iter().zip(events.copied()).collect(),
-            wanted_s: wanted_units(network, drive.occurrence) * unit_s,
+            wanted_s: wanted_units(network, drive.occurrence, &driving.chosen) * unit_s,
             frames: vec![Vec::new(); count],
             steps_since_frame: vec![0; count],
             world: fine,
@@ -378,9 +381,15 @@ impl<'a> Trip<'a> {
     }
 }
 
-/// The time that a traverse is to take in its plan's earliest schedule, in mission units, as far as its own bounds say.
-fn wanted_units(network: &Network, occurrence: OccurrenceId) -> f64 {
-    let own = network.occurrences[occurrence.index()].arc.map(|arc| network.arcs[arc.index()].lower);
+/// The time that a traverse is to take, in mission units: what nature chose of its range, or otherwise that of its plan's
+/// earliest schedule, as far as its own bounds say.
+fn wanted_units(network: &Network, occurrence: OccurrenceId, chosen: &BTreeMap<SmolStr, Time>) -> f64 {
+    let described = &network.occurrences[occurrence.index()];
+    let own = described.arc.map(|arc| {
+        let (lower, upper) = (network.arcs[arc.index()].lower, network.arcs[arc.index()].upper.finite());
+        let natures = chosen.get(&described.name).filter(|_| network.is_uncertain(arc));
+        natures.zip(upper).map_or(lower, |(&chosen, upper)| chosen.min(upper).max(lower))
+    });
     let path = network
         .arcs
         .iter()

@@ -84,7 +84,7 @@ fn windows(executed: &Executed, time: f64) -> Vec<Option<Window>> {
     }
     let observed = Observations { executed: happened, now };
     let mut windows = match executive::progress(&executed.network, &executed.plan, &observed) {
-        Ok(Progress::Consistent(windows)) => windows,
+        Ok(Progress::Consistent(windows, _)) => windows,
         // The plan is about to be given up: what it promised is still the best that is known.
         Ok(Progress::Violated(_)) | Err(_) => executed.plan.windows.clone(),
     };

@@ -1,0 +1,46 @@
+//! What nature chooses in a run (SPEC 13.2): durations drawn from their ranges by the run's seed.
+
+use std::collections::BTreeMap;
+
+use exact::{Overflow, Time};
+use executive::world::natures_ranges;
+use plant::Random;
+use smol_str::SmolStr;
+use tpn::{Network, Occurrence};
+
+use crate::robustness::Distribution;
+
+/// How nature chooses durations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Nature {
+    /// By chance.
+    Chance,
+    /// Ends of ranges by chance, and what makes the plan fail where something does.
+    Adversary,
+}
+
+/// Told from the seed of everything else by this.
+const NATURE: u64 = 0x006e_6174_7572_6521;
+
+/// How long each duration of nature's is in the run of `seed`, by occurrence. `named` are distributions that are given;
+/// all others are uniform.
+pub(crate) fn choose(
+    network: &Network,
+    seed: u64,
+    nature: Nature,
+    named: &dyn Fn(&Occurrence) -> Option<Distribution>,
+) -> Result<BTreeMap<SmolStr, Time>, Overflow> {
+    let mut random = Random::new(seed ^ NATURE);
+    natures_ranges(network)
+        .map(|(occurrence, [lower, upper])| {
+            let duration = match nature {
+                Nature::Adversary => [lower, upper][random.below(2) as usize],
+                Nature::Chance => {
+                    let distribution = named(occurrence).unwrap_or(Distribution::Uniform(lower, upper));
+                    distribution.draw(&mut random)?
+                }
+            };
+            Ok((occurrence.name.clone(), duration))
+        })
+        .collect()
+}
