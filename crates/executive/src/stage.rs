@@ -100,7 +100,7 @@ impl Stage {
                 let before = left.len();
                 left.retain(|&node| {
                     let point = self.made.point(node);
-                    !point.is_some_and(|point| self.dispatch.settle(point, ticks).is_ok())
+                    point.is_none_or(|point| self.dispatch.settle(point, ticks).is_err())
                 });
                 if left.len() == before {
                     return Err(next);

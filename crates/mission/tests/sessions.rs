@@ -351,7 +351,7 @@ fn walked(core: &mut Core, revision: u64, source: &str, duration: i64) -> Arc<Ex
         trace: false,
     };
     let disturbance = Disturbance::Duration { activity: "Walk#1".into(), duration: Time::from(duration) };
-    let script = Script { disturbances: vec![disturbance] };
+    let script = Script { disturbances: vec![disturbance], ..Script::default() };
     let mut collected = Collected::default();
     core.handle(Request::Execute { update, script }, &mut collected);
     assert_eq!(collected.executions.len(), 1);
