@@ -19,14 +19,15 @@ pub(crate) fn answer(
     options: &Options,
     termination: &mut dyn Termination,
 ) -> Result<(Outcome, bool), TimeOverflow> {
-    let (mut outcome, mut has_doubts) =
-        if demanding::has_demands(model) || (options.best > 1 && model.has_contexts) {
-            // Nothing that was chosen before is tried again with other bounds.
-            (demanding::search(network, model, options, termination)?, true)
-        } else {
-            searched(model, options, termination)?
-        };
-    if outcome.trace.as_ref().is_some_and(|trace| trace.is_truncated) && outcome.status == Status::Limit {
+    let is_demanding = demanding::has_demands(model) || (options.best > 1 && model.has_contexts);
+    let (mut outcome, mut has_doubts) = if is_demanding {
+        // Nothing that was chosen before is tried again with other bounds.
+        (demanding::search(network, model, options, termination)?, true)
+    } else {
+        searched(model, options, termination)?
+    };
+    let is_cut_short = !is_demanding && outcome.status == Status::Limit;
+    if is_cut_short && outcome.trace.as_ref().is_some_and(|trace| trace.is_truncated) {
         // What is recorded is searched step by step as the paper does, and stops when the record is full: the answer is
         // up to a search that may take the shortcuts.
         let unrecorded = Options { trace_events: None, ..*options };

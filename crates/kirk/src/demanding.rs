@@ -8,14 +8,15 @@
 use exact::Rational;
 use tpn::{Choice, LabelId, Network, Ordering, Plan};
 
-use crate::demands::{LastingVariable, lasting_variables};
+use crate::demands::{LastingVariable, ModelGoal, lasting_variables};
 use crate::model::Model;
 use crate::options::{Options, Outcome, Stats, Status, Termination};
 use crate::overflow::TimeOverflow;
 use crate::partial_order;
 use crate::search::Gaps;
-use crate::solver::{Answer, Part, Problem, Solver, TooLarge};
+use crate::solver::{Answer, Part, Problem, Record, Solver, TooLarge};
 use crate::structure::Relation;
+use crate::trace::{Event, SearchRound};
 
 /// How many conflicts a search in textual order may meet before one that follows its conflicts takes over.
 const MAX_CONFLICTS_IN_ORDER: u64 = 5_000;
@@ -83,6 +84,7 @@ pub(crate) fn search(
     options: &Options,
     termination: &mut dyn Termination,
 ) -> Result<Outcome, TimeOverflow> {
+    let has_goals = !model.demands.goals.is_empty();
     let mut searching = Searching {
         network,
         model,
@@ -91,6 +93,7 @@ pub(crate) fn search(
         is_stopped: false,
         bound: None,
         found: Vec::new(),
+        record: options.trace_events.map(|limit| Box::new(Record::new(limit, has_goals))),
     };
     searching.stats.nodes = model.num_nodes as u64;
     searching.stats.arcs = model.arcs.len() as u64;
@@ -100,8 +103,12 @@ pub(crate) fn search(
     }
     let (status, plans) =
         if options.all { searching.all(options.max_plans)? } else { searching.several(options.best)? };
-    let Searching { stats, bound, .. } = searching;
-    Ok(Outcome { status, plans, bound, failure: None, stats, trace: None, overflow: None })
+    let Searching { stats, bound, mut record, .. } = searching;
+    if let Some(record) = record.as_mut().filter(|_| plans.is_empty()) {
+        record.fail();
+    }
+    let trace = record.map(|record| record.into_trace());
+    Ok(Outcome { status, plans, bound, failure: None, stats, trace, overflow: None })
 }
 
 struct Searching<'a> {
@@ -114,6 +121,8 @@ struct Searching<'a> {
     bound: Option<Rational>,
     /// The choices of plans that have been found, where others are looked for.
     found: Vec<Vec<Choice>>,
+    /// What is told of all searches; the solver has it while it searches.
+    record: Option<Box<Record>>,
 }
 
 /// What came of looking for the next plan of a problem.
@@ -140,6 +149,32 @@ impl<'a> Searching<'a> {
     fn gaps(&self) -> &'static [Gaps] {
         let has_conflicts = self.model.conditions.variables.iter().any(|variable| variable.labels.len() > 1);
         if self.model.gap == 0 || !has_conflicts { &[Gaps::Ignored] } else { &[Gaps::Trusted, Gaps::Ignored] }
+    }
+
+    /// A problem and its solver, which goes on with the record.
+    fn recorded_problem(
+        &mut self,
+        gaps: Gaps,
+        limits: &Limits,
+        is_in_order: bool,
+    ) -> Result<(Problem<'a>, Solver), TooLarge> {
+        let (problem, mut solver) = self.problem(gaps, limits, is_in_order)?;
+        if let Some(record) = self.record.take() {
+            let goals = self.model.demands.goals.iter().zip(limits);
+            let values = goals.map_while(|(goal, limit)| limit.map(|limit| (goal, limit)));
+            let mut values: Vec<(&ModelGoal, i64)> = values.collect();
+            // The last of them is to be better than this.
+            if let Some((_, limit)) = values.last_mut() {
+                *limit += 1;
+            }
+            let round = SearchRound {
+                is_in_textual_order: is_in_order,
+                may_touch: gaps == Gaps::Ignored && self.gaps().len() > 1,
+                values: values.into_iter().map(|(goal, value)| goal.value(value)).collect(),
+            };
+            solver.begin_record(&problem, Some(record), round);
+        }
+        Ok((problem, solver))
     }
 
     fn problem(
@@ -194,10 +229,16 @@ impl<'a> Searching<'a> {
             }
             let solution = problem.whole_solution(solver);
             if let Some(plan) = partial_order::plan(self.network, model, &solution)? {
+                solver.record_solution(|| Event::Keep {
+                    orders: plan.orderings_added.clone(),
+                    uses: plan.uses_ordered.clone(),
+                });
                 return Ok(Next::Plan(Box::new(plan)));
             }
             // Intervals that touch without need: another order, link or choice may do.
+            solver.record_failed(Event::NoRoomForGap);
             problem.forbid(solver);
+            solver.record_restart(problem);
         }
     }
 
@@ -207,6 +248,9 @@ impl<'a> Searching<'a> {
         while plans.len() < count.max(1) && !self.is_stopped {
             let plan = if self.model.demands.goals.is_empty() { self.first()? } else { self.best()? };
             let Some(plan) = plan else { break };
+            if let Some(record) = &mut self.record {
+                record.tell_plan(plans.len() as u32);
+            }
             self.found.push(plan.choices.clone());
             let is_last = plan.choices.is_empty();
             plans.push(plan);
@@ -221,10 +265,13 @@ impl<'a> Searching<'a> {
         let model = self.model;
         for &gaps in self.gaps() {
             for most in [Some(MAX_CONFLICTS_IN_ORDER), None] {
-                let Ok((mut problem, mut solver)) = self.problem(gaps, &Vec::new(), most.is_some()) else {
+                let Ok((mut problem, mut solver)) = self.recorded_problem(gaps, &Vec::new(), most.is_some())
+                else {
                     return Err(TimeOverflow::at(model.start));
                 };
-                match self.next_plan(model, &mut problem, &mut solver, most)? {
+                let next = self.next_plan(model, &mut problem, &mut solver, most)?;
+                self.record = solver.record.take();
+                match next {
                     Next::Plan(plan) => return Ok(Some(*plan)),
                     Next::Nothing => break,
                     Next::Stopped if self.is_stopped => return Ok(None),
@@ -240,13 +287,17 @@ impl<'a> Searching<'a> {
         let model = self.model;
         let mut plans: Vec<Plan> = Vec::new();
         for &gaps in self.gaps() {
-            let Ok((mut problem, mut solver)) = self.problem(gaps, &Vec::new(), true) else {
+            let Ok((mut problem, mut solver)) = self.recorded_problem(gaps, &Vec::new(), true) else {
                 return Err(TimeOverflow::at(model.start));
             };
             problem.order_all_pairs(&mut solver);
+            solver.record_choice_points(&problem);
             loop {
                 match self.next_plan(model, &mut problem, &mut solver, None)? {
-                    Next::Stopped => return Ok((Status::Limit, plans)),
+                    Next::Stopped => {
+                        self.record = solver.record.take();
+                        return Ok((Status::Limit, plans));
+                    }
                     Next::Nothing => break,
                     Next::Plan(plan) => {
                         let is_known = plans.iter().any(|known| {
@@ -254,15 +305,21 @@ impl<'a> Searching<'a> {
                                 == (&plan.choices, &plan.causal_links, &plan.conflict_order)
                         });
                         if !is_known {
+                            if let Some(record) = &mut solver.record {
+                                record.tell_plan(plans.len() as u32);
+                            }
                             plans.push(*plan);
                         }
                         if plans.len() >= most {
+                            self.record = solver.record.take();
                             return Ok((Status::Limit, plans));
                         }
                         problem.forbid(&mut solver);
+                        solver.record_restart(&problem);
                     }
                 }
             }
+            self.record = solver.record.take();
         }
         let status = if plans.is_empty() { Status::NoPlan } else { Status::Plan };
         Ok((status, plans))
@@ -275,6 +332,7 @@ impl<'a> Searching<'a> {
         let Some(mut plan) = self.any(&limits)? else {
             return Ok(None);
         };
+        self.tell_values(&plan)?;
         for goal in 0..model.demands.goals.len() {
             loop {
                 let value = model.demands.goals[goal].sum(model, &plan)?;
@@ -284,6 +342,7 @@ impl<'a> Searching<'a> {
                     break;
                 };
                 plan = better;
+                self.tell_values(&plan)?;
             }
             if self.is_stopped {
                 limits[goal] = None;
@@ -294,6 +353,15 @@ impl<'a> Searching<'a> {
         let is_whole = model.demands.goals.iter().all(|goal| goal.is_whole);
         plan.quality.is_optimal = Some(!self.is_stopped && is_whole);
         Ok(Some(plan))
+    }
+
+    /// Tells what a plan is worth that is better than those before.
+    fn tell_values(&mut self, plan: &Plan) -> Result<(), TimeOverflow> {
+        let Some(record) = &mut self.record else { return Ok(()) };
+        let goals = self.model.demands.goals.iter();
+        let values = goals.map(|goal| Ok(goal.value(goal.sum(self.model, plan)?)));
+        record.tell_improvement(values.collect::<Result<_, TimeOverflow>>()?);
+        Ok(())
     }
 
     /// What follows for a goal from the limits of those before it, whatever is decided.
@@ -308,10 +376,12 @@ impl<'a> Searching<'a> {
     fn any(&mut self, limits: &Limits) -> Result<Option<Plan>, TimeOverflow> {
         let model = self.model;
         for &gaps in self.gaps() {
-            let Ok((mut problem, mut solver)) = self.problem(gaps, limits, false) else {
+            let Ok((mut problem, mut solver)) = self.recorded_problem(gaps, limits, false) else {
                 return Err(TimeOverflow::at(model.start));
             };
-            match self.next_plan(model, &mut problem, &mut solver, None)? {
+            let next = self.next_plan(model, &mut problem, &mut solver, None)?;
+            self.record = solver.record.take();
+            match next {
                 Next::Plan(found) => return Ok(Some(*found)),
                 Next::Nothing => {}
                 Next::Stopped => return Ok(None),

@@ -234,7 +234,12 @@ impl Part {
             Member::Bound(Constraint::Upper(arc)) => {
                 self.model.arcs[arc].upper = if is_in { whole.arcs[arc].upper } else { INFINITE };
             }
-            Member::Bound(Constraint::Link(_) | Constraint::Order(_)) => {}
+            Member::Bound(
+                Constraint::Link(_)
+                | Constraint::Order(_)
+                | Constraint::UseOrder(_)
+                | Constraint::Departure(_),
+            ) => {}
         }
     }
 

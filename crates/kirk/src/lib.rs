@@ -21,6 +21,7 @@ mod nesting;
 mod options;
 mod overflow;
 mod partial_order;
+mod precedence;
 mod planner;
 mod record;
 mod relax;
@@ -43,7 +44,10 @@ pub use failure::{Failure, FailureKind, GAP_LABEL, Member, Reason, Relaxation};
 pub use options::{ExpansionLimit, Options, Outcome, Search, Stats, Status, Termination, Unlimited};
 pub use planner::Planner;
 pub use replay::{Replay, ReplayStep};
-pub use trace::{Constraint, CycleMember, Entry, Event, Trace, TreeChoice, TreeNode, TreeNodeId, TreeStatus};
+pub use trace::{
+    Constraint, CycleMember, Departing, Entry, Event, SearchRound, Trace, TreeChoice, TreeNode, TreeNodeId,
+    TreeStatus,
+};
 pub use trace_lines::trace_json_lines;
 
 use answer::answer;

@@ -2,15 +2,22 @@
 //!
 //! Nothing but the trace is kept: the state after each step is computed from the events of the states that lead to it,
 //! and windows are propagated again. A step costs time linear in those events, not in the length of the search.
+//!
+//! A conflict-driven search adds no arcs one by one: whatever the choices at a step do not exclude counts as soon as they
+//! select it.
+
+use std::ops::RangeInclusive;
 
 use exact::{Bound, Time};
 use serde::{Deserialize, Serialize};
 use stn::{Overflow, Stn};
-use tpn::{ArcId, CausalLink, Choice, DecisionId, LabelId, Network, NodeId, Ordering, Window};
+use tpn::{ArcId, CausalLink, Choice, DecisionId, LabelId, Network, NodeId, Ordering, UseOrdering, Window};
 use typed_index_collections::TiVec;
 
 use crate::model::{INFINITE, Model, point};
-use crate::trace::{Constraint, CycleMember, Event, Trace, TreeNodeId};
+use crate::precedence;
+use crate::search::UNBOUNDED_BELOW;
+use crate::trace::{Constraint, CycleMember, Departing, Event, Trace, TreeChoice, TreeNodeId};
 
 /// Replays a [`Trace`] on the network it was recorded on.
 #[derive(Clone, Debug)]
@@ -19,6 +26,8 @@ pub struct Replay {
     /// The events of state `n` are `events[event_start[n]..event_start[n + 1]]`, in order.
     event_start: Vec<u32>,
     events: Vec<u32>,
+    /// Of a conflict-driven search: the steps in which one starts, and the end of all; empty otherwise.
+    rounds: Vec<u32>,
 }
 
 /// The search just after one of its events.
@@ -38,6 +47,10 @@ pub struct ReplayStep {
     pub links: Vec<CausalLink>,
     /// Orders in force.
     pub orders: Vec<Ordering>,
+    /// Orders of resource uses in force.
+    pub uses: Vec<UseOrdering>,
+    /// From where movements set out, as far as that is known.
+    pub departures: Vec<Departing>,
     /// The decision being made, if one is.
     pub decision: Option<DecisionId>,
     /// The requirement being closed, if one is.
@@ -56,9 +69,9 @@ pub struct ReplayStep {
 struct Frame {
     tree_node: TreeNodeId,
     arcs: Vec<ArcId>,
-    choice: Option<Choice>,
-    link: Option<CausalLink>,
-    order: Option<Ordering>,
+    choices: Vec<TreeChoice>,
+    /// What the plan keeps of all orders, if that is known.
+    kept: Option<(Vec<Ordering>, Vec<UseOrdering>)>,
 }
 
 impl Replay {
@@ -82,7 +95,13 @@ impl Replay {
                 next[node] += 1;
             }
         }
-        Some(Self { model, event_start, events })
+        let mut rounds: Vec<u32> = Vec::new();
+        if trace.is_conflict_driven() {
+            let starts = (0_u32..).zip(&trace.events);
+            let starts = starts.filter(|(_, entry)| matches!(entry.event, Event::Begin(_)));
+            rounds.extend(starts.map(|(step, _)| step).chain([trace.events.len() as u32]));
+        }
+        Some(Self { model, event_start, events, rounds })
     }
 
     /// The state after event `step` of `trace`, which must be the one this was made for; after the last event if there
@@ -96,7 +115,7 @@ impl Replay {
             result.cycle.clone_from(cycle);
         }
         look_at(trace, step, &mut result);
-        self.collect(&frames, &mut result);
+        self.collect(trace, &frames, &mut result);
         result
     }
 
@@ -109,30 +128,83 @@ impl Replay {
             at = trace.tree.get(node as usize).and_then(|node| node.parent);
         }
         path.reverse();
-        path.into_iter().map(|node| self.frame(trace, node, step)).collect()
+        let (from, until) = self.round(tree_node, step);
+        path.into_iter().map(|node| self.frame(trace, node, from..=step.min(until))).collect()
     }
 
-    fn frame(&self, trace: &Trace, tree_node: TreeNodeId, step: usize) -> Frame {
+    /// The first and the last step of the search that a state belongs to: what another one found at the root does not count.
+    fn round(&self, tree_node: TreeNodeId, step: usize) -> (usize, usize) {
+        let own = self.event_start.get(tree_node as usize).and_then(|&first| self.events.get(first as usize));
+        let at = if tree_node == 0 { step } else { own.map_or(step, |&first| first as usize) };
+        let next = self.rounds.partition_point(|&start| start as usize <= at);
+        let from = next.checked_sub(1).map_or(0, |round| self.rounds[round] as usize);
+        let until = self.rounds.get(next).map_or(usize::MAX, |&next| (next as usize).saturating_sub(1));
+        (from, until)
+    }
+
+    fn frame(&self, trace: &Trace, tree_node: TreeNodeId, steps: RangeInclusive<usize>) -> Frame {
         let mut frame = Frame { tree_node, ..Frame::default() };
         let bounds =
             self.event_start.get(tree_node as usize).zip(self.event_start.get(tree_node as usize + 1));
         let own = bounds.and_then(|(&from, &to)| self.events.get(from as usize..to as usize));
-        for entry in own.unwrap_or_default().iter().map(|&event| event as usize).take_while(|&it| it <= step)
-        {
-            match trace.events.get(entry).map(|entry| &entry.event) {
-                Some(Event::Decide { decision, alternative }) => {
-                    frame.choice = Some(Choice { decision: *decision, alternative: *alternative });
-                }
+        let own = own.unwrap_or_default().iter().map(|&event| event as usize);
+        for step in own.skip_while(|step| step < steps.start()).take_while(|step| step <= steps.end()) {
+            match trace.events.get(step).map(|entry| &entry.event) {
+                Some(Event::Decide { decision, alternative }) => frame
+                    .choices
+                    .push(TreeChoice::Decision { decision: *decision, alternative: *alternative }),
                 Some(Event::AddArc { arc }) => frame.arcs.push(*arc),
-                Some(Event::TryLink { link }) => frame.link = Some(*link),
-                Some(Event::TryOrder { order }) => frame.order = Some(*order),
+                Some(Event::TryLink { link }) => frame.choices.push(TreeChoice::Link(*link)),
+                Some(Event::TryOrder { order }) => frame.choices.push(TreeChoice::Order(*order)),
+                Some(Event::TryUseOrder { order }) => frame.choices.push(TreeChoice::UseOrder(*order)),
+                Some(Event::Imply { choice, holds: true, .. }) => frame.choices.push(*choice),
+                Some(Event::Keep { orders, uses }) => frame.kept = Some((orders.clone(), uses.clone())),
                 _ => {}
             }
         }
         frame
     }
 
-    fn collect(&self, frames: &[Frame], result: &mut ReplayStep) {
+    fn collect(&self, trace: &Trace, frames: &[Frame], result: &mut ReplayStep) {
+        result.tree_node = frames.last().map_or(0, |frame| frame.tree_node);
+        for choice in frames.iter().flat_map(|frame| &frame.choices) {
+            match *choice {
+                TreeChoice::Decision { decision, alternative } => {
+                    result.choices.push(Choice { decision, alternative });
+                }
+                TreeChoice::Link(link) => result.links.push(link),
+                TreeChoice::Order(order) => result.orders.push(order),
+                TreeChoice::UseOrder(order) => result.uses.push(order),
+                TreeChoice::Departure(departing) => result.departures.push(departing),
+                TreeChoice::NoLink { .. } => {}
+            }
+        }
+        if self.rounds.is_empty() {
+            self.select(frames, result);
+        } else {
+            self.select_by_context(result);
+            result.choices.sort_unstable();
+            result.links.sort_unstable();
+            if let Some((orders, uses)) = frames.last().and_then(|frame| frame.kept.as_ref()) {
+                result.orders.clone_from(orders);
+                result.uses.clone_from(uses);
+            }
+        }
+        let may_touch = trace.events.get(..=result.step).unwrap_or_default().iter().rev().find_map(|entry| {
+            match &entry.event {
+                Event::Begin(round) => Some(round.may_touch),
+                _ => None,
+            }
+        });
+        // A plan has the gaps that it can have.
+        let is_kept = frames.last().is_some_and(|frame| frame.kept.is_some());
+        let may_touch = may_touch.unwrap_or(false) && !is_kept;
+        let windows = self.windows(result, may_touch);
+        result.windows = windows.unwrap_or_else(|Overflow { .. }| vec![None; self.model.num_nodes]);
+    }
+
+    /// What was added arc by arc.
+    fn select(&self, frames: &[Frame], result: &mut ReplayStep) {
         let model = &self.model;
         let mut is_selected: TiVec<NodeId, bool> = vec![false; model.num_nodes].into();
         let mut select = |node: NodeId, nodes: &mut Vec<NodeId>| {
@@ -142,48 +214,56 @@ impl Replay {
             }
         };
         select(model.start, &mut result.nodes);
-        result.tree_node = frames.last().map_or(0, |frame| frame.tree_node);
-        for frame in frames {
-            for &arc in &frame.arcs {
-                result.arcs.push(arc);
-                select(model.arcs[arc].to, &mut result.nodes);
-            }
-            result.choices.extend(frame.choice);
-            result.links.extend(frame.link);
-            result.orders.extend(frame.order);
+        for arc in frames.iter().flat_map(|frame| &frame.arcs).copied() {
+            result.arcs.push(arc);
+            select(model.arcs[arc].to, &mut result.nodes);
         }
-        let windows = self.windows(result).unwrap_or_else(|Overflow { .. }| vec![None; model.num_nodes]);
-        result.windows = windows;
+    }
+
+    /// All that is part of every plan with the choices of a step.
+    fn select_by_context(&self, result: &mut ReplayStep) {
+        let model = &self.model;
+        let mut is_selected: TiVec<NodeId, bool> = vec![false; model.num_nodes].into();
+        is_selected[model.start] = true;
+        for (id, arc) in model.arcs.iter_enumerated() {
+            if arc.context.is_none_or(|choice| result.choices.contains(&choice)) {
+                result.arcs.push(id);
+                (is_selected[arc.from], is_selected[arc.to]) = (true, true);
+            }
+        }
+        result.nodes.extend(is_selected.iter_enumerated().filter(|&(_, &it)| it).map(|(node, _)| node));
     }
 
     /// Propagates the constraints of a step again.
-    fn windows(&self, step: &ReplayStep) -> Result<Vec<Option<Window>>, Overflow> {
+    fn windows(&self, step: &ReplayStep, may_touch: bool) -> Result<Vec<Option<Window>>, Overflow> {
         let model = &self.model;
         let mut stn = Stn::new(model.num_nodes);
-        let failed = step.cycle.iter().map(|member| member.constraint);
-        let failed: Vec<Constraint> = failed.collect();
+        let failed: Vec<Constraint> = step.cycle.iter().map(|member| member.constraint).collect();
         for &arc in &step.arcs {
             let bounds = &model.arcs[arc];
             let (from, to) = (point(bounds.from), point(bounds.to));
             // The arc just added is the one that may contradict the others: those are consistent by themselves.
-            let _ = stn.insert(to, from, -bounds.lower, arc.0);
+            if bounds.lower != UNBOUNDED_BELOW {
+                let _ = stn.insert(to, from, -bounds.lower, arc.0);
+            }
             if bounds.upper != INFINITE {
                 let _ = stn.insert(from, to, bounds.upper, arc.0);
             }
         }
-        for link in &step.links {
-            if failed.contains(&Constraint::Link(*link)) {
+        if !self.rounds.is_empty() {
+            self.relax_open_decisions(step, &mut stn);
+        }
+        let links = step.links.iter().map(|&link| (TreeChoice::Link(link), Constraint::Link(link)));
+        let orders = step.orders.iter().map(|&order| (TreeChoice::Order(order), Constraint::Order(order)));
+        let uses = step.uses.iter().map(|&order| (TreeChoice::UseOrder(order), Constraint::UseOrder(order)));
+        let departures = step.departures.iter();
+        let departures = departures.map(|&it| (TreeChoice::Departure(it), Constraint::Departure(it)));
+        for (choice, constraint) in departures.chain(links).chain(orders).chain(uses) {
+            if failed.contains(&constraint) {
                 continue;
             }
-            let (ask_start, ask_end) = model.interval(link.ask);
-            let (tell_start, tell_end) = model.interval(link.tell);
-            let _ = stn.insert(ask_start, tell_start, 0, 0);
-            let _ = stn.insert(tell_end, ask_end, 0, 0);
-        }
-        for order in &step.orders {
-            if !failed.contains(&Constraint::Order(*order)) {
-                let _ =
-                    stn.insert(model.interval(order.then).0, model.interval(order.first).1, -model.gap, 0);
+            for (from, to, weight) in precedence::edges(model, choice, may_touch) {
+                let _ = stn.insert(from, to, weight, 0);
             }
         }
         let all = stn.windows(point(model.start))?;
@@ -196,6 +276,25 @@ impl Replay {
             });
         }
         Ok(windows)
+    }
+
+    /// A decision that is still open takes as long as some alternative of it may.
+    fn relax_open_decisions(&self, step: &ReplayStep, stn: &mut Stn) {
+        let Some(structure) = &self.model.structure else { return };
+        for (id, decision) in self.model.decisions.iter_enumerated() {
+            let is_open = step.choices.iter().all(|choice| choice.decision != id)
+                && decision.context.is_none_or(|choice| step.choices.contains(&choice));
+            let (from, to, lower, upper) = structure.initial_bounds(id);
+            if is_open && lower <= upper {
+                let _ = stn.constrain(
+                    point(from),
+                    point(to),
+                    lower,
+                    (upper != INFINITE).then_some(upper),
+                    0,
+                );
+            }
+        }
     }
 }
 
@@ -216,9 +315,14 @@ fn look_at(trace: &Trace, step: usize, result: &mut ReplayStep) {
             Event::TryLink { link } => (None, Some(link.ask), None),
             Event::Threat { left, right } => (None, None, Some((*left, *right))),
             Event::TryOrder { order } => (None, None, Some((order.first, order.then))),
-            Event::Backtrack { .. } | Event::Backjump { .. } | Event::Solution { .. } | Event::Exhausted => {
-                (None, None, None)
-            }
+            Event::Backtrack { .. }
+            | Event::Backjump { .. }
+            | Event::Restart
+            | Event::Begin(_)
+            | Event::Keep { .. }
+            | Event::TryUseOrder { .. }
+            | Event::Solution { .. }
+            | Event::Exhausted => (None, None, None),
             _ => continue,
         };
         result.decision = decision;

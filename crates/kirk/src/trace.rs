@@ -2,10 +2,14 @@
 //!
 //! A trace is small: events name ids, and windows and selections are computed again by [`crate::Replay`]. It is bounded:
 //! at the limit the recorded search ends, [`Trace::is_truncated`] says so, and the answer is found without a record.
+//!
+//! A conflict-driven search (SPEC 5.6) has a state for each level of decisions. What follows belongs to the state that it
+//! follows in, also after the search has come back there. It may be several searches one after the other, each of which
+//! starts with [`Event::Begin`] at the root and knows nothing of those before.
 
-use exact::Time;
+use exact::{Rational, Time};
 use serde::{Deserialize, Serialize};
-use tpn::{ArcId, CausalLink, DecisionId, LabelId, Network, NodeId, Ordering};
+use tpn::{ArcId, CausalLink, DecisionId, LabelId, Network, NodeId, Ordering, UseId, UseOrdering};
 
 /// A node of the search tree, by position in [`Trace::tree`]. The root is 0.
 pub type TreeNodeId = u32;
@@ -111,6 +115,105 @@ pub enum Event {
     },
     /// Nothing is left to try.
     Exhausted,
+    /// A conflict-driven search starts.
+    Begin(SearchRound),
+    /// One use of a resource is put before another.
+    TryUseOrder {
+        /// The order.
+        order: UseOrdering,
+    },
+    /// What follows from choices made before.
+    Imply {
+        /// What.
+        choice: TreeChoice,
+        /// Whether it is so; otherwise it is ruled out.
+        holds: bool,
+        /// The choices that it follows from; none if it is so whatever is chosen.
+        because: Vec<TreeChoice>,
+    },
+    /// No alternative is left of a decision.
+    NoAlternative {
+        /// The decision.
+        decision: DecisionId,
+    },
+    /// Too much of a resource, and none of the uses can wait for another one any more.
+    Unsharable {
+        /// The uses.
+        uses: Vec<UseId>,
+    },
+    /// No plan with these choices is as good as what is looked for.
+    NotBetter {
+        /// The choices.
+        choices: Vec<TreeChoice>,
+    },
+    /// Choices that cannot be made together.
+    Clash {
+        /// The choices; none if there is a contradiction whatever is chosen.
+        choices: Vec<TreeChoice>,
+    },
+    /// Whatever is done, nature can choose durations for which these choices leave no times (SPEC 13.1).
+    Uncontrollable {
+        /// The choices.
+        choices: Vec<TreeChoice>,
+    },
+    /// Changes without length that are each before the next one, in a circle (SPEC 10.2).
+    Circle {
+        /// The orders along the circle.
+        orders: Vec<TreeChoice>,
+    },
+    /// Intervals that only touch are not forced to, and there is no room for the gap between them (SPEC 5.3).
+    NoRoomForGap,
+    /// From now on the choices are never all made again.
+    Learn {
+        /// The choices; none if there is no solution.
+        choices: Vec<TreeChoice>,
+    },
+    /// Uses that take more of a reusable resource than it has, if they are at one time: a new choice point.
+    Overload {
+        /// A minimal set of them.
+        uses: Vec<UseId>,
+    },
+    /// Uses after which the level of a reservoir is out of its range: a new choice point.
+    OutOfRange {
+        /// The uses that take it there.
+        early: Vec<UseId>,
+        /// The uses of the other kind, one of which must come first.
+        late: Vec<UseId>,
+    },
+    /// Back to the first state, with all that was learned.
+    Restart,
+    /// Everything is decided, and the times fit: what a plan keeps of their order, so that all its schedules fit.
+    Keep {
+        /// Orders of conditions, as in [`tpn::Plan::orderings_added`].
+        orders: Vec<Ordering>,
+        /// Orders of uses, as in [`tpn::Plan::uses_ordered`].
+        uses: Vec<UseOrdering>,
+    },
+    /// A plan that is better than those before, by the value of each goal.
+    Improve {
+        /// The values, in the order of the goals.
+        values: Vec<Rational>,
+    },
+}
+
+/// What one conflict-driven search of several looks for.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SearchRound {
+    /// Whether choices are made in the order of the text; otherwise what has to do with conflicts comes first.
+    pub is_in_textual_order: bool,
+    /// Whether conflicting intervals may touch: there is no plan with a gap between all of them (SPEC 5.3).
+    pub may_touch: bool,
+    /// The values of the first goals in the best plan so far: the last one of these is to be better, the others as good.
+    pub values: Vec<Rational>,
+}
+
+/// A movement and what leaves its vehicle where it sets out, with no other movement between (SPEC 10.3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Departing {
+    /// The movement, by where it leaves the vehicle.
+    pub movement: LabelId,
+    /// The movement before it, or where the vehicle is at first.
+    pub before: LabelId,
 }
 
 /// A constraint of the network that planning works on.
@@ -125,6 +228,10 @@ pub enum Constraint {
     Link(CausalLink),
     /// One interval ends before another begins.
     Order(Ordering),
+    /// One use of a resource ends before another begins.
+    UseOrder(UseOrdering),
+    /// A movement takes as long as from where it sets out.
+    Departure(Departing),
 }
 
 /// One step of a contradiction: `to − from ≤ weight`. The weights of a cycle add up to less than zero.
@@ -145,14 +252,14 @@ pub struct CycleMember {
 pub struct TreeNode {
     /// The state that it was reached from.
     pub parent: Option<TreeNodeId>,
-    /// What was chosen there; nothing at the root.
+    /// What was chosen there; nothing at the root, and where a plan needs no choice.
     pub choice: Option<TreeChoice>,
     /// What became of it.
     pub status: TreeStatus,
 }
 
-/// What distinguishes a state from its parent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// What distinguishes a state from its parent, and what choices are called where they are the reason of something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TreeChoice {
     /// An alternative of the program.
@@ -171,6 +278,27 @@ pub enum TreeChoice {
         /// The requirement.
         ask: LabelId,
     },
+    /// An order of two uses of a resource.
+    UseOrder(UseOrdering),
+    /// Where a movement sets out. This is never chosen; it follows from the order of movements.
+    Departure(Departing),
+}
+
+impl TreeChoice {
+    /// Whether both are alternatives of one choice point.
+    pub fn is_alternative_of(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Decision { decision, .. }, Self::Decision { decision: other, .. }) => decision == other,
+            (Self::Link(link), Self::Link(other)) => link.ask == other.ask,
+            (Self::Order(order), Self::Order(other)) => {
+                order == other || (order.first, order.then) == (other.then, other.first)
+            }
+            (Self::UseOrder(order), Self::UseOrder(other)) => {
+                order == other || (order.first, order.then) == (other.then, other.first)
+            }
+            _ => self == other,
+        }
+    }
 }
 
 /// What became of a state.
@@ -192,6 +320,7 @@ impl Trace {
     pub fn label(&self, network: &Network, node: TreeNodeId) -> String {
         let Some(node) = self.tree.get(node as usize) else { return String::new() };
         match node.choice {
+            None if node.parent.is_some() => "plan".to_owned(),
             None => "start".to_owned(),
             Some(TreeChoice::Decision { decision, alternative }) => {
                 format!("{}={alternative}", Network::decision_name(decision))
@@ -203,7 +332,39 @@ impl Trace {
                 format!("{} < {}", network.label_name(order.first), network.label_name(order.then))
             }
             Some(TreeChoice::NoLink { ask }) => format!("{} ← nothing", network.label_name(ask)),
+            Some(TreeChoice::UseOrder(order)) => {
+                format!("{} < {}", network.use_name(order.first), network.use_name(order.then))
+            }
+            Some(TreeChoice::Departure(Departing { movement, before })) => {
+                format!("{} from {}", network.label_name(movement), network.label_name(before))
+            }
         }
+    }
+
+    /// Whether this is the record of a conflict-driven search.
+    pub fn is_conflict_driven(&self) -> bool {
+        matches!(self.events.first(), Some(Entry { event: Event::Begin(_), .. }))
+    }
+
+    /// Whether two states are alternatives of one choice point. Those of one choice point stand side by side.
+    pub fn are_alternatives(&self, one: TreeNodeId, other: TreeNodeId) -> bool {
+        let node = |id: TreeNodeId| self.tree.get(id as usize);
+        let (Some(one), Some(other)) = (node(one), node(other)) else { return false };
+        let is_one_point = match (one.choice, other.choice) {
+            (Some(one), Some(other)) => one.is_alternative_of(other),
+            _ => false,
+        };
+        one.parent == other.parent && is_one_point
+    }
+
+    /// What a conflict-driven search has learned by a step, each with the step in which it did.
+    pub fn learned(&self, step: usize) -> impl Iterator<Item = (usize, &[TreeChoice])> {
+        self.events.iter().take(step.saturating_add(1)).enumerate().filter_map(|(step, entry)| {
+            match &entry.event {
+                Event::Learn { choices } | Event::Uncontrollable { choices } => Some((step, choices.as_slice())),
+                _ => None,
+            }
+        })
     }
 
     /// The states that stand for alternatives of the same choice point as `node`, in order, `node` included.
@@ -251,6 +412,16 @@ impl Recorder {
             self.trace.is_truncated = true;
         }
         first
+    }
+
+    /// Adds a state that is entered at once.
+    pub(crate) fn enter(&mut self, parent: TreeNodeId, choice: Option<TreeChoice>) -> Option<TreeNodeId> {
+        if self.trace.tree.len() >= self.limit {
+            self.trace.is_truncated = true;
+            return None;
+        }
+        self.trace.tree.push(TreeNode { parent: Some(parent), choice, status: TreeStatus::Decision });
+        Some(self.trace.tree.len() as TreeNodeId - 1)
     }
 
     pub(crate) fn set_status(&mut self, node: TreeNodeId, status: TreeStatus) {

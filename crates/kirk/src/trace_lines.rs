@@ -1,14 +1,17 @@
 //! A trace as JSON lines, for tools that draw search trees: one object per event, then one per state of the search.
 
 use serde_json::{Value, json};
-use tpn::Network;
+use tpn::{Network, UseId};
 
-use crate::trace::{Constraint, CycleMember, Event, Trace, TreeNodeId, TreeStatus};
+use crate::trace::{
+    Constraint, CycleMember, Departing, Event, SearchRound, Trace, TreeChoice, TreeNodeId, TreeStatus,
+};
 
 /// Writes `trace` as JSON lines.
 ///
 /// The first line is the header `{"format":"enroute-trace/1",…}`. Events follow in order: `{"step","node","event",…}`
-/// with names as in all output. Then the states: `{"node","parent","alternative","status","label","conflict"}`, where
+/// with names as in all output. Choices that are the reason of something are objects as [`choice_json`] writes them. Then
+/// the states: `{"node","parent","alternative","status","label","conflict"}`, where
 /// `conflict` lists the constraints of the contradiction that ended the state, if one did.
 pub fn trace_json_lines(network: &Network, trace: &Trace) -> String {
     let mut lines = vec![json!({
@@ -29,12 +32,11 @@ pub fn trace_json_lines(network: &Network, trace: &Trace) -> String {
         }
         lines.push(line);
     }
-    let mut last_parent = None;
     let mut alternative = 0;
     for (id, node) in (0_u32..).zip(&trace.tree) {
-        // The states of one choice point stand side by side; a choice point is entered again as new states.
-        alternative = if node.parent.is_some() && node.parent == last_parent { alternative + 1 } else { 0 };
-        last_parent = node.parent;
+        // A choice point is entered again as new states.
+        let is_next = id.checked_sub(1).is_some_and(|before| trace.are_alternatives(before, id));
+        alternative = if is_next { alternative + 1 } else { 0 };
         lines.push(json!({
             "node": id,
             "parent": node.parent,
@@ -83,6 +85,75 @@ fn event_json(network: &Network, event: &Event) -> Value {
         Event::Backjump { to, because } => json!({ "event": "backjump", "to": to, "because": because }),
         Event::Solution { plan } => json!({ "event": "solution", "plan": plan }),
         Event::Exhausted => json!({ "event": "exhausted" }),
+        _ => conflict_driven_json(network, event),
+    }
+}
+
+/// What only conflict-driven searches do.
+fn conflict_driven_json(network: &Network, event: &Event) -> Value {
+    let choices = |choices: &[TreeChoice]| -> Vec<Value> {
+        choices.iter().map(|&choice| choice_json(network, choice)).collect()
+    };
+    let uses = |uses: &[UseId]| -> Vec<String> { uses.iter().map(|&used| network.use_name(used)).collect() };
+    match event {
+        Event::Begin(SearchRound { is_in_textual_order, may_touch, values }) => json!({
+            "event": "begin", "textual": is_in_textual_order, "touching": may_touch, "values": values,
+        }),
+        Event::TryUseOrder { order } => json!({
+            "event": "try-use-order",
+            "first": network.use_name(order.first),
+            "then": network.use_name(order.then),
+        }),
+        Event::Imply { choice, holds, because } => json!({
+            "event": "imply",
+            "choice": choice_json(network, *choice),
+            "holds": holds,
+            "because": choices(because),
+        }),
+        Event::NoAlternative { decision } => {
+            json!({ "event": "no-alternative", "decision": Network::decision_name(*decision) })
+        }
+        Event::Unsharable { uses: those } => json!({ "event": "unsharable", "uses": uses(those) }),
+        Event::NotBetter { choices: those } => json!({ "event": "not-better", "choices": choices(those) }),
+        Event::Clash { choices: those } => json!({ "event": "clash", "choices": choices(those) }),
+        Event::Uncontrollable { choices: those } => {
+            json!({ "event": "uncontrollable", "choices": choices(those) })
+        }
+        Event::Circle { orders } => json!({ "event": "circle", "orders": choices(orders) }),
+        Event::NoRoomForGap => json!({ "event": "no-room-for-gap" }),
+        Event::Learn { choices: those } => json!({ "event": "learn", "choices": choices(those) }),
+        Event::Overload { uses: those } => json!({ "event": "overload", "uses": uses(those) }),
+        Event::OutOfRange { early, late } => {
+            json!({ "event": "out-of-range", "early": uses(early), "late": uses(late) })
+        }
+        Event::Restart => json!({ "event": "restart" }),
+        Event::Keep { orders, uses } => json!({
+            "event": "keep",
+            "orders": orders.iter().map(|&order| choice_json(network, TreeChoice::Order(order))).collect::<Vec<_>>(),
+            "uses": uses.iter().map(|&order| choice_json(network, TreeChoice::UseOrder(order))).collect::<Vec<_>>(),
+        }),
+        Event::Improve { values } => json!({ "event": "improve", "values": values }),
+        _ => Value::Null,
+    }
+}
+
+/// A choice: `{"decision","alternative"}`, `{"ask","tell"}`, `{"first","then"}` of conditions or of uses, and
+/// `{"movement","before"}`.
+fn choice_json(network: &Network, choice: TreeChoice) -> Value {
+    let label = |id| network.label_name(id);
+    match choice {
+        TreeChoice::Decision { decision, alternative } => {
+            json!({ "decision": Network::decision_name(decision), "alternative": alternative })
+        }
+        TreeChoice::Link(link) => json!({ "ask": label(link.ask), "tell": label(link.tell) }),
+        TreeChoice::Order(order) => json!({ "first": label(order.first), "then": label(order.then) }),
+        TreeChoice::NoLink { ask } => json!({ "ask": label(ask), "tell": null }),
+        TreeChoice::UseOrder(order) => {
+            json!({ "first": network.use_name(order.first), "then": network.use_name(order.then) })
+        }
+        TreeChoice::Departure(Departing { movement, before }) => {
+            json!({ "movement": label(movement), "before": label(before) })
+        }
     }
 }
 
@@ -90,12 +161,10 @@ fn member_json(network: &Network, member: &CycleMember) -> Value {
     let constraint = match member.constraint {
         Constraint::Lower(arc) => json!({ "lower": arc.0 }),
         Constraint::Upper(arc) => json!({ "upper": arc.0 }),
-        Constraint::Link(link) => {
-            json!({ "ask": network.label_name(link.ask), "tell": network.label_name(link.tell) })
-        }
-        Constraint::Order(order) => {
-            json!({ "first": network.label_name(order.first), "then": network.label_name(order.then) })
-        }
+        Constraint::Link(link) => choice_json(network, TreeChoice::Link(link)),
+        Constraint::Order(order) => choice_json(network, TreeChoice::Order(order)),
+        Constraint::UseOrder(order) => choice_json(network, TreeChoice::UseOrder(order)),
+        Constraint::Departure(departing) => choice_json(network, TreeChoice::Departure(departing)),
     };
     json!({ "from": member.from.0, "to": member.to.0, "weight": member.weight, "constraint": constraint })
 }

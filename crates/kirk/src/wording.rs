@@ -282,6 +282,9 @@ impl Told<'_> {
                     waiting = waiting.or(Some(link.ask));
                     allowed = allowed.and_then(|allowed| allowed.checked_add(member.weight));
                 }
+                Constraint::UseOrder(_) | Constraint::Departure(_) => {
+                    needed = needed.and_then(|needed| needed.checked_sub(member.weight));
+                }
             }
         }
         if self.cycle.is_empty() {
@@ -321,7 +324,9 @@ fn shown(time: Option<Time>) -> String {
 pub(crate) fn is_telling(network: &Network, member: &CycleMember) -> bool {
     let arc = match member.constraint {
         Constraint::Lower(arc) | Constraint::Upper(arc) => &network.arcs[arc.index()],
-        Constraint::Link(_) | Constraint::Order(_) => return false,
+        Constraint::Link(_) | Constraint::Order(_) | Constraint::UseOrder(_) | Constraint::Departure(_) => {
+            return false;
+        }
     };
     let is_structural = is_structural(arc.kind);
     // A duration of zero at least says nothing; one of zero at most does, where it is written.

@@ -123,10 +123,17 @@ impl Solver {
 
     /// Why a literal holds whose event is given: other literals that hold and imply it.
     pub(super) fn explain(&mut self, literal: Literal, event: EventId, reason: &mut Conflict) {
+        if let Cause::Clause(id) = self.trail.events[event].cause {
+            self.clauses.bump(id);
+        }
+        self.reason_of(literal, event, reason);
+    }
+
+    /// The same without a trace in the search.
+    pub(super) fn reason_of(&self, literal: Literal, event: EventId, reason: &mut Conflict) {
         match self.trail.events[event].cause {
             Cause::Decision => {}
             Cause::Clause(id) => {
-                self.clauses.bump(id);
                 let others = self.clauses.literals(id).iter().filter(|other| !literal_is(**other, literal));
                 reason.extend(others.map(|&other| !other));
             }

@@ -13,11 +13,12 @@ use typed_index_collections::TiVec;
 use super::Solver;
 use super::encode::Problem;
 use super::literal::{Literal, Variable};
-use super::resources::Task;
+use super::resources::{Task, ids};
 use crate::antichain::heaviest_antichain;
 use crate::demands::ModelSupply;
 use crate::model::{INFINITE, ModelArc};
 use crate::search::UNBOUNDED_BELOW;
+use crate::trace::Event;
 
 /// Larger conflicts are not made minimal.
 const MAX_MINIMIZED: usize = 60;
@@ -51,6 +52,7 @@ impl Problem<'_> {
         let Some(reason) = self.failure(solver, &in_force, stop)? else { return Some(false) };
         solver.stats.conflicts += 1;
         solver.stats.nogoods += 1;
+        solver.record_refusal(&reason, |choices| Event::Uncontrollable { choices });
         solver.retract(0);
         solver.at_least_one(reason.into_iter().map(|literal| !literal));
         Some(true)
@@ -239,6 +241,7 @@ impl Problem<'_> {
                 ModelSupply::Reusable { capacity } => {
                     let active: Vec<Task> = present.into_iter().filter(|task| task.is_active).collect();
                     if let Some(critical) = unordered(&mut stn, in_force, &active, capacity)? {
+                        solver.tell(|| Event::Overload { uses: ids(&critical) });
                         solver.retract(0);
                         self.resolve_overload(solver, &critical);
                         return Some(true);
@@ -254,6 +257,12 @@ impl Problem<'_> {
                         .collect();
                     let is_known = self.is_resolved(solver, &used, &counted, &late);
                     let held = self.decided(solver);
+                    if is_known {
+                        solver.record_refusal(&held, |choices| Event::Uncontrollable { choices });
+                    } else {
+                        let early: Vec<Task> = counted.iter().chain([&used]).copied().collect();
+                        solver.tell(|| Event::OutOfRange { early: ids(&early), late: ids(&late) });
+                    }
                     solver.retract(0);
                     if is_known {
                         // An order that would mend it holds, and events at one time undo it.

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use stn::PointId;
-use tpn::{Choice, DecisionId, LabelId, NodeId, VariableId};
+use tpn::{CausalLink, Choice, DecisionId, LabelId, NodeId, Ordering, VariableId};
 use typed_index_collections::{TiSlice, TiVec};
 
 use super::alternatives::Way;
@@ -17,6 +17,7 @@ use crate::model::{Alternatives, Context, INFINITE, Model, node};
 use crate::partial_order::Solution;
 use crate::search::{Choices, Gaps, UNBOUNDED_BELOW};
 use crate::structure::Relation;
+use crate::trace::TreeChoice;
 
 /// The problem does not fit: its times into 62 bits, or its links into memory.
 #[derive(Clone, Copy, Debug)]
@@ -154,6 +155,27 @@ impl<'m> Problem<'m> {
             uses_ordered: self.uses_ordered(solver),
             times: times.into(),
         }
+    }
+
+    /// What the literals of choices say in a record. A literal may say several things at once.
+    pub(super) fn names(&self) -> Vec<(Literal, TreeChoice)> {
+        let mut names = Vec::new();
+        for (decision, options) in self.alternatives.iter_enumerated() {
+            for (alternative, &option) in (0..).zip(options) {
+                names.push((option, TreeChoice::Decision { decision, alternative }));
+            }
+        }
+        for (ask, options) in &self.carriers {
+            let link = |tell| TreeChoice::Link(CausalLink { ask: *ask, tell });
+            names.extend(options.iter().map(|&(tell, literal)| (literal, link(tell))));
+        }
+        names.extend(self.names_of_kept());
+        for (&(left, right), &[left_first, right_first]) in &self.orders {
+            names.push((left_first, TreeChoice::Order(Ordering { first: left, then: right })));
+            names.push((right_first, TreeChoice::Order(Ordering { first: right, then: left })));
+        }
+        names.extend(self.shares.names());
+        names
     }
 
     /// Makes all conflicting pairs choice points.

@@ -6,13 +6,14 @@
 
 use std::collections::BTreeMap;
 
-use tpn::LabelId;
+use tpn::{CausalLink, LabelId, Ordering};
 
 use super::encode::{MAX_LINKS, Part, Problem, TooLarge};
 use super::literal::Literal;
 use super::{ChoicePoint, ChoicePointKind, Solver};
 use crate::demands::LastingVariable;
 use crate::structure::Relation;
+use crate::trace::{Departing, Event, TreeChoice};
 
 /// What the solver knows of variables that keep their values.
 #[derive(Clone, Debug, Default)]
@@ -22,6 +23,10 @@ pub(crate) struct Sides {
     orders: BTreeMap<(LabelId, LabelId), [Literal; 2]>,
     /// What each requirement may rest on.
     carriers: Vec<(LabelId, Vec<(LabelId, Literal)>)>,
+    /// That a requirement is over before a change that would break it.
+    kept_before: Vec<(Ordering, Literal)>,
+    /// That a movement sets out where another change has left its vehicle.
+    departures: Vec<(Departing, Literal)>,
 }
 
 /// What a solution says of variables that keep their values.
@@ -112,6 +117,7 @@ impl Problem<'_> {
                         solver.check_differences(first);
                     }
                 }
+                self.sides.departures.push((Departing { movement, before }, last));
                 found.push(last);
             }
             solver.at_least_one(found);
@@ -275,8 +281,10 @@ impl Problem<'_> {
                     if is_before == Some(Literal::TRUE) {
                         continue;
                     }
+                    let kept_before = &mut self.sides.kept_before;
                     let after = *is_over.get_or_insert_with(|| {
                         let after = solver.boolean();
+                        kept_before.push((Ordering { first: ask, then: threat }, after));
                         solver.resize();
                         solver.imply(after, asked.presence);
                         solver.imply(after, threatening.presence);
@@ -290,6 +298,24 @@ impl Problem<'_> {
                 }
             }
         }
+    }
+
+    /// What the literals of variables that keep their values say.
+    pub(super) fn names_of_kept(&self) -> Vec<(Literal, TreeChoice)> {
+        let mut names = Vec::new();
+        for (ask, options) in &self.sides.carriers {
+            let link = |tell| TreeChoice::Link(CausalLink { ask: *ask, tell });
+            names.extend(options.iter().map(|&(tell, literal)| (literal, link(tell))));
+        }
+        for (&(left, right), &[left_first, right_first]) in &self.sides.orders {
+            names.push((left_first, TreeChoice::Order(Ordering { first: left, then: right })));
+            names.push((right_first, TreeChoice::Order(Ordering { first: right, then: left })));
+        }
+        let kept_before = self.sides.kept_before.iter();
+        names.extend(kept_before.map(|&(order, literal)| (literal, TreeChoice::Order(order))));
+        let departures = self.sides.departures.iter();
+        names.extend(departures.map(|&(departing, literal)| (literal, TreeChoice::Departure(departing))));
+        names
     }
 
     /// What the solver's solution says of variables that keep their values.
@@ -343,6 +369,7 @@ impl Problem<'_> {
             }
         }
         let Some(circle) = circle(&next) else { return false };
+        solver.record_refusal(&circle, |orders| Event::Circle { orders });
         solver.retract(0);
         solver.at_least_one(circle.into_iter().map(|order| !order));
         true

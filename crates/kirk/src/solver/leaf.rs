@@ -7,6 +7,7 @@ use tpn::{LabelId, VariableId};
 use super::encode::Problem;
 use super::literal::Literal;
 use super::{ChoicePoint, ChoicePointKind, Solver};
+use crate::trace::Event;
 
 /// Of a variable with more pairs, only those in each other's way are added.
 const MAX_PAIRS_AT_ONCE: usize = 2_000;
@@ -34,6 +35,9 @@ impl Solver {
         }
         if new.is_empty() {
             return false;
+        }
+        for &(left, right) in &new {
+            self.tell(|| Event::Threat { left, right });
         }
         self.retract(0);
         let first = self.differences.len();

@@ -54,7 +54,7 @@ impl Linears {
                     Literal::new(variable.lower(), steps - trail.most(variable))
                 };
                 let cause = reason(trail, terms, Some(position));
-                let cause = trail.note(cause);
+                let cause = trail.note_of_goal(cause);
                 trail.set(literal, cause)?;
             }
         }

@@ -30,6 +30,7 @@ mod leaf;
 mod linear;
 mod literal;
 mod queue;
+mod record;
 mod resources;
 mod trail;
 
@@ -38,6 +39,7 @@ use typed_index_collections::TiVec;
 
 use crate::ids::{ChoicePointId, EventId};
 use crate::options::Stats;
+use crate::trace::Event;
 use activity::Activity;
 use alternatives::Alternatives;
 use analysis::Analysis;
@@ -46,10 +48,12 @@ use difference::{Difference, Differences};
 use disjunctive::Disjunctives;
 use linear::Linears;
 use literal::{Literal, Side, Variable};
+use record::Origin;
 use trail::{Conflict, Trail};
 
 pub(crate) use encode::{Part, Problem, TooLarge};
 pub(crate) use lasting::Kept;
+pub(crate) use record::Record;
 
 /// How a search came to an end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -115,6 +119,10 @@ pub(crate) struct Solver {
     /// then the first solution is the first one in that order.
     pub(crate) is_in_textual_order: bool,
     pub(crate) stats: Stats,
+    /// What is told of the search, if anybody wants to know.
+    pub(crate) record: Option<Box<Record>>,
+    /// What the last conflict came from.
+    origin: Origin,
 }
 
 /// Conflicts in the unit of the restart sequence.
@@ -143,6 +151,8 @@ impl Solver {
             max_learned: 4_000,
             is_in_textual_order: false,
             stats: Stats::default(),
+            record: None,
+            origin: Origin::Other,
         };
         solver.resize();
         solver
@@ -264,17 +274,22 @@ impl Solver {
     ) -> Answer {
         loop {
             if self.is_contradictory {
+                self.record_implied();
+                self.record_exhausted();
                 return Answer::Unsolvable;
             }
             if let Err(conflict) = self.propagate() {
+                self.record_failure(problem, &conflict);
                 self.stats.conflicts += 1;
                 self.conflicts_until_restart = self.conflicts_until_restart.saturating_sub(1);
                 if !self.learn(&conflict) {
                     self.is_contradictory = true;
                 }
             } else {
+                self.record_implied();
                 if self.conflicts_until_restart == 0 {
                     self.restart();
+                    self.record_restart(problem);
                 }
                 if self.decide() {
                     self.stats.expanded += 1;
@@ -282,12 +297,14 @@ impl Solver {
                     self.stats.leaves += 1;
                     let is_broken =
                         self.add_pairs(problem) || problem.break_circles(self) || problem.share(self);
-                    if !is_broken {
+                    if is_broken {
+                        self.record_restart(problem);
+                    } else {
                         debug_assert!(self.is_solution(problem), "the least times fit");
                         let stats = self.stats;
                         match problem.withstand(self, &mut || stop(&stats)) {
                             Some(false) => return Answer::Solved,
-                            Some(true) => {}
+                            Some(true) => self.record_restart(problem),
                             None => {
                                 self.retract(0);
                                 return Answer::Stopped;
@@ -305,6 +322,7 @@ impl Solver {
 
     fn propagate(&mut self) -> Result<(), Conflict> {
         self.differences.begin();
+        self.origin = Origin::Other;
         loop {
             while self.head < self.trail.events.len() {
                 let event = EventId::from(self.head);
@@ -325,7 +343,10 @@ impl Solver {
                 self.linears.queue.moved(side);
             }
             self.alternatives.propagate(&mut self.trail)?;
-            self.linears.propagate(&mut self.trail)?;
+            if let Err(conflict) = self.linears.propagate(&mut self.trail) {
+                self.origin = Origin::Goal;
+                return Err(conflict);
+            }
             if self.head < self.trail.events.len() {
                 continue;
             }
@@ -360,6 +381,7 @@ impl Solver {
         let Some(learned) = self.analyze(conflict) else { return false };
         self.stats.backtracks += 1;
         self.stats.jumped_over += u64::from(self.trail.level() - learned.level - 1);
+        self.record_learned(&learned.clause, learned.level);
         self.retract(learned.level);
         let decisive = learned.clause[0];
         let cause = if learned.clause.len() == 1 {
@@ -373,7 +395,10 @@ impl Solver {
         // What contradicts it below is found by the next propagation's conflict.
         match self.trail.set(decisive, cause) {
             Ok(()) => true,
-            Err(conflict) => self.learn(&conflict),
+            Err(conflict) => {
+                self.record_refusal(&conflict, |choices| Event::Clash { choices });
+                self.learn(&conflict)
+            }
         }
     }
 
@@ -390,6 +415,9 @@ impl Solver {
         self.explain(last, event, &mut reason);
         self.trail.undo_last();
         self.head = self.head.min(self.trail.events.len());
+        if let Some(record) = &mut self.record {
+            record.retract(self.trail.level(), self.trail.events.len());
+        }
         reason
     }
 
@@ -416,6 +444,9 @@ impl Solver {
             }
         });
         self.head = self.head.min(self.trail.events.len());
+        if let Some(record) = &mut self.record {
+            record.retract(self.trail.level(), self.trail.events.len());
+        }
         self.alternatives.queue.forget();
         self.disjunctives.queue.forget();
         self.linears.queue.forget();
@@ -433,6 +464,7 @@ impl Solver {
             self.trail.open_level();
             // An open Boolean can be either.
             let _ = self.trail.set(option, trail::Cause::Decision);
+            self.record_decision(option);
             return true;
         }
         false

@@ -7,12 +7,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use rmpl::program::Change;
-use tpn::UseId;
+use tpn::{UseId, UseOrdering};
 
 use super::encode::{Interval, Part, Problem};
 use super::literal::{Literal, Variable};
 use super::{ChoicePoint, ChoicePointKind, Solver};
 use crate::demands::ModelSupply;
+use crate::trace::{Event, TreeChoice};
 
 /// Of larger sets of uses that exclude each other, only those in each other's way are ordered.
 const MAX_PAIRS: usize = 4_000;
@@ -60,6 +61,12 @@ impl Shares {
     /// Each resource with its uses.
     pub(super) fn tasks(&self) -> Vec<(ModelSupply, Vec<Task>)> {
         self.all.iter().map(|shared| (shared.supply, shared.tasks.clone())).collect()
+    }
+
+    /// What the literals of orders say in a record.
+    pub(super) fn names(&self) -> impl Iterator<Item = (Literal, TreeChoice)> + '_ {
+        let name = |(first, then)| TreeChoice::UseOrder(UseOrdering { first, then });
+        self.orders.iter().map(move |(&pair, &order)| (order, name(pair)))
     }
 
     /// The literals of all orders.
@@ -113,6 +120,9 @@ impl Problem<'_> {
         }
         if found.is_empty() {
             return false;
+        }
+        for critical in &found {
+            solver.tell(|| critical.event());
         }
         solver.retract(0);
         for index in excluding {
@@ -252,6 +262,20 @@ enum Critical {
     Overload(Vec<Task>),
     /// Unless one of the late ones comes before one of the early ones, the early ones are too much.
     Late { early: Vec<Task>, late: Vec<Task> },
+}
+
+impl Critical {
+    fn event(&self) -> Event {
+        match self {
+            Self::Overload(tasks) => Event::Overload { uses: ids(tasks) },
+            Self::Late { early, late } => Event::OutOfRange { early: ids(early), late: ids(late) },
+        }
+    }
+}
+
+/// The uses of tasks.
+pub(super) fn ids(tasks: &[Task]) -> Vec<UseId> {
+    tasks.iter().map(|task| task.id).collect()
 }
 
 /// A minimal set of uses that overlap in the least times and are too much together, if there is one: of the first

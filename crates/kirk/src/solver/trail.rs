@@ -50,7 +50,13 @@ pub(crate) struct Trail {
     pub(crate) events: TiVec<EventId, Event>,
     /// The number of events, and of noted reasons, where each level begins.
     levels: Vec<(u32, u32)>,
-    noted: TiVec<NoteId, Box<[Literal]>>,
+    noted: TiVec<NoteId, Note>,
+}
+
+#[derive(Clone, Debug)]
+struct Note {
+    reason: Box<[Literal]>,
+    is_of_goal: bool,
 }
 
 impl Trail {
@@ -109,11 +115,23 @@ impl Trail {
 
     /// Keeps a reason for [`Cause::Noted`] until the present level is left.
     pub(crate) fn note(&mut self, reason: Vec<Literal>) -> Cause {
-        Cause::Noted(self.noted.push_and_get_key(reason.into_boxed_slice()))
+        let note = Note { reason: reason.into_boxed_slice(), is_of_goal: false };
+        Cause::Noted(self.noted.push_and_get_key(note))
+    }
+
+    /// The same for what follows from a limit on a goal.
+    pub(crate) fn note_of_goal(&mut self, reason: Vec<Literal>) -> Cause {
+        let note = Note { reason: reason.into_boxed_slice(), is_of_goal: true };
+        Cause::Noted(self.noted.push_and_get_key(note))
     }
 
     pub(crate) fn noted(&self, note: NoteId) -> &[Literal] {
-        &self.noted[note]
+        &self.noted[note].reason
+    }
+
+    /// Whether a reason is a limit on a goal.
+    pub(crate) fn is_of_goal(&self, note: NoteId) -> bool {
+        self.noted[note].is_of_goal
     }
 
     /// Makes a literal hold. A variable without values left does not exist; if it must, that is a conflict.

@@ -1,0 +1,59 @@
+//! What links, orders and departures say about times, as edges of a simple temporal network.
+
+use stn::PointId;
+use tpn::UseOrdering;
+
+use crate::demands::{ModelSupply, ModelUse};
+use crate::model::{Model, point};
+use crate::trace::{Departing, TreeChoice};
+
+/// `to − from ≤ weight`.
+pub(crate) type StnEdge = (PointId, PointId, i64);
+
+/// What a choice says about times. `may_touch` is whether conflicting intervals need no gap between them.
+pub(crate) fn edges(model: &Model, choice: TreeChoice, may_touch: bool) -> Vec<StnEdge> {
+    match choice {
+        TreeChoice::Decision { .. } | TreeChoice::NoLink { .. } => Vec::new(),
+        TreeChoice::Link(link) => {
+            let (ask_start, ask_end) = model.interval(link.ask);
+            let (tell_start, tell_end) = model.interval(link.tell);
+            let label = &model.conditions.labels[link.tell];
+            if label.is_lasting {
+                let ready = if label.is_changing { tell_end } else { tell_start };
+                vec![(ask_start, ready, 0)]
+            } else {
+                vec![(ask_start, tell_start, 0), (tell_end, ask_end, 0)]
+            }
+        }
+        TreeChoice::Order(order) => {
+            let gap = match (model.conditions.labels[order.first].is_lasting, may_touch) {
+                (true, _) => 0,
+                (false, true) => model.gap_before(order.then, model.gap_after[order.first]),
+                (false, false) => model.gap_before(order.then, model.gap),
+            };
+            vec![(model.interval(order.then).0, model.interval(order.first).1, -gap)]
+        }
+        TreeChoice::UseOrder(order) => use_order(model, order).into_iter().collect(),
+        TreeChoice::Departure(Departing { movement, before }) => {
+            let departures = model.demands.departures.get(&movement);
+            let departure = departures.and_then(|departures| {
+                departures.iter().find(|departure| model.conditions.gives_value(before, departure.from))
+            });
+            let (start, end) = model.interval(movement);
+            let least = departure.and_then(|departure| departure.least);
+            least.map(|least| (end, start, -least)).into_iter().collect()
+        }
+    }
+}
+
+fn use_order(model: &Model, order: UseOrdering) -> Option<StnEdge> {
+    model.demands.resources.iter().find_map(|resource| {
+        let find = |id| resource.uses.iter().find(|used: &&ModelUse| used.id == id);
+        let (first, then) = (find(order.first)?, find(order.then)?);
+        let (earlier, later) = match resource.supply {
+            ModelSupply::Reusable { .. } => (first.end, then.start),
+            ModelSupply::Reservoir { .. } => (first.moment(), then.moment()),
+        };
+        Some((point(later), point(earlier), 0))
+    })
+}

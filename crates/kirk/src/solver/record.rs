@@ -1,0 +1,488 @@
+//! The record of a search: what is decided, what follows from what, what fails and what is learned, in the terms of the
+//! plan (SPEC 5.6).
+//!
+//! Reasons are told as choices alone. What the solver knows of single times is traced back to the choices that it follows
+//! from, and so is what is ruled out; what a conflict teaches stays true by that, though it may say less than the clause.
+//! Recording decides nothing: with and without it the same is searched in the same steps.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+
+use exact::Rational;
+use stn::{Inconsistency, Stn};
+use tpn::UseId;
+
+use super::encode::Problem;
+use super::literal::{Literal, Side};
+use super::trail::{Cause, Conflict};
+use super::{ChoicePointKind, Solver};
+use crate::ids::EventId;
+use crate::model::{INFINITE, Model, node, point};
+use crate::precedence;
+use crate::search::UNBOUNDED_BELOW;
+use crate::trace::{
+    Constraint, CycleMember, Event, Recorder, SearchRound, Trace, TreeChoice, TreeNodeId, TreeStatus,
+};
+
+/// A search being recorded.
+#[derive(Clone, Debug)]
+pub(crate) struct Record {
+    recorder: Recorder,
+    /// The state of each level.
+    path: Vec<TreeNodeId>,
+    /// What a Boolean says, by the side that is decided when it holds.
+    names: BTreeMap<Side, Vec<TreeChoice>>,
+    /// How many events of the trail have been told.
+    seen: usize,
+    /// Whether conflicting intervals may touch.
+    may_touch: bool,
+    /// The state of the last plan.
+    solution: TreeNodeId,
+    /// Whether better and better plans are looked for, in searches of their own.
+    has_goals: bool,
+}
+
+/// What a conflict comes from, where that is not told by its literals.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Origin {
+    #[default]
+    Other,
+    /// A sum that must stay below its limit.
+    Goal,
+}
+
+impl Record {
+    pub(crate) fn new(limit: usize, has_goals: bool) -> Self {
+        Self {
+            recorder: Recorder::new(limit),
+            path: vec![0],
+            names: BTreeMap::new(),
+            seen: 0,
+            may_touch: false,
+            solution: 0,
+            has_goals,
+        }
+    }
+
+    pub(crate) fn into_trace(self) -> Trace {
+        self.recorder.trace
+    }
+
+    const fn is_full(&self) -> bool {
+        self.recorder.trace.is_truncated
+    }
+
+    /// The present state.
+    fn at(&self) -> TreeNodeId {
+        self.path.last().copied().unwrap_or(0)
+    }
+
+    pub(crate) fn tell(&mut self, event: Event) {
+        self.recorder.record(self.at(), event);
+    }
+
+    /// The plan of the last state in which one was found, at a position among the plans.
+    pub(crate) fn tell_plan(&mut self, plan: u32) {
+        self.recorder.record(self.solution, Event::Solution { plan });
+    }
+
+    /// What the plan in the last such state is worth.
+    pub(crate) fn tell_improvement(&mut self, values: Vec<Rational>) {
+        self.recorder.record(self.solution, Event::Improve { values });
+    }
+
+    /// Nothing was found.
+    pub(crate) fn fail(&mut self) {
+        self.recorder.set_status(0, TreeStatus::Failed);
+    }
+
+    fn enter(&mut self, choice: Option<TreeChoice>) {
+        let parent = self.at();
+        self.path.extend(self.recorder.enter(parent, choice));
+    }
+
+    fn set_status(&mut self, status: TreeStatus) {
+        // What becomes of the root is known at the end of all searches.
+        if self.path.len() > 1 || status == TreeStatus::Solution {
+            self.recorder.set_status(self.at(), status);
+        }
+    }
+
+    /// Events of levels above this one are gone, and those of the trail beyond `num_events`.
+    pub(super) fn retract(&mut self, level: u32, num_events: usize) {
+        self.path.truncate(level as usize + 1);
+        self.seen = self.seen.min(num_events);
+    }
+
+    /// What a literal says, if it is a choice that is made.
+    fn name(&self, literal: Literal) -> Option<TreeChoice> {
+        self.names.get(&literal.side).and_then(|names| names.first()).copied()
+    }
+}
+
+impl Solver {
+    /// The record, while there is one that has room.
+    fn recording(&mut self) -> Option<&mut Record> {
+        self.record.as_deref_mut().filter(|record| !record.is_full())
+    }
+
+    pub(super) const fn is_recording(&self) -> bool {
+        match &self.record {
+            Some(record) => !record.is_full(),
+            None => false,
+        }
+    }
+
+    /// Tells an event of the present state.
+    pub(super) fn tell(&mut self, event: impl FnOnce() -> Event) {
+        if let Some(record) = self.recording() {
+            record.tell(event());
+        }
+    }
+
+    /// Goes on with a record in a new search, at its root.
+    pub(crate) fn begin_record(
+        &mut self,
+        problem: &Problem<'_>,
+        record: Option<Box<Record>>,
+        round: SearchRound,
+    ) {
+        self.record = record;
+        let Some(record) = self.recording() else { return };
+        record.path.truncate(1);
+        record.seen = 0;
+        record.may_touch = round.may_touch;
+        record.tell(Event::Begin(round));
+        self.name_choices(problem);
+        let given = Literal::TRUE.side;
+        let Some(record) = self.recording() else { return };
+        for choice in record.names.get(&given).cloned().unwrap_or_default() {
+            record.tell(Event::Imply { choice, holds: true, because: Vec::new() });
+        }
+    }
+
+    fn name_choices(&mut self, problem: &Problem<'_>) {
+        let Some(record) = self.recording() else { return };
+        record.names.clear();
+        for (literal, choice) in problem.names() {
+            record.names.entry(literal.side).or_default().push(choice);
+        }
+    }
+
+    /// Takes note of choice points that were added at the root.
+    pub(crate) fn record_choice_points(&mut self, problem: &Problem<'_>) {
+        self.name_choices(problem);
+    }
+
+    /// Tells that the present state is no plan after all.
+    pub(crate) fn record_failed(&mut self, event: Event) {
+        if let Some(record) = self.recording() {
+            record.tell(event);
+            record.set_status(TreeStatus::Failed);
+        }
+    }
+
+    /// Tells that the search goes back to its root, where there may be new choice points.
+    pub(crate) fn record_restart(&mut self, problem: &Problem<'_>) {
+        if self.is_recording() {
+            self.name_choices(problem);
+            self.tell(|| Event::Restart);
+        }
+    }
+
+    /// Tells the decision just made, which opened a level.
+    pub(super) fn record_decision(&mut self, option: Literal) {
+        let Some(record) = self.recording() else { return };
+        let choice = record.name(option);
+        record.enter(choice);
+        let event = match choice {
+            Some(TreeChoice::Decision { decision, alternative }) => Event::Decide { decision, alternative },
+            Some(TreeChoice::Link(link)) => Event::TryLink { link },
+            Some(TreeChoice::Order(order)) => Event::TryOrder { order },
+            Some(TreeChoice::UseOrder(order)) => Event::TryUseOrder { order },
+            // All that is decided is one of these.
+            Some(TreeChoice::NoLink { .. } | TreeChoice::Departure(_)) | None => return,
+        };
+        record.tell(event);
+    }
+
+    /// Tells what has followed since the last time.
+    pub(super) fn record_implied(&mut self) {
+        if !self.is_recording() {
+            return;
+        }
+        let level = self.trail.level();
+        let from = self.record.as_ref().map_or(0, |record| record.seen);
+        for position in from..self.trail.events.len() {
+            let id = EventId::from(position);
+            let event = self.trail.events[id];
+            // A Boolean that would be both is a conflict.
+            let is_contradicted = self.trail.bound(event.side.opposite()) < -event.most;
+            let Some(record) = self.record.as_deref().filter(|_| !is_contradicted) else { continue };
+            let is_decision = event.cause == Cause::Decision && level > 0;
+            let own = record.names.get(&event.side).cloned().unwrap_or_default();
+            let ruled_out = record.names.get(&event.side.opposite()).and_then(|names| names.first()).copied();
+            let ruled_out = ruled_out.filter(|choice| {
+                let is_told = matches!(choice, TreeChoice::Decision { .. } | TreeChoice::Link(_));
+                // That another one is taken goes without saying.
+                is_told && own.is_empty() && !matches!(event.cause, Cause::Implied(_))
+            });
+            if own.is_empty() && ruled_out.is_none() {
+                continue;
+            }
+            let literal = Literal::new(event.side, event.most);
+            let because = if is_decision {
+                own.first().copied().into_iter().collect()
+            } else {
+                let mut reason = Vec::new();
+                self.reason_of(literal, id, &mut reason);
+                self.choices_behind(&reason, None)
+            };
+            let Some(record) = self.recording() else { return };
+            for (at, choice) in own.into_iter().enumerate() {
+                if !is_decision || at > 0 {
+                    record.tell(Event::Imply { choice, holds: true, because: because.clone() });
+                }
+            }
+            if let Some(choice) = ruled_out {
+                record.tell(Event::Imply { choice, holds: false, because });
+            }
+        }
+        let seen = self.trail.events.len();
+        if let Some(record) = self.recording() {
+            record.seen = seen;
+        }
+    }
+
+    /// Tells the failure of the present state.
+    pub(super) fn record_failure(&mut self, problem: &Problem<'_>, conflict: &[Literal]) {
+        if !self.is_recording() {
+            return;
+        }
+        self.record_implied();
+        let choices = self.choices_behind(conflict, None);
+        let cycle = self.cycle_in_force(problem);
+        let event = if !cycle.is_empty() {
+            Event::Inconsistent { cycle }
+        } else if let Some(event) = self.exhausted_choice_point() {
+            event
+        } else if self.rests_on_goal(conflict) {
+            Event::NotBetter { choices }
+        } else {
+            Event::Clash { choices }
+        };
+        if let Some(record) = self.recording() {
+            record.tell(event);
+            record.set_status(TreeStatus::Failed);
+        }
+    }
+
+    /// Tells that a solution of the solver is none: what is wrong with it, and the literals that must not all hold.
+    pub(super) fn record_refusal(&mut self, literals: &[Literal], event: impl FnOnce(Vec<TreeChoice>) -> Event) {
+        if !self.is_recording() {
+            return;
+        }
+        let choices = self.choices_behind(literals, None);
+        if let Some(record) = self.recording() {
+            record.tell(event(choices));
+            record.set_status(TreeStatus::Failed);
+        }
+    }
+
+    /// Tells what a conflict has taught, and where the search goes back to. The clause is false still.
+    pub(super) fn record_learned(&mut self, clause: &[Literal], level: u32) {
+        if !self.is_recording() {
+            return;
+        }
+        let conflict: Conflict = clause.iter().map(|&literal| !literal).collect();
+        let literals = self.literals_behind(&conflict, Some(self.trail.level()));
+        let mut levels: Vec<u32> = literals.iter().map(|&literal| self.level_of(literal)).collect();
+        levels.sort_unstable();
+        levels.dedup();
+        let Some(record) = self.recording() else { return };
+        let choices = literals.iter().filter_map(|&literal| record.name(literal)).collect();
+        let state = |level: u32| record.path.get(level as usize).copied().unwrap_or(0);
+        let because = levels.into_iter().map(state).collect();
+        let to = state(level);
+        record.tell(Event::Learn { choices });
+        record.tell(Event::Backjump { to, because });
+    }
+
+    /// Tells that there is no further solution.
+    pub(super) fn record_exhausted(&mut self) {
+        if let Some(record) = self.recording() {
+            record.path.truncate(1);
+            record.tell(Event::Exhausted);
+        }
+    }
+
+    /// Tells that everything is decided and the times fit; `event` says what a plan keeps of that.
+    pub(crate) fn record_solution(&mut self, event: impl FnOnce() -> Event) {
+        if let Some(record) = self.recording() {
+            if record.has_goals && record.path.len() == 1 {
+                // Other searches begin at the root, too.
+                record.enter(None);
+            }
+            record.tell(event());
+            record.set_status(TreeStatus::Solution);
+            record.solution = record.at();
+        }
+    }
+
+    /// The choices that literals which hold follow from.
+    fn choices_behind(&self, literals: &[Literal], level: Option<u32>) -> Vec<TreeChoice> {
+        let Some(record) = self.record.as_deref() else { return Vec::new() };
+        let literals = self.literals_behind(literals, level);
+        literals.into_iter().filter_map(|literal| record.name(literal)).collect()
+    }
+
+    /// The choices, as literals and the last one first, that literals which hold follow from: the next ones on the way
+    /// back, or of `level`, if given, only the one that everything went through.
+    fn literals_behind(&self, literals: &[Literal], level: Option<u32>) -> Vec<Literal> {
+        let Some(record) = self.record.as_deref() else { return Vec::new() };
+        let mut open: BinaryHeap<(EventId, Reverse<i64>)> = BinaryHeap::new();
+        let meet = |literal: Literal, open: &mut BinaryHeap<(EventId, Reverse<i64>)>| {
+            let event = self.trail.implying_event(literal);
+            if let Some(event) = event.filter(|&event| self.trail.events[event].level > 0) {
+                open.push((event, Reverse(literal.most)));
+            }
+        };
+        for &literal in literals {
+            meet(literal, &mut open);
+        }
+        let mut found = Vec::new();
+        let mut reason = Vec::new();
+        while let Some((id, Reverse(mut most))) = open.pop() {
+            while let Some(&(same, Reverse(other))) = open.peek()
+                && same == id
+            {
+                most = most.min(other);
+                open.pop();
+            }
+            let event = self.trail.events[id];
+            let literal = Literal::new(event.side, most);
+            let is_last_of_level = || {
+                let next = open.peek().map(|&(next, _)| self.trail.events[next].level);
+                next.is_none_or(|next| Some(next) != level)
+            };
+            let is_stop = Some(event.level) != level || is_last_of_level();
+            if event.cause == Cause::Decision || (is_stop && record.name(literal).is_some()) {
+                found.push(literal);
+                continue;
+            }
+            reason.clear();
+            self.reason_of(literal, id, &mut reason);
+            for &literal in &reason {
+                meet(literal, &mut open);
+            }
+        }
+        found
+    }
+
+    /// Whether what a conflict comes from has to do with a limit on a goal.
+    fn rests_on_goal(&self, conflict: &[Literal]) -> bool {
+        let level = self.trail.level();
+        let is_limited = |literal: Literal| {
+            let event = self.trail.implying_event(literal).map(|event| self.trail.events[event]);
+            event.is_some_and(|event| {
+                event.level == level && matches!(event.cause, Cause::Noted(note) if self.trail.is_of_goal(note))
+            })
+        };
+        self.origin == Origin::Goal || conflict.iter().copied().any(is_limited)
+    }
+
+    /// A choice point that counts and has no option left.
+    fn exhausted_choice_point(&self) -> Option<Event> {
+        let record = self.record.as_deref()?;
+        let is_exhausted = |choice_point: &&super::ChoicePoint| {
+            choice_point.when.iter().all(|&when| self.trail.holds(when))
+                && choice_point.options.iter().all(|&option| self.trail.fails(option))
+        };
+        let choice_point = self.choice_points.iter().find(is_exhausted)?;
+        let names = || choice_point.options.iter().filter_map(|&option| record.name(option));
+        Some(match choice_point.kind {
+            ChoicePointKind::Alternatives => match names().next()? {
+                TreeChoice::Decision { decision, .. } => Event::NoAlternative { decision },
+                _ => return None,
+            },
+            ChoicePointKind::Carriers { ask } => Event::Unclosable { ask },
+            ChoicePointKind::Orders { left, right } => Event::Unresolvable { left, right },
+            ChoicePointKind::Sides => match names().next()? {
+                TreeChoice::Order(order) => Event::Unresolvable { left: order.first, right: order.then },
+                _ => return None,
+            },
+            ChoicePointKind::Resolvers => {
+                let mut uses: Vec<UseId> = Vec::new();
+                for choice in names() {
+                    if let TreeChoice::UseOrder(order) = choice {
+                        uses.extend([order.first, order.then]);
+                    }
+                }
+                uses.sort_unstable();
+                uses.dedup();
+                Event::Unsharable { uses }
+            }
+        })
+    }
+
+    /// A contradiction among the bounds, links and orders in force, if there is one.
+    fn cycle_in_force(&self, problem: &Problem<'_>) -> Vec<CycleMember> {
+        let Some(record) = self.record.as_deref() else { return Vec::new() };
+        let model = problem.model;
+        let mut constraints: Vec<Constraint> = Vec::new();
+        let mut stn = Stn::new(model.num_nodes);
+        for (id, arc) in model.arcs.iter_enumerated() {
+            if !self.trail.holds(problem.presence(arc.context)) {
+                continue;
+            }
+            let (from, to) = (point(arc.from), point(arc.to));
+            if arc.upper != INFINITE {
+                stn.push(from, to, arc.upper, constraints.len() as u32);
+                constraints.push(Constraint::Upper(id));
+            }
+            if arc.lower != UNBOUNDED_BELOW {
+                stn.push(to, from, -arc.lower, constraints.len() as u32);
+                constraints.push(Constraint::Lower(id));
+            }
+        }
+        for (&side, names) in &record.names {
+            if !self.trail.holds(side.decided()) {
+                continue;
+            }
+            for &choice in names {
+                let Some(constraint) = constraint(choice) else { continue };
+                for (from, to, weight) in precedence::edges(model, choice, record.may_touch) {
+                    stn.push(from, to, weight, constraints.len() as u32);
+                    constraints.push(constraint);
+                }
+            }
+        }
+        match stn.settle(&model.order) {
+            Err(Inconsistency::NegativeCycle) => {
+                let member = |edge: &stn::CycleEdge| told(model, &constraints, edge);
+                stn.cycle().iter().filter_map(member).collect()
+            }
+            Ok(()) | Err(Inconsistency::Overflow(_)) => Vec::new(),
+        }
+    }
+}
+
+fn told(model: &Model, constraints: &[Constraint], edge: &stn::CycleEdge) -> Option<CycleMember> {
+    Some(CycleMember {
+        constraint: *constraints.get(edge.tag as usize)?,
+        from: node(edge.from),
+        to: node(edge.to),
+        weight: model.time(edge.weight),
+    })
+}
+
+/// What a choice adds to the network.
+const fn constraint(choice: TreeChoice) -> Option<Constraint> {
+    match choice {
+        TreeChoice::Decision { .. } | TreeChoice::NoLink { .. } => None,
+        TreeChoice::Link(link) => Some(Constraint::Link(link)),
+        TreeChoice::Order(order) => Some(Constraint::Order(order)),
+        TreeChoice::UseOrder(order) => Some(Constraint::UseOrder(order)),
+        TreeChoice::Departure(departing) => Some(Constraint::Departure(departing)),
+    }
+}
