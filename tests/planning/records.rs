@@ -5,8 +5,8 @@ use acceptance::lasting_missions::{Kind, lasting_mission};
 use acceptance::mission::compile;
 use exact::{Bound, Time};
 use kirk::{
-    Departing, Event, Options, Outcome, Replay, ReplayStep, SearchRound, Status, Trace, TreeChoice, TreeStatus,
-    Unlimited,
+    Departing, Event, Options, Outcome, Replay, ReplayStep, SearchRound, Status, Trace, TreeChoice,
+    TreeStatus, Unlimited,
 };
 use rmpl::program::Change;
 use stn::{PointId, Stn};
@@ -139,7 +139,8 @@ fn check_steps(network: &Network, trace: &Trace, told: &str) {
             )
         );
         let goes_on_here = |next: &kirk::Entry| {
-            trace.tree[next.tree_node as usize].parent == Some(entry.tree_node) || next.tree_node == entry.tree_node
+            trace.tree[next.tree_node as usize].parent == Some(entry.tree_node)
+                || next.tree_node == entry.tree_node
         };
         if goes_on && trace.events.get(step + 1).is_some_and(goes_on_here) {
             assert!(in_force(network, &shown).is_some(), "step {step}, {told}");
@@ -326,7 +327,11 @@ scenario S[0,500] = { free { delay; Drive(B) }, free { delay; Drive(C) } }";
     let places: Vec<tpn::ValueId> = (0..network.labels.len()).map(values).collect();
     let departures = arrivals.iter().flat_map(|&arrival| {
         let all = places.iter().enumerate();
-        all.map(move |(far, &from)| tpn::Departure { arrival, from, least: Some(Time::from(20 + far as i64)) })
+        all.map(move |(far, &from)| tpn::Departure {
+            arrival,
+            from,
+            least: Some(Time::from(20 + far as i64)),
+        })
     });
     network.departures = departures.collect();
     let (outcome, trace) = recorded(&network, 1_000);

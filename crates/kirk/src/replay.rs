@@ -190,12 +190,13 @@ impl Replay {
                 result.uses.clone_from(uses);
             }
         }
-        let may_touch = trace.events.get(..=result.step).unwrap_or_default().iter().rev().find_map(|entry| {
-            match &entry.event {
+        let may_touch =
+            trace.events.get(..=result.step).unwrap_or_default().iter().rev().find_map(|entry| match &entry
+                .event
+            {
                 Event::Begin(round) => Some(round.may_touch),
                 _ => None,
-            }
-        });
+            });
         // A plan has the gaps that it can have.
         let is_kept = frames.last().is_some_and(|frame| frame.kept.is_some());
         let may_touch = may_touch.unwrap_or(false) && !is_kept;
@@ -286,13 +287,7 @@ impl Replay {
                 && decision.context.is_none_or(|choice| step.choices.contains(&choice));
             let (from, to, lower, upper) = structure.initial_bounds(id);
             if is_open && lower <= upper {
-                let _ = stn.constrain(
-                    point(from),
-                    point(to),
-                    lower,
-                    (upper != INFINITE).then_some(upper),
-                    0,
-                );
+                let _ = stn.constrain(point(from), point(to), lower, (upper != INFINITE).then_some(upper), 0);
             }
         }
     }

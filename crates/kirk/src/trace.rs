@@ -361,7 +361,9 @@ impl Trace {
     pub fn learned(&self, step: usize) -> impl Iterator<Item = (usize, &[TreeChoice])> {
         self.events.iter().take(step.saturating_add(1)).enumerate().filter_map(|(step, entry)| {
             match &entry.event {
-                Event::Learn { choices } | Event::Uncontrollable { choices } => Some((step, choices.as_slice())),
+                Event::Learn { choices } | Event::Uncontrollable { choices } => {
+                    Some((step, choices.as_slice()))
+                }
                 _ => None,
             }
         })

@@ -87,9 +87,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     };
     let plan_millis = millis_since(begun);
     if let Some(file) = &args.trace {
-        let trace = planned.planning.outcome.trace.as_ref().context(
-            "there is no trace: the search for missions with states, resources or an objective is not recorded",
-        )?;
+        let trace = planned.planning.outcome.trace.as_ref();
+        let trace =
+            trace.context("there is no trace: the times of the mission are too large to be planned")?;
         std::fs::write(file, kirk::trace_json_lines(&planned.network, trace))
             .with_context(|| format!("cannot write {}", file.display()))?;
     }

@@ -278,7 +278,11 @@ impl Solver {
     }
 
     /// Tells that a solution of the solver is none: what is wrong with it, and the literals that must not all hold.
-    pub(super) fn record_refusal(&mut self, literals: &[Literal], event: impl FnOnce(Vec<TreeChoice>) -> Event) {
+    pub(super) fn record_refusal(
+        &mut self,
+        literals: &[Literal],
+        event: impl FnOnce(Vec<TreeChoice>) -> Event,
+    ) {
         if !self.is_recording() {
             return;
         }
@@ -385,7 +389,8 @@ impl Solver {
         let is_limited = |literal: Literal| {
             let event = self.trail.implying_event(literal).map(|event| self.trail.events[event]);
             event.is_some_and(|event| {
-                event.level == level && matches!(event.cause, Cause::Noted(note) if self.trail.is_of_goal(note))
+                event.level == level
+                    && matches!(event.cause, Cause::Noted(note) if self.trail.is_of_goal(note))
             })
         };
         self.origin == Origin::Goal || conflict.iter().copied().any(is_limited)

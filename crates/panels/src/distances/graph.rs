@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use exact::{Bound, Time};
 use kirk::{Constraint, CycleMember};
-use tpn::{ArcId, CausalLink, EventEnd, Network, NodeId, Ordering};
+use tpn::{ArcId, EventEnd, Network, NodeId, Plan, Precedence};
 use workbench::state::selection::node_name;
 
 /// What the graph is made of.
@@ -19,10 +19,8 @@ pub struct Selected<'a> {
     pub nodes: &'a [NodeId],
     /// Selected constraints.
     pub arcs: &'a [ArcId],
-    /// Links in force.
-    pub links: &'a [CausalLink],
-    /// Orders in force.
-    pub orders: &'a [Ordering],
+    /// With the links and orders in force.
+    pub plan: &'a Plan,
     /// The contradiction, if there is one.
     pub cycle: &'a [CycleMember],
 }
@@ -171,24 +169,24 @@ fn bounds(selected: &Selected<'_>) -> Vec<Between> {
             all.push(Between { from: arc.to, to: arc.from, weight, constraint });
         }
     }
-    let ends = |label: tpn::LabelId| {
-        let arc = network.arcs.get(network.labels.get(label.index())?.arc.index())?;
-        Some((arc.from, arc.to))
+    let mut add = |precedence: Precedence, constraint: Constraint| {
+        let Precedence { earlier, later, least } = precedence;
+        if let Some(weight) = least.checked_neg() {
+            all.push(Between { from: later, to: earlier, weight, constraint });
+        }
     };
-    for &link in selected.links {
-        let Some(((tell_start, tell_end), (ask_start, ask_end))) = ends(link.tell).zip(ends(link.ask)) else {
-            continue;
-        };
-        for (from, to) in [(ask_start, tell_start), (tell_end, ask_end)] {
-            all.push(Between { from, to, weight: Time::ZERO, constraint: Constraint::Link(link) });
+    let plan = selected.plan;
+    for &link in &plan.causal_links {
+        for precedence in link.precedences(network) {
+            add(precedence, Constraint::Link(link));
         }
     }
-    for &order in selected.orders {
-        let ends = ends(order.first).zip(ends(order.then)).zip(network.threat_gap.checked_neg());
-        if let Some((((_, first_end), (then_start, _)), weight)) = ends {
-            let constraint = Constraint::Order(order);
-            all.push(Between { from: then_start, to: first_end, weight, constraint });
-        }
+    let natures = network.natures_events(&plan.selected_arcs);
+    for &order in &plan.orderings_added {
+        add(plan.ordering_precedence(network, &order, &natures), Constraint::Order(order));
+    }
+    for &order in &plan.uses_ordered {
+        add(order.precedence(network), Constraint::UseOrder(order));
     }
     all
 }

@@ -159,6 +159,10 @@ fn closing(parts: &Parts<'_>) -> Option<Constraint> {
         Constraint::Order(order) => {
             (2, parts.plan.orderings_added.iter().position(|it| it == order).unwrap_or_default())
         }
+        Constraint::UseOrder(order) => {
+            (3, parts.plan.uses_ordered.iter().position(|it| it == order).unwrap_or_default())
+        }
+        Constraint::Departure(_) => (0, 0),
     };
     parts.cycle.iter().map(|member| member.constraint).max_by_key(added)
 }

@@ -150,14 +150,7 @@ impl DistancesPanel {
         let (nodes, arcs) = selected;
         let mut graph = DistanceGraph::default();
         if nodes.len() <= MAX_EVENTS {
-            graph = DistanceGraph::new(&Selected {
-                network,
-                nodes,
-                arcs,
-                links: &plan.causal_links,
-                orders: &plan.orderings_added,
-                cycle,
-            });
+            graph = DistanceGraph::new(&Selected { network, nodes, arcs, plan, cycle });
         }
         if graph.vertices.len() > MAX_VERTICES {
             graph = DistanceGraph::default();

@@ -119,6 +119,8 @@ impl Scene<'_> {
                     Constraint::Upper(_) => "a greatest duration",
                     Constraint::Link(_) => "a causal link",
                     Constraint::Order(_) => "an ordering",
+                    Constraint::UseOrder(_) => "an order of uses",
+                    Constraint::Departure(_) => "the way from where a movement sets out",
                 };
                 vec![format!("{to} is at most {weight} after {from}"), why.to_owned()]
             }
@@ -136,6 +138,8 @@ impl Scene<'_> {
                 Constraint::Lower(arc) | Constraint::Upper(arc) => Selection::Arc(arc),
                 Constraint::Link(link) => Selection::Link(link),
                 Constraint::Order(order) => Selection::Ordering(order),
+                Constraint::UseOrder(_) => Selection::None,
+                Constraint::Departure(departing) => Selection::Label(departing.movement),
             },
         }
     }
@@ -154,6 +158,8 @@ impl Scene<'_> {
             Constraint::Lower(arc) | Constraint::Upper(arc) => self.focus.arcs.contains(&arc),
             Constraint::Link(link) => self.focus.labels.contains(&link.ask),
             Constraint::Order(order) => self.focus.labels.contains(&order.first),
+            Constraint::UseOrder(_) => false,
+            Constraint::Departure(departing) => self.focus.labels.contains(&departing.movement),
         }
     }
 
@@ -177,9 +183,9 @@ impl Scene<'_> {
         let color = match edge.constraint {
             _ if self.is_selected(edge) || self.is_new(edge) => tokens.accent,
             Constraint::Link(_) => tokens.link,
-            Constraint::Order(_) => tokens.ordering,
+            Constraint::Order(_) | Constraint::UseOrder(_) => tokens.ordering,
             Constraint::Upper(_) => tokens.path,
-            Constraint::Lower(_) => tokens.text_muted,
+            Constraint::Lower(_) | Constraint::Departure(_) => tokens.text_muted,
         };
         if has_cycle { color.gamma_multiply(0.4) } else { color }
     }

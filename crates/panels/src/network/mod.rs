@@ -464,7 +464,7 @@ fn show_badges(painter: &egui::Painter, panel: Rect, context: &Context<'_>, snap
         let trace = view.recording.trace();
         let (step, steps) = (view.step.step, trace.events.len());
         let Some(entry) = trace.events.get(step) else { return };
-        let text = workbench::state::search::wording::event(view.recording.network(), &entry.event);
+        let text = workbench::state::search::wording::event(view.recording.network(), trace, &entry.event);
         let is_failure = workbench::state::search::focus::is_failure(&entry.event);
         let color = if is_failure { tokens.failure } else { tokens.accent };
         badge(painter, corner, &format!("Step {} / {steps}: {text}", step + 1), color, tokens, width);

@@ -452,6 +452,15 @@ pub fn short_label(network: &Network, choice: Option<TreeChoice>) -> String {
         Some(TreeChoice::Link(link)) => format!("← {}", owner(link.tell)),
         Some(TreeChoice::Order(order)) => format!("{} ≺ {}", owner(order.first), owner(order.then)),
         Some(TreeChoice::NoLink { ask }) => format!("{} ← nothing", condition(ask)),
+        Some(TreeChoice::UseOrder(order)) => {
+            let user = |id: tpn::UseId| {
+                let used = network.uses.get(id.index());
+                let owner = used.and_then(|used| network.occurrences.get(used.owner?.index()));
+                owner.map_or_else(|| network.use_name(id), |owner| owner.name.to_string())
+            };
+            format!("{} ≺ {}", user(order.first), user(order.then))
+        }
+        Some(TreeChoice::Departure(it)) => format!("{} → {}", owner(it.before), owner(it.movement)),
     }
 }
 

@@ -2,12 +2,12 @@
 //! and the windows that changed.
 
 use egui::{RichText, ScrollArea, Ui};
-use kirk::{Event, Trace, TreeNodeId, TreeStatus};
+use kirk::{Event, Trace, TreeChoice, TreeNodeId, TreeStatus};
 use tpn::Window;
 use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
 use workbench::state::search::wording;
-use workbench::state::search::{Recording, WindowChange};
+use workbench::state::search::{Recording, SearchCommand, WindowChange};
 use workbench::state::selection::node_name;
 use workbench::time_text;
 
@@ -17,6 +17,8 @@ use crate::Context;
 
 /// More changed windows than this are counted, not listed.
 const MAX_CHANGES: usize = 60;
+/// Of more learned conflicts only the latest are listed.
+const MAX_LEARNED: usize = 40;
 
 /// Shows the details of `state`, or of the step that is looked at.
 pub fn show(
@@ -38,7 +40,28 @@ pub fn show(
             show_state(ui, context, recording, index, step.tree_node);
         }
         show_changes(ui, context, recording, commands);
+        show_learned(ui, context, recording, commands);
     });
+}
+
+/// What the search has learned by the step that is looked at, or in all; the latest first.
+fn show_learned(ui: &mut Ui, context: &Context<'_>, recording: &Recording, commands: &mut CommandSender) {
+    let tokens = context.tokens;
+    let view = context.state.search.shown().filter(|view| view.recording.is(recording));
+    let until = view.map_or(usize::MAX, |view| view.step.step);
+    let learned: Vec<(usize, &[TreeChoice])> = recording.trace().learned(until).collect();
+    if learned.is_empty() {
+        return;
+    }
+    ui.add_space(3.0);
+    ui.label(RichText::new(format!("Learned conflicts: {}", learned.len())).small().color(tokens.text_muted));
+    for (step, choices) in learned.into_iter().rev().take(MAX_LEARNED) {
+        let text = wording::learned(recording.network(), choices);
+        let button = egui::Button::new(RichText::new(text).small()).frame_when_inactive(false).small().wrap();
+        if ui.add(button).on_hover_text("Goes to the step that taught it").clicked() {
+            commands.send(Command::Search(SearchCommand::GoTo(step)));
+        }
+    }
 }
 
 /// What was decided in a state, and what became of it.
@@ -78,7 +101,7 @@ fn show_state(
         }
     });
     if let Some(failure) = failure_of(trace, index, state).filter(|_| what == "failed") {
-        let text = wording::event(recording.network(), failure);
+        let text = wording::event(recording.network(), trace, failure);
         ui.label(RichText::new(text).small().color(tokens.failure));
     }
 }

@@ -5,8 +5,8 @@ use egui::{Key, Modifiers};
 use kirk::{Trace, TreeNodeId};
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender};
-use workbench::state::search::SearchCommand;
 use workbench::state::search::focus::selection_of;
+use workbench::state::search::{Recording, SearchCommand};
 
 use super::tree::TreeIndex;
 use crate::Context;
@@ -15,10 +15,11 @@ use crate::Context;
 pub fn follow(
     ui: &egui::Ui,
     context: &Context<'_>,
-    trace: &Trace,
+    recording: &Recording,
     index: &TreeIndex,
     commands: &mut CommandSender,
 ) {
+    let trace = recording.trace();
     let is_meant = context.state.active_panel == PanelKind::Search
         && context.state.dialog.is_none()
         && ui.memory(|memory| memory.focused().is_none());
@@ -37,7 +38,7 @@ pub fn follow(
     if let Some(node) = target {
         commands.send(Command::Search(SearchCommand::GoToNode(node)));
         let choice = trace.tree.get(node as usize).and_then(|node| node.choice);
-        commands.send(Command::Select(selection_of(choice)));
+        commands.send(Command::Select(selection_of(recording.network(), choice)));
     }
 }
 

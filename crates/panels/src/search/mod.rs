@@ -85,7 +85,7 @@ impl Panel for SearchPanel {
             self.sides[number].follow(recording, context, number);
         }
         if let Some(drawn) = &self.sides[side].drawn {
-            keys::follow(ui, context, drawn.recording.trace(), &drawn.index, commands);
+            keys::follow(ui, context, &drawn.recording, &drawn.index, commands);
         }
         let action = context.view_action(PanelKind::Search);
         let room = ui.available_rect_before_wrap().intersect(panel);
@@ -173,10 +173,10 @@ impl SearchPanel {
         commands: &mut CommandSender,
     ) {
         let drawn = self.sides[side].drawn.as_ref();
-        let choice = drawn.zip(state).and_then(|(drawn, state)| {
-            drawn.recording.trace().tree.get(state as usize).and_then(|node| node.choice)
+        let hover = drawn.zip(state).map_or(Selection::None, |(drawn, state)| {
+            let choice = drawn.recording.trace().tree.get(state as usize).and_then(|node| node.choice);
+            selection_of(drawn.recording.network(), choice)
         });
-        let hover = selection_of(choice);
         if hover != self.told_hover {
             if !hover.is_none() || context.state.hovered == self.told_hover {
                 commands.send(Command::Hover(hover.clone()));
@@ -256,7 +256,7 @@ impl Side {
             commands.send(Command::Search(SearchCommand::Turn(number)));
             commands.send(Command::Search(SearchCommand::GoToNode(state)));
             let choice = drawn.recording.trace().tree.get(state as usize).and_then(|node| node.choice);
-            commands.send(Command::Select(selection_of(choice)));
+            commands.send(Command::Select(selection_of(drawn.recording.network(), choice)));
         }
     }
 }

@@ -12,8 +12,11 @@ pub fn show(ui: &mut egui::Ui, context: &Context<'_>, recording: &Recording) {
     let tokens = context.tokens;
     let trace = recording.trace();
     let Some(view) = context.state.search.shown() else {
-        let more =
-            if trace.is_truncated { "; the plan comes from a search that was not recorded" } else { "" };
+        let more = match (trace.is_truncated, trace.is_conflict_driven()) {
+            (false, _) => "",
+            (true, false) => "; the plan comes from a search that was not recorded",
+            (true, true) => "; the search went on without a record",
+        };
         let text = format!(
             "{} steps recorded{more}. Press . to step, or click a state of the tree.",
             recording.steps()
@@ -31,7 +34,7 @@ pub fn show(ui: &mut egui::Ui, context: &Context<'_>, recording: &Recording) {
     let position = format!("{} / {}", step + 1, trace.events.len());
     ui.horizontal_wrapped(|ui| {
         ui.label(egui::RichText::new(position).color(tokens.text_muted).monospace());
-        ui.label(egui::RichText::new(event(recording.network(), &entry.event)).color(color));
+        ui.label(egui::RichText::new(event(recording.network(), trace, &entry.event)).color(color));
     });
     if let Event::Inconsistent { cycle } = &entry.event {
         for member in cycle {

@@ -71,10 +71,11 @@ pub(super) fn search(state: &AppState) -> Search {
     let side = state.search.side();
     let known = state.search.shown().map(|view| {
         let network = view.recording.network();
-        let entry = view.recording.trace().events.get(view.step.step);
+        let trace = view.recording.trace();
+        let entry = trace.events.get(view.step.step);
         let mut known = plan_to_json(network, &view.plan);
         known["event"] = json!(entry.map(|entry| event_name(&entry.event)));
-        known["text"] = json!(entry.map(|entry| wording::event(network, &entry.event)));
+        known["text"] = json!(entry.map(|entry| wording::event(network, trace, &entry.event)));
         known["state"] = json!(view.step.tree_node);
         known["cycle"] = view.step.cycle.iter().map(|it| json!(node_name(network, it.from))).collect();
         known
@@ -134,5 +135,21 @@ fn event_name(event: &kirk::Event) -> &'static str {
         Event::Backjump { .. } => "backjump",
         Event::Solution { .. } => "solution",
         Event::Exhausted => "exhausted",
+        Event::Begin(_) => "begin",
+        Event::TryUseOrder { .. } => "try-use-order",
+        Event::Imply { .. } => "imply",
+        Event::NoAlternative { .. } => "no-alternative",
+        Event::Unsharable { .. } => "unsharable",
+        Event::NotBetter { .. } => "not-better",
+        Event::Clash { .. } => "clash",
+        Event::Uncontrollable { .. } => "uncontrollable",
+        Event::Circle { .. } => "circle",
+        Event::NoRoomForGap => "no-room-for-gap",
+        Event::Learn { .. } => "learn",
+        Event::Overload { .. } => "overload",
+        Event::OutOfRange { .. } => "out-of-range",
+        Event::Restart => "restart",
+        Event::Keep { .. } => "keep",
+        Event::Improve { .. } => "improve",
     }
 }

@@ -9,9 +9,9 @@ use super::focus::is_failure;
 pub struct Counts {
     /// States entered, the root included.
     pub states: u32,
-    /// Times that bounds were propagated.
+    /// Times that bounds were propagated, or choices that followed from others.
     pub propagations: u32,
-    /// Times that the search went back to an earlier choice, by a step or by a jump.
+    /// Times that the search went back, by a step, by a jump or to the start.
     pub backtracks: u32,
     /// Failures met.
     pub failures: u32,
@@ -35,8 +35,8 @@ impl Counts {
                 counts.states += 1;
             }
             match entry.event {
-                Event::Propagate { .. } => counts.propagations += 1,
-                Event::Backtrack { .. } | Event::Backjump { .. } => counts.backtracks += 1,
+                Event::Propagate { .. } | Event::Imply { .. } => counts.propagations += 1,
+                Event::Backtrack { .. } | Event::Backjump { .. } | Event::Restart => counts.backtracks += 1,
                 _ => counts.failures += u32::from(is_failure(&entry.event)),
             }
         }

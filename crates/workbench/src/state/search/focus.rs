@@ -1,9 +1,9 @@
 //! What a step of the search is about: the events, constraints, conditions and places of the text that panels mark
 //! while the step is looked at.
 
-use kirk::{Constraint, Event, ReplayStep, Trace, TreeChoice};
+use kirk::{Constraint, Departing, Event, ReplayStep, Trace, TreeChoice};
 use rmpl::Span;
-use tpn::{ArcId, DecisionId, LabelId, Network, NodeId};
+use tpn::{ArcId, DecisionId, LabelId, Network, NodeId, UseId};
 
 use crate::state::Selection;
 
@@ -52,17 +52,36 @@ impl Focus {
             }
             Event::TryOrder { order } => focus.add_labels(network, [order.first, order.then]),
             Event::Backtrack { to } | Event::Backjump { to, .. } => {
-                match trace.tree.get(*to as usize).and_then(|state| state.choice) {
-                    Some(TreeChoice::Decision { decision, alternative }) => {
-                        focus.add_alternative(network, decision, alternative);
-                    }
-                    Some(TreeChoice::Link(link)) => focus.add_labels(network, [link.tell, link.ask]),
-                    Some(TreeChoice::Order(order)) => focus.add_labels(network, [order.first, order.then]),
-                    Some(TreeChoice::NoLink { ask }) => focus.add_label(network, ask),
-                    None => {}
+                let choice = trace.tree.get(*to as usize).and_then(|state| state.choice);
+                focus.add_choices(network, choice);
+            }
+            Event::TryUseOrder { order } => focus.add_uses(network, &[order.first, order.then]),
+            Event::Imply { choice, .. } => focus.add_choices(network, [*choice]),
+            Event::NoAlternative { decision } => {
+                let node = network.decisions.get(decision.index()).map(|decision| decision.node);
+                if let Some(node) = node {
+                    focus.add_node(network, node);
                 }
             }
-            Event::Propagate { .. } | Event::Known | Event::Solution { .. } | Event::Exhausted => {}
+            Event::Unsharable { uses } | Event::Overload { uses } => focus.add_uses(network, uses),
+            Event::OutOfRange { early, .. } => focus.add_uses(network, early),
+            Event::NotBetter { choices }
+            | Event::Clash { choices }
+            | Event::Uncontrollable { choices }
+            | Event::Circle { orders: choices }
+            | Event::Learn { choices } => focus.add_choices(network, choices.iter().copied()),
+            Event::Keep { orders, uses } => {
+                focus.add_choices(network, orders.iter().map(|&order| TreeChoice::Order(order)));
+                focus.add_choices(network, uses.iter().map(|&order| TreeChoice::UseOrder(order)));
+            }
+            Event::Propagate { .. }
+            | Event::Known
+            | Event::Solution { .. }
+            | Event::Exhausted
+            | Event::Begin(_)
+            | Event::NoRoomForGap
+            | Event::Restart
+            | Event::Improve { .. } => {}
         }
         focus.spans.sort_unstable();
         focus.spans.dedup();
@@ -101,6 +120,31 @@ impl Focus {
         }
     }
 
+    fn add_choices(&mut self, network: &Network, choices: impl IntoIterator<Item = TreeChoice>) {
+        for choice in choices {
+            match choice {
+                TreeChoice::Decision { decision, alternative } => {
+                    self.add_alternative(network, decision, alternative);
+                }
+                TreeChoice::Link(link) => self.add_labels(network, [link.tell, link.ask]),
+                TreeChoice::Order(order) => self.add_labels(network, [order.first, order.then]),
+                TreeChoice::NoLink { ask } => self.add_label(network, ask),
+                TreeChoice::UseOrder(order) => self.add_uses(network, &[order.first, order.then]),
+                TreeChoice::Departure(Departing { movement, before }) => {
+                    self.add_labels(network, [before, movement]);
+                }
+            }
+        }
+    }
+
+    fn add_uses(&mut self, network: &Network, uses: &[UseId]) {
+        for used in uses.iter().filter_map(|used| network.uses.get(used.index())) {
+            self.arcs.push(used.arc);
+            let owner = used.owner.and_then(|owner| network.occurrences.get(owner.index()));
+            self.spans.extend(owner.and_then(|owner| owner.span).or(used.span));
+        }
+    }
+
     fn add_label(&mut self, network: &Network, id: LabelId) {
         let Some(label) = network.labels.get(id.index()) else { return };
         self.labels.push(id);
@@ -113,6 +157,10 @@ impl Focus {
             Constraint::Lower(arc) | Constraint::Upper(arc) => self.add_arc(network, arc),
             Constraint::Link(link) => self.add_labels(network, [link.tell, link.ask]),
             Constraint::Order(order) => self.add_labels(network, [order.first, order.then]),
+            Constraint::UseOrder(order) => self.add_uses(network, &[order.first, order.then]),
+            Constraint::Departure(departing) => {
+                self.add_choices(network, [TreeChoice::Departure(departing)]);
+            }
         }
     }
 }
@@ -121,18 +169,33 @@ impl Focus {
 pub fn is_failure(event: &Event) -> bool {
     matches!(
         event,
-        Event::Inconsistent { .. } | Event::Unclosable { .. } | Event::Unresolvable { .. } | Event::Known
+        Event::Inconsistent { .. }
+            | Event::Unclosable { .. }
+            | Event::Unresolvable { .. }
+            | Event::Known
+            | Event::NoAlternative { .. }
+            | Event::Unsharable { .. }
+            | Event::NotBetter { .. }
+            | Event::Clash { .. }
+            | Event::Uncontrollable { .. }
+            | Event::Circle { .. }
+            | Event::NoRoomForGap
     )
 }
 
 /// What the other panels select when a state of the search is clicked: what was chosen there.
-pub fn selection_of(choice: Option<TreeChoice>) -> Selection {
+pub fn selection_of(network: &Network, choice: Option<TreeChoice>) -> Selection {
     match choice {
         None => Selection::None,
         Some(TreeChoice::Decision { decision, alternative }) => Selection::Alternative(decision, alternative),
         Some(TreeChoice::Link(link)) => Selection::Link(link),
         Some(TreeChoice::Order(order)) => Selection::Ordering(order),
         Some(TreeChoice::NoLink { ask }) => Selection::Label(ask),
+        Some(TreeChoice::UseOrder(order)) => {
+            let owner = network.uses.get(order.then.index()).and_then(|used| used.owner);
+            owner.map_or(Selection::None, Selection::Occurrence)
+        }
+        Some(TreeChoice::Departure(departing)) => Selection::Label(departing.movement),
     }
 }
 
@@ -165,6 +228,11 @@ pub fn concerns(choice: Option<TreeChoice>, selection: &Selection, network: &Net
         (TreeChoice::Link(link), _) if owns(link.ask) || owns(link.tell) => true,
         (TreeChoice::Order(order), _) if owns(order.first) || owns(order.then) => true,
         (TreeChoice::NoLink { ask }, _) if owns(ask) => true,
-        _ => selection_of(Some(choice)) == *selection,
+        (TreeChoice::UseOrder(order), Selection::Occurrence(selected)) => {
+            let is_theirs =
+                |used: &UseId| network.uses.get(used.index()).is_some_and(|it| it.owner == Some(*selected));
+            [order.first, order.then].iter().any(is_theirs)
+        }
+        _ => selection_of(network, Some(choice)) == *selection,
     }
 }

@@ -53,7 +53,7 @@ pub struct Breakpoints {
     pub decision: bool,
     /// A failure.
     pub failure: bool,
-    /// Two conflicting intervals may overlap.
+    /// Two conflicting intervals may overlap, or a resource be used too much.
     pub threat: bool,
     /// A plan.
     pub solution: bool,
@@ -389,7 +389,12 @@ fn stops_at(trace: &Trace, step: usize, breakpoints: Breakpoints) -> bool {
     let Some(entry) = trace.events.get(step) else { return false };
     match entry.event {
         Event::Decide { .. } => breakpoints.decision,
-        Event::Threat { .. } => breakpoints.threat,
+        Event::TryLink { .. } | Event::TryOrder { .. } | Event::TryUseOrder { .. }
+            if trace.is_conflict_driven() =>
+        {
+            breakpoints.decision
+        }
+        Event::Threat { .. } | Event::Overload { .. } | Event::OutOfRange { .. } => breakpoints.threat,
         Event::Solution { .. } => breakpoints.solution,
         _ => breakpoints.failure && focus::is_failure(&entry.event),
     }

@@ -168,7 +168,7 @@ fn as_plan(network: &Network, step: &ReplayStep) -> Plan {
         causal_links: step.links.clone(),
         conflict_order: step.orders.clone(),
         orderings_added: step.orders.clone(),
-        uses_ordered: Vec::new(),
+        uses_ordered: step.uses.clone(),
         levels: Vec::new(),
         quality: tpn::Quality::default(),
         windows: step.windows.clone(),

@@ -1,9 +1,13 @@
 //! The steps of a search in words.
 
-use kirk::{Constraint, CycleMember, Event, TreeChoice};
+mod conflict_driven;
+
+use kirk::{Constraint, CycleMember, Event, Trace, TreeChoice};
 use tpn::{LabelId, Network};
 
 use crate::state::selection::{alternative_text, node_name};
+
+pub use conflict_driven::learned;
 
 /// What was chosen in a state, in words.
 pub fn choice(network: &Network, choice: Option<TreeChoice>) -> String {
@@ -17,11 +21,20 @@ pub fn choice(network: &Network, choice: Option<TreeChoice>) -> String {
         Some(TreeChoice::Link(link)) => format!("{} carries {}", label(link.tell), label(link.ask)),
         Some(TreeChoice::Order(order)) => format!("{} before {}", label(order.first), label(order.then)),
         Some(TreeChoice::NoLink { ask }) => format!("Nothing carries {}", label(ask)),
+        Some(choice @ (TreeChoice::UseOrder(_) | TreeChoice::Departure(_))) => {
+            conflict_driven::fact(network, choice)
+        }
     }
 }
 
-/// One event in a sentence.
-pub fn event(network: &Network, event: &Event) -> String {
+/// One event of a search in a sentence.
+pub fn event(network: &Network, trace: &Trace, event: &Event) -> String {
+    let own = trace.is_conflict_driven().then(|| conflict_driven::event(network, trace, event));
+    own.flatten().unwrap_or_else(|| step_by_step(network, event))
+}
+
+/// One event of a search that makes one choice after the other.
+fn step_by_step(network: &Network, event: &Event) -> String {
     let label = |id: LabelId| network.label_name(id);
     match event {
         Event::Expand { node } => format!("Follow all arcs out of {}.", node_name(network, *node)),
@@ -61,6 +74,8 @@ pub fn event(network: &Network, event: &Event) -> String {
         }
         Event::Solution { .. } => "A plan.".to_owned(),
         Event::Exhausted => "Nothing is left to try.".to_owned(),
+        // All others are only met where conflicts drive the search.
+        _ => String::new(),
     }
 }
 
@@ -72,6 +87,8 @@ pub fn cycle_step(network: &Network, member: &CycleMember) -> String {
         Constraint::Upper(_) => "greatest duration",
         Constraint::Link(_) => "causal link",
         Constraint::Order(_) => "ordering",
+        Constraint::UseOrder(_) => "order of uses",
+        Constraint::Departure(_) => "the way from where it sets out",
     };
     format!("{from} → {to}: {} ({why})", member.weight)
 }

@@ -1,0 +1,342 @@
+//! The steps of a conflict-driven search in words: who comes before whom and why, who competes for what, what follows
+//! from what, and what has been learned.
+
+use exact::Rational;
+#[cfg(test)]
+mod tests;
+
+use kirk::{Departing, Event, SearchRound, Trace, TreeChoice, TreeNodeId};
+use rmpl::program::{Change, LabelMode, Measure};
+use tpn::{Extent, Goal, LabelId, Network, Ordering, Supply, UseId, UseOrdering};
+
+/// Longer lists are cut.
+const MAX_LISTED: usize = 6;
+
+/// One event in a sentence.
+pub(super) fn event(network: &Network, trace: &Trace, event: &Event) -> Option<String> {
+    Some(match event {
+        Event::Begin(round) => begin(network, round),
+        Event::TryLink { link } => {
+            format!(
+                "{} gives {} its {}.",
+                giver(network, link.tell),
+                owner(network, link.ask),
+                text(network, link.ask)
+            )
+        }
+        Event::TryOrder { order } => {
+            let why = reason_of_order(network, *order);
+            format!("{} comes before {}: {why}.", owner(network, order.first), owner(network, order.then))
+        }
+        Event::TryUseOrder { order } => use_order(network, *order),
+        Event::Imply { choice, holds: true, because } if because.is_empty() => {
+            format!("Whatever is chosen: {}.", fact(network, *choice))
+        }
+        Event::Imply { choice, holds: true, because } => {
+            format!("From {} it follows: {}.", facts(network, because), fact(network, *choice))
+        }
+        Event::Imply { choice, holds: false, because } if because.is_empty() => {
+            format!("Whatever is chosen, {} is ruled out.", fact(network, *choice))
+        }
+        Event::Imply { choice, holds: false, because } => {
+            let verb = if because.len() == 1 { "rules" } else { "rule" };
+            format!("{} {verb} out {}.", facts(network, because), fact(network, *choice))
+        }
+        Event::Unclosable { ask } => {
+            format!(
+                "Failure: nothing is left that gives {} its {}.",
+                owner(network, *ask),
+                text(network, *ask)
+            )
+        }
+        Event::Unresolvable { left, right } => {
+            let why = reason_of_order(network, Ordering { first: *left, then: *right });
+            let (left, right) = (owner(network, *left), owner(network, *right));
+            format!("Failure: {left} and {right} fit in neither order: {why}.")
+        }
+        Event::NoAlternative { decision } => {
+            format!("Failure: no alternative of {} is left.", Network::decision_name(*decision))
+        }
+        Event::Unsharable { uses } => {
+            format!("Failure: {}, and none of them can wait any more.", demand(network, uses))
+        }
+        Event::NotBetter { choices } if choices.is_empty() => {
+            "Failure: no plan is better than the best one found.".to_owned()
+        }
+        Event::NotBetter { choices } => {
+            format!("Failure: with {} no plan is better than the best one found.", facts(network, choices))
+        }
+        Event::Clash { choices } => match choices.as_slice() {
+            [] => "Failure: there is a contradiction, whatever is chosen.".to_owned(),
+            [only] => format!("Failure: {} is impossible.", fact(network, *only)),
+            _ => format!("Failure: {} cannot be together.", facts(network, choices)),
+        },
+        Event::Uncontrollable { choices } if choices.is_empty() => {
+            "Failure: nature can choose durations that leave no times, whatever is chosen.".to_owned()
+        }
+        Event::Uncontrollable { choices } => format!(
+            "Failure: with {} nature can choose durations that leave no times. {}",
+            facts(network, choices),
+            learned(network, choices)
+        ),
+        Event::Circle { orders } => format!("Failure: {} go in a circle.", facts(network, orders)),
+        Event::NoRoomForGap => {
+            "Failure: intervals only touch that are not forced to, and there is no room for a gap.".to_owned()
+        }
+        Event::Learn { choices } => learned(network, choices),
+        Event::Threat { left, right } => {
+            let why = reason_of_order(network, Ordering { first: *left, then: *right });
+            let (left, right) = (owner(network, *left), owner(network, *right));
+            format!("{left} and {right} would be in each other's way, {why}: one must come before the other.")
+        }
+        Event::Overload { uses } => format!("{}: one must wait for another.", demand(network, uses)),
+        Event::OutOfRange { early, late } => out_of_range(network, early, late),
+        Event::Restart => "Back to the start, with all that was learned.".to_owned(),
+        Event::Backjump { to, because } => backjump(network, trace, *to, because),
+        Event::Keep { orders, uses } => {
+            let kept = orders.iter().map(|&order| TreeChoice::Order(order));
+            let kept: Vec<TreeChoice> =
+                kept.chain(uses.iter().map(|&order| TreeChoice::UseOrder(order))).collect();
+            if kept.is_empty() {
+                "The times fit, and what must be kept of their order follows from the choices.".to_owned()
+            } else {
+                format!("The times fit. Of their order the plan keeps {}.", facts(network, &kept))
+            }
+        }
+        Event::Improve { values } => format!("The best plan so far: {}.", goals(network, values)),
+        _ => return None,
+    })
+}
+
+/// What was learned, in a sentence.
+pub fn learned(network: &Network, choices: &[TreeChoice]) -> String {
+    match choices {
+        [] => "Learned: whatever is chosen, it cannot succeed.".to_owned(),
+        [only] => format!("Learned: never {}.", fact(network, *only)),
+        [first, rest @ ..] => {
+            format!("Learned: never again {} together with {}.", fact(network, *first), facts(network, rest))
+        }
+    }
+}
+
+/// A choice as a part of a sentence.
+pub fn fact(network: &Network, choice: TreeChoice) -> String {
+    match choice {
+        TreeChoice::Decision { decision, alternative } => {
+            format!("{}={alternative}", Network::decision_name(decision))
+        }
+        TreeChoice::Link(link) => {
+            let (ask, tell) = (owner(network, link.ask), giver(network, link.tell));
+            format!("{} for {ask} from {tell}", text(network, link.ask))
+        }
+        TreeChoice::Order(Ordering { first, then }) => {
+            let (one, other) = (owner(network, first), owner(network, then));
+            if one == other {
+                format!("{} before {}", network.label_name(first), network.label_name(then))
+            } else if vehicle(network, first).is_some() {
+                format!("{one} before {other}")
+            } else {
+                format!("{one} before {other} ({})", variable(network, first))
+            }
+        }
+        TreeChoice::UseOrder(UseOrdering { first, then }) => {
+            let resource = resource(network, first);
+            format!("{} before {} ({resource})", user(network, first), user(network, then))
+        }
+        TreeChoice::Departure(Departing { movement, before }) => {
+            let (movement, label) = (owner(network, movement), &network.labels[before.index()]);
+            if label.extent == Extent::Initial {
+                format!("{movement} from where {} is at first", vehicle(network, before).unwrap_or_default())
+            } else {
+                format!("{movement} from where {} ends", owner(network, before))
+            }
+        }
+        TreeChoice::NoLink { ask } => format!("nothing for {}", network.label_name(ask)),
+    }
+}
+
+fn facts(network: &Network, choices: &[TreeChoice]) -> String {
+    let mut names: Vec<String> =
+        choices.iter().take(MAX_LISTED).map(|&choice| fact(network, choice)).collect();
+    if choices.len() > MAX_LISTED {
+        names.push(format!("{} more", choices.len() - MAX_LISTED));
+    }
+    joined(&names)
+}
+
+/// `a, b and c`.
+fn joined(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        [only] => only.clone(),
+        [rest @ .., last] => format!("{} and {last}", rest.join(", ")),
+    }
+}
+
+fn begin(network: &Network, round: &SearchRound) -> String {
+    let SearchRound { is_in_textual_order, may_touch, values } = round;
+    if let Some(goal) = values.len().checked_sub(1).and_then(|last| network.objective.get(last)) {
+        let more = if goal.is_maximized { "more" } else { "less" };
+        let measure = measure(goal);
+        return format!(
+            "Look for a plan that is better than {}: with {more} {measure}.",
+            goals(network, values)
+        );
+    }
+    match (may_touch, is_in_textual_order, network.objective.is_empty()) {
+        (true, ..) => {
+            "No plan leaves a gap between all conflicting intervals: search again, and let them touch."
+        }
+        (false, true, _) => {
+            "Search in the order of the text. Each failure teaches what never to choose together again."
+        }
+        (false, false, false) => "Look for some plan first, and then for better and better ones.",
+        (false, false, true) => {
+            "Too many failures in the order of the text: search again, and choose first what failures are about."
+        }
+    }
+    .to_owned()
+}
+
+/// Each goal with its value.
+fn goals(network: &Network, values: &[Rational]) -> String {
+    let known = network.objective.iter().zip(values);
+    let known: Vec<String> = known.map(|(goal, value)| format!("{} {value}", measure(goal))).collect();
+    joined(&known)
+}
+
+fn measure(goal: &Goal) -> String {
+    let terms = goal.terms.iter().map(|(factor, measure)| {
+        let name = match measure {
+            Measure::Cost => "cost",
+            Measure::Reward => "reward",
+            Measure::End => "end",
+            Measure::Length => "length",
+        };
+        if *factor == Rational::ONE { name.to_owned() } else { format!("{factor} {name}") }
+    });
+    terms.collect::<Vec<_>>().join(" + ")
+}
+
+fn backjump(network: &Network, trace: &Trace, to: TreeNodeId, because: &[TreeNodeId]) -> String {
+    let choice = |id: TreeNodeId| trace.tree.get(id as usize).and_then(|state| state.choice);
+    let causes: Vec<TreeChoice> = because.iter().filter_map(|&state| choice(state)).collect();
+    let to = choice(to).map_or_else(|| "the start".to_owned(), |choice| fact(network, choice));
+    match causes.len() {
+        0 => format!("Back to {to}."),
+        _ => format!("Back to {to}: the failure has to do with {} alone.", facts(network, &causes)),
+    }
+}
+
+/// Why two intervals must be ordered.
+fn reason_of_order(network: &Network, Ordering { first, then }: Ordering) -> String {
+    let (one, other) = (&network.labels[first.index()], &network.labels[then.index()]);
+    if one.mode == LabelMode::Tell && other.mode == LabelMode::Tell {
+        if let Some(vehicle) = vehicle(network, first) {
+            return format!("both move {vehicle}");
+        }
+        if network.is_lasting(first) {
+            return format!("both set {}", variable(network, first));
+        }
+    } else if network.is_lasting(first) && one.mode != other.mode {
+        let (ask, tell) = if one.mode == LabelMode::Ask { (first, then) } else { (then, first) };
+        return format!(
+            "{} requires {}, which {} changes",
+            owner(network, ask),
+            text(network, ask),
+            owner(network, tell)
+        );
+    }
+    format!("{} and {} cannot hold at once", text(network, first), text(network, then))
+}
+
+fn use_order(network: &Network, order: UseOrdering) -> String {
+    let (first, then) = (&network.uses[order.first.index()], &network.uses[order.then.index()]);
+    let resource = resource(network, order.first);
+    let why = match (first.change, then.change) {
+        (Change::Produces, Change::Consumes) => format!("{resource} is filled before it is drawn on"),
+        (Change::Consumes, Change::Produces) => format!("{resource} is drawn on before it is filled"),
+        (Change::Consumes, _) => format!("both consume {resource}"),
+        (Change::Produces, _) => format!("both produce {resource}"),
+        (Change::Uses, _) => format!("both use {resource}"),
+    };
+    format!("{} comes before {}: {why}.", user(network, order.first), user(network, order.then))
+}
+
+/// Who takes how much of a resource that has less.
+fn demand(network: &Network, uses: &[UseId]) -> String {
+    let Some(&first) = uses.first() else { return "A resource is used too much".to_owned() };
+    let resource = &network.resources[network.uses[first.index()].resource.index()];
+    let names = users(network, uses);
+    match resource.supply {
+        Supply::Reusable { capacity } => {
+            let amounts = uses.iter().map(|used| network.uses[used.index()].amount);
+            let sum = amounts.fold(Rational::default(), |sum, it| sum.checked_add(it).unwrap_or(sum));
+            let together = if uses.len() == 1 { "" } else { "Together " };
+            let verb = if uses.len() == 1 { "takes" } else { "take" };
+            format!("{together}{names} {verb} {sum} of {}, which has {capacity}", resource.name)
+        }
+        Supply::Reservoir { .. } => format!("{names} cannot all have what they need of {}", resource.name),
+    }
+}
+
+fn out_of_range(network: &Network, early: &[UseId], late: &[UseId]) -> String {
+    let Some(used) = early.first().map(|first| &network.uses[first.index()]) else { return String::new() };
+    let resource = &network.resources[used.resource.index()];
+    let Supply::Reservoir { least, greatest, .. } = resource.supply else { return String::new() };
+    let place =
+        if used.change == Change::Produces { format!("above {greatest}") } else { format!("below {least}") };
+    let names = users(network, early);
+    let verb = if early.len() == 1 { "takes" } else { "take" };
+    let those = if early.len() == 1 { "that" } else { "one of them" };
+    let first = match late.len() {
+        0 => "nothing can come before that helps".to_owned(),
+        1 => format!("{} must come before {those}", users(network, late)),
+        _ => format!("one of {} must come before {those}", users(network, late)),
+    };
+    format!("{names} {verb} {} {place}: {first}.", resource.name)
+}
+
+fn users(network: &Network, uses: &[UseId]) -> String {
+    let names: Vec<String> = uses.iter().map(|&used| user(network, used)).collect();
+    joined(&names)
+}
+
+/// Whose use it is.
+fn user(network: &Network, used: UseId) -> String {
+    let owner = network.uses[used.index()].owner.and_then(|owner| network.occurrences.get(owner.index()));
+    owner.map_or_else(|| network.use_name(used), |owner| owner.name.to_string())
+}
+
+fn resource(network: &Network, used: UseId) -> &str {
+    &network.resources[network.uses[used.index()].resource.index()].name
+}
+
+/// Whose condition it is.
+fn owner(network: &Network, label: LabelId) -> String {
+    let it = &network.labels[label.index()];
+    let owner = it.owner.and_then(|owner| network.occurrences.get(owner.index()));
+    owner.map_or_else(|| network.label_name(label), |owner| owner.name.to_string())
+}
+
+/// What gives a condition.
+fn giver(network: &Network, label: LabelId) -> String {
+    if network.labels[label.index()].extent == Extent::Initial {
+        "the start of the mission".to_owned()
+    } else {
+        owner(network, label)
+    }
+}
+
+fn text(network: &Network, label: LabelId) -> &str {
+    &network.labels[label.index()].text
+}
+
+fn variable(network: &Network, label: LabelId) -> &str {
+    &network.variables[network.labels[label.index()].literal.variable.index()].name
+}
+
+/// The vehicle whose place a label is about.
+fn vehicle(network: &Network, label: LabelId) -> Option<&str> {
+    variable(network, label).strip_suffix(".at")
+}
