@@ -29,9 +29,9 @@ fn run(source: &str, disturbances: &[Disturbance]) -> Execution {
         facts: None,
     };
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
-    let ran = execution::execute(&problem, &planned, disturbances, &mut grounds, &mut paths);
+    let script = Script { disturbances: disturbances.to_vec(), ..Script::default() };
+    let ran = execution::execute(&problem, &planned, &script, &mut grounds, &mut paths);
     let ran = ran.expect("there is a plan").expect("its times fit");
-    let script = Script { disturbances: disturbances.to_vec() };
     Execution::new(1, script, &program, &planned, ran)
 }
 

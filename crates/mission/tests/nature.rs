@@ -128,7 +128,8 @@ fn a_seed_draws_what_nature_chooses_and_a_disturbance_says_otherwise() {
             lasted(&ran, "Drive#1")
         })
         .collect();
-    assert!(drives.iter().all(|drive| (20..=40).contains(&drive.floor())), "{drives:?}");
+    let range = Time::from(20)..=Time::from(40);
+    assert!(drives.iter().all(|drive| range.contains(drive)), "{drives:?}");
     assert!(drives.iter().any(|drive| *drive != drives[0]), "{drives:?}");
     let given = |duration: i64| Script {
         disturbances: vec![Disturbance::Duration {
