@@ -108,10 +108,9 @@ impl TreeIndex {
     fn find_known(&mut self, trace: &Trace) {
         let mut from = 0;
         while from < trace.tree.len() {
-            let is_next = |until: &usize| {
-                *until < trace.tree.len() && trace.are_alternatives(from as TreeNodeId, *until as TreeNodeId)
-            };
-            let until = (from + 1..).take_while(is_next).last().map_or(from + 1, |last| last + 1);
+            let is_next = |until: &usize| trace.are_alternatives(from as TreeNodeId, *until as TreeNodeId);
+            let until =
+                (from + 1..trace.tree.len()).take_while(is_next).last().map_or(from + 1, |last| last + 1);
             let first = self.first_step[from..until].iter().copied().flatten().min();
             self.known_from[from..until].fill(first.unwrap_or(usize::MAX));
             from = until;
