@@ -33,7 +33,8 @@ pub fn start_slots(program: &Program) -> Vec<usize> {
     slots
 }
 
-/// Metres between places at one location: room for any two vehicles, and for what follows them in formation.
+/// Metres between places at one location: twice the room that any two vehicles need, so that one can drive between two
+/// others, and room for what follows them in formation.
 pub fn spacing_m(program: &Program) -> f64 {
     let count = program.world.vehicles.len();
     let mut widest: Vec<f64> =
@@ -42,7 +43,7 @@ pub fn spacing_m(program: &Program) -> f64 {
     let two: f64 = widest.iter().rev().take(2).sum();
     let moves = program.primitives.iter().filter_map(|primitive| primitive.moves.as_ref());
     let most = moves.map(|moves| moves.vehicles.len()).max().unwrap_or(1).max(1);
-    (two + separation::GAP_M + ROOM_M) * most as f64
+    2.0 * (two + separation::GAP_M + ROOM_M) * most as f64
 }
 
 /// The place with a number at a location. Rings lie a spacing apart, and so do the places on each.

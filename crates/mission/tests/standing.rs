@@ -7,7 +7,6 @@ use mission::{Goal, Grounds, Paths};
 use nalgebra::{Point2, distance};
 
 const WORLD: &str = "option time_unit = second;
-    terrain \"tai-plain\" cell 0.6 origin (0, 0);
     location BASE (30, 30); location EAST (80, 30); location WEST (10, 60);
     vehicle R1 : ATRV-Jr at BASE; vehicle R2 : ATRV-Jr at BASE; vehicle R3 : ATRV at BASE; vehicle R4 : ATRV-Jr at BASE;
     primitive Drive(rover, to) moves rover speed (0.1, 0.5);
@@ -33,7 +32,8 @@ fn plan(rest: &str) -> Planned {
         facts: None,
     };
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
-    let verdict = planned.planning.verdict.as_ref().expect("it has a plan");
+    let failure = &planned.planning.outcome.failure;
+    let verdict = planned.planning.verdict.as_ref().unwrap_or_else(|| panic!("{failure:?}"));
     assert!(verdict.valid, "{verdict:?}");
     planned
 }
