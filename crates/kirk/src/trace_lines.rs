@@ -10,7 +10,7 @@ use crate::trace::{
 /// Writes `trace` as JSON lines.
 ///
 /// The first line is the header `{"format":"enroute-trace/1",…}`. Events follow in order: `{"step","node","event",…}`
-/// with names as in all output. Choices that are the reason of something are objects as [`choice_json`] writes them. Then
+/// with names as in all output. Choices that are the reason of something are objects of the names in it. Then
 /// the states: `{"node","parent","alternative","status","label","conflict"}`, where
 /// `conflict` lists the constraints of the contradiction that ended the state, if one did.
 pub fn trace_json_lines(network: &Network, trace: &Trace) -> String {

@@ -1,5 +1,7 @@
 //! The checklist of a snapshot.
 
+use rmpl::diagnostics::exogenous;
+use rmpl::program::Controllability;
 use rmpl::{LineIndex, Severity, Span};
 use tpn::{Network, NodeId};
 
@@ -87,12 +89,75 @@ fn plan_section(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
         failure(planning, network, places)
     } else {
         let mut lines = vec![places.plain(Status::Passed, "there is a plan")];
+        lines.extend(controllability(planning, network, places));
         lines.extend(verdict(planning, places));
+        lines.extend(assumptions(snapshot, places));
         lines.extend(worth(planning, network, places));
         lines
     };
     lines.extend(undrivable(planning, network, places));
     lines
+}
+
+/// Whether the plan withstands what nature chooses, in the checker's word; nothing if nature chooses nothing (SPEC 13.1).
+fn controllability(planning: &Planning, network: &Network, places: &Places<'_>) -> Option<Line> {
+    let plan = planning.outcome.plans.first()?;
+    let natures = network.occurrences.iter().filter_map(|occurrence| {
+        let id = occurrence.arc?;
+        let arc = &network.arcs[id.index()];
+        let is_selected = plan.selected_arcs.get(id.index()) == Some(&true);
+        (arc.is_contingent && is_selected).then(|| (occurrence, arc))
+    });
+    let (mut names, mut nodes, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
+    for (occurrence, arc) in natures {
+        names.push(occurrence.name.to_string());
+        nodes.push(occurrence.end);
+        ranges.push(format!("{} [{}, {}]", occurrence.name, arc.lower.readable(), arc.upper.readable()));
+    }
+    if names.is_empty() {
+        return None;
+    }
+    let ranges = match ranges.as_slice() {
+        [shown @ .., last] if ranges.len() > MAX_RANGES => {
+            format!("{}, … {last}", shown[..MAX_RANGES - 1].join(", "))
+        }
+        all => all.join(", "),
+    };
+    let (status, text) = match (network.controllability, status_by_checker(planning)) {
+        (Controllability::None, _) => (
+            Status::Attention,
+            format!(
+                "the plan chooses durations that are nature's, as `option controllability = none` says: {ranges}"
+            ),
+        ),
+        (_, status @ (Status::Attention | Status::Failed)) => {
+            (status, format!("that the plan withstands what nature chooses is not confirmed: {ranges}"))
+        }
+        (Controllability::Strong, status) => {
+            (status, format!("one schedule suits whatever nature chooses (strongly controllable): {ranges}"))
+        }
+        (Controllability::Dynamic, status) => (
+            status,
+            format!(
+                "whatever nature chooses, as it is observed, the plan can be executed to its end (dynamically controllable): {ranges}"
+            ),
+        ),
+    };
+    Some(places.line(status, text, None, names, nodes))
+}
+
+/// How many of nature's ranges are listed.
+const MAX_RANGES: usize = 6;
+
+/// What the world would have to do as it suits the plan (SPEC 13.3).
+fn assumptions(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
+    let assumed = snapshot.problems.iter().filter(|problem| problem.code == exogenous::CODE.0);
+    let line = |problem: &crate::Problem| {
+        let what = problem.message.rsplit_once(": ").map_or(problem.message.as_str(), |(_, what)| what);
+        let text = format!("assumes that the world acts when it suits the plan: {what}");
+        places.line(Status::Attention, text, Some(problem.span), Vec::new(), Vec::new())
+    };
+    assumed.map(line).collect()
 }
 
 fn failure(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<Line> {
@@ -196,6 +261,10 @@ fn warnings(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
         let text = format!("{}: {}{hint}", problem.code, problem.message);
         places.line(status, text, Some(problem.span), Vec::new(), Vec::new())
     };
-    // Separation violations have lines of their own.
-    snapshot.problems.iter().filter(|problem| problem.code != crate::separation::CODE.0).map(line).collect()
+    // Separation violations and assumptions have lines of their own.
+    let has_line = |problem: &&crate::Problem| {
+        problem.code == crate::separation::CODE.0
+            || (problem.code == exogenous::CODE.0 && snapshot.plan().is_some())
+    };
+    snapshot.problems.iter().filter(|problem| !has_line(problem)).map(line).collect()
 }

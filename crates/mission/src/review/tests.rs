@@ -50,7 +50,10 @@ fn range(least: i64, greatest: i64) -> TimeRange {
 #[test]
 fn the_enroute_plan_exists_and_is_verified() {
     let review = reviewed(SCENARIO);
-    assert_eq!(review.plan.iter().map(|line| line.status).collect::<Vec<_>>(), [Status::Passed; 2]);
+    let statuses: Vec<Status> = review.plan.iter().map(|line| line.status).collect();
+    assert_eq!(statuses[..2], [Status::Passed; 2]);
+    // Permission comes when the plan wants it: the paper's mission leaves it to the planner.
+    assert!(review.plan[2..].iter().all(|line| line.text.starts_with("assumes ")), "{review:?}");
     assert!(review.status < Status::Failed, "{review:?}");
 }
 
@@ -288,4 +291,47 @@ fn a_vehicle_s_movements_come_one_after_the_other() {
     let lines = texts(&review, Section::States);
     let wanted = "R1 makes 2 movements, one after the other: Drive#1, Drive#2".to_owned();
     assert!(lines.contains(&wanted), "{lines:?} {:?}", review.plan);
+}
+
+/// The line of a mission's review that begins so.
+fn line(source: &str, start: &str) -> Option<(Status, String)> {
+    let review = reviewed(source);
+    let found = review.plan.iter().find(|line| line.text.starts_with(start));
+    found.map(|line| (line.status, line.text.clone()))
+}
+
+#[test]
+fn what_nature_chooses_has_the_first_line_of_its_own() {
+    let drive = |option: &str, most: i64| {
+        format!(
+            "{option} primitive Drive() contingent [20,40]; primitive Dig()[5,5];
+             scenario S[0,{most}] = {{ Drive(); delay; Dig() }}"
+        )
+    };
+    let (status, text) = line(&drive("", 60), "whatever nature chooses").expect("nature chooses");
+    assert_eq!(status, Status::Passed);
+    assert!(text.ends_with("Drive#1 [20, 40]"), "{text}");
+    // A schedule that does not look is harder to find, and here the drive's end is what the delay waits for.
+    assert!(line(&drive("option controllability = strong;", 60), "one schedule suits").is_some());
+    // What is planned as if nature did not choose is never passed.
+    let none = line(&drive("option controllability = none;", 44), "the plan chooses durations");
+    assert_eq!(none.expect("it is said").0, Status::Attention);
+    // And what nature can break has no plan.
+    assert!(line(&drive("", 44), "whatever").is_none());
+    assert!(line(&drive("", 44), "there is no plan").is_some());
+    assert!(line(SCENARIO, "whatever").is_none(), "the paper's mission leaves nothing to nature");
+}
+
+#[test]
+fn what_a_plan_assumes_is_for_attention() {
+    let storm = |delay: &str| {
+        format!(
+            "var DUST : {{CLEAR, STORM}}; primitive Survey()[20,30];
+             scenario S[0,200] = {{ {{ delay; do {{ Survey() }} watching DUST=STORM }}, {{ delay {delay}; DUST=STORM [10,10] }} }}"
+        )
+    };
+    let (status, text) = line(&storm("[5,100]"), "assumes").expect("the plan moves the storm");
+    assert_eq!(status, Status::Attention);
+    assert!(text.contains("[5,100]"), "{text}");
+    assert!(line(&storm("contingent [5,100]"), "assumes").is_none());
 }
