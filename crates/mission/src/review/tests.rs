@@ -157,7 +157,7 @@ fn a_mission_without_a_plan_says_why_and_what_would_help() {
 
 #[test]
 fn a_time_that_does_not_fit_is_said_to_with_its_event() {
-    let huge = i64::MAX / 2;
+    let huge = "46116860184273*100000";
     let source =
         format!("scenario S = {{ delay[{huge},{huge}]; delay[{huge},{huge}]; delay[{huge},{huge}] }}");
     let review = reviewed(&source);
