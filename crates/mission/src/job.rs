@@ -102,7 +102,7 @@ pub const RULES: [Rule; 10] = {
             kind: Execute,
             supersedes: &[Execute],
             key: "as of Update, and the script",
-            kept: "as of Update",
+            kept: "as of Update, and the last runs of the plan",
         },
         Rule {
             kind: Sample,
