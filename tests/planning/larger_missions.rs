@@ -85,8 +85,7 @@ fn repeat_is_so_many_copies() {
         "primitive A(); Twice(n) = { { A()[1,2]; delay[3,3] }; { A()[1,2]; delay[3,3] } }
          scenario S = { Twice(2); {}; A() }",
     );
-    let codes =
-        |text: &str| compile(text, &Top::Scenario(None)).1.iter().map(|it| it.code.0).collect::<Vec<_>>();
+    let codes = error_codes;
     assert_eq!(codes("scenario S = { repeat 1.5 { delay } }"), ["E-BOUNDS"]);
     assert_eq!(codes("scenario S = { repeat (0-1) { delay } }"), ["E-BOUNDS"]);
     assert_eq!(codes("scenario S = { repeat (inf) { delay } }"), ["E-BOUNDS"]);

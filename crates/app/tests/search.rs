@@ -376,7 +376,7 @@ fn what_is_selected_in_one_panel_is_selected_in_the_others() {
 fn a_problem_selects_what_it_is_about() {
     let mut app = support::start();
     app.settle();
-    let source = "primitive Drive()[5,9];\nscenario S[0,3] = { Drive(), UNUSED=OK [1,2] }";
+    let source = "primitive Drive()[5,9];\nscenario S[0,3] = { Drive(), UNUSED=OK [1,1] }";
     app.harness.state_mut().run(Command::OpenSource { name: "test".into(), source: source.to_owned() });
     app.settle();
     let problems = app.json()["diagnostics"].as_array().expect("a list").len();
