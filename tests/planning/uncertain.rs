@@ -302,3 +302,30 @@ fn a_drive_ends_when_nature_lets_it() {
     assert_eq!(failures(&drive(0, 40)), [""; 0]);
     assert_eq!(failures(&drive(41, 50)), ["temporal"]);
 }
+
+/// From where it begins a drive takes at least 10 and 25: nature has less to choose, and is asked for nothing.
+#[test]
+fn the_least_time_of_a_movement_raises_what_nature_chooses() {
+    let text = "vehicle R : ATRV at A; location A (0,0); location B (10,0); location C (30,0);
+        primitive Drive(to) contingent [5,40] moves R;
+        scenario S[0,100] = { { delay; Drive(B) }, { delay; Drive(C) } }";
+    let mut network = network(text);
+    let (arrivals, places): (Vec<LabelId>, Vec<_>) = (0..network.labels.len() as u32)
+        .map(LabelId)
+        .filter(|&id| network.labels[id.index()].extent == tpn::Extent::Effect)
+        .map(|id| (id, network.labels[id.index()].literal.clone()))
+        .unzip();
+    assert_eq!(arrivals.len(), 2);
+    let values = network.variables[places[0].variable.index()].values.len() as u32;
+    for &arrival in &arrivals {
+        network.departures.extend((0..values).map(|from| tpn::Departure {
+            arrival,
+            from: tpn::ValueId(from),
+            least: Some(Time::from(10)),
+        }));
+    }
+    let outcome = kirk::plan(&network, &Options::default(), &mut Unlimited);
+    assert_eq!(outcome.plans.len(), 1, "{:?}", outcome.failure);
+    let verdict = verify::check_plan(&network, &outcome.plans[0]);
+    assert!(verdict.valid, "{:?}", verdict.violations);
+}

@@ -4,6 +4,8 @@
 //! semi-reducible negative cycle of it rests on literals, one of which must not hold. Resources must suffice for all
 //! times: uses that nothing orders count together.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use rmpl::program::Change;
 use stn::{PointId, Stn};
 use stnu::{Link, LinkError, Part, StrongVerdict, Undecided, Verdict};
@@ -28,6 +30,9 @@ struct InForce {
     points: TiVec<Variable, Option<u32>>,
     count: usize,
     edges: Vec<(Edge, Vec<Literal>)>,
+    /// How long movements take at least from where they begin, by their first and last events: that raises nature's
+    /// least duration, and asks nothing of nature (SPEC 13.1).
+    movements: BTreeMap<(Variable, Variable), (i64, Literal)>,
 }
 
 /// `to − from ≤ weight`.
@@ -64,6 +69,7 @@ impl Problem<'_> {
             points: vec![None; trail.num_variables()].into(),
             count: 0,
             edges: Vec::with_capacity(solver.differences.len()),
+            movements: BTreeMap::new(),
         };
         if self.model.is_strong {
             // What is tied to an event of nature's is one with it.
@@ -77,8 +83,23 @@ impl Problem<'_> {
                     .for_each(|own| *own = Some(one));
             }
         }
+        let links: BTreeSet<(Variable, Variable)> = self
+            .model
+            .arcs
+            .iter()
+            .filter(|arc| self.is_link(solver, arc))
+            .map(|arc| self.ends(arc))
+            .collect();
         for (from, to, weight, when) in solver.differences.constraints() {
             let rests_on = [when[0], when[1], trail.presence(from), trail.presence(to)];
+            if let Some(&least) = self.sides.least_movements.get(&when[0])
+                && links.contains(&(to, from))
+            {
+                if trail.holds(when[0]) {
+                    in_force.movements.insert((to, from), (least, when[0]));
+                }
+                continue;
+            }
             if rests_on.iter().all(|&literal| trail.holds(literal)) {
                 in_force.add((from, to, weight), &rests_on);
             }
@@ -135,6 +156,18 @@ impl Problem<'_> {
         }
     }
 
+    /// Whether nature chooses an arc's duration in the present solution. With one side only it is a constraint like others.
+    fn is_link(&self, solver: &Solver, arc: &ModelArc) -> bool {
+        arc.is_uncertain
+            && arc.lower != UNBOUNDED_BELOW
+            && arc.upper != INFINITE
+            && solver.trail.holds(self.presence(arc.context))
+    }
+
+    fn ends(&self, arc: &ModelArc) -> (Variable, Variable) {
+        (self.times[arc.from], self.times[arc.to])
+    }
+
     /// What keeps two times of the present solution at one.
     fn ties<'s>(&'s self, solver: &'s Solver) -> impl Iterator<Item = &'s ModelArc> + 's {
         self.model.arcs.iter().filter(|arc| {
@@ -156,20 +189,16 @@ impl Problem<'_> {
         for &(Edge { from, to, weight }, _) in &in_force.edges {
             network.add_edge(stnu::PointId(from), stnu::PointId(to), weight);
         }
-        let mut presences: Vec<Literal> = Vec::new();
-        for arc in &self.model.arcs {
+        let mut presences: Vec<[Literal; 2]> = Vec::new();
+        for arc in self.model.arcs.iter().filter(|arc| self.is_link(solver, arc)) {
             let presence = self.presence(arc.context);
-            // With one side only it is a constraint like others.
-            let is_link = arc.is_uncertain && arc.lower != UNBOUNDED_BELOW && arc.upper != INFINITE;
-            if !is_link || !solver.trail.holds(presence) {
-                continue;
-            }
-            let (Some(activation), Some(end)) =
-                (in_force.point(self.times[arc.from]), in_force.point(self.times[arc.to]))
-            else {
-                continue;
-            };
-            let mut link = Link { activation, end, lower: arc.lower, upper: arc.upper };
+            let (from, to) = self.ends(arc);
+            let (Some(activation), Some(end)) = (in_force.point(from), in_force.point(to)) else { continue };
+            let (least, begins) =
+                in_force.movements.get(&(from, to)).copied().unwrap_or((arc.lower, Literal::TRUE));
+            // One that takes longer than it may is no solution.
+            let lower = arc.lower.max(least).min(arc.upper);
+            let mut link = Link { activation, end, lower, upper: arc.upper };
             let mut added = network.add_link(link);
             if matches!(added, Err(LinkError::EndTaken(_))) {
                 // Two ends at one time are two points at one time.
@@ -179,7 +208,7 @@ impl Problem<'_> {
                 added = network.add_link(link);
             }
             match added {
-                Ok(_) => presences.push(presence),
+                Ok(_) => presences.push([presence, begins]),
                 // Nature may choose more than no time between events that are at one time.
                 Err(_) if arc.upper > 0 => {
                     return Some(Some(self.chosen(solver).chain([presence]).collect()));
@@ -194,7 +223,7 @@ impl Problem<'_> {
                 Ok(StrongVerdict::Controllable(_)) => return Some(None),
                 Ok(StrongVerdict::Uncontrollable(edges)) => {
                     let edges = edges.into_iter().filter_map(of_edge).flatten().copied();
-                    edges.chain(presences).chain(self.chosen(solver)).collect()
+                    edges.chain(presences.into_iter().flatten()).chain(self.chosen(solver)).collect()
                 }
                 Err(Undecided::Overflow | Undecided::Stopped) => return None,
             }
@@ -213,7 +242,7 @@ impl Problem<'_> {
             for member in &conflict.members {
                 match member.part {
                     Part::Edge(id) => reason.extend(of_edge(id).into_iter().flatten().copied()),
-                    Part::Lower(id) | Part::Upper(id) => reason.push(presences[id.index()]),
+                    Part::Lower(id) | Part::Upper(id) => reason.extend(presences[id.index()]),
                 }
             }
             reason

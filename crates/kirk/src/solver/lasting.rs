@@ -27,6 +27,8 @@ pub(crate) struct Sides {
     kept_before: Vec<(Ordering, Literal)>,
     /// That a movement sets out where another change has left its vehicle.
     departures: Vec<(Departing, Literal)>,
+    /// How long a movement takes at least, by the literal of where it begins.
+    pub(super) least_movements: BTreeMap<Literal, i64>,
 }
 
 /// What a solution says of variables that keep their values.
@@ -114,6 +116,7 @@ impl Problem<'_> {
                     Some(Some(least)) => {
                         let first = solver.differences.len();
                         solver.difference(moving.end, moving.start, -least, [last; 2]);
+                        self.sides.least_movements.insert(last, least);
                         solver.check_differences(first);
                     }
                 }

@@ -106,7 +106,7 @@ fn controllability(planning: &Planning, network: &Network, places: &Places<'_>) 
         let id = occurrence.arc?;
         let arc = &network.arcs[id.index()];
         let is_selected = plan.selected_arcs.get(id.index()) == Some(&true);
-        (arc.is_contingent && is_selected).then(|| (occurrence, arc))
+        (arc.is_contingent && is_selected).then_some((occurrence, arc))
     });
     let (mut names, mut nodes, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
     for (occurrence, arc) in natures {
