@@ -608,7 +608,7 @@ impl Network {
     }
 
     /// Which events nature executes where these arcs are selected: the ends of durations that it chooses, and what is
-    /// tied to them by [0,0] (SPEC 13.1). Indexed by node; empty if there are none.
+    /// tied to them by `[0,0]` (SPEC 13.1). Indexed by node; empty if there are none.
     pub fn natures_events(&self, selected_arcs: &[bool]) -> Vec<bool> {
         let is_selected = |arc: ArcId| selected_arcs.get(arc.index()).copied().unwrap_or(false);
         let mut open: Vec<NodeId> = (0..self.arcs.len())
