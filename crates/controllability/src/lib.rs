@@ -4,7 +4,7 @@
 //! Planner, executive and reviews share this one reading; whether a network is controllable is `stnu`'s to say. The
 //! checker of plans has a reading of its own.
 
-use exact::{Bound, Overflow, Scale};
+use exact::{Overflow, Scale};
 use rmpl::program::Controllability;
 use stnu::{Conflict, EdgeId, Link, LinkId, Part, PointId, StrongVerdict, Undecided, Verdict};
 use tpn::{Arc, ArcId, Network, NodeId, Precedence};
@@ -83,7 +83,7 @@ pub fn plan_network(
         is_selected[precedence.later.index()] = true;
     }
     let mut first: Vec<usize> = (0..network.nodes.len()).collect();
-    for (_, arc) in arcs().filter(|(_, arc)| is_tie(arc)) {
+    for (_, arc) in arcs().filter(|(_, arc)| arc.is_tie()) {
         let (one, other) = (first_of(&mut first, arc.from.index()), first_of(&mut first, arc.to.index()));
         first[one.max(other)] = one.min(other);
     }
@@ -120,11 +120,6 @@ pub fn plan_network(
         )?;
     }
     Ok(made)
-}
-
-/// Whether an arc says that two events happen at one instant, and nothing else (SPEC 13.1).
-fn is_tie(arc: &Arc) -> bool {
-    arc.lower.is_zero() && arc.upper == Bound::ZERO && !arc.is_contingent
 }
 
 /// The first of the events that happen at one instant with an event.

@@ -69,9 +69,7 @@ impl PlanNetwork {
                 nodes.push(NodeId::from_index(index));
             }
         }
-        let uppers = network.arcs.iter().filter_map(|arc| arc.upper.finite());
-        let lowers = network.arcs.iter().map(|arc| arc.lower);
-        let scale = Scale::common(lowers.chain(uppers).chain([network.threat_gap]))?;
+        let scale = controllability::scale(network)?;
         let stn = Stn::new(nodes.len());
         let origin = points[network.start.index()].ok_or(PlanError::Inconsistent)?;
         let mut made = Self { stn, points, nodes, scale, origin };

@@ -88,7 +88,8 @@ pub enum Member {
 pub struct Relaxation {
     /// An arc that has the bound; all arcs made from the same text change with it.
     pub arc: ArcId,
-    /// Whether the least duration shrinks; otherwise the greatest one grows.
+    /// Whether the least duration changes; otherwise the greatest one. What nature chooses becomes narrower by it, all
+    /// else wider.
     pub is_lower: bool,
     /// The bound as it is.
     pub old: Bound,

@@ -99,7 +99,7 @@ impl Model {
                 to: arc.to,
                 context: None,
                 is_uncertain,
-                is_tie: !arc.is_contingent && arc.lower.is_zero() && arc.upper == Bound::ZERO,
+                is_tie: arc.is_tie(),
             });
         }
         let mut natures_events = network.natures_events(&vec![true; network.arcs.len()]);

@@ -543,6 +543,13 @@ impl Use {
     }
 }
 
+impl Arc {
+    /// Whether it keeps its events at one instant, so that what is nature's at one is nature's at the other (SPEC 13.1).
+    pub fn is_tie(&self) -> bool {
+        self.lower.is_zero() && self.upper == Bound::ZERO && !self.is_contingent
+    }
+}
+
 impl Label {
     /// What it does, as its name says: `Ask`, `Tell`, `Set` or `Init`.
     pub const fn verb(&self) -> &'static str {
@@ -627,8 +634,7 @@ impl Network {
             let node = &self.nodes[node.index()];
             for &id in node.in_arcs.iter().chain(&node.out_arcs) {
                 let arc = &self.arcs[id.index()];
-                let is_tie = arc.lower.is_zero() && arc.upper == Bound::ZERO && !arc.is_contingent;
-                if is_tie && is_selected(id) {
+                if arc.is_tie() && is_selected(id) {
                     open.extend([arc.from, arc.to]);
                 }
             }

@@ -29,7 +29,7 @@ impl CoreHost for Answers {
     }
 }
 
-fn reviewed(source: &str) -> Review {
+fn snapshot(source: &str) -> Arc<Snapshot> {
     let update = Update {
         revision: 1,
         source: source.into(),
@@ -40,7 +40,11 @@ fn reviewed(source: &str) -> Review {
     };
     let mut answers = Answers::default();
     Core::default().handle(Request::Update(update), &mut answers);
-    review(&answers.0.expect("an update is always answered"), &Goal::Default, 0, &mut || false)
+    answers.0.expect("an update is always answered")
+}
+
+fn reviewed(source: &str) -> Review {
+    review(&snapshot(source), &Goal::Default, 0, &mut || false)
 }
 
 fn range(least: i64, greatest: i64) -> TimeRange {
@@ -251,32 +255,38 @@ fn states_and_resources_are_reviewed_with_their_margins() {
     );
 }
 
+/// The review of a mission's plan, had the checker said this of it.
+fn reviewed_with(source: &str, verdict: Option<verify::Verdict>) -> Review {
+    let snapshot = snapshot(source);
+    let planning = snapshot.planning.as_deref().expect("it was planned").clone();
+    let planning = crate::Planning { verdict, ..planning };
+    let changed = Snapshot { planning: Some(Arc::new(planning)), ..(*snapshot).clone() };
+    review(&changed, &Goal::Default, 0, &mut || false)
+}
+
+fn refused() -> verify::Verdict {
+    verify::Verdict { valid: false, violations: Vec::new() }
+}
+
 #[test]
 fn nothing_about_states_and_resources_has_passed_on_the_planner_s_word() {
-    let update = Update {
-        revision: 1,
-        source: LASTING.into(),
-        goal: Goal::Default,
-        search: SearchKind::default(),
-        seed: 0,
-        trace: false,
-    };
-    let mut answers = Answers::default();
-    Core::default().handle(Request::Update(update), &mut answers);
-    let snapshot = answers.0.expect("an update is always answered");
-    let with_verdict = |verdict: Option<verify::Verdict>| {
-        let planning = snapshot.planning.as_deref().expect("it was planned").clone();
-        let planning = crate::Planning { verdict, ..planning };
-        let changed = Snapshot { planning: Some(Arc::new(planning)), ..(*snapshot).clone() };
-        review(&changed, &Goal::Default, 0, &mut || false)
-    };
-    let refused = verify::Verdict { valid: false, violations: Vec::new() };
-    for (verdict, status) in [(None, Status::Attention), (Some(refused), Status::Failed)] {
-        let review = with_verdict(verdict);
+    for (verdict, status) in [(None, Status::Attention), (Some(refused()), Status::Failed)] {
+        let review = reviewed_with(LASTING, verdict);
         for section in [Section::States, Section::Resources, Section::CausalLinks] {
             let lines = review.lines(section);
             assert!(!lines.is_empty() && lines.iter().all(|line| line.status == status), "{lines:?}");
         }
+    }
+}
+
+#[test]
+fn that_a_plan_withstands_nature_has_not_passed_on_the_planner_s_word() {
+    let source = "primitive Drive() contingent [20,40]; scenario S[0,60] = { Drive(); delay }";
+    for (verdict, status) in [(None, Status::Attention), (Some(refused()), Status::Failed)] {
+        let review = reviewed_with(source, verdict);
+        let line = review.plan.iter().find(|line| line.names == ["Drive#1"]).expect("nature chooses");
+        assert_eq!(line.status, status, "{line:?}");
+        assert!(line.text.contains("is not confirmed"), "{line:?}");
     }
 }
 

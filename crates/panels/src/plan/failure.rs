@@ -1,7 +1,7 @@
 //! Why there is no plan: a reason per group of choices, and the smallest changes that would give one.
 
 use egui::{Frame, Margin, RichText, Stroke, Ui};
-use kirk::{FailureKind, Reason, Status};
+use kirk::{FailureKind, GAP_LABEL, Reason, Status};
 use mission::Planning;
 use text_editing::EditKind;
 use theme::icon::{self, Icon};
@@ -47,11 +47,14 @@ pub(crate) fn show(
     }
     section(ui, context, "What would give a plan", "each change alone, the smallest first");
     let source = context.snapshot.map(|snapshot| snapshot.source.as_ref()).unwrap_or_default();
-    if let Some(fix) = failure.gap_fix(source) {
+    if failure.is_of_gap {
         ui.horizontal(|ui| {
             icon::label(ui, Icon::Fix, tokens.accent);
-            let button = ui.add_enabled(!context.is_stale, egui::Button::new(&fix.label).wrap());
-            if button.accessible_name(format!("Fix: {}", fix.label)).clicked() {
+            let button = ui.add_enabled(!context.is_stale, egui::Button::new(GAP_LABEL).wrap());
+            // The fix reads the whole text: only once it is wanted.
+            if button.accessible_name(format!("Fix: {GAP_LABEL}")).clicked()
+                && let Some(fix) = failure.gap_fix(source)
+            {
                 commands.send(Command::Edit { edits: fix.edits, kind: EditKind::Single });
             }
         });
