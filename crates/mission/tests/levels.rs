@@ -1,38 +1,25 @@
 //! States and levels in simulation (SPEC 10, 11, 15): metres that are really driven count, and what the world changes is
 //! followed from the text of a mission to the record of its run.
 
-use std::sync::Arc;
+mod support;
 
 use exact::{Rational, Time};
 use executive::{Disturbance, Ending, Happening, Script};
+use mission::Goal;
 use mission::execution::{self, Execution};
-use mission::planning::{self, Problem};
 use mission::programs::Programs;
-use mission::{Goal, Grounds, Paths};
 use nalgebra::distance;
+use support::Mission;
 
 /// Executes a mission's plan.
 fn run(source: &str, disturbances: &[Disturbance]) -> Execution {
-    let parse = rmpl::parse(source);
-    let program = parse.program();
-    let mut diagnostics = parse.diagnostics();
-    let network = mission::compile(&program, &Goal::Default, &mut diagnostics);
-    let network = Arc::new(network.unwrap_or_else(|| panic!("{diagnostics:?}")));
-    let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
-    let (ground, _) = grounds.resolve(&program.world);
-    let problem = Problem {
-        network: &network,
-        program: &program,
-        ground: ground.as_ref().map(|(key, map)| (key, map)),
-        options: kirk::Options::default(),
-        seed: 1,
-        facts: None,
-    };
-    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
     let script = Script { disturbances: disturbances.to_vec(), ..Script::default() };
-    let ran = execution::execute(&problem, &planned, &script, &mut grounds, &mut paths);
-    let ran = ran.expect("there is a plan").expect("its times fit");
-    Execution::new(1, script, &program, &planned, ran)
+    let mission = Mission::read(source);
+    mission.with_plan((kirk::Options::default(), 1), |problem, planned, grounds, paths| {
+        let ran = execution::execute(problem, &planned, &script, grounds, paths);
+        let ran = ran.expect("there is a plan").expect("its times fit");
+        Execution::new(1, script.clone(), &mission.program, &planned, ran)
+    })
 }
 
 fn record(execution: &Execution) -> Vec<(f64, String)> {

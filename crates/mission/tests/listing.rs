@@ -1,11 +1,11 @@
 //! Several plans of a mission that moves vehicles (SPEC 10.3, 12): each one that is listed can be driven, from where its
 //! movements start, and what cannot be is left out with the reason.
 
-use std::sync::Arc;
+mod support;
 
 use kirk::{Options, Status};
-use mission::planning::{self, Planned, Problem};
-use mission::{Goal, Grounds, Paths};
+use mission::planning::Planned;
+use support::Mission;
 use tpn::{Choice, Plan};
 
 const WORLD: &str = "terrain \"tai-plain\" cell 0.6 origin (0, 0);
@@ -24,23 +24,7 @@ const B_C: f64 = 35.36;
 
 fn plan(declarations: &str, options: Options) -> Planned {
     let source = format!("{WORLD}{declarations}");
-    let parse = rmpl::parse(&source);
-    let program = parse.program();
-    let mut diagnostics = parse.diagnostics();
-    let network = mission::compile(&program, &Goal::Default, &mut diagnostics);
-    let network = Arc::new(network.unwrap_or_else(|| panic!("{diagnostics:?}")));
-    let mut grounds = Grounds::default();
-    let (ground, found) = grounds.resolve(&program.world);
-    assert!(found.is_empty(), "{found:?}");
-    let problem = Problem {
-        network: &network,
-        program: &program,
-        ground: ground.as_ref().map(|(key, map)| (key, map)),
-        options,
-        seed: 0,
-        facts: None,
-    };
-    planning::plan(&problem, &mut grounds, &mut Paths::default(), &mut || false)
+    Mission::read(&source).with_plan((options, 0), |_, planned, _, _| planned)
 }
 
 fn all() -> Options {

@@ -1,10 +1,10 @@
 //! Vehicles that would meet (SPEC 10.3): one traverse is put before the other where the mission's bounds allow it, and the
 //! author is told where they do not.
 
-use std::sync::Arc;
+mod support;
 
-use mission::planning::{self, Planned, Problem};
-use mission::{Goal, Grounds, Paths};
+use mission::planning::Planned;
+use support::Mission;
 
 /// One that stands where Rover1 drives to the east.
 const ROVER3: &str =
@@ -21,22 +21,7 @@ fn plan(scenario: &str) -> Planned {
         primitive Drive2(to) moves Rover2 speed (0.1, 0.5);
         {scenario}"
     );
-    let parse = rmpl::parse(&source);
-    let program = parse.program();
-    let mut diagnostics = parse.diagnostics();
-    let network = mission::compile(&program, &Goal::Default, &mut diagnostics);
-    let network = Arc::new(network.unwrap_or_else(|| panic!("{diagnostics:?}")));
-    let mut grounds = Grounds::default();
-    let (ground, _) = grounds.resolve(&program.world);
-    let problem = Problem {
-        network: &network,
-        program: &program,
-        ground: ground.as_ref().map(|(key, map)| (key, map)),
-        options: kirk::Options::default(),
-        seed: 1,
-        facts: None,
-    };
-    let planned = planning::plan(&problem, &mut grounds, &mut Paths::default(), &mut || false);
+    let planned = Mission::read(&source).with_plan((kirk::Options::default(), 1), |_, planned, _, _| planned);
     let verdict = planned.planning.verdict.as_ref().expect("it has a plan");
     assert!(verdict.valid, "{verdict:?}");
     planned

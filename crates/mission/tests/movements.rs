@@ -1,12 +1,12 @@
 //! Vehicles in one place at a time (SPEC 10.3): the order of sites is found, each path starts where the vehicle is, and
 //! what a path takes of a resource counts.
 
-use std::sync::Arc;
+mod support;
 
 use exact::Time;
-use mission::planning::{self, Planned, Problem};
-use mission::{Goal, Grounds, Paths};
+use mission::planning::Planned;
 use nalgebra::{Point2, distance};
+use support::Mission;
 use tpn::Levels;
 
 const WORLD: &str = "terrain \"tai-plain\" cell 0.6 origin (0, 0);
@@ -17,23 +17,7 @@ const WORLD: &str = "terrain \"tai-plain\" cell 0.6 origin (0, 0);
 
 fn plan(declarations: &str) -> Planned {
     let source = format!("{WORLD}{declarations}");
-    let parse = rmpl::parse(&source);
-    let program = parse.program();
-    let mut diagnostics = parse.diagnostics();
-    let network = mission::compile(&program, &Goal::Default, &mut diagnostics);
-    let network = Arc::new(network.unwrap_or_else(|| panic!("{diagnostics:?}")));
-    let mut grounds = Grounds::default();
-    let (ground, found) = grounds.resolve(&program.world);
-    assert!(found.is_empty(), "{found:?}");
-    let problem = Problem {
-        network: &network,
-        program: &program,
-        ground: ground.as_ref().map(|(key, map)| (key, map)),
-        options: kirk::Options::default(),
-        seed: 0,
-        facts: None,
-    };
-    planning::plan(&problem, &mut grounds, &mut Paths::default(), &mut || false)
+    Mission::read(&source).with_plan((kirk::Options::default(), 0), |_, planned, _, _| planned)
 }
 
 /// The first and the last point of each traverse, in the order of the plan, with their times.

@@ -1,62 +1,35 @@
 //! What nature chooses, in simulation and in many runs (SPEC 13.2): within its ranges a controllable plan never fails.
 
-use std::sync::Arc;
+mod support;
 
 use exact::Time;
 use executive::{Disturbance, Ending, Happening, Script};
 use mission::execution::{self, Ran};
-use mission::planning::{self, Planned, Problem};
 use mission::robustness::Distribution;
 use mission::sampling::Sampler;
-use mission::{Goal, Grounds, Paths, RobustnessSettings, Tally, Uncertainty};
-use rmpl::program::Program;
-use tpn::Network;
+use mission::{RobustnessSettings, Tally, Uncertainty};
+use support::Mission;
 
-struct Mission {
-    program: Program,
-    network: Arc<Network>,
+/// What the tests do with a mission.
+trait Runs {
+    /// Executes it, with what nature chooses drawn by the seed.
+    fn execute(&self, seed: u64, script: &Script) -> Ran;
+    /// Executes it so many times.
+    fn sample(&self, runs: u64, uncertainty: &Uncertainty) -> Tally;
 }
 
-impl Mission {
-    fn read(source: &str) -> Self {
-        let parse = rmpl::parse(source);
-        let program = parse.program();
-        let mut found = parse.diagnostics();
-        let network = mission::compile(&program, &Goal::Default, &mut found);
-        Self { network: Arc::new(network.unwrap_or_else(|| panic!("{found:?}"))), program }
-    }
-
-    /// Works with a plan, on the mission's map if it is to be driven.
-    fn with_plan<T>(
-        &self,
-        seed: u64,
-        work: impl FnOnce(&Problem<'_>, &Planned, &mut Grounds, &mut Paths) -> T,
-    ) -> T {
-        let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
-        let (ground, _) = grounds.resolve(&self.program.world);
-        let problem = Problem {
-            network: &self.network,
-            program: &self.program,
-            ground: ground.as_ref().map(|(key, map)| (key, map)),
-            options: kirk::Options::default(),
-            seed,
-            facts: None,
-        };
-        let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
-        work(&problem, &planned, &mut grounds, &mut paths)
-    }
-
+impl Runs for Mission {
     fn execute(&self, seed: u64, script: &Script) -> Ran {
-        self.with_plan(seed, |problem, planned, grounds, paths| {
-            let ran = execution::execute(problem, planned, script, grounds, paths);
+        self.with_plan((kirk::Options::default(), seed), |problem, planned, grounds, paths| {
+            let ran = execution::execute(problem, &planned, script, grounds, paths);
             ran.expect("there is a plan").expect("its times fit")
         })
     }
 
     fn sample(&self, runs: u64, uncertainty: &Uncertainty) -> Tally {
         let settings = RobustnessSettings { runs, seed: 3, uncertainty: uncertainty.clone() };
-        self.with_plan(0, |problem, planned, grounds, paths| {
-            let sampler = Sampler::new(&self.program, planned, uncertainty);
+        self.with_plan((kirk::Options::default(), 0), |problem, planned, grounds, paths| {
+            let sampler = Sampler::new(&self.program, &planned, uncertainty);
             let sampler = sampler.expect("there is a plan").expect("its times fit");
             let mut tally = Tally::default();
             for number in 0..runs {

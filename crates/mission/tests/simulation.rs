@@ -1,40 +1,27 @@
 //! Vehicles that drive their traverses in simulation: past what the map does not show, late where that costs time, and
 //! with consequences for the plan.
 
-use std::sync::Arc;
+mod support;
 
 use exact::Time;
 use executive::{Disturbance, Ending, Happening, Script};
+use mission::SimulatedDrive;
 use mission::execution::{self, Execution};
-use mission::planning::{self, Problem};
-use mission::{Goal, Grounds, Paths, SimulatedDrive};
 use nalgebra::{Point2, distance};
+use support::Mission;
 
 const ENROUTE: &str = include_str!("../../../assets/missions/enroute.rmpl");
 const DETOUR: &str = include_str!("../../../assets/missions/detour.rmpl");
 
 /// Executes a mission's plan.
 fn run(source: &str, disturbances: &[Disturbance]) -> Execution {
-    let parse = rmpl::parse(source);
-    let program = parse.program();
-    let mut diagnostics = parse.diagnostics();
-    let network = mission::compile(&program, &Goal::Default, &mut diagnostics);
-    let network = Arc::new(network.unwrap_or_else(|| panic!("{diagnostics:?}")));
-    let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
-    let (ground, _) = grounds.resolve(&program.world);
-    let problem = Problem {
-        network: &network,
-        program: &program,
-        ground: ground.as_ref().map(|(key, map)| (key, map)),
-        options: kirk::Options::default(),
-        seed: 1,
-        facts: None,
-    };
-    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
     let script = Script { disturbances: disturbances.to_vec(), ..Script::default() };
-    let ran = execution::execute(&problem, &planned, &script, &mut grounds, &mut paths);
-    let ran = ran.expect("there is a plan").expect("its times fit");
-    Execution::new(1, script, &program, &planned, ran)
+    let mission = Mission::read(source);
+    mission.with_plan((kirk::Options::default(), 1), |problem, planned, grounds, paths| {
+        let ran = execution::execute(problem, &planned, &script, grounds, paths);
+        let ran = ran.expect("there is a plan").expect("its times fit");
+        Execution::new(1, script.clone(), &mission.program, &planned, ran)
+    })
 }
 
 fn minutes(time: Time) -> f64 {

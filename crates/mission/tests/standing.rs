@@ -1,10 +1,10 @@
 //! Vehicles that share a place (SPEC 10.3): each has a place of its own there, at the start and wherever they meet.
 
-use std::sync::Arc;
+mod support;
 
-use mission::planning::{self, Planned, Problem};
-use mission::{Goal, Grounds, Paths};
+use mission::planning::Planned;
 use nalgebra::{Point2, distance};
+use support::Mission;
 
 const WORLD: &str = "option time_unit = second;
     location BASE (30, 30); location EAST (80, 30); location WEST (10, 60);
@@ -16,22 +16,7 @@ const APART_M: f64 = 0.515 + 0.515 + 1.0;
 
 fn plan(rest: &str) -> Planned {
     let source = format!("{WORLD}{rest}");
-    let parse = rmpl::parse(&source);
-    let program = parse.program();
-    let mut diagnostics = parse.diagnostics();
-    let network = mission::compile(&program, &Goal::Default, &mut diagnostics);
-    let network = Arc::new(network.unwrap_or_else(|| panic!("{diagnostics:?}")));
-    let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
-    let (ground, _) = grounds.resolve(&program.world);
-    let problem = Problem {
-        network: &network,
-        program: &program,
-        ground: ground.as_ref().map(|(key, map)| (key, map)),
-        options: kirk::Options::default(),
-        seed: 1,
-        facts: None,
-    };
-    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
+    let planned = Mission::read(&source).with_plan((kirk::Options::default(), 1), |_, planned, _, _| planned);
     let failure = &planned.planning.outcome.failure;
     let verdict = planned.planning.verdict.as_ref().unwrap_or_else(|| panic!("{failure:?}"));
     assert!(verdict.valid, "{verdict:?}");

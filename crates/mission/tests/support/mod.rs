@@ -1,0 +1,46 @@
+//! From a text to a plan with its paths, as the tests of missions need it.
+
+use std::sync::Arc;
+
+use kirk::Options;
+use mission::planning::{self, Planned, Problem};
+use mission::{Goal, Grounds, Paths};
+use rmpl::program::Program;
+use tpn::Network;
+
+/// A mission without errors.
+pub(crate) struct Mission {
+    pub(crate) program: Program,
+    pub(crate) network: Arc<Network>,
+}
+
+impl Mission {
+    pub(crate) fn read(source: &str) -> Self {
+        let parse = rmpl::parse(source);
+        let program = parse.program();
+        let mut diagnostics = parse.diagnostics();
+        let network = mission::compile(&program, &Goal::Default, &mut diagnostics);
+        Self { network: Arc::new(network.unwrap_or_else(|| panic!("{diagnostics:?}"))), program }
+    }
+
+    /// Works with the mission's plan, on its map.
+    pub(crate) fn with_plan<T>(
+        &self,
+        (options, seed): (Options, u64),
+        work: impl FnOnce(&Problem<'_>, Planned, &mut Grounds, &mut Paths) -> T,
+    ) -> T {
+        let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
+        let (ground, found) = grounds.resolve(&self.program.world);
+        assert!(found.is_empty(), "{found:?}");
+        let problem = Problem {
+            network: &self.network,
+            program: &self.program,
+            ground: ground.as_ref().map(|(key, map)| (key, map)),
+            options,
+            seed,
+            facts: None,
+        };
+        let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
+        work(&problem, planned, &mut grounds, &mut paths)
+    }
+}
