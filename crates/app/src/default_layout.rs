@@ -44,7 +44,7 @@ fn wide_layout(workspace: Workspace, tiles: &mut Tiles<PanelKind>) -> TileId {
     use LinearDir::{Horizontal, Vertical};
     use PanelKind::{
         Automaton, Compare, Distances, Editor, Execution, Network, Outline, Plan, Problems, Review,
-        Robustness, Search, Terrain, Timeline,
+        Robustness, Search, Strategy, Terrain, Timeline,
     };
     match workspace {
         Workspace::Author => {
@@ -61,7 +61,7 @@ fn wide_layout(workspace: Workspace, tiles: &mut Tiles<PanelKind>) -> TileId {
         }
         Workspace::Teach => {
             let text = tabs(tiles, &[Editor, Outline]);
-            let plan = tabs(tiles, &[Plan, Problems]);
+            let plan = tabs(tiles, &[Plan, Strategy, Problems]);
             let left = split(tiles, Vertical, &[(text, 0.58), (plan, 0.42)]);
             let network = tabs(tiles, &[Network, Distances, Terrain]);
             let timeline = tabs(tiles, &[Timeline]);
@@ -96,7 +96,7 @@ fn narrow_layout(workspace: Workspace, tiles: &mut Tiles<PanelKind>) -> TileId {
     use LinearDir::{Horizontal, Vertical};
     use PanelKind::{
         Automaton, Compare, Distances, Editor, Execution, Network, Outline, Plan, Problems, Review,
-        Robustness, Search, Terrain, Timeline,
+        Robustness, Search, Strategy, Terrain, Timeline,
     };
     let (left, right, share) = match workspace {
         Workspace::Author => {
@@ -108,7 +108,7 @@ fn narrow_layout(workspace: Workspace, tiles: &mut Tiles<PanelKind>) -> TileId {
         }
         Workspace::Teach => {
             let network = tabs(tiles, &[Network, Distances, Timeline, Terrain]);
-            let text = tabs(tiles, &[Editor, Plan, Problems]);
+            let text = tabs(tiles, &[Editor, Plan, Strategy, Problems]);
             let left = split(tiles, Vertical, &[(network, 0.58), (text, 0.42)]);
             let search = tabs(tiles, &[Search]);
             (left, search, 0.52)

@@ -4,10 +4,14 @@
 //! Planner, executive and reviews share this one reading; whether a network is controllable is `stnu`'s to say. The
 //! checker of plans has a reading of its own.
 
+mod failing_run;
+
 use exact::{Overflow, Scale};
 use rmpl::program::Controllability;
 use stnu::{Conflict, EdgeId, Link, LinkId, Part, PointId, StrongVerdict, Undecided, Verdict};
 use tpn::{Arc, ArcId, Network, NodeId, Precedence};
+
+pub use failing_run::{Broken, FailingRun, RunEvent, failing_run};
 
 /// One side of an arc's bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

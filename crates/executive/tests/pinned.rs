@@ -47,7 +47,7 @@ fn moving_pinned_events_leaves_the_windows_of_the_plan_with_the_pins_as_constrai
                 let time = pinned.move_to(wanted).expect("it is grabbed");
                 assert!(time >= window.earliest, "seed {seed}");
                 assert!(window.latest.finite().is_none_or(|latest| time <= latest), "seed {seed}");
-                let pins: Vec<_> = pinned.pins().collect();
+                let pins = pinned.pins();
                 assert_eq!(
                     pinned.windows(nodes),
                     recomputed(&network, &plan, &pins),
@@ -83,7 +83,7 @@ fn a_grabbed_event_can_be_put_back_where_it_was() {
     pinned.grab(start);
     assert_eq!(pinned.move_to(Time::from(-3)), Some(Time::ZERO));
     assert!(pinned.put_back());
-    assert_eq!(pinned.pins().collect::<Vec<_>>(), [(start, Time::from(12))]);
+    assert_eq!(pinned.pins(), [(start, Time::from(12))]);
     assert_eq!(pinned.windows(network.nodes.len())[end.index()], Some(window));
     assert!(!pinned.put_back(), "nothing is grabbed any more");
     pinned.release(start);

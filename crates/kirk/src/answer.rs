@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 
 use tpn::{Network, Plan};
 
+use crate::failure::{Failure, FailureKind, Reason};
 use crate::model::Model;
+use crate::nature_run::nature_run;
 use crate::options::{Options, Outcome, Search, Stats, Status, Termination, Unlimited};
 use crate::overflow::TimeOverflow;
 use crate::search::{Choices, Engine, Gaps, Halt, Setup};
@@ -40,10 +42,29 @@ pub(crate) fn answer(
         if options.relax {
             failure.relaxations = relax::relaxations(network, model, &failure, termination)?;
             failure.is_of_gap = relax::has_plan_without_gap(network, model, options, termination)?;
+            add_failing_run(&mut failure, network, options, termination);
         }
         outcome.failure = Some(failure);
     }
     Ok((outcome, has_doubts))
+}
+
+/// Gives the first of nature's reasons that the run belongs to the run in which it fails.
+fn add_failing_run(
+    failure: &mut Failure,
+    network: &Network,
+    options: &Options,
+    termination: &mut dyn Termination,
+) {
+    let is_natures = |reason: &&mut Reason| reason.kind == FailureKind::Controllability;
+    if failure.reasons.iter_mut().any(|reason| is_natures(&reason))
+        && let Some((choices, run)) = nature_run(network, options.threat_gap, termination)
+    {
+        let is_its = |reason: &&mut Reason| reason.choices.iter().all(|choice| choices.contains(choice));
+        if let Some(reason) = failure.reasons.iter_mut().filter(is_natures).find(is_its) {
+            reason.failing_run = Some(run);
+        }
+    }
 }
 
 fn searched(

@@ -154,7 +154,8 @@ fn reason(
         wording::Told { network, kind: failure.kind, choices: &choices, conflict: &members, cycle: &cycle };
     let message = told.message();
     let spans = spans(network, &members, &cycle);
-    Ok(Reason { message, spans, choices, kind: failure.kind, conflict: members, cycle, is_minimal })
+    let kind = failure.kind;
+    Ok(Reason { message, spans, choices, kind, conflict: members, cycle, is_minimal, failing_run: None })
 }
 
 /// The places of a conflict: its conditions, then the bounds that take time.

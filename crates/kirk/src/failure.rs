@@ -1,11 +1,13 @@
 //! Why there is no plan, as data (SPEC 5.4, failure report).
 
+use controllability::FailingRun;
 use exact::{Bound, Time};
 use rmpl::{Fix, Span};
 use serde::{Deserialize, Serialize};
-use tpn::{ArcId, Choice, LabelId, UseId};
+use tpn::{ArcId, Choice, LabelId, Network, UseId};
 
 use crate::trace::{Constraint, CycleMember};
+use crate::wording;
 
 /// Why a mission has no plan.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -69,6 +71,16 @@ pub struct Reason {
     pub message: String,
     /// The places in the text that the reason is about, the most telling first.
     pub spans: Vec<Span>,
+    /// The run in which nature breaks the plan that there would be if the executive chose all durations.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failing_run: Option<FailingRun>,
+}
+
+impl Reason {
+    /// The run in which nature makes the mission fail, a line for each thing that happens; none without one.
+    pub fn failing_run_in_words(&self, network: &Network) -> Vec<String> {
+        self.failing_run.as_ref().map_or_else(Vec::new, |run| wording::failing_run(network, run))
+    }
 }
 
 /// A part of a conflict.

@@ -17,6 +17,7 @@ mod leaf;
 mod levels;
 mod lookahead;
 mod model;
+mod nature_run;
 mod nesting;
 mod options;
 mod overflow;

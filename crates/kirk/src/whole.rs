@@ -59,6 +59,7 @@ pub(crate) fn reason(network: &Network, model: &Model, effort: &mut Effort<'_>) 
         conflict: members,
         cycle: Vec::new(),
         is_minimal,
+        failing_run: None,
     })
 }
 

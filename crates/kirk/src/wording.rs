@@ -1,6 +1,7 @@
 //! Reasons in the author's terms.
 
-use exact::{Rational, Time};
+use controllability::{Broken, FailingRun, RunEvent};
+use exact::{Bound, Rational, Time};
 use rmpl::program::{Change, LabelMode};
 use tpn::{Arc, ArcId, ArcKind, Choice, LabelId, Network, OccurrenceKind, Supply, Use};
 
@@ -331,6 +332,35 @@ pub(crate) fn is_telling(network: &Network, member: &CycleMember) -> bool {
     let is_structural = is_structural(arc.kind);
     // A duration of zero at least says nothing; one of zero at most does, where it is written.
     !is_structural && (matches!(member.constraint, Constraint::Upper(_)) || member.weight != Time::ZERO)
+}
+
+/// A run in which nature makes a mission fail, a line for each thing that happens.
+pub(crate) fn failing_run(network: &Network, run: &FailingRun) -> Vec<String> {
+    let event = |event: &RunEvent| {
+        let time = Bound::Finite(event.time);
+        if let Some(natures) = event.natures {
+            let name = arc_name(network, &network.arcs[natures.index()]);
+            return Some(format!("at {time} nature ends {name}"));
+        }
+        let is_named = !network.nodes[event.event.index()].events.is_empty();
+        is_named.then(|| format!("at {time} {}", tpn::plan_json::node_name(network, event.event)))
+    };
+    let broken = match run.broken {
+        Broken::Lower(arc) => {
+            let arc = &network.arcs[arc.index()];
+            format!("{} needs at least {}", arc_name(network, arc), Bound::Finite(arc.lower))
+        }
+        Broken::Upper(arc) => {
+            let arc = &network.arcs[arc.index()];
+            format!("{} {} {}", arc_name(network, arc), allowing_verb(network, arc), arc.upper)
+        }
+        Broken::Order { earlier, later } => {
+            let [earlier, later] = [earlier, later].map(|node| tpn::plan_json::node_name(network, node));
+            format!("{later} must not come before {earlier}")
+        }
+    };
+    let broken = format!("at {} it has failed: {broken}", Bound::Finite(run.at));
+    run.events.iter().filter_map(event).chain([broken]).collect()
 }
 
 /// Whether the bounds of an arc are rules of the language, which no author wrote.

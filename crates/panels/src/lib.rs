@@ -17,6 +17,7 @@ mod registry;
 mod review;
 mod robustness;
 mod search;
+mod strategy;
 mod terrain;
 mod timeline;
 

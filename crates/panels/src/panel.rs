@@ -55,6 +55,12 @@ impl Context<'_> {
         Some(Focus::of(view.recording.network(), view.recording.trace(), &view.step))
     }
 
+    /// The reason why there is no plan that is looked at, if there is none and the text is the one that failed.
+    pub fn reason(&self) -> Option<&kirk::Reason> {
+        let planning = self.snapshot.filter(|_| !self.is_stale)?.planning.as_ref()?;
+        planning.outcome.failure.as_ref()?.reasons.get(self.state.reason)
+    }
+
     /// What `panel` is to do with its view, if anything; it is the panel's to do now.
     pub fn view_action(&self, panel: PanelKind) -> Option<ViewAction> {
         self.take_last(|effect| match effect {

@@ -48,6 +48,7 @@ fn create(kind: PanelKind) -> Box<dyn Panel> {
         PanelKind::Terrain => Box::new(crate::terrain::TerrainPanel::default()),
         PanelKind::Search => Box::new(crate::search::SearchPanel::default()),
         PanelKind::Distances => Box::new(crate::distances::DistancesPanel::default()),
+        PanelKind::Strategy => Box::new(crate::strategy::StrategyPanel::default()),
         PanelKind::Automaton => Box::new(crate::automaton::AutomatonPanel::default()),
         PanelKind::Review => Box::new(crate::review::ReviewPanel::default()),
         PanelKind::Compare => Box::new(crate::compare::ComparePanel::default()),

@@ -139,7 +139,17 @@ pub fn failing_run(network: &Network, stop: Stop<'_>) -> Result<Option<FailingRu
         let free = (0..times.len() as u32)
             .map(PointId)
             .filter(|&point| times[point.index()].is_none() && network.link_ending_at(point).is_none());
-        let next = free.map(|point| (earliest[point.index()], point)).min();
+        let is_pending =
+            |link: &Link| times[link.activation.index()].is_some() && times[link.end.index()].is_none();
+        // What waits for nature waits; constraints that wait for each other have to be broken somewhere.
+        let (at, enabled) = (
+            |point: PointId| (earliest[point.index()], point),
+            |point: &PointId| is_enabled(network, &times, *point),
+        );
+        let next = match free.clone().filter(enabled).map(at).min() {
+            None if !network.links().iter().any(is_pending) => free.map(at).min(),
+            next => next,
+        };
         let intention = next.map(|(at, point)| Intention { points: vec![point], at });
         if let Some((link, at)) = respond(network, &times, now, intention.as_ref(), stop)? {
             let end = network.link(link).end;
@@ -154,6 +164,16 @@ pub fn failing_run(network: &Network, stop: Stop<'_>) -> Result<Option<FailingRu
             events.push((point, at));
         }
     }
+}
+
+/// Whether all that must come before a point has; of points that come at one instant, none waits for the other.
+fn is_enabled(network: &Network, times: &[Option<i64>], point: PointId) -> bool {
+    let waits = |from: PointId, to: PointId| {
+        let mut edges = network.edges().iter().filter(|edge| edge.from == from && edge.to == to);
+        edges.any(|edge| edge.weight <= 0)
+    };
+    let mut before = network.edges().iter().filter(|edge| edge.from == point && edge.weight <= 0);
+    before.all(|edge| times[edge.to.index()].is_some() || (edge.weight == 0 && waits(edge.to, point)))
 }
 
 /// A constraint that is broken at `now`.

@@ -24,6 +24,8 @@ pub enum PanelKind {
     Search,
     /// The distances between the events of the plan, or of the step that is looked at.
     Distances,
+    /// A run against nature, whose durations are chosen one by one.
+    Strategy,
     /// The run of a control program.
     Automaton,
     /// The checklist of the review, comments and sign-off.
@@ -38,7 +40,7 @@ pub enum PanelKind {
 
 impl PanelKind {
     /// All of them, as the menu lists them.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Editor,
         Self::Outline,
         Self::Problems,
@@ -48,6 +50,7 @@ impl PanelKind {
         Self::Terrain,
         Self::Search,
         Self::Distances,
+        Self::Strategy,
         Self::Automaton,
         Self::Review,
         Self::Compare,
@@ -67,6 +70,7 @@ impl PanelKind {
             Self::Terrain => "Terrain",
             Self::Search => "Search",
             Self::Distances => "Distances",
+            Self::Strategy => "Against nature",
             Self::Automaton => "Automaton",
             Self::Review => "Review",
             Self::Compare => "Compare",
@@ -87,6 +91,7 @@ impl PanelKind {
             Self::Terrain => "terrain",
             Self::Search => "search",
             Self::Distances => "distances",
+            Self::Strategy => "strategy",
             Self::Automaton => "automaton",
             Self::Review => "review",
             Self::Compare => "compare",

@@ -21,7 +21,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("terrain", &[]),
     ("tpn", &["rmpl"]),
     ("controllability", &["tpn", "stnu"]),
-    ("kirk", &["tpn", "stn", "stnu"]),
+    ("kirk", &["tpn", "stn", "stnu", "controllability"]),
     ("verify", &["tpn"]),
     ("motion", &["terrain"]),
     ("hca", &["rmpl"]),

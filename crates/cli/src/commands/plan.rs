@@ -197,7 +197,7 @@ fn outcome_json(planned: &Planned, loaded: &Loaded, [compile_millis, plan_millis
         "status": status_name(outcome.status),
         "plans": plans,
         "verdict": planned.planning.verdict,
-        "failure": outcome.failure.as_ref().map(|failure| failure_json(failure, loaded)),
+        "failure": outcome.failure.as_ref().map(|failure| failure_json(failure, loaded, &planned.network)),
         "undrivable": planned.planning.undrivable.iter().map(|undrivable| json!({
             "activity": planned.network.occurrences[undrivable.occurrence.index()].name,
             "leg": undrivable.leg,
@@ -235,7 +235,7 @@ fn all_plans(planned: &Planned) -> impl Iterator<Item = (&Network, &tpn::Plan)> 
     own.chain(planned.others.iter().map(|listed| (listed.network.as_ref(), &listed.plan)))
 }
 
-fn failure_json(failure: &Failure, loaded: &Loaded) -> Value {
+fn failure_json(failure: &Failure, loaded: &Loaded, network: &Network) -> Value {
     let lines = LineIndex::new(&loaded.source);
     let span_json = |span: &rmpl::Span| {
         let place = lines.line_column(&loaded.source, span.start);
@@ -252,6 +252,7 @@ fn failure_json(failure: &Failure, loaded: &Loaded) -> Value {
                 "message": reason.message,
                 "spans": reason.spans.iter().map(span_json).collect::<Vec<_>>(),
                 "minimal": reason.is_minimal,
+                "run": reason.failing_run_in_words(network),
             })
         })
         .collect();
@@ -310,7 +311,7 @@ fn outcome_text(planned: &Planned, loaded: &Loaded) -> String {
         }
     }
     if let Some(failure) = &outcome.failure {
-        text.push_str(&failure_text(failure, loaded));
+        text.push_str(&failure_text(failure, loaded, &planned.network));
     }
     for undrivable in &planned.planning.undrivable {
         let name = &planned.network.occurrences[undrivable.occurrence.index()].name;
@@ -392,11 +393,14 @@ fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
     text
 }
 
-fn failure_text(failure: &Failure, loaded: &Loaded) -> String {
+fn failure_text(failure: &Failure, loaded: &Loaded, network: &Network) -> String {
     let lines = LineIndex::new(&loaded.source);
     let mut text = String::new();
     for reason in &failure.reasons {
         text.push_str(&format!("{} ({})\n", reason.message, reason.kind.name()));
+        for line in reason.failing_run_in_words(network) {
+            text.push_str(&format!("  {line}\n"));
+        }
         for span in &reason.spans {
             let place = lines.line_column(&loaded.source, span.start);
             let snippet = loaded.source.get(span.range()).unwrap_or("").lines().next().unwrap_or("");

@@ -50,6 +50,7 @@ impl Disturb {
                 let field = DragValue::new(&mut self.amount).range(0.0..=1e6).speed(0.5).max_decimals(1);
                 ui.add(field.suffix(suffix(unit))).labelled_by(name);
             });
+            natures(ui, context, shown, commands);
             for &pending in &all {
                 ui.horizontal(|ui| self.row(ui, shown, pending, commands));
             }
@@ -99,6 +100,18 @@ impl Disturb {
                 });
             }
         });
+    }
+}
+
+/// Whether nature chooses its durations against the plan, where it chooses some.
+fn natures(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
+    if shown.network.arcs.iter().all(|arc| !arc.is_contingent) {
+        return;
+    }
+    let mut is_opposed = context.state.execution.is_opposed();
+    let hint = "Contingent durations are what breaks the plan soonest, where anything can; from the start";
+    if ui.checkbox(&mut is_opposed, "Nature chooses against the plan").on_hover_text(hint).changed() {
+        commands.send(Command::Execution(ExecutionCommand::Oppose(is_opposed)));
     }
 }
 

@@ -24,6 +24,7 @@ use layout::{Item, OverlayCurve, OverlayKind, Progress};
 use mission::Snapshot;
 use tpn::{BlockId, Network, Plan};
 use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::state::search::Focus;
 use workbench::state::settings::NetworkView;
 use workbench::state::{Selection, Status, Views};
 use workbench::{PanelEffect, PanelKind};
@@ -157,7 +158,8 @@ impl NetworkPanel {
         let painter = ui.painter_at(panel);
         let selected = Highlight::of(&context.state.selection, network);
         let hovered = Highlight::of(&context.state.hovered, network);
-        let focus = context.focus();
+        let contradiction = || context.reason().map(|reason| Focus::of_reason(network, reason));
+        let focus = context.focus().or_else(contradiction);
         let marks = options.problems.then(|| marks::Groups::new(panel, &self.view, &self.drawn.marks));
         let marked: Vec<Rect> = marks.iter().flat_map(marks::Groups::rects).collect();
         let scene = Scene {

@@ -36,7 +36,7 @@ pub(crate) fn show(
     }
     let Some(failure) = &planning.outcome.failure else { return };
     for (index, reason) in failure.reasons.iter().enumerate() {
-        ui.push_id(index, |ui| show_reason(ui, context, network, reason, commands));
+        ui.push_id(index, |ui| show_reason(ui, context, network, (index, reason), commands));
     }
     if !failure.is_complete {
         let note = "There are more combinations of choices than can be listed; all of them fail.";
@@ -85,7 +85,7 @@ fn show_reason(
     ui: &mut Ui,
     context: &Context<'_>,
     network: &Network,
-    reason: &Reason,
+    (index, reason): (usize, &Reason),
     commands: &mut CommandSender,
 ) {
     let tokens = context.tokens;
@@ -119,6 +119,7 @@ fn show_reason(
         };
         ui.label(RichText::new(heading).color(tokens.threat));
         ui.label(&reason.message);
+        show_run(ui, context, network, reason);
         if !reason.cycle.is_empty() {
             show_cycle(ui, context, network, reason);
         }
@@ -133,8 +134,28 @@ fn show_reason(
                     commands.send(Command::Editor(EditorCommand::Focus));
                 }
             }
+            let is_shown = context.state.reason == index;
+            let button = egui::Button::selectable(is_shown, RichText::new("On the network").small());
+            let hint = "Marks what contradicts each other on the network";
+            if ui.add(button).on_hover_text(hint).clicked() {
+                commands.send(Command::ShowReason(index));
+            }
         });
     });
+}
+
+/// The run in which nature makes it fail, event by event.
+fn show_run(ui: &mut Ui, context: &Context<'_>, network: &Network, reason: &Reason) {
+    let lines = reason.failing_run_in_words(network);
+    let Some((end, lines)) = lines.split_last() else { return };
+    let tokens = context.tokens;
+    ui.add_space(space::XS);
+    ui.label(theme::strong("The run in which it fails").small());
+    for line in lines {
+        let color = if line.contains(" nature ends ") { tokens.nature } else { tokens.text_muted };
+        ui.label(RichText::new(line).small().color(color));
+    }
+    ui.label(RichText::new(end).small().color(tokens.threat));
 }
 
 /// The contradiction as a sum: the steps of the cycle, which add up to less than zero.

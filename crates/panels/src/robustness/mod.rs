@@ -61,6 +61,7 @@ fn ask(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     if ui.checkbox(&mut is_uniform, text).changed() {
         settings.uncertainty.others = if is_uniform { Others::Uniform } else { Others::Planned };
     }
+    natures(ui, context, &mut settings.uncertainty);
     driving(ui, context, &mut settings.uncertainty);
     conditions(ui, context, &mut settings.uncertainty);
     if settings != chance.settings {
@@ -71,6 +72,18 @@ fn ask(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let text = format!("{} of {} runs", chance.runs_made(), chance.settings.runs);
         ui.add(ProgressBar::new(share).desired_height(16.0).text(text));
     }
+}
+
+/// Whether nature chooses by chance, or against the plan.
+fn natures(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut mission::Uncertainty) {
+    let network = context.state.shown().and_then(|shown| shown.network.as_deref());
+    if network.is_none_or(|network| network.arcs.iter().all(|arc| !arc.is_contingent)) {
+        return;
+    }
+    let text = "Nature chooses against the plan";
+    let hint = "Contingent durations are ends of their ranges, and fail the plan where they can; otherwise they are \
+                drawn from their ranges";
+    ui.checkbox(&mut uncertainty.adversary, text).on_hover_text(hint);
 }
 
 /// Whether vehicles drive, and past how many rocks.

@@ -70,7 +70,14 @@ pub(super) fn show(
         if is_pinned || is_prominent || is_held || response.hovered() || response.has_focus() {
             paint(ui, painting, x, row, is_pinned, is_held || response.hovered() || response.has_focus());
         }
-        let hint = if is_pinned { "Double click releases it." } else { "Drag to see what moves along." };
+        let is_natures = bar.natures.is_some() && side == 1;
+        let hint = match (is_pinned, is_natures) {
+            (true, _) => "Double click releases it.",
+            (false, true) => {
+                "Nature ends it. Drag to choose for nature, and see what the executive does then."
+            }
+            (false, false) => "Drag to see what moves along.",
+        };
         response.on_hover_cursor(CursorIcon::ResizeHorizontal).on_hover_ui_at_pointer(|ui| {
             ui.label(theme::strong(name));
             ui.label(in_words(windows[side], is_pinned));
@@ -202,6 +209,7 @@ fn paint(ui: &Ui, painting: &Painting<'_>, x: f32, row: Rect, is_pinned: bool, i
 /// What the timeline says of the pins: how many there are, or which event is held.
 pub(super) fn summary(context: &Context<'_>) -> Option<String> {
     match context.state.pins.all().len() {
+        0 if !context.state.pins.is_empty() => Some("in a run against nature".to_owned()),
         0 => None,
         1 => Some("1 event pinned".to_owned()),
         count => Some(format!("{count} events pinned")),

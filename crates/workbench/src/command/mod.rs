@@ -85,6 +85,8 @@ pub enum Command {
 
     /// Something that concerns events pinned to times.
     Pins(PinCommand),
+    /// Shows one of the reasons why there is no plan on the drawing.
+    ShowReason(usize),
     /// Selects a range of times, in mission units.
     SelectTimes(Option<[f64; 2]>),
 

@@ -130,6 +130,7 @@ impl AppState {
                 self.write_schedule(form, &epoch);
             }
             Command::Pins(command) => self.apply_to_pins(command),
+            Command::ShowReason(index) => self.reason = index,
             Command::SelectTimes(range) => {
                 self.time_range = range.map(|[from, to]| [from.min(to), from.max(to)]);
             }
@@ -359,6 +360,7 @@ impl AppState {
         };
         if !before.is_some_and(same_plan) {
             self.pins.follow(before.map(Arc::as_ref), &after);
+            self.reason = 0;
         }
         if let Some(before) = before {
             self.selection = self.selection.carried(before, &after);
@@ -372,6 +374,12 @@ impl AppState {
         let Some(shown) = self.snapshots.shown().cloned() else { return };
         if let Err(reason) = self.pins.apply(command, &shown) {
             self.toasts.add(ToastKind::Failed, reason);
+            return;
+        }
+        if matches!(command, PinCommand::GoOn | PinCommand::TakeBack)
+            && let Some(course) = self.pins.course(&shown)
+        {
+            self.playback.time = playback::number(course.now);
         }
     }
 

@@ -86,6 +86,8 @@ pub struct AppState {
     pub playback: Playback,
     /// Events that are pinned to times, to see what that leaves of the plan.
     pub pins: Pins,
+    /// Which of the reasons why there is no plan is shown on the drawing.
+    pub reason: usize,
     /// The range of times that is selected, in mission units.
     pub time_range: Option<[f64; 2]>,
     /// Which workspace is shown.
@@ -169,6 +171,7 @@ impl AppState {
             chance: chance::ChanceState::default(),
             playback: Playback::default(),
             pins: Pins::default(),
+            reason: 0,
             time_range: None,
             workspace: Workspace::default(),
             settings: Settings::default(),

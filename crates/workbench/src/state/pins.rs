@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use exact::Time;
-use executive::PinnedPlan;
+use executive::{Course, PinnedPlan};
 use mission::{Planning, Snapshot};
 use tpn::{Network, NodeId, OccurrenceKind, Plan};
 
@@ -22,8 +22,12 @@ pub enum PinCommand {
     Pin(NodeId, Time),
     /// Takes away the pin of an event.
     Release(NodeId),
-    /// Takes away all pins.
+    /// Takes away all pins, and goes back to the start of a run against nature.
     ReleaseAll,
+    /// Lets time pass until the next thing happens, in a plan some of whose durations nature chooses.
+    GoOn,
+    /// Takes the last step of such a run back.
+    TakeBack,
 }
 
 /// The pins of the plan that is shown, and what they leave of its windows.
@@ -49,14 +53,20 @@ impl Pins {
         self.version
     }
 
-    /// The pinned events and their times.
-    pub fn all(&self) -> Vec<(NodeId, Time)> {
-        self.pinned.as_ref().map(|pinned| pinned.pins().collect()).unwrap_or_default()
+    /// How the run stands in which nature does what is pinned; `None` before one has begun, or if nature chooses nothing.
+    pub fn course(&self, snapshot: &Snapshot) -> Option<&Course> {
+        self.plan(snapshot)?;
+        self.pinned.as_ref()?.course()
     }
 
-    /// Whether no event is pinned.
+    /// The pinned events and their times.
+    pub fn all(&self) -> Vec<(NodeId, Time)> {
+        self.pinned.as_ref().map(PinnedPlan::pins).unwrap_or_default()
+    }
+
+    /// Whether no event is pinned, and no run has begun.
     pub fn is_empty(&self) -> bool {
-        self.pinned.as_ref().is_none_or(|pinned| pinned.pins().next().is_none())
+        self.pinned.as_ref().is_none_or(PinnedPlan::is_untouched)
     }
 
     /// The event that is held, and the window that it can be moved in.
@@ -87,6 +97,12 @@ impl Pins {
             }
             PinCommand::Release(node) => pinned.release(node),
             PinCommand::ReleaseAll => pinned.release_all(),
+            PinCommand::GoOn => {
+                pinned.go_on();
+            }
+            PinCommand::TakeBack => {
+                pinned.take_back();
+            }
         }
         self.update(snapshot);
         Ok(())
@@ -143,7 +159,7 @@ impl Pins {
     fn update(&mut self, snapshot: &Snapshot) {
         self.version += 1;
         let (Some(network), Some(pinned)) = (snapshot.network.as_deref(), &self.pinned) else { return };
-        if pinned.pins().next().is_none() {
+        if pinned.is_untouched() {
             self.plan = None;
             return;
         }
@@ -168,6 +184,13 @@ pub fn event_name(network: &Network, node: NodeId) -> String {
         Some(&event) => network.event_name(event),
         None => node_name(network, node),
     }
+}
+
+/// The names of all events of some nodes.
+pub fn names_of_events(network: &Network, nodes: &[NodeId]) -> Vec<String> {
+    let events =
+        nodes.iter().filter_map(|node| network.nodes.get(node.index())).flat_map(|node| &node.events);
+    events.map(|&event| network.event_name(event)).collect()
 }
 
 /// The event of this name: `Group-Wait#1.start`.

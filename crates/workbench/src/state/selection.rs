@@ -295,6 +295,15 @@ pub fn node_name(network: &Network, id: NodeId) -> String {
     }
 }
 
+/// The name of a duration: of the activity, condition or delay that lasts it, or of its ends.
+pub fn duration_name(network: &Network, id: ArcId) -> String {
+    let occurrence = network.arcs.get(id.index()).and_then(|arc| arc.occurrence);
+    match occurrence.and_then(|occurrence| network.occurrences.get(occurrence.index())) {
+        Some(occurrence) => occurrence.name.to_string(),
+        None => arc_name(network, id),
+    }
+}
+
 /// The name of an arc: from its first event to its second.
 pub fn arc_name(network: &Network, id: ArcId) -> String {
     network

@@ -82,8 +82,21 @@ pub(super) fn with_vehicles(state: &AppState) -> Availability {
     if has_vehicles { Ok(()) } else { Err("the mission has no vehicles") }
 }
 
+pub(super) fn with_natures_choice(state: &AppState) -> Availability {
+    let chosen = state.shown().and_then(|shown| {
+        let (network, plan) = (shown.network.as_deref()?, shown.plan()?);
+        let mut arcs = plan.selected_arcs.iter().enumerate().filter(|(_, is_selected)| **is_selected);
+        Some(arcs.any(|(index, _)| network.is_uncertain(tpn::ArcId::from_index(index))))
+    });
+    match chosen {
+        Some(true) => Ok(()),
+        Some(false) => Err("nature chooses nothing in this plan"),
+        None => Err("there is no plan"),
+    }
+}
+
 pub(super) fn with_pins(state: &AppState) -> Availability {
-    if state.pins.is_empty() { Err("no event is pinned") } else { Ok(()) }
+    if state.pins.is_empty() { Err("no event is pinned, and no run has begun") } else { Ok(()) }
 }
 
 pub(super) fn with_undo(state: &AppState) -> Availability {

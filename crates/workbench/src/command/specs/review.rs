@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::arguments::text_argument;
-use super::available::{with_mission, with_pins, with_plan, with_record, with_sign_off};
+use super::available::{with_mission, with_natures_choice, with_pins, with_plan, with_record, with_sign_off};
 use super::{called, plain, when};
 use crate::Dialog;
 use crate::command::Command;
@@ -100,6 +100,18 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     when(
         plain("plan.release", "Release pinned events", Group::Plan, &[], Scope::Everywhere, |_| {
             Command::Pins(PinCommand::ReleaseAll)
+        }),
+        with_pins,
+    ),
+    when(
+        plain("strategy.goOn", "Go on to the next event", Group::Plan, &[], Scope::Everywhere, |_| {
+            Command::Pins(PinCommand::GoOn)
+        }),
+        with_natures_choice,
+    ),
+    when(
+        plain("strategy.takeBack", "Take the last step back", Group::Plan, &[], Scope::Everywhere, |_| {
+            Command::Pins(PinCommand::TakeBack)
         }),
         with_pins,
     ),

@@ -2,17 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use exact::Time;
-use executive::{Disturbance, Ending, Entry, Happening};
+use exact::{Bound, Time};
+use executive::{Actor, Course, Disturbance, Ending, Entry, Happening};
 use mission::Snapshot;
 use serde::Serialize;
-use serde_json::Value;
+use serde_json::{Value, json};
+use tpn::Network;
 use tpn::plan_json::plan_to_json;
 #[cfg(test)]
 use ts_rs::TS;
 
 use crate::state::AppState;
 use crate::state::execution::{Pending, has_come};
+use crate::state::selection::duration_name;
 use crate::state::{pins, playback};
 
 /// A run of the mission at the time shown.
@@ -71,6 +73,79 @@ pub struct Pinned {
     events: BTreeMap<String, f64>,
     #[cfg_attr(test, ts(type = "Record<string, [Time, Time]>"))]
     windows: Value,
+    /// How the run against nature stands, if nature chooses something in this plan.
+    run: Option<NatureRun>,
+}
+
+/// A run in which nature's durations are chosen one by one.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+#[cfg_attr(test, derive(TS))]
+pub struct NatureRun {
+    /// The present.
+    now: f64,
+    /// What happened, in the order of time.
+    acts: Vec<Act>,
+    /// The durations that nature is choosing, and when each may still end.
+    #[cfg_attr(test, ts(type = "Record<string, [Time, Time]>"))]
+    under_way: BTreeMap<String, [Value; 2]>,
+    /// What could happen earlier if nature ended something earlier.
+    waiting: Vec<Waiting>,
+    /// What happens next if nature lets everything last.
+    next: Option<Act>,
+}
+
+/// What somebody does.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Act {
+    time: f64,
+    /// What happens at that instant.
+    events: Vec<String>,
+    /// The duration that nature ends there; otherwise the executive acts.
+    nature: Option<String>,
+}
+
+/// An event that waits for nature.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Waiting {
+    event: String,
+    /// The duration whose end it waits for.
+    nature: String,
+    /// It waits no longer than until then.
+    until: f64,
+}
+
+fn nature_run(network: &Network, course: &Course) -> NatureRun {
+    let act = |act: &executive::Act| Act {
+        time: playback::number(act.time),
+        events: pins::names_of_events(network, &act.events),
+        nature: match act.actor {
+            Actor::Nature(arc) => Some(duration_name(network, arc)),
+            Actor::Executive => None,
+        },
+    };
+    let ends = |window: tpn::Window| [json!(Bound::Finite(window.earliest)), json!(window.latest)];
+    NatureRun {
+        now: playback::number(course.now),
+        acts: course.acts.iter().map(act).collect(),
+        under_way: course
+            .under_way
+            .iter()
+            .map(|it| (duration_name(network, it.natures), ends(it.window)))
+            .collect(),
+        waiting: course
+            .waiting
+            .iter()
+            .map(|it| Waiting {
+                event: pins::event_name(network, it.event),
+                nature: duration_name(network, it.natures),
+                until: playback::number(it.until),
+            })
+            .collect(),
+        next: course.next.as_ref().map(act),
+    }
 }
 
 pub(super) fn execution(state: &AppState) -> Option<Execution> {
@@ -123,5 +198,6 @@ pub(super) fn pinned(state: &AppState, snapshot: &Snapshot) -> Option<Pinned> {
         .iter()
         .map(|&(node, time)| (pins::event_name(network, node), playback::number(time)))
         .collect();
-    Some(Pinned { events, windows: plan_to_json(network, plan)["windows"].take() })
+    let run = state.pins.course(snapshot).map(|course| nature_run(network, course));
+    Some(Pinned { events, windows: plan_to_json(network, plan)["windows"].take(), run })
 }

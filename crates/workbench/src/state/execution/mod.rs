@@ -71,6 +71,8 @@ pub enum ExecutionCommand {
     },
     /// A disturbance, by its place in the script, did not happen.
     TakeBack(usize),
+    /// Whether nature chooses so as to break the plan, from the start.
+    Oppose(bool),
     /// Everything goes as planned, from the start.
     Reset,
     /// Saves the run as a file.
@@ -108,6 +110,11 @@ impl ExecutionState {
             }
             _ => None,
         })
+    }
+
+    /// Whether nature chooses so as to break the plan.
+    pub const fn is_opposed(&self) -> bool {
+        self.script.adversary
     }
 
     /// Whether a newer run than the one shown is being worked out.
@@ -292,6 +299,7 @@ impl AppState {
                     self.execution.script.disturbances.remove(index);
                 }
             }
+            ExecutionCommand::Oppose(is_opposed) => self.execution.script.adversary = is_opposed,
             ExecutionCommand::Reset => {
                 self.execution.script = Script::default();
                 self.execution.expected = None;

@@ -1,7 +1,7 @@
 //! What a step of the search is about: the events, constraints, conditions and places of the text that panels mark
 //! while the step is looked at.
 
-use kirk::{Constraint, Departing, Event, ReplayStep, Trace, TreeChoice};
+use kirk::{Constraint, Departing, Event, Member, Reason, ReplayStep, Trace, TreeChoice};
 use rmpl::Span;
 use tpn::{ArcId, DecisionId, LabelId, Network, NodeId, UseId};
 
@@ -23,6 +23,26 @@ pub struct Focus {
 }
 
 impl Focus {
+    /// What a reason why there is no plan is about.
+    pub fn of_reason(network: &Network, reason: &Reason) -> Self {
+        let mut focus = Self { is_failure: true, ..Self::default() };
+        for member in &reason.conflict {
+            match *member {
+                Member::Bound(constraint) => focus.add_constraint(network, constraint),
+                Member::Condition(label) => focus.add_label(network, label),
+                Member::Use(used) => focus.add_uses(network, &[used]),
+            }
+        }
+        focus.add_choices(
+            network,
+            reason.choices.iter().map(|choice| TreeChoice::Decision {
+                decision: choice.decision,
+                alternative: choice.alternative,
+            }),
+        );
+        focus
+    }
+
     /// What the step of `trace` that was replayed as `step` is about.
     pub fn of(network: &Network, trace: &Trace, step: &ReplayStep) -> Self {
         let mut focus = Self::default();

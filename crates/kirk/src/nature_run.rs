@@ -1,0 +1,22 @@
+//! For a mission that nature can break: the plan that there would be if the executive chose all durations, and the run in
+//! which nature breaks it.
+
+use controllability::{FailingRun, failing_run};
+use exact::Time;
+use rmpl::program::Controllability;
+use tpn::{Choice, Network};
+
+use crate::options::{Options, Termination};
+
+/// The run, with what that plan chooses; `None` if there is no such plan either, or if that takes too long.
+pub(crate) fn nature_run(
+    network: &Network,
+    threat_gap: Option<Time>,
+    termination: &mut dyn Termination,
+) -> Option<(Vec<Choice>, FailingRun)> {
+    let ordinary = Network { controllability: Controllability::None, ..network.clone() };
+    let options = Options { threat_gap, explain: false, relax: false, ..Options::default() };
+    let plan = crate::plan(&ordinary, &options, termination).plans.into_iter().next()?;
+    let run = failing_run(network, &plan.selected_arcs, &plan.precedences(network))?;
+    Some((plan.choices, run))
+}
