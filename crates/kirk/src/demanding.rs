@@ -1,5 +1,5 @@
-//! Plans of missions with variables that keep their values, resources, objectives or durations that nature chooses
-//! (SPEC 10 to 13): the solver finds them, and each becomes a plan that holds in every schedule.
+//! Plans of missions with variables that keep their values, resources, objectives, durations that nature chooses or
+//! bounds between threads (SPEC 10 to 14): the solver finds them, and each becomes a plan that holds in every schedule.
 //!
 //! Without an objective the plan is the first one in textual order, where a search in that order comes to an end soon: its
 //! choice points are decided in the order of the text, each with its first option that is left, so that the first
@@ -27,6 +27,7 @@ pub(crate) fn has_demands(model: &Model) -> bool {
     let is_open =
         |variable: &LastingVariable| !variable.asks.is_empty() || !are_nested(model, &variable.changes);
     model.has_uncertainty
+        || !model.constraints.is_empty()
         || !demands.resources.is_empty()
         || !demands.goals.is_empty()
         || demands.variables.iter().any(is_open)

@@ -249,6 +249,9 @@ impl Part {
         if !effort.spend() {
             return Ok(None);
         }
+        if !self.model.constraints.is_empty() {
+            return Ok(self.is_refuted(effort));
+        }
         let mut engine = Engine::new(&self.model, self.setup(false));
         let mut enough = |stats: &Stats| effort.is_spent(stats) || stats.backtracks > MAX_BACKTRACKS;
         match engine.run(&mut enough)? {

@@ -55,6 +55,8 @@ pub(crate) struct Model {
     pub(crate) representatives: TiVec<NodeId, NodeId>,
     /// Whether the contexts of arcs and decisions are known; otherwise they depend on the order of the search.
     pub(crate) has_contexts: bool,
+    /// The bounds between threads, which only the solver knows.
+    pub(crate) constraints: Vec<ArcId>,
     /// Present if the network has a program's structure that fits its arcs.
     pub(crate) structure: Option<Structure>,
 }
@@ -69,6 +71,8 @@ pub(crate) struct ModelArc {
     pub(crate) to: NodeId,
     /// Where the program's structure says so: what must be chosen for the arc to be selected.
     pub(crate) context: Context,
+    /// Of a bound between threads: what must be chosen for its other event, besides.
+    pub(crate) other_context: Context,
     /// Whether nature chooses the duration.
     pub(crate) is_uncertain: bool,
     /// Whether it keeps both events at one time, and what is nature's at one is nature's at the other (SPEC 13.1).
@@ -98,6 +102,7 @@ impl Model {
                 from: arc.from,
                 to: arc.to,
                 context: None,
+                other_context: None,
                 is_uncertain,
                 is_tie: arc.is_tie(),
             });
@@ -139,6 +144,7 @@ impl Model {
             natures_events: natures_events.into(),
             representatives: (0..network.nodes.len()).map(NodeId::from_index).collect(),
             has_contexts: false,
+            constraints: network.constraints().collect(),
             structure: None,
         };
         model.order = model.nesting_order();
@@ -213,6 +219,20 @@ impl Model {
             }
         }
         true
+    }
+
+    /// Whether whatever has a context is in no plan without what has another one around it.
+    pub(crate) fn is_within(&self, mut inner: Context, outer: Context) -> bool {
+        while inner != outer {
+            let Some(choice) = inner else { return false };
+            inner = self.decisions[choice.decision].context;
+        }
+        true
+    }
+
+    /// Whether a bound between threads begins or ends at an event.
+    pub(crate) fn is_constrained(&self, node: NodeId) -> bool {
+        self.constraints.iter().any(|&arc| self.arcs[arc].from == node || self.arcs[arc].to == node)
     }
 
     /// Whether two labels can be in one plan.
@@ -350,6 +370,11 @@ impl Model {
                     }
                 }
             }
+        }
+        for &id in &self.constraints {
+            let arc = &mut self.arcs[id];
+            let context = |node: NodeId| contexts[node].unwrap_or(None);
+            (arc.context, arc.other_context) = (context(arc.from), context(arc.to));
         }
         for node in (0..self.num_nodes).map(NodeId::from_index) {
             self.representatives[node] = find(&self.representatives, node);

@@ -14,7 +14,7 @@ use stn::{Overflow, Stn};
 use tpn::{ArcId, CausalLink, Choice, DecisionId, LabelId, Network, NodeId, Ordering, UseOrdering, Window};
 use typed_index_collections::TiVec;
 
-use crate::model::{INFINITE, Model, point};
+use crate::model::{Context, INFINITE, Model, point};
 use crate::precedence;
 use crate::search::UNBOUNDED_BELOW;
 use crate::trace::{Constraint, CycleMember, Departing, Event, Trace, TreeChoice, TreeNodeId};
@@ -227,7 +227,8 @@ impl Replay {
         let mut is_selected: TiVec<NodeId, bool> = vec![false; model.num_nodes].into();
         is_selected[model.start] = true;
         for (id, arc) in model.arcs.iter_enumerated() {
-            if arc.context.is_none_or(|choice| result.choices.contains(&choice)) {
+            let is_chosen = |context: Context| context.is_none_or(|choice| result.choices.contains(&choice));
+            if is_chosen(arc.context) && is_chosen(arc.other_context) {
                 result.arcs.push(id);
                 (is_selected[arc.from], is_selected[arc.to]) = (true, true);
             }

@@ -4,13 +4,14 @@
 use std::collections::BTreeMap;
 
 use rmpl::program::LabelMode;
+use stn::{Inconsistency, Stn};
 use tpn::{LabelId, Network, ResourceId, UseId, VariableId};
 
 use crate::explain::{Effort, Part, spans};
 use crate::failure::{FailureKind, Member, Reason};
-use crate::model::{INFINITE, Model};
+use crate::model::{Context, INFINITE, Model, node, point};
 use crate::search::UNBOUNDED_BELOW;
-use crate::trace::Constraint;
+use crate::trace::{Constraint, CycleMember};
 use crate::wording;
 
 /// A reason that stays larger than this tells nobody anything.
@@ -50,14 +51,15 @@ pub(crate) fn reason(network: &Network, model: &Model, effort: &mut Effort<'_>) 
     let is_natures = model.has_uncertainty && search.part.is_refuted(search.effort) == Some(false);
     let members = search.members;
     let kind = if is_natures { FailureKind::Controllability } else { kind(network, &members) };
-    let told = wording::Told { network, kind, choices: &[], conflict: &members, cycle: &[] };
+    let cycle = if kind == FailureKind::Temporal { cycle(model, &members) } else { Vec::new() };
+    let told = wording::Told { network, kind, choices: &[], conflict: &members, cycle: &cycle };
     Some(Reason {
         message: told.message(),
-        spans: spans(network, &members, &[]),
+        spans: spans(network, &members, &cycle),
         choices: Vec::new(),
         kind,
         conflict: members,
-        cycle: Vec::new(),
+        cycle,
         is_minimal,
         failing_run: None,
     })
@@ -102,6 +104,47 @@ fn members(model: &Model) -> Vec<Member> {
     members.extend(model.conditions.labels.keys().map(Member::Condition));
     members.extend((0..model.demands.num_uses()).map(|used| Member::Use(UseId::from_index(used))));
     members
+}
+
+/// The bounds that contradict each other whatever is chosen, if these do so without a look at the choices.
+fn cycle(model: &Model, members: &[Member]) -> Vec<CycleMember> {
+    let mut stn = Stn::new(model.num_nodes);
+    let mut constraints: Vec<Constraint> = Vec::new();
+    for member in members {
+        let &Member::Bound(constraint) = member else { continue };
+        let (from, to, weight) = match constraint {
+            Constraint::Upper(arc) => (model.arcs[arc].from, model.arcs[arc].to, model.arcs[arc].upper),
+            Constraint::Lower(arc) => (model.arcs[arc].to, model.arcs[arc].from, -model.arcs[arc].lower),
+            _ => continue,
+        };
+        stn.push(point(from), point(to), weight, constraints.len() as u32);
+        constraints.push(constraint);
+    }
+    if !matches!(stn.settle(&model.order), Err(Inconsistency::NegativeCycle)) {
+        return Vec::new();
+    }
+    let told = |edge: &stn::CycleEdge| {
+        Some(CycleMember {
+            constraint: *constraints.get(edge.tag as usize)?,
+            from: node(edge.from),
+            to: node(edge.to),
+            weight: model.time(edge.weight),
+        })
+    };
+    let cycle: Vec<CycleMember> = stn.cycle().iter().filter_map(told).collect();
+    let contexts: Vec<Context> = cycle.iter().flat_map(|member| contexts(model, member.constraint)).collect();
+    let is_possible =
+        contexts.iter().all(|&one| contexts.iter().all(|&other| model.are_compatible(one, other)));
+    if is_possible { cycle } else { Vec::new() }
+}
+
+fn contexts(model: &Model, constraint: Constraint) -> [Context; 2] {
+    match constraint {
+        Constraint::Lower(arc) | Constraint::Upper(arc) => {
+            [model.arcs[arc].context, model.arcs[arc].other_context]
+        }
+        _ => [None; 2],
+    }
 }
 
 /// The conditions of each variable and the uses of each resource: often one of these is all that it takes.

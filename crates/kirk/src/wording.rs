@@ -3,7 +3,7 @@
 use controllability::{Broken, FailingRun, RunEvent};
 use exact::{Bound, Rational, Time};
 use rmpl::program::{Change, LabelMode};
-use tpn::{Arc, ArcId, ArcKind, Choice, LabelId, Network, OccurrenceKind, Supply, Use};
+use tpn::{Arc, ArcId, ArcKind, Choice, EventRef, LabelId, Network, OccurrenceKind, Supply, Use};
 
 use crate::failure::{FailureKind, Member};
 use crate::trace::{Constraint, CycleMember};
@@ -388,6 +388,17 @@ pub(crate) fn arc_name(network: &Network, arc: &Arc) -> String {
         }
         let same = network.occurrences.iter().filter(|other| other.activity == occurrence.activity).count();
         return if same > 1 { occurrence.name.to_string() } else { occurrence.activity.to_string() };
+    }
+    if arc.kind == ArcKind::Constraint {
+        let [from, to] = [arc.from, arc.to].map(|node| {
+            let events = &network.nodes[node.index()].events;
+            let is_quiet = |event: &&EventRef| {
+                network.occurrences[event.occurrence.index()].kind == OccurrenceKind::Delay
+            };
+            let told = events.iter().find(|event| !is_quiet(event)).or(events.first());
+            told.map_or_else(|| "an event".to_owned(), |&event| network.event_name(event))
+        });
+        return format!("the bound from {from} to {to}");
     }
     match arc.labels.first() {
         Some(label) => network.labels[label.index()].text.to_string(),

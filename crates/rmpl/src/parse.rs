@@ -306,6 +306,8 @@ fn add(program: &mut Program, item: Item) {
             }
             _ => {}
         },
+        Item::Constrain(decl) => program.constraints.push(decl),
+        Item::Import(decl) => program.imports.push(decl),
         Item::Control(decl) => program.control.push(decl),
         Item::Terrain(decl) => program.world.terrain = program.world.terrain.take().or(Some(decl)),
         Item::Location(decl) => program.world.locations.push(decl),

@@ -35,6 +35,10 @@ pub struct Program {
     pub activities: Vec<ActivityDecl>,
     /// Scenarios; the first is the default.
     pub scenarios: Vec<ScenarioDecl>,
+    /// Bounds between events of different threads, in textual order (SPEC 14).
+    pub constraints: Vec<ConstrainDecl>,
+    /// The files whose declarations belong to the mission as well, in textual order.
+    pub imports: Vec<ImportDecl>,
     /// Options, as declared or by default.
     pub options: Options,
     /// The control programs and the plant that activities run, if the mission has any; the first counts.
@@ -336,6 +340,41 @@ pub struct ScenarioDecl {
     pub span: Span,
 }
 
+/// `constrain NAME.start to OTHER.end [l,u];`: in force where both are selected (SPEC 14).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConstrainDecl {
+    /// The event from which the time is counted.
+    pub from: EventName,
+    /// The event that comes so much later.
+    pub to: EventName,
+    /// How much later; nature does not choose it.
+    pub bounds: Bounds,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// `NAME.start` or `NAME.end`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EventName {
+    /// The name that `as` gives to an occurrence.
+    pub name: Name,
+    /// Its end, otherwise its start.
+    pub is_end: bool,
+    /// The name with the event.
+    pub span: Span,
+}
+
+/// `import "file";`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ImportDecl {
+    /// The file, as the text names it.
+    pub file: SmolStr,
+    /// Where it is named, with its quotes.
+    pub file_span: Span,
+    /// The whole declaration.
+    pub span: Span,
+}
+
 /// `[lower, upper]`, not evaluated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bounds {
@@ -465,6 +504,8 @@ pub enum StatementKind {
     Unordered(Vec<Statement>),
     /// `do body using resource amount`: the amount, 1 if none is given, is used for the body's whole length (SPEC 11).
     Using(Box<Statement>, Name, Option<Expr>),
+    /// `body as NAME` (SPEC 14).
+    Named(Box<Statement>, Name),
     /// `Name(args)`, or a bare name that is a declared activity or primitive.
     Call(Name, Vec<Argument>),
     /// `c`, `tell c` (an assertion) or `ask c`.

@@ -5,10 +5,11 @@
 
 use crate::diagnostic::{Diagnostic, Edit, Fix};
 use crate::program::{
-    ActivityDecl, Amount, Argument, ArgumentValue, Bounds, Condition, ConstantDecl, ControlDecl, Effect,
-    Expr, ExprKind, GoalDecl, HeaderBound, HeaderBounds, LocationDecl, Moves, Name, ObjectiveDecl,
-    ObstacleDecl, PrimitiveDecl, Program, Requirement, ResourceDecl, ResourceUse, ScenarioDecl, Statement,
-    StatementKind, Supply, TerrainDecl, VariableDecl, VehicleDecl, World,
+    ActivityDecl, Amount, Argument, ArgumentValue, Bounds, Condition, ConstantDecl, ConstrainDecl,
+    ControlDecl, Effect, EventName, Expr, ExprKind, GoalDecl, HeaderBound, HeaderBounds, ImportDecl,
+    LocationDecl, Moves, Name, ObjectiveDecl, ObstacleDecl, PrimitiveDecl, Program, Requirement,
+    ResourceDecl, ResourceUse, ScenarioDecl, Statement, StatementKind, Supply, TerrainDecl, VariableDecl,
+    VehicleDecl, World,
 };
 use crate::span::Span;
 
@@ -102,7 +103,10 @@ macro_rules! spans {
 }
 
 spans! {
-    Program { constants, variables, resources, objectives, primitives, activities, scenarios, control, world }
+    Program {
+        constants, variables, resources, objectives, primitives, activities, scenarios, constraints, imports, control,
+        world
+    }
     Name { span }
     ControlDecl { text_span, span }
     ConstantDecl { name, value, span }
@@ -120,6 +124,9 @@ spans! {
     Moves { vehicles, span }
     ActivityDecl { name, formals, bounds, body, span }
     ScenarioDecl { name, bounds, body, span }
+    ConstrainDecl { from, to, bounds, span }
+    EventName { name, span }
+    ImportDecl { file_span, span }
     Bounds { lower, upper, span }
     Expr { kind, span }
     Statement { kind, bounds, span }
@@ -215,6 +222,10 @@ impl Spans for StatementKind {
                 resource.visit_spans(visit);
                 amount.visit_spans(visit);
             }
+            Self::Named(body, name) => {
+                body.visit_spans(visit);
+                name.visit_spans(visit);
+            }
             Self::Call(name, arguments) => {
                 name.visit_spans(visit);
                 arguments.visit_spans(visit);
@@ -266,7 +277,8 @@ mod tests {
              primitive D(s)[1,2] requires ARM=OUT, V.at=s sets ARM=IN uses P 2 consumes E N per metre costs 3 rewards N;\n\
              U() = { unordered { B(1, P); do D(s) using P N }; optional D(s) }\n\
              A() = { B(N+1, X in {a, b})[1,2*3]; if P=OK thennext B(2, Q=on) else repeat N { delay } }\n\
-             scenario S = { free A(); do A() maintaining P and (Q or R) }\n";
+             scenario S = { free A() as F; do A() maintaining P and (Q or R) }\n\
+             constrain F.start to F.end [N,2*N]; import \"other.rmpl\";\n";
         let after = before.replace("note", "longer note");
         let mut program = crate::parse(before).program();
         program.follow(&difference(before, &after));

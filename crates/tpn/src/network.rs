@@ -65,7 +65,8 @@ id! {
 }
 
 /// A temporal plan network. A decision node has only [`ArcKind::Choice`] out-arcs, of which a plan selects exactly one;
-/// of any other selected node a plan selects all out-arcs.
+/// of any other selected node a plan selects all out-arcs. Bounds between threads ([`ArcKind::Constraint`]) are no
+/// node's arcs: a plan selects those of which it selects both events.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Network {
     /// The events.
@@ -217,6 +218,9 @@ pub enum ArcKind {
     Merge,
     /// A piece of a traverse's path (SPEC 7.3).
     Path,
+    /// A bound between events of different threads (SPEC 14). It belongs to no node's arcs: it leads nowhere, and is in
+    /// force where both its events are selected.
+    Constraint,
 }
 
 /// A condition asserted or required over an arc.
@@ -609,6 +613,12 @@ impl Network {
         }
     }
 
+    /// The bounds between events of different threads.
+    pub fn constraints(&self) -> impl Iterator<Item = ArcId> + '_ {
+        let arcs = self.arcs.iter().enumerate();
+        arcs.filter(|(_, arc)| arc.kind == ArcKind::Constraint).map(|(id, _)| ArcId::from_index(id))
+    }
+
     /// Whether nature chooses a duration, and the mission does not say to plan as if it did not (SPEC 13.1).
     pub fn is_uncertain(&self, arc: ArcId) -> bool {
         self.controllability != Controllability::None && self.arcs[arc.index()].is_contingent
@@ -627,12 +637,18 @@ impl Network {
             return Vec::new();
         }
         let mut natures = vec![false; self.nodes.len()];
+        let between_threads: Vec<ArcId> = self.constraints().collect();
         while let Some(node) = open.pop() {
             if std::mem::replace(&mut natures[node.index()], true) {
                 continue;
             }
-            let node = &self.nodes[node.index()];
-            for &id in node.in_arcs.iter().chain(&node.out_arcs) {
+            let beyond = |arc: &&ArcId| {
+                let arc = &self.arcs[arc.index()];
+                arc.from == node || arc.to == node
+            };
+            let own = &self.nodes[node.index()];
+            let arcs = own.in_arcs.iter().chain(&own.out_arcs);
+            for &id in arcs.chain(between_threads.iter().filter(beyond)) {
                 let arc = &self.arcs[id.index()];
                 if arc.is_tie() && is_selected(id) {
                     open.extend([arc.from, arc.to]);

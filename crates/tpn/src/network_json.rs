@@ -371,8 +371,10 @@ impl Reader {
             arc.choice = Some((decision, known.alternatives.len() as u32));
             known.alternatives.push(id);
         }
-        self.nodes[from.index()].out_arcs.push(id);
-        self.nodes[to.index()].in_arcs.push(id);
+        if kind != ArcKind::Constraint {
+            self.nodes[from.index()].out_arcs.push(id);
+            self.nodes[to.index()].in_arcs.push(id);
+        }
         self.arcs.push(arc);
         Ok(())
     }

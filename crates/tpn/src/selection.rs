@@ -32,5 +32,9 @@ pub fn closure(network: &Network, choices: &[Choice]) -> (Vec<bool>, Vec<bool>) 
             }
         }
     }
+    for constraint in network.constraints() {
+        let arc = &network.arcs[constraint.index()];
+        arcs[constraint.index()] = nodes[arc.from.index()] && nodes[arc.to.index()];
+    }
     (nodes, arcs)
 }

@@ -29,6 +29,10 @@ pub fn to_text(network: &Network) -> String {
                 writeln!(text, "        -> {:<5} {}", network.arcs[arc.index()].to.0, arc_text(network, arc));
         }
     }
+    for constraint in network.constraints() {
+        let arc = &network.arcs[constraint.index()];
+        let _ = writeln!(text, "{:>5} -> {:<5} {}", arc.from.0, arc.to.0, arc_text(network, constraint));
+    }
     text
 }
 
@@ -68,8 +72,11 @@ pub fn to_dot(network: &Network) -> String {
         if let Some(occurrence) = arc.occurrence {
             let _ = write!(label, "\n{}", network.occurrences[occurrence.index()].name);
         }
-        let style =
-            if matches!(arc.kind, ArcKind::Composite | ArcKind::Span) { ", style=dashed" } else { "" };
+        let style = if matches!(arc.kind, ArcKind::Composite | ArcKind::Span | ArcKind::Constraint) {
+            ", style=dashed"
+        } else {
+            ""
+        };
         let _ = writeln!(text, "  n{} -> n{} [label={}{style}];", arc.from.0, arc.to.0, quote(&label));
     }
     text.push_str("}\n");
@@ -118,6 +125,7 @@ pub fn kind_name(kind: ArcKind) -> &'static str {
         ArcKind::Choice => "choice",
         ArcKind::Merge => "merge",
         ArcKind::Path => "path",
+        ArcKind::Constraint => "constraint",
     }
 }
 

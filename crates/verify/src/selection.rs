@@ -62,6 +62,11 @@ pub(crate) fn check_selection(network: &Network, plan: &Plan, violations: &mut V
             }
         }
     }
+    for (index, arc) in network.arcs.iter().enumerate() {
+        if arc.kind == ArcKind::Constraint {
+            arcs[index] = nodes[arc.from.index()] && nodes[arc.to.index()];
+        }
+    }
     compare(network, plan, &nodes, &arcs, violations);
     if !nodes[network.end.index()] {
         let message = format!("the end {} is not selected", node_name(network, network.end));

@@ -171,9 +171,7 @@ impl Problem<'_> {
     /// What keeps two times of the present solution at one.
     fn ties<'s>(&'s self, solver: &'s Solver) -> impl Iterator<Item = &'s ModelArc> + 's {
         self.model.arcs.iter().filter(|arc| {
-            arc.is_tie
-                && self.times[arc.from] != self.times[arc.to]
-                && solver.trail.holds(self.presence(arc.context))
+            arc.is_tie && self.times[arc.from] != self.times[arc.to] && self.is_present(solver, arc)
         })
     }
 

@@ -13,7 +13,7 @@ use super::literal::{Literal, Side, Variable};
 use super::resources::Shares;
 use super::{ChoicePoint, ChoicePointKind, Solver, interchangeable};
 use crate::demands::ModelGoal;
-use crate::model::{Alternatives, Context, INFINITE, Model, node};
+use crate::model::{Alternatives, Context, INFINITE, Model, ModelArc, node};
 use crate::partial_order::Solution;
 use crate::search::{Choices, Gaps, UNBOUNDED_BELOW};
 use crate::structure::Relation;
@@ -341,7 +341,13 @@ impl<'m> Problem<'m> {
         let model = self.model;
         // By common event: how each alternative bounds it.
         let mut ways: BTreeMap<(Side, DecisionId), Vec<(u32, Way)>> = BTreeMap::new();
-        for arc in &model.arcs {
+        for &constraint in &model.constraints {
+            self.add_constraint(solver, &model.arcs[constraint]);
+        }
+        for (id, arc) in model.arcs.iter_enumerated() {
+            if model.constraints.binary_search(&id).is_ok() {
+                continue;
+            }
             let (from, to) = (self.times[arc.from], self.times[arc.to]);
             if from == to {
                 if arc.lower > 0 {
@@ -389,6 +395,38 @@ impl<'m> Problem<'m> {
             }
             solver.difference(to, from, -lower, [Literal::TRUE; 2]);
         }
+    }
+
+    /// A bound between threads: each of its events is bounded by the other one where that exists.
+    fn add_constraint(&self, solver: &mut Solver, arc: &ModelArc) {
+        let model = self.model;
+        if !model.are_compatible(arc.context, arc.other_context) {
+            return;
+        }
+        let (from, to) = (self.times[arc.from], self.times[arc.to]);
+        let (when_from, when_to) = (self.presence(arc.context), self.presence(arc.other_context));
+        if from == to {
+            if arc.lower > 0 {
+                solver.at_least_one([!when_from, !when_to]);
+            }
+            return;
+        }
+        let goes_along =
+            |inner, outer, when| if model.is_within(inner, outer) { Literal::TRUE } else { when };
+        let of_to = goes_along(arc.other_context, arc.context, when_from);
+        let of_from = goes_along(arc.context, arc.other_context, when_to);
+        if arc.upper != INFINITE {
+            solver.difference(from, to, arc.upper, [of_to, of_from]);
+        }
+        if arc.lower != UNBOUNDED_BELOW {
+            solver.difference(to, from, -arc.lower, [of_from, of_to]);
+        }
+    }
+
+    /// Whether an arc is selected in the present solution.
+    pub(super) fn is_present(&self, solver: &Solver, arc: &ModelArc) -> bool {
+        let holds = |context| solver.trail.holds(self.presence(context));
+        holds(arc.context) && holds(arc.other_context)
     }
 
     fn add_intervals(&mut self, solver: &mut Solver, part: Part<'_>) {

@@ -61,6 +61,8 @@ fn are_alike(model: &Model, decision: DecisionId, left: u32, right: u32) -> bool
         let (left_out, right_out) = (model.out_arcs(one.to), model.out_arcs(other.to));
         let is_choice = |node: NodeId| model.decision_of[node].is_some();
         if left_out.len() != right_out.len()
+            || model.is_constrained(one.to)
+            || model.is_constrained(other.to)
             || is_choice(one.to) != is_choice(other.to)
             || counterparts.values().any(|&known| known == other.to)
             || counterparts.len() >= MAX_NODES

@@ -437,7 +437,7 @@ impl Solver {
         let mut constraints: Vec<Constraint> = Vec::new();
         let mut stn = Stn::new(model.num_nodes);
         for (id, arc) in model.arcs.iter_enumerated() {
-            if !self.trail.holds(problem.presence(arc.context)) {
+            if !problem.is_present(self, arc) {
                 continue;
             }
             let (from, to) = (point(arc.from), point(arc.to));

@@ -141,5 +141,6 @@ const fn kind_name(kind: ArcKind) -> &'static str {
         ArcKind::Choice => "choice",
         ArcKind::Merge => "merge",
         ArcKind::Path => "path",
+        ArcKind::Constraint => "constraint",
     }
 }

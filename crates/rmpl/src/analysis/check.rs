@@ -222,6 +222,10 @@ impl<'a> Checker<'a> {
                 self.resource(used, change);
                 return;
             }
+            UseKind::Occurrence => {
+                self.occurrence(used);
+                return;
+            }
             UseKind::Start => (Namespace::Location, "location"),
             UseKind::Vehicle => (Namespace::Vehicle, "vehicle"),
         };
@@ -248,6 +252,14 @@ impl<'a> Checker<'a> {
             let (name, start) = (self.text(used.name), self.summary.start);
             let diagnostic = undefined::resource(name, used.span, change, nearest.as_deref(), start);
             self.push_once(Namespace::Resource, used.name, diagnostic);
+        }
+    }
+
+    /// What a bound between events names is named somewhere.
+    fn occurrence(&mut self, used: &Use) {
+        if self.index.facts(used.name).occurrences == 0 {
+            let nearest = self.nearest(used.name, Namespace::Occurrence);
+            self.push(undefined::occurrence(self.text(used.name), used.span, nearest.as_deref()));
         }
     }
 

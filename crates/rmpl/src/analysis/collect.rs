@@ -125,7 +125,13 @@ impl Collector<'_> {
                 let name = Name { text: SmolStr::new_static("terrain"), span: decl.asset_span };
                 self.define(Namespace::Terrain, &name, 0, None, Vec::new());
             }
-            Item::Control(_) => {}
+            Item::Constrain(decl) => {
+                for event in [&decl.from, &decl.to] {
+                    self.name_use(UseKind::Occurrence, &event.name.text, event.name.span);
+                }
+                self.bounds(Some(&decl.bounds));
+            }
+            Item::Control(_) | Item::Import(_) => {}
             Item::Location(decl) => self.define(Namespace::Location, &decl.name, 0, None, Vec::new()),
             Item::Obstacle(decl) => self.define(Namespace::Obstacle, &decl.name, 0, None, Vec::new()),
             Item::Vehicle(decl) => {
@@ -262,6 +268,11 @@ impl Collector<'_> {
             }
             StatementKind::IfThennext(condition, body) => {
                 self.literal(LabelMode::Ask, condition, Origin::Written, false);
+                self.statement(body);
+            }
+            StatementKind::Named(body, name) => {
+                let symbol = self.names.intern(&name.text);
+                self.summary.occurrences.push(symbol);
                 self.statement(body);
             }
             StatementKind::Repeat(count, body) => {

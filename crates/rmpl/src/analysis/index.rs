@@ -29,10 +29,12 @@ pub(crate) enum Namespace {
     Constant,
     Resource,
     Objective,
+    /// What `as` names inside a declaration.
+    Occurrence,
 }
 
 impl Namespace {
-    pub(crate) const COUNT: usize = 11;
+    pub(crate) const COUNT: usize = 12;
 
     /// A set of namespaces with this one alone.
     pub(crate) const fn bit(self) -> u16 {
@@ -68,6 +70,10 @@ pub(crate) struct Facts {
     pub(crate) places: u32,
     /// Uses as a resource.
     pub(crate) resources: u32,
+    /// Occurrences that it names.
+    pub(crate) occurrences: u32,
+    /// Bounds between events that name such an occurrence.
+    pub(crate) constraints: u32,
     /// Conditions about the name, those written `X_V` included.
     pub(crate) literals: u32,
     /// Conditions that compare it with a value.
@@ -79,7 +85,7 @@ pub(crate) struct Facts {
 }
 
 /// What the check of a declaration can see of a name.
-type Visible = (u64, u64, [bool; 9]);
+type Visible = (u64, u64, [bool; 11]);
 
 impl Facts {
     fn visible(&self) -> Visible {
@@ -91,6 +97,8 @@ impl Facts {
             self.numbers,
             self.places,
             self.resources,
+            self.occurrences,
+            self.constraints,
             self.literals,
             self.compared,
         ];
@@ -140,6 +148,8 @@ impl Index {
             numbers: 0,
             places: 0,
             resources: 0,
+            occurrences: 0,
+            constraints: 0,
             literals: 0,
             compared: 0,
             told: Vec::new(),
@@ -337,6 +347,17 @@ impl Index {
         for call in &summary.calls {
             step(&mut self.facts[call.name.index()].calls);
         }
+        for &name in &summary.occurrences {
+            let named = &mut self.facts[name.index()].occurrences;
+            let was_named = *named > 0;
+            step(named);
+            let defined = &mut self.defined[Namespace::Occurrence as usize];
+            match (was_named, *named > 0) {
+                (false, true) => defined.push(name),
+                (true, false) => defined.retain(|&other| other != name),
+                _ => {}
+            }
+        }
         for used in &summary.uses {
             let facts = &mut self.facts[used.name.index()];
             match used.kind {
@@ -345,6 +366,7 @@ impl Index {
                 UseKind::Vehicle => step(&mut facts.vehicles),
                 UseKind::Place => step(&mut facts.places),
                 UseKind::Resource(_) => step(&mut facts.resources),
+                UseKind::Occurrence => step(&mut facts.constraints),
                 UseKind::Number | UseKind::HeaderBound => step(&mut facts.numbers),
             }
         }
@@ -445,7 +467,12 @@ fn names_defined<'a>(
     summaries: impl Iterator<Item = (DeclarationKey, &'a Summary)>,
 ) -> [u64; Namespace::COUNT] {
     let mut sums = [0_u64; Namespace::COUNT];
-    for definition in summaries.filter_map(|(_, summary)| summary.definition.as_ref()) {
+    for (_, summary) in summaries {
+        for name in &summary.occurrences {
+            let sum = &mut sums[Namespace::Occurrence as usize];
+            *sum = sum.wrapping_add((name.index() as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        }
+        let Some(definition) = &summary.definition else { continue };
         // Among variables, those that keep their value are a kind of their own.
         let named = (definition.name.index() as u64) << 1 | u64::from(definition.initial.is_some());
         let hash = (named + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);

@@ -64,11 +64,14 @@ impl Local {
                 names.extend(self.header(&decl.bounds));
                 self.distinct(&names, "parameter");
                 self.statement(&decl.body);
+                self.named(&decl.body, &mut Vec::new());
             }
             Item::Scenario(decl) => {
                 self.bounds(decl.bounds.as_ref());
                 self.statement(&decl.body);
+                self.named(&decl.body, &mut Vec::new());
             }
+            Item::Constrain(decl) => self.bounds(Some(&decl.bounds)),
             Item::Option(decl) => self.option(decl),
             Item::Terrain(decl) => {
                 if decl.cell_m <= 0.0 {
@@ -92,7 +95,7 @@ impl Local {
                 let found = parsed.diagnostics.into_iter();
                 self.found.extend(found.map(|diagnostic| diagnostic.moved(decl.text_span.start)));
             }
-            Item::Location(_) | Item::Constant(_) | Item::Resource(_) => {}
+            Item::Location(_) | Item::Constant(_) | Item::Resource(_) | Item::Import(_) => {}
         }
     }
 
@@ -242,7 +245,43 @@ impl Local {
             | StatementKind::Telling(body, _)
             | StatementKind::IfThennext(_, body)
             | StatementKind::Repeat(_, body)
+            | StatementKind::Named(body, _)
             | StatementKind::Using(body, ..) => self.statement(body),
+            StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay => {}
+        }
+    }
+
+    /// Names of occurrences that stand twice where both can be selected. `known` are those before, and those in
+    /// `statement` behind it.
+    fn named(&mut self, statement: &Statement, known: &mut Vec<Name>) {
+        match &statement.kind {
+            StatementKind::Choose(alternatives) => {
+                let before = known.len();
+                let mut added: Vec<Name> = Vec::new();
+                for alternative in alternatives {
+                    self.named(alternative, known);
+                    added.extend(known.drain(before..));
+                }
+                known.append(&mut added);
+            }
+            StatementKind::Sequence(parts)
+            | StatementKind::Parallel(parts)
+            | StatementKind::Unordered(parts) => parts.iter().for_each(|part| self.named(part, known)),
+            StatementKind::Named(body, name) => {
+                // What `or` copies stands in one place.
+                let is_other = |other: &Name| other.text == name.text && other.span != name.span;
+                if known.iter().any(is_other) {
+                    self.found.push(duplicate::occurrence(name));
+                }
+                known.push(name.clone());
+                self.named(body, known);
+            }
+            StatementKind::Maintaining(body, _)
+            | StatementKind::Watching(body, _)
+            | StatementKind::Telling(body, _)
+            | StatementKind::IfThennext(_, body)
+            | StatementKind::Repeat(_, body)
+            | StatementKind::Using(body, ..) => self.named(body, known),
             StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay => {}
         }
     }

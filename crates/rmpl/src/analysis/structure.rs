@@ -91,6 +91,7 @@ impl Structure<'_> {
             | StatementKind::Watching(body, _)
             | StatementKind::Telling(body, _)
             | StatementKind::IfThennext(_, body)
+            | StatementKind::Named(body, _)
             | StatementKind::Using(body, ..) => {
                 is_leaf = false;
                 self.duration(body)
@@ -232,6 +233,7 @@ impl Structure<'_> {
                 self.starting(body, out);
                 false
             }
+            StatementKind::Named(body, _) => self.starting(body, out),
             StatementKind::Using(body, ..) => {
                 self.starting(body, out);
                 false

@@ -14,6 +14,8 @@ pub(crate) struct Summary {
     pub(crate) calls: Vec<Call>,
     pub(crate) literals: Vec<Literal>,
     pub(crate) uses: Vec<Use>,
+    /// The names that `as` gives to occurrences; one that `or` copies more than once.
+    pub(crate) occurrences: Vec<Symbol>,
     /// Names that stand for numbers in the declaration's expressions: its header's bounds and its parameters.
     pub(crate) numbers: Vec<Name>,
     /// Changes when the calls change: who calls whom decides about recursion.
@@ -130,6 +132,8 @@ pub(crate) enum UseKind {
     Place,
     /// A resource that something is done to.
     Resource(Change),
+    /// An occurrence that a bound between events names.
+    Occurrence,
     /// A number in an expression: a constant, for parameters are no uses.
     Number,
     /// A name in a header's bounds: a constant if there is one of this name, otherwise it declares a parameter.
@@ -145,6 +149,7 @@ impl Summary {
         let asked = self.literals.iter().map(|literal| literal.variable);
         let split = self.literals.iter().filter_map(|literal| literal.split).map(|(variable, _)| variable);
         let placed = self.literals.iter().filter_map(|literal| literal.vehicle).map(|vehicle| vehicle.name);
-        defined.chain(called).chain(used).chain(asked).chain(split).chain(placed)
+        let named = self.occurrences.iter().copied();
+        defined.chain(named).chain(called).chain(used).chain(asked).chain(split).chain(placed)
     }
 }

@@ -17,7 +17,7 @@ pub const EXPLANATION: Explanation = Explanation {
     meaning: "Activities and primitives share their names, because both are called, and so do `var` and `state`;
 scenarios, resources, locations, obstacles and vehicles each have names of their own. Within one of these kinds a name has one declaration, and so has each option.
 The parameters in one header must differ as well, and one activity sets a variable once. There is one objective, with all goals.
-The first declaration counts.",
+In one body, two occurrences have one name only in different alternatives of a choice. The first declaration counts.",
     example: "primitive Drive()[20,30];
 primitive Drive()[25,40];
 scenario Day[0,60] = { Drive() }",
@@ -39,6 +39,7 @@ pub(crate) fn declaration(namespace: Namespace, name: &str, span: Span) -> Diagn
         Namespace::Obstacle => format!("an obstacle `{name}` is declared before this one"),
         Namespace::Resource => format!("a resource `{name}` is declared before this one"),
         Namespace::Objective => "an objective is declared before this one".to_owned(),
+        Namespace::Occurrence => format!("an occurrence `{name}` is named before this one"),
         Namespace::Vehicle => format!("a vehicle `{name}` is declared before this one"),
     };
     Diagnostic::error(CODE, span, message)
@@ -48,6 +49,14 @@ pub(crate) fn declaration(namespace: Namespace, name: &str, span: Span) -> Diagn
 /// A name that stands twice in one list.
 pub(crate) fn in_list(name: &Name, what: &str) -> Diagnostic {
     Diagnostic::error(CODE, name.span, format!("the {what} `{}` stands here twice", name.text))
+}
+
+/// A second occurrence of this name in one body.
+pub(crate) fn occurrence(name: &Name) -> Diagnostic {
+    Diagnostic::error(CODE, name.span, format!("another occurrence is named `{}` already", name.text))
+        .with_hint(
+            "only alternatives of one choice share a name: then it stands for the one that is selected",
+        )
 }
 
 /// A second effect on a variable.

@@ -34,6 +34,15 @@ pub fn events(what: &str, most: usize, span: Span) -> Diagnostic {
     )
 }
 
+/// A bound relates more than `most` pairs; `what` make them.
+pub fn pairs(what: &str, most: usize, span: Span) -> Diagnostic {
+    Diagnostic::error(
+        CODE,
+        span,
+        format!("with calls and `repeat` written out, {what} more than {most} pairs"),
+    )
+}
+
 /// Statements and the calls in them are nested deeper than `most` levels.
 pub fn nested(most: usize, span: Span) -> Diagnostic {
     Diagnostic::error(CODE, span, format!("statements and calls are nested deeper than {most} levels"))

@@ -79,8 +79,8 @@ pub(crate) fn empty_statement(span: Span) -> Diagnostic {
 
 pub(crate) fn no_declaration(found: Found<'_>, span: Span) -> Diagnostic {
     error(span, format!("expected a declaration, {}", found.describe())).with_hint(
-        "a file holds `var`, `state`, `resource`, `const`, `primitive`, `objective`, `option`, `scenario`, definitions \
-         such as `Survey() = { … }`, and the world's `terrain`, `location`, `obstacle` and `vehicle`",
+        "a file holds `var`, `state`, `resource`, `const`, `primitive`, `objective`, `option`, `scenario`, `constrain`, `import`, \
+         definitions such as `Survey() = { … }`, and the world's `terrain`, `location`, `obstacle` and `vehicle`",
     )
 }
 
@@ -192,4 +192,17 @@ pub(crate) fn end_maximized(span: Span) -> Diagnostic {
         span,
         "`end` may only be minimised: a plan says when it can end at the earliest, and any plan may end later",
     )
+}
+
+/// The name of an occurrence that does not say which of its events is meant.
+pub(crate) fn which_event(span: Span) -> Diagnostic {
+    error(span, "an occurrence has two events: say which, `.start` or `.end`")
+        .with_fix(insertion("Insert `.start`", span.end, ".start"))
+        .with_fix(insertion("Insert `.end`", span.end, ".end"))
+}
+
+/// A bound between two events among statements.
+pub(crate) fn constrain_in_block(span: Span) -> Diagnostic {
+    error(span, "`constrain` is a declaration, and stands outside of all blocks")
+        .with_hint("it relates events wherever they are: name their occurrences with `as`, and write it behind the block")
 }

@@ -18,7 +18,7 @@ pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
     title: "an undeclared name that must be declared",
-    meaning: "What an activity sets is a `state` or the place of a vehicle, and what it uses, consumes or produces is a `resource`: their
+    meaning: "A bound between events names occurrences that `as` names, and an `import` a file of the mission. What an activity sets is a `state` or the place of a vehicle, and what it uses, consumes or produces is a `resource`: their
 declarations say what they begin with, so there is no default. Under `option strict = 1;` every activity that is called must be declared as a primitive or defined, and every vehicle
 and location that the world mentions must be declared.",
     example: "option strict = 1;
@@ -131,6 +131,14 @@ pub(crate) fn resource(
         };
         let label = format!("Add `{}`", declaration.trim());
         diagnostic.with_fix(insertion(label, start, declaration))
+    })
+}
+
+/// A bound between events of something that nothing is called.
+pub(crate) fn occurrence(name: &str, span: Span, nearest: Option<&str>) -> Diagnostic {
+    let diagnostic = Diagnostic::error(CODE, span, format!("nothing is named `{name}`"));
+    change_to(diagnostic, nearest, span).unwrap_or_else(|diagnostic| {
+        diagnostic.with_hint(format!("name what you mean where it stands in a block: `Drive() as {name}`"))
     })
 }
 

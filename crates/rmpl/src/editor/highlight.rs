@@ -32,7 +32,7 @@ pub enum HighlightKind {
     Vehicle,
     /// An option or its value.
     Option,
-    /// A symbol handed to an activity.
+    /// A symbol handed to an activity, or the name of an occurrence.
     Symbol,
     /// A number or `inf`.
     Number,
@@ -132,7 +132,7 @@ const fn of_name(kind: &NameKind) -> HighlightKind {
         NameKind::Location | NameKind::Obstacle => HighlightKind::Location,
         NameKind::Vehicle | NameKind::Model => HighlightKind::Vehicle,
         NameKind::Option | NameKind::OptionValue => HighlightKind::Option,
-        NameKind::Symbol => HighlightKind::Symbol,
+        NameKind::Symbol | NameKind::Occurrence => HighlightKind::Symbol,
     }
 }
 

@@ -180,6 +180,7 @@ fn describe(parse: &Parse, name: &NameUse, evaluation: &Evaluation) -> String {
     let definition = places.iter().find(|place| place.is_definition).map(|place| place.span);
     let mut parts = Vec::new();
     match (definition, &name.kind) {
+        (Some(place), NameKind::Occurrence) => parts.extend(named(parse, place)),
         (Some(place), kind) if !kind.is_local() => {
             let declared = parse.declaration_at(place.start).and_then(|root| root.children().next());
             let is_natures = declared.and_then(|it| contingent_in(it.child(SyntaxKind::Bounds)?)).is_some();
@@ -222,6 +223,7 @@ fn describe(parse: &Parse, name: &NameUse, evaluation: &Evaluation) -> String {
         (_, NameKind::Value(variable)) => parts.push(format!("`{}`: a value of `{variable}`", name.text)),
         (_, NameKind::Resource) => parts.push(format!("`{}`: an undeclared resource", name.text)),
         (_, NameKind::Vehicle) => parts.push(format!("`{}`: an undeclared vehicle", name.text)),
+        (_, NameKind::Occurrence) => parts.push(format!("`{}`: nothing is named so", name.text)),
         (_, NameKind::Model) => parts.push(format!("`{}`: a vehicle model", name.text)),
         (_, NameKind::ControlProgram) => parts.push(format!("`{}`: a control program", name.text)),
         _ => parts.push(format!("`{}`: a symbol", name.text)),
@@ -242,6 +244,20 @@ fn describe(parse: &Parse, name: &NameUse, evaluation: &Evaluation) -> String {
     }
     parts.join("\n\n")
 }
+
+/// The statement that is named at `place`, without its blocks.
+fn named(parse: &Parse, place: Span) -> Option<String> {
+    let root = parse.declaration_at(place.start)?;
+    let statement = root.path_to(place.end).into_iter().rfind(|node| node.kind() == SyntaxKind::Statement)?;
+    let words: Vec<&str> = statement.text().split_whitespace().collect();
+    let text = words.join(" ");
+    let shown: String = text.chars().take(MAX_STATEMENT).collect();
+    let rest = if shown.len() < text.len() { " …" } else { "" };
+    Some(format!("```rmpl\n{shown}{rest}\n```\nNames an occurrence for `constrain`."))
+}
+
+/// How many characters of a statement a hover shows.
+const MAX_STATEMENT: usize = 120;
 
 fn is_state(parse: &Parse, name: &str) -> bool {
     let meaning = parse.meaning();
@@ -383,6 +399,13 @@ fn word_in_its_place(word: &str) -> Option<&'static str> {
         "s" | "min" | "h" | "d" | "sol" => {
             "A unit of time: `s`, `min`, `h`, `d` (24 hours) or `sol` (88 775.244 seconds), converted exactly."
         }
+        "as" => {
+            "`A as NAME`: names what happens here, so that `constrain` can speak of its start and its end."
+        }
+        "constrain" | "to" => {
+            "`constrain X.start to Y.end [l,u];`: Y ends at least l and at most u after X starts, where both are selected."
+        }
+        "import" => "`import \"file\";`: the declarations of another file of the mission count here, too.",
         "moves" => "`moves V1, V2`: the activity is a traverse; the first vehicle leads.",
         "speed" => "`speed (least, greatest)` in metres per second.",
         "runs" => "`runs P`: executing the activity runs the control program P.",

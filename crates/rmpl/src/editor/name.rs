@@ -32,6 +32,8 @@ pub enum NameKind {
     Vehicle,
     /// A resource.
     Resource,
+    /// An occurrence that `as` names.
+    Occurrence,
     /// A vehicle model.
     Model,
     /// An option.
@@ -111,6 +113,8 @@ impl<'a> Collector<'a> {
             // `using` and the resource; other words of `do` are keywords.
             SyntaxKind::Do => self.refer(names().nth(1), NameKind::Resource),
             SyntaxKind::Dotted => self.vehicle(names().next()),
+            SyntaxKind::Naming => self.define(names().nth(1), NameKind::Occurrence),
+            SyntaxKind::EventName => self.refer(names().next(), NameKind::Occurrence),
             SyntaxKind::Effect => self.effect(node),
             SyntaxKind::ConstantDecl => self.define(names().nth(1), NameKind::Constant),
             SyntaxKind::PrimitiveDecl => self.define(names().next(), NameKind::Activity),

@@ -72,6 +72,12 @@ impl Layout {
             SyntaxKind::Coordinates => Place::Coordinates,
             SyntaxKind::Domain => Place::Domain,
             SyntaxKind::Argument => Place::Argument,
+            SyntaxKind::ConstrainDecl => {
+                if let Some(bracket) = node.child(SyntaxKind::Bounds).and_then(first_token) {
+                    self.set(bracket, Place::SpacedBounds);
+                }
+                return;
+            }
             SyntaxKind::Statement => {
                 let core = node.children().next();
                 let is_tight =

@@ -278,6 +278,7 @@ fn parts(statement: &Statement) -> &[Statement] {
         | StatementKind::Telling(body, _)
         | StatementKind::IfThennext(_, body)
         | StatementKind::Repeat(_, body)
+        | StatementKind::Named(body, _)
         | StatementKind::Using(body, ..) => std::slice::from_ref(body),
         StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay => &[],
     }

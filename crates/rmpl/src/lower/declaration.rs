@@ -7,8 +7,8 @@ use super::bounds::{bounds_in, expression, header_bounds_in};
 use super::statement::signed;
 use super::{Lowering, OptionDecl, OptionValue, name_of, names};
 use crate::program::{
-    ActivityDecl, Bounds, ConstantDecl, ControlDecl, LocationDecl, Moves, Name, ObstacleDecl, ObstacleShape,
-    ScenarioDecl, TerrainDecl, VariableDecl, VehicleDecl,
+    ActivityDecl, Bounds, ConstantDecl, ConstrainDecl, ControlDecl, EventName, ImportDecl, LocationDecl,
+    Moves, Name, ObstacleDecl, ObstacleShape, ScenarioDecl, TerrainDecl, VariableDecl, VehicleDecl,
 };
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode};
@@ -39,6 +39,29 @@ impl Lowering<'_> {
             span: node.span(),
         })
     }
+}
+
+impl Lowering<'_> {
+    /// A bound between two events; the word by which nature would choose it is reported.
+    pub(super) fn constrain(&mut self, node: SyntaxNode<'_>) -> Option<ConstrainDecl> {
+        self.no_contingent(node, "the time between two events");
+        let bounds = bounds_in(node).map(|bounds| Bounds { is_contingent: false, ..bounds })?;
+        let mut events = node.children().filter(|child| child.kind() == SyntaxKind::EventName);
+        let (from, to) = (event_name(events.next()?)?, event_name(events.next()?)?);
+        Some(ConstrainDecl { from, to, bounds, span: node.span() })
+    }
+}
+
+fn event_name(node: SyntaxNode<'_>) -> Option<EventName> {
+    let mut parts = names(node);
+    let (name, event) = (parts.next()?, parts.next()?);
+    Some(EventName { name, is_end: event.text == "end", span: node.span() })
+}
+
+pub(super) fn import(node: SyntaxNode<'_>) -> Option<ImportDecl> {
+    let file = node.token(SyntaxKind::String)?;
+    let text = file.text.trim_matches('"');
+    Some(ImportDecl { file: SmolStr::new(text), file_span: file.span, span: node.span() })
 }
 
 pub(super) fn formals(node: SyntaxNode<'_>) -> Vec<Name> {

@@ -13,8 +13,8 @@ use smol_str::SmolStr;
 
 use crate::diagnostic::Diagnostic;
 use crate::program::{
-    ActivityDecl, ConstantDecl, ControlDecl, LocationDecl, Name, ObjectiveDecl, ObstacleDecl, PrimitiveDecl,
-    ResourceDecl, ScenarioDecl, TerrainDecl, VariableDecl, VehicleDecl,
+    ActivityDecl, ConstantDecl, ConstrainDecl, ControlDecl, ImportDecl, LocationDecl, Name, ObjectiveDecl,
+    ObstacleDecl, PrimitiveDecl, ResourceDecl, ScenarioDecl, TerrainDecl, VariableDecl, VehicleDecl,
 };
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken, is_dash};
@@ -29,6 +29,8 @@ pub(crate) enum Item {
     Primitive(PrimitiveDecl),
     Activity(ActivityDecl),
     Scenario(ScenarioDecl),
+    Constrain(ConstrainDecl),
+    Import(ImportDecl),
     Option(OptionDecl),
     Control(ControlDecl),
     Terrain(TerrainDecl),
@@ -85,6 +87,8 @@ impl Lowering<'_> {
             SyntaxKind::OptionDecl => declaration::option(node).map(Item::Option),
             SyntaxKind::ActivityDecl => self.activity(node).map(Item::Activity),
             SyntaxKind::ScenarioDecl => self.scenario(node).map(Item::Scenario),
+            SyntaxKind::ConstrainDecl => self.constrain(node).map(Item::Constrain),
+            SyntaxKind::ImportDecl => declaration::import(node).map(Item::Import),
             SyntaxKind::ControlDecl => declaration::control(node).map(Item::Control),
             SyntaxKind::TerrainDecl => declaration::terrain(node).map(Item::Terrain),
             SyntaxKind::LocationDecl => declaration::location(node).map(Item::Location),

@@ -39,10 +39,23 @@ impl Lowering<'_> {
         steps
     }
 
+    /// A statement, with its name around it if it has one.
     fn statement(&mut self, node: SyntaxNode<'_>) -> Option<Statement> {
+        let body = self.unnamed(node)?;
+        let name = node.child(SyntaxKind::Naming).and_then(|naming| names(naming).nth(1));
+        let Some(name) = name else { return Some(body) };
+        Some(Statement { kind: StatementKind::Named(Box::new(body), name), bounds: None, span: node.span() })
+    }
+
+    fn unnamed(&mut self, node: SyntaxNode<'_>) -> Option<Statement> {
         let core = node.children().next()?;
         let bounds = self.chosen_by_plans(core, node);
-        let span = node.span();
+        let span = match node.child(SyntaxKind::Naming) {
+            Some(_) => {
+                node.child(SyntaxKind::Bounds).map_or(core.span(), |bounds| core.span().cover(bounds.span()))
+            }
+            None => node.span(),
+        };
         let kind = match core.kind() {
             SyntaxKind::Block => {
                 let inner = self.block(core);

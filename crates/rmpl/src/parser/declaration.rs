@@ -17,6 +17,8 @@ impl Parser<'_> {
             SyntaxKind::ScenarioKeyword => self.scenario(),
             SyntaxKind::ControlText => self.control(),
             _ if self.at_constant() => self.constant(),
+            _ if self.at_constrain() => self.constrain(),
+            _ if self.at_import() => self.import(),
             _ if self.at_lasting_declaration() => self.lasting_declaration(),
             _ if self.at_world_declaration() => self.world_declaration(),
             _ if self.at_definition(false) => self.activity(),

@@ -10,6 +10,7 @@ mod clause;
 mod condition;
 mod declaration;
 mod lasting;
+mod occurrence;
 mod recovery;
 mod statement;
 mod world;

@@ -62,6 +62,8 @@ impl Parser<'_> {
             SyntaxKind::Name => {
                 self.begins_line()
                     && (self.at_constant()
+                        || self.at_constrain()
+                        || self.at_import()
                         || self.at_lasting_declaration()
                         || self.at_world_declaration()
                         || self.at_definition(true))
@@ -150,6 +152,7 @@ impl Parser<'_> {
         }
         match self.text_of(next) {
             "and" | "or" | "in" | "else" => true,
+            "as" => self.is_naming(next),
             "using" => {
                 let resource = self.index_after(next);
                 self.kind_at(resource) == SyntaxKind::Name
@@ -187,6 +190,8 @@ impl Parser<'_> {
                 | SyntaxKind::OptionKeyword
                 | SyntaxKind::ControlText
         ) || self.at_constant()
+            || self.at_constrain()
+            || self.at_import()
             || self.at_lasting_declaration()
             || self.at_world_declaration()
             || self.at_definition(false)

@@ -93,11 +93,12 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::Parallel);
     }
 
-    /// A core statement and the bounds behind it.
+    /// A core statement, the bounds behind it and the name of what it is.
     pub(super) fn statement(&mut self) {
         let node = self.open();
         self.core();
         self.bounds_if_any();
+        self.naming_if_any();
         self.close(node, SyntaxKind::Statement);
     }
 
@@ -106,6 +107,7 @@ impl Parser<'_> {
         let is_free = self.at_prefix("free");
         let is_optional = self.at_prefix("optional");
         let is_unordered = self.at_word("unordered") && self.peek() == SyntaxKind::LeftBrace;
+        let is_constrain = self.at_constrain();
         match self.kind {
             SyntaxKind::LeftBrace => self.block(),
             SyntaxKind::ChooseKeyword => self.choose(),
@@ -116,6 +118,7 @@ impl Parser<'_> {
                 self.bump();
                 self.close(node, SyntaxKind::Delay);
             }
+            SyntaxKind::Name if is_constrain => self.constrain_in_block(),
             SyntaxKind::Name if is_repeat => self.repeat(),
             SyntaxKind::Name if is_free => self.prefixed(SyntaxKind::Free),
             SyntaxKind::Name if is_optional => self.prefixed(SyntaxKind::Optional),
@@ -224,7 +227,8 @@ impl Parser<'_> {
                 let is_outer_using = self.at_word("using") && next == SyntaxKind::Name;
                 let is_else = self.at_word("else");
                 let is_bounds = self.at_word(CONTINGENT) && next == SyntaxKind::LeftBracket;
-                let is_other = is_call || is_condition || is_outer_using || is_else || is_bounds;
+                let is_naming = self.is_naming(self.current);
+                let is_other = is_call || is_condition || is_outer_using || is_else || is_bounds || is_naming;
                 !is_other && !self.at_declaration_at_line_start()
             }
             SyntaxKind::Minus => true,
@@ -328,7 +332,10 @@ impl Parser<'_> {
         }
         match self.peek() {
             SyntaxKind::Number => true,
-            SyntaxKind::Name => !self.at_joined_literal(),
+            SyntaxKind::Name => {
+                let next = self.index_after(self.current);
+                !self.at_joined_literal() && !self.is_naming(next)
+            }
             SyntaxKind::LeftParen => {
                 let next = self.index_after(self.current);
                 let after = self.index_after_group(next, SyntaxKind::LeftParen, SyntaxKind::RightParen);

@@ -120,6 +120,10 @@ pub enum SyntaxKind {
     ResourceDecl,
     /// `objective … ;`
     ObjectiveDecl,
+    /// `constrain NAME.start to OTHER.end [l,u];`
+    ConstrainDecl,
+    /// `import "…";`
+    ImportDecl,
     /// `vehicle NAME : … ;`
     VehicleDecl,
     /// Text that is no declaration; it has been reported.
@@ -226,6 +230,10 @@ pub enum SyntaxKind {
     ConditionGroup,
     /// `Rover.at` in a condition or an effect.
     Dotted,
+    /// `as NAME` behind a statement.
+    Naming,
+    /// `NAME.start` or `NAME.end`
+    EventName,
     /// Tokens that were skipped to recover.
     Skipped,
 }

@@ -244,7 +244,7 @@ impl Builder {
                 span: Some(draft.span),
             });
         }
-        for (index, arc) in self.arcs.iter().enumerate() {
+        for (index, arc) in self.arcs.iter().enumerate().filter(|(_, arc)| arc.kind != ArcKind::Constraint) {
             self.nodes[arc.from.index()].out_arcs.push(ArcId::from_index(index));
             self.nodes[arc.to.index()].in_arcs.push(ArcId::from_index(index));
         }

@@ -93,7 +93,9 @@ impl<'program> Expander<'program> {
         self.builder.own(occurrence, arc);
         self.active.push(activity.name.text.as_str());
         let entry = Entry::After { node: start, end: End::Event, link: ArcKind::Glue };
+        self.named.enter();
         let body = self.statement(&activity.body, entry, &scope);
+        self.named.leave();
         self.active.pop();
         let end = self.builder.node();
         self.builder.arc(body.end, end, ArcKind::Glue, Interval::ZERO, activity.body.span);

@@ -15,6 +15,7 @@ use super::bounds::{self, Interval};
 use super::build::Builder;
 use super::call::{Invocation, themselves};
 use super::constants::Constants;
+use super::constraint::Named;
 use super::names::Vocabulary;
 use super::scope::Scope;
 use super::shape::starts_with_decision;
@@ -75,6 +76,8 @@ pub(super) struct Expander<'program> {
     /// The declared resources, by name, with their positions in the network's; `None` for one whose declaration is wrong.
     pub(super) resources: BTreeMap<&'program str, Option<ResourceId>>,
     pub(super) unordered_blocks: usize,
+    /// What `as` names, and where that is.
+    pub(super) named: Named<'program>,
 }
 
 /// The outermost piece.
@@ -109,6 +112,7 @@ impl<'program> Expander<'program> {
             is_cut_off: false,
             resources: BTreeMap::new(),
             unordered_blocks: 0,
+            named: Named::default(),
         };
         expander.declare_resources();
         expander
@@ -213,7 +217,7 @@ impl<'program> Expander<'program> {
     fn unbounded(&mut self, statement: &'program Statement, entry: Entry, scope: &Scope) -> Piece {
         let (span, written) = (statement.span, statement.bounds.as_ref());
         match &statement.kind {
-            StatementKind::Sequence(items) => self.sequence(items.iter(), span, entry, scope),
+            StatementKind::Sequence(items) => self.sequence(items.iter(), false, span, entry, scope),
             StatementKind::Parallel(branches) => self.parallel(branches, span, entry, scope),
             StatementKind::Choose(alternatives) => self.choose(alternatives, span, entry, scope),
             StatementKind::Maintaining(body, condition) => {
@@ -229,6 +233,11 @@ impl<'program> Expander<'program> {
             StatementKind::IfThennext(condition, body) => self.guard(condition, body, span, entry, scope),
             StatementKind::Repeat(count, body) => self.repeat(count, body, span, entry, scope),
             StatementKind::Unordered(branches) => self.unordered(branches, span, entry, scope),
+            StatementKind::Named(body, name) => {
+                let piece = self.statement(body, entry, scope);
+                self.named.add(name, piece.start, piece.end);
+                piece
+            }
             StatementKind::Using(body, resource, amount) => {
                 self.using(body, resource, amount.as_ref(), span, entry, scope)
             }
@@ -262,9 +271,11 @@ impl<'program> Expander<'program> {
         }
     }
 
+    /// One after the other. In copies of one statement, names are those of the copy.
     fn sequence(
         &mut self,
         items: impl Iterator<Item = &'program Statement>,
+        are_copies: bool,
         span: Span,
         entry: Entry,
         scope: &Scope,
@@ -278,7 +289,13 @@ impl<'program> Expander<'program> {
                 None => entry,
                 Some(last) => Entry::After { node: last.end, end: last.end_kind, link: ArcKind::Glue },
             };
+            if are_copies {
+                self.named.enter();
+            }
             let piece = self.statement(item, entry, scope);
+            if are_copies {
+                self.named.leave();
+            }
             pieces.push(piece);
         }
         if pieces.len() == 1 {
@@ -318,7 +335,7 @@ impl<'program> Expander<'program> {
             }
         });
         match copies {
-            Ok(copies) => self.sequence(std::iter::repeat_n(body, copies), span, entry, scope),
+            Ok(copies) => self.sequence(std::iter::repeat_n(body, copies), true, span, entry, scope),
             Err(error) => {
                 self.diagnostics.push(error);
                 self.nothing(span, entry)

@@ -9,6 +9,7 @@ mod call;
 mod clauses;
 mod condition;
 mod constants;
+mod constraint;
 mod exogenous;
 mod expand;
 mod names;
@@ -88,6 +89,9 @@ pub fn compile(program: &Program, top: &Top) -> (Option<Network>, Vec<Diagnostic
             expander.top_activity(name, *lower, *upper).map_err(|error| diagnostics.push(error))
         }
     };
+    if root.is_ok() {
+        expander.constrain();
+    }
     let (network, found) = expander.finish(root.ok());
     diagnostics.extend(found);
     let diagnostics = without_repeats(diagnostics);

@@ -301,7 +301,9 @@ fn for_each_condition<'program>(statement: &'program Statement, visit: &mut dyn 
             visit(condition);
             for_each_condition(body, visit);
         }
-        StatementKind::Repeat(_, body) | StatementKind::Using(body, ..) => for_each_condition(body, visit),
+        StatementKind::Repeat(_, body) | StatementKind::Named(body, _) | StatementKind::Using(body, ..) => {
+            for_each_condition(body, visit);
+        }
         StatementKind::Condition(_, condition) => visit(condition),
         StatementKind::Call(_, arguments) => {
             for argument in arguments {

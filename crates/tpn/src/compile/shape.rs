@@ -21,6 +21,7 @@ impl Expander<'_> {
             StatementKind::Maintaining(body, _)
             | StatementKind::Watching(body, _)
             | StatementKind::Telling(body, _)
+            | StatementKind::Named(body, _)
             | StatementKind::Using(body, ..) => statement.bounds.is_none() && self.is_single_arc(body, scope),
             StatementKind::Parallel(_)
             | StatementKind::Unordered(_)
@@ -41,6 +42,7 @@ impl Expander<'_> {
                 [only] => statement.bounds.is_none() && self.is_instance(only, scope),
                 _ => false,
             },
+            StatementKind::Named(body, _) => statement.bounds.is_none() && self.is_instance(body, scope),
             _ => false,
         }
     }
@@ -76,7 +78,7 @@ pub(super) fn starts_with_decision(statement: &Statement, is_bounded_outside: bo
             items.first().is_some_and(|first| starts_with_decision(first, false))
         }
         // If there are no copies at all, the nodes around nothing do no harm.
-        StatementKind::Repeat(_, body) => starts_with_decision(body, false),
+        StatementKind::Repeat(_, body) | StatementKind::Named(body, _) => starts_with_decision(body, false),
         _ => false,
     }
 }

@@ -47,6 +47,9 @@ pub(super) fn check(program: &Program, constants: &Constants<'_>) -> Vec<Diagnos
             statement.bounds.iter().for_each(&mut check_bounds);
         });
     }
+    for constraint in &program.constraints {
+        check_bounds(&constraint.bounds);
+    }
     found
 }
 
@@ -98,6 +101,7 @@ pub(super) fn for_each_statement<'program>(
         | StatementKind::Telling(body, _)
         | StatementKind::IfThennext(_, body)
         | StatementKind::Repeat(_, body)
+        | StatementKind::Named(body, _)
         | StatementKind::Using(body, ..) => {
             for_each_statement(body, visit);
         }

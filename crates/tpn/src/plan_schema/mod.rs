@@ -43,6 +43,9 @@ pub enum PlanSchemaError {
     },
 }
 
+/// What says of a temporal constraint that it is between threads, so that it selects neither of its events.
+const BETWEEN_THREADS: &str = "between-threads";
+
 /// A network of another tool, with everything its file says.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Document {

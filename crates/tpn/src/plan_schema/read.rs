@@ -8,7 +8,7 @@ use serde::Deserialize as _;
 use serde_json::{Map, Value};
 use smol_str::SmolStr;
 
-use super::{Document, PlanSchemaError};
+use super::{BETWEEN_THREADS, Document, PlanSchemaError};
 use crate::network::{
     Arc, ArcId, ArcKind, Decision, DecisionId, EventEnd, EventRef, Extent, Label, LabelId, Network, Node,
     NodeId, Occurrence, OccurrenceId, OccurrenceKind, Role,
@@ -231,8 +231,14 @@ impl<'file> Reader<'file> {
                     self.read_labels(arc, object, constraint)?;
                 }
                 _ if to != node => {
-                    let span =
-                        self.add_arc(carrier.unwrap_or(node), to, ArcKind::Span, bounds, Some(constraint));
+                    let object = self.object(uid, constraint)?;
+                    let is_between = object.get(BETWEEN_THREADS).and_then(Value::as_bool) == Some(true);
+                    let (from, kind) = if is_between {
+                        (node, ArcKind::Constraint)
+                    } else {
+                        (carrier.unwrap_or(node), ArcKind::Span)
+                    };
+                    let span = self.add_arc(from, to, kind, bounds, Some(constraint));
                     let object = self.object(uid, constraint)?;
                     self.read_labels(span, object, constraint)?;
                 }
@@ -434,7 +440,7 @@ impl<'file> Reader<'file> {
 
 /// Links arcs to their nodes and events to theirs.
 fn link(network: &mut Network) {
-    for (index, arc) in network.arcs.iter().enumerate() {
+    for (index, arc) in network.arcs.iter().enumerate().filter(|(_, arc)| arc.kind != ArcKind::Constraint) {
         network.nodes[arc.from.index()].out_arcs.push(ArcId::from_index(index));
         network.nodes[arc.to.index()].in_arcs.push(ArcId::from_index(index));
     }

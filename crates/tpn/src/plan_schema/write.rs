@@ -6,6 +6,7 @@ use exact::Bound;
 use rmpl::program::LabelMode;
 use serde_json::{Map, Value, json};
 
+use super::BETWEEN_THREADS;
 use crate::network::{ArcId, ArcKind, BlockKind, Extent, Network, NodeId};
 
 /// Writes `network` in plan-schema JSON.
@@ -74,7 +75,8 @@ impl Writer<'_> {
             node["end-node"] = end_uid(*end).into();
         }
         self.add(&self.begin_uid(id), node);
-        for &arc in &self.network.nodes[id.index()].out_arcs {
+        let between_threads: Vec<ArcId> = self.constraints_from(id).collect();
+        for &arc in self.network.nodes[id.index()].out_arcs.iter().chain(&between_threads) {
             self.arc(arc);
         }
     }
@@ -88,6 +90,9 @@ impl Writer<'_> {
                 "tpn-type": "temporal-constraint", "value": bounds, "end-node": end_uid(arc.to),
             });
             self.add_conditions(id, &mut constraint);
+            if arc.kind == ArcKind::Constraint {
+                constraint[BETWEEN_THREADS] = true.into();
+            }
             self.add(&constraint_uid, constraint);
             return;
         }
@@ -157,7 +162,13 @@ impl Writer<'_> {
     fn constraints(&self, id: NodeId) -> Vec<String> {
         let spans = self.network.nodes[id.index()].out_arcs.iter();
         let spans = spans.filter(|arc| is_span(self.network.arcs[arc.index()].kind));
+        let spans = spans.copied().chain(self.constraints_from(id));
         spans.map(|arc| format!("tc-{}", arc.0)).collect()
+    }
+
+    /// The bounds between threads that begin at a node.
+    fn constraints_from(&self, id: NodeId) -> impl Iterator<Item = ArcId> + '_ {
+        self.network.constraints().filter(move |arc| self.network.arcs[arc.index()].from == id)
     }
 
     fn begin_type(&self, id: NodeId) -> Option<&'static str> {
@@ -198,7 +209,7 @@ fn arc_uid(id: ArcId) -> String {
 }
 
 fn is_span(kind: ArcKind) -> bool {
-    matches!(kind, ArcKind::Composite | ArcKind::Span)
+    matches!(kind, ArcKind::Composite | ArcKind::Span | ArcKind::Constraint)
 }
 
 fn upper(bound: Bound) -> Value {

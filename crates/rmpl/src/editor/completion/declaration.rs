@@ -37,6 +37,7 @@ pub(super) fn in_declaration(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>)
         {
             Place::Bound
         }
+        (SyntaxKind::Name, "constrain") if is_constant => in_constrain(context, last),
         (SyntaxKind::Name, "obstacle") if names == 2 => Place::Shape,
         (SyntaxKind::Name, "terrain") => match last.kind {
             SyntaxKind::String => Place::Words(vec!["cell", "origin"]),
@@ -47,6 +48,18 @@ pub(super) fn in_declaration(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>)
         (SyntaxKind::Name, "obstacle" | "location") | (SyntaxKind::VarKeyword, _) => Place::Nothing,
         _ => return None,
     })
+}
+
+/// `constrain X.start to Y.end [l,u]`
+fn in_constrain(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
+    match (innermost(context), last.kind, last.text) {
+        (Some((SyntaxKind::LeftBracket, _)), ..) => Place::Bound,
+        (_, SyntaxKind::Name, "constrain" | "to") => Place::Occurrence,
+        (_, SyntaxKind::Name, "start" | "end") if !context.iter().any(|token| token.text == "to") => {
+            Place::Words(vec!["to"])
+        }
+        _ => Place::Nothing,
+    }
 }
 
 /// `state X : {A, B} = …`

@@ -1,11 +1,12 @@
 //! What can be written at a place.
 
 use rustc_hash::FxHashSet;
+use smol_str::SmolStr;
 
 use super::place::Place;
 use super::{CompletionItem, CompletionKind};
-use crate::analysis::Symbol;
 use crate::analysis::local::VEHICLE_MODELS;
+use crate::analysis::{Namespace, Symbol};
 use crate::editor::cursor::declaration_at_cursor;
 use crate::editor::name::{NameKind, names_in};
 use crate::editor::outline::{OutlineItem, OutlineKind, outline};
@@ -100,12 +101,15 @@ pub(super) fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<Completion
             let template = |word| if word == CONTINGENT { "contingent [$0,]" } else { word };
             items.extend(words.iter().map(|word| keyword(word, template(word))));
         }
+        Place::Occurrence => occurrences(parse, &mut items),
         Place::Nothing => {}
     }
     items
 }
 
-const DECLARATIONS: [(&str, &str); 12] = [
+const DECLARATIONS: [(&str, &str); 14] = [
+    ("constrain", "constrain $0.start to .end [,];"),
+    ("import", "import \"$0\";"),
     ("state", "state $0 : {} = ;"),
     ("resource", "resource $0;"),
     ("objective", "objective $0;"),
@@ -231,6 +235,15 @@ fn values(parse: &Parse, variable: &str, items: &mut Vec<CompletionItem>) {
             }
         }
     }
+}
+
+/// What `as` names.
+fn occurrences(parse: &Parse, items: &mut Vec<CompletionItem>) {
+    let meaning = parse.meaning();
+    let mut names: Vec<&SmolStr> =
+        meaning.index.defined(Namespace::Occurrence).iter().map(|&name| meaning.names.text(name)).collect();
+    names.sort_unstable();
+    items.extend(names.into_iter().map(|name| plain(name, CompletionKind::Value)));
 }
 
 fn local_names(

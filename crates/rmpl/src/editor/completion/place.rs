@@ -18,6 +18,8 @@ pub(super) enum Place {
     Value(String),
     /// One of these values.
     Values(Vec<String>),
+    /// What `as` names.
+    Occurrence,
     Resource,
     /// How much of something.
     Amount,
@@ -42,7 +44,8 @@ pub(super) fn place(context: &[SyntaxToken<'_>]) -> Place {
     use SyntaxKind as Kind;
     let Some(last) = context.last() else { return Place::File };
     if last.kind == Kind::Dot {
-        return Place::Words(vec!["at"]);
+        let is_event = context.first().is_some_and(|first| first.text == "constrain");
+        return Place::Words(if is_event { vec!["start", "end"] } else { vec!["at"] });
     }
     if let Some(place) = in_declaration(context, *last) {
         return place;
@@ -124,6 +127,7 @@ fn behind_word(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Option<Pla
         "repeat" if begins_statement => Some(Place::Bound),
         "free" | "optional" if begins_statement => Some(Place::Statement),
         "using" if ends => Some(Place::Resource),
+        "as" if ends => Some(Place::Nothing),
         "else" if ends => Some(Place::Statement),
         "and" | "or" if ends => Some(Place::Condition),
         _ => None,
@@ -164,7 +168,7 @@ fn after_statement(context: &[SyntaxToken<'_>]) -> Place {
             _ => {}
         }
     }
-    if may_be_natures { Place::Words(with_bounds(&[])) } else { Place::Nothing }
+    if may_be_natures { Place::Words(with_bounds(&["as"])) } else { Place::Words(vec!["as"]) }
 }
 
 /// Whether `token` stands in parentheses or square brackets.
