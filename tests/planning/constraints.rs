@@ -49,7 +49,8 @@ fn a_bound_between_threads_moves_the_windows_of_both() {
 
 #[test]
 fn a_bound_counts_only_where_both_ends_are_selected() {
-    let text = "scenario S[0,60] = { choose { Drive() as Leg, Fast() }, { delay[20,20]; optional Pass() as Relay } }
+    let text =
+        "scenario S[0,60] = { choose { Drive() as Leg, Fast() }, { delay[20,20]; optional Pass() as Relay } }
          constrain Leg.start to Relay.start [30,40];";
     let plans = all_plans(&mission(text), Search::Chronological).plans;
     let mut choices: Vec<Vec<u32>> =
@@ -110,8 +111,9 @@ fn a_name_beyond_the_instances_is_related_to_all_of_them() {
 
 #[test]
 fn a_contradiction_names_the_bound_and_offers_another() {
-    let network =
-        mission("scenario S[0,60] = { Drive() as Leg, { delay[20,30]; Pass() as Relay } } constrain Leg.end to Relay.start [4,4];");
+    let network = mission(
+        "scenario S[0,60] = { Drive() as Leg, { delay[20,30]; Pass() as Relay } } constrain Leg.end to Relay.start [4,4];",
+    );
     let outcome = kirk::plan(&network, &Options::default(), &mut Unlimited);
     assert_eq!(outcome.status, Status::NoPlan);
     let failure = outcome.failure.expect("it is explained");
@@ -143,7 +145,10 @@ fn a_bound_over_what_nature_chooses_is_a_requirement() {
     // Digging begins the moment the talk is over.
     assert_eq!(status(&talk("end to Digging.start [0,0]")), Status::Plan);
     // Nobody knows 2 before when that will be.
-    assert_eq!(status(&talk("start to Digging.start [2,9]; constrain Digging.start to Talking.end [2,2]")), Status::NoPlan);
+    assert_eq!(
+        status(&talk("start to Digging.start [2,9]; constrain Digging.start to Talking.end [2,2]")),
+        Status::NoPlan
+    );
 }
 
 #[test]

@@ -9,6 +9,7 @@ use annotate_snippets::{
     AnnotationKind, Level, Renderer, Snippet, normalize_untrusted_str, renderer::DEFAULT_TERM_WIDTH,
 };
 use mission::Problem;
+use rmpl::files::Files;
 use rmpl::{LineIndex, Severity};
 
 /// Characters of a line on each side of a place that are looked at. The renderer shows what fits a line of a terminal,
@@ -23,10 +24,22 @@ pub fn print_problems(name: &str, source: &str, problems: &[Problem]) -> anyhow:
     let is_terminal = std::io::stderr().is_terminal();
     let renderer = if is_terminal { Renderer::styled() } else { Renderer::plain() };
     let lines = LineIndex::new(source);
-    let text: String =
-        problems.iter().map(|problem| describe(&renderer, name, source, &lines, problem)).collect();
+    let files = Files::of(source);
+    let told = |problem: &Problem| {
+        let Some(file) = &problem.file else { return describe(&renderer, name, source, &lines, problem) };
+        let text = source.get(problem.file_start as usize..files.at(problem.span.start).end as usize);
+        let (text, name) = (text.unwrap_or_default(), path_of_file(name, file));
+        let local = Problem { span: problem.span_in_file(), ..problem.clone() };
+        describe(&renderer, &name, text, &LineIndex::new(text), &local)
+    };
+    let text: String = problems.iter().map(told).collect();
     std::io::stderr().lock().write_all(text.as_bytes())?;
     Ok(())
+}
+
+/// The path of a file of the mission whose first file is `name`.
+pub fn path_of_file(name: &str, file: &str) -> String {
+    std::path::Path::new(name).with_file_name(file).display().to_string()
 }
 
 fn describe(renderer: &Renderer, name: &str, source: &str, lines: &LineIndex, problem: &Problem) -> String {
@@ -97,6 +110,8 @@ mod tests {
             span: rmpl::Span::new(start, start + marked.len() as u32),
             line: place.line,
             column: place.column,
+            file: None,
+            file_start: 0,
             hint: Some("mend \u{202e}it".into()),
             fixes: Vec::new(),
         };

@@ -20,6 +20,33 @@ pub fn read_text(path: &Path) -> anyhow::Result<String> {
     })
 }
 
+/// The mission that begins in `path`: its text, joined with those of the files that it imports. These lie in its own
+/// folder, or in folders in there; what is elsewhere, links that lead out included, is no file of the mission.
+pub fn read_mission(path: &Path) -> anyhow::Result<String> {
+    mission_of(path, &read_text(path)?)
+}
+
+/// The same of a file whose text has been read.
+pub fn mission_of(path: &Path, text: &str) -> anyhow::Result<String> {
+    let Some(name) = path.file_name().and_then(|name| name.to_str()).filter(|name| *name != "-") else {
+        return Ok(rmpl::files::join("", text, |_| None));
+    };
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let inside = |file: &str| {
+        let found = folder.join(file).canonicalize().ok()?;
+        found.starts_with(folder.canonicalize().ok()?).then_some(found)
+    };
+    let mut problem = None;
+    let joined = rmpl::files::join(name, text, |file| match read_text(&inside(file)?) {
+        Ok(text) => Some(text),
+        Err(error) => {
+            problem.get_or_insert(error);
+            None
+        }
+    });
+    problem.map_or(Ok(joined), Err)
+}
+
 /// The bytes of `path`, refused when there are more than `most`.
 pub fn read_bytes(path: &Path, most: u64) -> anyhow::Result<Vec<u8>> {
     let mut bytes = Vec::new();

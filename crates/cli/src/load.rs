@@ -9,7 +9,7 @@ use mission::{Goal, Problem};
 use rmpl::program::Program;
 use tpn::Network;
 
-use crate::input::read_text;
+use crate::input::{read_mission, read_text};
 
 /// What is to be compiled or planned.
 #[derive(clap::Args, Debug)]
@@ -46,9 +46,14 @@ pub struct Loaded {
 impl Target {
     /// Reads the file and compiles it. Fails when it cannot be read, or is a network that is not well formed.
     pub fn load(&self) -> anyhow::Result<Loaded> {
-        let source = read_text(&self.file)?;
-        let begun = Instant::now();
         let name = self.file.display().to_string();
+        let is_standard_input = name == "-";
+        let source = if is_standard_input || is_network(&name, "") {
+            read_text(&self.file)?
+        } else {
+            read_mission(&self.file)?
+        };
+        let begun = Instant::now();
         if is_network(&name, &source) {
             let network = tpn::interchange::Source::read(&source)
                 .with_context(|| format!("cannot read {name}"))?

@@ -39,18 +39,23 @@ pub fn document(kind: &str, problems: &[Problem], body: Value) -> Value {
 }
 
 fn problem_json(problem: &Problem) -> Value {
-    json!({
+    let span = problem.span_in_file();
+    let mut told = json!({
         "code": problem.code,
         "severity": problem.severity,
         "message": problem.message,
         "span": {
-            "start": problem.span.start,
-            "end": problem.span.end,
+            "start": span.start,
+            "end": span.end,
             "line": problem.line,
             "column": problem.column,
         },
         "hint": problem.hint,
-    })
+    });
+    if let Some(file) = &problem.file {
+        told["file"] = json!(file);
+    }
+    told
 }
 
 /// Prints a JSON document on standard output.

@@ -9,7 +9,7 @@ use terrain::Terrain;
 
 use crate::deadline::{Deadline, TimeIsUp};
 use crate::ground::map_file;
-use crate::input::read_text;
+use crate::input::read_mission;
 use crate::load::Target;
 
 /// A mission, worked out.
@@ -28,7 +28,7 @@ pub fn work_out(target: &Target, seed: u64, deadline: Deadline) -> anyhow::Resul
     anyhow::ensure!(!is_network, "this command wants a mission text, not a network");
     let name = target.file.file_name().filter(|name| *name != "-");
     let name = name.map_or_else(|| "mission".to_owned(), |name| name.to_string_lossy().into_owned());
-    work_out_text(name, &target.file, &read_text(&target.file)?, target.goal()?, seed, deadline)
+    work_out_text(name, &target.file, &read_mission(&target.file)?, target.goal()?, seed, deadline)
 }
 
 /// Works out a mission text. The map file that it names, if it names one, lies beside `file`.

@@ -9,7 +9,7 @@ use tpn::{LabelId, Network, ResourceId, UseId, VariableId};
 
 use crate::explain::{Effort, Part, spans};
 use crate::failure::{FailureKind, Member, Reason};
-use crate::model::{Context, INFINITE, Model, node, point};
+use crate::model::{Context, INFINITE, Model, node};
 use crate::search::UNBOUNDED_BELOW;
 use crate::trace::{Constraint, CycleMember};
 use crate::wording;
@@ -117,7 +117,7 @@ fn cycle(model: &Model, members: &[Member]) -> Vec<CycleMember> {
             Constraint::Lower(arc) => (model.arcs[arc].to, model.arcs[arc].from, -model.arcs[arc].lower),
             _ => continue,
         };
-        stn.push(point(from), point(to), weight, constraints.len() as u32);
+        stn.push(model.representative(from), model.representative(to), weight, constraints.len() as u32);
         constraints.push(constraint);
     }
     if !matches!(stn.settle(&model.order), Err(Inconsistency::NegativeCycle)) {

@@ -1,5 +1,6 @@
 //! A diagnostic as data that crosses threads, files and the page's API, with its line and column.
 
+use rmpl::files::Files;
 use rmpl::{Diagnostic, LineIndex, Severity, Span};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
@@ -13,9 +14,15 @@ pub struct Problem {
     pub severity: Severity,
     /// What is wrong, in the author's terms.
     pub message: String,
-    /// The smallest span at fault.
+    /// The smallest span at fault, in the whole text.
     pub span: Span,
-    /// The line of the span's start, from 1.
+    /// The file that it is in; `None` for the mission's first one.
+    #[serde(default)]
+    pub file: Option<SmolStr>,
+    /// Where that file's text begins in the whole text.
+    #[serde(default)]
+    pub file_start: u32,
+    /// The line of the span's start in its file, from 1.
     pub line: u32,
     /// Its column in characters, from 1.
     pub column: u32,
@@ -39,13 +46,16 @@ pub type TextEdit = rmpl::Edit;
 
 impl Problem {
     /// The diagnostic, placed in the text it is about.
-    pub fn new(diagnostic: &Diagnostic, text: &str, lines: &LineIndex) -> Self {
-        let place = lines.line_column(text, diagnostic.span.start);
+    pub fn new(diagnostic: &Diagnostic, text: &str, lines: &LineIndex, files: &Files) -> Self {
+        let place = files.line_column(text, lines, diagnostic.span.start);
+        let file = files.at(diagnostic.span.start);
         Self {
             code: SmolStr::new(diagnostic.code.0),
             severity: diagnostic.severity,
             message: diagnostic.message.clone(),
             span: diagnostic.span,
+            file: (file.start > 0).then(|| SmolStr::new(&file.name)),
+            file_start: file.start,
             line: place.line,
             column: place.column,
             hint: diagnostic.hint.clone(),
@@ -59,10 +69,16 @@ impl Problem {
 
     /// All of `diagnostics`, in textual order.
     pub fn all(diagnostics: &[Diagnostic], text: &str) -> Vec<Self> {
-        let lines = LineIndex::new(text);
+        let (lines, files) = (LineIndex::new(text), Files::of(text));
         let mut problems: Vec<Self> =
-            diagnostics.iter().map(|found| Self::new(found, text, &lines)).collect();
+            diagnostics.iter().map(|found| Self::new(found, text, &lines, &files)).collect();
         problems.sort_by_key(|problem| (problem.span, problem.severity));
         problems
+    }
+
+    /// The span in the text of its own file.
+    pub const fn span_in_file(&self) -> Span {
+        let start = self.file_start;
+        Span::new(self.span.start.saturating_sub(start), self.span.end.saturating_sub(start))
     }
 }

@@ -9,6 +9,7 @@ pub mod diagnostic;
 pub mod diagnostics;
 pub mod editor;
 pub mod explanation;
+pub mod files;
 pub mod format;
 mod lower;
 pub mod parse;

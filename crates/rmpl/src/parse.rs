@@ -13,9 +13,10 @@ use crate::analysis::local::local_diagnostics;
 use crate::analysis::{Checked, DeclarationKey, Index, Meaning, Names, Summary, check, recursion, summarize};
 use crate::diagnostic::{Diagnostic, Edit, Known, Severity};
 use crate::diagnostics::syntax;
+use crate::files::{self, MARK};
 use crate::lower::{Item, Lowering, OptionValue};
 use crate::parser::{Scratch, parse_declaration};
-use crate::program::{Controllability, Program, TimeUnit};
+use crate::program::{Controllability, ImportDecl, Program, TimeUnit};
 use crate::span::Span;
 use crate::syntax::{DeclarationTree, SyntaxNode};
 
@@ -126,15 +127,25 @@ impl Parse {
     ) -> Vec<(u32, Declaration)> {
         let mut found = Vec::new();
         let mut scratch = Scratch::default();
-        let mut at = start;
+        let (mut at, mut file_end) = (start, 0);
         while (at as usize) < self.text.len() && !meets(&self.places, at) {
-            let rest = self.text.get(at as usize..).unwrap_or("");
+            if at as usize >= file_end {
+                file_end = self.end_of_file(at);
+            }
+            let rest = self.text.get(at as usize..file_end).unwrap_or("");
             let declaration = Declaration::read(rest, &mut scratch, &mut self.names);
             let length = declaration.tree.len().max(1);
             found.push((at, declaration));
             at += length;
         }
         found
+    }
+
+    /// Where the file that holds a place ends: nothing reaches beyond the heading of the next one.
+    fn end_of_file(&self, at: u32) -> usize {
+        let next = at as usize + 1;
+        let rest = self.text.get(next..).and_then(|rest| rest.find(MARK));
+        rest.map_or(self.text.len(), |length| next + length)
     }
 
     /// Puts fresh declarations in place of old ones and brings the diagnostics of the whole file up to date.
@@ -244,6 +255,19 @@ impl Parse {
             if let Some(here) = all.get_mut(first..) {
                 here.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.severity));
             }
+        }
+        let imports: Vec<(Span, ImportDecl)> = (self.places.iter())
+            .filter_map(|place| match &place.declaration.item {
+                Some(Item::Import(import)) => {
+                    let span = import.file_span;
+                    Some((Span::new(span.start + place.start, span.end + place.start), import.clone()))
+                }
+                _ => None,
+            })
+            .collect();
+        if !imports.is_empty() {
+            all.extend(files::check(self, &imports));
+            all.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.severity));
         }
         all
     }

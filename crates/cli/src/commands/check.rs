@@ -8,7 +8,7 @@ use mission::{Goal, Problem};
 use serde_json::json;
 
 use crate::diagnostics::print_problems;
-use crate::input::read_text;
+use crate::input::read_mission;
 use crate::output::{Format, WRONG, YES, any_error, document, exit, print_json, print_text};
 
 /// Reports mistakes in mission and program files.
@@ -27,7 +27,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut wrong = false;
     let mut documents = Vec::new();
     for file in &args.files {
-        let source = read_text(file)?;
+        let source = read_mission(file)?;
         let problems = check(&source);
         wrong |= any_error(&problems);
         let name = file.display().to_string();

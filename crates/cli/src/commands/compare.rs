@@ -12,7 +12,7 @@ use tpn::Window;
 
 use crate::deadline::TimeLimit;
 use crate::diagnostics::print_problems;
-use crate::input::read_text;
+use crate::input::{mission_of, read_text};
 use crate::load::Target;
 use crate::output::{Format, NO, WRONG, YES, any_error, document, exit, print_json, print_text};
 use crate::worked_out::{WorkedOut, work_out_text};
@@ -75,8 +75,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 
 impl Args {
     fn read(&self, path: &Path) -> anyhow::Result<Read> {
-        let text = read_text(path)?;
         let name = path.display().to_string();
+        let text = read_text(path)?;
         let is_json = path.extension().is_some_and(|ending| ending == "json")
             || (name == "-" && text.trim_start().starts_with('{'));
         if !is_json {
@@ -86,7 +86,7 @@ impl Args {
                 activity: None,
                 bounds: None,
             };
-            return self.worked_out(path, &text, target.goal()?, self.seed);
+            return self.worked_out(path, &mission_of(path, &text)?, target.goal()?, self.seed);
         }
         let value: Value = serde_json::from_str(&text).with_context(|| format!("{name} is not JSON"))?;
         if value["format"] == mission::review::record::FORMAT {

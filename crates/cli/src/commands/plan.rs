@@ -13,12 +13,13 @@ use mission::paths_json::{separation_violations_json, traverses_json};
 use mission::planning::{self, Planned};
 use mission::{Paths, Problem};
 use rmpl::LineIndex;
+use rmpl::files::Files;
 use rmpl::program::Program;
 use serde_json::{Value, json};
 use tpn::{Levels, Network, Supply};
 
 use crate::deadline::TimeLimit;
-use crate::diagnostics::print_problems;
+use crate::diagnostics::{path_of_file, print_problems};
 use crate::ground::ground;
 use crate::load::{Loaded, Target, parse_threat_gap};
 use crate::output::{Format, LIMIT, NO, WRONG, YES, any_error, document, exit, print_json, print_text};
@@ -236,10 +237,16 @@ fn all_plans(planned: &Planned) -> impl Iterator<Item = (&Network, &tpn::Plan)> 
 }
 
 fn failure_json(failure: &Failure, loaded: &Loaded, network: &Network) -> Value {
-    let lines = LineIndex::new(&loaded.source);
+    let (lines, files) = (LineIndex::new(&loaded.source), Files::of(&loaded.source));
     let span_json = |span: &rmpl::Span| {
-        let place = lines.line_column(&loaded.source, span.start);
-        json!({ "start": span.start, "end": span.end, "line": place.line, "column": place.column })
+        let place = files.line_column(&loaded.source, &lines, span.start);
+        let file = files.at(span.start);
+        let (start, end) = (span.start.saturating_sub(file.start), span.end.saturating_sub(file.start));
+        let mut told = json!({ "start": start, "end": end, "line": place.line, "column": place.column });
+        if file.start > 0 {
+            told["file"] = json!(file.name);
+        }
+        told
     };
     let kinds: Vec<&str> = failure.kinds().iter().map(|kind| kind.name()).collect();
     let reasons: Vec<Value> = failure
@@ -394,7 +401,7 @@ fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
 }
 
 fn failure_text(failure: &Failure, loaded: &Loaded, network: &Network) -> String {
-    let lines = LineIndex::new(&loaded.source);
+    let (lines, files) = (LineIndex::new(&loaded.source), Files::of(&loaded.source));
     let mut text = String::new();
     for reason in &failure.reasons {
         text.push_str(&format!("{} ({})\n", reason.message, reason.kind.name()));
@@ -402,9 +409,12 @@ fn failure_text(failure: &Failure, loaded: &Loaded, network: &Network) -> String
             text.push_str(&format!("  {line}\n"));
         }
         for span in &reason.spans {
-            let place = lines.line_column(&loaded.source, span.start);
+            let place = files.line_column(&loaded.source, &lines, span.start);
+            let file = files.at(span.start);
+            let is_first = file.start == 0;
+            let name = if is_first { loaded.name.clone() } else { path_of_file(&loaded.name, &file.name) };
             let snippet = loaded.source.get(span.range()).unwrap_or("").lines().next().unwrap_or("");
-            text.push_str(&format!("  {}:{}:{}: {snippet}\n", loaded.name, place.line, place.column));
+            text.push_str(&format!("  {name}:{}:{}: {snippet}\n", place.line, place.column));
         }
     }
     if !failure.is_complete {

@@ -411,10 +411,22 @@ impl<'m> Problem<'m> {
             }
             return;
         }
-        let goes_along =
-            |inner, outer, when| if model.is_within(inner, outer) { Literal::TRUE } else { when };
-        let of_to = goes_along(arc.other_context, arc.context, when_from);
-        let of_from = goes_along(arc.context, arc.other_context, when_to);
+        let to_has_from = model.is_within(arc.other_context, arc.context);
+        let from_has_to = model.is_within(arc.context, arc.other_context);
+        let both = match (to_has_from, from_has_to) {
+            (true, _) => when_to,
+            (_, true) => when_from,
+            (false, false) => {
+                let both = solver.boolean();
+                solver.resize();
+                solver.imply(both, when_from);
+                solver.imply(both, when_to);
+                solver.at_least_one([!when_from, !when_to, both]);
+                both
+            }
+        };
+        let of_to = if to_has_from { Literal::TRUE } else { both };
+        let of_from = if from_has_to { Literal::TRUE } else { both };
         if arc.upper != INFINITE {
             solver.difference(from, to, arc.upper, [of_to, of_from]);
         }

@@ -1,6 +1,7 @@
 //! The checklist of a snapshot.
 
 use rmpl::diagnostics::exogenous;
+use rmpl::files::Files;
 use rmpl::program::Controllability;
 use rmpl::{LineIndex, Severity, Span};
 use tpn::{Network, NodeId};
@@ -50,11 +51,12 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
 pub(super) struct Places<'source> {
     source: &'source str,
     index: LineIndex,
+    files: Files,
 }
 
 impl<'source> Places<'source> {
     fn new(source: &'source str) -> Self {
-        Self { source, index: LineIndex::new(source) }
+        Self { source, index: LineIndex::new(source), files: Files::of(source) }
     }
 
     pub(super) fn line(
@@ -65,7 +67,7 @@ impl<'source> Places<'source> {
         names: Vec<String>,
         nodes: Vec<NodeId>,
     ) -> Line {
-        let line_number = span.map(|span| self.index.line_column(self.source, span.start).line);
+        let line_number = span.map(|span| self.files.line_column(self.source, &self.index, span.start).line);
         Line { status, text, span, line_number, names, nodes }
     }
 

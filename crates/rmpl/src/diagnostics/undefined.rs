@@ -142,6 +142,19 @@ pub(crate) fn occurrence(name: &str, span: Span, nearest: Option<&str>) -> Diagn
     })
 }
 
+/// An import of a file that the mission does not have.
+pub(crate) fn file(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(CODE, span, format!("the mission has no file `{name}`"))
+        .with_hint("files are found from the folder of the file that imports them")
+}
+
+/// An import of what is no file of the mission's folder.
+pub(crate) fn file_outside(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(CODE, span, format!("`{name}` is no file in the mission's folder")).with_hint(
+        "a mission imports only files of its own folder and of those in it, by names such as `world/rocks.rmpl`",
+    )
+}
+
 /// With the nearest name, if there is one, as a question and a fix.
 fn change_to(diagnostic: Diagnostic, nearest: Option<&str>, span: Span) -> Result<Diagnostic, Diagnostic> {
     let Some(nearest) = nearest else { return Err(diagnostic) };

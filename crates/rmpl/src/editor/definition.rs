@@ -2,8 +2,10 @@
 
 use smol_str::SmolStr;
 
+use crate::files::{Files, resolve};
 use crate::parse::Parse;
 use crate::span::Span;
+use crate::syntax::SyntaxKind;
 
 use super::name::{NameUse, name_at, names_in};
 
@@ -18,8 +20,20 @@ pub struct Reference {
 
 /// Where the name at `offset` is declared; on a name that is declared there, that place itself.
 pub fn definition(parse: &Parse, offset: u32) -> Option<Span> {
+    if let Some(file) = imported_at(parse, offset) {
+        return Some(file);
+    }
     let name = name_at(parse, offset)?;
     references_of(parse, &name).into_iter().find(|place| place.is_definition).map(|place| place.span)
+}
+
+/// Where the file begins that is imported at `offset`.
+fn imported_at(parse: &Parse, offset: u32) -> Option<Span> {
+    let import = parse.declaration_at(offset)?.child(SyntaxKind::ImportDecl)?;
+    let written = import.token(SyntaxKind::String).filter(|written| written.span.touches(offset))?;
+    let files = Files::of(parse.text());
+    let name = resolve(&files.at(written.span.start).name, written.text.trim_matches('"'))?;
+    files.named(&name).map(|file| Span::new(file.start, file.start))
 }
 
 /// Every place of the name at `offset`, in textual order; for what is not declared, all its uses.

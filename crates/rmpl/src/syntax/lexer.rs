@@ -4,6 +4,7 @@
 //! `}`, which no bound contains, so that one unclosed bracket does not change the names of the rest of the file.
 
 use super::SyntaxKind;
+use crate::files::MARK;
 
 /// A place that the lexer cannot read, relative to the text it reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,6 +89,11 @@ impl<'t> Lexer<'t> {
             self.name(start)
         } else if is(first, DIGIT) {
             self.number(start)
+        } else if first == MARK as u8 {
+            // The heading of a file is no part of any text.
+            let line = self.text.get(start..).and_then(|rest| rest.find('\n'));
+            self.position = line.map_or(self.text.len(), |length| start + length);
+            SyntaxKind::LineComment
         } else {
             self.punctuation(first, start)
         };

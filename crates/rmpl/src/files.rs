@@ -1,0 +1,276 @@
+//! A mission of several files (SPEC 14): its texts as one, and the way back from a place to its file.
+//!
+//! The texts are joined, that of the first file as it is and each other one behind a heading with its name. Places are
+//! places of the whole, so that everything below the front end reads one text whatever number of files there is, and a
+//! mission of one file is its text. A heading ends whatever the file before it leaves open. Nothing here reads files:
+//! who joins them says what their texts are.
+
+use std::collections::BTreeMap;
+
+use crate::call_cycles::call_cycles;
+use crate::diagnostic::Diagnostic;
+use crate::diagnostics::{recursion, undefined};
+use crate::parse::{Parse, parse};
+use crate::program::ImportDecl;
+use crate::span::{LineColumn, LineIndex, Span};
+
+/// Begins a heading, which goes to the end of its line. A doubled one gives the first file's own name.
+pub(crate) const MARK: char = '\u{1c}';
+
+/// What joins no text: more files than this, or a longer name, are none that anybody wrote.
+const MAX_FILES: usize = 1_000;
+
+/// One file of a mission.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct File {
+    /// Its name, from the mission's folder on, with `/` between folders; empty if nobody said it.
+    pub name: String,
+    /// Where its text begins in the whole.
+    pub start: u32,
+    /// Where it ends.
+    pub end: u32,
+}
+
+/// The files of a joined text, the first one first.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Files {
+    files: Vec<File>,
+}
+
+impl Files {
+    /// The files of `text`.
+    pub fn of(text: &str) -> Self {
+        let mut files = vec![File { name: String::new(), start: 0, end: text.len() as u32 }];
+        let mut from = 0;
+        while let Some(found) = text.get(from..).and_then(|rest| rest.find(MARK)) {
+            let heading = from + found;
+            if let Some(before) = files.last_mut().filter(|before| before.end as usize == text.len()) {
+                before.end = heading as u32;
+            }
+            let name_start = heading + 1;
+            let rest = text.get(name_start..).unwrap_or("");
+            let line = rest.find('\n').map_or(rest, |end| &rest[..end]);
+            if let Some(name) = line.strip_prefix(MARK) {
+                name.clone_into(&mut files[0].name);
+            } else {
+                let start = (name_start + line.len() + 1).min(text.len());
+                files.push(File { name: line.to_owned(), start: start as u32, end: text.len() as u32 });
+            }
+            from = name_start + line.len();
+        }
+        Self { files }
+    }
+
+    /// All of them.
+    pub fn all(&self) -> &[File] {
+        &self.files
+    }
+
+    /// The file that holds a place; the heading of a file counts as its own.
+    pub fn at(&self, offset: u32) -> &File {
+        let after = self.files.partition_point(|file| file.start <= offset);
+        &self.files[after.saturating_sub(1)]
+    }
+
+    /// The file of this name.
+    pub fn named(&self, name: &str) -> Option<&File> {
+        self.files.iter().find(|file| file.name == name)
+    }
+
+    /// Where a place is in its own file, of the joined text `text` with the lines `lines`.
+    pub fn line_column(&self, text: &str, lines: &LineIndex, offset: u32) -> LineColumn {
+        let place = lines.line_column(text, offset);
+        let start = self.at(offset).start;
+        if start == 0 {
+            return place;
+        }
+        let first = lines.line_column(text, start).line;
+        LineColumn { line: (place.line + 1).saturating_sub(first).max(1), ..place }
+    }
+}
+
+/// The mission that begins with `text`, the file `name`: with all files that it imports, and those that they import, of
+/// which `read` gives the texts. What `read` does not know stays out, and is reported where it is imported.
+///
+/// ```
+/// let world = |name: &str| (name == "world.rmpl").then(|| "location BASE (0, 0);".to_owned());
+/// let text = rmpl::files::join("day.rmpl", "import \"world.rmpl\"; scenario Day = { delay }", world);
+/// assert_eq!(rmpl::parse(&text).program().world.locations.len(), 1);
+/// ```
+pub fn join(name: &str, text: &str, mut read: impl FnMut(&str) -> Option<String>) -> String {
+    let mut joined = text.to_owned();
+    let mut known = vec![name.to_owned()];
+    let mut open = imported(name, text);
+    open.reverse();
+    while let Some(file) = open.pop() {
+        if known.contains(&file) || known.len() > MAX_FILES || file.contains(['\n', MARK]) {
+            continue;
+        }
+        let Some(text) = read(&file) else { continue };
+        // What would begin a heading means nothing in a text.
+        let text = text.replace(MARK, " ");
+        let mut further = imported(&file, &text);
+        further.reverse();
+        open.append(&mut further);
+        joined.push('\n');
+        joined.push(MARK);
+        joined.push_str(&file);
+        joined.push('\n');
+        joined.push_str(&text);
+        known.push(file);
+    }
+    if known.len() > 1 || !imported(name, text).is_empty() {
+        joined.push('\n');
+        joined.extend([MARK, MARK]);
+        joined.push_str(name);
+        joined.push('\n');
+    }
+    joined
+}
+
+/// The files that a file imports, in textual order.
+fn imported(name: &str, text: &str) -> Vec<String> {
+    if !text.contains("import") {
+        return Vec::new();
+    }
+    parse(text).program().imports.iter().filter_map(|import| resolve(name, &import.file)).collect()
+}
+
+/// The file that `file` is in a text of the file `importer`, whose folder it starts from. `None` if it is outside of the
+/// mission's folder, or names none.
+pub fn resolve(importer: &str, file: &str) -> Option<String> {
+    if file.is_empty() || file.starts_with('/') || file.contains(['\\', ':']) {
+        return None;
+    }
+    let mut parts: Vec<&str> = importer.split('/').collect();
+    parts.pop();
+    for part in file.split('/') {
+        match part {
+            "" | "." => {}
+            ".." => {
+                parts.pop()?;
+            }
+            name => parts.push(name),
+        }
+    }
+    (!parts.is_empty()).then(|| parts.join("/"))
+}
+
+/// What is wrong with the imports of a text.
+pub(crate) fn check(parse: &Parse, imports: &[(Span, ImportDecl)]) -> Vec<Diagnostic> {
+    if imports.is_empty() {
+        return Vec::new();
+    }
+    let files = Files::of(parse.text());
+    let positions: BTreeMap<&str, usize> =
+        files.all().iter().enumerate().map(|(position, file)| (file.name.as_str(), position)).collect();
+    let mut found = Vec::new();
+    let mut edges: Vec<Vec<(usize, Span)>> = vec![Vec::new(); files.all().len()];
+    for (span, import) in imports {
+        let importer = files.at(span.start);
+        let Some(name) = resolve(&importer.name, &import.file) else {
+            found.push(undefined::file_outside(&import.file, *span));
+            continue;
+        };
+        match (positions.get(name.as_str()), positions.get(importer.name.as_str())) {
+            (Some(&imported), Some(&importer)) => edges[importer].push((imported, *span)),
+            _ => found.push(undefined::file(&name, *span)),
+        }
+    }
+    for cycle in call_cycles(&edges) {
+        let names: Vec<&str> =
+            cycle.members.iter().map(|&member| files.all()[member].name.as_str()).collect();
+        found.push(recursion::imports(&names, cycle.closing_call));
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mission(files: &[(&str, &str)]) -> String {
+        let read =
+            |name: &str| files.iter().find(|(known, _)| *known == name).map(|(_, text)| (*text).to_owned());
+        join(files[0].0, files[0].1, read)
+    }
+
+    fn codes(text: &str) -> Vec<(&'static str, String)> {
+        let files = Files::of(text);
+        let told = |found: Diagnostic| (found.code.0, files.at(found.span.start).name.clone());
+        parse(text).diagnostics().into_iter().map(told).collect()
+    }
+
+    #[test]
+    fn a_mission_of_one_file_is_its_text() {
+        let text = "scenario S[0,60] = { delay }\n";
+        assert_eq!(mission(&[("a.rmpl", text)]), text);
+        assert_eq!(Files::of(text).all().len(), 1);
+    }
+
+    #[test]
+    fn imported_declarations_count_and_places_are_those_of_their_files() {
+        let text = mission(&[
+            ("day.rmpl", "import \"lib/acts.rmpl\";\nscenario S[0,60] = { Drive(); Dig(); Drvie() }"),
+            ("lib/acts.rmpl", "import \"more.rmpl\";\nprimitive Drive()[2,3];\nprimitive Dig()[5,4];"),
+            ("lib/more.rmpl", "// nothing else\nconst N = 3;"),
+        ]);
+        let told = codes(&text);
+        let expected =
+            [("W-UNDEF", "day.rmpl"), ("E-BOUNDS", "lib/acts.rmpl"), ("W-UNUSED", "lib/more.rmpl")];
+        assert_eq!(told, expected.map(|(code, file)| (code, file.to_owned())));
+        let (files, lines) = (Files::of(&text), LineIndex::new(&text));
+        let bounds = text.find("[5,4]").expect("it is there") as u32;
+        assert_eq!(files.line_column(&text, &lines, bounds), LineColumn { line: 3, column: 16 });
+    }
+
+    #[test]
+    fn what_a_file_leaves_open_ends_with_it() {
+        let text = mission(&[
+            ("a.rmpl", "import \"b.rmpl\"; scenario S[0,60] = { Drive() /* never closed"),
+            ("b.rmpl", "primitive Drive()[2,3];"),
+        ]);
+        let program = parse(&text).program();
+        assert_eq!((program.scenarios.len(), program.primitives.len()), (1, 1));
+    }
+
+    #[test]
+    fn files_that_import_each_other_or_are_not_there_are_mistakes() {
+        let circle = mission(&[
+            ("a.rmpl", "import \"b.rmpl\"; scenario S[0,60] = { delay }"),
+            ("b.rmpl", "import \"a.rmpl\";"),
+        ]);
+        assert_eq!(codes(&circle), [("E-RECURSION", "b.rmpl".to_owned())]);
+        let itself = mission(&[("a.rmpl", "import \"a.rmpl\"; scenario S[0,60] = { delay }")]);
+        assert_eq!(codes(&itself), [("E-RECURSION", "a.rmpl".to_owned())]);
+        for file in ["b.rmpl", "../b.rmpl", "/b.rmpl", "C:/b.rmpl", ""] {
+            let text = mission(&[("a.rmpl", &format!("import \"{file}\"; scenario S[0,60] = {{ delay }}"))]);
+            assert_eq!(codes(&text), [("E-UNDEF", "a.rmpl".to_owned())], "{file}");
+        }
+        // Two ways to one file are no circle, and the file counts once.
+        let twice = mission(&[
+            ("a.rmpl", "import \"b.rmpl\"; import \"c.rmpl\"; scenario S[0,60] = { Drive() }"),
+            ("b.rmpl", "import \"c.rmpl\";"),
+            ("c.rmpl", "primitive Drive()[2,3];"),
+        ]);
+        assert_eq!(codes(&twice), []);
+    }
+
+    #[test]
+    fn edits_of_a_joined_text_leave_it_as_a_fresh_one() {
+        let before = mission(&[
+            ("a.rmpl", "import \"b.rmpl\"; scenario S[0,60] = { Drive() }"),
+            ("b.rmpl", "primitive Drive()[2,3];"),
+        ]);
+        for after in [
+            before.replace("[0,60]", "[0,70"),
+            before.replace("Drive() }", "Drive() /*"),
+            before.replace("[2,3]", "[3,2]"),
+        ] {
+            let mut edited = parse(&before);
+            edited.edit(&crate::spans::difference(&before, &after));
+            assert_eq!(edited.diagnostics(), parse(&after).diagnostics(), "{after}");
+            assert_eq!(edited.program(), parse(&after).program(), "{after}");
+        }
+    }
+}
