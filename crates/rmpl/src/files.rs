@@ -100,8 +100,8 @@ impl Files {
 pub fn join(name: &str, text: &str, mut read: impl FnMut(&str) -> Option<String>) -> String {
     let mut joined = text.to_owned();
     let mut known = vec![name.to_owned()];
-    let mut open = imported(name, text);
-    open.reverse();
+    let own = imports(text);
+    let mut open = resolved(name, &own);
     while let Some(file) = open.pop() {
         if known.contains(&file) || known.len() > MAX_FILES || file.contains(['\n', MARK]) {
             continue;
@@ -109,9 +109,7 @@ pub fn join(name: &str, text: &str, mut read: impl FnMut(&str) -> Option<String>
         let Some(text) = read(&file) else { continue };
         // What would begin a heading means nothing in a text.
         let text = text.replace(MARK, " ");
-        let mut further = imported(&file, &text);
-        further.reverse();
-        open.append(&mut further);
+        open.append(&mut resolved(&file, &imports(&text)));
         joined.push('\n');
         joined.push(MARK);
         joined.push_str(&file);
@@ -119,7 +117,7 @@ pub fn join(name: &str, text: &str, mut read: impl FnMut(&str) -> Option<String>
         joined.push_str(&text);
         known.push(file);
     }
-    if known.len() > 1 || !imported(name, text).is_empty() {
+    if !own.is_empty() {
         joined.push('\n');
         joined.extend([MARK, MARK]);
         joined.push_str(name);
@@ -128,12 +126,14 @@ pub fn join(name: &str, text: &str, mut read: impl FnMut(&str) -> Option<String>
     joined
 }
 
-/// The files that a file imports, in textual order.
-fn imported(name: &str, text: &str) -> Vec<String> {
-    if !text.contains("import") {
-        return Vec::new();
-    }
-    parse(text).program().imports.iter().filter_map(|import| resolve(name, &import.file)).collect()
+/// What a text imports, in textual order.
+fn imports(text: &str) -> Vec<ImportDecl> {
+    if text.contains("import") { parse(text).program().imports } else { Vec::new() }
+}
+
+/// The files that a file imports, the last one first.
+fn resolved(name: &str, imports: &[ImportDecl]) -> Vec<String> {
+    imports.iter().rev().filter_map(|import| resolve(name, &import.file)).collect()
 }
 
 /// The file that `file` is in a text of the file `importer`, whose folder it starts from. `None` if it is outside of the
