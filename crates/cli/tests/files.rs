@@ -57,7 +57,7 @@ fn diagnostics_say_which_file_they_are_about() {
     let found = &told["diagnostics"][0];
     assert_eq!(
         (status, found["code"].as_str(), found["file"].as_str()),
-        (1, Some("E-BOUNDS"), Some("acts.rmpl"))
+        (2, Some("E-BOUNDS"), Some("acts.rmpl"))
     );
     let span = &found["span"];
     assert_eq!(
@@ -75,6 +75,6 @@ fn nothing_outside_of_the_folder_is_read() {
         let inner = folder("outside/inner", &[("day.rmpl", &text)]);
         let day = inner.join("day.rmpl");
         let (status, told) = run(&["check", day.to_str().expect("a plain path"), "--format", "json"]);
-        assert_eq!((status, told["diagnostics"][0]["code"].as_str()), (1, Some("E-UNDEF")), "{told}");
+        assert_eq!((status, told["diagnostics"][0]["code"].as_str()), (2, Some("E-UNDEF")), "{told}");
     }
 }

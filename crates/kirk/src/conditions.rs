@@ -34,7 +34,7 @@ pub(crate) struct ModelLabel {
     pub(crate) is_lasting: bool,
     pub(crate) is_changing: bool,
     /// Of a change: the value that it gives.
-    value: Option<ValueId>,
+    pub(crate) value: Option<ValueId>,
     /// Whether it is only about the instant at which its arc begins.
     pub(crate) is_at_start: bool,
 }

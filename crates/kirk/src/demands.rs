@@ -7,7 +7,8 @@ use exact::{Rational, Scale};
 use num_integer::Integer as _;
 use rmpl::program::{Change, LabelMode, Measure};
 use tpn::{
-    ArcId, Extent, LabelId, Network, NodeId, Plan, Quality, ResourceId, Supply, UseId, ValueId, Window, Worth,
+    ArcId, ArcKind, Extent, LabelId, Network, NodeId, Plan, Quality, ResourceId, Supply, UseId, ValueId,
+    Window, Worth,
 };
 
 use crate::model::Model;
@@ -77,13 +78,15 @@ pub(crate) struct ModelDeparture {
 pub(crate) struct ModelGoal {
     /// What each selected arc adds, in the goal's unit.
     pub(crate) by_arc: Vec<(ArcId, i64)>,
+    /// What each movement adds that starts at a place: metres, and what each of them costs as long as no path has told.
+    pub(crate) by_departure: BTreeMap<(LabelId, ValueId), i64>,
     /// What each tick of the scenario's end adds.
     pub(crate) per_tick: i64,
     /// How many of the goal's units one of the mission's is.
     unit: i64,
     is_maximized: bool,
     /// Whether the sum is all that the goal measures, so that no plan is better where none has a smaller one: metres are
-    /// only known of planned paths, and the end is the earliest one.
+    /// bounded from below, where they are known at all, and the end is the earliest one.
     pub(crate) is_whole: bool,
 }
 
@@ -94,7 +97,13 @@ impl ModelGoal {
         let by_arc: i64 = selected.map(|&(_, weight)| weight).sum();
         let overflow = |_| TimeOverflow::at(model.demands.end);
         let end = model.units(plan.quality.end).map_err(overflow)?;
-        let sum = i128::from(by_arc) + i128::from(end) * i128::from(self.per_tick);
+        let by_departure: i64 = if self.by_departure.is_empty() {
+            0
+        } else {
+            let departures = model.demands.departures_of(model, plan);
+            departures.iter().filter_map(|departure| self.by_departure.get(departure)).sum()
+        };
+        let sum = i128::from(by_arc) + i128::from(by_departure) + i128::from(end) * i128::from(self.per_tick);
         i64::try_from(sum).map_err(|_| TimeOverflow::at(model.demands.end))
     }
 
@@ -130,6 +139,31 @@ impl Demands {
             quality.end = window.earliest;
         }
         quality
+    }
+
+    /// The selected movements of a plan, each with the place where it starts.
+    fn departures_of(&self, model: &Model, plan: &Plan) -> Vec<(LabelId, ValueId)> {
+        let labels = &model.conditions.labels;
+        let mut found = Vec::new();
+        for variable in &self.variables {
+            let is_change = |label: LabelId| variable.changes.contains(&label);
+            let order: Vec<(LabelId, LabelId)> = (plan.conflict_order.iter())
+                .map(|order| (order.first, order.then))
+                .filter(|&(first, then)| is_change(first) && is_change(then))
+                .collect();
+            let rank = |label: LabelId| order.iter().filter(|&&(_, then)| then == label).count();
+            for &movement in &variable.changes {
+                if !self.departures.contains_key(&movement)
+                    || !plan.selected_arcs[labels[movement].arc.index()]
+                {
+                    continue;
+                }
+                let earlier = order.iter().filter(|&&(_, then)| then == movement).map(|&(first, _)| first);
+                let before = earlier.max_by_key(|&first| rank(first)).or(variable.initial);
+                found.extend(before.and_then(|before| labels[before].value).map(|from| (movement, from)));
+            }
+        }
+        found
     }
 
     /// How many uses the network has.
@@ -246,12 +280,28 @@ fn goals(network: &Network, ticks: i64) -> Option<Vec<ModelGoal>> {
                 let weight = cost.checked_mul(worth.cost)?.checked_add(reward.checked_mul(worth.reward)?)?;
                 by_arc.push((worth.arc, weight.checked_mul(sign)?));
             }
-            let unit = common_unit(by_arc.iter().map(|&(_, weight)| weight).chain([per_tick]))?;
+            let mut by_departure: BTreeMap<(LabelId, ValueId), Rational> = BTreeMap::new();
+            let per_metre = factor(Measure::Length)?;
+            for distance in &network.distances {
+                let weight =
+                    per_metre.checked_add(cost.checked_mul(cost_per_metre(network, distance.arrival)?)?)?;
+                let weight = weight.checked_mul(sign)?.checked_mul(distance.metres)?;
+                by_departure.insert((distance.arrival, distance.from), weight);
+            }
+            // Of what is better the longer it is, the least length tells nothing.
+            let is_bounded =
+                !network.distances.is_empty() && by_departure.values().all(|it| !it.is_negative());
+            by_departure.retain(|_, weight| weight.is_positive());
+            let weights = by_arc.iter().map(|&(_, weight)| weight).chain(by_departure.values().copied());
+            let unit = common_unit(weights.chain([per_tick]))?;
             let by_arc = by_arc.into_iter().map(|(arc, weight)| Some((arc, units(weight, unit)?)));
             let is_driven = !factor(Measure::Length)?.is_zero()
                 || (!cost.is_zero() && network.worths.iter().any(|worth| !worth.cost_per_metre.is_zero()));
             Some(ModelGoal {
-                is_whole: !is_driven && !per_tick.is_negative(),
+                is_whole: (!is_driven || is_bounded) && !per_tick.is_negative(),
+                by_departure: (by_departure.into_iter())
+                    .map(|(departure, weight)| Some((departure, units(weight, unit)?)))
+                    .collect::<Option<_>>()?,
                 by_arc: by_arc.collect::<Option<_>>()?,
                 per_tick: units(per_tick, unit)?,
                 unit,
@@ -259,6 +309,16 @@ fn goals(network: &Network, ticks: i64) -> Option<Vec<ModelGoal>> {
             })
         })
         .collect()
+}
+
+/// What each metre of a movement costs that is not counted in its worth yet, as it is once its path is known.
+fn cost_per_metre(network: &Network, arrival: LabelId) -> Option<Rational> {
+    let movement = network.labels[arrival.index()].arc;
+    if network.arcs[movement.index()].kind == ArcKind::Span {
+        return Some(Rational::ZERO);
+    }
+    let own = network.worths.iter().filter(|worth| worth.arc == movement);
+    own.map(|worth| worth.cost_per_metre).try_fold(Rational::ZERO, Rational::checked_add)
 }
 
 /// The least number that makes all amounts whole, when they are multiplied by it.

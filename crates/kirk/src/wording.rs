@@ -395,7 +395,7 @@ pub(crate) fn arc_name(network: &Network, arc: &Arc) -> String {
             let is_quiet = |event: &&EventRef| {
                 network.occurrences[event.occurrence.index()].kind == OccurrenceKind::Delay
             };
-            let told = events.iter().find(|event| !is_quiet(event)).or(events.first());
+            let told = events.iter().rfind(|event| !is_quiet(event)).or(events.first());
             told.map_or_else(|| "an event".to_owned(), |&event| network.event_name(event))
         });
         return format!("the bound from {from} to {to}");

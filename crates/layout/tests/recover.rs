@@ -45,6 +45,7 @@ fn bare(node_count: usize, arcs: &[(u32, u32, ArcKind)]) -> Network {
         worths: Vec::new(),
         objective: Vec::new(),
         departures: Vec::new(),
+        distances: Vec::new(),
         blocks: Vec::new(),
         root: None,
         start: NodeId(0),

@@ -1,12 +1,13 @@
-//! Movements whose order planning finds (SPEC 10.3): how long each takes at least from wherever its vehicle may be. Before
-//! a path is known that is the straight line at the greatest speed; what a path says holds for every plan with that leg.
+//! Movements whose order planning finds (SPEC 10.3): how long each takes at least from wherever its vehicle may be, and how
+//! many metres it drives. Before a path is known that is the straight line, at the greatest speed; what a path says holds
+//! for every plan with that leg.
 
 use std::collections::BTreeMap;
 
 use exact::{Rational, Time};
 use rmpl::program::Program;
 use smol_str::{SmolStr, format_smolstr};
-use tpn::{Departure, Extent, LabelId, Network, OccurrenceId, ValueId};
+use tpn::{Departure, Distance, Extent, LabelId, Network, OccurrenceId, ValueId};
 
 use crate::traverse::{self, Route};
 
@@ -14,14 +15,21 @@ use crate::traverse::{self, Route};
 pub(crate) struct Departures {
     movements: Vec<Movement>,
     /// What paths have told; `None` of what cannot be driven.
-    known: BTreeMap<(OccurrenceId, SmolStr), Option<Time>>,
+    known: BTreeMap<(OccurrenceId, SmolStr), Known>,
+}
+
+/// What a path has told.
+#[derive(Clone, Copy)]
+struct Known {
+    least: Option<Time>,
+    metres: Option<Rational>,
 }
 
 struct Movement {
     occurrence: OccurrenceId,
     arrival: LabelId,
-    /// Each place, with the time that the straight line takes.
-    places: Vec<(ValueId, SmolStr, Option<Time>)>,
+    /// Each place, with the time that the straight line takes and its metres.
+    places: Vec<(ValueId, SmolStr, Option<Time>, Option<Rational>)>,
 }
 
 impl Departures {
@@ -38,12 +46,12 @@ impl Departures {
         route.from.as_ref().is_none_or(|from| self.known.contains_key(&(route.occurrence, from.clone())))
     }
 
-    /// Learns how long a route takes at least; `None` if it cannot be driven.
-    pub(crate) fn learn(&mut self, route: &Route, least: Option<Time>) {
+    /// Learns how long a route takes at least, `None` if it cannot be driven, and its metres.
+    pub(crate) fn learn(&mut self, route: &Route, least: Option<Time>, metres: Option<Rational>) {
         if let Some(from) = &route.from {
             // The exact time comes with the path; a rounder one that is a little less keeps the planner's numbers small.
             let least = least.map(|least| round_down(least.to_f64()).unwrap_or_default());
-            self.known.insert((route.occurrence, from.clone()), least);
+            self.known.insert((route.occurrence, from.clone()), Known { least, metres });
         }
     }
 
@@ -60,14 +68,26 @@ impl Departures {
         })
     }
 
+    /// How many metres each movement drives at least from each place.
+    pub(crate) fn distances(&self) -> Vec<Distance> {
+        let all = self.movements.iter().flat_map(|movement| {
+            movement.places.iter().filter_map(move |(from, place, _, straight)| {
+                let known = self.known.get(&(movement.occurrence, place.clone()));
+                let metres = known.and_then(|known| known.metres).or(*straight)?;
+                Some(Distance { arrival: movement.arrival, from: *from, metres })
+            })
+        });
+        all.collect()
+    }
+
     fn listed(&self, is_possible: impl Fn(OccurrenceId, &SmolStr) -> bool) -> Vec<Departure> {
         let mut departures = Vec::new();
         for movement in &self.movements {
-            for (value, place, straight) in &movement.places {
-                let known = self.known.get(&(movement.occurrence, place.clone()));
+            for (value, place, straight, _) in &movement.places {
+                let known = self.known.get(&(movement.occurrence, place.clone())).map(|known| known.least);
                 let least = match (known, straight) {
                     _ if !is_possible(movement.occurrence, place) => None,
-                    (Some(&known), _) => known,
+                    (Some(known), _) => known,
                     (None, Some(straight)) => Some(*straight),
                     (None, None) => continue,
                 };
@@ -91,26 +111,35 @@ fn movement(network: &Network, program: &Program, occurrence: OccurrenceId) -> O
     let unit_seconds = program.options.time_unit.seconds();
     let places = variable.values.iter().enumerate().map(|(index, place)| {
         let route = traverse::route_from(network, program, occurrence, place);
-        (ValueId::from_index(index), place.clone(), route.and_then(|route| straight(&route, unit_seconds)))
+        let metres = route.as_ref().map(straight_metres);
+        let least =
+            route.as_ref().zip(metres).and_then(|(route, metres)| straight(route, metres, unit_seconds));
+        (ValueId::from_index(index), place.clone(), least, metres.and_then(parts_rounded_down))
     });
     Some(Movement { occurrence, arrival: LabelId::from_index(position), places: places.collect() })
 }
 
+/// The length of a route along straight lines.
+fn straight_metres(route: &Route) -> f64 {
+    let pairs = route.waypoints.windows(2);
+    pairs.map(|pair| nalgebra::distance(&pair[0].position_m, &pair[1].position_m)).sum()
+}
+
 /// The time of a route along straight lines at the greatest speed.
-fn straight(route: &Route, unit_seconds: i64) -> Option<Time> {
-    let metres: f64 = route
-        .waypoints
-        .windows(2)
-        .map(|pair| nalgebra::distance(&pair[0].position_m, &pair[1].position_m))
-        .sum();
+fn straight(route: &Route, metres: f64, unit_seconds: i64) -> Option<Time> {
     let speed_mps = route.speed_mps.1.to_f64();
     round_down(metres / speed_mps / Rational::from_integer(unit_seconds).to_f64())
 }
 
 /// A time that is no greater, in thousandths of the mission's unit.
 fn round_down(units: f64) -> Option<Time> {
+    parts_rounded_down(units).map(Time::from_units)
+}
+
+/// A number that is no greater, in thousandths.
+fn parts_rounded_down(units: f64) -> Option<Rational> {
     const PARTS: i64 = 1000;
     // What is a hair less is still a lower bound.
     let parts = (units * PARTS as f64 * (1.0 - 1e-9)).floor();
-    (parts.is_finite() && parts < 1e15).then_some(parts as i64).and_then(|parts| Time::new(parts, PARTS))
+    (parts.is_finite() && parts < 1e15).then_some(parts as i64).and_then(|parts| Rational::new(parts, PARTS))
 }

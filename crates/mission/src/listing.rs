@@ -58,7 +58,11 @@ pub(crate) fn add_plans(
     stop: &mut dyn FnMut() -> bool,
 ) {
     let mut network = problem.network.as_ref().clone();
-    network.departures = Departures::new(problem.network, problem.program).all();
+    let departures = Departures::new(problem.network, problem.program);
+    network.departures = departures.all();
+    if problem.network.counts_metres() {
+        network.distances = departures.distances();
+    }
     let network = Arc::new(network);
     let inserted = BTreeMap::new();
     let relaxed = planning::without_upper_limits(&network, &inserted).unwrap_or_else(|| Arc::clone(&network));

@@ -118,7 +118,8 @@ fn plan_paths(
 ) -> Planned {
     let mut inserted: BTreeMap<OccurrenceId, Inserted> = BTreeMap::new();
     let ordered;
-    let problem = if problem.ground.is_some() && kirk::has_open_order(problem.network) {
+    let is_by_departure = kirk::has_open_order(problem.network) || problem.network.counts_metres();
+    let problem = if problem.ground.is_some() && is_by_departure {
         match order_movements(problem, grounds, paths, stop) {
             Ok(network) => {
                 ordered = Arc::new(network);
@@ -205,6 +206,7 @@ fn order_movements(
     loop {
         let mut network = problem.network.as_ref().clone();
         network.departures = departures.all();
+        network.distances = distances(problem, &departures);
         let asked = match problem.facts {
             Some(facts) => facts.apply(&network, problem.network.nodes.len()),
             None => network.clone(),
@@ -225,7 +227,9 @@ fn order_movements(
             }
             is_new = true;
             let legs = legs(problem, ground, grounds, paths, route);
-            departures.learn(route, legs.as_ref().ok().and_then(|legs| least_duration(problem, route, legs)));
+            let least = legs.as_ref().ok().and_then(|legs| least_duration(problem, route, legs));
+            let length_m = legs.as_ref().ok().map(|legs| traverse::joined(legs).length_m());
+            departures.learn(route, least, length_m.and_then(rounded_up));
             if legs.is_err() {
                 let (waypoints, route) = (route.waypoints.clone(), route.clone());
                 tried.insert(route.occurrence, Inserted { waypoints, legs, route });
@@ -233,9 +237,15 @@ fn order_movements(
         }
         if !is_new {
             network.departures = departures.only(&routes);
+            network.distances = distances(problem, &departures);
             return Ok(network);
         }
     }
+}
+
+/// The metres that movements drive at least, where the objective counts them.
+fn distances(problem: &Problem<'_>, departures: &Departures) -> Vec<tpn::Distance> {
+    if problem.network.counts_metres() { departures.distances() } else { Vec::new() }
 }
 
 /// The least time that the legs of a route take; nothing where that does not fit, which its own bounds then decide.
@@ -352,8 +362,7 @@ pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId
 
 /// Adds what a traverse takes and costs for each metre of its path (SPEC 11, 12), rounded up.
 fn count_metres(network: &mut Network, occurrence: OccurrenceId, length_m: f64) {
-    const PARTS: u32 = 1000;
-    let Some(metres) = Rational::from_f64_up(length_m, PARTS) else { return };
+    let Some(metres) = rounded_up(length_m) else { return };
     let with = |amount: Rational, per_metre: Rational| {
         per_metre.checked_mul(metres).and_then(|more| amount.checked_add(more)).unwrap_or(amount)
     };
@@ -364,6 +373,11 @@ fn count_metres(network: &mut Network, occurrence: OccurrenceId, length_m: f64) 
     for worth in network.worths.iter_mut().filter(|worth| Some(worth.arc) == arc) {
         worth.cost = with(worth.cost, worth.cost_per_metre);
     }
+}
+
+/// Metres as numbers that plans are weighed by: to the millimetre, rounded up.
+fn rounded_up(length_m: f64) -> Option<Rational> {
+    Rational::from_f64_up(length_m, 1000)
 }
 
 fn traverse_path(route: &Route, legs: &[Leg], map: &Terrain) -> Option<TraversePath> {
@@ -506,7 +520,6 @@ fn conclude(
     mut outcome: Outcome,
     inserted: BTreeMap<OccurrenceId, Inserted>,
 ) -> Planned {
-    let verdict = outcome.plans.first().map(|plan| verify::check_plan(&network, plan));
     let mut warnings = traverse::check(problem.network, problem.program);
     let mut traverses = Vec::new();
     let mut drives: Vec<Drive> = Vec::new();
@@ -530,6 +543,10 @@ fn conclude(
             spaces.push((route.occurrence, space.exact));
         }
     }
+    if let Some(plan) = outcome.plans.first_mut() {
+        plan.quality.length_m = traverses.iter().map(|traverse| traverse.length_m).sum();
+    }
+    let verdict = outcome.plans.first().map(|plan| verify::check_plan(&network, plan));
     let motions = driving::motions(&drives);
     let separation_violations = separation::violations(&drives, &motions, world);
     warnings.extend(separation::warnings(&separation_violations, &drives, &network, world));
@@ -544,9 +561,6 @@ fn conclude(
         })
         .collect();
     name_blocked(&mut outcome, &network, &undrivable);
-    if let Some(plan) = outcome.plans.first_mut() {
-        plan.quality.length_m = traverses.iter().map(|traverse| traverse.length_m).sum();
-    }
     let planning = Arc::new(Planning { outcome, verdict, undrivable, left_out: Vec::new() });
     let others = Vec::new();
     Planned { network, planning, others, traverses, spaces, motions, separation_violations, warnings }

@@ -101,3 +101,38 @@ fn what_a_path_takes_for_each_metre_counts() {
     assert!(outcome.plans.is_empty(), "20 m there and back take 20");
     assert_eq!(outcome.failure.expect("it is explained").reasons[0].kind, kirk::FailureKind::Resource);
 }
+
+#[test]
+fn the_shortest_way_is_found_and_proven() {
+    let sites = |objective: &str, clause: &str| {
+        plan(&format!(
+            "{objective} primitive Drive(to) moves R1 speed (0.02, 0.5){clause};
+             scenario X[0,60] = {{ unordered {{ Drive(A); Drive(B); Drive(C); Drive(D); Drive(E) }} }}"
+        ))
+    };
+    let shortest = sites("objective minimize length;", "");
+    assert_driven_one_after_the_other(&shortest, 5);
+    let best = &shortest.planning.outcome.plans[0].quality;
+    assert_eq!(best.is_optimal, Some(true));
+    // A, D, B, E, C takes 4.03 minutes at half a metre per second.
+    assert!((best.length_m - 4.03 * 30.0).abs() < 0.5, "{} m", best.length_m);
+    let cheapest = sites("objective minimize cost;", " costs 2 per metre");
+    let quality = &cheapest.planning.outcome.plans[0].quality;
+    assert_eq!(quality.is_optimal, Some(true));
+    assert!((quality.length_m - best.length_m).abs() < 0.01, "{} m", quality.length_m);
+    assert!((quality.cost.to_f64() - 2.0 * quality.length_m).abs() < 0.05, "{}", quality.cost.to_f64());
+    // How long the longest way is, no straight line tells.
+    let longest = sites("objective maximize length;", "");
+    assert_eq!(longest.planning.outcome.plans[0].quality.is_optimal, Some(false));
+}
+
+#[test]
+fn of_two_ways_the_shorter_one_is_taken_though_it_stands_second() {
+    let ways = plan(
+        "objective minimize length; primitive Drive(to) moves R1 speed (0.02, 0.5);
+         scenario X[0,60] = { choose { { Drive(D); Drive(E) }, Drive(A) }; Drive(B) }",
+    );
+    let plan = &ways.planning.outcome.plans[0];
+    assert_eq!((plan.choices[0].alternative, plan.quality.is_optimal), (1, Some(true)));
+    assert_driven_one_after_the_other(&ways, 2);
+}

@@ -12,7 +12,7 @@ use rustc_hash::FxHashSet;
 use crate::analysis::local::local_diagnostics;
 use crate::analysis::{Checked, DeclarationKey, Index, Meaning, Names, Summary, check, recursion, summarize};
 use crate::diagnostic::{Diagnostic, Edit, Known, Severity};
-use crate::diagnostics::syntax;
+use crate::diagnostics::{syntax, undefined};
 use crate::files::{self, MARK};
 use crate::lower::{Item, Lowering, OptionValue};
 use crate::parser::{Scratch, parse_declaration};
@@ -266,7 +266,18 @@ impl Parse {
             })
             .collect();
         if !imports.is_empty() {
-            all.extend(files::check(self, &imports));
+            let found = files::check(self, &imports);
+            if found.iter().any(|found| found.code == undefined::CODE) {
+                // What the missing file declares is missing once.
+                let is_consequence = |code: &str| {
+                    matches!(
+                        code,
+                        "E-UNDEF" | "E-NAME" | "W-UNDEF" | "W-SIMILAR" | "W-SUPPORT" | "W-TRAVERSE"
+                    )
+                };
+                all.retain(|told| !is_consequence(told.code.0));
+            }
+            all.extend(found);
             all.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.severity));
         }
         all

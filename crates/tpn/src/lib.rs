@@ -20,8 +20,9 @@ mod vocabulary;
 
 pub use compile::{Top, compile, merge_diagnostics};
 pub use network::{
-    Arc, ArcId, ArcKind, Block, BlockId, BlockKind, Decision, DecisionId, Departure, EventEnd, EventRef,
-    Extent, Goal, Label, LabelId, Literal, Network, Node, NodeId, Occurrence, OccurrenceId, OccurrenceKind,
-    Resource, ResourceId, Role, Supply, Use, UseId, ValueId, ValueSet, Variable, VariableId, Worth,
+    Arc, ArcId, ArcKind, Block, BlockId, BlockKind, Decision, DecisionId, Departure, Distance, EventEnd,
+    EventRef, Extent, Goal, Label, LabelId, Literal, Network, Node, NodeId, Occurrence, OccurrenceId,
+    OccurrenceKind, Resource, ResourceId, Role, Supply, Use, UseId, ValueId, ValueSet, Variable, VariableId,
+    Worth,
 };
 pub use plan::{CausalLink, Choice, Levels, Ordering, Plan, Precedence, Quality, UseOrdering, Window};

@@ -89,6 +89,9 @@ pub struct Network {
     pub worths: Vec<Worth>,
     /// How long movements take at least, by where they start, as far as that is known (SPEC 10.3).
     pub departures: Vec<Departure>,
+    /// How many metres movements drive at least, by where they start, as far as that is known and counts (SPEC 12).
+    #[serde(default)]
+    pub distances: Vec<Distance>,
     /// What plans are to be best in, the most important goal first; empty if any plan will do.
     pub objective: Vec<Goal>,
     /// The program's structure, parents after children; drawings and explanations read it.
@@ -348,6 +351,18 @@ pub struct Departure {
     pub from: ValueId,
     /// The least duration; `None` if it cannot be driven from there.
     pub least: Option<Time>,
+}
+
+/// How many metres a movement drives at least if it starts at one place: before its path is known along the straight
+/// line, and along its path afterwards.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Distance {
+    /// Where the movement leaves its first vehicle: its label on `V.at`.
+    pub arrival: LabelId,
+    /// Where that vehicle is before.
+    pub from: ValueId,
+    /// The metres.
+    pub metres: Rational,
 }
 
 /// One goal of an objective (SPEC 12).
@@ -656,6 +671,17 @@ impl Network {
             }
         }
         natures
+    }
+
+    /// Whether the objective counts metres: driven ones, or the cost of each.
+    pub fn counts_metres(&self) -> bool {
+        let has_cost = self.worths.iter().any(|worth| !worth.cost_per_metre.is_zero());
+        let counted = |measure: Measure| match measure {
+            Measure::Length => true,
+            Measure::Cost => has_cost,
+            Measure::Reward | Measure::End => false,
+        };
+        self.objective.iter().flat_map(|goal| &goal.terms).any(|&(_, measure)| counted(measure))
     }
 
     /// The name of a use: `Uses(Power)@Radio#1`.

@@ -185,6 +185,7 @@ pub fn network_from_json(document: &Value) -> Result<Network, NetworkError> {
     }
     Ok(Network {
         departures: Vec::new(),
+        distances: Vec::new(),
         resources,
         uses,
         worths,

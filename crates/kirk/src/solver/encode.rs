@@ -220,11 +220,37 @@ impl<'m> Problem<'m> {
             let presence = self.presence(self.model.arcs[arc].context);
             *terms.entry(presence.side.variable()).or_default() += weight;
         }
+        self.add_departing_terms(goal, &mut terms);
         if goal.per_tick != 0 {
             *terms.entry(self.times[self.model.demands.end]).or_default() += goal.per_tick;
         }
         let terms = terms.into_iter().filter(|&(_, weight)| weight != 0);
         terms.map(|(variable, weight)| (weight, variable)).collect()
+    }
+
+    /// What movements add by where they start: each of them the least of all its starts, and the rest by its own.
+    fn add_departing_terms(&self, goal: &ModelGoal, terms: &mut BTreeMap<Variable, i64>) {
+        if goal.by_departure.is_empty() {
+            return;
+        }
+        let labels = &self.model.conditions.labels;
+        let mut by_movement: BTreeMap<LabelId, Vec<(Literal, i64)>> = BTreeMap::new();
+        for (departing, last) in &self.sides.departures {
+            let weight = labels[departing.before]
+                .value
+                .and_then(|from| goal.by_departure.get(&(departing.movement, from)))
+                .copied()
+                .unwrap_or(0);
+            by_movement.entry(departing.movement).or_default().push((*last, weight));
+        }
+        for (movement, starts) in by_movement {
+            let least = starts.iter().map(|&(_, weight)| weight).min().unwrap_or(0);
+            let presence = self.intervals[movement].presence;
+            *terms.entry(presence.side.variable()).or_default() += least;
+            for (last, weight) in starts {
+                *terms.entry(last.side.variable()).or_default() += weight - least;
+            }
+        }
     }
 
     /// What must lie between the end of a labelled interval and the start of one that excludes it, at most.

@@ -26,7 +26,7 @@ pub(crate) struct Sides {
     /// That a requirement is over before a change that would break it.
     kept_before: Vec<(Ordering, Literal)>,
     /// That a movement sets out where another change has left its vehicle.
-    departures: Vec<(Departing, Literal)>,
+    pub(super) departures: Vec<(Departing, Literal)>,
     /// How long a movement takes at least, by the literal of where it begins.
     pub(super) least_movements: BTreeMap<Literal, i64>,
 }

@@ -206,3 +206,10 @@ pub(crate) fn constrain_in_block(span: Span) -> Diagnostic {
     error(span, "`constrain` is a declaration, and stands outside of all blocks")
         .with_hint("it relates events wherever they are: name their occurrences with `as`, and write it behind the block")
 }
+
+/// An argument of several conditions.
+pub(crate) fn joined_argument(span: Span) -> Diagnostic {
+    error(span, "an argument is one condition, and this joins another one").with_hint(
+        "give the activity a parameter for each, and join them where it uses them: `A(a, b) = { ask a and b }`",
+    )
+}

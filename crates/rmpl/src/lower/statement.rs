@@ -177,7 +177,7 @@ fn collapse(steps: Vec<Statement>, span: Span) -> Statement {
 
 fn argument(node: SyntaxNode<'_>) -> Option<Argument> {
     let span = node.span();
-    if let Some(inner) = node.children().next() {
+    if let Some(inner) = node.children().find(|child| child.kind() != SyntaxKind::Skipped) {
         let value = if inner.kind() == SyntaxKind::Condition {
             ArgumentValue::Condition(literal(inner)?)
         } else {

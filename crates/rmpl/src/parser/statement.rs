@@ -410,6 +410,13 @@ impl Parser<'_> {
             }
             _ => self.report_expected("a name or a number"),
         }
+        if self.at_word("and") || self.at_word("or") {
+            let diagnostic = syntax::joined_argument(self.here());
+            self.report(diagnostic);
+            self.skip_until(|parser| {
+                matches!(parser.kind, SyntaxKind::Comma | SyntaxKind::RightParen) || parser.at_statement_end()
+            });
+        }
         self.close(node, SyntaxKind::Argument);
     }
 

@@ -275,6 +275,7 @@ impl Builder {
             uses: self.uses,
             worths: self.worths,
             departures: Vec::new(),
+            distances: Vec::new(),
             objective,
             blocks: self.blocks,
             root: Some(root.block),

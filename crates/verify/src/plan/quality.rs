@@ -1,10 +1,11 @@
 //! The check of what a plan is worth (SPEC 12), where the mission has costs, rewards or an objective.
 
 use exact::Rational;
-use tpn::Worth;
+use rmpl::program::Measure;
+use tpn::{Distance, ValueSet, Worth};
 
 use super::Checker;
-use crate::{Rule, Violation};
+use crate::{Rule, Violation, departure};
 
 impl Checker<'_> {
     /// Cost and reward are the sums over what is selected, the end is the earliest one. That no plan is better is not
@@ -28,6 +29,32 @@ impl Checker<'_> {
                 let message = format!("the plan's {name} is {expected}, not {stated}");
                 violations.push(Violation::new(Rule::Quality, message));
             }
+        }
+        self.check_length(violations);
+    }
+
+    /// The metres driven are those of the selected movements from where each of them starts, which are known to the
+    /// millimetre, rounded up.
+    fn check_length(&self, violations: &mut Vec<Violation>) {
+        let (network, plan) = (self.network, self.plan);
+        let terms = network.objective.iter().flat_map(|goal| &goal.terms);
+        if network.distances.is_empty() || !terms.into_iter().any(|(_, measure)| *measure == Measure::Length)
+        {
+            return;
+        }
+        let movements = departure::of_plan(network, plan);
+        let metres = movements.iter().filter_map(|movement| {
+            let values = &network.labels[movement.before.index()].literal.values;
+            let starts_there = |distance: &&Distance| {
+                distance.arrival == movement.arrival && *values == ValueSet::In(vec![distance.from])
+            };
+            network.distances.iter().find(starts_there).map(|distance| distance.metres.to_f64())
+        });
+        let (sum, count) = metres.fold((0.0, 0.0), |(sum, count), metres| (sum + metres, count + 1.0));
+        let stated = plan.quality.length_m;
+        if (stated - sum).abs() > 0.002 * (count + 1.0) {
+            let message = format!("the plan's length is {sum:.3} m, not {stated:.3} m");
+            violations.push(Violation::new(Rule::Quality, message));
         }
     }
 }
