@@ -66,6 +66,8 @@ export type State = {
   isStale: boolean;
   /** The name of the open mission. */
   mission: string;
+  /** The missions that the user has. */
+  library: Library;
   workspace: string;
   activePanel: string;
   /** The panels on screen, by name. */
@@ -302,6 +304,37 @@ export type Robustness = {
 export type Pinned = {
   events: { [key in string]: number };
   windows: Record<string, [Time, Time]>;
+};
+
+/** The missions that the user has. */
+export type Library = {
+  /** The id of the open mission; `null` for an original that nobody has edited. */
+  open: string | null;
+  /** Those changed last first, without the deleted ones. */
+  missions: Array<KeptMission>;
+  /** How many deleted missions can be brought back. */
+  deleted: number;
+  /** How many things are kept that cannot be read. */
+  unreadable: number;
+  /** Whether missions are kept beyond the end of this run. */
+  keeping: "opening" | "kept" | "latest-only" | "nothing";
+};
+
+/** A mission of the library. */
+export type KeptMission = {
+  id: string;
+  name: string;
+  kind: "own" | "example" | "shared" | "file";
+  /** In milliseconds since 1970, UTC. */
+  created: number;
+  /** In milliseconds since 1970, UTC. */
+  changed: number;
+  /** The names of its texts, the main one first. */
+  texts: Array<string>;
+  /** The names of its maps. */
+  maps: Array<string>;
+  /** The names of its versions, the oldest first. */
+  versions: Array<string>;
 };
 
 /** The review of the mission. */

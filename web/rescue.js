@@ -1,6 +1,6 @@
-// Keeps the text through a fault of the front end: what was typed comes back when the page is loaded again.
+// Has the text at hand when the front end stops, to be saved as a file. What loading the page again brings back is kept by
+// the front end itself, with each key press.
 
-const KEY = "enroute/rescued";
 const EVERY_MILLIS = 1000;
 
 let latest = null;
@@ -26,24 +26,14 @@ function readAgain() {
   }
 }
 
-/** Puts the text where the next load of this tab finds it. Returns the text, and whether there is such a place. */
-export function keepForNextLoad() {
+/** The text as it was last known, and whether this browser keeps anything for the page. */
+export function latestText() {
   readAgain();
   try {
-    if (latest !== null) sessionStorage.setItem(KEY, latest);
+    localStorage.setItem("enroute/probe", "");
+    localStorage.removeItem("enroute/probe");
     return { text: latest, isKept: true };
   } catch {
     return { text: latest, isKept: false };
-  }
-}
-
-/** The text that an earlier load of this tab kept, once; `null` where nothing may be kept. */
-export function takeRescued() {
-  try {
-    const text = sessionStorage.getItem(KEY);
-    sessionStorage.removeItem(KEY);
-    return text;
-  } catch {
-    return null;
   }
 }

@@ -6,16 +6,24 @@ import { startCore } from "./core.js";
 import { chooseFile, saveFile, savePicture } from "./files.js";
 import { fetchWithProgress, hideLoading, showFailure, showStep } from "./loading.js";
 import { createMirror } from "./mirror.js";
-import { keepForNextLoad, remember, takeRescued } from "./rescue.js";
+import { latestText, remember } from "./rescue.js";
+import { joinTabs, openShelf } from "./shelf.js";
 import { keepShortcutsFromBrowser } from "./shortcuts.js";
+import { noteTyping } from "./typed.js";
 
 const canvas = document.getElementById("canvas");
 
+// Opening the page does not wait longer than this for the missions; they come later then.
+const SHELF_PATIENCE_MILLIS = 1500;
+
 async function load() {
   showStep("Loading");
+  const shelf = openShelf();
   const module = await fetchWithProgress(new URL("../wasm/page_bg.wasm", import.meta.url));
   showStep("Starting");
   await init({ module_or_path: module });
+  await shelf.patience(SHELF_PATIENCE_MILLIS);
+  const typing = noteTyping(window);
   const mirror = createMirror(document.getElementById("accessibility"), canvas);
   let frontEnd = null;
   const glue = {
@@ -23,9 +31,26 @@ async function load() {
     chooseFile,
     saveFile,
     savePicture,
+    ...shelf,
+    ...joinTabs(),
     // Called while a frame is being drawn. What it leads to must wait until the frame is done.
-    frameDrawn: () => queueMicrotask(settle),
+    frameDrawn: () => {
+      typing.taken();
+      queueMicrotask(settle);
+    },
   };
+
+  // The last moment at which a page that closes, or is put away, can still write something down.
+  function keepNow(typed) {
+    try {
+      frontEnd?.keepNow(JSON.stringify(typed));
+    } catch {
+      // A front end that has stopped has written down all that it took in.
+    }
+  }
+  // A page that may come back takes in itself what was typed.
+  window.addEventListener("pagehide", ({ persisted }) => keepNow(persisted ? [] : typing.waiting()));
+  document.addEventListener("visibilitychange", () => document.visibilityState === "hidden" && keepNow([]));
 
   function settle() {
     if (!frontEnd) return;
@@ -40,8 +65,6 @@ async function load() {
   keepShortcutsFromBrowser(window, usesKey);
   hideLoading();
   performance.mark("enroute ready");
-  const rescued = takeRescued();
-  if (rescued !== null) frontEnd.setSource(rescued);
 }
 
 // A panic of the front end surfaces here, from whichever event led to it.
@@ -60,7 +83,7 @@ canvas.addEventListener("webglcontextlost", (event) => {
 
 /** The front end cannot go on; the text does. */
 function showLoss(title, cause, error) {
-  const { text, isKept } = keepForNextLoad();
+  const { text, isKept } = latestText();
   const advice = isKept
     ? "Your text is kept; loading the page again brings it back."
     : "This browser keeps nothing for the page: save your text before you load it again.";

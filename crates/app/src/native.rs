@@ -3,6 +3,7 @@
 //! The page has its own in the `page` crate.
 
 mod picture;
+mod shelf;
 
 use std::{
     fs, io,
@@ -20,7 +21,7 @@ use std::{
 use egui::Context;
 use etcetera::BaseStrategy as _;
 use mission::{Core, CoreHost, Job, Link, LinkEvent, Request, Response, Transport};
-use workbench::host::{FileKind, Host, HostEvent, StorageError};
+use workbench::host::{FileKind, Host, HostEvent, ShelfContent, ShelfRequest, StorageError};
 
 /// A window's surroundings.
 pub struct NativeHost {
@@ -83,6 +84,10 @@ impl NativeHost {
 
     fn file_of(&self, key: &str) -> Option<PathBuf> {
         Some(self.folder.as_ref()?.join(file_name(key)))
+    }
+
+    fn shelf_folder(&self) -> Option<PathBuf> {
+        Some(self.folder.as_ref()?.join("shelf"))
     }
 
     /// Reads files that are dropped on the window.
@@ -171,15 +176,8 @@ impl Host for NativeHost {
     }
 
     fn store(&mut self, key: &str, value: &str) -> Result<(), StorageError> {
-        let file = self.file_of(key).ok_or_else(|| StorageError::Unavailable {
-            reason: "this system has no folder for a program's data".to_owned(),
-        })?;
-        write_whole(&file, value.as_bytes()).map_err(|reason| match reason.kind() {
-            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-                StorageError::Full { bytes: value.len() }
-            }
-            _ => StorageError::Unavailable { reason: reason.to_string() },
-        })
+        let file = self.file_of(key).ok_or_else(no_folder)?;
+        keep(&file, value.as_bytes())
     }
 
     fn forget(&mut self, key: &str) {
@@ -187,6 +185,31 @@ impl Host for NativeHost {
             // What is not there is forgotten already.
             let _ = fs::remove_file(file);
         }
+    }
+
+    fn stored_keys(&self) -> Vec<String> {
+        self.folder.as_deref().map(shelf::keys_in).unwrap_or_default()
+    }
+
+    fn open_shelf(&mut self) -> Option<Result<ShelfContent, StorageError>> {
+        Some(shelf::content(self.shelf_folder().as_deref()))
+    }
+
+    fn use_shelf(&mut self, request: ShelfRequest) {
+        if let Some(news) = shelf::answer(self.shelf_folder().as_deref(), request) {
+            // The window itself listens.
+            let _ = self.outside.send(News::Happened(HostEvent::Shelf(news)));
+            self.wake.request_repaint();
+        }
+    }
+
+    /// Windows know nothing of each other.
+    fn tell_tabs(&mut self, _message: &str) {}
+
+    fn random(&mut self) -> u64 {
+        let since_1970 = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+        let process = u64::from(std::process::id());
+        (since_1970.as_nanos() as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ process.rotate_left(32)
     }
 
     fn open_file(&mut self, kind: FileKind) {
@@ -332,6 +355,19 @@ fn panic_message(cause: &(dyn std::any::Any + Send)) -> String {
         .unwrap_or_else(|| "the planning core stopped without saying why".to_owned())
 }
 
+fn no_folder() -> StorageError {
+    StorageError::Unavailable { reason: "this system has no folder for a program's data".to_owned() }
+}
+
+fn keep(file: &Path, bytes: &[u8]) -> Result<(), StorageError> {
+    write_whole(file, bytes).map_err(|reason| match reason.kind() {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            StorageError::Full { bytes: bytes.len() }
+        }
+        _ => StorageError::Unavailable { reason: reason.to_string() },
+    })
+}
+
 /// Writes a file so that it is never seen half written.
 fn write_whole(file: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Some(folder) = file.parent() {
@@ -357,9 +393,30 @@ fn file_name(key: &str) -> String {
         .collect()
 }
 
+/// The key that such a name stands for; `None` for other files.
+fn key_of(file_name: &str) -> Option<String> {
+    let mut bytes = Vec::new();
+    let mut rest = file_name;
+    while let Some(first) = rest.bytes().next() {
+        match first {
+            b'_' => {
+                bytes.push(u8::from_str_radix(rest.get(1..3)?, 16).ok()?);
+                rest = rest.get(3..)?;
+            }
+            b'a'..=b'z' | b'0'..=b'9' | b'-' => {
+                bytes.push(first);
+                rest = rest.get(1..)?;
+            }
+            _ => return None,
+        }
+    }
+    String::from_utf8(bytes).ok()
+}
+
 #[cfg(test)]
 mod tests {
     use mission::{Goal, SearchKind, Update};
+    use workbench::host::ShelfNews;
 
     use super::*;
 
@@ -410,6 +467,39 @@ mod tests {
     fn without_a_folder_storing_says_so() {
         let mut host = NativeHost::start_in(Context::default(), None);
         assert!(matches!(host.store("a", "b"), Err(StorageError::Unavailable { .. })));
+    }
+
+    #[test]
+    fn missions_lie_on_the_shelf_until_they_are_removed() {
+        let folder = std::env::temp_dir().join(format!("enroute-shelf-{}", std::process::id()));
+        let mut host = NativeHost::start_in(Context::default(), Some(folder.clone()));
+        assert_eq!(host.open_shelf(), Some(Ok(Vec::new())));
+        for key in ["mission/A-1", "map/A-1/yard.pgm"] {
+            let request = ShelfRequest::Write { key: key.to_owned(), bytes: b"kept".to_vec(), token: 7 };
+            host.use_shelf(request);
+            let news = wait_for(&mut host, |event| matches!(event, HostEvent::Shelf(_)));
+            let written = ShelfNews::Written { key: key.to_owned(), token: 7, outcome: Ok(()) };
+            assert_eq!(news, HostEvent::Shelf(written));
+        }
+        let mut again = NativeHost::start_in(Context::default(), Some(folder.clone()));
+        let content = vec![("mission/A-1".to_owned(), b"kept".to_vec())];
+        assert_eq!(again.open_shelf(), Some(Ok(content)));
+        again.use_shelf(ShelfRequest::Read { key: "map/A-1/yard.pgm".to_owned() });
+        let news = wait_for(&mut again, |event| matches!(event, HostEvent::Shelf(_)));
+        let outcome = Ok(Some(b"kept".to_vec()));
+        let read = ShelfNews::Read { key: "map/A-1/yard.pgm".to_owned(), outcome };
+        assert_eq!(news, HostEvent::Shelf(read));
+        again.use_shelf(ShelfRequest::Remove { key: "mission/A-1".to_owned() });
+        assert_eq!(again.open_shelf(), Some(Ok(Vec::new())));
+        fs::remove_dir_all(folder).expect("made above");
+    }
+
+    #[test]
+    fn a_key_is_known_by_its_file() {
+        for key in ["a/b", "enroute/writing-1/9F-1/a", "Δ", ""] {
+            assert_eq!(key_of(&file_name(key)).as_deref(), Some(key));
+        }
+        assert_eq!(key_of("some.part"), None);
     }
 
     #[test]

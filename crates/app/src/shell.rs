@@ -72,6 +72,11 @@ impl Enroute {
         self.apply(vec![command]);
     }
 
+    /// Writes down whatever is not written yet: the page is about to close.
+    pub fn keep_now(&mut self) {
+        self.session.keep_now();
+    }
+
     /// Shows one frame, filling `ui`. `render_state` is for panels that draw with wgpu.
     pub fn show(&mut self, ui: &mut Ui, render_state: Option<&RenderState>) {
         for file in self.egui.input(|input| input.raw.dropped_files.clone()) {

@@ -83,6 +83,29 @@ pub fn uses_key(key: &str, control: bool, alt: bool, shift: bool) -> bool {
     !types && all_commands().flat_map(|command| command.keys).map(|&keys| shortcut(keys)).any(belongs)
 }
 
+/// Something typed that no frame has taken in.
+#[derive(serde::Deserialize)]
+#[serde(untagged)]
+enum Typed {
+    Text(String),
+    Key { key: String },
+}
+
+impl Typed {
+    fn event(self) -> Option<egui::Event> {
+        match self {
+            Self::Text(text) => Some(egui::Event::Text(text)),
+            Self::Key { key } => Some(egui::Event::Key {
+                key: Key::from_name(&key)?,
+                physical_key: None,
+                pressed: true,
+                repeat: false,
+                modifiers: Modifiers::NONE,
+            }),
+        }
+    }
+}
+
 /// The running front end.
 #[wasm_bindgen]
 pub struct FrontEnd {
@@ -124,6 +147,22 @@ impl FrontEnd {
     #[wasm_bindgen(js_name = stateVersion)]
     pub fn state_version(&self) -> Result<f64, JsValue> {
         self.with(|page| page.app.state_version() as f64)
+    }
+
+    /// Writes down whatever is not written yet: the page is about to close. `typed` is what was typed since the last
+    /// frame, as JSON: texts, and keys by their names as `{"key":…}`.
+    #[wasm_bindgen(js_name = keepNow)]
+    pub fn keep_now(&self, typed: &str) -> Result<(), JsValue> {
+        let typed: Vec<Typed> = serde_json::from_str(typed).unwrap_or_default();
+        self.with(|page| {
+            if !typed.is_empty() {
+                let events = typed.into_iter().filter_map(Typed::event).collect();
+                let input = egui::RawInput { events, focused: true, ..egui::RawInput::default() };
+                // Nobody sees this frame; it takes in what was typed.
+                let _ = page.egui.clone().run_ui(input, |ui| page.app.show(ui, None));
+            }
+            page.app.keep_now();
+        })
     }
 
     /// What changed in the accessible document since the last call, as JSON, if anything did.

@@ -25,6 +25,35 @@ extern "C" {
     #[wasm_bindgen(method, js_name = savePicture)]
     pub(crate) fn save_picture(this: &Glue, name: &str, svg: &str, width: u32, height: u32) -> Promise;
 
+    /// What lies on the shelf: pairs of keys and bytes, or an error; undefined as long as that is not known. See
+    /// `web/shelf.js`.
+    #[wasm_bindgen(method, js_name = shelfContent)]
+    pub(crate) fn shelf_content(this: &Glue) -> JsValue;
+
+    /// The same as a promise.
+    #[wasm_bindgen(method, js_name = shelfOpened)]
+    pub(crate) fn shelf_opened(this: &Glue) -> Promise;
+
+    /// Keeps bytes on the shelf; the promise fails if they are not kept.
+    #[wasm_bindgen(method, js_name = writeToShelf)]
+    pub(crate) fn write_to_shelf(this: &Glue, key: &str, bytes: Uint8Array) -> Promise;
+
+    /// A promise of what is kept under a key, or of undefined.
+    #[wasm_bindgen(method, js_name = readFromShelf)]
+    pub(crate) fn read_from_shelf(this: &Glue, key: &str) -> Promise;
+
+    /// Drops what is kept under a key.
+    #[wasm_bindgen(method, js_name = removeFromShelf)]
+    pub(crate) fn remove_from_shelf(this: &Glue, key: &str);
+
+    /// Tells the other tabs with this page.
+    #[wasm_bindgen(method, js_name = tellTabs)]
+    pub(crate) fn tell_tabs(this: &Glue, message: &str);
+
+    /// Hears what other tabs tell.
+    #[wasm_bindgen(method, js_name = onTabSaid)]
+    pub(crate) fn on_tab_said(this: &Glue, hear: &Closure<dyn FnMut(String)>);
+
     /// Says that a frame is being drawn.
     #[wasm_bindgen(method, js_name = frameDrawn)]
     pub(crate) fn frame_drawn(this: &Glue);

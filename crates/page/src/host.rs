@@ -3,8 +3,8 @@
 use js_sys::Uint8Array;
 use mission::Request;
 use wasm_bindgen::prelude::*;
-use web_sys::{DomException, Location, Storage, Window};
-use workbench::host::{FileKind, Host, HostEvent, StorageError};
+use web_sys::{Location, Storage, Window};
+use workbench::host::{FileKind, Host, HostEvent, ShelfContent, ShelfNews, ShelfRequest, StorageError};
 
 use crate::{
     core_link::CoreLink,
@@ -21,6 +21,7 @@ pub(crate) struct PageHost {
     link: CoreLink,
     window: Window,
     _fragment_listener: Closure<dyn FnMut()>,
+    _tab_listener: Closure<dyn FnMut(String)>,
 }
 
 impl PageHost {
@@ -33,7 +34,13 @@ impl PageHost {
             move || link.happened(HostEvent::FragmentChanged(fragment_of(&window.location())))
         });
         window.set_onhashchange(Some(listener.as_ref().unchecked_ref()));
-        Some(Self { glue, link, window, _fragment_listener: listener })
+        let tab_listener = Closure::<dyn FnMut(String)>::new({
+            let link = link.clone();
+            move |message| link.happened(HostEvent::TabSaid(message))
+        });
+        glue.on_tab_said(&tab_listener);
+        let listeners = (listener, tab_listener);
+        Some(Self { glue, link, window, _fragment_listener: listeners.0, _tab_listener: listeners.1 })
     }
 
     /// Reads files that are dropped on the canvas.
@@ -87,16 +94,7 @@ impl Host for PageHost {
     }
 
     fn store(&mut self, key: &str, value: &str) -> Result<(), StorageError> {
-        self.storage()?.set_item(&prefixed(key), value).map_err(|thrown| {
-            let is_full = thrown
-                .dyn_ref::<DomException>()
-                .is_some_and(|exception| exception.code() == DomException::QUOTA_EXCEEDED_ERR);
-            if is_full {
-                StorageError::Full { bytes: value.len() }
-            } else {
-                StorageError::Unavailable { reason: words(&thrown) }
-            }
-        })
+        self.storage()?.set_item(&prefixed(key), value).map_err(|thrown| refused(&thrown, value.len()))
     }
 
     fn forget(&mut self, key: &str) {
@@ -104,6 +102,60 @@ impl Host for PageHost {
             // What cannot be reached is forgotten already.
             let _ = storage.remove_item(&prefixed(key));
         }
+    }
+
+    fn stored_keys(&self) -> Vec<String> {
+        let Ok(storage) = self.storage() else { return Vec::new() };
+        let keys = (0..storage.length().unwrap_or_default()).filter_map(|at| storage.key(at).ok()?);
+        keys.filter_map(|key| key.strip_prefix(STORAGE_PREFIX).map(str::to_owned)).collect()
+    }
+
+    fn open_shelf(&mut self) -> Option<Result<ShelfContent, StorageError>> {
+        let opened = self.glue.shelf_content();
+        if !opened.is_undefined() {
+            return Some(content_of(&opened));
+        }
+        let (late, link) = (self.glue.shelf_opened(), self.link.clone());
+        wasm_bindgen_futures::spawn_local(async move {
+            let opened = wasm_bindgen_futures::JsFuture::from(late).await.unwrap_or_else(|thrown| thrown);
+            link.happened(HostEvent::Shelf(ShelfNews::Opened(content_of(&opened))));
+        });
+        None
+    }
+
+    fn use_shelf(&mut self, request: ShelfRequest) {
+        let link = self.link.clone();
+        match request {
+            ShelfRequest::Write { key, bytes, token } => {
+                let written = self.glue.write_to_shelf(&key, Uint8Array::from(bytes.as_slice()));
+                wasm_bindgen_futures::spawn_local(async move {
+                    let outcome = wasm_bindgen_futures::JsFuture::from(written).await;
+                    let outcome = outcome.map(|_| ()).map_err(|thrown| refused(&thrown, bytes.len()));
+                    link.happened(HostEvent::Shelf(ShelfNews::Written { key, token, outcome }));
+                });
+            }
+            ShelfRequest::Read { key } => {
+                let read = self.glue.read_from_shelf(&key);
+                wasm_bindgen_futures::spawn_local(async move {
+                    let outcome = wasm_bindgen_futures::JsFuture::from(read).await;
+                    let outcome = outcome
+                        .map(|value| value.dyn_into::<Uint8Array>().ok().map(|bytes| bytes.to_vec()))
+                        .map_err(|thrown| refused(&thrown, 0));
+                    link.happened(HostEvent::Shelf(ShelfNews::Read { key, outcome }));
+                });
+            }
+            ShelfRequest::Remove { key } => self.glue.remove_from_shelf(&key),
+        }
+    }
+
+    fn tell_tabs(&mut self, message: &str) {
+        self.glue.tell_tabs(message);
+    }
+
+    fn random(&mut self) -> u64 {
+        // Two halves of 32 bits; the sum of both fits.
+        let half = || (js_sys::Math::random() * f64::from(u32::MAX)) as u64;
+        half() << 32 | half()
     }
 
     fn open_file(&mut self, kind: FileKind) {
@@ -161,6 +213,26 @@ impl Host for PageHost {
         let address = self.window.location().href().ok()?;
         let page = address.split('#').next()?;
         Some(format!("{page}#{fragment}"))
+    }
+}
+
+/// What the shelf holds, as `web/shelf.js` tells it: pairs of keys and bytes, or what went wrong.
+fn content_of(opened: &JsValue) -> Result<ShelfContent, StorageError> {
+    let pairs = opened.dyn_ref::<js_sys::Array>().ok_or_else(|| refused(opened, 0))?;
+    let pair = |pair: JsValue| {
+        let pair = js_sys::Array::from(&pair);
+        Some((pair.get(0).as_string()?, pair.get(1).dyn_into::<Uint8Array>().ok()?.to_vec()))
+    };
+    Ok(pairs.iter().filter_map(pair).collect())
+}
+
+/// Why the browser keeps nothing more.
+fn refused(thrown: &JsValue, bytes: usize) -> StorageError {
+    let name = js_sys::Reflect::get(thrown, &"name".into()).ok().and_then(|name| name.as_string());
+    if name.as_deref() == Some("QuotaExceededError") {
+        StorageError::Full { bytes }
+    } else {
+        StorageError::Unavailable { reason: words(thrown) }
     }
 }
 

@@ -81,6 +81,15 @@ impl Document {
         self.saved_revision = revision;
     }
 
+    /// Takes this document up again where another one was: its revisions go on from that one's.
+    pub fn count_on_from(&mut self, revision: u64) {
+        let is_saved = !self.is_modified();
+        self.revision = self.revision.max(revision) + 1;
+        if is_saved {
+            self.saved_revision = self.revision;
+        }
+    }
+
     /// The text.
     pub fn text(&self) -> &str {
         &self.text
@@ -284,6 +293,12 @@ impl Document {
             self.undo.push(step);
         }
         self.may_join = true;
+    }
+}
+
+impl Default for Document {
+    fn default() -> Self {
+        Self::new("")
     }
 }
 

@@ -2,6 +2,7 @@
 
 use smol_str::SmolStr;
 
+use crate::library::MissionId;
 use crate::state::documents::ScheduleForm;
 
 /// Which dialog is open, and what the user has entered in it.
@@ -35,6 +36,23 @@ pub enum Dialog {
     },
     /// Explains a kind of problem.
     Explain(SmolStr),
+    /// Lists the missions, to open, begin, name, copy and delete them.
+    Missions {
+        /// What was typed to find one.
+        query: String,
+        /// The mission that is being given another name, with what was typed.
+        renaming: Option<(MissionId, String)>,
+    },
+    /// Asks for a name of the open mission.
+    MissionName {
+        /// What was typed.
+        name: String,
+    },
+    /// Asks what a version is to be called.
+    VersionName {
+        /// What was typed.
+        name: String,
+    },
     /// Lists all keys.
     Keys,
     /// What this program is.
@@ -50,6 +68,9 @@ impl Dialog {
             Self::Rename { .. } => "rename",
             Self::Epoch { .. } => "epoch",
             Self::Explain(_) => "explain",
+            Self::Missions { .. } => "missions",
+            Self::MissionName { .. } => "mission-name",
+            Self::VersionName { .. } => "version-name",
             Self::Keys => "keys",
             Self::About => "about",
         }
@@ -58,6 +79,11 @@ impl Dialog {
     /// An empty palette.
     pub fn palette() -> Self {
         Self::Palette { query: String::new(), chosen: 0 }
+    }
+
+    /// The whole list of missions.
+    pub fn missions() -> Self {
+        Self::Missions { query: String::new(), renaming: None }
     }
 
     /// An empty question for a line.

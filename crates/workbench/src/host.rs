@@ -46,6 +46,23 @@ pub trait Host {
     /// Drops what is kept under a key.
     fn forget(&mut self, key: &str);
 
+    /// The keys under which a text is kept, in no particular order.
+    fn stored_keys(&self) -> Vec<String>;
+
+    /// Begins to use the shelf, the large place where missions are kept: all that lies on it but the content of maps
+    /// (keys that begin with `map/`). `None` if that takes longer: [`ShelfNews::Opened`] brings it then.
+    fn open_shelf(&mut self) -> Option<Result<ShelfContent, StorageError>>;
+
+    /// Reads from the shelf, or writes to it. What is asked for one key is done in order, and each of it as a whole or
+    /// not at all; [`HostEvent::Shelf`] answers.
+    fn use_shelf(&mut self, request: ShelfRequest);
+
+    /// Tells the other tabs that show this page; [`HostEvent::TabSaid`] is how they hear it.
+    fn tell_tabs(&mut self, message: &str);
+
+    /// A number that no other run has drawn.
+    fn random(&mut self) -> u64;
+
     /// Lets the user choose one file; [`HostEvent::FileOpened`] brings it. Must be called while handling a click or a
     /// key press: browsers refuse otherwise.
     fn open_file(&mut self, kind: FileKind);
@@ -100,6 +117,60 @@ pub enum HostEvent {
     },
     /// The user edited the address line or followed a link within the page: the new text after `#`.
     FragmentChanged(String),
+    /// The shelf answers.
+    Shelf(ShelfNews),
+    /// Another tab said this by [`Host::tell_tabs`].
+    TabSaid(String),
+}
+
+/// Keys of a shelf with what is kept under them.
+pub type ShelfContent = Vec<(String, Vec<u8>)>;
+
+/// Something that is asked of the shelf.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ShelfRequest {
+    /// Keep bytes under a key.
+    Write {
+        /// The key.
+        key: String,
+        /// What to keep.
+        bytes: Vec<u8>,
+        /// Comes back with the answer.
+        token: i64,
+    },
+    /// Tell what is kept under a key.
+    Read {
+        /// The key.
+        key: String,
+    },
+    /// Drop what is kept under a key.
+    Remove {
+        /// The key.
+        key: String,
+    },
+}
+
+/// What the shelf answers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ShelfNews {
+    /// What lies on it, late.
+    Opened(Result<ShelfContent, StorageError>),
+    /// A request to write was carried out, or could not be.
+    Written {
+        /// The key.
+        key: String,
+        /// What came with the request.
+        token: i64,
+        /// Why nothing was changed, if so.
+        outcome: Result<(), StorageError>,
+    },
+    /// What is kept under a key, if anything.
+    Read {
+        /// The key.
+        key: String,
+        /// What is kept there.
+        outcome: Result<Option<Vec<u8>>, StorageError>,
+    },
 }
 
 /// What a file is opened for.
@@ -136,7 +207,7 @@ impl FileKind {
     /// The extensions that the file dialog offers, without dots.
     pub fn extensions(self) -> &'static [&'static str] {
         match self {
-            Self::Mission => &["rmpl", "txt", "lisp"],
+            Self::Mission => &["rmpl", "enroute", "txt", "lisp"],
             Self::Map => &["pgm", "png", "map", "tif", "tiff", "asc", "dem", "img", "lbl"],
             Self::Json => &["json", "edn"],
             Self::Comparison => &["rmpl", "txt", "json"],

@@ -7,6 +7,7 @@
 pub mod command;
 mod dialog;
 pub mod host;
+pub mod library;
 pub mod mission_file;
 pub mod outside;
 mod panel_effect;

@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::command::{self, Command};
 use crate::host::{Host, HostEvent, Remote, RemoteError};
 use crate::mission_file::{self, EXAMPLES};
-use crate::outside::{self, DraftKeeper, PageState};
+use crate::outside::{self, Keeper, PageState};
 use crate::state::{AnswerFrame, AppState, Effect, PlanSettings, Settings, Status, ToastKind};
 
 /// The state with its host.
@@ -18,7 +18,7 @@ pub struct Session {
     host: Box<dyn Host>,
     posted: Option<Posted>,
     stored: Settings,
-    drafts: DraftKeeper,
+    keeper: Keeper,
     window_effects: Vec<WindowEffect>,
     last_secs: f64,
     version: u64,
@@ -46,14 +46,18 @@ const LONGEST_STEP_SECS: f64 = 0.25;
 impl Session {
     /// A session on a host, drawn by `renderer` (`webgpu`, `webgl2`, …; empty if unknown): with the settings and the
     /// draft that the host keeps, and with what its address names.
-    pub fn new(host: Box<dyn Host>, renderer: &str) -> Self {
+    pub fn new(mut host: Box<dyn Host>, renderer: &str) -> Self {
         let mut state = AppState::new();
         if let Some(settings) = outside::remembered_settings(host.as_ref()) {
             state.settings = settings;
         }
         renderer.clone_into(&mut state.frame.renderer);
-        let drafts = DraftKeeper::start(&mut state, host.as_ref());
-        outside::open_fragment(&mut state, &host.fragment());
+        state.frame.unix_millis = host.unix_millis();
+        let mut keeper = Keeper::start(&mut state, host.as_mut());
+        let is_named = outside::open_fragment(&mut state, &host.fragment());
+        if !is_named {
+            keeper.reopen(&mut state, host.as_ref());
+        }
         let stored = state.settings.clone();
         Self {
             last_secs: host.monotonic_secs(),
@@ -61,7 +65,7 @@ impl Session {
             host,
             posted: None,
             stored,
-            drafts,
+            keeper,
             window_effects: Vec::new(),
             version: 1,
         }
@@ -96,10 +100,14 @@ impl Session {
         self.state.frame.now_secs = now_secs;
         self.state.frame.unix_millis = self.host.unix_millis();
         while let Some(event) = self.host.poll() {
-            if let HostEvent::FragmentChanged(fragment) = &event {
-                outside::open_fragment(&mut self.state, fragment);
+            match event {
+                HostEvent::FragmentChanged(fragment) => {
+                    outside::open_fragment(&mut self.state, &fragment);
+                }
+                HostEvent::Shelf(news) => self.keeper.hear(&mut self.state, self.host.as_mut(), news),
+                HostEvent::TabSaid(message) => self.keeper.hear_tab(&mut self.state, &message),
+                event => self.state.receive(event),
             }
-            self.state.receive(event);
             self.version += 1;
         }
         let shown = self.state.shown().cloned();
@@ -144,11 +152,18 @@ impl Session {
             self.version += 1;
         }
         let begun_secs = self.state.frame.now_secs;
-        let next_secs = self.drafts.follow(&mut self.state, self.host.as_mut(), begun_secs);
+        let next_secs = self.keeper.follow(&mut self.state, self.host.as_mut(), begun_secs);
+        self.do_effects();
         let done_secs = self.host.monotonic_secs();
         self.state.frame.cpu_millis = (done_secs - begun_secs) * 1000.0;
         self.note_answer(done_secs);
         next_secs
+    }
+
+    /// Writes down whatever is not written yet: the page is about to close.
+    pub fn keep_now(&mut self) {
+        self.keeper.keep_now(&mut self.state, self.host.as_mut());
+        self.do_effects();
     }
 
     /// Keeps the settings if they have changed.
@@ -186,6 +201,11 @@ impl Session {
                 Effect::KeepReview { joins } => {
                     outside::keep_review(self.host.as_mut(), &mut self.state, joins);
                 }
+                Effect::JoinReview(record) => {
+                    self.state.join_review(*record);
+                }
+                Effect::ReadMap(id, name) => Keeper::read_map(self.host.as_mut(), &id, &name),
+                Effect::ShowAddress => outside::show_address(&self.state, self.host.as_mut()),
                 Effect::RecallReview => outside::recall_review(self.host.as_ref(), &mut self.state),
                 Effect::Restyle => self.window_effects.push(WindowEffect::Restyle),
             }

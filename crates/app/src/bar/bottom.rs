@@ -1,6 +1,6 @@
 //! The bar below: the selection, the caret, problems, timings, the renderer.
 
-use egui::{Align, Frame, Layout, Margin, Panel, RichText, Ui};
+use egui::{Align, Button, Frame, Layout, Margin, Panel, RichText, Ui};
 use panels::Context;
 use panels::counted;
 use rmpl::Severity;
@@ -8,6 +8,8 @@ use theme::icon::{self, Icon};
 use theme::space;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender};
+use workbench::library::Keeping;
+use workbench::state::missions::LibraryCommand;
 
 /// Shows the bar.
 pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
@@ -17,6 +19,7 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         ui.style_mut().override_text_style = Some(egui::TextStyle::Small);
         ui.horizontal_centered(|ui| {
             problems(ui, context, commands);
+            keeping(ui, context, commands);
             caret(ui, context);
             selection(ui, context);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| figures(ui, context));
@@ -56,6 +59,20 @@ fn problems(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     }
     if response.on_hover_text(name.clone()).clicked() {
         commands.send(Command::ShowPanel(PanelKind::Problems));
+    }
+}
+
+/// Says when something is not kept; that everything is, nobody needs to be told.
+fn keeping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let tokens = context.tokens;
+    let (text, reason, color) = match &context.state.library.keeping {
+        Keeping::Kept | Keeping::Opening => return,
+        Keeping::LatestOnly(reason) => ("Only the latest text is kept", reason, tokens.warning),
+        Keeping::Nothing(reason) => ("Not kept", reason, tokens.error),
+    };
+    let button = Button::new(RichText::new(text).color(color)).small();
+    if ui.add(button).on_hover_text(format!("{reason}. Click to save the mission as a file.")).clicked() {
+        commands.send(Command::Library(LibraryCommand::SaveWhole));
     }
 }
 

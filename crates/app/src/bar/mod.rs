@@ -1,6 +1,7 @@
 //! The bars above and below the panels, and the titles of tabs.
 
 pub mod bottom;
+mod mission;
 pub mod tab;
 pub mod top;
 

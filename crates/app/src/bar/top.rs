@@ -1,19 +1,17 @@
 //! The bar on top: menus, the mission, the workspaces, and where the plan stands.
 
-use egui::{
-    Align, Button, ComboBox, Frame, Layout, Margin, Panel, RichText, Role, Sense, Stroke, Ui, WidgetInfo,
-};
+use egui::{Align, Button, Frame, Layout, Margin, Panel, RichText, Role, Sense, Stroke, Ui, WidgetInfo};
 use panels::Context;
 use theme::icon::{self, Icon};
 use theme::space;
 use workbench::Dialog;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, CommandSpec, Group, all_commands};
-use workbench::mission_file::EXAMPLES;
 use workbench::state::Status;
 use workbench::state::settings::ThemeChoice;
 use workbench::workspace::Workspace;
 
+use crate::bar::mission;
 use crate::chord;
 
 /// Shows the bar.
@@ -26,7 +24,8 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
             ui.add_space(space::S);
             menus(ui, context, commands);
             ui.add_space(space::S);
-            mission_picker(ui, context, commands);
+            let width = if is_narrow(ui) { 128.0 } else { 180.0 };
+            mission::show(ui, context, width, commands);
             ui.add_space(space::L);
             workspaces(ui, context, commands);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -98,25 +97,6 @@ fn menu_item(ui: &mut Ui, context: &Context<'_>, spec: &CommandSpec, commands: &
         commands.send(spec.plain(context.state).unwrap_or(Command::CloseDialog));
         ui.close();
     }
-}
-
-fn mission_picker(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
-    let open = EXAMPLES.iter().find(|example| context.state.mission == example.name);
-    let title = open.map_or(context.state.mission.as_str(), |example| example.title);
-    ComboBox::from_id_salt("mission")
-        .truncate()
-        .selected_text(title)
-        .width(if is_narrow(ui) { 120.0 } else { 170.0 })
-        .show_ui(ui, |ui| {
-            for example in EXAMPLES {
-                let is_open = context.state.mission == example.name;
-                if ui.selectable_label(is_open, example.title).clicked() {
-                    commands.send(Command::OpenExample(example.name.into()));
-                }
-            }
-        })
-        .response
-        .accessible_name("Mission");
 }
 
 fn workspaces(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {

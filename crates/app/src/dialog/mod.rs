@@ -1,10 +1,12 @@
-//! Dialogs over the panels: the command palette, the key list, going to a line, explanations.
+//! Dialogs over the panels: missions, the command palette, the key list, going to a line, explanations.
 
 mod about;
 mod epoch;
 mod explain;
 mod go_to_line;
 mod keys;
+mod missions;
+mod name;
 mod palette;
 mod rename;
 
@@ -17,10 +19,18 @@ use workbench::command::{Command, CommandSender};
 /// Shows the open dialog, if there is one.
 pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandSender) {
     let Some(dialog) = &context.state.dialog else { return };
-    let is_list = matches!(dialog, Dialog::Palette { .. } | Dialog::GoToLine { .. } | Dialog::Rename { .. });
+    let is_list = matches!(
+        dialog,
+        Dialog::Palette { .. }
+            | Dialog::GoToLine { .. }
+            | Dialog::Rename { .. }
+            | Dialog::MissionName { .. }
+            | Dialog::VersionName { .. }
+    );
     let anchor = if is_list { Align2::CENTER_TOP } else { Align2::CENTER_CENTER };
     let offset = if is_list { egui::vec2(0.0, 72.0) } else { egui::Vec2::ZERO };
-    let id = Id::unique("dialog");
+    // Each dialog has a size of its own, and keeps it.
+    let id = Id::unique("dialog").with(dialog.name());
     let area = Area::new(id).order(Order::Foreground).anchor(anchor, offset).constrain(true);
     let modal = egui::Modal::new(id)
         .area(area)
@@ -32,6 +42,9 @@ pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandS
         Dialog::Rename { old, name } => rename::show(ui, context, old, name, commands),
         Dialog::Epoch { form, epoch } => epoch::show(ui, context, *form, epoch, commands),
         Dialog::Explain(code) => explain::show(ui, context, code, commands),
+        Dialog::Missions { query, renaming } => missions::show(ui, context, query, renaming, commands),
+        Dialog::MissionName { name } => name::show(ui, name::Named::Mission, name, commands),
+        Dialog::VersionName { name } => name::show(ui, name::Named::Version, name, commands),
         Dialog::Keys => keys::show(ui, context, commands),
         Dialog::About => about::show(ui, context, commands),
     });

@@ -7,6 +7,7 @@ use workbench::Dialog;
 use workbench::PanelKind;
 use workbench::command::{self, Command, CommandSender};
 use workbench::mission_file::EXAMPLES;
+use workbench::state::missions::LibraryCommand;
 
 use crate::chord;
 
@@ -95,14 +96,22 @@ fn entries(ui: &Ui, context: &Context<'_>, query: &str) -> Vec<Entry> {
         unavailable: None,
         command: Command::ShowPanel(panel),
     });
-    let examples = EXAMPLES.iter().map(|example| Entry {
+    let missions = context.state.library.missions().into_iter().map(|mission| Entry {
         group: "Mission",
+        title: mission.name.to_string(),
+        keys: String::new(),
+        unavailable: None,
+        command: Command::Library(LibraryCommand::Open(mission.id.clone())),
+    });
+    let examples = EXAMPLES.iter().map(|example| Entry {
+        group: "Example",
         title: example.title.to_owned(),
         keys: String::new(),
         unavailable: None,
         command: Command::OpenExample(example.name.into()),
     });
     let others = panels
+        .chain(missions)
         .chain(examples)
         .filter(|entry| command::score(&format!("{} {}", entry.group, entry.title), query).is_some());
     let mut entries: Vec<Entry> = commands.chain(others).collect();

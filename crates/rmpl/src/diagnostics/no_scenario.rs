@@ -14,7 +14,7 @@ pub const EXPLANATION: Explanation = Explanation {
     meaning: "A plan is made for a scenario, and the file has none, or none of the name that was asked for. A file of activities alone
 is fine until a plan is wanted.",
     example: "primitive Drive()[20,30];",
-    fix: "Write a scenario, or plan one activity of the file: on the command line with `--activity NAME --bounds L,U`.",
+    fix: "Write a scenario, or plan one activity of the file by itself.",
     mended: "primitive Drive()[20,30];
 scenario Day[0,60] = { Drive() }",
 };

@@ -125,9 +125,8 @@ fn find_scenario<'program>(
             Some(name) => format!("there is no scenario `{name}`"),
             None => "the file has no scenario, so there is nothing to plan".to_owned(),
         };
-        Diagnostic::error(E_NOSCENARIO, Span::default(), message).with_hint(
-            "write `scenario Name[0,100] = { … }`, or plan one activity with `--activity NAME --bounds L,U`",
-        )
+        Diagnostic::error(E_NOSCENARIO, Span::default(), message)
+            .with_hint("write `scenario Name[0,100] = { … }`, or plan one activity by itself")
     })
 }
 

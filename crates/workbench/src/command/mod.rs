@@ -17,6 +17,7 @@ use crate::state::chance::ChanceCommand;
 use crate::state::compare::CompareCommand;
 use crate::state::documents::ScheduleForm;
 use crate::state::execution::ExecutionCommand;
+use crate::state::missions::LibraryCommand;
 use crate::state::program_chance::ProgramChanceCommand;
 use crate::state::review::ReviewCommand;
 use crate::state::search::SearchCommand;
@@ -41,8 +42,8 @@ pub enum Command {
         /// The text.
         source: String,
     },
-    /// Opens the text of an earlier run that was not opened again.
-    OpenEarlierDraft,
+    /// Something that concerns the missions of the library.
+    Library(LibraryCommand),
     /// Lets the user choose a file.
     OpenFile(FileKind),
     /// Lets the user save the mission text.

@@ -3,7 +3,10 @@
 //! A shared text is compressed (deflate) and written in the alphabet of base64 for addresses.
 
 use crate::command::Command;
+use crate::host::Host;
+use crate::library::{MissionId, MissionKind, Open};
 use crate::mission_file;
+use crate::state::missions::LibraryCommand;
 use crate::state::{AppState, ToastKind};
 use crate::workspace::Workspace;
 
@@ -22,11 +25,39 @@ pub fn fragment(state: &AppState) -> String {
     format!("{mission}&workspace={}{step}{time}", state.workspace.name())
 }
 
-/// Opens what a fragment names; parts that it does not name stay as they are.
-pub fn open_fragment(state: &mut AppState, fragment: &str) {
+/// Lets the address name the mission that is open, unless it does already: what was edited is never brought back as it
+/// came, by loading the page again.
+pub fn show_address(state: &AppState, host: &mut dyn Host) {
+    let wanted = match state.library.open() {
+        Open::Mission(id) => format!("open={}", id.0),
+        Open::Original { kind: MissionKind::Example, .. } => format!("mission={}", state.mission),
+        // What a link holds is in the address already.
+        Open::Original { .. } => return,
+    };
+    let shown = host.fragment();
+    if shown.split('&').any(|part| part == wanted) || shown.is_empty() && is_first_example(state) {
+        return;
+    }
+    // What else the address says goes on.
+    let named =
+        |part: &str| ["mission=", "source=", "open=", "step=", "t="].iter().any(|key| part.starts_with(key));
+    let rest = shown.split('&').filter(|part| !part.is_empty() && !named(part));
+    let parts: Vec<&str> = std::iter::once(wanted.as_str()).chain(rest).collect();
+    host.set_fragment(&parts.join("&"));
+}
+
+fn is_first_example(state: &AppState) -> bool {
+    state.library.open_id().is_none() && state.mission == mission_file::EXAMPLES[0].name
+}
+
+/// Opens what a fragment names; parts that it does not name stay as they are. Returns whether it names a mission.
+pub fn open_fragment(state: &mut AppState, fragment: &str) -> bool {
+    let mut is_named = false;
     let parts = || fragment.trim_start_matches('#').split('&').filter_map(|part| part.split_once('='));
     for (key, value) in parts() {
+        is_named |= matches!(key, "mission" | "source" | "open");
         match key {
+            "open" => state.apply(Command::Library(LibraryCommand::Open(MissionId(value.into())))),
             "mission" => match mission_file::example(value) {
                 Some(example) => state.apply(Command::OpenExample(example.name.into())),
                 None => state.toasts.add(ToastKind::Failed, format!("There is no mission \"{value}\"")),
@@ -63,6 +94,7 @@ pub fn open_fragment(state: &mut AppState, fragment: &str) {
             _ => {}
         }
     }
+    is_named
 }
 
 const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";

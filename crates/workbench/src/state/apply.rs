@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
+use mission::review::Record;
 use mission::{Request, Response, Snapshot};
 use rmpl::Span;
 use smol_str::SmolStr;
 
 use crate::command::Command;
 use crate::host::{FileKind, HostEvent};
+use crate::library::{Mission, MissionId, MissionKind};
 use crate::mission_file;
 use crate::state::chance::ChanceCommand;
 use crate::state::program_chance::ProgramChanceCommand;
@@ -54,6 +56,12 @@ pub enum Effect {
     },
     /// Find what reviewers said of the open mission.
     RecallReview,
+    /// Add to what reviewers said of the open mission.
+    JoinReview(Box<Record>),
+    /// Read a map of a mission from where it is kept.
+    ReadMap(MissionId, SmolStr),
+    /// Let the address name what is open, so that loading the page again finds it.
+    ShowAddress,
     /// The appearance changed.
     Restyle,
 }
@@ -73,12 +81,10 @@ impl AppState {
     fn do_command(&mut self, command: Command) {
         match command {
             Command::OpenExample(name) => self.open_example(&name),
-            Command::OpenSource { name, source } => self.open(name, &source),
-            Command::OpenEarlierDraft => {
-                if let Some(draft) = self.earlier_draft.take() {
-                    self.open(draft.name, &draft.source);
-                }
+            Command::OpenSource { name, source } => {
+                self.open_original(name, MissionKind::Shared, &source);
             }
+            Command::Library(command) => self.apply_to_library(command),
             Command::OpenFile(kind) => self.effects.push(Effect::OpenFile(kind)),
             Command::SaveMission => self.save(),
             Command::CopyLink => self.effects.push(Effect::CopyLink),
@@ -218,12 +224,16 @@ impl AppState {
                 self.search.take_comparison(comparison, shown.as_ref(), self.settings.plan.search);
             }
             HostEvent::Answer(Response::MapAccepted { name, cells: [width, height], no_data_cells }) => {
-                self.take_map(&name, [width, height], no_data_cells);
+                if self.keep_map(&name) {
+                    self.take_map(&name, [width, height], no_data_cells);
+                }
+                self.document.touch();
             }
             HostEvent::Answer(Response::MapRejected { name, reason }) => {
+                self.maps_in_hand.remove(&name);
                 self.toasts.add(ToastKind::Failed, format!("The map {name} cannot be used: {reason}"));
             }
-            HostEvent::FragmentChanged(_) => {}
+            HostEvent::FragmentChanged(_) | HostEvent::Shelf(_) | HostEvent::TabSaid(_) => {}
             HostEvent::Answer(Response::Review { revision, review }) => self.take_review(revision, review),
             HostEvent::Answer(Response::Evaluated { token, snapshot }) => {
                 self.take_evaluated(token, &snapshot);
@@ -368,6 +378,7 @@ impl AppState {
         }
         self.fit_time();
         self.follow_with_terrain();
+        self.take_picture(&after);
     }
 
     fn apply_to_pins(&mut self, command: PinCommand) {
@@ -388,13 +399,13 @@ impl AppState {
         self.pins.step_back(shown.as_ref())
     }
 
-    fn open_example(&mut self, name: &str) {
+    pub(super) fn open_example(&mut self, name: &str) {
         if let Some(example) = mission_file::example(name) {
-            self.open(example.name.into(), example.source);
+            self.open_original(example.name.into(), MissionKind::Example, example.source);
         }
     }
 
-    fn open(&mut self, name: SmolStr, source: &str) {
+    pub(super) fn open(&mut self, name: SmolStr, source: &str) {
         self.document.open(source);
         self.editor.popup = None;
         self.editor.folding.unfold_all();
@@ -434,21 +445,14 @@ impl AppState {
 
     fn open_file(&mut self, kind: FileKind, name: &str, bytes: Vec<u8>) {
         match kind {
-            FileKind::Mission => match String::from_utf8(bytes) {
-                Ok(source) => {
-                    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
-                    self.open(stem.into(), &source);
-                }
-                Err(_) => self.toasts.add(ToastKind::Failed, format!("{name} is not a text file")),
-            },
-            FileKind::Map => {
-                // The core reads it, and says what it has found.
-                self.effects.push(Effect::Post(Request::ImportMap { name: SmolStr::new(name), bytes }));
-            }
+            FileKind::Mission => self.open_mission_file(name, bytes),
+            FileKind::Map => self.open_map_file(name, bytes),
             FileKind::Json => match String::from_utf8(bytes) {
                 Ok(text) => {
                     let document = serde_json::from_str(&text).unwrap_or_default();
-                    if !self.open_run(&document) {
+                    if let Ok(mission) = Mission::from_json(&text) {
+                        self.open_whole(mission);
+                    } else if !self.open_run(&document) {
                         self.import_record(name, &text);
                     }
                 }

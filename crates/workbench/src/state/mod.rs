@@ -5,13 +5,13 @@ pub mod automaton;
 pub mod chance;
 pub mod compare;
 pub mod documents;
-mod draft;
 mod editing;
 pub mod editor;
 pub mod execution;
 pub mod folding;
 pub mod growth;
 pub mod language;
+pub mod missions;
 pub mod pins;
 pub mod placing;
 pub mod playback;
@@ -34,7 +34,6 @@ use smol_str::SmolStr;
 use text_editing::Document;
 
 pub use apply::Effect;
-pub use draft::Draft;
 pub use editor::EditorState;
 pub use language::Language;
 pub use pins::{PinCommand, Pins};
@@ -44,6 +43,7 @@ pub use settings::{PlanSettings, Settings, Views};
 pub use snapshots::{Snapshots, Status};
 pub use toast::{Toast, ToastKind, Toasts};
 
+use crate::library::{Library, MissionId, MissionKind};
 use crate::mission_file;
 use crate::state::editor::Reveal;
 use crate::workspace::{Arrangement, Workspace};
@@ -58,8 +58,12 @@ pub struct AppState {
     pub language: Language,
     /// The name of the open mission, without extension.
     pub mission: SmolStr,
-    /// An edited text that is not the open one: of an earlier run, or of another mission of this one.
-    pub earlier_draft: Option<Draft>,
+    /// The missions that the user has.
+    pub library: Library,
+    /// The texts of other missions that were open in this run, with their histories.
+    set_aside: BTreeMap<MissionId, Document>,
+    /// Maps that the user chose and that the core has not read yet.
+    maps_in_hand: BTreeMap<SmolStr, Arc<[u8]>>,
     /// What the planning core answered.
     pub snapshots: Snapshots,
     /// The ground of the missions opened so far.
@@ -157,7 +161,9 @@ impl AppState {
             language: Language::new(&document),
             document,
             mission: example.name.into(),
-            earlier_draft: None,
+            library: Library::new(MissionKind::Example, example.source),
+            set_aside: BTreeMap::new(),
+            maps_in_hand: BTreeMap::new(),
             snapshots: Snapshots::default(),
             maps: BTreeMap::new(),
             selection: Selection::None,

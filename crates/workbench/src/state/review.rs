@@ -55,7 +55,9 @@ pub struct ReviewState {
     record: Record,
     /// Why `record` is not kept beyond this run, if it could not be.
     unkept: Option<String>,
-    /// Records of other missions that could not be kept.
+    /// The key of the mission that `record` is about.
+    of: SmolStr,
+    /// Records of other missions that could not be kept, by their keys.
     set_aside: BTreeMap<SmolStr, Record>,
     /// What the present content is called.
     current: Option<Current>,
@@ -160,7 +162,7 @@ impl ReviewState {
         let record = std::mem::take(&mut self.record);
         let mut set_aside = std::mem::take(&mut self.set_aside);
         if self.unkept.is_some() {
-            set_aside.insert(record.mission.as_str().into(), record);
+            set_aside.insert(self.of.clone(), record);
         }
         *self = Self { set_aside, ..Self::default() };
     }
@@ -290,7 +292,8 @@ impl AppState {
 
     /// The host found this kept under the open mission's name.
     pub(crate) fn recall_review(&mut self, kept: Option<&str>) {
-        let set_aside = self.review.set_aside.remove(&self.mission);
+        self.review.of = self.mission_key();
+        let set_aside = self.review.set_aside.remove(&self.review.of);
         let kept = kept.map(Record::from_json);
         if let Some(Err(reason)) = &kept {
             // It stays where it is until something new is kept.
@@ -303,6 +306,20 @@ impl AppState {
             self.effects.push(Effect::KeepReview { joins: true });
         }
         self.review.record = record;
+    }
+
+    /// The open original has become a mission of its own: what was said of it is said of the mission too.
+    pub(super) fn review_goes_along(&mut self) {
+        self.review.of = self.mission_key();
+        if !self.review.record.is_empty() {
+            self.keep_review();
+        }
+    }
+
+    /// Adds what came with a mission.
+    pub(crate) fn join_review(&mut self, record: Record) {
+        self.review.record.merge(record);
+        self.keep_review();
     }
 
     /// Another mission is open now.

@@ -156,7 +156,6 @@ impl AppState {
         let use_it = format!("A mission uses it by: terrain \"{name}\";");
         self.toasts
             .add(ToastKind::Done, format!("{name} is a map of {width} × {height} cells{holes}. {use_it}"));
-        self.document.touch();
     }
 
     /// Adapts what the terrain shows to the snapshot that is shown now.

@@ -5,7 +5,24 @@ use std::collections::{BTreeMap, VecDeque};
 use std::rc::Rc;
 
 use mission::{Core, CoreHost, Request, Response};
-use workbench::host::{FileKind, Host, HostEvent, StorageError};
+use workbench::host::{FileKind, Host, HostEvent, ShelfContent, ShelfNews, ShelfRequest, StorageError};
+
+/// How the shelf of a world does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shelf {
+    /// It answers at once.
+    #[default]
+    Works,
+    /// It answers only when the test says so: [`World::let_shelf_answer`].
+    Slow,
+    /// It has no room.
+    Full,
+    /// It may not be used.
+    Forbidden,
+}
+
+/// News for one host.
+type Inbox = Rc<RefCell<VecDeque<HostEvent>>>;
 
 /// What a test and its host share.
 #[derive(Default)]
@@ -16,6 +33,16 @@ pub struct World {
     pub storage: RefCell<BTreeMap<String, String>>,
     /// Whether there is no room to keep more.
     pub is_full: Cell<bool>,
+    /// What lies on the shelf.
+    pub shelf: RefCell<BTreeMap<String, Vec<u8>>>,
+    /// How the shelf does.
+    pub shelf_does: Cell<Shelf>,
+    /// What a slow shelf has not done yet.
+    pub shelf_waits: RefCell<Vec<(Inbox, Option<ShelfRequest>)>>,
+    /// The tabs that are open.
+    pub tabs: RefCell<Vec<Inbox>>,
+    /// How many random numbers were drawn.
+    pub drawn: Cell<u64>,
     /// Files that were saved.
     pub saved: RefCell<Vec<(String, Vec<u8>)>>,
     /// Width and height of the last picture that was saved, in pixels.
@@ -38,12 +65,69 @@ pub struct World {
 pub struct TestHost {
     core: Core,
     world: Rc<World>,
+    inbox: Inbox,
+}
+
+impl World {
+    /// A slow shelf does everything that it was asked for.
+    pub fn let_shelf_answer(&self) {
+        self.shelf_does.set(Shelf::Works);
+        for (inbox, request) in std::mem::take(&mut *self.shelf_waits.borrow_mut()) {
+            let news = match request {
+                Some(request) => self.use_shelf(request),
+                None => Some(ShelfNews::Opened(Ok(self.shelf_content()))),
+            };
+            inbox.borrow_mut().extend(news.map(HostEvent::Shelf));
+        }
+    }
+
+    fn shelf_content(&self) -> ShelfContent {
+        let shelf = self.shelf.borrow();
+        let content = shelf.iter().filter(|(key, _)| !key.starts_with("map/"));
+        content.map(|(key, bytes)| (key.clone(), bytes.clone())).collect()
+    }
+
+    fn shelf_refusal(&self, bytes: usize) -> Option<StorageError> {
+        match self.shelf_does.get() {
+            Shelf::Works | Shelf::Slow if !self.is_full.get() => None,
+            Shelf::Forbidden => Some(StorageError::Unavailable { reason: "not in this window".to_owned() }),
+            _ => Some(StorageError::Full { bytes }),
+        }
+    }
+
+    fn use_shelf(&self, request: ShelfRequest) -> Option<ShelfNews> {
+        match request {
+            ShelfRequest::Write { key, bytes, token } => {
+                let outcome = self.shelf_refusal(bytes.len()).map_or(Ok(()), Err);
+                if outcome.is_ok() {
+                    self.shelf.borrow_mut().insert(key.clone(), bytes);
+                }
+                Some(ShelfNews::Written { key, token, outcome })
+            }
+            ShelfRequest::Read { key } => {
+                let outcome = Ok(self.shelf.borrow().get(&key).cloned());
+                Some(ShelfNews::Read { key, outcome })
+            }
+            ShelfRequest::Remove { key } => {
+                self.shelf.borrow_mut().remove(&key);
+                None
+            }
+        }
+    }
 }
 
 impl TestHost {
     /// A host in a world.
     pub fn new(world: &Rc<World>) -> Self {
-        Self { core: Core::default(), world: Rc::clone(world) }
+        let inbox = Inbox::default();
+        world.tabs.borrow_mut().push(Rc::clone(&inbox));
+        Self { core: Core::default(), world: Rc::clone(world), inbox }
+    }
+}
+
+impl Drop for TestHost {
+    fn drop(&mut self) {
+        self.world.tabs.borrow_mut().retain(|tab| !Rc::ptr_eq(tab, &self.inbox));
     }
 }
 
@@ -53,8 +137,7 @@ impl Host for TestHost {
         if self.world.is_deaf.get() {
             return;
         }
-        let world = Rc::clone(&self.world);
-        self.core.handle(request, &mut Answers { world });
+        self.core.handle(request, &mut Answers { inbox: Rc::clone(&self.inbox) });
     }
 
     fn stop(&mut self) {
@@ -62,7 +145,7 @@ impl Host for TestHost {
     }
 
     fn poll(&mut self) -> Option<HostEvent> {
-        self.world.news.borrow_mut().pop_front()
+        self.inbox.borrow_mut().pop_front().or_else(|| self.world.news.borrow_mut().pop_front())
     }
 
     fn monotonic_secs(&self) -> f64 {
@@ -88,6 +171,41 @@ impl Host for TestHost {
 
     fn forget(&mut self, key: &str) {
         self.world.storage.borrow_mut().remove(key);
+    }
+
+    fn stored_keys(&self) -> Vec<String> {
+        self.world.storage.borrow().keys().cloned().collect()
+    }
+
+    fn open_shelf(&mut self) -> Option<Result<ShelfContent, StorageError>> {
+        match self.world.shelf_does.get() {
+            Shelf::Works | Shelf::Full => Some(Ok(self.world.shelf_content())),
+            Shelf::Slow => {
+                self.world.shelf_waits.borrow_mut().push((Rc::clone(&self.inbox), None));
+                None
+            }
+            Shelf::Forbidden => Some(self.world.shelf_refusal(0).map_or(Ok(Vec::new()), Err)),
+        }
+    }
+
+    fn use_shelf(&mut self, request: ShelfRequest) {
+        if self.world.shelf_does.get() == Shelf::Slow {
+            self.world.shelf_waits.borrow_mut().push((Rc::clone(&self.inbox), Some(request)));
+        } else {
+            let news = self.world.use_shelf(request);
+            self.inbox.borrow_mut().extend(news.map(HostEvent::Shelf));
+        }
+    }
+
+    fn tell_tabs(&mut self, message: &str) {
+        for tab in self.world.tabs.borrow().iter().filter(|tab| !Rc::ptr_eq(tab, &self.inbox)) {
+            tab.borrow_mut().push_back(HostEvent::TabSaid(message.to_owned()));
+        }
+    }
+
+    fn random(&mut self) -> u64 {
+        self.world.drawn.set(self.world.drawn.get() + 1);
+        self.world.drawn.get().wrapping_mul(0x9e37_79b9_7f4a_7c15)
     }
 
     fn open_file(&mut self, kind: FileKind) {
@@ -117,7 +235,7 @@ impl Host for TestHost {
 }
 
 struct Answers {
-    world: Rc<World>,
+    inbox: Inbox,
 }
 
 impl CoreHost for Answers {
@@ -130,6 +248,6 @@ impl CoreHost for Answers {
     }
 
     fn answer(&mut self, response: Response) {
-        self.world.news.borrow_mut().push_back(HostEvent::Answer(response));
+        self.inbox.borrow_mut().push_back(HostEvent::Answer(response));
     }
 }

@@ -1,7 +1,7 @@
 //! The workbench without a window.
 #![allow(dead_code, reason = "every test file uses a part of it")]
 
-mod host;
+pub mod host;
 
 use std::rc::Rc;
 

@@ -12,6 +12,7 @@ mod drawing;
 mod editing;
 mod execution;
 mod failure;
+mod keeping;
 mod language;
 mod offline;
 mod report;

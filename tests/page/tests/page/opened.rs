@@ -34,8 +34,8 @@ pub(crate) fn take_turn() -> MutexGuard<'static, ()> {
 pub(crate) struct Opened {
     pub(crate) tab: Tab,
     copy: Option<PathBuf>,
-    _server: SiteServer,
-    _browser: Browser,
+    server: SiteServer,
+    browser: Browser,
     _turn: MutexGuard<'static, ()>,
 }
 
@@ -83,7 +83,14 @@ impl Opened {
         let browser = Browser::start(graphics)?;
         let tab = browser.open_tab(1280, 800)?;
         tab.go_to(&format!("{}#{fragment}", server.url()))?;
-        Ok(Self { tab, copy: None, _server: server, _browser: browser, _turn: turn })
+        Ok(Self { tab, copy: None, server, browser, _turn: turn })
+    }
+
+    /// Another tab of the same browser, on the page with this text after `#`.
+    pub(crate) fn open_beside(&self, fragment: &str) -> Result<Tab> {
+        let tab = self.browser.open_tab(1280, 800)?;
+        tab.go_to(&format!("{}#{fragment}", self.server.url()))?;
+        Ok(tab)
     }
 
     /// The state as JSON.

@@ -107,8 +107,13 @@ pub(super) fn with_redo(state: &AppState) -> Availability {
     if state.document.can_redo() { Ok(()) } else { Err("nothing has been undone") }
 }
 
-pub(super) fn with_earlier_draft(state: &AppState) -> Availability {
-    if state.earlier_draft.is_some() { Ok(()) } else { Err("no draft of an earlier visit is kept") }
+pub(super) fn with_deleted(state: &AppState) -> Availability {
+    if state.library.deleted().is_empty() { Err("no mission has been deleted") } else { Ok(()) }
+}
+
+/// Whether the open mission is one of the library: originals cannot be deleted.
+pub(super) fn with_own_mission(state: &AppState) -> Availability {
+    if state.library.open_id().is_some() { Ok(()) } else { Err("this is an original, which stays") }
 }
 
 pub(super) fn with_problems(state: &AppState) -> Availability {

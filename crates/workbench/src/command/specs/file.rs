@@ -1,27 +1,59 @@
 //! Missions and files.
 
 use super::arguments::text_argument;
-use super::available::{with_earlier_draft, with_network};
-use super::{CTRL, called, keys, plain, when};
+use super::available::{with_deleted, with_network, with_own_mission};
+use super::{CTRL, CTRL_SHIFT, called, keys, plain, when};
+use crate::Dialog;
 use crate::command::chord::Key;
 use crate::command::registry::{CommandSpec, Group, Scope};
 use crate::command::{Command, PictureFormat};
 use crate::host::FileKind;
+use crate::library::{MissionId, TEMPLATES, template};
 use crate::mission_file;
+use crate::state::missions::LibraryCommand;
 
 /// In the order of the menus.
 pub(super) const COMMANDS: &[CommandSpec] = &[
-    plain("file.open", "Open a mission…", Group::File, &[keys(CTRL, Key::O)], Scope::Everywhere, |_| {
+    plain(
+        "file.missions",
+        "Missions…",
+        Group::File,
+        &[keys(CTRL_SHIFT, Key::O)],
+        Scope::Everywhere,
+        |_| Command::ShowDialog(Dialog::missions()),
+    ),
+    plain("file.new", "New mission", Group::File, &[], Scope::Everywhere, |_| {
+        Command::Library(LibraryCommand::New(&TEMPLATES[0]))
+    }),
+    plain("file.open", "Open a file…", Group::File, &[keys(CTRL, Key::O)], Scope::Everywhere, |_| {
         Command::OpenFile(FileKind::Mission)
     }),
+    plain("file.rename", "Rename the mission…", Group::File, &[], Scope::Everywhere, |state| {
+        Command::ShowDialog(Dialog::MissionName { name: state.mission_title().to_owned() })
+    }),
+    plain("file.duplicate", "Duplicate the mission", Group::File, &[], Scope::Everywhere, |_| {
+        Command::Library(LibraryCommand::Duplicate(None))
+    }),
     when(
-        plain("file.openDraft", "Bring back the last draft", Group::File, &[], Scope::Everywhere, |_| {
-            Command::OpenEarlierDraft
+        plain("file.delete", "Delete the mission", Group::File, &[], Scope::Everywhere, |_| {
+            Command::Library(LibraryCommand::Delete(None))
         }),
-        with_earlier_draft,
+        with_own_mission,
     ),
-    plain("file.save", "Save the mission", Group::File, &[keys(CTRL, Key::S)], Scope::Everywhere, |_| {
+    when(
+        plain("file.restore", "Bring back the deleted mission", Group::File, &[], Scope::Everywhere, |_| {
+            Command::Library(LibraryCommand::Restore(None))
+        }),
+        with_deleted,
+    ),
+    plain("file.keepVersion", "Keep a version…", Group::File, &[], Scope::Everywhere, |_| {
+        Command::ShowDialog(Dialog::VersionName { name: String::new() })
+    }),
+    plain("file.save", "Save the text", Group::File, &[keys(CTRL, Key::S)], Scope::Everywhere, |_| {
         Command::SaveMission
+    }),
+    plain("file.saveAs", "Save as…", Group::File, &[keys(CTRL_SHIFT, Key::S)], Scope::Everywhere, |_| {
+        Command::Library(LibraryCommand::SaveWhole)
     }),
     plain("file.importMap", "Import a map…", Group::File, &[], Scope::Everywhere, |_| {
         Command::OpenFile(FileKind::Map)
@@ -41,6 +73,27 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         }),
         with_network,
     ),
+    called("file.newFrom", "Begin a mission from a template or an example", Group::File, |_, arguments| {
+        let name = text_argument(arguments, "name")?;
+        let from_template = template(name).map(LibraryCommand::New);
+        let from_example =
+            || mission_file::example(name).map(|it| LibraryCommand::NewFromExample(it.name.into()));
+        let command = from_template.or_else(from_example).map(Command::Library);
+        command.ok_or_else(|| format!("there is no template or example \"{name}\""))
+    }),
+    called("file.openMission", "Open a mission of the library", Group::File, |state, arguments| {
+        let id = MissionId(text_argument(arguments, "id")?.into());
+        state.library.mission(&id).ok_or_else(|| format!("there is no mission \"{}\"", id.0))?;
+        Ok(Command::Library(LibraryCommand::Open(id)))
+    }),
+    called("file.renameTo", "Give the open mission a name", Group::File, |_, arguments| {
+        let name = text_argument(arguments, "name")?.to_owned();
+        Ok(Command::Library(LibraryCommand::Rename { id: None, name }))
+    }),
+    called("file.keepVersionAs", "Keep the text as a version of a name", Group::File, |_, arguments| {
+        let name = text_argument(arguments, "name")?.to_owned();
+        Ok(Command::Library(LibraryCommand::KeepVersion(name)))
+    }),
     called("file.example", "Open an example", Group::File, |_, arguments| {
         let name = text_argument(arguments, "name")?;
         mission_file::example(name)

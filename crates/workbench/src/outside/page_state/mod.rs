@@ -4,6 +4,7 @@
 //! made from them by the test in `typescript.rs`. Their documentation is the interface's.
 
 mod execution;
+mod library;
 mod program;
 mod review;
 mod search;
@@ -27,6 +28,7 @@ use crate::state::settings::ThemeChoice;
 use crate::state::{AppState, Status};
 
 pub use self::execution::{Execution, Pinned, Robustness};
+pub use self::library::Library;
 pub use self::program::ProgramRun;
 pub use self::review::Review;
 pub use self::search::Search;
@@ -58,6 +60,8 @@ pub struct PageState {
     is_stale: bool,
     /// The name of the open mission.
     mission: String,
+    /// The missions that the user has.
+    library: Library,
     workspace: &'static str,
     active_panel: &'static str,
     /// The panels on screen, by name.
@@ -226,6 +230,7 @@ impl PageState {
             status: status_name(state.status()),
             is_stale: state.snapshots.is_stale(state.document.revision()),
             mission: state.mission.to_string(),
+            library: library::library(state),
             workspace: state.workspace.name(),
             active_panel: state.active_panel.name(),
             panels: state.panels_on_screen.iter().map(|panel| panel.name()).collect(),

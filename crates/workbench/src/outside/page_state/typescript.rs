@@ -7,7 +7,7 @@ use std::path::Path;
 
 use ts_rs::{Config, TS};
 
-use super::{execution, program, review, search, terrain};
+use super::{execution, library, program, review, search, terrain};
 use crate::host::RefusalCode;
 
 /// What has no type of its own below: the times, and documents that the command line writes too.
@@ -199,6 +199,8 @@ fn interface() -> String {
     declare::<execution::Deadline>(&mut out);
     declare::<execution::Robustness>(&mut out);
     declare::<execution::Pinned>(&mut out);
+    declare::<library::Library>(&mut out);
+    declare::<library::KeptMission>(&mut out);
     declare::<review::Review>(&mut out);
     declare::<review::ReviewCounts>(&mut out);
     declare::<review::ReviewItem>(&mut out);

@@ -1,0 +1,303 @@
+//! The list of missions: to open, begin, name, copy, delete and bring back.
+
+use egui::{
+    Align, Button, Key, Layout, Rect, RichText, Role, ScrollArea, Sense, TextEdit, Ui, Vec2, WidgetInfo,
+};
+use panels::{Context, counted};
+use theme::space;
+use workbench::Dialog;
+use workbench::command::{Command, CommandSender};
+use workbench::host::FileKind;
+use workbench::library::{Keeping, Mission, MissionId, TEMPLATES};
+use workbench::mission_file::EXAMPLES;
+use workbench::state::missions::LibraryCommand;
+
+const WIDTH: f32 = 720.0;
+const ROW: f32 = 48.0;
+const PICTURE: Vec2 = Vec2::new(72.0, 36.0);
+
+/// What the list asks for; it is sent when everything is shown.
+type Renaming = Option<(MissionId, String)>;
+
+/// Shows the list.
+pub(super) fn show(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    query: &str,
+    renaming: &Renaming,
+    commands: &mut CommandSender,
+) {
+    let screen = ui.ctx().content_rect().size();
+    ui.set_width(WIDTH.min(screen.x - 64.0));
+    let mut query = query.to_owned();
+    let mut renaming = renaming.clone();
+    let before = (query.clone(), renaming.clone());
+    heading(ui, &mut query, commands);
+    keeping(ui, context, commands);
+    ui.add_space(space::S);
+    let found = |name: &str| name.to_lowercase().contains(&query.trim().to_lowercase());
+    // Fewer missions take less room; more of them have all of it, however small the list was before.
+    let height = (screen.y - 240.0).max(160.0);
+    let area = ScrollArea::vertical().min_scrolled_height(height).max_height(height);
+    area.auto_shrink([false, true]).show(
+        ui,
+        |ui| {
+            let missions = context.state.library.missions();
+            if missions.is_empty() {
+                let text = "No missions of your own yet. An example becomes one as soon as you edit it.";
+                ui.label(RichText::new(text).color(context.tokens.text_muted));
+            }
+            for mission in missions.into_iter().filter(|mission| found(&mission.name)) {
+                ui.push_id(&mission.id.0, |ui| row(ui, context, mission, &mut renaming, commands));
+            }
+            versions(ui, context, commands);
+            examples(ui, context, &found, commands);
+            deleted(ui, context, commands);
+            unreadable(ui, context, commands);
+        },
+    );
+    if (&query, &renaming) != (&before.0, &before.1) {
+        commands.send(Command::ShowDialog(Dialog::Missions { query, renaming }));
+    }
+}
+
+fn heading(ui: &mut Ui, query: &mut String, commands: &mut CommandSender) {
+    ui.horizontal(|ui| {
+        ui.heading("Missions");
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if ui.button("Close").clicked() {
+                commands.send(Command::CloseDialog);
+            }
+        });
+    });
+    ui.add_space(space::S);
+    ui.horizontal(|ui| {
+        if ui.button("New mission").clicked() {
+            commands.send(Command::Library(LibraryCommand::New(&TEMPLATES[0])));
+        }
+        ui.menu_button("From a template", |ui| {
+            for template in TEMPLATES.iter().filter(|template| !template.source.is_empty()) {
+                if ui.button(template.title).on_hover_text(template.about).clicked() {
+                    commands.send(Command::Library(LibraryCommand::New(template)));
+                    ui.close();
+                }
+            }
+            ui.separator();
+            for example in EXAMPLES {
+                if ui.button(example.title).clicked() {
+                    commands.send(Command::Library(LibraryCommand::NewFromExample(example.name.into())));
+                    ui.close();
+                }
+            }
+        });
+        if ui.button("Open a file…").clicked() {
+            commands.send(Command::OpenFile(FileKind::Mission));
+        }
+        let field = TextEdit::singleline(query).hint_text("Find a mission").desired_width(f32::INFINITY);
+        ui.add(field).accessible_name("Find a mission");
+    });
+}
+
+/// What the user must know of keeping.
+fn keeping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let tokens = context.tokens;
+    let (text, color) = match &context.state.library.keeping {
+        Keeping::Kept => return,
+        Keeping::Opening => {
+            ("The missions kept in this browser are still being read.".to_owned(), tokens.info)
+        }
+        Keeping::LatestOnly(reason) => {
+            (format!("Only your latest text is kept, without maps and versions: {reason}."), tokens.warning)
+        }
+        Keeping::Nothing(reason) => (format!("Nothing is kept when this closes: {reason}."), tokens.error),
+    };
+    ui.add_space(space::S);
+    ui.horizontal_wrapped(|ui| {
+        ui.label(RichText::new(text).color(color));
+        if context.state.library.keeping != Keeping::Opening
+            && ui.button("Save the mission as a file").clicked()
+        {
+            commands.send(Command::Library(LibraryCommand::SaveWhole));
+        }
+    });
+}
+
+fn row(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    mission: &Mission,
+    renaming: &mut Renaming,
+    commands: &mut CommandSender,
+) {
+    let tokens = context.tokens;
+    let is_open = context.state.library.open_id() == Some(&mission.id);
+    let size = egui::vec2(ui.available_width(), ROW);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let label = format!("Open {}", mission.name);
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_open, &label));
+    let fill = match (is_open, response.hovered() || response.has_focus()) {
+        (true, _) => Some(tokens.selection),
+        (false, true) => Some(tokens.hover),
+        (false, false) => None,
+    };
+    if let Some(fill) = fill {
+        ui.painter().rect_filled(rect, 4.0, fill);
+    }
+    if response.clicked() {
+        commands.send(Command::Library(LibraryCommand::Open(mission.id.clone())));
+    }
+    let place = Rect::from_min_size(rect.left_top() + egui::vec2(6.0, (ROW - PICTURE.y) / 2.0), PICTURE);
+    picture(ui, context, place, &mission.picture);
+    let inner = Rect::from_min_max(egui::pos2(place.right() + space::M, rect.top()), rect.max);
+    let layout = Layout::right_to_left(Align::Center);
+    let mut ui = ui
+        .new_child(egui::UiBuilder::new().max_rect(inner.shrink2(egui::vec2(space::S, 0.0))).layout(layout));
+    let ui = &mut ui;
+    let named = |text: &str| format!("{text} {}", mission.name);
+    if ui.button("Delete").accessible_name(named("Delete")).clicked() {
+        commands.send(Command::Library(LibraryCommand::Delete(Some(mission.id.clone()))));
+    }
+    if ui.button("Duplicate").accessible_name(named("Duplicate")).clicked() {
+        commands.send(Command::Library(LibraryCommand::Duplicate(Some(mission.id.clone()))));
+    }
+    if ui.button("Rename").accessible_name(named("Rename")).clicked() {
+        *renaming = Some((mission.id.clone(), mission.name.to_string()));
+    }
+    ui.with_layout(Layout::top_down(Align::Min), |ui| {
+        ui.add_space(5.0);
+        match renaming.clone().filter(|(id, _)| *id == mission.id) {
+            Some((id, mut name)) => {
+                let field = ui.add(TextEdit::singleline(&mut name).desired_width(f32::INFINITY));
+                let field = field.accessible_name("New name of the mission");
+                let enter = ui.input(|input| input.key_pressed(Key::Enter));
+                if enter || field.lost_focus() {
+                    commands.send(Command::Library(LibraryCommand::Rename { id: Some(id), name }));
+                    *renaming = None;
+                } else {
+                    field.request_focus();
+                    *renaming = Some((id, name));
+                }
+            }
+            None => {
+                ui.add(egui::Label::new(theme::strong(mission.name.as_str())).truncate().selectable(false));
+            }
+        }
+        let about = RichText::new(about(context, mission)).small().color(tokens.text_muted);
+        ui.add(egui::Label::new(about).truncate().selectable(false));
+    });
+}
+
+/// When a mission was changed, and what it has.
+fn about(context: &Context<'_>, mission: &Mission) -> String {
+    let changed = when(mission.changed_millis, context.state.frame.unix_millis);
+    let count = |count: usize, noun: &str| (count > 0).then(|| counted(count as u64, noun));
+    let kind = mission.kind.title();
+    let parts = [
+        (!kind.is_empty()).then(|| kind.to_owned()),
+        Some(format!("changed {changed}")),
+        Some(format!("begun {}", when(mission.created_millis, context.state.frame.unix_millis))),
+        count(mission.maps.len(), "map"),
+        count(mission.versions.len(), "version"),
+    ];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(" · ")
+}
+
+/// A moment as people say it: how long ago, or the date.
+fn when(millis: i64, now_millis: i64) -> String {
+    let minutes = (now_millis - millis).max(0) / 60_000;
+    match minutes {
+        0 => "just now".to_owned(),
+        1..60 => format!("{minutes} min ago"),
+        60..1440 => format!("{} h ago", minutes / 60),
+        _ => report::calendar::utc_text(millis).chars().take(10).collect(),
+    }
+}
+
+/// The plan as bars over time.
+fn picture(ui: &Ui, context: &Context<'_>, place: Rect, bars: &[[u16; 3]]) {
+    let tokens = context.tokens;
+    ui.painter().rect_filled(place, 3.0, tokens.sunken);
+    let rows = bars.iter().map(|&[_, _, row]| row).max().map_or(1.0, |last| f32::from(last) + 1.0);
+    let inner = place.shrink(3.0);
+    let height = (inner.height() / rows).min(6.0);
+    for &[start, end, row] in bars {
+        let x = |share: u16| inner.left() + inner.width() * f32::from(share.min(1000)) / 1000.0;
+        let top = inner.top() + f32::from(row) * inner.height() / rows;
+        let bar = Rect::from_min_max(
+            egui::pos2(x(start), top),
+            egui::pos2(x(end).max(x(start) + 1.5), top + (height - 1.0).max(1.0)),
+        );
+        ui.painter().rect_filled(bar, 1.0, tokens.series[usize::from(row) % tokens.series.len()]);
+    }
+}
+
+fn section(ui: &mut Ui, context: &Context<'_>, title: &str) {
+    ui.add_space(space::L);
+    ui.label(theme::strong(title).color(context.tokens.text_muted));
+    ui.add_space(space::XS);
+}
+
+fn versions(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let Some(open) = context.state.library.open_mission() else { return };
+    section(ui, context, &format!("Versions of {}", open.name));
+    for (index, version) in open.versions.iter().enumerate().rev() {
+        ui.horizontal(|ui| {
+            let back = ui.button("Go back to it").accessible_name(format!("Go back to {}", version.name));
+            if back.clicked() {
+                commands.send(Command::Library(LibraryCommand::RestoreVersion(index)));
+            }
+            ui.label(version.name.as_str());
+            let kept = when(version.at_millis, context.state.frame.unix_millis);
+            ui.label(RichText::new(kept).small().color(context.tokens.text_muted));
+        });
+    }
+    if ui.button("Keep a version…").clicked() {
+        commands.send(Command::ShowDialog(Dialog::VersionName { name: String::new() }));
+    }
+}
+
+fn examples(ui: &mut Ui, context: &Context<'_>, found: &dyn Fn(&str) -> bool, commands: &mut CommandSender) {
+    section(ui, context, "Examples");
+    let library = &context.state.library;
+    ui.horizontal_wrapped(|ui| {
+        for example in EXAMPLES.iter().filter(|example| found(example.title)) {
+            let is_open = library.open_id().is_none() && context.state.mission == example.name;
+            if ui.add(Button::new(example.title).selected(is_open)).clicked() {
+                commands.send(Command::OpenExample(example.name.into()));
+            }
+        }
+    });
+}
+
+fn deleted(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let deleted = context.state.library.deleted();
+    if deleted.is_empty() {
+        return;
+    }
+    section(ui, context, "Deleted in the last 30 days");
+    for mission in deleted {
+        ui.horizontal(|ui| {
+            let back = ui.button("Bring back").accessible_name(format!("Bring back {}", mission.name));
+            if back.clicked() {
+                commands.send(Command::Library(LibraryCommand::Restore(Some(mission.id.clone()))));
+            }
+            ui.label(mission.name.as_str());
+        });
+    }
+}
+
+fn unreadable(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let unreadable = &context.state.library.unreadable;
+    if unreadable.is_empty() {
+        return;
+    }
+    section(ui, context, "Kept, but not readable here");
+    for (index, one) in unreadable.iter().enumerate() {
+        ui.horizontal(|ui| {
+            if ui.button("Save as a file").clicked() {
+                commands.send(Command::Library(LibraryCommand::SaveUnreadable(index)));
+            }
+            ui.add(egui::Label::new(format!("{}: {}", one.key, one.reason)).truncate());
+        });
+    }
+}

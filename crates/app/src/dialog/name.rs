@@ -1,0 +1,50 @@
+//! Asks for a name: of the open mission, or of a version of it.
+
+use egui::{Button, Key, TextEdit, Ui};
+use theme::space;
+use workbench::Dialog;
+use workbench::command::{Command, CommandSender};
+use workbench::state::missions::LibraryCommand;
+
+/// What the name is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Named {
+    Mission,
+    Version,
+}
+
+/// Shows the question.
+pub(super) fn show(ui: &mut Ui, named: Named, name: &str, commands: &mut CommandSender) {
+    ui.set_width(320.0);
+    let (question, label, done) = match named {
+        Named::Mission => ("Rename the mission", "Name of the mission", "Rename"),
+        Named::Version => ("Keep the text as a version", "Name of the version", "Keep"),
+    };
+    ui.label(question);
+    let mut text = name.to_owned();
+    let field = ui.add(TextEdit::singleline(&mut text).desired_width(f32::INFINITY)).accessible_name(label);
+    let mut is_asked = ui.input(|input| input.key_pressed(Key::Enter));
+    if !is_asked {
+        field.request_focus();
+    }
+    ui.add_space(space::S);
+    ui.horizontal(|ui| {
+        is_asked |= ui.add_enabled(!text.trim().is_empty(), Button::new(done)).clicked();
+        if ui.button("Cancel").clicked() {
+            commands.send(Command::CloseDialog);
+        }
+    });
+    let dialog = |name: String| match named {
+        Named::Mission => Dialog::MissionName { name },
+        Named::Version => Dialog::VersionName { name },
+    };
+    if is_asked && !text.trim().is_empty() {
+        commands.send(Command::CloseDialog);
+        commands.send(Command::Library(match named {
+            Named::Mission => LibraryCommand::Rename { id: None, name: text },
+            Named::Version => LibraryCommand::KeepVersion(text),
+        }));
+    } else if text != name {
+        commands.send(Command::ShowDialog(dialog(text)));
+    }
+}

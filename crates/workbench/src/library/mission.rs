@@ -1,0 +1,187 @@
+//! A mission of the library: a small project of texts and maps, with its dates and named versions.
+//!
+//! Written as JSON (`enroute-mission/1`), both where missions are kept and as the one file that holds a whole mission.
+
+use std::sync::Arc;
+
+use mission::review::Record;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use smol_str::SmolStr;
+
+use crate::library::base64;
+
+/// What tells missions apart, whatever they are called; the same in every tab and in every run.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct MissionId(pub SmolStr);
+
+/// Where a mission came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MissionKind {
+    /// Begun here.
+    Own,
+    /// An edited copy of an example.
+    Example,
+    /// An edited copy of what a link held.
+    Shared,
+    /// From a file.
+    File,
+}
+
+impl MissionKind {
+    /// What lists say of it; nothing of what was begun here.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Own => "",
+            Self::Example => "from an example",
+            Self::Shared => "from a link",
+            Self::File => "from a file",
+        }
+    }
+}
+
+/// A named text of a mission.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TextFile {
+    /// Its name with extension, unique in the mission.
+    pub name: SmolStr,
+    /// What it says.
+    pub text: String,
+}
+
+/// A map of a mission.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MapFile {
+    /// The name under which the text asks for it.
+    pub name: SmolStr,
+    /// The file; `None` where only the name is written because the content is kept beside, or is not read yet.
+    #[serde(default, skip_serializing_if = "Option::is_none", with = "base64")]
+    pub bytes: Option<Arc<[u8]>>,
+}
+
+/// The texts of a mission as they once were.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Version {
+    /// What its author called it.
+    pub name: String,
+    /// When it was kept, in milliseconds since 1970, UTC.
+    pub at_millis: i64,
+    /// The texts, the main one first.
+    pub texts: Vec<TextFile>,
+}
+
+/// A mission.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Mission {
+    /// What tells it apart.
+    pub id: MissionId,
+    /// What its author calls it.
+    pub name: SmolStr,
+    /// Where it came from.
+    pub kind: MissionKind,
+    /// When it was begun, in milliseconds since 1970, UTC.
+    pub created_millis: i64,
+    /// When it was last changed, in milliseconds since 1970, UTC.
+    pub changed_millis: i64,
+    /// When it was deleted, if it was: until it is thrown away it can be brought back.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deleted_millis: Option<i64>,
+    /// The texts, the main one first; at least one.
+    pub texts: Vec<TextFile>,
+    /// The maps that were imported for it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub maps: Vec<MapFile>,
+    /// The texts as they once were, the oldest first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub versions: Vec<Version>,
+    /// What reviewers said and signed, where the whole mission is in one file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub review: Option<Value>,
+    /// A small picture of its plan: bars by start, end and row, in thousandths of the picture.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub picture: Vec<[u16; 3]>,
+}
+
+/// The name of the main text of a mission that has no other.
+pub const MAIN_TEXT: &str = "mission.rmpl";
+
+/// What the JSON of a mission calls itself.
+pub const FORMAT: &str = "enroute-mission/1";
+
+/// Why something cannot be read as a mission.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MissionError {
+    /// It is no mission at all.
+    #[error("it is no mission file")]
+    NoMission,
+    /// A later version of the program wrote it.
+    #[error("it is in a format that is not known here ({0})")]
+    Unknown(String),
+    /// It says that it is a mission, and is damaged.
+    #[error("it is damaged: {0}")]
+    Damaged(String),
+}
+
+/// What is written: a mission with the name of its format.
+#[derive(Serialize)]
+struct Written<'a> {
+    format: &'static str,
+    #[serde(flatten)]
+    mission: &'a Mission,
+}
+
+impl Mission {
+    /// The main text.
+    pub fn main_text(&self) -> &str {
+        self.texts.first().map_or("", |file| file.text.as_str())
+    }
+
+    /// The mission as JSON with all that it holds.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string(&Written { format: FORMAT, mission: self }).unwrap_or_default()
+    }
+
+    /// The mission as JSON with the names of its maps and without their content, which is kept beside it.
+    pub fn to_json_without_maps(&self) -> String {
+        if self.maps.iter().all(|map| map.bytes.is_none()) {
+            return self.to_json();
+        }
+        let maps = self.maps.iter().map(|map| MapFile { name: map.name.clone(), bytes: None }).collect();
+        Self { maps, ..self.clone() }.to_json()
+    }
+
+    /// The same without what takes room and hardly changes: what is written down at each key press.
+    pub(crate) fn latest(&self) -> Self {
+        let maps = self.maps.iter().map(|map| MapFile { name: map.name.clone(), bytes: None }).collect();
+        Self { maps, versions: Vec::new(), review: None, picture: Vec::new(), ..self.clone() }
+    }
+
+    /// Reads a mission.
+    pub fn from_json(text: &str) -> Result<Self, MissionError> {
+        let value: Value = serde_json::from_str(text).map_err(|error| {
+            // What begins like one and ends too early is a mission that was cut off.
+            let begins = text.trim_start().starts_with('{') && text.contains("\"enroute-mission/");
+            if begins { MissionError::Damaged(error.to_string()) } else { MissionError::NoMission }
+        })?;
+        match value.get("format").and_then(Value::as_str) {
+            Some(FORMAT) => {}
+            Some(other) if other.starts_with("enroute-mission/") => {
+                return Err(MissionError::Unknown(other.to_owned()));
+            }
+            _ => return Err(MissionError::NoMission),
+        }
+        let mission: Self =
+            serde_json::from_value(value).map_err(|error| MissionError::Damaged(error.to_string()))?;
+        if mission.texts.is_empty() {
+            return Err(MissionError::Damaged("it has no text".to_owned()));
+        }
+        Ok(mission)
+    }
+
+    /// What reviewers said, if the file holds it.
+    pub fn review_record(&self) -> Option<Record> {
+        Record::from_json(&self.review.as_ref()?.to_string()).ok()
+    }
+}

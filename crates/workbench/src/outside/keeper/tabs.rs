@@ -1,0 +1,133 @@
+//! What tabs that show the same missions tell each other, so that they agree or say that they do not.
+
+use serde::{Deserialize, Serialize};
+
+use crate::host::Host;
+use crate::library::{Mission, MissionId, TextFile, Version};
+use crate::outside::keeper::Keeper;
+use crate::state::{AppState, ToastKind};
+
+/// What a tab says.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+enum Message {
+    /// The main text of a mission was changed.
+    Text {
+        id: MissionId,
+        /// The print of the text that the change was made to.
+        base: u64,
+        text: String,
+        changed_millis: i64,
+    },
+    /// A mission is new, or something else of it was changed.
+    Mission { json: String },
+}
+
+/// What a tab calls the version of another one that it could not agree with.
+const OTHER_TAB: &str = "As in another tab";
+
+impl Keeper {
+    /// Tells the text of the open mission, if it is not what the tabs agree on.
+    pub(super) fn tell_text(&mut self, state: &AppState, host: &mut dyn Host) {
+        let Some(mission) = state.library.open_mission() else { return };
+        let text = mission.main_text();
+        let now = print(text);
+        let base = match &self.agreed {
+            Some((id, base)) if *id == mission.id => *base,
+            _ => now,
+        };
+        if base != now {
+            let message = Message::Text {
+                id: mission.id.clone(),
+                base,
+                text: text.to_owned(),
+                changed_millis: mission.changed_millis,
+            };
+            tell(host, &message);
+        }
+        self.agreed = Some((mission.id.clone(), now));
+    }
+
+    /// Takes in what another tab says.
+    pub fn hear_tab(&mut self, state: &mut AppState, message: &str) {
+        // Another version of the program may say what is not known here.
+        let Ok(message) = serde_json::from_str(message) else { return };
+        match message {
+            Message::Text { id, base, text, changed_millis } => {
+                self.hear_text(state, &id, base, text, changed_millis);
+            }
+            Message::Mission { json } => {
+                let Ok(mut mission) = Mission::from_json(&json) else { return };
+                let is_open = state.library.open_id() == Some(&mission.id);
+                // The open text is told by itself, and must not change under the caret here.
+                if let Some(main) = mission.texts.first_mut().filter(|_| is_open) {
+                    state.document.text().clone_into(&mut main.text);
+                }
+                state.library.take_in(mission);
+                if let Some(open) = state.library.open_mission().filter(|_| is_open) {
+                    state.mission = open.name.clone();
+                }
+            }
+        }
+    }
+
+    fn hear_text(
+        &mut self,
+        state: &mut AppState,
+        id: &MissionId,
+        base: u64,
+        text: String,
+        changed_millis: i64,
+    ) {
+        let is_open = state.library.open_id() == Some(id);
+        let Some(mission) = state.library.mission(id).cloned() else { return };
+        if !is_open {
+            let texts = mission.texts.iter().cloned();
+            let texts: Vec<TextFile> = texts
+                .enumerate()
+                .map(|(index, file)| if index == 0 { TextFile { text: text.clone(), ..file } } else { file })
+                .collect();
+            state.library.take_in(Mission { changed_millis, texts, ..mission });
+            return;
+        }
+        let mine = print(state.document.text());
+        if mine == print(&text) {
+            self.agreed = Some((id.clone(), mine));
+        } else if mine == base {
+            state.adopt_text(&text);
+            self.noted_revision = state.document.revision();
+            state.note_text();
+            self.agreed = Some((id.clone(), print(&text)));
+        } else {
+            let name = mission.texts[0].name.clone();
+            let version = Version {
+                name: OTHER_TAB.to_owned(),
+                at_millis: changed_millis,
+                texts: vec![TextFile { name, text }],
+            };
+            state.library.put_version(id, version);
+            let text = "This mission is edited in another tab too, and the two differ: what it says there is kept as \
+                        a version";
+            state.toasts.add(ToastKind::Failed, text);
+        }
+    }
+}
+
+/// Tells everything of a mission but its maps.
+pub(super) fn tell_mission(state: &AppState, host: &mut dyn Host, id: &MissionId) {
+    if let Some(mission) = state.library.mission(id) {
+        tell(host, &Message::Mission { json: mission.to_json_without_maps() });
+    }
+}
+
+fn tell(host: &mut dyn Host, message: &Message) {
+    if let Ok(text) = serde_json::to_string(message) {
+        host.tell_tabs(&text);
+    }
+}
+
+/// A number that tells texts apart (FNV-1a).
+fn print(text: &str) -> u64 {
+    text.bytes()
+        .fold(0xcbf2_9ce4_8422_2325, |print, byte| (print ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}

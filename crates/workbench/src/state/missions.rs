@@ -1,0 +1,371 @@
+//! What is done with the missions of the library: opening, naming, copying, deleting, and taking them out and in.
+
+use std::sync::Arc;
+
+use mission::{Request, Snapshot};
+use smol_str::SmolStr;
+use text_editing::EditKind;
+
+use crate::Dialog;
+use crate::host::FileKind;
+use crate::library::{MapFile, Mission, MissionError, MissionId, MissionKind, Open, Template};
+use crate::mission_file;
+use crate::state::{AppState, Effect, ToastKind};
+
+/// Something that is asked of the library. Where an id may be missing, the open mission is meant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LibraryCommand {
+    /// Begins a mission from a template and opens it.
+    New(&'static Template),
+    /// Begins a mission that is a copy of an example and opens it.
+    NewFromExample(SmolStr),
+    /// Opens a mission.
+    Open(MissionId),
+    /// Gives a mission another name.
+    Rename {
+        /// Which one.
+        id: Option<MissionId>,
+        /// The new name.
+        name: String,
+    },
+    /// Opens a copy of a mission.
+    Duplicate(Option<MissionId>),
+    /// Deletes a mission; it can be brought back.
+    Delete(Option<MissionId>),
+    /// Brings a deleted mission back; the last one if none is named.
+    Restore(Option<MissionId>),
+    /// Keeps the open text as a version of this name.
+    KeepVersion(String),
+    /// Makes the text what it was in a version, as an edit that can be undone.
+    RestoreVersion(usize),
+    /// Lets the user save the whole open mission as one file.
+    SaveWhole,
+    /// Lets the user save what is kept and cannot be read.
+    SaveUnreadable(usize),
+}
+
+/// Bars that a picture has at most.
+const MAX_BARS: usize = 40;
+
+/// What the whole of a mission is called as a file.
+const WHOLE_EXTENSION: &str = "enroute";
+
+impl AppState {
+    /// What reviews, and other things that belong to the open mission, are kept under: the id of a mission of the
+    /// library, otherwise the name of the original.
+    pub fn mission_key(&self) -> SmolStr {
+        self.library.open_id().map_or_else(|| self.mission.clone(), |id| id.0.clone())
+    }
+
+    /// What the open mission is called on screen.
+    pub fn mission_title(&self) -> &str {
+        match self.library.open() {
+            Open::Original { kind: MissionKind::Example, .. } => {
+                mission_file::example(&self.mission).map_or(self.mission.as_str(), |example| example.title)
+            }
+            _ => &self.mission,
+        }
+    }
+
+    pub(super) fn apply_to_library(&mut self, command: LibraryCommand) {
+        let now_millis = self.frame.unix_millis;
+        match command {
+            LibraryCommand::New(template) => {
+                let name = if template.source.is_empty() { "New mission" } else { template.title };
+                let id = self.library.add(name, MissionKind::Own, template.source, now_millis);
+                self.open_mission(&id);
+                self.focus_editor();
+            }
+            LibraryCommand::NewFromExample(name) => {
+                if let Some(example) = mission_file::example(&name) {
+                    let name = format!("{} (copy)", example.title);
+                    let id = self.library.add(&name, MissionKind::Example, example.source, now_millis);
+                    self.open_mission(&id);
+                }
+            }
+            LibraryCommand::Open(id) => self.open_mission(&id),
+            LibraryCommand::Rename { id, name } => self.rename_mission(id, &name),
+            LibraryCommand::Duplicate(id) => {
+                let id = id.unwrap_or_else(|| self.mission_of_its_own());
+                if let Some(copy) = self.library.duplicate(&id, now_millis) {
+                    self.open_mission(&copy);
+                    self.toasts.add(ToastKind::Done, format!("This is \"{}\" now", self.mission));
+                }
+            }
+            LibraryCommand::Delete(id) => self.delete_mission(id),
+            LibraryCommand::Restore(id) => {
+                let last = || self.library.deleted().first().map(|mission| mission.id.clone());
+                if let Some(id) = id.or_else(last) {
+                    self.library.restore(&id);
+                    self.open_mission(&id);
+                }
+            }
+            LibraryCommand::KeepVersion(name) => {
+                self.dialog = None;
+                self.mission_of_its_own();
+                let name = name.trim();
+                let name = if name.is_empty() { "Unnamed" } else { name };
+                self.library.keep_version(name, now_millis);
+                self.toasts.add(ToastKind::Done, format!("The version \"{name}\" is kept"));
+            }
+            LibraryCommand::RestoreVersion(index) => self.restore_version(index),
+            LibraryCommand::SaveWhole => self.save_whole(),
+            LibraryCommand::SaveUnreadable(index) => {
+                if let Some(unreadable) = self.library.unreadable.get(index) {
+                    let name = unreadable.key.replace('/', "-");
+                    let bytes = unreadable.bytes.to_vec();
+                    self.effects.push(Effect::SaveFile { name: format!("{name}.json"), bytes });
+                }
+            }
+        }
+    }
+
+    /// Notes what the text says now: an original that was edited becomes a mission of its own.
+    pub(crate) fn note_text(&mut self) {
+        let title = self.mission_title().to_owned();
+        if self.library.edited(&title, self.document.text(), self.frame.unix_millis) {
+            self.is_a_mission_now();
+        }
+    }
+
+    /// The id of the open mission; an original becomes a mission of its own.
+    fn mission_of_its_own(&mut self) -> MissionId {
+        if let Some(id) = self.library.open_id() {
+            return id.clone();
+        }
+        let (kind, title) = match self.library.open() {
+            Open::Original { kind, .. } => (*kind, self.mission_title().to_owned()),
+            Open::Mission(_) => (MissionKind::Own, self.mission.to_string()),
+        };
+        let name = if kind == MissionKind::Example { format!("{title} (copy)") } else { title };
+        let id = self.library.add(&name, kind, self.document.text(), self.frame.unix_millis);
+        self.library.show(&id);
+        self.is_a_mission_now();
+        id
+    }
+
+    /// What was an original is a mission of the library from here on, with what reviewers said of it.
+    fn is_a_mission_now(&mut self) {
+        if let Some(mission) = self.library.open_mission() {
+            self.mission = mission.name.clone();
+        }
+        self.review_goes_along();
+        self.effects.push(Effect::ShowAddress);
+    }
+
+    /// Opens a mission of the library.
+    pub(crate) fn open_mission(&mut self, id: &MissionId) {
+        self.note_text();
+        let Some(mission) = self.library.mission(id) else {
+            self.toasts.add(ToastKind::Failed, "This mission is not in the library of this browser");
+            return;
+        };
+        let (name, text) = (mission.name.clone(), mission.main_text().to_owned());
+        let maps = mission.maps.clone();
+        self.set_document_aside();
+        self.library.show(id);
+        self.open(name, &text);
+        if let Some(mut document) = self.set_aside.remove(id).filter(|kept| kept.text() == text) {
+            document.count_on_from(self.document.revision());
+            self.document = document;
+        }
+        for map in maps {
+            match map.bytes {
+                Some(bytes) => self.import_map(map.name, bytes.to_vec()),
+                None => self.effects.push(Effect::ReadMap(id.clone(), map.name)),
+            }
+        }
+        self.effects.push(Effect::ShowAddress);
+    }
+
+    /// Opens a text that is no mission of the library until it is edited.
+    pub(super) fn open_original(&mut self, name: SmolStr, kind: MissionKind, source: &str) {
+        self.note_text();
+        self.set_document_aside();
+        self.library.show_original(kind, source);
+        self.open(name, source);
+        // What is told apart later is what the document holds, in its own form of line breaks.
+        self.library.show_original(kind, self.document.text());
+        self.effects.push(Effect::ShowAddress);
+    }
+
+    /// Another mission is about to be opened: the history of this one stays as long as this run.
+    fn set_document_aside(&mut self) {
+        if let Some(id) = self.library.open_id().cloned() {
+            let document = std::mem::take(&mut self.document);
+            // The count goes on with the next text.
+            self.document.count_on_from(document.revision());
+            self.set_aside.insert(id, document);
+        }
+    }
+
+    fn rename_mission(&mut self, id: Option<MissionId>, name: &str) {
+        self.dialog = self.dialog.take().filter(|dialog| !matches!(dialog, Dialog::MissionName { .. }));
+        if name.trim().is_empty() || id.is_none() && name.trim() == self.mission_title() {
+            return;
+        }
+        let id = id.unwrap_or_else(|| self.mission_of_its_own());
+        self.library.rename(&id, name, self.frame.unix_millis);
+        if let Some(mission) = self.library.open_mission() {
+            self.mission = mission.name.clone();
+        }
+    }
+
+    fn delete_mission(&mut self, id: Option<MissionId>) {
+        let open = self.library.open_id().cloned();
+        let Some(id) = id.or_else(|| open.clone()) else {
+            self.toasts.add(ToastKind::Info, "Examples stay; only missions of your own can be deleted");
+            return;
+        };
+        self.note_text();
+        let Some(name) = self.library.mission(&id).map(|mission| mission.name.clone()) else { return };
+        self.library.delete(&id, self.frame.unix_millis);
+        if open.as_ref() == Some(&id) {
+            let next = self.library.missions().first().map(|mission| mission.id.clone());
+            let dialog = self.dialog.take();
+            match next {
+                Some(next) => self.open_mission(&next),
+                None => self.open_example(mission_file::EXAMPLES[0].name),
+            }
+            self.dialog = dialog;
+        }
+        let text = format!("\"{name}\" is deleted; File · Bring back the deleted mission undoes that");
+        self.toasts.add(ToastKind::Done, text);
+    }
+
+    fn restore_version(&mut self, index: usize) {
+        let Some(mission) = self.library.open_mission() else { return };
+        let Some(version) = mission.versions.get(index) else { return };
+        let Some(text) = version.texts.first().map(|file| file.text.clone()) else { return };
+        let name = version.name.clone();
+        self.document.replace_all(&text);
+        self.dialog = None;
+        self.toasts.add(ToastKind::Done, format!("This is the version \"{name}\"; undo takes it back"));
+    }
+
+    fn save_whole(&mut self) {
+        let id = self.mission_of_its_own();
+        self.note_text();
+        let Some(mission) = self.library.mission(&id) else { return };
+        if mission.maps.iter().any(|map| map.bytes.is_none()) {
+            self.toasts.add(ToastKind::Info, "The maps of this mission are still being read; try again");
+            return;
+        }
+        let record = self.review.record();
+        let review = (!record.is_empty()).then(|| serde_json::from_str(&record.to_json()).ok()).flatten();
+        let whole = Mission { review, ..mission.clone() };
+        let name = format!("{}.{WHOLE_EXTENSION}", self.mission);
+        self.effects.push(Effect::SaveFile { name, bytes: whole.to_json().into_bytes() });
+    }
+
+    /// Opens a file as a mission of its own, whatever is open; nothing is opened that does not read as one.
+    pub(super) fn open_mission_file(&mut self, name: &str, bytes: Vec<u8>) {
+        let Ok(text) = String::from_utf8(bytes) else {
+            self.toasts.add(ToastKind::Failed, format!("{name} is not a text file"));
+            return;
+        };
+        let refuse = |state: &mut Self, reason: &str| {
+            let text = format!("{name} is not opened: {reason}. What is open stays as it is");
+            state.toasts.add(ToastKind::Failed, text);
+        };
+        match Mission::from_json(&text) {
+            Ok(mission) => self.open_whole(mission),
+            Err(MissionError::NoMission) if reads_as_mission(name, &text) => {
+                let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+                let id = self.library.add(stem, MissionKind::File, &text, self.frame.unix_millis);
+                self.open_mission(&id);
+            }
+            Err(MissionError::NoMission) => refuse(self, "it does not read as a mission"),
+            Err(error) => refuse(self, &error.to_string()),
+        }
+    }
+
+    /// Opens what one file held as a mission of its own.
+    pub(super) fn open_whole(&mut self, mission: Mission) {
+        let record = mission.review_record();
+        let id = self.library.add_whole(mission, self.frame.unix_millis);
+        self.open_mission(&id);
+        if let Some(record) = record {
+            self.effects.push(Effect::JoinReview(Box::new(record)));
+        }
+    }
+
+    /// A map that the user chose: the open mission has it as soon as the core can read it.
+    pub(super) fn open_map_file(&mut self, name: &str, bytes: Vec<u8>) {
+        let name = SmolStr::new(name);
+        self.maps_in_hand.insert(name.clone(), Arc::from(bytes.as_slice()));
+        self.import_map(name, bytes);
+    }
+
+    pub(crate) fn import_map(&mut self, name: SmolStr, bytes: Vec<u8>) {
+        // The core reads it, and says what it has found.
+        self.effects.push(Effect::Post(Request::ImportMap { name, bytes }));
+    }
+
+    /// The core can use a map that the user chose just now; the open mission keeps it.
+    pub(super) fn keep_map(&mut self, name: &str) -> bool {
+        let Some(bytes) = self.maps_in_hand.remove(name) else { return false };
+        self.mission_of_its_own();
+        let map = MapFile { name: name.into(), bytes: Some(bytes) };
+        self.library.take_map(map, self.frame.unix_millis);
+        true
+    }
+
+    /// The plan of the open mission as a small picture, for the list of missions.
+    pub(super) fn take_picture(&mut self, shown: &Snapshot) {
+        if shown.revision == self.document.revision()
+            && let Some(picture) = picture(shown)
+        {
+            self.library.take_picture(picture);
+        }
+    }
+
+    /// Another tab has changed the text of the open mission: this one says the same from here on.
+    pub(crate) fn adopt_text(&mut self, text: &str) {
+        let edit = text_editing::difference(self.document.text(), text);
+        self.document.edit(&[edit], EditKind::Single, None);
+        self.language.follow(&self.document);
+        self.editor.folding.follow(&mut self.document, self.language.parse());
+        self.automaton.follow(&self.document, self.language.is_control());
+    }
+}
+
+/// The activities of a plan in its earliest schedule, each as start, end and row; no two in a row overlap.
+fn picture(shown: &Snapshot) -> Option<Vec<[u16; 3]>> {
+    let (network, plan) = (shown.network.as_deref()?, shown.plan()?);
+    let earliest = |node: tpn::NodeId| Some(plan.windows.get(node.index())?.as_ref()?.earliest.to_f64());
+    let whole = earliest(network.end).filter(|&whole| whole > 0.0)?;
+    let share = |time: f64| (time / whole * 1000.0).clamp(0.0, 1000.0) as u16;
+    let primitives = network.occurrences.iter().filter(|it| it.kind == tpn::OccurrenceKind::Primitive);
+    let mut bars: Vec<[u16; 2]> = primitives
+        .filter_map(|it| Some([share(earliest(it.start)?), share(earliest(it.end)?)]))
+        .take(MAX_BARS)
+        .collect();
+    bars.sort_unstable();
+    let mut row_ends: Vec<u16> = Vec::new();
+    let placed = bars.into_iter().map(|[start, end]| {
+        let free = row_ends.iter().position(|&row_end| row_end <= start);
+        let row = free.unwrap_or(row_ends.len());
+        match row_ends.get_mut(row) {
+            Some(row_end) => *row_end = end,
+            None => row_ends.push(end),
+        }
+        [start, end, row as u16]
+    });
+    Some(placed.collect())
+}
+
+/// Whether a file is a mission: its name says so, or it reads as one.
+fn reads_as_mission(name: &str, text: &str) -> bool {
+    let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
+    let says_so = FileKind::Mission.extensions().contains(&extension.as_str()) && extension != "txt";
+    let reads = || {
+        let has_error = |all: &[rmpl::Diagnostic]| all.iter().any(|it| it.severity == rmpl::Severity::Error);
+        if rmpl::control::is_control_text(text) {
+            !rmpl::control::parse(text).has_errors()
+        } else {
+            !text.trim().is_empty() && !has_error(&rmpl::parse(text).diagnostics())
+        }
+    };
+    says_so || reads()
+}

@@ -1,0 +1,71 @@
+//! Nothing that was typed is lost: reloads, closed tabs and killed workers right after a key press.
+
+use anyhow::Result;
+use serde_json::json;
+
+use crate::opened::Opened;
+
+/// Types at the end of a fresh mission and leaves at once, without waiting for a frame.
+fn type_and_leave(page: &Opened, typed: &str, leave: &str) -> Result<()> {
+    page.tab.click_widget("textbox", "Mission text")?;
+    page.tab.evaluate(&format!(
+        "window.isOldPage = true; enroute.dispatch('edit.select', {{ start: {} }})",
+        1 << 20
+    ))?;
+    page.tab.type_text(typed)?;
+    page.tab.evaluate(leave)?;
+    page.tab.wait_until("!('isOldPage' in window) && 'enroute' in window")?;
+    page.tab.wait_until_ready()
+}
+
+#[test]
+fn a_reload_right_after_a_key_press_loses_none() -> Result<()> {
+    let page = Opened::with_fragment("mission=enroute")?;
+    let mut expected = page.tab.evaluate("enroute.source()")?.as_str().unwrap_or_default().to_owned();
+    for round in 0..4 {
+        let typed = format!("// {round} the quick brown fox jumps over the lazy dog");
+        type_and_leave(&page, &typed, "location.reload()")?;
+        expected.push_str(&typed);
+        assert_eq!(page.tab.evaluate("enroute.source()")?, json!(expected), "round {round}");
+    }
+    let library = page.state()?["library"].clone();
+    assert_eq!(library["missions"].as_array().map(Vec::len), Some(1), "{library}");
+    page.wait_for("state.library.keeping === 'kept'")?;
+    Ok(())
+}
+
+#[test]
+fn a_closed_tab_and_a_tab_beside_it_have_what_was_typed() -> Result<()> {
+    let page = Opened::with_fragment("")?;
+    page.tab.evaluate("enroute.setSource('// one')")?;
+    page.tab.next_frame()?;
+    let beside = page.open_beside("")?;
+    beside.wait_until_ready()?;
+    beside.wait_until("enroute.source() === '// one'")?;
+    // What one says the other takes over.
+    beside.evaluate("enroute.setSource('// one and two')")?;
+    page.tab.wait_until("enroute.source() === '// one and two'")?;
+    page.tab.evaluate("enroute.setSource('// one, two and three')")?;
+    beside.wait_until("enroute.source() === '// one, two and three'")?;
+    page.tab.evaluate("enroute.setSource('// four')")?;
+    page.tab.next_frame()?;
+    page.tab.call("Page.close", &json!({}))?;
+    let again = page.open_beside("")?;
+    again.wait_until_ready()?;
+    again.wait_until("enroute.source() === '// four'")?;
+    Ok(())
+}
+
+#[test]
+fn without_any_storage_the_page_says_so_and_works() -> Result<()> {
+    let page = Opened::altered("web/shelf.js", |text| {
+        let forbidden =
+            "Object.defineProperty(window, 'localStorage', { get() { throw new Error('forbidden'); } });";
+        format!("{forbidden}\n{}", text.replace("indexedDB.open(NAME, 1)", "forbidden()"))
+    })?;
+    page.tab.evaluate("enroute.setSource('A()[l,u] = { Work()[1,2] }')")?;
+    page.wait_for("state.library.keeping === 'nothing'")?;
+    page.tab.wait_until("enroute.widgets('button', 'Not kept').length > 0")?;
+    assert_eq!(page.tab.evaluate("enroute.source()")?, "A()[l,u] = { Work()[1,2] }");
+    Ok(())
+}
