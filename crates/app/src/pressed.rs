@@ -17,6 +17,10 @@ enum Focus {
 
 /// Takes the key presses that belong to commands out of the input and answers the commands, in order.
 pub fn take_pressed(context: &Context, state: &AppState, editor: egui::Id) -> Vec<Command> {
+    // An open menu has the keys to itself: Escape closes it, and nothing else.
+    if egui::Popup::is_any_open(context) {
+        return Vec::new();
+    }
     if state.dialog.is_some() {
         return take_in_dialog(context);
     }

@@ -181,6 +181,18 @@ fn escape_closes_the_completions_and_leaves_the_text() {
 }
 
 #[test]
+fn escape_leaves_the_keyboard_in_the_text() {
+    let mut app = editing("primitive Drive(to);\nscenario S = { $0 }");
+    app.press(NONE, Key::Escape);
+    app.press(NONE, Key::Escape);
+    // A letter that would be a command elsewhere.
+    app.harness.key_press(Key::M);
+    app.type_text("m");
+    assert_eq!(app.text(), "primitive Drive(to);\nscenario S = { m$0 }");
+    assert_eq!(app.json()["terrain"]["tool"], "look");
+}
+
+#[test]
 fn a_name_is_renamed_everywhere() {
     let mut app = editing("primitive Dr$0ive(to);\nscenario S = { Drive(A); Drive(B) }");
     app.press(NONE, Key::F2);

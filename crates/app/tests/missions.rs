@@ -108,6 +108,19 @@ fn the_list_opens_renames_duplicates_deletes_and_brings_back() {
 }
 
 #[test]
+fn escape_closes_a_menu_and_nothing_else() {
+    let mut app = start();
+    app.harness.state_mut().dispatch("edit.find", &json!(null)).expect("the find bar");
+    app.settle();
+    click(&mut app, "Mission");
+    app.harness.get_by_label("New mission");
+    app.harness.key_press(Key::Escape);
+    app.settle();
+    assert!(app.harness.query_by_label("New mission").is_none());
+    app.harness.get_by_label("Close find bar");
+}
+
+#[test]
 fn versions_are_kept_and_taken_back_in_the_list() {
     let mut app = start();
     edit(&mut app, "// one\n");

@@ -21,11 +21,15 @@ pub(crate) fn show(ui: &mut Ui, view: &EditorView<'_>, find: &Find, actions: &mu
             toggle_button(ui, "Aa", "Match case", &mut changed.case_sensitive);
             toggle_button(ui, "ab", "Whole words", &mut changed.whole_words);
             toggle_button(ui, ".*", "Regular expression", &mut changed.is_regex);
-            ui.label(RichText::new(outcome(view, find)).small().color(tokens.text_muted));
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 button(ui, view, Icon::Close, "Close find bar", EditorAction::CloseFind, actions);
                 button(ui, view, Icon::Down, "Next match", EditorAction::FindNext, actions);
                 button(ui, view, Icon::Up, "Previous match", EditorAction::FindPrevious, actions);
+                // The words have what room is left, and never that of a button.
+                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                    let words = RichText::new(outcome(view, find)).small().color(tokens.text_muted);
+                    ui.add(egui::Label::new(words).truncate());
+                });
             });
         });
         if find.replacing {

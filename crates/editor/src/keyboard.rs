@@ -7,7 +7,7 @@ use crate::EditorAction;
 
 /// The keys that the editor keeps for itself while it has the focus.
 pub(crate) const EVENT_FILTER: EventFilter =
-    EventFilter { tab: true, horizontal_arrows: true, vertical_arrows: true, escape: false };
+    EventFilter { tab: true, horizontal_arrows: true, vertical_arrows: true, escape: true };
 
 /// Lines that a page key moves.
 const PAGE_LINES: usize = 24;

@@ -39,23 +39,20 @@ pub(super) fn show(
     // Fewer missions take less room; more of them have all of it, however small the list was before.
     let height = (screen.y - 240.0).max(160.0);
     let area = ScrollArea::vertical().min_scrolled_height(height).max_height(height);
-    area.auto_shrink([false, true]).show(
-        ui,
-        |ui| {
-            let missions = context.state.library.missions();
-            if missions.is_empty() {
-                let text = "No missions of your own yet. An example becomes one as soon as you edit it.";
-                ui.label(RichText::new(text).color(context.tokens.text_muted));
-            }
-            for mission in missions.into_iter().filter(|mission| found(&mission.name)) {
-                ui.push_id(&mission.id.0, |ui| row(ui, context, mission, &mut renaming, commands));
-            }
-            versions(ui, context, commands);
-            examples(ui, context, &found, commands);
-            deleted(ui, context, commands);
-            unreadable(ui, context, commands);
-        },
-    );
+    area.auto_shrink([false, true]).show(ui, |ui| {
+        let missions = context.state.library.missions();
+        if missions.is_empty() {
+            let text = "No missions of your own yet. An example becomes one as soon as you edit it.";
+            ui.label(RichText::new(text).color(context.tokens.text_muted));
+        }
+        for mission in missions.into_iter().filter(|mission| found(&mission.name)) {
+            ui.push_id(&mission.id.0, |ui| row(ui, context, mission, &mut renaming, commands));
+        }
+        versions(ui, context, commands);
+        examples(ui, context, &found, commands);
+        deleted(ui, context, commands);
+        unreadable(ui, context, commands);
+    });
     if (&query, &renaming) != (&before.0, &before.1) {
         commands.send(Command::ShowDialog(Dialog::Missions { query, renaming }));
     }

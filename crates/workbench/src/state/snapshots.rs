@@ -107,7 +107,7 @@ impl Snapshots {
         let has_errors = latest.problems.iter().any(|problem| problem.severity == Severity::Error);
         match (&latest.network, &latest.planning) {
             (None, _) if latest.source.trim().is_empty() => Status::Empty,
-            (None, _) if has_errors => Status::Broken,
+            _ if has_errors => Status::Broken,
             (_, None) if latest.stage == Stage::Compiled => unfinished,
             (None, _) => Status::Empty,
             (Some(_), Some(_)) if latest.plan().is_some() => Status::Plan,
