@@ -112,3 +112,28 @@ fn disturbances_that_mean_nothing_are_refused_where_they_are_read() {
         assert!(message.contains(reason), "{message}");
     }
 }
+
+#[test]
+fn disturbances_and_uncertainty_that_mean_nothing_are_refused() {
+    let mission = orbit().to_string_lossy().into_owned();
+    let refused = |name: &str, document: &Value| {
+        let script = file(name, &document.to_string());
+        let option = if document.get("disturbances").is_some() { "--disturb" } else { "--uncertainty" };
+        let command = if option == "--disturb" { "simulate" } else { "robustness" };
+        let output = enroute(&[command, &mission, option, &script]);
+        assert_ne!(output.status.code(), Some(0), "{document}");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let one = |disturbance: Value| json!({ "disturbances": [disturbance] });
+    let said = refused("kind.json", &one(json!({ "kind": "withdrawn", "condition": "Insert#1", "at": 3 })));
+    assert!(said.contains("Insert#1 is not a condition"), "{said}");
+    let said =
+        refused("short.json", &one(json!({ "kind": "duration", "activity": "Insert#1", "duration": -5 })));
+    assert!(said.contains("a duration is not negative"), "{said}");
+    let said = refused("name.json", &one(json!({ "kind": "slow", "activity": "Inset#1", "factor": "1/2" })));
+    assert!(said.contains("no Inset#1"), "{said}");
+    let said = refused("durations.json", &json!({ "durations": { "Inset": { "fixed": 3 } } }));
+    assert!(said.contains("no activity or condition is called Inset"), "{said}");
+    let said = refused("fall.json", &json!({ "durations": { "Insert": { "uniform": [3, 2] } } }));
+    assert!(said.contains("is no distribution"), "{said}");
+}

@@ -44,6 +44,14 @@ pub trait ActivityExecutor {
         start: Time,
     ) -> Result<ActivityExecution, Overflow>;
 
+    /// Where the vehicles of activities that were started are at `now`, or where they stand, in metres.
+    fn whereabouts(&self, _: &Network, _: &[OccurrenceId], _: Time) -> Vec<(u32, [f64; 2])> {
+        Vec::new()
+    }
+
+    /// Activities that were started are given up at `now`: what of them is not over is ended early.
+    fn abandon(&mut self, _: &Network, _: &[OccurrenceId], _: Time) {}
+
     /// All durations that it gives are multiples of this, which is above 0.
     fn granularity(&self) -> Time {
         Time::ONE

@@ -5,8 +5,9 @@ use stn::{Dispatchable, PointId};
 
 use crate::plan_network::{PlanError, PlanNetwork};
 
-/// The greatest number of events that is dispatched; the dispatchable form takes time cubic in it.
-pub const MAX_EVENTS: usize = 1500;
+/// The greatest number of events whose dispatchable form is computed: it takes time cubic in it. Larger plans are dispatched
+/// by propagation, in which an event takes time linear in what it changes.
+pub const MAX_EVENTS: usize = 400;
 
 /// The state of a dispatch. Components are the rigid components of the plan; an event is a point and its time follows
 /// its component's.
@@ -40,6 +41,8 @@ pub enum SettleError {
         /// Its end, or [`NEVER`].
         latest: i64,
     },
+    /// This event, of which nothing is known yet, must come first.
+    NotYet(PointId),
     /// This event, which follows, could only come at a time that does not fit.
     Overflow(PointId),
 }
@@ -48,9 +51,6 @@ impl Dispatcher {
     /// Prepares a plan for dispatch.
     pub fn new(plan: &mut PlanNetwork) -> Result<Self, PlanError> {
         let points: Vec<PointId> = plan.all_points().collect();
-        if points.len() > MAX_EVENTS {
-            return Err(PlanError::Overflow);
-        }
         let distances = plan.stn.all_pairs()?;
         let form = stn::dispatchable(&distances, &points);
         let mut place = vec![(0, 0); points.len()];

@@ -5,8 +5,9 @@ use exact::{Bound, Rational, Time};
 use rmpl::program::{Change, LabelMode};
 use smol_str::format_smolstr;
 use tpn::{
-    Arc, ArcId, ArcKind, EventRef, Extent, Label, LabelId, Literal, Network, Node, NodeId, Occurrence,
-    OccurrenceId, OccurrenceKind, Plan, ResourceId, Role, Use, UseId, ValueId, ValueSet, VariableId,
+    Arc, ArcId, ArcKind, Choice, EventRef, Extent, Label, LabelId, Literal, Network, Node, NodeId,
+    Occurrence, OccurrenceId, OccurrenceKind, Plan, ResourceId, Role, Use, UseId, ValueId, ValueSet,
+    VariableId,
 };
 
 /// What has happened and what is known at a moment.
@@ -26,6 +27,30 @@ pub struct Facts {
     pub states: Vec<(VariableId, ValueId, Time)>,
     /// By how much levels changed that nobody planned to change, and when.
     pub levels: Vec<(ResourceId, Rational, Time)>,
+    /// The alternatives that were given up while they ran.
+    pub taken_back: Vec<TakenBack>,
+    /// Where vehicles stand that no activity of a plan has brought there.
+    pub places: Vec<StandingPlace>,
+}
+
+/// An alternative that was given up while it ran (SPEC 15).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TakenBack {
+    /// The alternative.
+    pub choice: Choice,
+    /// When all of it is over: the others begin no earlier.
+    pub since: Time,
+}
+
+/// Where a vehicle stands that stopped on its way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StandingPlace {
+    /// Index into the program's world.
+    pub vehicle: u32,
+    /// Metres east and north.
+    pub place_m: [f64; 2],
+    /// Since when.
+    pub since: Time,
 }
 
 /// A lower bound that binds nothing: no mission is longer.
@@ -71,6 +96,14 @@ impl Facts {
             }
         }
         self.hold_natures(&mut changed, &times);
+        for taken_back in &self.taken_back {
+            take_back(&mut changed, *taken_back);
+        }
+        if !self.taken_back.is_empty() {
+            // An alternative that begins later than its decision is no part of the program's nesting any more.
+            changed.root = None;
+            changed.blocks.clear();
+        }
         for &(occurrence, time) in &self.begins {
             let start = changed.occurrences[occurrence.index()].start;
             if times[start.index()].is_none() {
@@ -200,6 +233,7 @@ fn add_world_event(network: &mut Network, at: Time) -> (NodeId, ArcId, Occurrenc
         arc: None,
         arguments: Vec::new(),
         parent: None,
+        aborts: None,
         span: None,
     });
     (node, back, owner)
@@ -253,6 +287,22 @@ fn set_duration(network: &mut Network, occurrence: OccurrenceId, duration: Time)
     for arc in network.arcs.iter_mut().filter(|arc| arc.kind == ArcKind::Path) {
         if arc.occurrence == Some(occurrence) {
             (arc.lower, arc.upper) = (Time::ZERO, Bound::Infinite);
+        }
+    }
+}
+
+/// An alternative is excluded, and the others of its decision may begin later than the decision.
+fn take_back(network: &mut Network, TakenBack { choice, since }: TakenBack) {
+    let Some(decision) = network.decisions.get(choice.decision.index()) else { return };
+    for (alternative, arc) in (0..).zip(decision.alternatives.clone()) {
+        let is_given_up = alternative == choice.alternative;
+        let arc = &mut network.arcs[arc.index()];
+        // All events are held to come long before that.
+        let lower = if is_given_up { Time::from(2 * LONG) } else { Time::ZERO };
+        (arc.lower, arc.upper) = (lower, Bound::Infinite);
+        let to = arc.to;
+        if !is_given_up {
+            add_back_arc(network, to, since, Time::from(LONG));
         }
     }
 }

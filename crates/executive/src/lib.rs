@@ -12,6 +12,7 @@ pub mod pinned;
 pub mod plan_network;
 pub mod progress;
 pub mod run;
+mod sparse_dispatch;
 pub mod stage;
 pub mod strategy;
 pub mod uncertain_dispatch;

@@ -4,6 +4,8 @@
 //! log. Start events call their activities, and events that only the plan restricts happen as early as they may. What
 //! the world decides comes when the world says so: if that is outside the event's window, the plan is violated.
 
+mod aborts;
+mod frontier;
 mod states;
 
 use std::collections::{BTreeMap, VecDeque};
@@ -24,6 +26,8 @@ use crate::plan_network::PlanError;
 use crate::stage::{ExecutedPlan, Stage};
 use crate::world::World;
 use crate::world_state::WorldState;
+use aborts::{Retreat, stopped_for};
+use frontier::Frontier;
 use states::Odometer;
 
 /// Makes a new plan from facts.
@@ -78,6 +82,7 @@ pub fn run_stage(
     let mut run = Run {
         state: WorldState::new(&stage.network),
         adversary,
+        frontier: None,
         stage,
         num_program_nodes,
         world,
@@ -94,6 +99,7 @@ pub fn run_stage(
         news: Facts::default(),
         plans: Vec::new(),
     };
+    run.restart_frontier()?;
     let ending = run.run_to_end(replanner)?;
     let Run { stage, mut plans, log, .. } = run;
     plans.push(stage.close());
@@ -129,6 +135,8 @@ struct Run<'a> {
     plans: Vec<ExecutedPlan>,
     /// Who makes the present plan fail, if somebody does.
     adversary: Option<Adversary>,
+    /// What may be next in a plan with many events.
+    frontier: Option<Frontier>,
 }
 
 /// What comes next.
@@ -207,11 +215,17 @@ impl Run<'_> {
                 self.write(Happening::Stopped { reason });
                 return Ok(Ending::Stopped);
             }
+            let need = self.lost_need(&news);
             self.learn(news);
-            if let Some(reason) = self.replan(replanner)? {
-                self.write(Happening::Stopped { reason });
-                return Ok(Ending::Stopped);
-            }
+            let num_plans = self.plans.len();
+            let Some(no_plan) = self.replan(replanner)? else { continue };
+            // A plan that does not keep the past is not mended by giving up more.
+            let is_whole = self.plans.len() == num_plans;
+            let retreat = if is_whole { self.take_back(replanner)? } else { Retreat::Impossible(None) };
+            let Retreat::Impossible(hindrance) = retreat else { continue };
+            let reason = stopped_for(need.as_deref(), &no_plan, hindrance.as_deref());
+            self.write(Happening::Stopped { reason });
+            return Ok(Ending::Stopped);
         }
     }
 
@@ -245,7 +259,14 @@ impl Run<'_> {
     }
 
     /// The earliest thing that happens or goes wrong next; of several at one time the one that is first in the plan.
-    fn next(&self) -> Result<Option<Next>, PlanError> {
+    fn next(&mut self) -> Result<Option<Next>, PlanError> {
+        if self.frontier.is_some() {
+            let next = self.next_of_frontier()?;
+            return match &self.adversary {
+                Some(adversary) => self.opposed(adversary, next),
+                None => Ok(next),
+            };
+        }
         let mut best: Option<Next> = None;
         let driven = self.driven()?;
         for point in self.stage.made.all_points() {
@@ -531,6 +552,10 @@ impl Run<'_> {
         let ticks = self.stage.made.scale().ticks(self.now).map_err(|_| self.too_large(node))?;
         match self.stage.dispatch.settle(point, ticks) {
             Ok(()) => {}
+            Err(SettleError::NotYet(other)) => {
+                self.wait_for(point, other);
+                return Ok(None);
+            }
             Err(SettleError::Overflow(point)) => return Err(self.too_large(self.stage.made.node(point))),
             Err(SettleError::OutOfWindow { .. }) => {
                 let name = self.stage.name(node);
@@ -546,6 +571,7 @@ impl Run<'_> {
             self.begin(event)?;
         }
         self.change_states(node);
+        self.look_beyond(point)?;
         Ok(None)
     }
 
@@ -599,7 +625,15 @@ impl Run<'_> {
         grid.push(self.now);
         let mut stage = Stage::new(network, plan, &grid)?;
         stage.from = self.now;
-        let happened = facts.happened.iter().map(|&(node, time)| (time, node));
+        // What was given up is in no plan any more.
+        let given_up: Vec<Vec<bool>> = facts
+            .taken_back
+            .iter()
+            .map(|it| stage.network.own_nodes(it.choice.decision, it.choice.alternative))
+            .collect();
+        let is_kept = |node: NodeId| given_up.iter().all(|own| !own[node.index()]);
+        let happened = facts.happened.iter().filter(|(node, _)| is_kept(*node));
+        let happened = happened.map(|&(node, time)| (time, node));
         let passed = facts.passed.iter().filter_map(|&(event, time)| {
             let index = stage.network.nodes.iter().position(|node| node.events.contains(&event))?;
             Some((time, NodeId::from_index(index)))
@@ -613,6 +647,7 @@ impl Run<'_> {
         self.adversary = Adversary::of(self.world, &stage)?;
         let before = std::mem::replace(&mut self.stage, stage);
         self.plans.push(before.close());
+        self.restart_frontier()?;
         Ok(kept.err().map(|node| format!("the new plan does not keep {} in the past", self.stage.name(node))))
     }
 

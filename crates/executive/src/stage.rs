@@ -7,8 +7,9 @@ use exact::Time;
 use stn::PointId;
 use tpn::{ArcId, EventRef, Network, NodeId, Occurrence, Plan, Precedence};
 
-use crate::dispatch::{Dispatcher, NEVER, SettleError};
+use crate::dispatch::{Dispatcher, MAX_EVENTS, NEVER, SettleError};
 use crate::plan_network::{PlanError, PlanNetwork};
+use crate::sparse_dispatch::SparseDispatch;
 use crate::uncertain_dispatch::UncertainDispatch;
 use crate::world_state::Effects;
 
@@ -32,6 +33,8 @@ pub struct Stage {
     pub(crate) from: Time,
     /// The nodes that each selected node follows along the plan's arcs and links.
     before: Vec<Vec<NodeId>>,
+    /// The nodes that follow each.
+    after: Arc<[Vec<NodeId>]>,
 }
 
 impl Stage {
@@ -48,8 +51,15 @@ impl Stage {
         }
         let times = vec![None; network.nodes.len()];
         let before = before(&network, &plan);
+        let mut after = vec![Vec::new(); network.nodes.len()];
+        for (node, earlier) in before.iter().enumerate() {
+            for earlier in earlier {
+                after[earlier.index()].push(NodeId::from_index(node));
+            }
+        }
+        let after = after.into();
         let effects = Effects::new(&network, &plan);
-        Ok(Self { network, plan, made, dispatch, effects, natures, times, from: Time::ZERO, before })
+        Ok(Self { network, plan, made, dispatch, effects, natures, times, from: Time::ZERO, before, after })
     }
 
     /// The window of a point in mission units; no latest time if it is not bounded.
@@ -62,6 +72,19 @@ impl Stage {
     /// would let an end come before its start.
     pub(crate) fn is_next(&self, node: NodeId) -> bool {
         self.before[node.index()].iter().all(|before| self.times[before.index()].is_some())
+    }
+
+    /// The nodes that follow each node along the plan's arcs and links.
+    pub(crate) fn followers(&self) -> Arc<[Vec<NodeId>]> {
+        Arc::clone(&self.after)
+    }
+
+    /// How many nodes each node follows that have not happened.
+    pub(crate) fn missing(&self) -> Vec<u32> {
+        let count = |before: &Vec<NodeId>| {
+            before.iter().filter(|before| self.times[before.index()].is_none()).count() as u32
+        };
+        self.before.iter().map(count).collect()
     }
 
     /// Whether one event comes no later than another in every schedule that is left, as far as its arcs and orderings or
@@ -121,6 +144,8 @@ impl Stage {
 pub(crate) enum Dispatch {
     /// All durations are the executive's to choose, or the plan does not withstand nature.
     Certain(Dispatcher),
+    /// The same of many events.
+    Sparse(SparseDispatch),
     /// Nature chooses some, and the plan withstands that.
     Uncertain(UncertainDispatch),
 }
@@ -133,6 +158,9 @@ impl Dispatch {
         {
             return Ok(Self::Uncertain(dispatch));
         }
+        if made.all_points().count() > MAX_EVENTS {
+            return Ok(Self::Sparse(SparseDispatch::new(made)?));
+        }
         Ok(Self::Certain(Dispatcher::new(made)?))
     }
 
@@ -140,6 +168,7 @@ impl Dispatch {
     pub(crate) fn window(&self, point: PointId) -> (i64, i64) {
         match self {
             Self::Certain(dispatch) => dispatch.window(point),
+            Self::Sparse(dispatch) => dispatch.window(point),
             Self::Uncertain(dispatch) => dispatch.window(point),
         }
     }
@@ -148,6 +177,7 @@ impl Dispatch {
     pub(crate) fn component(&self, point: PointId) -> (usize, i64) {
         match self {
             Self::Certain(dispatch) => dispatch.component(point),
+            Self::Sparse(_) => (point.index(), 0),
             Self::Uncertain(dispatch) => (dispatch.component(point), 0),
         }
     }
@@ -155,6 +185,7 @@ impl Dispatch {
     pub(crate) fn is_settled(&self, point: PointId) -> bool {
         match self {
             Self::Certain(dispatch) => dispatch.is_settled(point),
+            Self::Sparse(dispatch) => dispatch.is_settled(point),
             Self::Uncertain(dispatch) => dispatch.is_settled(point),
         }
     }
@@ -162,6 +193,7 @@ impl Dispatch {
     pub(crate) fn is_enabled(&self, point: PointId) -> bool {
         match self {
             Self::Certain(dispatch) => dispatch.is_enabled(point),
+            Self::Sparse(dispatch) => dispatch.is_enabled(point),
             Self::Uncertain(dispatch) => dispatch.is_enabled(point),
         }
     }
@@ -169,6 +201,7 @@ impl Dispatch {
     pub(crate) fn settle(&mut self, point: PointId, ticks: i64) -> Result<(), SettleError> {
         match self {
             Self::Certain(dispatch) => dispatch.settle(point, ticks),
+            Self::Sparse(dispatch) => dispatch.settle(point, ticks),
             Self::Uncertain(dispatch) => dispatch.settle(point, ticks),
         }
     }

@@ -8,7 +8,7 @@ use stn::PointId;
 use stnu::{DispatchError, Dispatchable, LinkId, Status, Undecided};
 use tpn::{ArcId, Network, Plan};
 
-use crate::dispatch::{MAX_EVENTS, NEVER, SettleError};
+use crate::dispatch::{NEVER, SettleError};
 use crate::plan_network::{PlanError, PlanNetwork};
 
 /// The state of a dispatch. Events that `[0,0]` ties to one instant are one component.
@@ -41,9 +41,6 @@ impl UncertainDispatch {
     /// Prepares a plan for dispatch, in the ticks of `made`; `None` if it is not controllable.
     pub fn new(network: &Network, plan: &Plan, made: &PlanNetwork) -> Result<Option<Self>, PlanError> {
         let read = plan_network(network, &plan.selected_arcs, &plan.precedences(network), made.scale())?;
-        if read.network.num_points() > MAX_EVENTS {
-            return Err(PlanError::Overflow);
-        }
         let Some(form) = Dispatchable::new(&read.network, &mut || false)? else { return Ok(None) };
         let component = |point| read.point(made.node(point)).ok_or(PlanError::Inconsistent);
         let components: Result<Arc<[_]>, PlanError> = made.all_points().map(component).collect();

@@ -171,6 +171,9 @@ fn sound<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Disturbance>,
     Ok(disturbances)
 }
 
+/// Durations of slow drives are rounded up to whole parts of a unit, so many of which are one.
+const SLOW_PARTS: u32 = 60_000;
+
 /// The world of one run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct World {
@@ -283,6 +286,12 @@ impl World {
         self.chosen.get(&occurrence.name).map_or(lower, |&chosen| chosen.min(upper).max(lower))
     }
 
+    /// How long ending an activity early takes, between the ends of a range.
+    pub fn abort_time(&self, occurrence: &Occurrence, [lower, upper]: [Time; 2]) -> Time {
+        let chosen = self.chosen.get(&abort_name(occurrence));
+        chosen.map_or(lower, |&chosen| chosen.min(upper).max(lower))
+    }
+
     /// How long an occurrence really takes, where that is not for the executive to decide.
     pub fn duration(&self, network: &Network, occurrence: &Occurrence) -> Result<Option<Time>, Overflow> {
         if let Some(&duration) = self.durations.get(&occurrence.name) {
@@ -294,7 +303,13 @@ impl World {
         let Some(factor) = self.slow.get(&occurrence.name).filter(|factor| factor.is_positive()) else {
             return Ok(None);
         };
-        least_drive(network, occurrence)?.checked_div(*factor).map(Some).ok_or(Overflow)
+        let exact = least_drive(network, occurrence)?.checked_div(*factor).ok_or(Overflow)?;
+        // Shares of any kind would make the ticks of a run finer without end.
+        let whole = exact.whole_parts(SLOW_PARTS).and_then(|parts| Time::new(parts, i64::from(SLOW_PARTS)));
+        let up = |whole: Time| {
+            if whole < exact { whole.checked_add(Time::new(1, i64::from(SLOW_PARTS))?) } else { Some(whole) }
+        };
+        Ok(Some(whole.and_then(up).unwrap_or(exact)))
     }
 
     /// All times and durations that it brings into a run of `network`: ticks must be fine enough for them.
@@ -345,6 +360,11 @@ impl World {
             .cloned()
             .collect()
     }
+}
+
+/// The name under which nature's choice is kept of how long ending an activity early takes.
+pub fn abort_name(occurrence: &Occurrence) -> SmolStr {
+    smol_str::format_smolstr!("{}.abort", occurrence.name)
 }
 
 /// The durations that nature chooses in `network`, with their ranges: of activities, assertions and delays, in textual

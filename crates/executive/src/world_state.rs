@@ -23,6 +23,8 @@ pub(crate) struct Effects {
     by_node: BTreeMap<NodeId, Vec<Effect>>,
     /// What the plan requires of variables that last.
     pub(crate) requirements: Vec<LabelId>,
+    /// The same by the events where they end.
+    endings: BTreeMap<NodeId, Vec<LabelId>>,
     /// The producer of each requirement, as the plan has it.
     pub(crate) carriers: BTreeMap<LabelId, LabelId>,
     /// What the plan takes of reservoirs and gives to them.
@@ -56,7 +58,10 @@ impl Effects {
                 continue;
             }
             match (label.mode, label.extent) {
-                (LabelMode::Ask, _) => effects.requirements.push(id),
+                (LabelMode::Ask, _) => {
+                    effects.requirements.push(id);
+                    effects.endings.entry(network.interval(id).1).or_default().push(id);
+                }
                 (LabelMode::Tell, Extent::Initial) => {}
                 (LabelMode::Tell, _) => {
                     if label.is_changing() && network.interval(id).0 != network.ready(id) {
@@ -83,6 +88,11 @@ impl Effects {
             list.sort_unstable();
         }
         effects
+    }
+
+    /// The requirements that end at an event.
+    pub(crate) fn ending_at(&self, node: NodeId) -> &[LabelId] {
+        self.endings.get(&node).map_or(&[], Vec::as_slice)
     }
 }
 
@@ -265,6 +275,36 @@ impl WorldState {
             level: *level,
             by: owner.map(|owner| network.occurrences[owner.index()].name.clone()),
         })
+    }
+
+    /// Changes are broken off, and what was in use is free again. A variable that was changing keeps its value; where a
+    /// vehicle is that stopped on its way is no location.
+    pub(crate) fn abandon(
+        &mut self,
+        network: &Network,
+        changing: &[LabelId],
+        used: &[UseId],
+    ) -> Vec<Happening> {
+        let mut happenings = Vec::new();
+        for label in changing {
+            let of = &network.labels[label.index()];
+            let held = &mut self.held[of.literal.variable.index()];
+            if !held.changing.contains(label) {
+                continue;
+            }
+            held.changing.retain(|changing| changing != label);
+            if network.variables[of.literal.variable.index()].name.ends_with(".at") {
+                (held.value, held.by) = (None, None);
+            } else {
+                happenings.push(self.value_shown(network, of.literal.variable, of.owner));
+            }
+        }
+        for id in used {
+            let of = &network.uses[id.index()];
+            let by = of.amount.checked_neg().unwrap_or_default();
+            happenings.extend(self.move_level(network, of.resource, by, of.owner));
+        }
+        happenings
     }
 
     fn value_shown(&self, network: &Network, variable: VariableId, owner: Option<OccurrenceId>) -> Happening {

@@ -189,3 +189,84 @@ fn what_follows_an_activity_at_once_waits_for_the_report_of_its_end() {
     let verdict = verify::check_schedule(&network, &outcome.last().plan, &outcome.last().times);
     assert!(verdict.valid, "{:?}", verdict.violations);
 }
+
+/// What is withdrawn leaves one way under way and another one that opens later (SPEC 15).
+fn two_ways(clause: &str) -> Arc<Network> {
+    compiled(&format!(
+        "primitive Walk(way)[20,40]{clause};
+         var PATH1 : {{OK, GONE}};
+         var PATH2 : {{OK, GONE}};
+         scenario S[0,800] = {{
+           {{ choose {{ do {{ Walk(A) }} maintaining PATH1=OK, do {{ Walk(B) }} maintaining PATH2=OK }} }},
+           {{ PATH1=OK [300,300] }},
+           {{ delay [200,200]; PATH2=OK [300,300] }}
+         }}"
+    ))
+}
+
+fn withdrawn(at: i64) -> Vec<Disturbance> {
+    vec![Disturbance::Withdrawn { condition: "Tell(PATH1=OK)#1".into(), at: Time::from(at) }]
+}
+
+#[test]
+fn an_abortable_activity_is_ended_early_and_the_other_alternative_is_taken() {
+    let (outcome, facts) = execute(&two_ways(" aborts [3,5]"), &withdrawn(10));
+    assert_eq!(outcome.ending, Ending::Finished, "{:#?}", outcome.log);
+    let taken = facts.last().map(|facts| facts.taken_back.clone()).unwrap_or_default();
+    assert_eq!(taken.len(), 1);
+    assert_eq!(taken[0].since, Time::from(13));
+    let time = |plan: &executive::ExecutedPlan, name: &str| {
+        let occurrence = plan.network.occurrences.iter().find(|it| it.name == name).expect("an activity");
+        [plan.times[occurrence.start.index()], plan.times[occurrence.end.index()]]
+    };
+    assert_eq!(time(&outcome.plans[0], "Walk#1"), [Some(Time::ZERO), None]);
+    assert_eq!(time(outcome.last(), "Walk#2"), [Some(Time::from(200)), Some(Time::from(220))]);
+    let words: Vec<(Time, &str)> = outcome
+        .log
+        .iter()
+        .filter_map(|entry| match &entry.happening {
+            Happening::Progress { text, .. } => Some((entry.time, text.as_str())),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(
+        words,
+        [(Time::from(10), "is ended early, which takes until 13"), (Time::from(13), "has ended")]
+    );
+}
+
+#[test]
+fn what_cannot_be_aborted_stops_with_what_it_needed_and_when() {
+    let (outcome, _) = execute(&two_ways(""), &withdrawn(10));
+    assert_eq!(outcome.ending, Ending::Stopped);
+    let Some(Happening::Stopped { reason }) = outcome.log.last().map(|entry| &entry.happening) else {
+        panic!("{:#?}", outcome.log)
+    };
+    assert_eq!(
+        reason,
+        "Walk#1 needs PATH1=OK until 20, and it holds until 10: no plan; Walk#1 is under way and cannot be ended early"
+    );
+}
+
+/// Plans with more events than the dispatchable form is made for run in the same way.
+#[test]
+fn plans_of_thousands_of_events_are_executed() {
+    for (separator, end) in [("; ", 1200), (", ", 1)] {
+        let calls = vec!["A()"; 1200].join(separator);
+        let network = compiled(&format!("primitive A()[1,3]; scenario S[0,inf] = {{ {calls} }}"));
+        let (outcome, facts) = execute(&network, &[]);
+        assert_eq!(outcome.ending, Ending::Finished);
+        assert!(facts.is_empty());
+        assert_eq!(outcome.log.last().map(|entry| entry.time), Some(Time::from(end)));
+        assert_eq!(outcome.last().times, verify::earliest_schedule(&outcome.last().plan));
+        let late = Disturbance::Duration { activity: "A#700".into(), duration: Time::from(5) };
+        let (outcome, _) = execute(&network, &[late]);
+        let violation = outcome.log.iter().find(|it| matches!(it.happening, Happening::Violation { .. }));
+        let at = if end == 1 { 3 } else { 702 };
+        assert_eq!(violation.map(|entry| entry.time), Some(Time::from(at)));
+        assert_eq!(outcome.ending, Ending::Finished);
+        let verdict =
+            verify::check_schedule(&outcome.last().network, &outcome.last().plan, &outcome.last().times);
+        assert!(verdict.valid, "{:?}", verdict.violations);
+    }
+}

@@ -7,6 +7,7 @@ use std::cell::RefCell;
 use std::sync::Arc;
 
 use exact::{Bound, Rational, Time};
+use executive::world::natures_ranges;
 use executive::{
     ActivityExecutor, AsPlanned, Disturbance, Ending, Entry, Facts, PlanError, Replanner, RunOutcome, Script,
     Stage, World, run_stage,
@@ -16,7 +17,7 @@ use rmpl::program::Program;
 use rmpl::spans::Spans as _;
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
-use tpn::{Network, Plan, Supply, Window};
+use tpn::{Network, OccurrenceKind, Plan, Supply, Window};
 
 use crate::ground::Grounds;
 use crate::nature::{self, Nature};
@@ -153,6 +154,11 @@ pub fn check_disturbances(
     if !unknown.is_empty() {
         return Err(format!("the mission has no {}", unknown.join(", ")));
     }
+    for disturbance in disturbances {
+        if let Some(problem) = wrong_kind(network, disturbance) {
+            return Err(problem);
+        }
+    }
     let unknown = programs.unknown_faults(network, disturbances);
     if !unknown.is_empty() {
         return Err(format!("the mission has no {}", unknown.join(", ")));
@@ -162,6 +168,24 @@ pub fn check_disturbances(
         Disturbance::Level { resource, level, .. } => check_level(network, resource, *level),
         _ => Ok(()),
     })
+}
+
+/// What is wrong with a disturbance that is about an occurrence of another kind, such as an activity that is to be withdrawn.
+fn wrong_kind(network: &Network, disturbance: &Disturbance) -> Option<String> {
+    let name = disturbance.occurrence()?;
+    let occurrence = network.occurrences.iter().find(|occurrence| occurrence.name == *name)?;
+    let is_natures = || natures_ranges(network).any(|(it, _)| it.name == *name);
+    let (is_right, wanted) = match disturbance {
+        Disturbance::Duration { .. } => {
+            let is_activity = occurrence.kind == OccurrenceKind::Primitive;
+            (is_activity || is_natures(), "an activity, nor does nature choose how long it lasts")
+        }
+        Disturbance::Slow { .. } | Disturbance::Fault { .. } => {
+            (occurrence.kind == OccurrenceKind::Primitive, "an activity")
+        }
+        _ => (occurrence.kind == OccurrenceKind::Assertion, "a condition that comes and goes"),
+    };
+    (!is_right).then(|| format!("{name} is not {wanted}"))
 }
 
 /// Whether a disturbance may give a variable a value.

@@ -128,7 +128,7 @@ impl Listing<'_, '_> {
         paths: &mut Paths,
         stop: &mut dyn FnMut() -> bool,
     ) -> Option<Result<Listed, String>> {
-        let routes = traverse::routes(self.problem.network, self.problem.program, plan);
+        let routes = traverse::routes(self.problem.network, self.problem.program, plan, &[]);
         let places = |route: &Route| {
             let names = route.waypoints.iter().map(|place| place.name.clone()).collect();
             (route.occurrence, names)
@@ -181,7 +181,7 @@ impl Listing<'_, '_> {
             .filter_map(|it| Some(traverse::joined(it.legs.as_ref().ok()?).length_m()))
             .sum();
         let is_valid = |plan: &Plan| {
-            let own = traverse::routes(&with_paths, self.problem.program, plan);
+            let own = traverse::routes(&with_paths, self.problem.program, plan, &[]);
             own.iter().all(|route| ways.contains(&(route.occurrence, route.waypoints.clone())))
                 && verify::check_plan(&with_paths, plan).valid
         };
@@ -224,7 +224,7 @@ pub fn network_of(
     grounds: &mut Grounds,
     paths: &mut Paths,
 ) -> Result<Network, String> {
-    let routes = traverse::routes(problem.network, problem.program, plan);
+    let routes = traverse::routes(problem.network, problem.program, plan, &[]);
     Ok(planning::with_paths(problem, &inserted(problem, routes, grounds, paths)?))
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use exact::{Overflow, Time};
-use executive::world::natures_ranges;
+use executive::world::{abort_name, natures_ranges};
 use plant::Random;
 use smol_str::SmolStr;
 use tpn::{Network, Occurrence};
@@ -21,6 +21,8 @@ pub(crate) enum Nature {
 
 /// Told from the seed of everything else by this.
 const NATURE: u64 = 0x006e_6174_7572_6521;
+/// And how long ending activities early takes, by this.
+const ABORTS: u64 = 0x0061_626f_7274_7321;
 
 /// How long each duration of nature's is in the run of `seed`, by occurrence. `named` are distributions that are given;
 /// all others are uniform.
@@ -31,16 +33,28 @@ pub(crate) fn choose(
     named: &dyn Fn(&Occurrence) -> Option<Distribution>,
 ) -> Result<BTreeMap<SmolStr, Time>, Overflow> {
     let mut random = Random::new(seed ^ NATURE);
-    natures_ranges(network)
-        .map(|(occurrence, [lower, upper])| {
-            let duration = match nature {
-                Nature::Adversary => [lower, upper][random.below(2) as usize],
-                Nature::Chance => {
-                    let distribution = named(occurrence).unwrap_or(Distribution::Uniform(lower, upper));
-                    distribution.draw(&mut random)?
-                }
+    let mut aborting = Random::new(seed ^ ABORTS);
+    let aborts: Vec<(SmolStr, Time)> = network
+        .occurrences
+        .iter()
+        .filter_map(|occurrence| Some((abort_name(occurrence), occurrence.aborts?)))
+        .map(|(name, [lower, upper])| {
+            let takes = match nature {
+                Nature::Adversary => upper,
+                Nature::Chance => Distribution::Uniform(lower, upper).draw(&mut aborting)?,
             };
-            Ok((occurrence.name.clone(), duration))
+            Ok((name, takes))
         })
-        .collect()
+        .collect::<Result<_, Overflow>>()?;
+    let durations = natures_ranges(network).map(|(occurrence, [lower, upper])| {
+        let duration = match nature {
+            Nature::Adversary => [lower, upper][random.below(2) as usize],
+            Nature::Chance => {
+                let distribution = named(occurrence).unwrap_or(Distribution::Uniform(lower, upper));
+                distribution.draw(&mut random)?
+            }
+        };
+        Ok((occurrence.name.clone(), duration))
+    });
+    durations.chain(aborts.into_iter().map(Ok)).collect()
 }

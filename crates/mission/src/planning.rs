@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use exact::{Bound, Rational, Time};
 use executive::Facts;
+use executive::facts::StandingPlace;
 use kirk::{Constraint, CycleMember, Options, Outcome, Stats, Status};
 use motion::{SegmentTiming, SpeedLimits};
 use rmpl::Diagnostic;
@@ -219,7 +220,7 @@ fn order_movements(
         let (Some(ground), Some(plan)) = (problem.ground, outcome.plans.first()) else {
             return Err(Box::new(NoOrder { network: asked, outcome, tried }));
         };
-        let routes = traverse::routes(&asked, problem.program, plan);
+        let routes = traverse::routes(&asked, problem.program, plan, places(problem));
         let mut is_new = false;
         for route in &routes {
             if departures.knows(route) {
@@ -246,6 +247,11 @@ fn order_movements(
 /// The metres that movements drive at least, where the objective counts them.
 fn distances(problem: &Problem<'_>, departures: &Departures) -> Vec<tpn::Distance> {
     if problem.network.counts_metres() { departures.distances() } else { Vec::new() }
+}
+
+/// Where vehicles stand that have stopped on their way.
+fn places<'input>(problem: &Problem<'input>) -> &'input [StandingPlace] {
+    problem.facts.map_or(&[], |facts| &facts.places)
 }
 
 /// The least time that the legs of a route take; nothing where that does not fit, which its own bounds then decide.
@@ -283,7 +289,7 @@ fn find_paths(
     inserted: &mut BTreeMap<OccurrenceId, Inserted>,
 ) -> bool {
     let mut is_new = false;
-    for route in traverse::routes(network, problem.program, plan) {
+    for route in traverse::routes(network, problem.program, plan, places(problem)) {
         if inserted.get(&route.occurrence).is_some_and(|known| known.waypoints == route.waypoints) {
             continue;
         }
@@ -526,7 +532,7 @@ fn conclude(
     let mut spaces = Vec::new();
     let world = &problem.program.world;
     if let (Some((key, map)), Some(plan)) = (problem.ground, outcome.plans.first()) {
-        for route in traverse::routes(&network, problem.program, plan) {
+        for route in traverse::routes(&network, problem.program, plan, places(problem)) {
             let Some(Inserted { legs: Ok(legs), .. }) = inserted.get(&route.occurrence) else { continue };
             let path = traverse::joined(legs);
             let space = grounds.space(key, map, world, route.model);
@@ -573,7 +579,7 @@ pub fn motions_of(
     plan: &Plan,
     planned: &Planned,
 ) -> Vec<VehicleMotion> {
-    let routes = traverse::routes(network, program, plan);
+    let routes = traverse::routes(network, program, plan, &[]);
     let drives: Vec<Drive> = routes
         .iter()
         .filter_map(|route| {

@@ -195,6 +195,8 @@ pub struct ProgramPerformer<'run> {
     others: &'run mut dyn ActivityExecutor,
     /// The plant as the last program left it, and what was believed of it.
     plant: Option<(State, Belief)>,
+    /// The plant after each step of the last program, and when that was over.
+    history: Vec<(Time, State, Belief)>,
     /// Which activity controls the plant, and until when; no time if it never stops.
     control: Option<(SmolStr, Option<Time>)>,
 }
@@ -207,7 +209,15 @@ impl<'run> ProgramPerformer<'run> {
         seed: Option<u64>,
         others: &'run mut dyn ActivityExecutor,
     ) -> Self {
-        Self { programs, disturbances, chance: seed.map(Random::new), others, plant: None, control: None }
+        Self {
+            programs,
+            disturbances,
+            chance: seed.map(Random::new),
+            others,
+            plant: None,
+            history: Vec::new(),
+            control: None,
+        }
     }
 
     fn run(
@@ -243,6 +253,7 @@ impl<'run> ProgramPerformer<'run> {
             None => Run::with_estimator(system, options, estimator),
         };
         let mut entries = Vec::new();
+        let mut history = vec![(start, run.true_state().clone(), run.belief().clone())];
         let mut trouble = None;
         let mut steps = 0;
         while !run.is_done() && steps < most_steps {
@@ -252,7 +263,9 @@ impl<'run> ProgramPerformer<'run> {
                 Ok(record) => {
                     let happening = Happening::Progress { name: name.clone(), text: text(system, record) };
                     let time = step.checked_mul(steps).and_then(|after| start.checked_add(after));
-                    entries.push(Entry { time: time.ok_or(Overflow)?, happening });
+                    let time = time.ok_or(Overflow)?;
+                    entries.push(Entry { time, happening });
+                    history.push((time, run.true_state().clone(), run.belief().clone()));
                 }
                 Err(error) => {
                     trouble = Some(format!("step {steps} of the program cannot be taken: {error}"));
@@ -270,8 +283,26 @@ impl<'run> ProgramPerformer<'run> {
             Ends::After(duration) => Some(start.checked_add(*duration).ok_or(Overflow)?),
             _ => None,
         };
+        self.history = history;
         self.control = Some((name, until));
         Ok(ActivityExecution { ends, entries, ..ActivityExecution::default() })
+    }
+
+    /// Programs of activities that are given up command nothing any more; the plant is as they had brought it by then.
+    fn stop_programs(&mut self, network: &Network, of: &[OccurrenceId], now: Time) {
+        let is_given_up = |name: &SmolStr| of.iter().any(|id| network.occurrences[id.index()].name == *name);
+        if self
+            .control
+            .as_ref()
+            .is_none_or(|(name, until)| !is_given_up(name) || until.is_some_and(|until| until <= now))
+        {
+            return;
+        }
+        let by_then = self.history.iter().rfind(|(at, ..)| *at <= now);
+        if let Some((_, state, belief)) = by_then {
+            self.plant = Some((state.clone(), belief.clone()));
+        }
+        self.control = None;
     }
 
     /// The faults of one step.
@@ -302,6 +333,15 @@ impl ActivityExecutor for ProgramPerformer<'_> {
             Some(system) => self.run(&system, network, occurrence, start),
             None => self.others.start(network, occurrence, start),
         }
+    }
+
+    fn whereabouts(&self, network: &Network, of: &[OccurrenceId], now: Time) -> Vec<(u32, [f64; 2])> {
+        self.others.whereabouts(network, of, now)
+    }
+
+    fn abandon(&mut self, network: &Network, of: &[OccurrenceId], now: Time) {
+        self.others.abandon(network, of, now);
+        self.stop_programs(network, of, now);
     }
 
     fn granularity(&self) -> Time {

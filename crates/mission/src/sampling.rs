@@ -355,6 +355,25 @@ impl Uncertainty {
         durations.chain(incidents).find(|(_, distribution)| !distribution.is_sound()).map(|(name, _)| name)
     }
 
+    /// What is wrong with it for the mission of `network`, if something is.
+    pub fn problem(&self, network: &Network) -> Option<String> {
+        let unknown = self.unknown_names(network);
+        if !unknown.is_empty() {
+            return Some(format!("no activity or condition is called {}", unknown.join(", ")));
+        }
+        if let Some(name) = self.unsound() {
+            return Some(format!(
+                "what is said of {name} is no distribution: its numbers must not fall, and not be below 0"
+            ));
+        }
+        let mut incidents = self.late.iter().chain(&self.withdrawn);
+        if let Some((name, it)) = incidents.find(|(_, it)| !(0.0..=1.0).contains(&it.probability)) {
+            return Some(format!("the probability of {name} is from 0 to 1, and not {}", it.probability));
+        }
+        let rocks = "rocks have lengths from 0 on, and the least radius comes first";
+        (!self.rocks.is_sound()).then(|| rocks.to_owned())
+    }
+
     /// The names in it that nothing in `network` has.
     pub fn unknown_names(&self, network: &Network) -> Vec<SmolStr> {
         let is_known = |name: &SmolStr, kind: OccurrenceKind| {

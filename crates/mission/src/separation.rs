@@ -25,7 +25,8 @@ pub fn violations(drives: &[Drive], motions: &[VehicleMotion], world: &World) ->
     let mut found = Vec::new();
     for (index, (first, first_track)) in motions.iter().zip(&tracks).enumerate() {
         for (second, second_track) in motions.iter().zip(&tracks).skip(index + 1) {
-            if together(first.vehicle, second.vehicle) {
+            let [one, other] = [first.vehicle, second.vehicle];
+            if together(one, other) || flies(world, one) != flies(world, other) {
                 continue;
             }
             let safety_m = radius_m(world, first.vehicle) + radius_m(world, second.vehicle) + GAP_M;
@@ -42,6 +43,12 @@ pub fn violations(drives: &[Drive], motions: &[VehicleMotion], world: &World) ->
         }
     }
     found
+}
+
+/// Whether a vehicle is in the air, above all that is on the ground.
+pub fn flies(world: &World, vehicle: u32) -> bool {
+    let model = world.vehicles.get(vehicle as usize).and_then(|it| motion::vehicle_model(&it.model.text));
+    model.is_some_and(|model| matches!(model.drive, motion::Drive::Flight { .. }))
 }
 
 /// A vehicle's circumradius in metres.

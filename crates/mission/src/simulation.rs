@@ -5,6 +5,7 @@
 //! disturbances alone. The world that range sensors see holds all rocks, declared obstacles exactly, and what disturbances
 //! put into it; planning knows only the map.
 
+mod seen;
 mod trip;
 mod way;
 
@@ -22,6 +23,7 @@ use smol_str::SmolStr;
 use terrain::{Obstacle, Terrain};
 use tpn::{EventRef, Network, OccurrenceId};
 
+use self::seen::SeenMap;
 use self::trip::Trip;
 pub(crate) use self::way::nearest_free;
 use crate::driving::Drive;
@@ -100,7 +102,7 @@ impl Courses {
     pub(crate) fn learn(&mut self, program: &Program, planned: &Planned) {
         let Some(plan) = planned.planning.outcome.plans.first() else { return };
         let world = &program.world;
-        for route in traverse::routes(&planned.network, program, plan) {
+        for route in traverse::routes(&planned.network, program, plan, &[]) {
             let is_its = |traverse: &&crate::Traverse| traverse.occurrence == route.occurrence;
             let traverse = planned.traverses.iter().find(is_its);
             let space = planned.spaces.iter().find(|(occurrence, _)| *occurrence == route.occurrence);
@@ -143,11 +145,13 @@ pub(crate) struct Driving<'run> {
     courses: &'run RefCell<Courses>,
     /// Seeds the noise of range sensors.
     seed: u64,
-    /// What is there from the beginning.
+    /// What stands on the ground from the beginning; vehicles that fly are above it.
     world: FineWorld,
     /// Where vehicles are that have driven, with their headings.
     stand: BTreeMap<u32, (Point2<f64>, f64)>,
     drives: Vec<SimulatedDrive>,
+    /// What range finders have seen that is not on the map: the map that all vehicles share.
+    seen: SeenMap,
     /// How long traverses take whose durations nature chooses, by name.
     chosen: BTreeMap<SmolStr, Time>,
 }
@@ -171,7 +175,8 @@ impl<'run> Driving<'run> {
         let obstacles: Vec<Obstacle> = declared.iter().map(|it| ground::obstacle(&it.shape)).collect();
         let world = FineWorld::new(map, &obstacles, MIN_ROCK_M);
         let (stand, drives, chosen) = (BTreeMap::new(), Vec::new(), BTreeMap::new());
-        Self { problem, map, disturbances, courses, seed, world, stand, drives, chosen }
+        let seen = SeenMap::default();
+        Self { problem, map, disturbances, courses, seed, world, stand, drives, seen, chosen }
     }
 
     /// Drives at the speed that durations need which nature chose, by the names of their occurrences.
@@ -202,7 +207,9 @@ impl ActivityExecutor for Driving<'_> {
         if let Err(reason) = &reached {
             trip.entries.push((trip.convoy.time_s(), format!("{reason}, and gives up")));
         }
-        let Trip { frames, entries, passes, reroutes, least_clearance_m, convoy, extra_metres, .. } = trip;
+        let Trip { frames, entries, passes, reroutes, least_clearance_m, convoy, extra_metres, seen, .. } =
+            trip;
+        self.seen.extend(seen);
         let time_s = convoy.time_s();
         let unit_seconds = self.problem.program.options.time_unit.seconds();
         let units = |seconds: f64| {
@@ -242,6 +249,36 @@ impl ActivityExecutor for Driving<'_> {
 
     fn granularity(&self) -> Time {
         granularity(self.problem.program)
+    }
+
+    fn whereabouts(&self, _: &Network, of: &[OccurrenceId], now: Time) -> Vec<(u32, [f64; 2])> {
+        let now = now.to_f64();
+        let mut places: BTreeMap<u32, [f64; 2]> = BTreeMap::new();
+        for drive in self.drives.iter().filter(|drive| of.contains(&drive.occurrence)) {
+            for vehicle in &drive.vehicles {
+                let frame = vehicle.at(now);
+                places.extend(frame.map(|frame| (vehicle.vehicle, frame.position_m.coords.into())));
+            }
+        }
+        places.into_iter().collect()
+    }
+
+    fn abandon(&mut self, _: &Network, of: &[OccurrenceId], now: Time) {
+        let now = now.to_f64();
+        for drive in self.drives.iter_mut().filter(|drive| of.contains(&drive.occurrence)) {
+            for vehicle in &mut drive.vehicles {
+                let driven = vehicle.frames.partition_point(|frame| frame.time <= now);
+                if driven == 0 || driven == vehicle.frames.len() {
+                    continue;
+                }
+                vehicle.frames.truncate(driven);
+                drive.duration = None;
+                if let Some(last) = vehicle.frames.last() {
+                    self.stand.insert(vehicle.vehicle, (last.position_m, last.heading_rad));
+                }
+            }
+        }
+        self.seen.forget_after(now);
     }
 }
 

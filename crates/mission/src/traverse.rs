@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use exact::Rational;
+use executive::facts::StandingPlace;
 use motion::{Path, PlannerKind, Query, SearchResult, ShortcutSettings, VehicleModel};
 use nalgebra::{Point2, distance};
 use rmpl::Span;
@@ -45,9 +46,12 @@ pub struct Waypoint {
     pub slot: usize,
 }
 
+/// The slot of a place where a vehicle has stopped on its way, away from the location that it came from.
+const ON_THE_WAY: usize = usize::MAX;
+
 /// The routes of the traverses that `plan` selects, in order of their earliest departure. Each vehicle starts where its
-/// previous movement left it, or from its own start (SPEC 1.8).
-pub fn routes(network: &Network, program: &Program, plan: &Plan) -> Vec<Route> {
+/// previous movement left it, or from its own start (SPEC 1.8); one of `places`, from where it has stopped.
+pub fn routes(network: &Network, program: &Program, plan: &Plan, places: &[StandingPlace]) -> Vec<Route> {
     let world = &program.world;
     let spacing_m = standing::spacing_m(program);
     let starts = world.vehicles.iter().zip(standing::start_slots(program));
@@ -77,7 +81,16 @@ pub fn routes(network: &Network, program: &Program, plan: &Plan) -> Vec<Route> {
         (plan.windows[start.index()].map(|window| window.earliest), ranks.get(id).copied(), *id)
     });
     let mut routes = Vec::new();
+    let mut stopped: Vec<&StandingPlace> = places.iter().collect();
     for (id, moving) in moving {
+        let start = network.occurrences[id.index()].start;
+        let starts = plan.windows[start.index()].map(|window| window.earliest);
+        stopped.retain(|it| {
+            let place = positions.get_mut(it.vehicle as usize).and_then(Option::as_mut);
+            let Some(place) = place.filter(|_| starts >= Some(it.since)) else { return true };
+            (place.position_m, place.slot) = (it.place_m.into(), ON_THE_WAY);
+            false
+        });
         let Some(mut route) = route(network, world, id, &moving, &positions) else { continue };
         if let Some(last) = route.waypoints.last_mut() {
             // What stands there already stays where it is.

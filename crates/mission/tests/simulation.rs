@@ -176,3 +176,77 @@ fn the_same_run_is_driven_the_same_way() {
     let disturbances = [obstacle(2, Point2::new(150.0, 70.4), 0.8), stand("Scout", 6, 7)];
     assert_eq!(run(DETOUR, &disturbances), run(DETOUR, &disturbances));
 }
+
+#[test]
+fn a_blimp_flies_over_what_stands_on_the_ground() {
+    let execution = run(
+        "terrain \"tai-plain\" cell 0.6 origin (0, 0);
+         location BASE (24, 52);
+         location TAI (256, 238);
+         obstacle Wall circle (140, 145, 20);
+         vehicle Flyer : Blimp at BASE;
+         primitive Fly(to)[1,60] moves Flyer speed (0.1, 4);
+         scenario S[0,240] = { Fly(TAI) }",
+        &[obstacle(0, Point2::new(80.0, 97.0), 5.0)],
+    );
+    assert_eq!(execution.ending, Ending::Finished, "{:?}", execution.log.last());
+    assert!(violations(&execution).is_empty());
+    let [drive] = execution.drives.as_slice() else { panic!("one flight") };
+    assert_eq!(drive.reroutes, 0);
+    assert!(
+        drive.vehicles[0].frames.iter().all(|frame| frame.rays_m.is_empty()),
+        "nothing is seen in the air"
+    );
+}
+
+#[test]
+fn a_rover_that_is_stopped_goes_on_by_the_other_path_from_where_it_is() {
+    let execution = run(
+        "terrain \"tai-plain\" cell 0.6 origin (0, 0);
+         location BASE (24, 52);
+         location RIM (120, 70);
+         vehicle Scout : ATRV at BASE;
+         primitive Drive(to)[5,40] moves Scout speed (0.02, 0.8) aborts [0.1,0.3];
+         var PATH1 : {OK, GONE};
+         var PATH2 : {OK, GONE};
+         scenario S[0,800] = {
+           { choose { do { Drive(RIM) } maintaining PATH1=OK, do { Drive(RIM) } maintaining PATH2=OK } },
+           { PATH1=OK [300,300] },
+           { delay [200,200]; PATH2=OK [300,300] }
+         }",
+        &[Disturbance::Withdrawn { condition: "Tell(PATH1=OK)#1".into(), at: 2.into() }],
+    );
+    assert_eq!(execution.ending, Ending::Finished, "{:?}", execution.log.last());
+    let [first, second] = execution.drives.as_slice() else { panic!("two drives") };
+    assert_eq!(first.duration, None);
+    let stopped = first.vehicles[0].frames.last().expect("it set out").position_m;
+    let start = second.vehicles[0].frames.first().expect("it set out").position_m;
+    assert!(distance(&stopped, &Point2::new(24.0, 52.0)) > 10.0, "{stopped}");
+    assert!(distance(&stopped, &start) < 0.01, "{stopped} and {start}");
+    assert!(minutes(second.start) >= 200.0);
+}
+
+#[test]
+fn what_one_rover_has_seen_the_next_one_avoids() {
+    let source = "terrain \"tai-plain\" cell 0.6 origin (0, 0);
+         location BASE (24, 52);
+         location RIM (120, 70);
+         vehicle One : ATRV at BASE;
+         vehicle Two : ATRV at BASE;
+         primitive Lead(to)[2,60] moves One speed (0.02, 0.8);
+         primitive Follow(to)[2,60] moves Two speed (0.02, 0.8);
+         scenario S[0,240] = { Lead(RIM); Follow(RIM) }";
+    let free = run(source, &[]);
+    let [_, second] = free.drives.as_slice() else { panic!("two drives") };
+    let frames = &second.vehicles[0].frames;
+    let middle = frames[frames.len() / 2].position_m;
+    assert!(progress(&free).is_empty(), "{:?}", progress(&free));
+    let execution = run(source, &[obstacle(0, middle, 3.0)]);
+    assert_eq!(execution.ending, Ending::Finished, "{:?}", execution.log.last());
+    let told = |entry: &&executive::Entry| {
+        matches!(&entry.happening, Happening::Progress { name, text }
+            if name == "Follow#1" && text.contains("around what was seen before"))
+    };
+    let entry = execution.log.iter().find(told).unwrap_or_else(|| panic!("{:?}", progress(&execution)));
+    assert_eq!(entry.time, execution.drives[1].start);
+}

@@ -180,6 +180,8 @@ pub struct PrimitiveDecl {
     pub costs: Vec<Amount>,
     /// What each activity of it is rewarded with; several add up.
     pub rewards: Vec<Expr>,
+    /// How long it takes to end an activity of it early, if that can be done (SPEC 15).
+    pub aborts: Option<Bounds>,
     /// The whole declaration.
     pub span: Span,
 }

@@ -115,7 +115,7 @@ spans! {
     ObjectiveDecl { goals, span }
     GoalDecl { span }
     PrimitiveDecl {
-        name, formals, bounds, moves, runs, requires, sets, uses, costs, rewards, span
+        name, formals, bounds, moves, runs, requires, sets, uses, costs, rewards, aborts, span
     }
     Requirement { condition }
     Effect { variable, value, span }
@@ -274,7 +274,7 @@ mod tests {
     fn a_program_follows_the_edit_of_a_comment() {
         let before = "# A note.\nconst N = 2*M; const M = 3;\nprimitive B(n, c)[1,2];\n\
              state ARM : {IN, OUT} = IN;\nresource P capacity 2; resource E 0..N = 3; objective minimize cost;\n\
-             primitive D(s)[1,2] requires ARM=OUT, V.at=s sets ARM=IN uses P 2 consumes E N per metre costs 3 rewards N;\n\
+             primitive D(s)[1,2] requires ARM=OUT, V.at=s sets ARM=IN uses P 2 consumes E N per metre costs 3 rewards N aborts [0,N];\n\
              U() = { unordered { B(1, P); do D(s) using P N }; optional D(s) }\n\
              A() = { B(N+1, X in {a, b})[1,2*3]; if P=OK thennext B(2, Q=on) else repeat N { delay } }\n\
              scenario S = { free A() as F; do A() maintaining P and (Q or R) }\n\

@@ -18,18 +18,11 @@ impl Network {
         let Some(choice_arcs) = self.decisions.get(decision.index()).map(|it| &it.alternatives) else {
             return format!("alternative {alternative}");
         };
-        let Some(&own_arc) = choice_arcs.get(alternative as usize) else {
+        if choice_arcs.len() <= alternative as usize {
             return format!("alternative {alternative}");
-        };
-        let own = self.followers(own_arc);
-        let mut others = vec![false; self.nodes.len()];
-        for &arc in choice_arcs.iter().filter(|&&arc| arc != own_arc) {
-            for (all, is_followed) in others.iter_mut().zip(self.followers(arc)) {
-                *all |= is_followed;
-            }
         }
-        let is_alone = choice_arcs.len() == 1;
-        let is_own = |node: NodeId| own[node.index()] && (is_alone || !others[node.index()]);
+        let own = self.own_nodes(decision, alternative);
+        let is_own = |node: NodeId| own[node.index()];
         let is_in = |occurrence: &Occurrence| is_own(occurrence.start);
         let named = |is_wanted: &dyn Fn(OccurrenceKind) -> bool| -> Vec<&Occurrence> {
             let is_part = |occurrence: &&Occurrence| {
@@ -56,6 +49,23 @@ impl Network {
                 }
             }
         }
+    }
+
+    /// By node, whether an alternative of a decision leads to it and no other one does; of a decision with one alternative,
+    /// whether that leads to it. Takes time linear in the network for each alternative.
+    pub fn own_nodes(&self, decision: DecisionId, alternative: u32) -> Vec<bool> {
+        let choice_arcs = self.decisions.get(decision.index()).map(|it| it.alternatives.as_slice());
+        let choice_arcs = choice_arcs.unwrap_or_default();
+        let Some(&own_arc) = choice_arcs.get(alternative as usize) else {
+            return vec![false; self.nodes.len()];
+        };
+        let mut own = self.followers(own_arc);
+        for &arc in choice_arcs.iter().filter(|&&arc| arc != own_arc) {
+            for (is_own, is_followed) in own.iter_mut().zip(self.followers(arc)) {
+                *is_own &= !is_followed;
+            }
+        }
+        own
     }
 
     /// The nodes that an arc leads to, directly or not.

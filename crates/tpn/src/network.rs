@@ -474,6 +474,9 @@ pub struct Occurrence {
     pub arguments: Vec<SmolStr>,
     /// The activity or scenario instance it occurs in.
     pub parent: Option<OccurrenceId>,
+    /// From how long to how long it takes to end it early, if that can be done (SPEC 15).
+    #[serde(default)]
+    pub aborts: Option<[Time; 2]>,
     /// Where the call, assertion or delay is written.
     pub span: Option<Span>,
 }

@@ -241,6 +241,7 @@ impl Reader {
                 arc: small("arc", arc_count)?.map(ArcId),
                 arguments: arguments.filter_map(|argument| argument.as_str().map(SmolStr::new)).collect(),
                 parent: small("parent", index)?.map(OccurrenceId),
+                aborts: None,
                 span: None,
             });
         }
@@ -291,6 +292,7 @@ impl Reader {
                 arc: None,
                 arguments: Vec::new(),
                 parent: None,
+                aborts: None,
                 span: None,
             }),
         };

@@ -1,13 +1,17 @@
 //! `enroute check`: the diagnostics of mission and program files.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use anyhow::Context as _;
-use mission::{Goal, Problem};
+use mission::{Goal, Paths, Problem, planning};
 use serde_json::json;
+use tpn::Network;
 
+use crate::deadline::{Deadline, TimeLimit};
 use crate::diagnostics::print_problems;
+use crate::ground::ground;
 use crate::input::read_mission;
 use crate::output::{Format, WRONG, YES, any_error, document, exit, print_json, print_text};
 
@@ -17,6 +21,8 @@ pub struct Args {
     /// The files; `-` is standard input.
     #[arg(required = true)]
     files: Vec<PathBuf>,
+    #[command(flatten)]
+    time_limit: TimeLimit,
     /// For whom the answer is.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -25,10 +31,11 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut wrong = false;
+    let deadline = args.time_limit.start();
     let mut documents = Vec::new();
     for file in &args.files {
         let source = read_mission(file)?;
-        let problems = check(&source);
+        let problems = check(file, &source, deadline)?;
         wrong |= any_error(&problems);
         let name = file.display().to_string();
         match args.format {
@@ -46,10 +53,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(exit(if wrong { WRONG } else { YES }))
 }
 
-/// All that the front end and the compiler of networks have to say about a text, in either notation.
-fn check(source: &str) -> Vec<Problem> {
+/// All that the front end, the compiler of networks and planning have to say about a text, in either notation: what the report
+/// says.
+fn check(file: &Path, source: &str, deadline: Deadline) -> anyhow::Result<Vec<Problem>> {
     if rmpl::control::is_control_text(source) {
-        return Problem::all(&rmpl::control::parse(source).diagnostics, source);
+        return Ok(Problem::all(&rmpl::control::parse(source).diagnostics, source));
     }
     let parse = rmpl::parse(source);
     let mut diagnostics = parse.diagnostics();
@@ -59,8 +67,29 @@ fn check(source: &str) -> Vec<Problem> {
         program.scenarios.iter().map(|scenario| Goal::Scenario(scenario.name.text.clone())).collect();
     let is_library = program.scenarios.is_empty() && program.activities.is_empty();
     let goals = if goals.is_empty() && !is_library { vec![Goal::Default] } else { goals };
-    for goal in goals {
-        mission::compile(&program, &goal, &mut diagnostics);
+    let networks: Vec<Option<Network>> =
+        goals.iter().map(|goal| mission::compile(&program, goal, &mut diagnostics)).collect();
+    let is_whole = networks.iter().all(Option::is_some);
+    let ground = if is_whole { ground(file, &program.world).ok() } else { None };
+    if let Some((mut grounds, ground)) = ground {
+        let mut paths = Paths::default();
+        for network in networks.into_iter().flatten().map(Arc::new) {
+            let problem = planning::Problem {
+                network: &network,
+                program: &program,
+                ground: ground.as_ref().map(|(key, map)| (key, map)),
+                options: kirk::Options { explain: false, relax: false, ..kirk::Options::default() },
+                seed: 0,
+                facts: None,
+            };
+            let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || deadline.is_over());
+            deadline.check(&planned.planning.outcome)?;
+            for warning in planned.warnings {
+                if !diagnostics.contains(&warning) {
+                    diagnostics.push(warning);
+                }
+            }
+        }
     }
-    Problem::all(&diagnostics, source)
+    Ok(Problem::all(&diagnostics, source))
 }

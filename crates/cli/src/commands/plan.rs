@@ -103,7 +103,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             print_json(&document("plan", &problems, body))?;
         }
         Format::Text => {
+            let warnings = Problem::all(&planned.warnings, &loaded.source);
             print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
+            print_problems(&loaded.name, &loaded.source, &warnings)?;
             print_text(&outcome_text(&planned, &loaded))?;
         }
     }

@@ -152,12 +152,9 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
         uncertainty.traverses = Traverses::Driven;
     }
     uncertainty.adversary |= args.adversary;
-    let unknown = uncertainty.unknown_names(&network);
-    ensure!(unknown.is_empty(), "no activity or condition is called {}", unknown.join(", "));
-    if let Some(name) = uncertainty.unsound() {
-        bail!("what is said of {name} is no distribution: its numbers must not fall, and not be below 0");
+    if let Some(problem) = uncertainty.problem(&network) {
+        bail!(problem);
     }
-    ensure!(uncertainty.rocks.is_sound(), "rocks have lengths from 0 on, and the least radius comes first");
     let (mut grounds, ground) = ground(&target.file, &program.world)?;
     let mut paths = Paths::default();
     let problem = Problem {

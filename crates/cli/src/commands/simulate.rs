@@ -8,7 +8,7 @@ use anyhow::Context as _;
 use executive::{Ending, Entry, Happening, Script};
 use mission::execution::{self, Ran};
 use mission::planning::{self, Problem};
-use mission::{DriveFrame, Paths, SimulatedDrive};
+use mission::{DriveFrame, Paths, Problem as Found, SimulatedDrive};
 use rmpl::program::Program;
 use serde_json::{Value, json};
 use tpn::Network;
@@ -71,12 +71,17 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let deadline = args.time_limit.start();
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || deadline.is_over());
     deadline.check(&planned.planning.outcome)?;
+    let mut problems = loaded.problems.clone();
+    problems.extend(Found::all(&planned.warnings, &loaded.source));
+    if matches!(args.format, Format::Text) {
+        print_problems(&loaded.name, &loaded.source, &problems)?;
+    }
     let Some(outcome) = execution::execute(&problem, &planned, &script, &mut grounds, &mut paths) else {
         match args.format {
             Format::Text => print_text("the mission has no plan to execute; `enroute plan` says why\n")?,
             Format::Json => {
                 let body = json!({ "status": "no-plan", "log": [] });
-                print_json(&document("simulate", &loaded.problems, body))?;
+                print_json(&document("simulate", &problems, body))?;
             }
         }
         return Ok(exit(NO));
@@ -92,7 +97,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
                 "log": outcome.log,
                 "drives": drives.iter().map(|drive| drive_json(drive, &network, program)).collect::<Vec<_>>(),
             });
-            print_json(&document("simulate", &loaded.problems, body))?;
+            print_json(&document("simulate", &problems, body))?;
         }
     }
     Ok(exit(if outcome.ending == Ending::Finished { YES } else { NO }))

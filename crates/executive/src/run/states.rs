@@ -17,7 +17,7 @@ use crate::world_state::Lack;
 /// A traverse has driven so many metres more than its path has.
 pub(super) struct Odometer {
     at: Time,
-    occurrence: OccurrenceId,
+    pub(super) occurrence: OccurrenceId,
     extra_m: Rational,
 }
 
@@ -60,9 +60,9 @@ impl Run<'_> {
     pub(super) fn change_states(&mut self, node: NodeId) {
         let stage = &self.stage;
         let happenings = self.state.happen(&stage.network, &stage.plan, &stage.effects, node);
-        for &requirement in &stage.effects.requirements {
-            let (start, end) = stage.network.interval(requirement);
-            if end == node && stage.times[start.index()] == Some(self.now) {
+        for &requirement in stage.effects.ending_at(node) {
+            let (start, _) = stage.network.interval(requirement);
+            if stage.times[start.index()] == Some(self.now) {
                 self.state.need_now(requirement);
             }
         }

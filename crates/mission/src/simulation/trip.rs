@@ -13,9 +13,10 @@ use smol_str::SmolStr;
 use terrain::{CellState, ConfigurationSpace, Obstacle, Terrain};
 use tpn::{ArcKind, EventEnd, EventRef, Network, OccurrenceId};
 
+use super::seen::{SeenMap, is_blocked};
 use super::way::{nearest_free, rest_of, until};
 use super::{Course, DriveFrame, Driving, SimulatedVehicle};
-use crate::driving;
+use crate::{driving, separation};
 
 /// Frames are kept this far apart, in metres and radians, and at least every so many steps.
 const FRAME_M: f64 = 1.0;
@@ -28,6 +29,8 @@ const EARLY: f64 = 0.985;
 /// Vehicles give up after so many other ways, and after so many times the time that they were to take.
 const MAX_REROUTES: u32 = 12;
 const MAX_TIMES: f64 = 4.0;
+/// What is seen this near to what the map shows, in metres, is taken for that.
+const KNOWN_M: f64 = 0.9;
 /// Metres beyond the path are counted by so many.
 const COUNTED_M: f64 = 5.0;
 
@@ -65,6 +68,13 @@ pub(super) struct Trip<'a> {
     /// and in the end.
     pub(super) extra_metres: Vec<(f64, f64)>,
     pub(super) least_clearance_m: f64,
+    /// What others had seen when it started, and what is seen on the way.
+    known: Vec<Point2<f64>>,
+    pub(super) seen: SeenMap,
+    /// Places where vehicles stand, with radii: to be seen, but not to be put on a map.
+    standing: Vec<(Point2<f64>, f64)>,
+    /// How far along the path each leg ends, in metres.
+    leg_ends_m: Vec<f64>,
 }
 
 impl<'a> Trip<'a> {
@@ -104,11 +114,14 @@ impl<'a> Trip<'a> {
             })
             .collect();
         let seconds = |time: Time| (time.to_f64() - start) * unit_s;
+        // What stands on the ground is below those that fly, and who flies is above those that drive.
+        let flies = |vehicle: u32| separation::flies(world, vehicle);
+        let is_flight = drive.vehicles.iter().all(|&vehicle| flies(vehicle));
         let mut coming: Vec<(f64, Obstacle)> = Vec::new();
         let mut slow = Vec::new();
         for disturbance in driving.disturbances {
             match disturbance {
-                Disturbance::Obstacle { at, x, y, radius } => {
+                Disturbance::Obstacle { at, x, y, radius } if !is_flight => {
                     coming.push((
                         seconds(*at),
                         Obstacle::Circle { center_m: Point2::new(*x, *y), radius_m: *radius },
@@ -128,18 +141,21 @@ impl<'a> Trip<'a> {
             }
         }
         coming.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut fine = driving.world.clone();
-        let mut others = Vec::new();
+        let mut fine = if is_flight { FineWorld::default() } else { driving.world.clone() };
+        let (mut others, mut standing) = (Vec::new(), Vec::new());
         for (&vehicle, &(place, _)) in &driving.stand {
-            if drive.vehicles.contains(&vehicle) {
+            if drive.vehicles.contains(&vehicle) || flies(vehicle) != is_flight {
                 continue;
             }
-            let radius_m = crate::separation::radius_m(world, vehicle);
+            let radius_m = separation::radius_m(world, vehicle);
             let moving =
                 driving.drives.iter().rev().flat_map(|it| &it.vehicles).find(|it| it.vehicle == vehicle);
             match moving.filter(|it| it.frames.last().is_some_and(|last| last.time > start)) {
                 Some(moving) => others.push((moving, radius_m)),
-                None => fine.add(&Obstacle::Circle { center_m: place, radius_m }),
+                None => {
+                    standing.push((place, radius_m));
+                    fine.add(&Obstacle::Circle { center_m: place, radius_m });
+                }
             }
         }
         let length_m = drive.path.length_m();
@@ -181,12 +197,17 @@ impl<'a> Trip<'a> {
             driven_m: 0.0,
             extra_metres: Vec::new(),
             least_clearance_m: f64::INFINITY,
+            known: if is_flight { Vec::new() } else { driving.seen.known_at(start) },
+            seen: SeenMap::default(),
+            standing,
+            leg_ends_m: course.leg_ends_m.clone(),
         }
     }
 
     /// Drives until all vehicles are there; an error says who got stuck where.
     pub(super) fn drive(&mut self) -> Result<(), String> {
         let most_s = MAX_TIMES * self.wanted_s + 600.0 * self.convoy.step_s();
+        self.avoid_what_is_known();
         self.record_all(&[]);
         while !self.convoy.has_arrived() {
             let time_s = self.convoy.time_s();
@@ -210,6 +231,7 @@ impl<'a> Trip<'a> {
             self.note_extra_metres();
             self.note_passes();
             self.note_clearance();
+            self.put_on_map(&steps, now);
             for (vehicle, (event, _)) in steps.iter().enumerate() {
                 if matches!(event, DriveEvent::Blocked { .. } | DriveEvent::OffCorridor { .. }) {
                     self.reroute(vehicle)?;
@@ -266,11 +288,11 @@ impl<'a> Trip<'a> {
         let here = driver.state().position_m;
         let model = self.models[vehicle];
         let mut occupancy = self.course.drive.space.occupancy().clone();
-        for point in driver.seen_m() {
+        for point in driver.seen_m().chain(self.known.iter().copied()) {
             occupancy.mark(&Obstacle::Circle { center_m: point, radius_m: 0.0 }, CellState::Obstacle);
         }
         let remaining_m = driver.length_m() - driver.progress_m();
-        let (path, ends_m) = (driver.path().clone(), &self.course.leg_ends_m);
+        let (path, ends_m) = (driver.path().clone(), &self.leg_ends_m);
         let total_m = ends_m.last().copied().unwrap_or(0.0);
         // The end of the leg under way, or for a follower of its whole way.
         let rest_m = match vehicle {
@@ -281,23 +303,8 @@ impl<'a> Trip<'a> {
         let after = rest_of(&path, path.length_m() - rest_m);
         let Some(&goal_m) = after.first() else { return Err(stuck) };
         let space = ConfigurationSpace::new(occupancy, model.circumradius_m);
-        let found = [0.3, model.margin_m, 0.0].iter().find_map(|room_m| {
-            let space = space.with_radius_m(model.circumradius_m + room_m);
-            let settings = motion::Settings {
-                seed: u64::from(self.reroutes),
-                greatest_samples: 20_000,
-                ..motion::Settings::of(PlannerKind::RrtConnect)
-            };
-            let start_m = nearest_free(&space, here)?;
-            let query = Query { start_m, goal_m };
-            let shortcut = ShortcutSettings::default();
-            let found = motion::find_shortest_path(&space, query, &settings, &shortcut, 3, &mut |_| false);
-            let mut way = found.path.ok()?;
-            if start_m != here {
-                way.points_m.insert(0, here);
-            }
-            Some(way)
-        });
+        let rooms_m = [0.3, model.margin_m, 0.0];
+        let found = way_between(&space, rooms_m, here, goal_m, model, self.reroutes);
         let Some(mut way) = found else { return Err(stuck) };
         let length_m = way.length_m();
         way.points_m.extend(after.into_iter().skip(1));
@@ -309,8 +316,13 @@ impl<'a> Trip<'a> {
                 here.x, here.y
             ),
         ));
+        self.send(vehicle, way);
+        Ok(())
+    }
+
+    /// Sends a vehicle along another way, and the others after the leader.
+    fn send(&mut self, vehicle: usize, way: Path) {
         if vehicle == 0 {
-            // The others come after the leader.
             for follower in 1..self.models.len() {
                 let own = self.convoy.state(follower).position_m;
                 let short_m = self.course.drive.spacing_m * follower as f64;
@@ -320,7 +332,68 @@ impl<'a> Trip<'a> {
             }
         }
         self.convoy.follow(vehicle, way);
-        Ok(())
+    }
+
+    /// A way that was planned without what vehicles have seen since leads around it.
+    fn avoid_what_is_known(&mut self) {
+        let (Some(driver), Some(model)) = (self.convoy.driver(0), self.models.first()) else { return };
+        let (path, reach) = (driver.path().clone(), model.circumradius_m);
+        if self.known.is_empty() || !is_blocked(&path.points_m, &self.known, reach) {
+            return;
+        }
+        let mut occupancy = self.course.drive.space.occupancy().clone();
+        for &center_m in &self.known {
+            occupancy.mark(&Obstacle::Circle { center_m, radius_m: 0.0 }, CellState::Obstacle);
+        }
+        let space = ConfigurationSpace::new(occupancy, model.radius_m());
+        let (mut points, mut ends_m, mut from_m) = (Vec::new(), Vec::new(), 0.0);
+        let mut is_new = false;
+        let length_m = path.length_m();
+        let legs = self.leg_ends_m.len();
+        for (leg, &end_m) in self.leg_ends_m.iter().enumerate() {
+            let end_m = if leg + 1 == legs { length_m } else { end_m };
+            let before = Path::new(until(&path, end_m));
+            let mut piece = rest_of(&before, from_m);
+            if let (true, Some(&start_m), Some(&goal_m)) =
+                (is_blocked(&piece, &self.known, reach), piece.first(), piece.last())
+                && let Some(way) = way_between(&space, [0.0, 0.1], start_m, goal_m, model, 0)
+            {
+                piece = way.points_m;
+                is_new = true;
+            }
+            points.extend(piece.into_iter().skip(usize::from(!points.is_empty())));
+            ends_m.push(Path::new(points.clone()).length_m());
+            from_m = end_m;
+        }
+        if !is_new || points.len() < 2 {
+            return;
+        }
+        let way = Path::new(points);
+        let text = format!(
+            "{} takes another way of {:.0} m, around what was seen before",
+            self.names[0],
+            way.length_m()
+        );
+        self.entries.push((0.0, text));
+        self.leg_ends_m = ends_m;
+        self.send(0, way);
+    }
+
+    /// What range finders see that the map does not show goes on the map that all share.
+    fn put_on_map(&mut self, steps: &[(DriveEvent, RangeScan)], now: f64) {
+        let space = &self.course.drive.space;
+        for (_, scan) in steps {
+            for point in scan.points_m() {
+                let away_m = space.clearance_m(point).map(|clearance| clearance + space.radius_m());
+                let is_vehicle = self
+                    .standing
+                    .iter()
+                    .any(|(place, radius_m)| distance(place, &point) <= radius_m + KNOWN_M);
+                if away_m.is_some_and(|away_m| away_m > KNOWN_M) && !is_vehicle {
+                    self.seen.add(point, now);
+                }
+            }
+        }
     }
 
     fn stuck(&self, vehicle: usize) -> String {
@@ -379,6 +452,34 @@ impl<'a> Trip<'a> {
             self.frames[index].push(frame);
         }
     }
+}
+
+/// A way from a place to another one, with the first of some rooms around the vehicle that leaves one.
+fn way_between<const COUNT: usize>(
+    space: &ConfigurationSpace,
+    rooms_m: [f64; COUNT],
+    here: Point2<f64>,
+    goal_m: Point2<f64>,
+    model: &VehicleModel,
+    seed: u32,
+) -> Option<Path> {
+    rooms_m.iter().find_map(|room_m| {
+        let space = space.with_radius_m(model.circumradius_m + room_m);
+        let settings = motion::Settings {
+            seed: u64::from(seed),
+            greatest_samples: 20_000,
+            ..motion::Settings::of(PlannerKind::RrtConnect)
+        };
+        let start_m = nearest_free(&space, here)?;
+        let query = Query { start_m, goal_m };
+        let shortcut = ShortcutSettings::default();
+        let found = motion::find_shortest_path(&space, query, &settings, &shortcut, 3, &mut |_| false);
+        let mut way = found.path.ok()?;
+        if start_m != here {
+            way.points_m.insert(0, here);
+        }
+        Some(way)
+    })
 }
 
 /// The time that a traverse is to take, in mission units: what nature chose of its range, or otherwise that of its plan's

@@ -172,6 +172,10 @@ impl Collector<'_> {
         for expression in amounts.map(|amount| &amount.value).chain(&decl.rewards) {
             self.expression(expression);
         }
+        if let Some(aborts) = &decl.aborts {
+            self.expression(&aborts.lower);
+            self.expression(&aborts.upper);
+        }
     }
 
     fn define(

@@ -49,6 +49,12 @@ impl Local {
             Item::Primitive(decl) => {
                 self.distinct(&decl.formals, "parameter");
                 self.bounds(decl.bounds.as_ref());
+                if let Some(aborts) = &decl.aborts {
+                    self.bounds(Some(aborts));
+                    if constant::evaluate(&aborts.upper) == Ok(Bound::Infinite) {
+                        self.found.push(bounds::endless_abort(aborts.upper.span));
+                    }
+                }
                 if let Some(moves) = &decl.moves {
                     self.distinct(&moves.vehicles, "vehicle");
                     if let Some((least, greatest)) = moves.speed_mps

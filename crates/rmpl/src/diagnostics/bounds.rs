@@ -60,6 +60,16 @@ pub fn unlimited(span: Span) -> Diagnostic {
         .with_hint("write the longest that it can take")
 }
 
+/// Stopping takes a finite time.
+pub fn endless_abort(span: Span) -> Diagnostic {
+    Diagnostic::error(
+        CODE,
+        span,
+        "an activity that is aborted is over at some time, and this upper bound is infinite",
+    )
+    .with_hint("write the longest that stopping can take")
+}
+
 /// The contingent bounds of a call leave those of the declaration.
 pub fn outside(name: &str, written: (Time, Bound), declared: (Time, Bound), span: Span) -> Diagnostic {
     let show = |(lower, upper): (Time, Bound)| format!("[{lower},{upper}]");

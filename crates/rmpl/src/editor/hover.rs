@@ -373,6 +373,9 @@ fn word_in_its_place(word: &str) -> Option<&'static str> {
         }
         "costs" => "`costs n`: what the activity adds to `cost`; `costs n per metre` counts the path.",
         "rewards" => "`rewards n`: what the activity adds to `reward`.",
+        "aborts" => {
+            "`aborts [a,b]`: execution may end the activity early, which takes from a to b; its effects then do not happen."
+        }
         "per" => {
             "`n per minute`, `per second`, `per hour`: times the duration. `n per metre`: times the length of the path."
         }

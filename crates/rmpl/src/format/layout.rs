@@ -72,7 +72,7 @@ impl Layout {
             SyntaxKind::Coordinates => Place::Coordinates,
             SyntaxKind::Domain => Place::Domain,
             SyntaxKind::Argument => Place::Argument,
-            SyntaxKind::ConstrainDecl => {
+            SyntaxKind::ConstrainDecl | SyntaxKind::Aborts => {
                 if let Some(bracket) = node.child(SyntaxKind::Bounds).and_then(first_token) {
                     self.set(bracket, Place::SpacedBounds);
                 }
@@ -220,6 +220,7 @@ const fn is_clause(kind: SyntaxKind) -> bool {
             | SyntaxKind::Uses
             | SyntaxKind::Costs
             | SyntaxKind::Rewards
+            | SyntaxKind::Aborts
     )
 }
 

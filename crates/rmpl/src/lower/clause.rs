@@ -22,6 +22,7 @@ impl Lowering<'_> {
             uses: Vec::new(),
             costs: Vec::new(),
             rewards: Vec::new(),
+            aborts: node.child(SyntaxKind::Aborts).and_then(bounds_in),
             span: node.span(),
         };
         for clause in node.children() {

@@ -1,5 +1,5 @@
 //! What stands behind a primitive's parameters and bounds: what it moves, runs, requires, sets, takes, gives, costs and
-//! is worth (SPEC 1.8, 10.1, 11, 12).
+//! is worth, and how it is aborted (SPEC 1.8, 10.1, 11, 12, 15).
 //!
 //! The words of clauses are words of the language only where a clause can begin; a comma goes on with a clause.
 
@@ -9,8 +9,8 @@ use crate::program::Per;
 use crate::syntax::SyntaxKind;
 
 /// The words that begin clauses.
-pub(crate) const CLAUSE_WORDS: [&str; 9] =
-    ["requires", "sets", "uses", "consumes", "produces", "costs", "rewards", "moves", "runs"];
+pub(crate) const CLAUSE_WORDS: [&str; 10] =
+    ["requires", "sets", "uses", "consumes", "produces", "costs", "rewards", "moves", "runs", "aborts"];
 
 impl Parser<'_> {
     /// Clauses in any order, up to what is none.
@@ -31,6 +31,7 @@ impl Parser<'_> {
                 "rewards" => self.single(SyntaxKind::Rewards, Self::number),
                 "moves" => self.moves(),
                 "runs" => self.runs(),
+                "aborts" => self.aborts(),
                 _ => return,
             }
         }
@@ -56,6 +57,19 @@ impl Parser<'_> {
         self.bump();
         self.declared_name("the name of a control program");
         self.close(node, SyntaxKind::Runs);
+    }
+
+    /// `aborts [a,b]`
+    fn aborts(&mut self) {
+        let node = self.open();
+        self.bump();
+        if self.at(SyntaxKind::LeftBracket) {
+            self.bounds_if_any();
+        } else {
+            self.report_expected("`[` and the least and the greatest time that stopping takes");
+        }
+        self.skip_in_clause();
+        self.close(node, SyntaxKind::Aborts);
     }
 
     /// `requires c, c` or `requires at start c, c`
@@ -232,6 +246,7 @@ impl Parser<'_> {
                 );
                 is_before_name && is_effect
             }
+            "aborts" => self.kind_at(next) == SyntaxKind::LeftBracket,
             word => is_before_name && CLAUSE_WORDS.contains(&word),
         }
     }

@@ -168,6 +168,8 @@ pub enum SyntaxKind {
     Costs,
     /// `rewards …`
     Rewards,
+    /// `aborts …`
+    Aborts,
     /// An expression, perhaps with `per` and a unit.
     Amount,
 

@@ -104,6 +104,11 @@ impl Builder {
         }
     }
 
+    /// Says from how long to how long it takes to end an occurrence early.
+    pub(super) fn abortable(&mut self, occurrence: OccurrenceId, takes: [exact::Time; 2]) {
+        self.occurrences[occurrence.index()].aborts = Some(takes);
+    }
+
     /// Makes `arc` an alternative of `decision`.
     pub(super) fn alternative(&mut self, decision: DecisionId, arc: ArcId, span: Span) {
         let alternatives = &mut self.decisions[decision.index()];
@@ -145,6 +150,7 @@ impl Builder {
             arc: None,
             arguments,
             parent,
+            aborts: None,
             span: Some(span),
         });
         OccurrenceId::from_index(self.occurrences.len() - 1)

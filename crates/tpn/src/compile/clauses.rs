@@ -45,6 +45,12 @@ impl Expander<'_> {
             self.primitive_use(activity, piece, written, called);
         }
         self.worth(activity);
+        if let Some(written) = &activity.declared.aborts {
+            let interval = self.interval(written, activity.scope);
+            if let Some(upper) = interval.upper.finite() {
+                self.builder.abortable(activity.occurrence, [interval.lower, upper]);
+            }
+        }
     }
 
     /// What the activity changes, each with where that is written: vehicles that it moves are at its last location then.

@@ -412,6 +412,7 @@ impl<'file> Reader<'file> {
             arc: Some(arc),
             arguments: arguments.collect(),
             parent: None,
+            aborts: None,
             span: None,
         });
     }

@@ -129,9 +129,9 @@ fn in_primitive(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
             _ => Place::Nothing,
         },
         "moves" => in_moves(clause, last),
-        "runs" if clause.len() == 1 => Place::Nothing,
+        "aborts" | "runs" if clause.len() == 1 => Place::Nothing,
         "costs" | "rewards" => in_amount(clause, last),
-        "runs" => Place::Words(CLAUSE_WORDS.to_vec()),
+        "aborts" | "runs" => Place::Words(CLAUSE_WORDS.to_vec()),
         _ if clause.len() == 1 || (last.kind == SyntaxKind::Comma && innermost(clause).is_none()) => {
             Place::Resource
         }

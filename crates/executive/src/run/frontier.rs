@@ -1,0 +1,137 @@
+//! What may happen next in a plan with many events: those that everything they follow has happened of, and those that the
+//! world decides, in order of time. An event is looked at when something that matters for it has changed.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+use std::sync::Arc;
+
+use exact::Time;
+use stn::PointId;
+use tpn::NodeId;
+
+use super::{Next, Run};
+use crate::plan_network::PlanError;
+use crate::stage::{Dispatch, Stage};
+
+/// The events that may be next, by when that would be.
+#[derive(Debug, Default)]
+pub(super) struct Frontier {
+    /// The time, whether it is not nature's, and the event; out of date where the event has another time by now.
+    heap: BinaryHeap<Reverse<(Time, bool, u32)>>,
+    /// How many nodes that each node follows have not happened.
+    missing: Vec<u32>,
+    followers: Arc<[Vec<NodeId>]>,
+    is_listed: Vec<bool>,
+    /// Events that others must come before, by those.
+    waiting: BTreeMap<PointId, Vec<PointId>>,
+}
+
+impl Frontier {
+    /// Of a plan that is dispatched by propagation.
+    fn of(stage: &Stage) -> Self {
+        Self {
+            heap: BinaryHeap::new(),
+            missing: stage.missing(),
+            followers: stage.followers(),
+            is_listed: vec![false; stage.network.nodes.len()],
+            waiting: BTreeMap::new(),
+        }
+    }
+}
+
+impl Run<'_> {
+    /// Begins the frontier of the present plan anew, if it is one that needs one.
+    pub(super) fn restart_frontier(&mut self) -> Result<(), PlanError> {
+        if !matches!(self.stage.dispatch, Dispatch::Sparse(_)) {
+            self.frontier = None;
+            return Ok(());
+        }
+        self.frontier = Some(Frontier::of(&self.stage));
+        for point in self.stage.made.all_points() {
+            self.look_at(point)?;
+        }
+        Ok(())
+    }
+
+    /// The event that is next by the frontier.
+    pub(super) fn next_of_frontier(&mut self) -> Result<Option<Next>, PlanError> {
+        loop {
+            let Some(frontier) = &mut self.frontier else { return Ok(None) };
+            let Some(&Reverse((time, is_own, point))) = frontier.heap.peek() else { return Ok(None) };
+            let next = self.waiting_point(PointId(point))?;
+            let key = next.as_ref().map(|next| self.key(next));
+            if key == Some((time, is_own, point)) {
+                return Ok(next);
+            }
+            let Some(frontier) = &mut self.frontier else { return Ok(None) };
+            frontier.heap.pop();
+            frontier.heap.extend(key.map(Reverse));
+        }
+    }
+
+    fn key(&self, next: &Next) -> (Time, bool, u32) {
+        (next.time, !self.is_natures(self.stage.made.node(next.point)), next.point.0)
+    }
+
+    /// When an event would happen, if it may.
+    fn waiting_point(&self, point: PointId) -> Result<Option<Next>, PlanError> {
+        let Some(frontier) = &self.frontier else { return Ok(None) };
+        let node = self.stage.made.node(point);
+        let is_over = self.stage.times[node.index()].is_some();
+        if is_over || !self.stage.dispatch.is_enabled(point) {
+            return Ok(None);
+        }
+        if frontier.missing[node.index()] > 0 && !self.is_driven(point)? {
+            return Ok(None);
+        }
+        self.candidate(point, node)
+    }
+
+    fn look_at(&mut self, point: PointId) -> Result<(), PlanError> {
+        let key = self.waiting_point(point)?.map(|next| self.key(&next));
+        if let (Some(key), Some(frontier)) = (key, &mut self.frontier) {
+            frontier.is_listed[self.stage.made.node(point).index()] = true;
+            frontier.heap.push(Reverse(key));
+        }
+        Ok(())
+    }
+
+    /// Another event must come before `point`, which is looked at again then.
+    pub(super) fn wait_for(&mut self, point: PointId, other: PointId) {
+        if let Some(frontier) = &mut self.frontier {
+            frontier.heap.pop();
+            frontier.waiting.entry(other).or_default().push(point);
+        }
+    }
+
+    /// An event has happened: what follows it may be next, and what it changed may come at another time.
+    pub(super) fn look_beyond(&mut self, point: PointId) -> Result<(), PlanError> {
+        let Some(frontier) = &mut self.frontier else { return Ok(()) };
+        let node = self.stage.made.node(point);
+        let followers = Arc::clone(&frontier.followers);
+        let waiting = frontier.waiting.remove(&point).unwrap_or_default();
+        for follower in &followers[node.index()] {
+            let missing = &mut frontier.missing[follower.index()];
+            *missing = missing.saturating_sub(1);
+        }
+        let changed = match &mut self.stage.dispatch {
+            Dispatch::Sparse(dispatch) => dispatch.take_changed(),
+            _ => Vec::new(),
+        };
+        for &follower in &followers[node.index()] {
+            if let Some(point) = self.stage.made.point(follower) {
+                self.look_at(point)?;
+            }
+        }
+        for point in waiting {
+            self.look_at(point)?;
+        }
+        for point in changed {
+            let node = self.stage.made.node(point);
+            if self.frontier.as_ref().is_some_and(|frontier| frontier.is_listed[node.index()]) {
+                self.look_at(point)?;
+            }
+        }
+        Ok(())
+    }
+}
