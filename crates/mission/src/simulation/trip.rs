@@ -150,12 +150,12 @@ impl<'a> Trip<'a> {
             let radius_m = separation::radius_m(world, vehicle);
             let moving =
                 driving.drives.iter().rev().flat_map(|it| &it.vehicles).find(|it| it.vehicle == vehicle);
-            match moving.filter(|it| it.frames.last().is_some_and(|last| last.time > start)) {
-                Some(moving) => others.push((moving, radius_m)),
-                None => {
-                    standing.push((place, radius_m));
-                    fine.add(&Obstacle::Circle { center_m: place, radius_m });
-                }
+            let moving = moving.filter(|it| it.frames.last().is_some_and(|last| last.time > start));
+            if let Some(moving) = moving {
+                others.push((moving, radius_m));
+            } else {
+                standing.push((place, radius_m));
+                fine.add(&Obstacle::Circle { center_m: place, radius_m });
             }
         }
         let length_m = drive.path.length_m();
@@ -288,7 +288,7 @@ impl<'a> Trip<'a> {
         let here = driver.state().position_m;
         let model = self.models[vehicle];
         let mut occupancy = self.course.drive.space.occupancy().clone();
-        for point in driver.seen_m().chain(self.known.iter().copied()) {
+        for point in driver.seen_m() {
             occupancy.mark(&Obstacle::Circle { center_m: point, radius_m: 0.0 }, CellState::Obstacle);
         }
         let remaining_m = driver.length_m() - driver.progress_m();
@@ -302,9 +302,16 @@ impl<'a> Trip<'a> {
         let rest_m = rest_m.unwrap_or(0.0);
         let after = rest_of(&path, path.length_m() - rest_m);
         let Some(&goal_m) = after.first() else { return Err(stuck) };
-        let space = ConfigurationSpace::new(occupancy, model.circumradius_m);
+        // What others have seen counts while it leaves a way: whole cells are taken for what fills a part of them.
+        let mut shared = occupancy.clone();
+        for &center_m in &self.known {
+            shared.mark(&Obstacle::Circle { center_m, radius_m: 0.0 }, CellState::Obstacle);
+        }
         let rooms_m = [0.3, model.margin_m, 0.0];
-        let found = way_between(&space, rooms_m, here, goal_m, model, self.reroutes);
+        let found = [shared, occupancy].into_iter().find_map(|occupancy| {
+            let space = ConfigurationSpace::new(occupancy, model.circumradius_m);
+            way_between(&space, rooms_m, here, goal_m, model, self.reroutes)
+        });
         let Some(mut way) = found else { return Err(stuck) };
         let length_m = way.length_m();
         way.points_m.extend(after.into_iter().skip(1));
