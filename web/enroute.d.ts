@@ -304,6 +304,40 @@ export type Robustness = {
 export type Pinned = {
   events: { [key in string]: number };
   windows: Record<string, [Time, Time]>;
+  /** How the run against nature stands, if nature chooses something in this plan. */
+  run: NatureRun | null;
+};
+
+/** A run in which nature's durations are chosen one by one. */
+export type NatureRun = {
+  /** The present. */
+  now: number;
+  /** What happened, in the order of time. */
+  acts: Array<Act>;
+  /** The durations that nature is choosing, and when each may still end. */
+  underWay: Record<string, [Time, Time]>;
+  /** What could happen earlier if nature ended something earlier. */
+  waiting: Array<Waiting>;
+  /** What happens next if nature lets everything last. */
+  next: Act | null;
+};
+
+/** What somebody does. */
+export type Act = {
+  time: number;
+  /** What happens at that instant. */
+  events: Array<string>;
+  /** The duration that nature ends there; otherwise the executive acts. */
+  nature: string | null;
+};
+
+/** An event that waits for nature. */
+export type Waiting = {
+  event: string;
+  /** The duration whose end it waits for. */
+  nature: string;
+  /** It waits no longer than until then. */
+  until: number;
 };
 
 /** The missions that the user has. */

@@ -53,8 +53,9 @@ pub struct StandingPlace {
     pub since: Time,
 }
 
-/// A lower bound that binds nothing: no mission is longer.
-const LONG: i64 = 1 << 40;
+/// A lower bound that binds nothing: no mission is longer. Not more than that, for times are counted in ticks as fine as all
+/// that is known of a run, and have to fit into 64 bits.
+const LONG: i64 = 1 << 30;
 
 impl Facts {
     /// `network` with these facts. `num_program_nodes` is how many nodes the program's own network has.
@@ -98,11 +99,6 @@ impl Facts {
         self.hold_natures(&mut changed, &times);
         for taken_back in &self.taken_back {
             take_back(&mut changed, *taken_back);
-        }
-        if !self.taken_back.is_empty() {
-            // An alternative that begins later than its decision is no part of the program's nesting any more.
-            changed.root = None;
-            changed.blocks.clear();
         }
         for &(occurrence, time) in &self.begins {
             let start = changed.occurrences[occurrence.index()].start;

@@ -72,7 +72,6 @@ pub struct Reason {
     /// The places in the text that the reason is about, the most telling first.
     pub spans: Vec<Span>,
     /// The run in which nature breaks the plan that there would be if the executive chose all durations.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failing_run: Option<FailingRun>,
 }
 

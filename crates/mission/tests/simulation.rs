@@ -198,3 +198,30 @@ fn a_blimp_flies_over_what_stands_on_the_ground() {
         "nothing is seen in the air"
     );
 }
+
+#[test]
+fn a_rover_that_is_stopped_goes_on_by_the_other_path_from_where_it_is() {
+    let execution = run(
+        "terrain \"tai-plain\" cell 0.6 origin (0, 0);
+         location BASE (24, 52);
+         location RIM (120, 70);
+         vehicle Scout : ATRV at BASE;
+         primitive Drive(to)[5,40] moves Scout speed (0.02, 0.8) aborts [0.1,0.3];
+         var PATH1 : {OK, GONE};
+         var PATH2 : {OK, GONE};
+         scenario S[0,800] = {
+           { choose { do { Drive(RIM) } maintaining PATH1=OK, do { Drive(RIM) } maintaining PATH2=OK } },
+           { PATH1=OK [300,300] },
+           { delay [200,200]; PATH2=OK [300,300] }
+         }",
+        &[Disturbance::Withdrawn { condition: "Tell(PATH1=OK)#1".into(), at: 2.into() }],
+    );
+    assert_eq!(execution.ending, Ending::Finished, "{:?}", execution.log.last());
+    let [first, second] = execution.drives.as_slice() else { panic!("two drives") };
+    assert_eq!(first.duration, None);
+    let stopped = first.vehicles[0].frames.last().expect("it set out").position_m;
+    let start = second.vehicles[0].frames.first().expect("it set out").position_m;
+    assert!(distance(&stopped, &Point2::new(24.0, 52.0)) > 10.0, "{stopped}");
+    assert!(distance(&stopped, &start) < 0.01, "{stopped} and {start}");
+    assert!(minutes(second.start) >= 200.0);
+}

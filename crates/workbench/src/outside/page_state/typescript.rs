@@ -199,6 +199,9 @@ fn interface() -> String {
     declare::<execution::Deadline>(&mut out);
     declare::<execution::Robustness>(&mut out);
     declare::<execution::Pinned>(&mut out);
+    declare::<execution::NatureRun>(&mut out);
+    declare::<execution::Act>(&mut out);
+    declare::<execution::Waiting>(&mut out);
     declare::<library::Library>(&mut out);
     declare::<library::KeptMission>(&mut out);
     declare::<review::Review>(&mut out);
