@@ -1,6 +1,7 @@
 // Loads the front end, starts it on the canvas and puts `window.enroute` in place.
 
 import init, { start, usesKey } from "../wasm/page.js";
+import { findAddress, noteAddress } from "./address.js";
 import { createApi } from "./api.js";
 import { startCore } from "./core.js";
 import { chooseFile, saveFile, savePicture } from "./files.js";
@@ -18,6 +19,7 @@ const SHELF_PATIENCE_MILLIS = 1500;
 
 async function load() {
   showStep("Loading");
+  findAddress();
   const shelf = openShelf();
   const module = await fetchWithProgress(new URL("../wasm/page_bg.wasm", import.meta.url));
   showStep("Starting");
@@ -42,11 +44,13 @@ async function load() {
 
   // The last moment at which a page that closes, or is put away, can still write something down.
   function keepNow(typed) {
+    const seen = location.hash;
     try {
       frontEnd?.keepNow(JSON.stringify(typed));
     } catch {
       // A front end that has stopped has written down all that it took in.
     }
+    noteAddress(seen);
   }
   // A page that may come back takes in itself what was typed.
   window.addEventListener("pagehide", ({ persisted }) => keepNow(persisted ? [] : typing.waiting()));

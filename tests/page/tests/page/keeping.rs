@@ -44,9 +44,15 @@ fn a_closed_tab_and_a_tab_beside_it_have_what_was_typed() -> Result<()> {
     beside.wait_until("enroute.source() === '// one'")?;
     // What one says the other takes over.
     beside.evaluate("enroute.setSource('// one and two')")?;
+    beside.next_frame()?;
+    // A tab that nobody sees draws no frames, and hears of it when it is shown.
+    page.tab.call("Page.bringToFront", &json!({}))?;
     page.tab.wait_until("enroute.source() === '// one and two'")?;
     page.tab.evaluate("enroute.setSource('// one, two and three')")?;
+    page.tab.next_frame()?;
+    beside.call("Page.bringToFront", &json!({}))?;
     beside.wait_until("enroute.source() === '// one, two and three'")?;
+    page.tab.call("Page.bringToFront", &json!({}))?;
     page.tab.evaluate("enroute.setSource('// four')")?;
     page.tab.next_frame()?;
     page.tab.call("Page.close", &json!({}))?;
