@@ -387,7 +387,7 @@ impl AppState {
             self.toasts.add(ToastKind::Failed, reason);
             return;
         }
-        if matches!(command, PinCommand::GoOn | PinCommand::TakeBack)
+        if matches!(command, PinCommand::GoOn | PinCommand::TakeBack | PinCommand::Pin(..))
             && let Some(course) = self.pins.course(&shown)
         {
             self.playback.time = playback::number(course.now);
