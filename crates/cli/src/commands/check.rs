@@ -71,13 +71,14 @@ fn check(file: &Path, source: &str, deadline: Deadline) -> anyhow::Result<Vec<Pr
         goals.iter().map(|goal| mission::compile(&program, goal, &mut diagnostics)).collect();
     let is_whole = networks.iter().all(Option::is_some);
     let ground = if is_whole { ground(file, &program.world).ok() } else { None };
-    if let Some((mut grounds, ground)) = ground {
+    // What planning warns of is about vehicles on the ground.
+    if let Some((mut grounds, Some((key, map)))) = ground {
         let mut paths = Paths::default();
         for network in networks.into_iter().flatten().map(Arc::new) {
             let problem = planning::Problem {
                 network: &network,
                 program: &program,
-                ground: ground.as_ref().map(|(key, map)| (key, map)),
+                ground: Some((&key, &map)),
                 options: kirk::Options { explain: false, relax: false, ..kirk::Options::default() },
                 seed: 0,
                 facts: None,
