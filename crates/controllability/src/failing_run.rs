@@ -46,18 +46,19 @@ pub enum Broken {
 }
 
 /// The run in which an executive fails that does everything as early as the constraints of a plan let it, against nature
-/// that chooses durations as the run goes; `None` if it need not fail, or if that cannot be told. The plan is given by
-/// what it selects and what it adds.
+/// that chooses durations as the run goes; `None` if it need not fail, if that cannot be told, or if `stop` said so. The
+/// plan is given by what it selects and what it adds.
 pub fn failing_run(
     network: &Network,
     selected_arcs: &[bool],
     precedences: &[Precedence],
+    stop: stnu::Stop<'_>,
 ) -> Option<FailingRun> {
     let read = plan_network(network, selected_arcs, precedences, scale(network).ok()?).ok()?;
-    if stnu::check(&read.network, &mut || false).ok()? == stnu::Verdict::Controllable {
+    if stnu::check(&read.network, stop).ok()? == stnu::Verdict::Controllable {
         return None;
     }
-    let run = stnu::adversary::failing_run(&read.network, &mut || false).ok()??;
+    let run = stnu::adversary::failing_run(&read.network, stop).ok()??;
     let is_named = |node: &&NodeId| !network.nodes[node.index()].events.is_empty();
     let event = |point| {
         let nodes = read.nodes(point);

@@ -4,6 +4,8 @@
 //! What is left of a network at a moment is a network again. As long as that is not controllable, nature has a next
 //! move after which it still is not: to end something at some time, or to let the executive do what it is about to do.
 
+use std::collections::BTreeSet;
+
 use crate::checker::{Stop, Undecided, Verdict, check};
 use crate::network::{EdgeId, Link, LinkId, Network, PointId};
 
@@ -131,6 +133,8 @@ pub fn failing_run(network: &Network, stop: Stop<'_>) -> Result<Option<FailingRu
     let mut times: Vec<Option<i64>> = vec![None; network.num_points()];
     let mut events = Vec::new();
     let mut now = 0;
+    let waits: BTreeSet<(PointId, PointId)> =
+        network.edges().iter().filter(|edge| edge.weight <= 0).map(|edge| (edge.from, edge.to)).collect();
     loop {
         if let Some(broken) = broken(network, &times, now) {
             return Ok(Some(FailingRun { events, broken, at: now }));
@@ -142,11 +146,9 @@ pub fn failing_run(network: &Network, stop: Stop<'_>) -> Result<Option<FailingRu
         let is_pending =
             |link: &Link| times[link.activation.index()].is_some() && times[link.end.index()].is_none();
         // What waits for nature waits; constraints that wait for each other have to be broken somewhere.
-        let (at, enabled) = (
-            |point: PointId| (earliest[point.index()], point),
-            |point: &PointId| is_enabled(network, &times, *point),
-        );
-        let next = match free.clone().filter(enabled).map(at).min() {
+        let is_blocked = blocked(network, &waits, &times);
+        let at = |point: PointId| (earliest[point.index()], point);
+        let next = match free.clone().filter(|point| !is_blocked[point.index()]).map(at).min() {
             None if !network.links().iter().any(is_pending) => free.map(at).min(),
             next => next,
         };
@@ -166,14 +168,14 @@ pub fn failing_run(network: &Network, stop: Stop<'_>) -> Result<Option<FailingRu
     }
 }
 
-/// Whether all that must come before a point has; of points that come at one instant, none waits for the other.
-fn is_enabled(network: &Network, times: &[Option<i64>], point: PointId) -> bool {
-    let waits = |from: PointId, to: PointId| {
-        let mut edges = network.edges().iter().filter(|edge| edge.from == from && edge.to == to);
-        edges.any(|edge| edge.weight <= 0)
-    };
-    let mut before = network.edges().iter().filter(|edge| edge.from == point && edge.weight <= 0);
-    before.all(|edge| times[edge.to.index()].is_some() || (edge.weight == 0 && waits(edge.to, point)))
+/// By point, whether something that must come before it has not; of points that come at one instant, none waits for the
+/// other. `waits` are the pairs of which one waits for the other.
+fn blocked(network: &Network, waits: &BTreeSet<(PointId, PointId)>, times: &[Option<i64>]) -> Vec<bool> {
+    let mut is_blocked = vec![false; times.len()];
+    for edge in network.edges().iter().filter(|edge| edge.weight <= 0 && times[edge.to.index()].is_none()) {
+        is_blocked[edge.from.index()] |= edge.weight < 0 || !waits.contains(&(edge.to, edge.from));
+    }
+    is_blocked
 }
 
 /// A constraint that is broken at `now`.
