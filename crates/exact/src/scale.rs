@@ -20,6 +20,11 @@ impl Scale {
     /// One tick is one unit.
     pub const UNITS: Self = Self { ticks_per_unit: 1 };
 
+    /// So many ticks are one unit; at least 1.
+    pub const fn of(ticks_per_unit: u32) -> Self {
+        Self { ticks_per_unit: if ticks_per_unit == 0 { 1 } else { ticks_per_unit as i64 } }
+    }
+
     /// How many ticks are one unit.
     pub const fn ticks_per_unit(self) -> i64 {
         self.ticks_per_unit
@@ -61,6 +66,19 @@ impl Scale {
         let doubled = 2 * numerator * i128::from(self.ticks_per_unit) + denominator;
         let nearest = doubled.div_euclid(2 * denominator);
         i64::try_from(nearest).unwrap_or(if nearest < 0 { i64::MIN } else { i64::MAX })
+    }
+
+    /// The last tick that is not after a time; `None` if it does not fit.
+    pub fn floor_tick(self, time: Time) -> Option<i64> {
+        let (numerator, denominator) = time.units().wide();
+        i64::try_from((numerator * i128::from(self.ticks_per_unit)).div_euclid(denominator)).ok()
+    }
+
+    /// The first tick that is not before a time; `None` if it does not fit.
+    pub fn ceiling_tick(self, time: Time) -> Option<i64> {
+        let (numerator, denominator) = time.units().wide();
+        // Denominators are positive.
+        i64::try_from(-(-numerator * i128::from(self.ticks_per_unit)).div_euclid(denominator)).ok()
     }
 
     /// The time of a tick.

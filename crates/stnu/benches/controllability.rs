@@ -15,7 +15,7 @@ fn main() {
         "| kind | points | links | edges | check ms | worst ms | controllable | edge and undo ms | dispatchable ms |"
     );
     println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
-    for kind in [Kind::Workflow, Kind::JobShop, Kind::Tree, Kind::Scattered] {
+    for kind in [Kind::Workflow, Kind::JobShop, Kind::Tree, Kind::Scattered, Kind::Near] {
         for (points, links) in [(100, 10), (1_000, 100), (10_000, 100), (10_000, 1_000)] {
             row(Shape { kind, points, links, slack_percent: if kind == Kind::Scattered { 900 } else { 5 } });
         }
@@ -34,7 +34,7 @@ fn row(shape: Shape) {
         .collect();
     checks.sort_by(f64::total_cmp);
     let edges: Vec<f64> = networks.iter().take(1).filter_map(edge_and_undo).collect();
-    let forms = if shape.kind == Kind::Scattered && shape.points > 1_000 {
+    let forms = if matches!(shape.kind, Kind::Scattered | Kind::Near) && shape.points > 1_000 {
         Vec::new()
     } else {
         networks.iter().map(|network| millis(|| Dispatchable::new(network, &mut || false))).collect()

@@ -111,11 +111,15 @@ enum Visit {
     Done,
 }
 
-/// A link being brought up to date, and where the path from the next one's activation to its end starts.
+/// A link being brought up to date.
 struct Frame {
     link: u32,
+    /// What the last search found to come first, each with where the path from its activation to the link's end starts.
+    awaited: Vec<(u32, u32)>,
+    /// How many of them have been looked at.
+    seen: usize,
+    /// The path from the activation of the one that was looked at last.
     met: u32,
-    next_awaited: usize,
 }
 
 /// A network that is dynamically controllable at all times.
@@ -261,13 +265,21 @@ impl Checker {
     fn update(&mut self, stop: Stop<'_>) -> Result<(), Refusal> {
         self.visits.clear();
         self.visits.resize(self.rows.len(), Visit::Not);
+        let is_stale = |&link: &u32, rows: &[Row]| rows[link as usize].is_stale;
+        let mut stale: Vec<u32> =
+            (0..self.rows.len() as u32).filter(|link| is_stale(link, &self.rows)).collect();
+        // What a link awaits mostly begins after it, and is best there first.
+        stale.sort_by_key(|&link| {
+            std::cmp::Reverse(self.graph.potential[self.network.links()[link as usize].activation.index()])
+        });
         // A visit may outdate links that await the visited one; one that is done stays so.
-        while self.rows.iter().any(|row| row.is_stale) {
-            for link in 0..self.rows.len() as u32 {
+        while !stale.is_empty() {
+            for link in stale {
                 if self.rows[link as usize].is_stale {
                     self.visit(link, stop)?;
                 }
             }
+            stale = (0..self.rows.len() as u32).filter(|link| is_stale(link, &self.rows)).collect();
         }
         Ok(())
     }
@@ -278,31 +290,24 @@ impl Checker {
         self.open(link, &mut stack);
         while let Some(frame) = stack.last_mut() {
             let frame: &mut Frame = frame;
-            let link = frame.link;
-            let row = &self.rows[link as usize];
-            let awaited = if row.is_stale {
+            if let Some(&(awaited, met)) = frame.awaited.get(frame.seen) {
+                frame.seen += 1;
+                frame.met = met;
+                match self.visits[awaited as usize] {
+                    Visit::Done => {}
+                    Visit::Open => return Err(self.cycle(&stack, awaited)),
+                    Visit::Not => self.open(awaited, &mut stack),
+                }
+            } else if self.rows[frame.link as usize].is_stale {
                 if stop() {
                     return Err(Undecided::Stopped.into());
                 }
-                let Some(awaited) = self.search(link)? else {
-                    frame.next_awaited = 0;
-                    continue;
-                };
-                awaited
-            } else if let Some(&awaited) = row.awaited.get(frame.next_awaited) {
-                frame.next_awaited += 1;
-                awaited
+                let link = frame.link;
+                frame.seen = 0;
+                frame.awaited = self.search(link)?;
             } else {
-                self.visits[link as usize] = Visit::Done;
+                self.visits[frame.link as usize] = Visit::Done;
                 stack.pop();
-                continue;
-            };
-            let (awaited, met) = awaited;
-            frame.met = met;
-            match self.visits[awaited as usize] {
-                Visit::Done => {}
-                Visit::Open => return Err(self.cycle(&stack, awaited)),
-                Visit::Not => self.open(awaited, &mut stack),
             }
         }
         Ok(())
@@ -310,12 +315,14 @@ impl Checker {
 
     fn open(&mut self, link: u32, stack: &mut Vec<Frame>) {
         self.visits[link as usize] = Visit::Open;
-        stack.push(Frame { link, met: crate::graph::NONE, next_awaited: 0 });
+        let row = &self.rows[link as usize];
+        let awaited = if row.is_stale { Vec::new() } else { row.awaited.clone() };
+        stack.push(Frame { link, awaited, seen: 0, met: crate::graph::NONE });
     }
 
-    /// Finds a link's row anew and bypasses its upper case, or says which link comes first and where the path from its
-    /// activation starts.
-    fn search(&mut self, link: u32) -> Result<Option<(u32, u32)>, Refusal> {
+    /// Finds a link's row anew and bypasses its upper case, or says which links come first and where the paths from their
+    /// activations start.
+    fn search(&mut self, link: u32) -> Result<Vec<(u32, u32)>, Refusal> {
         let is_done = |other: u32| self.visits[other as usize] == Visit::Done;
         let found = self.search.run(
             link,
@@ -326,7 +333,7 @@ impl Checker {
             &mut self.nodes,
         );
         match found.ok_or(Undecided::Overflow)? {
-            Found::Awaits(other, node) => return Ok(Some((other, node))),
+            Found::Awaits(first) => return Ok(first),
             Found::Cycle(node) => {
                 let mut cycle = self.path(node);
                 cycle.push(CyclePart::Upper(link));
@@ -355,7 +362,7 @@ impl Checker {
             row.is_stale =
                 self.graph.arcs[first..].iter().any(|arc| changes(row, of, arc.from, arc.to, arc.weight));
         }
-        Ok(None)
+        Ok(Vec::new())
     }
 
     /// Links that await each other, the last of `stack` awaiting `awaited` further down.

@@ -51,6 +51,8 @@ pub enum Kind {
     Tree,
     /// Constraints between random points that a hidden schedule keeps, with slack.
     Scattered,
+    /// The same, but only between points that the hidden schedule has near each other: many links await many others.
+    Near,
 }
 
 /// The size and tightness of a network.
@@ -76,6 +78,7 @@ pub fn network(shape: Shape, seed: u64) -> Network {
         Kind::JobShop => builder.job_shop(),
         Kind::Tree => builder.tree(),
         Kind::Scattered => builder.scattered(),
+        Kind::Near => builder.near(),
     }
     builder.network
 }
@@ -213,7 +216,35 @@ impl Builder {
     }
 
     fn scattered(&mut self) {
-        let mut hidden = vec![0_i64];
+        let hidden = self.hidden_schedule(10_000);
+        for _ in 0..self.shape.points * 3 {
+            let (from, to) = (self.random.below(hidden.len()), self.random.below(hidden.len()));
+            let slack = self.random.between(0, 200) * (100 + self.shape.slack_percent).max(0) / 100;
+            let weight = hidden[to] - hidden[from] + slack;
+            self.network.add_edge(PointId(from as u32), PointId(to as u32), weight);
+        }
+    }
+
+    fn near(&mut self) {
+        let hidden = self.hidden_schedule(10 * self.shape.points as i64);
+        let mut in_time: Vec<usize> = (0..hidden.len()).collect();
+        in_time.sort_by_key(|&point| (hidden[point], point));
+        for _ in 0..self.shape.points * 6 {
+            let place = self.random.below(hidden.len());
+            let other = (place + self.random.between(1, 30) as usize).min(hidden.len() - 1);
+            let (mut from, mut to) = (in_time[place], in_time[other]);
+            if self.random.chance(50) {
+                (from, to) = (to, from);
+            }
+            let slack = self.random.between(60, 120) * (100 + self.shape.slack_percent).max(0) / 100;
+            let weight = hidden[to] - hidden[from] + slack;
+            self.network.add_edge(PointId(from as u32), PointId(to as u32), weight);
+        }
+    }
+
+    /// Points with times, and contingent links between some of them.
+    fn hidden_schedule(&mut self, horizon: i64) -> Vec<i64> {
+        let mut hidden = vec![0];
         while self.network.num_points() < self.shape.points {
             let point = self.network.add_point();
             let activation = self.random.below(hidden.len());
@@ -224,14 +255,9 @@ impl Builder {
                 let link = Link { activation: PointId(activation as u32), end: point, lower, upper };
                 self.links += usize::from(self.network.add_link(link).is_ok());
             } else {
-                hidden.push(self.random.between(0, 10_000));
+                hidden.push(self.random.between(0, horizon));
             }
         }
-        for _ in 0..self.shape.points * 3 {
-            let (from, to) = (self.random.below(hidden.len()), self.random.below(hidden.len()));
-            let slack = self.random.between(0, 200) * (100 + self.shape.slack_percent).max(0) / 100;
-            let weight = hidden[to] - hidden[from] + slack;
-            self.network.add_edge(PointId(from as u32), PointId(to as u32), weight);
-        }
+        hidden
     }
 }

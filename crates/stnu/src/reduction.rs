@@ -22,8 +22,8 @@ pub(crate) struct Node {
 pub(crate) enum Found {
     /// The row is in [`Search::row`], what it implies in [`Search::bypasses`].
     Done,
-    /// This other link must be up to date first; the path from its activation starts at the node.
-    Awaits(u32, u32),
+    /// These other links must be up to date first, each with the node at which the path from its activation starts.
+    Awaits(Vec<(u32, u32)>),
     /// The path that starts at the node leads from the link's activation to its end in less than its upper bound.
     Cycle(u32),
 }
@@ -31,6 +31,8 @@ pub(crate) enum Found {
 #[derive(Clone, Copy, Debug, Default)]
 struct Reach {
     distance: i64,
+    /// The greatest distance on the path to the end, once it is done.
+    highest: i64,
     arc: u32,
     node: u32,
     stamp: u32,
@@ -74,7 +76,7 @@ impl Search {
         let first_node = nodes.len();
         let (spread, stamp) = (link.spread(), self.stamp);
         let base = graph.potential[link.end.index()];
-        self.reach[link.end.index()] = Reach { distance: 0, arc: NONE, node: NONE, stamp, is_done: false };
+        self.reach[link.end.index()] = Reach { stamp, arc: NONE, node: NONE, ..Reach::default() };
         self.heap.push(0, link.end.0);
         while let Some((_, point)) = self.heap.pop() {
             let reach = &mut self.reach[point as usize];
@@ -83,14 +85,19 @@ impl Search {
             }
             let distance = reach.distance;
             let arc = reach.arc;
-            if arc != NONE {
-                let next = self.reach[graph.arcs[arc as usize].to as usize].node;
-                nodes.push(Node { arc, next });
+            let highest_before = graph.arcs.get(arc as usize).map(|arc| {
+                let next = self.reach[arc.to as usize];
+                nodes.push(Node { arc: self.reach[point as usize].arc, next: next.node });
                 self.reach[point as usize].node = nodes.len() as u32 - 1;
-            }
+                next.highest
+            });
+            self.reach[point as usize].highest =
+                highest_before.map_or(distance, |before| before.max(distance));
             let node = self.reach[point as usize].node;
             if point == link.activation.0 && distance < link.upper {
-                return Some(Found::Cycle(keep(nodes, first_node, node)));
+                let mut start = node;
+                keep(nodes, first_node, std::iter::once(&mut start));
+                return Some(Found::Cycle(start));
             }
             self.settled.push(point);
             if distance >= spread {
@@ -100,14 +107,11 @@ impl Search {
                 }
                 continue;
             }
-            // Where the path starts with a step that is not up, the constraint of its second point implies this one.
-            if graph.arcs.get(arc as usize).is_none_or(|arc| arc.weight > 0) {
+            // A point further along the path that is as far from the end implies this constraint by its own.
+            if highest_before.is_none_or(|before| distance > before) {
                 self.bypasses.push((point, -link.lower, node));
             }
             for &other in &activated[point as usize] {
-                if !is_done(other) {
-                    return Some(Found::Awaits(other, keep(nodes, first_node, node)));
-                }
                 self.awaited.push((other, node));
             }
             for (arc_id, arc) in graph.arcs_into(point) {
@@ -120,11 +124,18 @@ impl Search {
                     continue;
                 }
                 let key = reached.checked_add(graph.potential[arc.from as usize].checked_sub(base)?)?;
-                *reach = Reach { distance: reached, arc: arc_id, node: NONE, stamp, is_done: false };
+                *reach = Reach { distance: reached, arc: arc_id, node: NONE, stamp, ..Reach::default() };
                 self.heap.push(key, arc.from);
             }
         }
-        Some(Found::Done)
+        // What is missing can only bring points closer to the end, and so these links are awaited for certain.
+        let mut first: Vec<(u32, u32)> =
+            self.awaited.iter().copied().filter(|&(other, _)| !is_done(other)).collect();
+        if first.is_empty() {
+            return Some(Found::Done);
+        }
+        keep(nodes, first_node, first.iter_mut().map(|(_, node)| node));
+        Some(Found::Awaits(first))
     }
 
     /// What the search found, but for the bypasses.
@@ -152,14 +163,30 @@ impl Search {
     }
 }
 
-/// Keeps of a search's nodes only the path that starts at `node`; where it starts then.
-fn keep(nodes: &mut Vec<Node>, first: usize, node: u32) -> u32 {
-    let arcs: Vec<u32> = crate::checker::path(nodes, node).collect();
-    nodes.truncate(first);
-    let mut next = NONE;
-    for &arc in arcs.iter().rev() {
-        nodes.push(Node { arc, next });
-        next = nodes.len() as u32 - 1;
+/// Keeps of a search's nodes only the paths that start at `starts`, which are made to point at what is kept.
+fn keep<'a>(nodes: &mut Vec<Node>, first: usize, starts: impl Iterator<Item = &'a mut u32>) {
+    let found = nodes.split_off(first);
+    let mut kept = vec![NONE; found.len()];
+    for start in starts {
+        // A node stands behind the one at which the rest of its path starts.
+        let mut path = Vec::new();
+        let mut node = *start;
+        let mut next = loop {
+            if node == NONE || (node as usize) < first {
+                break node;
+            }
+            let index = node as usize - first;
+            if kept[index] != NONE {
+                break kept[index];
+            }
+            path.push(index);
+            node = found[index].next;
+        };
+        for index in path.into_iter().rev() {
+            nodes.push(Node { arc: found[index].arc, next });
+            next = nodes.len() as u32 - 1;
+            kept[index] = next;
+        }
+        *start = next;
     }
-    next
 }

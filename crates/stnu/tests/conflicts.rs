@@ -156,7 +156,7 @@ fn the_drive_to_the_window_needs_a_shorter_drive_or_a_wider_window() {
 
 #[test]
 fn conflicts_of_larger_networks_suffice_too() {
-    for kind in [Kind::Workflow, Kind::JobShop, Kind::Tree, Kind::Scattered] {
+    for kind in [Kind::Workflow, Kind::JobShop, Kind::Tree, Kind::Scattered, Kind::Near] {
         let mut conflicts = 0;
         for seed in 0..12 {
             let shape = Shape { kind, points: 120, links: 30, slack_percent: -40 };

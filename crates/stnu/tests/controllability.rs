@@ -228,7 +228,7 @@ fn generated_networks_with_slack_are_controllable_and_without_are_not() {
         }
     }
     let mut verdicts = [0, 0];
-    for kind in [Kind::Tree, Kind::Scattered] {
+    for kind in [Kind::Tree, Kind::Scattered, Kind::Near] {
         for seed in 0..100 {
             let slack_percent = (seed % 10) as i64 * 10 - 50;
             let network = generate::network(Shape { kind, points: 14, links: 4, slack_percent }, seed);

@@ -1,5 +1,6 @@
 //! The plain layout and `GraphML`: what is read, what is refused and where.
 
+use exact::Scale;
 use stnu::generate::{Kind, Shape};
 use stnu::{Document, Edge, Layout, Link, PointId, generate};
 
@@ -47,7 +48,7 @@ fn what_is_written_is_read() {
         let shape = Shape { kind: Kind::Workflow, points: 40, links: 10, slack_percent: 0 };
         let network = generate::network(shape, seed);
         let names = (0..network.num_points()).map(|point| format!("<T&{point}>")).collect();
-        let document = Document { names, network };
+        let document = Document { names, network, scale: Scale::UNITS, is_rounded: false };
         for layout in [Layout::Plain, Layout::GraphMl] {
             let text = document.write(layout);
             assert_eq!(Layout::of(&text), layout);
@@ -87,7 +88,56 @@ fn what_is_wrong_with_plain_text_is_told_with_its_line() {
     assert_eq!(refused(&PLAIN.replace("A 20 40 C", "A 40 20 C")).0, 15);
     assert_eq!(refused(&PLAIN.replace("A 20 40 C", "A 20 40 Q")).1, "Q is not a time point");
     assert_eq!(refused(&PLAIN.replace("A 20 40 C", "A 20 C")).0, 15);
-    assert_eq!(refused(&PLAIN.replace("Z 35 C", "Z 3.5 C")), (12, "expected a whole number, not 3.5".into()));
+    assert_eq!(refused(&PLAIN.replace("Z 35 C", "Z many C")).0, 12);
+    assert_eq!(refused(&PLAIN.replace("\n3\n", "\n4\n")).1, "4 time points are announced, but 3 are named");
+    assert_eq!(refused(&PLAIN.replace("Z A C\n", "Z A A\n")).1, "A is named twice");
+    assert!(refused("# only\n").1.contains("empty"));
+    assert_eq!(refused("STN\n").0, 1);
+}
+
+#[test]
+fn decimals_are_read_exactly_and_written_as_they_were() {
+    let text = PLAIN.replace("Z 35 C", "Z 35.25 C").replace("A 20 40 C", "A 20.0 4.05e1 C");
+    let document = Document::parse(&text).expect("well formed");
+    assert_eq!(document.scale.ticks_per_unit(), 4);
+    assert_eq!(document.network.edges()[0].weight, 141);
+    assert_eq!(document.time(141).to_string(), "35.25");
+    let link = document.network.links()[0];
+    assert_eq!(
+        (document.time(link.lower).to_string(), document.time(link.upper).to_string()),
+        ("20".into(), "40.5".into())
+    );
+    let decimal = GRAPHML.replace(">35<", ">35.25<").replace("UC(C):-40", "UC(C):-40.5");
+    assert_eq!(Document::parse(&decimal), Ok(document.clone()));
+    for layout in [Layout::Plain, Layout::GraphMl] {
+        assert_eq!(Document::parse(&document.write(layout)), Ok(document.clone()));
+    }
+}
+
+#[test]
+fn times_without_common_ticks_are_rounded_to_the_safe_side() {
+    let fine = PLAIN
+        .replace("Z 35 C", "Z 35.0000000000000001 C")
+        .replace("C -30 Z", "C -91/3 Z")
+        .replace("A 20 40 C", "A 2000/7 900.1 C");
+    let document = Document::parse(&fine).expect("well formed");
+    assert!(document.is_rounded);
+    assert_eq!(
+        document.network.edges().iter().map(|edge| edge.weight).collect::<Vec<_>>(),
+        [35_000_000_000, -30_333_333_334]
+    );
+    let link = document.network.links()[0];
+    assert_eq!((link.lower, link.upper), (285_714_285_714, 900_100_000_000));
+    assert_eq!(
+        refused(&PLAIN.replace("Z 35 C", "Z 9000000000000000000 C").replace("-30", "-1/3")).1,
+        "a time does not fit into 64 bits"
+    );
+}
+
+#[test]
+fn an_infinite_edge_constrains_nothing() {
+    let text = PLAIN.replace("Z 35 C", "Z inf C");
+    assert_eq!(Document::parse(&text).expect("well formed").network.edges().len(), 1);
 }
 
 #[test]
@@ -98,7 +148,7 @@ fn what_is_wrong_with_graphml_is_told_with_its_line() {
         refused(&GRAPHML.replace("target=\"Z\"", "target=\"Q\"")),
         (12, "Q is not a time point".into())
     );
-    assert_eq!(refused(&GRAPHML.replace(">35<", ">many<")), (11, "expected a whole number, not many".into()));
+    assert_eq!(refused(&GRAPHML.replace(">35<", ">many<")).0, 11);
     let one_side = GRAPHML.replace("LC(C):20", "");
     assert_eq!(refused(&one_side).1, "the contingent link between A and C needs a lower and an upper bound");
     let observing = GRAPHML.replace("<node id=\"A\"/>", "<node id=\"A\"><data key=\"Obs\">p</data></node>");

@@ -122,7 +122,7 @@ fn controllable_networks_never_fail() {
 #[test]
 fn larger_controllable_networks_never_fail() {
     let mut runs = 0;
-    for kind in [Kind::Workflow, Kind::JobShop, Kind::Tree, Kind::Scattered] {
+    for kind in [Kind::Workflow, Kind::JobShop, Kind::Tree, Kind::Scattered, Kind::Near] {
         for seed in 0..12 {
             let slack_percent = if kind == Kind::Scattered { 400 } else { 0 };
             let network = generate::network(Shape { kind, points: 60, links: 20, slack_percent }, seed);

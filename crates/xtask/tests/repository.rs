@@ -17,7 +17,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("exact", &[]),
     ("rmpl", &["exact"]),
     ("stn", &[]),
-    ("stnu", &[]),
+    ("stnu", &["exact"]),
     ("terrain", &[]),
     ("tpn", &["rmpl"]),
     ("controllability", &["tpn", "stnu"]),

@@ -10,12 +10,16 @@ use anyhow::anyhow;
 use mission::Problem;
 use rmpl::{Code, Diagnostic, Span};
 use serde_json::{Map, Value, json};
-use stn::{Document, Inconsistency, Overflow, ParseError, PointId, Window};
+use stn::{Inconsistency, Overflow, PointId, Stn, Window};
+use stnu::{Document, ParseError};
 
+use self::controllability::Controllability;
 use crate::diagnostics::print_problems;
 use crate::input::read_text;
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
 
+/// The file's times were rounded.
+const W_ROUNDED: Code = Code("W-ROUNDED");
 /// The file is not a network in the format.
 const E_STN: Code = Code("E-STN");
 
@@ -33,101 +37,80 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let source = read_text(&args.file)?;
-    if stnu::Document::is_uncertain(&source) {
-        return match stnu::Document::parse(&source) {
-            Ok(network) => answer_uncertain(args, &network),
-            Err(error) => refuse(args, &source, error.line, error.message),
-        };
-    }
-    let network = match stn::parse(&source) {
+    let network = match Document::parse(&source) {
         Ok(network) => network,
         Err(ParseError { line, message }) => return refuse(args, &source, line, message),
     };
-    let (mut stn, consistent) = network.to_stn();
-    match consistent {
-        Ok(()) => {
-            let windows = if network.names.is_empty() {
-                Vec::new()
-            } else {
-                stn.windows(PointId(0)).map_err(|overflow| too_large(&network, overflow))?
-            };
-            match args.format {
-                Format::Text => print_text(&windows_text(&network, &windows))?,
-                Format::Json => {
-                    let body = json!({ "consistent": true, "windows": windows_json(&network, &windows), "cycle": null });
-                    print_json(&document("stn", &[], body))?;
-                }
-            }
-            Ok(exit(YES))
-        }
-        Err(Inconsistency::NegativeCycle) => {
-            match args.format {
-                Format::Text => print_text(&cycle_text(&network, &stn))?,
-                Format::Json => {
-                    let cycle: Vec<Value> =
-                        stn.cycle().iter().map(|edge| edge_json(&network, edge)).collect();
-                    let body = json!({ "consistent": false, "windows": null, "cycle": cycle });
-                    print_json(&document("stn", &[], body))?;
-                }
-            }
-            Ok(exit(NO))
-        }
-        Err(Inconsistency::Overflow(overflow)) => Err(too_large(&network, overflow)),
+    let has_nature = Document::is_uncertain(&source);
+    let problems = rounding(&network, &source);
+    if args.format == Format::Text {
+        print_problems(&args.file.display().to_string(), &source, &problems)?;
     }
-}
-
-/// As for plain networks, with contingent links as ordinary bounds, and whether the network is controllable.
-fn answer_uncertain(args: &Args, uncertain: &stnu::Document) -> anyhow::Result<ExitCode> {
-    let network = controllability::ordinary(uncertain)?;
-    let (mut stn, consistent) = network.to_stn();
-    match consistent {
-        Ok(()) => {}
+    let (mut stn, consistent) = controllability::ordinary(&network)?;
+    let windows = match consistent {
+        Ok(()) if network.names.is_empty() => Vec::new(),
+        Ok(()) => stn.windows(PointId(0)).map_err(|overflow| too_large(&network, overflow))?,
         Err(Inconsistency::NegativeCycle) => {
-            match args.format {
-                Format::Text => {
-                    print_text(&format!("{}not controllable\n", cycle_text(&network, &stn)))?;
-                }
-                Format::Json => {
-                    let cycle: Vec<Value> =
-                        stn.cycle().iter().map(|edge| edge_json(&network, edge)).collect();
-                    let body = json!({
-                        "consistent": false,
-                        "windows": null,
-                        "cycle": cycle,
-                        "controllable": false,
-                        "relaxations": null,
-                    });
-                    print_json(&document("stn", &[], body))?;
-                }
-            }
-            return Ok(exit(NO));
+            return inconsistent(args, &network, &stn, has_nature, &problems);
         }
         Err(Inconsistency::Overflow(overflow)) => return Err(too_large(&network, overflow)),
-    }
-    let windows = if network.names.is_empty() {
-        Vec::new()
-    } else {
-        stn.windows(PointId(0)).map_err(|overflow| too_large(&network, overflow))?
     };
-    let answer = controllability::check(uncertain)?;
-    let (is_controllable, cycle, relaxations) = controllability::json(uncertain, &answer);
+    let answer = if has_nature { Some(controllability::check(&network)?) } else { None };
     match args.format {
         Format::Text => {
-            let controllable = controllability::text(uncertain, &answer);
-            print_text(&format!("{}{controllable}", windows_text(&network, &windows)))?;
+            let controllable = answer.as_ref().map(|answer| controllability::text(&network, answer));
+            print_text(&format!("{}{}", windows_text(&network, &windows), controllable.unwrap_or_default()))?;
         }
         Format::Json => {
-            let body = json!({
-                "consistent": true,
-                "windows": windows_json(&network, &windows),
-                "cycle": cycle,
-                "controllable": is_controllable,
-                "relaxations": relaxations,
-            });
-            print_json(&document("stn", &[], body))?;
+            let mut body =
+                json!({ "consistent": true, "windows": windows_json(&network, &windows), "cycle": null });
+            if let Some(answer) = &answer {
+                let (is_controllable, cycle, relaxations) = controllability::json(&network, answer);
+                body["controllable"] = json!(is_controllable);
+                body["cycle"] = cycle;
+                body["relaxations"] = relaxations;
+            }
+            print_json(&document("stn", &problems, body))?;
         }
     }
-    Ok(exit(if is_controllable { YES } else { NO }))
+    let is_kept = answer.is_none_or(|answer| matches!(answer, Controllability::Controllable));
+    Ok(exit(if is_kept { YES } else { NO }))
+}
+
+/// The answer where nature's help is not enough.
+fn inconsistent(
+    args: &Args,
+    network: &Document,
+    stn: &Stn,
+    has_nature: bool,
+    problems: &[Problem],
+) -> anyhow::Result<ExitCode> {
+    match args.format {
+        Format::Text => {
+            let controllable = if has_nature { "not controllable\n" } else { "" };
+            print_text(&format!("{}{controllable}", cycle_text(network, stn)))?;
+        }
+        Format::Json => {
+            let cycle: Vec<Value> = stn.cycle().iter().map(|edge| edge_json(network, edge)).collect();
+            let mut body = json!({ "consistent": false, "windows": null, "cycle": cycle });
+            if has_nature {
+                body["controllable"] = json!(false);
+                body["relaxations"] = Value::Null;
+            }
+            print_json(&document("stn", problems, body))?;
+        }
+    }
+    Ok(exit(NO))
+}
+
+/// Says so where the file's times were rounded.
+fn rounding(network: &Document, source: &str) -> Vec<Problem> {
+    if !network.is_rounded {
+        return Vec::new();
+    }
+    let message = "the times have no common part within 64 bits, and were rounded to billionths: constraints to the \
+                   tighter side, contingent links to the wider one";
+    Problem::all(&[Diagnostic::warning(W_ROUNDED, Span::new(0, 0), message)], source)
 }
 
 fn too_large(network: &Document, Overflow { point }: Overflow) -> anyhow::Error {
@@ -158,27 +141,29 @@ fn windows_text(network: &Document, windows: &[Window]) -> String {
     let mut text = "consistent\n".to_owned();
     let width = network.names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
     for (name, window) in network.names.iter().zip(windows) {
-        let earliest = window.earliest.map_or("-inf".to_owned(), |time| time.to_string());
-        let latest = window.latest.map_or("inf".to_owned(), |time| time.to_string());
+        let earliest = window.earliest.map_or("-inf".to_owned(), |tick| network.time(tick).to_string());
+        let latest = window.latest.map_or("inf".to_owned(), |tick| network.time(tick).to_string());
         text.push_str(&format!("{name:<width$}  [{earliest}, {latest}]\n"));
     }
     text
 }
 
-fn cycle_text(network: &Document, stn: &stn::Stn) -> String {
+fn cycle_text(network: &Document, stn: &Stn) -> String {
     let total: i128 = stn.cycle().iter().map(|edge| i128::from(edge.weight)).sum();
+    // A sum over a whole cycle may leave 64 bits; then it is told in ticks.
+    let total = i64::try_from(total).map_or(total.to_string(), |total| network.time(total).to_string());
     let mut text = format!("not consistent: a cycle of weight {total}\n");
     for edge in stn.cycle() {
         let (from, to) = (&network.names[edge.from.index()], &network.names[edge.to.index()]);
-        text.push_str(&format!("{from} {} {to}\n", edge.weight));
+        text.push_str(&format!("{from} {} {to}\n", network.time(edge.weight)));
     }
     text
 }
 
 fn windows_json(network: &Document, windows: &[Window]) -> Value {
     let windows = network.names.iter().zip(windows).map(|(name, window)| {
-        let earliest = window.earliest.map_or(json!("-inf"), |time| json!(time));
-        let latest = window.latest.map_or(json!("inf"), |time| json!(time));
+        let earliest = window.earliest.map_or(json!("-inf"), |tick| json!(network.time(tick)));
+        let latest = window.latest.map_or(json!("inf"), |tick| json!(network.time(tick)));
         (name.clone(), json!([earliest, latest]))
     });
     Value::Object(windows.collect::<Map<_, _>>())
@@ -187,7 +172,7 @@ fn windows_json(network: &Document, windows: &[Window]) -> Value {
 fn edge_json(network: &Document, edge: &stn::CycleEdge) -> Value {
     json!({
         "from": network.names[edge.from.index()],
-        "weight": edge.weight,
+        "weight": network.time(edge.weight),
         "to": network.names[edge.to.index()],
     })
 }

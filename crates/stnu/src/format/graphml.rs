@@ -7,25 +7,26 @@
 
 use std::collections::BTreeMap;
 
+use exact::{Bound, Time};
 use roxmltree::{Document as Xml, Node};
 
-use super::{Document, ParseError};
+use super::{Document, Draft, DraftEdge, DraftLink, ParseError};
 use crate::network::{Link, PointId};
 
 /// What the two edges of a contingent link say, from the activation's or the end's side.
 #[derive(Default)]
 struct Pair {
     line: usize,
-    lower: Option<i64>,
-    upper: Option<i64>,
-    value: Option<i64>,
+    lower: Option<Time>,
+    upper: Option<Time>,
+    value: Option<Bound>,
 }
 
 /// The value of one edge.
 enum Value {
-    Ordinary(i64),
-    LowerCase(i64),
-    UpperCase(i64),
+    Ordinary(Bound),
+    LowerCase(Time),
+    UpperCase(Time),
 }
 
 pub(super) fn parse(text: &str) -> Result<Document, ParseError> {
@@ -45,16 +46,16 @@ pub(super) fn parse(text: &str) -> Result<Document, ParseError> {
     {
         return Err(reader.error(graph, format!("networks of kind {kind} are not read")));
     }
-    let mut document = Document::default();
+    let mut draft = Draft::default();
     let mut by_name = BTreeMap::new();
     for node in graph.children().filter(|node| node.is_named("node")) {
         let name = reader.attribute(node, "id")?;
         reader.refuse_conditions(node)?;
-        let point = document.network.add_point();
+        let point = PointId(draft.names.len() as u32);
         if by_name.insert(name, point).is_some() {
             return Err(reader.error(node, format!("{name} is named twice")));
         }
-        document.names.push(name.to_owned());
+        draft.names.push(name.to_owned());
     }
     let mut pairs: BTreeMap<(PointId, PointId), Pair> = BTreeMap::new();
     for edge in graph.children().filter(|node| node.is_named("edge")) {
@@ -84,17 +85,17 @@ pub(super) fn parse(text: &str) -> Result<Document, ParseError> {
                     (pair.line, pair.value) = (line, Some(weight));
                 }
                 Value::Ordinary(weight) => {
-                    document.network.add_edge(from, to, weight);
+                    draft.edges.push(DraftEdge { line, from, to, weight });
                 }
             }
         }
     }
-    add_links(&mut document, &pairs)?;
-    Ok(document)
+    add_links(&mut draft, &pairs)?;
+    draft.finish()
 }
 
 /// Makes links of the pairs, and ordinary constraints of the values of a link that has its cases as well.
-fn add_links(document: &mut Document, pairs: &BTreeMap<(PointId, PointId), Pair>) -> Result<(), ParseError> {
+fn add_links(draft: &mut Draft, pairs: &BTreeMap<(PointId, PointId), Pair>) -> Result<(), ParseError> {
     for (&(from, to), pair) in pairs {
         let back = pairs.get(&(to, from));
         let back_value = back.and_then(|back| back.value);
@@ -106,36 +107,38 @@ fn add_links(document: &mut Document, pairs: &BTreeMap<(PointId, PointId), Pair>
             (None, None) => {
                 if is_back_labelled {
                     if let Some(weight) = pair.value {
-                        document.network.add_edge(from, to, weight);
+                        draft.edges.push(DraftEdge { line: pair.line, from, to, weight });
                     }
                     continue;
                 }
-                match (pair.value, back_value) {
-                    (Some(upper), Some(weight)) if weight <= 0 && upper >= 0 => {
+                let finite = |value: Option<Bound>| value.and_then(Bound::finite);
+                match (finite(pair.value), finite(back_value)) {
+                    (Some(upper), Some(weight)) if weight <= Time::ZERO && upper >= Time::ZERO => {
                         // Two zeros are one link of no length.
-                        if upper == 0 && weight == 0 && from > to {
+                        if upper == Time::ZERO && weight == Time::ZERO && from > to {
                             continue;
                         }
-                        (-weight, upper)
+                        let Some(lower) = weight.checked_neg() else {
+                            return Err(incomplete(draft, from, to, pair.line));
+                        };
+                        (lower, upper)
                     }
-                    (Some(weight), Some(upper)) if weight <= 0 && upper >= 0 => continue,
-                    _ => return Err(incomplete(document, from, to, pair.line)),
+                    (Some(weight), Some(upper)) if weight <= Time::ZERO && upper >= Time::ZERO => continue,
+                    _ => return Err(incomplete(draft, from, to, pair.line)),
                 }
             }
-            _ => return Err(incomplete(document, from, to, pair.line)),
+            _ => return Err(incomplete(draft, from, to, pair.line)),
         };
         if is_labelled && let Some(weight) = pair.value {
-            document.network.add_edge(from, to, weight);
+            draft.edges.push(DraftEdge { line: pair.line, from, to, weight });
         }
-        let link = Link { activation: from, end: to, lower, upper };
-        let refused = |error: crate::network::LinkError| ParseError::new(pair.line, error.to_string());
-        document.network.add_link(link).map_err(refused)?;
+        draft.links.push(DraftLink { line: pair.line, activation: from, end: to, lower, upper });
     }
     Ok(())
 }
 
-fn incomplete(document: &Document, from: PointId, to: PointId, line: usize) -> ParseError {
-    let (from, to) = (document.name(from), document.name(to));
+fn incomplete(draft: &Draft, from: PointId, to: PointId, line: usize) -> ParseError {
+    let (from, to) = (&draft.names[from.index()], &draft.names[to.index()]);
     ParseError::new(
         line,
         format!("the contingent link between {from} and {to} needs a lower and an upper bound"),
@@ -194,21 +197,24 @@ impl<'a, 'input> Reader<'a, 'input> {
         Ok(())
     }
 
-    fn number(&self, node: Node<'a, 'input>, text: &str) -> Result<i64, ParseError> {
-        let text = text.trim();
-        text.parse().map_err(|_| self.error(node, format!("expected a whole number, not {text}")))
+    fn time(&self, node: Node<'a, 'input>, text: &str) -> Result<Time, ParseError> {
+        super::time(self.line(node), text)
+    }
+
+    fn weight(&self, node: Node<'a, 'input>, text: &str) -> Result<Bound, ParseError> {
+        super::weight(self.line(node), text)
     }
 
     fn values(&self, edge: Node<'a, 'input>) -> Result<Vec<Value>, ParseError> {
         let mut values = Vec::new();
         if let Some(text) = self.data(edge, "Value") {
-            values.push(Value::Ordinary(self.number(edge, text)?));
+            values.push(Value::Ordinary(self.weight(edge, text)?));
         }
         if let Some(text) = self.data(edge, "LabeledValue") {
             let (case, number) = text
                 .split_once("):")
                 .ok_or_else(|| self.error(edge, format!("expected LC(…):… or UC(…):…, not {text}")))?;
-            let number = self.number(edge, number)?;
+            let number = self.time(edge, number)?;
             match case.split_once('(').map(|(case, _)| case.trim()) {
                 Some("LC") => values.push(Value::LowerCase(number)),
                 Some("UC") => values.push(Value::UpperCase(number)),
@@ -216,13 +222,13 @@ impl<'a, 'input> Reader<'a, 'input> {
             }
         }
         for [number] in self.tuples(edge, "LabeledValues")? {
-            values.push(Value::Ordinary(self.number(edge, number)?));
+            values.push(Value::Ordinary(self.weight(edge, number)?));
         }
         for [_, number] in self.tuples(edge, "LowerCaseLabeledValues")? {
-            values.push(Value::LowerCase(self.number(edge, number)?));
+            values.push(Value::LowerCase(self.time(edge, number)?));
         }
         for [_, number] in self.tuples(edge, "UpperCaseLabeledValues")? {
-            values.push(Value::UpperCase(self.number(edge, number)?));
+            values.push(Value::UpperCase(self.time(edge, number)?));
         }
         Ok(values)
     }
@@ -250,7 +256,7 @@ impl<'a, 'input> Reader<'a, 'input> {
 }
 
 pub(super) fn write(document: &Document) -> String {
-    let Document { names, network } = document;
+    let Document { names, network, .. } = document;
     let mut text = String::from(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
          <graphml xmlns=\"http://graphml.graphdrawing.org/xmlns/graphml\">\n\
@@ -274,6 +280,7 @@ pub(super) fn write(document: &Document) -> String {
     };
     for Link { activation, end, lower, upper } in network.links() {
         let name = document.name(*end);
+        let (lower, upper) = (document.time(*lower), document.time(*upper));
         text.push_str(&edge(*activation, *end, "contingent", "LabeledValue", &format!("LC({name}):{lower}")));
         text.push_str(&edge(
             *end,
@@ -284,7 +291,7 @@ pub(super) fn write(document: &Document) -> String {
         ));
     }
     for ordinary in network.edges() {
-        let weight = ordinary.weight.to_string();
+        let weight = document.time(ordinary.weight).to_string();
         text.push_str(&edge(ordinary.from, ordinary.to, "requirement", "Value", &weight));
     }
     text.push_str("</graph>\n</graphml>\n");

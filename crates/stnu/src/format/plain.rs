@@ -4,8 +4,8 @@
 
 use std::collections::BTreeMap;
 
-use super::{Document, ParseError};
-use crate::network::{Link, Network, PointId};
+use super::{Document, Draft, DraftEdge, DraftLink, ParseError, time, weight};
+use crate::network::PointId;
 
 type Section<'a> = Vec<(usize, &'a str)>;
 
@@ -32,35 +32,36 @@ pub(super) fn parse(text: &str) -> Result<Document, ParseError> {
     let at = if has_links { 4 } else { 3 };
     let names = section(at, "the names of the time points")?;
     let (names, by_name) = read_names(names, num_points, end)?;
-    let mut network = Network::new(names.len());
+    let (mut edges, mut links) = (Vec::new(), Vec::new());
     let rest = |index: usize| sections.get(index).map_or(&[][..], Vec::as_slice);
     for &(line, content) in rest(at + 1) {
         let words: Vec<&str> = content.split_whitespace().collect();
-        let [from, weight, to] = words[..] else {
+        let [from, bound, to] = words[..] else {
             return Err(ParseError::new(line, "expected an edge: a name, a number, a name"));
         };
-        network.add_edge(point(&by_name, line, from)?, point(&by_name, line, to)?, number(line, weight)?);
+        let (from, to) = (point(&by_name, line, from)?, point(&by_name, line, to)?);
+        edges.push(DraftEdge { line, from, to, weight: weight(line, bound)? });
     }
-    announced(num_edges, "edges", network.edges().len(), end)?;
+    announced(num_edges, "edges", edges.len(), end)?;
     for &(line, content) in rest(at + 2) {
         let words: Vec<&str> = content.split_whitespace().collect();
         let [activation, lower, upper, ending] = words[..] else {
             return Err(ParseError::new(line, "expected a contingent link: a name, two numbers, a name"));
         };
-        let link = Link {
+        links.push(DraftLink {
+            line,
             activation: point(&by_name, line, activation)?,
             end: point(&by_name, line, ending)?,
-            lower: number(line, lower)?,
-            upper: number(line, upper)?,
-        };
-        network.add_link(link).map_err(|error| ParseError::new(line, error.to_string()))?;
+            lower: time(line, lower)?,
+            upper: time(line, upper)?,
+        });
     }
-    announced(num_links, "contingent links", network.links().len(), end)?;
-    Ok(Document { names, network })
+    announced(num_links, "contingent links", links.len(), end)?;
+    Draft { names, edges, links }.finish()
 }
 
 pub(super) fn write(document: &Document) -> String {
-    let Document { names, network } = document;
+    let Document { names, network, .. } = document;
     let mut text = format!(
         "# KIND OF NETWORK\nSTNU\n# Num Time-Points\n{}\n# Num Ordinary Edges\n{}\n# Num Contingent Links\n{}\n\
          # Names of Time-Points\n{}\n# Ordinary Edges\n",
@@ -70,12 +71,14 @@ pub(super) fn write(document: &Document) -> String {
         names.join(" "),
     );
     for edge in network.edges() {
-        text.push_str(&format!("{} {} {}\n", document.name(edge.from), edge.weight, document.name(edge.to)));
+        let weight = document.time(edge.weight);
+        text.push_str(&format!("{} {weight} {}\n", document.name(edge.from), document.name(edge.to)));
     }
     text.push_str("# Contingent Links\n");
     for link in network.links() {
         let (activation, end) = (document.name(link.activation), document.name(link.end));
-        text.push_str(&format!("{activation} {} {} {end}\n", link.lower, link.upper));
+        let (lower, upper) = (document.time(link.lower), document.time(link.upper));
+        text.push_str(&format!("{activation} {lower} {upper} {end}\n"));
     }
     text
 }
@@ -140,8 +143,4 @@ fn read_names(
 
 fn point(by_name: &BTreeMap<String, PointId>, line: usize, name: &str) -> Result<PointId, ParseError> {
     by_name.get(name).copied().ok_or_else(|| ParseError::new(line, format!("{name} is not a time point")))
-}
-
-fn number(line: usize, text: &str) -> Result<i64, ParseError> {
-    text.parse().map_err(|_| ParseError::new(line, format!("expected a whole number, not {text}")))
 }

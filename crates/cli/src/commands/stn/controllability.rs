@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 
 use anyhow::anyhow;
 use serde_json::{Value, json};
-use stnu::{Conflict, Document, Part, Relaxation, Verdict};
+use stn::{Inconsistency, Stn};
+use stnu::{Conflict, Document, Edge, Part, Relaxation, Verdict};
 
 /// Larger networks are answered without what would mend them, which takes many checks.
 const MAX_POINTS_FOR_RELAXATIONS: usize = 2_000;
@@ -34,21 +35,24 @@ pub fn check(document: &Document) -> anyhow::Result<Controllability> {
     Ok(Controllability::Uncontrollable(conflict, relaxations))
 }
 
-/// The network with its contingent links as ordinary bounds.
-pub fn ordinary(document: &Document) -> anyhow::Result<stn::Document> {
-    let mut edges: Vec<stn::DocumentEdge> = Vec::new();
-    let mut add = |from: stnu::PointId, to: stnu::PointId, weight: i64| {
-        edges.push(stn::DocumentEdge { from: stn::PointId(from.0), to: stn::PointId(to.0), weight });
-    };
-    for edge in document.network.edges() {
-        add(edge.from, edge.to, edge.weight);
+/// The network with its contingent links as ordinary bounds, and whether it is consistent.
+pub fn ordinary(document: &Document) -> anyhow::Result<(Stn, Result<(), Inconsistency>)> {
+    let network = &document.network;
+    let mut edges: Vec<Edge> = network.edges().to_vec();
+    for link in network.links() {
+        edges.push(Edge { from: link.activation, to: link.end, weight: link.upper });
+        let weight = link.lower.checked_neg().ok_or_else(|| anyhow!("a time does not fit into 64 bits"))?;
+        edges.push(Edge { from: link.end, to: link.activation, weight });
     }
-    for link in document.network.links() {
-        add(link.activation, link.end, link.upper);
-        let lower = link.lower.checked_neg().ok_or_else(|| anyhow!("a time does not fit into 64 bits"))?;
-        add(link.end, link.activation, lower);
+    let mut stn = Stn::new(network.num_points());
+    stn.reserve(edges.len());
+    for (position, edge) in (0..).zip(&edges) {
+        let (from, to) = (stn::PointId(edge.from.0), stn::PointId(edge.to.0));
+        if let Err(inconsistency) = stn.insert(from, to, edge.weight, position) {
+            return Ok((stn, Err(inconsistency)));
+        }
     }
-    Ok(stn::Document { names: document.names.clone(), edges })
+    Ok((stn, Ok(())))
 }
 
 /// The answer for people.
@@ -56,7 +60,8 @@ pub fn text(document: &Document, answer: &Controllability) -> String {
     let Controllability::Uncontrollable(conflict, relaxations) = answer else {
         return "controllable\n".to_owned();
     };
-    let mut text = format!("not controllable: a semi-reducible cycle of weight -{}\n", conflict.deficit);
+    let mut text =
+        format!("not controllable: a semi-reducible cycle of weight -{}\n", document.time(conflict.deficit));
     for step in conflict.cycle.iter().flatten() {
         let case = match step.part {
             Part::Edge(_) => "",
@@ -64,7 +69,7 @@ pub fn text(document: &Document, answer: &Controllability) -> String {
             Part::Upper(_) => "  (as long as nature likes)",
         };
         let (from, to) = (document.name(step.from), document.name(step.to));
-        let _ = writeln!(text, "{from} {} {to}{case}", step.weight);
+        let _ = writeln!(text, "{from} {} {to}{case}", document.time(step.weight));
     }
     for relaxation in relaxations.iter().flatten() {
         if let Some(value) = relaxation.sufficient {
@@ -75,7 +80,7 @@ pub fn text(document: &Document, answer: &Controllability) -> String {
 }
 
 fn mend(document: &Document, relaxation: &Relaxation, value: i64) -> String {
-    let old = relaxation.old;
+    let (value, old) = (document.time(value), document.time(relaxation.old));
     let network = &document.network;
     match relaxation.part {
         Part::Edge(id) => {
@@ -101,7 +106,7 @@ pub fn json(document: &Document, answer: &Controllability) -> (bool, Value, Valu
         let steps = steps.iter().map(|step| {
             json!({
                 "from": document.name(step.from),
-                "weight": step.weight,
+                "weight": document.time(step.weight),
                 "to": document.name(step.to),
                 "case": case(step.part),
             })
@@ -132,8 +137,8 @@ fn relaxation_json(document: &Document, relaxation: &Relaxation) -> Value {
         "from": document.name(from),
         "to": document.name(to),
         "case": case(relaxation.part),
-        "value": relaxation.old,
-        "resolving": relaxation.resolving,
-        "sufficient": relaxation.sufficient,
+        "value": document.time(relaxation.old),
+        "resolving": relaxation.resolving.map(|tick| document.time(tick)),
+        "sufficient": relaxation.sufficient.map(|tick| document.time(tick)),
     })
 }
