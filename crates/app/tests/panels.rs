@@ -5,6 +5,7 @@ mod support;
 use egui::Role;
 use egui_kittest::kittest::Queryable as _;
 use serde_json::json;
+use workbench::PanelKind;
 use workbench::command::Command;
 use workbench::host::Remote as _;
 
@@ -84,6 +85,31 @@ fn a_problem_leads_to_its_place_and_can_be_explained() {
     app.harness.get_by_label("Close").click();
     app.settle();
     assert_eq!(app.json()["dialog"], serde_json::Value::Null);
+}
+
+#[test]
+fn that_there_is_no_plan_is_listed_counted_and_mended_like_any_problem() {
+    let mut app = support::start();
+    app.settle();
+    app.harness.state_mut().run(Command::SetSource("scenario S[0,5] = {\n    delay[8,9]\n}\n".to_owned()));
+    app.settle();
+    app.harness.get_by_label("Status: no plan");
+    app.harness.get_by_label_contains("1 error, ");
+    app.harness.state_mut().run(Command::ShowPanel(PanelKind::Problems));
+    app.settle();
+    let is_row = |label: String| label.contains("E-NOPLAN") && label.starts_with("Line ");
+    app.harness.get_by(|node| node.label().is_some_and(is_row)).click();
+    app.settle();
+    app.harness.get_by_label("Show why");
+    let diagnostics = app.json()["diagnostics"].as_array().expect("a list").clone();
+    let no_plan = diagnostics.iter().find(|it| it["code"] == "E-NOPLAN").expect("a problem");
+    let fix = no_plan["fixes"][0].as_str().expect("a fix").to_owned();
+    let name = format!("Fix: {fix}");
+    // The Plan panel may offer the same.
+    app.harness.query_all_by_label(&name).next().expect("a fix to press").click();
+    app.settle();
+    assert_eq!(app.json()["status"], "plan");
+    app.harness.get_by_label_contains("0 errors, ");
 }
 
 #[test]

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use workbench::command::Command;
 use workbench::host::{FileKind, HostEvent, Remote as _};
 use workbench::state::compare::CompareCommand;
+use workbench::state::search::SearchCommand;
 
 use support::App;
 
@@ -106,6 +107,36 @@ fn one_edit_makes_the_review_stale_and_undoing_it_makes_it_current_again() {
     undo(&mut app);
     assert_eq!(review(&app), before);
     assert!(app.harness.query_by_label("Stale").is_none());
+}
+
+#[test]
+fn nothing_of_a_stale_review_has_passed() {
+    let mut app = reviewing();
+    assert!(has(&app, "passed: ") && has(&app, "Choices, passed"));
+    for text in ["primitive A(); scenario S = { A( }", "primitive A(); scenario S[0,9] = { A() }"] {
+        app.harness.state_mut().set_source(text);
+        app.settle();
+        assert!(!has(&app, "passed: ") && !has(&app, "Choices, passed"), "{text}");
+        assert!(has(&app, "had passed: ") && has(&app, "Choices, had passed"), "{text}");
+        app.harness.get_by_label("Stale");
+    }
+    undo(&mut app);
+    undo(&mut app);
+    assert!(has(&app, "passed: "));
+}
+
+#[test]
+fn a_step_of_the_search_beside_the_review_is_said_to_be_one() {
+    let mut app = reviewing();
+    let note = "The drawings show step 1 of the search, and not the plan that was reviewed.";
+    assert!(app.harness.query_by_label(note).is_none());
+    app.harness.state_mut().run(Command::SetTrace(true));
+    app.settle();
+    app.harness.state_mut().run(Command::Search(SearchCommand::Step(1)));
+    app.settle();
+    app.harness.get_by_label(note);
+    click(&mut app, "Show the plan");
+    assert!(app.harness.query_by_label(note).is_none());
 }
 
 #[test]

@@ -383,7 +383,8 @@ fn a_problem_selects_what_it_is_about() {
     assert!(problems > 0, "a mission without a plan has problems");
     app.harness
         .get_by(|node| {
-            node.role() == Role::Button && node.label().is_some_and(|label| label.starts_with("Line "))
+            let is_warning = |label: String| label.starts_with("Line ") && !label.contains("E-NOPLAN");
+            node.role() == Role::Button && node.label().is_some_and(is_warning)
         })
         .click();
     app.settle();

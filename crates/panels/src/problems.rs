@@ -10,6 +10,7 @@ use theme::space;
 use workbench::Dialog;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, EditorCommand};
+use workbench::state::no_plan::NO_PLAN;
 
 use crate::{Context, Panel, keyboard_navigation, show_empty};
 
@@ -23,7 +24,7 @@ pub struct ProblemsPanel {
 impl Panel for ProblemsPanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let latest = context.state.snapshots.latest();
-        let problems = latest.map(|latest| &*latest.problems).unwrap_or_default();
+        let problems = context.state.snapshots.problems();
         if problems.is_empty() {
             let text = if latest.is_some() { "No problems." } else { "Reading the text…" };
             show_empty(ui, context, text);
@@ -119,8 +120,14 @@ fn show_details(
         if let Some(hint) = &problem.hint {
             ui.label(RichText::new(hint).color(context.tokens.text_muted));
         }
-        if ui.add(egui::Button::new("Explain").frame_when_inactive(false)).clicked() {
-            commands.send(Command::ShowDialog(Dialog::Explain(problem.code.clone())));
+        let is_of_plan = problem.code == NO_PLAN;
+        let explain = if is_of_plan { "Show why" } else { "Explain" };
+        if ui.add(egui::Button::new(explain).frame_when_inactive(false)).clicked() {
+            commands.send(if is_of_plan {
+                Command::ShowPanel(PanelKind::Plan)
+            } else {
+                Command::ShowDialog(Dialog::Explain(problem.code.clone()))
+            });
         }
         for fix in &problem.fixes {
             let button = ui.add_enabled(is_current, egui::Button::new(&fix.label));

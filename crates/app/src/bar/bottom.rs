@@ -30,8 +30,7 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
 fn problems(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let tokens = context.tokens;
     let count = |severity: Severity| {
-        let problems = context.state.snapshots.latest().map(|latest| &latest.problems);
-        problems.map_or(0, |all| all.iter().filter(|it| it.severity == severity).count())
+        context.state.snapshots.problems().iter().filter(|it| it.severity == severity).count()
     };
     let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
     let color = match (errors, warnings) {

@@ -1,5 +1,6 @@
 //! The bars above and below the panels, and the titles of tabs.
 
+mod badge;
 pub mod bottom;
 mod mission;
 pub mod tab;
@@ -15,10 +16,8 @@ pub fn tab_title(context: &Context<'_>, panel: PanelKind) -> RichText {
     let title = panel.title();
     let text = match panel {
         PanelKind::Problems => {
-            let latest = context.state.snapshots.latest();
-            let count = latest.map_or(0, |latest| {
-                latest.problems.iter().filter(|it| it.severity != Severity::Note).count()
-            });
+            let problems = context.state.snapshots.problems();
+            let count = problems.iter().filter(|it| it.severity != Severity::Note).count();
             if count == 0 { title.to_owned() } else { format!("{title} {count}") }
         }
         PanelKind::Editor if context.state.document.is_modified() => format!("{title} •"),

@@ -11,6 +11,7 @@ use workbench::state::Status;
 use workbench::state::settings::ThemeChoice;
 use workbench::workspace::Workspace;
 
+use crate::bar::badge::{self, Look};
 use crate::bar::mission;
 use crate::chord;
 
@@ -120,26 +121,10 @@ fn workspaces(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) 
 /// Where the plan stands: a sign, a word, and a colour.
 fn status(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let tokens = context.tokens;
-    let [good, warning, error, info] = tokens.soft;
-    let verdict = context.snapshot.and_then(|snapshot| snapshot.planning.as_ref()?.verdict.as_ref());
-    let (sign, text, color, fill, panel) = match context.state.status() {
-        Status::Working => (Icon::Working, "Planning", tokens.info, info, PanelKind::Plan),
-        Status::Broken if context.is_stale => {
-            (Icon::Warning, "Errors · last good plan shown", tokens.error, error, PanelKind::Problems)
-        }
-        Status::Broken => (Icon::Warning, "Errors", tokens.error, error, PanelKind::Problems),
-        Status::Empty => (Icon::Nothing, "Nothing to plan", tokens.warning, warning, PanelKind::Problems),
-        Status::Program => (Icon::Play, "Program", tokens.good, good, PanelKind::Automaton),
-        Status::Plan if verdict.is_some_and(|verdict| verdict.valid) => {
-            (Icon::Check, "Plan · verified", tokens.good, good, PanelKind::Plan)
-        }
-        Status::Plan if verdict.is_some() => {
-            (Icon::Warning, "Plan · refused by the checker", tokens.error, error, PanelKind::Plan)
-        }
-        Status::Plan => (Icon::Check, "Plan", tokens.good, good, PanelKind::Plan),
-        Status::NoPlan => (Icon::Error, "No plan", tokens.error, error, PanelKind::Plan),
-        Status::Undecided => (Icon::Warning, "Not decided", tokens.warning, warning, PanelKind::Plan),
-    };
+    let latest = context.state.snapshots.latest();
+    let verdict = latest.and_then(|latest| latest.planning.as_ref()?.verdict.as_ref());
+    let Look { sign, text, color, fill, panel } =
+        badge::look(tokens, context.state.status(), context.is_stale, verdict.map(|it| it.valid));
     let font = egui::TextStyle::Body.resolve(ui.style());
     let galley = ui.painter().layout_no_wrap(text.to_owned(), font, color);
     let width = galley.size().x + 40.0;

@@ -81,8 +81,7 @@ impl EditorPanel {
 
 /// The problems of the last answer, at their places in the present text.
 fn diagnostics<'a>(context: &Context<'a>, shift: Shift) -> Vec<Diagnostic<'a>> {
-    let latest = context.state.snapshots.latest();
-    let problems = latest.map(|latest| &*latest.problems).unwrap_or_default();
+    let problems = context.state.snapshots.problems();
     let here = problems.iter().filter_map(|problem| Some((problem, shift.span(problem.span)?)));
     here.map(|(problem, span)| Diagnostic {
         bytes: span.range(),

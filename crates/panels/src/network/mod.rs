@@ -457,8 +457,14 @@ fn show_badges(painter: &egui::Painter, panel: Rect, context: &Context<'_>, snap
     let tokens = context.tokens;
     let width = (panel.width() - 60.0).clamp(80.0, 520.0);
     let mut corner = panel.left_top() + vec2(10.0, 8.0);
-    if context.is_stale && context.state.status() == Status::Broken {
-        let text = "⚠ The text has errors: this is its last good network";
+    let stale = match context.state.status() {
+        _ if !context.is_stale => None,
+        Status::Broken => Some("⚠ The text has errors: this is its last good network"),
+        Status::Empty => Some("⚠ There is nothing to plan in the text: this is the network before"),
+        Status::Undecided => Some("⚠ This is the network of an earlier text"),
+        _ => None,
+    };
+    if let Some(text) = stale {
         badge(painter, corner, text, tokens.warning, tokens, width);
         corner.y += 30.0;
     }

@@ -128,8 +128,22 @@ impl ReviewPanel {
     }
 }
 
-/// The sign, the word and the colour of a status.
-fn status_look(tokens: &Tokens, status: Status) -> (Icon, &'static str, egui::Color32) {
+/// Whether the review that is shown is of another content than the present one.
+fn is_stale(context: &Context<'_>) -> bool {
+    let state = context.state;
+    state.review.shown(state.settings.plan.search).is_some_and(|(_, is_stale)| is_stale)
+}
+
+/// The sign, the word and the colour of a status. What was reviewed of another text keeps its words, in grey.
+fn status_look(tokens: &Tokens, status: Status, is_stale: bool) -> (Icon, &'static str, egui::Color32) {
+    if is_stale {
+        let word = match status {
+            Status::Passed => "had passed",
+            Status::Attention => "had attention",
+            Status::Failed => "had failed",
+        };
+        return (Icon::Nothing, word, tokens.text_faint);
+    }
     match status {
         Status::Passed => (Icon::Check, "passed", tokens.good),
         Status::Attention => (Icon::Warning, "attention", tokens.warning),

@@ -9,7 +9,7 @@ use theme::{space, strong_family};
 use tpn::Network;
 use workbench::state::Selection;
 
-use super::status_look;
+use super::{is_stale, status_look};
 use crate::Context;
 
 /// How far the text of lines is from the left.
@@ -40,7 +40,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, row: &Row<'_>) -> Respons
     let small = TextStyle::Small.resolve(ui.style());
     let width = ui.available_width();
     let left = INDENT + row.indent;
-    let look = row.status.map(|status| status_look(tokens, status));
+    let look = row.status.map(|status| status_look(tokens, status, is_stale(context)));
     let word = look.map_or("", |(_, word, _)| word);
     let is_narrow = width < NARROW;
     let meta_width = if is_narrow { 0.0 } else { 118.0 };
@@ -96,7 +96,7 @@ pub(super) fn heading(
     let width = ui.available_width();
     let (rect, response) = ui.allocate_exact_size(egui::vec2(width, space::ROW + 4.0), Sense::click());
     response.widget_info(|| {
-        let look = status.map(Status::name).unwrap_or_default();
+        let look = status.map_or("", |status| status_look(tokens, status, is_stale(context)).1);
         let parts = [title, look, note].into_iter().filter(|part| !part.is_empty());
         WidgetInfo::selected(Role::Button, true, is_open, parts.collect::<Vec<_>>().join(", "))
     });
@@ -114,7 +114,7 @@ pub(super) fn heading(
     let chevron = if is_open { Icon::ChevronDown } else { Icon::ChevronRight };
     icon::paint(painter, chevron, slot(11.0), 13.0, tokens.text_muted);
     let mut x = 26.0;
-    if let Some((sign, _, color)) = status.map(|status| status_look(tokens, status)) {
+    if let Some((sign, _, color)) = status.map(|status| status_look(tokens, status, is_stale(context))) {
         icon::paint(painter, sign, slot(x + 5.0), 13.0, color);
         x += 18.0;
     }
@@ -122,8 +122,9 @@ pub(super) fn heading(
     let at = Pos2::new(rect.left() + x, middle);
     let title = painter.text(at, Align2::LEFT_CENTER, title, font, tokens.text);
     let small = TextStyle::Small.resolve(ui.style());
-    let color =
-        status.filter(|it| *it != Status::Passed).map_or(tokens.text_muted, |it| status_look(tokens, it).2);
+    let color = status
+        .filter(|it| *it != Status::Passed)
+        .map_or(tokens.text_muted, |it| status_look(tokens, it, is_stale(context)).2);
     let room = rect.right() - title.right() - 2.0 * space::M;
     let note = painter.layout_no_wrap(note.to_owned(), small, color);
     if note.size().x < room {

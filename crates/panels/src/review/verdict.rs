@@ -7,7 +7,9 @@ use mission::review::{Review, Status};
 use theme::icon::{self, Icon};
 use theme::{space, strong};
 use workbench::command::{Command, CommandSender};
+use workbench::state;
 use workbench::state::review::{ReviewCommand, Signed};
+use workbench::state::search::SearchCommand;
 
 use super::status_look;
 use crate::Context;
@@ -31,7 +33,7 @@ pub(super) fn show(
         None => (Icon::Nothing, tokens.info, info, "Not reviewed yet".to_owned()),
         Some((_, true)) => (Icon::Warning, tokens.warning, warning, "Stale".to_owned()),
         Some((review, false)) => {
-            let (sign, _, color) = status_look(tokens, review.status);
+            let (sign, _, color) = status_look(tokens, review.status, false);
             let fill = match review.status {
                 Status::Passed => good,
                 Status::Attention => warning,
@@ -48,13 +50,22 @@ pub(super) fn show(
         });
         if let Some((review, is_stale)) = shown {
             if is_stale {
-                let text = "The text, the map or the seed has changed since this review. Undoing the change makes \
-                            it current again.";
+                let text = if context.state.status() == state::Status::Broken {
+                    "The text has errors: this review is of the text before. Nothing below is about what is \
+                     written now."
+                } else {
+                    "The text, the map or the seed has changed since this review. Undoing the change makes it \
+                     current again."
+                };
                 ui.label(RichText::new(text).color(tokens.text));
             }
             let [passed, attention, failed] = review.counts();
-            let counts = format!("{passed} passed, {attention} for attention, {failed} failed");
+            let had = if is_stale { "It had " } else { "" };
+            let counts = format!("{had}{passed} passed, {attention} for attention, {failed} failed");
             ui.label(RichText::new(counts).color(tokens.text));
+            if !is_stale {
+                step(ui, context, commands);
+            }
             content(ui, context, review, commands);
         } else {
             let text = "Every line is computed from the plan; none is typed.";
@@ -76,6 +87,22 @@ fn title(review: &Review) -> String {
         Status::Failed if failed == 1 => "Not ready: 1 line failed".to_owned(),
         Status::Failed => format!("Not ready: {failed} lines failed"),
     }
+}
+
+/// Says that the drawings beside the review show a step of the search, and not the plan that was reviewed.
+fn step(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let Some(view) = context.step() else { return };
+    let tokens = context.tokens;
+    let step = view.step.step + 1;
+    ui.horizontal_wrapped(|ui| {
+        icon::label(ui, Icon::Warning, tokens.warning);
+        let text =
+            format!("The drawings show step {step} of the search, and not the plan that was reviewed.");
+        ui.label(RichText::new(text).color(tokens.text));
+        if ui.button("Show the plan").clicked() {
+            commands.send(Command::Search(SearchCommand::Close));
+        }
+    });
 }
 
 /// The hash of what was reviewed; a click copies it.

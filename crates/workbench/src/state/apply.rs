@@ -152,6 +152,10 @@ impl AppState {
             Command::SetTrace(trace) => self.settings.plan.trace = trace,
 
             Command::ShowWorkspace(workspace) => {
+                if self.workspace == Workspace::Teach && workspace != Workspace::Teach {
+                    // A step of the search is no plan: elsewhere it would be taken for one.
+                    self.search.close();
+                }
                 self.workspace = workspace;
                 // A lecturer steps through the search; it must have been recorded.
                 self.settings.plan.trace |= workspace == Workspace::Teach;

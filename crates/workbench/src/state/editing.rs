@@ -170,9 +170,8 @@ impl AppState {
     }
 
     fn go_to_problem(&mut self, forwards: bool) {
-        let Some(latest) = self.snapshots.latest().cloned() else { return };
         let caret = self.document.caret().range();
-        let spans: Vec<Span> = latest.problems.iter().map(|problem| problem.span).collect();
+        let spans: Vec<Span> = self.snapshots.problems().iter().map(|problem| problem.span).collect();
         let next = if forwards {
             spans.iter().find(|span| span.start as usize > caret.start).or(spans.first())
         } else {

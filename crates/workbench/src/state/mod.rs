@@ -12,6 +12,7 @@ pub mod folding;
 pub mod growth;
 pub mod language;
 pub mod missions;
+pub mod no_plan;
 pub mod pins;
 pub mod placing;
 pub mod playback;

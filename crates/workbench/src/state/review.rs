@@ -47,8 +47,8 @@ pub enum ReviewCommand {
 pub struct ReviewState {
     /// The latest reviews, the newest first.
     done: Vec<Done>,
-    /// The revision that is being reviewed.
-    running: Option<u64>,
+    /// The revision that is being reviewed, and the search that plans it.
+    running: Option<(u64, SearchKind)>,
     /// The content that was last asked to be reviewed, so that nothing is asked twice of its own accord.
     asked: Option<String>,
     /// What reviewers said and signed.
@@ -198,9 +198,9 @@ impl AppState {
     /// Asks the core for a review of the present text.
     pub(super) fn run_review(&mut self) {
         let revision = self.document.revision();
-        self.review.running = Some(revision);
-        self.review.asked = self.review.hash().map(str::to_owned);
         let PlanSettings { goal, search, seed, trace } = self.settings.plan.clone();
+        self.review.running = Some((revision, search));
+        self.review.asked = self.review.hash().map(str::to_owned);
         let source = self.document.shared_text();
         let update = Update { revision, source, goal, search, seed, trace };
         self.effects.push(Effect::Post(Request::Review(update)));
@@ -208,10 +208,8 @@ impl AppState {
 
     /// Takes a review that was asked for.
     pub(super) fn take_review(&mut self, revision: u64, review: Arc<Review>) {
-        if self.review.running == Some(revision) {
-            self.review.running = None;
-        }
-        let search = self.settings.plan.search;
+        // What nobody waits for any more may be of another mission.
+        let Some((_, search)) = self.review.running.take_if(|running| running.0 == revision) else { return };
         self.review.done.retain(|it| it.review.content_hash != review.content_hash || it.search != search);
         self.review.done.insert(0, Done { search, review });
         self.review.done.truncate(MAX_DONE);
@@ -331,7 +329,7 @@ impl AppState {
     /// Follows what the present content is. Nothing is hashed twice.
     pub(super) fn follow_review(&mut self) {
         let revision = self.document.revision();
-        if self.review.running.is_some_and(|running| running != revision) {
+        if self.review.running.is_some_and(|running| running.0 != revision) {
             // A newer text ends the review of the older one. Whoever waits for the first one gets that of the new text.
             self.give_up_review();
             if self.review.done.is_empty() {

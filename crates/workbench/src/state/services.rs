@@ -1,5 +1,7 @@
 //! The editor's language services: completion, quick fixes, definitions, references, renaming, formatting.
 
+use std::collections::BTreeSet;
+
 use rmpl::{Parse, editor};
 use text_editing::{Caret, Document, EditKind, TextCommand, is_name_character};
 
@@ -73,14 +75,14 @@ impl AppState {
     pub(super) fn list_fixes(&mut self) {
         self.editor.popup = None;
         let revision = self.document.revision();
-        let Some(latest) = self.snapshots.latest().filter(|latest| latest.revision == revision) else {
+        if self.snapshots.latest().is_none_or(|latest| latest.revision != revision) {
             self.toasts.add(ToastKind::Info, "The text is still being read");
             return;
-        };
+        }
         let caret = span_of(&self.document.caret().range());
         let line = span_of(&self.document.line_range(self.document.line_at(self.document.caret().head)));
         let fixes_in = |place: rmpl::Span| -> Vec<PopupItem> {
-            let problems = latest.problems.iter();
+            let problems = self.snapshots.problems().iter();
             let touching = problems.filter(|it| it.span.start <= place.end && place.start <= it.span.end);
             touching
                 .flat_map(|problem| problem.fixes.iter().map(move |fix| (problem, fix)))
@@ -96,6 +98,9 @@ impl AppState {
         if items.is_empty() {
             items = fixes_in(line);
         }
+        // What mends several problems at once is listed once.
+        let mut seen = BTreeSet::new();
+        items.retain(|item| seen.insert(item.label.clone()));
         if items.is_empty() {
             self.toasts.add(ToastKind::Info, "No fix is known for this line");
             return;

@@ -2,14 +2,19 @@
 
 use std::sync::Arc;
 
+use mission::problem::Problem;
 use mission::{Snapshot, Stage};
 use rmpl::Severity;
+
+use crate::state::no_plan;
 
 /// Snapshots as they arrived.
 #[derive(Clone, Debug, Default)]
 pub struct Snapshots {
     latest: Option<Arc<Snapshot>>,
     shown: Option<Arc<Snapshot>>,
+    /// What is wrong with the text of `latest`, that it has no plan included.
+    problems: Vec<Problem>,
     /// When `latest` arrived, in seconds on the host's clock.
     latest_secs: f64,
     /// The revision that is not worked out any more, as long as nothing else is.
@@ -56,7 +61,14 @@ impl Snapshots {
         if self.latest.as_ref().is_none_or(|latest| latest.revision != snapshot.revision) {
             self.latest_secs = now_secs;
         }
+        self.problems = snapshot.problems.iter().cloned().chain(no_plan::problems(&snapshot)).collect();
+        self.problems.sort_by_key(|problem| problem.span.start);
         self.latest = Some(snapshot);
+    }
+
+    /// What is wrong with the text of the latest answer, that it has no plan included; in textual order.
+    pub fn problems(&self) -> &[Problem] {
+        &self.problems
     }
 
     /// Shows a compiled network whose plan takes long. Returns whether what is shown has changed.
@@ -81,7 +93,7 @@ impl Snapshots {
         *self = Self::default();
     }
 
-    /// The latest answer, for problems and the editor.
+    /// The latest answer, for the editor.
     pub fn latest(&self) -> Option<&Arc<Snapshot>> {
         self.latest.as_ref()
     }

@@ -117,7 +117,7 @@ pub(super) fn with_own_mission(state: &AppState) -> Availability {
 }
 
 pub(super) fn with_problems(state: &AppState) -> Availability {
-    let has_problems = state.snapshots.latest().is_some_and(|latest| !latest.problems.is_empty());
+    let has_problems = !state.snapshots.problems().is_empty();
     if has_problems { Ok(()) } else { Err("there are no problems") }
 }
 

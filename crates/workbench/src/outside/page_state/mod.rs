@@ -235,7 +235,7 @@ impl PageState {
             active_panel: state.active_panel.name(),
             panels: state.panels_on_screen.iter().map(|panel| panel.name()).collect(),
             theme: state.settings.theme,
-            diagnostics: latest.map(|it| it.problems.iter().map(diagnostic).collect()).unwrap_or_default(),
+            diagnostics: state.snapshots.problems().iter().map(diagnostic).collect(),
             tpn: network.map(network_size),
             plan: plan.map(|(network, plan)| plan_to_json(network, plan)),
             bound: planning.and_then(|planning| planning.outcome.bound).map(|bound| json!(bound)),
