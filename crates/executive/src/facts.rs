@@ -83,6 +83,7 @@ impl Facts {
                 }
             }
         }
+        free_paths(&mut changed, &times);
         for (index, (time, described)) in times.iter().zip(&network.nodes).enumerate() {
             let node = NodeId::from_index(index);
             let is_vertex = index >= num_program_nodes;
@@ -283,6 +284,17 @@ fn set_duration(network: &mut Network, occurrence: OccurrenceId, duration: Time)
     for arc in network.arcs.iter_mut().filter(|arc| arc.kind == ArcKind::Path) {
         if arc.occurrence == Some(occurrence) {
             (arc.lower, arc.upper) = (Time::ZERO, Bound::Infinite);
+        }
+    }
+}
+
+/// Vertices of a path guide a vehicle: of a traverse under way what was passed is known, and the rest has no deadlines.
+fn free_paths(network: &mut Network, times: &[Option<Time>]) {
+    for arc in network.arcs.iter_mut().filter(|arc| arc.kind == ArcKind::Path) {
+        let Some(began) = times[arc.from.index()] else { continue };
+        arc.upper = Bound::Infinite;
+        if let Some(took) = times[arc.to.index()].and_then(|ended| ended.checked_sub(began)) {
+            arc.lower = arc.lower.min(took);
         }
     }
 }

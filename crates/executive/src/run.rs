@@ -398,6 +398,8 @@ impl Run<'_> {
     fn candidate(&self, point: PointId, node: NodeId) -> Result<Option<Next>, PlanError> {
         let (earliest, latest) = self.stage.window(point);
         let mut time = earliest.max(self.now);
+        let pace = self.pace(node).map_err(|_| self.too_large(node))?;
+        time = pace.map_or(time, |pace| time.max(pace));
         let mut known = News::None;
         let violation = |time: Time, reason: String, news: News| {
             let name = self.stage.name(node).into();
@@ -423,7 +425,36 @@ impl Run<'_> {
                 }
             }
         }
+        if let Some(latest) = latest.filter(|_| self.stage.guides.contains_key(&node)) {
+            // Vertices are no deadlines: whether the traverse is late shows at its end.
+            time = time.min(latest.max(self.now));
+        }
         Ok(Some(self.at(point, time, known)))
+    }
+
+    /// When a vertex of a path is passed of which nobody reports that, so that the whole traverse takes as long as it
+    /// does: as early as its speeds allow.
+    fn pace(&self, node: NodeId) -> Result<Option<Time>, Overflow> {
+        let Some(guide) = self.stage.guides.get(&node) else { return Ok(None) };
+        let occurrence = &self.stage.network.occurrences[guide.traverse.index()];
+        let Some(started) = self.stage.times[occurrence.start.index()] else { return Ok(None) };
+        let is_reported = self.passes.iter().any(|(event, _)| event.occurrence == guide.traverse);
+        let given = self.world.duration(&self.stage.network, occurrence)?;
+        let duration = match (given, self.executions.get(&guide.traverse)) {
+            _ if is_reported => return Ok(None),
+            (Some(given), _) => given,
+            (None, Some(Ends::After(duration))) => *duration,
+            _ => {
+                let Some(end) = self.stage.made.point(occurrence.end) else { return Ok(None) };
+                self.stage.window(end).0.checked_sub(started).ok_or(Overflow)?
+            }
+        };
+        let late = match guide.greatest_after {
+            Bound::Infinite => Time::ZERO,
+            Bound::Finite(after) => duration.checked_sub(after).ok_or(Overflow)?,
+        };
+        let after = guide.least_before.max(late).min(duration);
+        Ok(Some(started.checked_add(after).ok_or(Overflow)?))
     }
 
     /// A point happens at a time that may be outside its window; what is learnt then.

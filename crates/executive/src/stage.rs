@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use exact::Time;
+use exact::{Bound, Time};
 use stn::PointId;
-use tpn::{ArcId, EventRef, Network, NodeId, Occurrence, Plan, Precedence};
+use tpn::{ArcId, ArcKind, EventRef, Network, NodeId, Occurrence, OccurrenceId, Plan, Precedence};
 
 use crate::dispatch::{Dispatcher, MAX_EVENTS, NEVER, SettleError};
 use crate::plan_network::{PlanError, PlanNetwork};
@@ -27,6 +27,8 @@ pub struct Stage {
     /// The durations that nature chooses, whether or not the mission asks to withstand that, by the events where they
     /// end.
     pub(crate) natures: BTreeMap<NodeId, Vec<ArcId>>,
+    /// The vertices of paths.
+    pub(crate) guides: BTreeMap<NodeId, Guide>,
     /// When each node happened.
     pub(crate) times: Vec<Option<Time>>,
     /// When this plan was made.
@@ -40,7 +42,7 @@ pub struct Stage {
 impl Stage {
     /// Makes `plan` ready. `grid` are the times, or their common divisors, that are not the network's own.
     pub fn new(network: Arc<Network>, plan: Plan, grid: &[Time]) -> Result<Self, PlanError> {
-        let mut made = PlanNetwork::new(&network, &plan)?;
+        let mut made = PlanNetwork::guided(&network, &plan)?;
         made.refine_for(&network, &plan, grid)?;
         let dispatch = Dispatch::new(&network, &plan, &mut made)?;
         let mut natures: BTreeMap<NodeId, Vec<ArcId>> = BTreeMap::new();
@@ -59,7 +61,9 @@ impl Stage {
         }
         let after = after.into();
         let effects = Effects::new(&network, &plan);
-        Ok(Self { network, plan, made, dispatch, effects, natures, times, from: Time::ZERO, before, after })
+        let guides = Guide::all(&network, &plan)?;
+        let from = Time::ZERO;
+        Ok(Self { network, plan, made, effects, dispatch, natures, guides, times, from, before, after })
     }
 
     /// The window of a point in mission units; no latest time if it is not bounded.
@@ -154,7 +158,7 @@ impl Dispatch {
     fn new(network: &Network, plan: &Plan, made: &mut PlanNetwork) -> Result<Self, PlanError> {
         let mut arcs = (0..network.arcs.len()).map(ArcId::from_index);
         if arcs.any(|arc| plan.selected_arcs[arc.index()] && network.is_uncertain(arc))
-            && let Some(dispatch) = UncertainDispatch::new(network, plan, made)?
+            && let Some(dispatch) = UncertainDispatch::new(&guided(network), plan, made)?
         {
             return Ok(Self::Uncertain(dispatch));
         }
@@ -205,6 +209,51 @@ impl Dispatch {
             Self::Uncertain(dispatch) => dispatch.settle(point, ticks),
         }
     }
+}
+
+/// A vertex of a path: it guides the vehicle, and is no deadline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Guide {
+    /// The traverse.
+    pub(crate) traverse: OccurrenceId,
+    /// How long it takes at least from the start of the traverse.
+    pub(crate) least_before: Time,
+    /// How long the rest takes at most.
+    pub(crate) greatest_after: Bound,
+}
+
+impl Guide {
+    fn all(network: &Network, plan: &Plan) -> Result<BTreeMap<NodeId, Self>, PlanError> {
+        let mut paths: BTreeMap<OccurrenceId, Vec<&tpn::Arc>> = BTreeMap::new();
+        for (arc, _) in network.arcs.iter().zip(&plan.selected_arcs).filter(|(_, is_selected)| **is_selected)
+        {
+            if let (ArcKind::Path, Some(traverse)) = (arc.kind, arc.occurrence) {
+                // In the order in which they follow each other.
+                paths.entry(traverse).or_default().push(arc);
+            }
+        }
+        let mut guides = BTreeMap::new();
+        for (traverse, path) in paths {
+            let mut greatest_after = Bound::ZERO;
+            let mut least_before =
+                Time::checked_sum(path.iter().map(|arc| arc.lower)).ok_or(PlanError::Overflow)?;
+            for arc in path.iter().skip(1).rev() {
+                least_before = least_before.checked_sub(arc.lower).ok_or(PlanError::Overflow)?;
+                greatest_after = greatest_after.checked_add(arc.upper).ok_or(PlanError::Overflow)?;
+                guides.insert(arc.from, Self { traverse, least_before, greatest_after });
+            }
+        }
+        Ok(guides)
+    }
+}
+
+/// A network in which the vertices of paths have no latest times of their own.
+fn guided(network: &Network) -> Network {
+    let mut network = network.clone();
+    for arc in network.arcs.iter_mut().filter(|arc| arc.kind == ArcKind::Path) {
+        arc.upper = Bound::Infinite;
+    }
+    network
 }
 
 /// Arcs lead forwards in time; only those by which facts hold the past lead back to the start.

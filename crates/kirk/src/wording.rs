@@ -293,8 +293,8 @@ impl Told<'_> {
         }
         needs.sort();
         let needs: Vec<String> = needs.into_iter().map(|(_, name)| name).collect();
-        let verb = if needs.len() == 1 { "needs" } else { "need" };
-        let needs = if needs.is_empty() { "keeping them apart".to_owned() } else { joined(&needs) };
+        let verb = if needs.len() > 1 { "need" } else { "needs" };
+        let needs = if needs.is_empty() { self.unnamed_need() } else { joined(&needs) };
         let (needed, allowed) = (shown(needed), shown(allowed));
         Some(match allows.as_slice() {
             [] => match waiting {
@@ -313,6 +313,19 @@ impl Told<'_> {
                 )
             }
         })
+    }
+
+    /// What takes the time of a cycle in which nothing with a name does.
+    fn unnamed_need(&self) -> String {
+        let has = |wanted: fn(Constraint) -> bool| self.cycle.iter().any(|it| wanted(it.constraint));
+        let what = if has(|it| matches!(it, Constraint::Order(_))) {
+            "keeping them apart"
+        } else if has(|it| matches!(it, Constraint::UseOrder(_) | Constraint::Departure(_))) {
+            "coming one after the other"
+        } else {
+            "their order in the program"
+        };
+        what.to_owned()
     }
 }
 

@@ -93,6 +93,39 @@ fn an_undisturbed_rover_drives_its_path_in_about_the_planned_time_and_touches_no
     assert!(distance(&motion.at(middle.time).expect("it moves").0, &middle.position_m) < 0.05);
 }
 
+/// When an event happened.
+fn time_of(execution: &Execution, event: &str) -> Option<f64> {
+    execution.log.iter().find_map(|entry| match &entry.happening {
+        Happening::Executed { name } if name == event => Some(minutes(entry.time)),
+        _ => None,
+    })
+}
+
+#[test]
+fn vertices_guide_a_drive_and_only_what_the_mission_bounds_can_be_violated() {
+    // The traverse begins at 10 and has [405,486] in a path that is open until 460: its end is within [415,460].
+    let takes = |units: i64| {
+        let activity = "Group-Traverse-Path#1".into();
+        run(ENROUTE, &[Disturbance::Duration { activity, duration: units.into() }])
+    };
+    for units in [405, 406, 415, 430, 450] {
+        let execution = takes(units);
+        assert_eq!(violations(&execution), Vec::<&str>::new(), "{units}");
+        assert_eq!(execution.ending, Ending::Finished, "{units}");
+        let end = time_of(&execution, "Group-Traverse-Path#1.end").expect("it arrives");
+        assert!((end - (10.0 + units as f64)).abs() < 1e-9, "{units}: {end}");
+        let vertices = execution.log.iter().filter(
+            |entry| matches!(&entry.happening, Happening::Executed { name } if name.contains(".vertex")),
+        );
+        assert!(vertices.clone().count() > 3, "they are passed all the same");
+        assert!(vertices.into_iter().all(|entry| minutes(entry.time) <= end));
+    }
+    let late = takes(451);
+    let [first, ..] = violations(&late)[..] else { panic!("the path is closed by then") };
+    assert!(!first.contains("vertex"), "{first}");
+    assert!(!violations(&takes(404)).is_empty(), "faster than the mission says");
+}
+
 #[test]
 fn a_rock_that_appears_on_the_path_is_seen_and_passed() {
     let free = run(DETOUR, &[]);
