@@ -156,8 +156,7 @@ pub(crate) enum Dispatch {
 
 impl Dispatch {
     fn new(network: &Network, plan: &Plan, made: &mut PlanNetwork) -> Result<Self, PlanError> {
-        let mut arcs = (0..network.arcs.len()).map(ArcId::from_index);
-        if arcs.any(|arc| plan.selected_arcs[arc.index()] && network.is_uncertain(arc))
+        if plan.has_natures_choice(network)
             && let Some(dispatch) = UncertainDispatch::new(&guided(network), plan, made)?
         {
             return Ok(Self::Uncertain(dispatch));

@@ -100,10 +100,7 @@ impl Strategy {
     /// The strategy of `plan`, with times as fine as `grid` asks; `None` if nature chooses nothing in it, or if it does
     /// not withstand nature.
     pub fn new(network: &Network, plan: &Plan, grid: &[Time]) -> Result<Option<Self>, PlanError> {
-        let is_uncertain = |(index, is_selected): (usize, &bool)| {
-            *is_selected && network.is_uncertain(ArcId::from_index(index))
-        };
-        if !plan.selected_arcs.iter().enumerate().any(is_uncertain) {
+        if !plan.has_natures_choice(network) {
             return Ok(None);
         }
         let mut made = PlanNetwork::new(network, plan)?;

@@ -347,6 +347,9 @@ pub(crate) fn is_telling(network: &Network, member: &CycleMember) -> bool {
     !is_structural && (matches!(member.constraint, Constraint::Upper(_)) || member.weight != Time::ZERO)
 }
 
+/// Of a longer run only the last events are told.
+const MAX_RUN_LINES: usize = 20;
+
 /// A run in which nature makes a mission fail, a line for each thing that happens.
 pub(crate) fn failing_run(network: &Network, run: &FailingRun) -> Vec<String> {
     let event = |event: &RunEvent| {
@@ -373,7 +376,14 @@ pub(crate) fn failing_run(network: &Network, run: &FailingRun) -> Vec<String> {
         }
     };
     let broken = format!("at {} it has failed: {broken}", Bound::Finite(run.at));
-    run.events.iter().filter_map(event).chain([broken]).collect()
+    let mut lines: Vec<String> = run.events.iter().filter_map(event).collect();
+    // What breaks a long run is what happens last.
+    let left_out = lines.len().saturating_sub(MAX_RUN_LINES);
+    if left_out > 1 {
+        lines.splice(..left_out, [format!("{left_out} events before that, at their times")]);
+    }
+    lines.push(broken);
+    lines
 }
 
 /// Whether the bounds of an arc are rules of the language, which no author wrote.

@@ -11,7 +11,7 @@ use executive::{
 };
 use motion::Path;
 use plant::Random;
-use rmpl::program::{LabelMode, Program};
+use rmpl::program::{Controllability, LabelMode, Program};
 use smol_str::SmolStr;
 use tpn::{ArcId, Network, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Plan};
 
@@ -31,6 +31,8 @@ const PER_UNIT: u32 = 1000;
 
 /// A plan made ready for many runs with chance.
 pub struct Sampler {
+    /// The plan's, in which nature also chooses what the plan assumes.
+    network: Arc<Network>,
     stage: Stage,
     windows: Vec<(SmolStr, NodeId, Time, Time)>,
     durations: Vec<(SmolStr, Distribution)>,
@@ -62,6 +64,7 @@ impl Sampler {
             courses
         });
         let durations = durations(network, uncertainty, &programs, courses.as_ref());
+        let network = &with_assumed(program, network, uncertainty);
         let natures = natures(network, uncertainty);
         let late = incidents(network, &uncertainty.late);
         let withdrawn = incidents(network, &uncertainty.withdrawn);
@@ -74,6 +77,7 @@ impl Sampler {
         let stage = Stage::new(Arc::clone(network), plan.clone(), &grid);
         let windows = windows(network, plan);
         Some(stage.map(|stage| Self {
+            network: Arc::clone(network),
             stage,
             windows,
             durations,
@@ -99,7 +103,7 @@ impl Sampler {
         tally: &mut Tally,
     ) -> Result<(), PlanError> {
         let disturbances = self.draw(settings.seed, number)?;
-        let chosen = self.chosen(problem.network, run_seed(settings.seed, number))?;
+        let chosen = self.chosen(run_seed(settings.seed, number))?;
         let mut world = World::new(&disturbances).with_chosen(chosen.clone());
         if self.nature == Nature::Adversary {
             world = world.with_adversary();
@@ -132,14 +136,14 @@ impl Sampler {
     }
 
     /// What nature chooses in the run of a seed.
-    fn chosen(&self, network: &Network, seed: u64) -> Result<BTreeMap<SmolStr, Time>, PlanError> {
+    fn chosen(&self, seed: u64) -> Result<BTreeMap<SmolStr, Time>, PlanError> {
         let named = |occurrence: &Occurrence| {
             self.natures
                 .iter()
                 .find(|(name, _)| *name == occurrence.name)
                 .map(|&(_, distribution)| distribution)
         };
-        Ok(nature::choose(network, seed, self.nature, &named)?)
+        Ok(nature::choose(&self.network, seed, self.nature, &named)?)
     }
 
     /// What goes otherwise than planned in run `number`.
@@ -242,6 +246,35 @@ fn windows(network: &Network, plan: &Plan) -> Vec<(SmolStr, NodeId, Time, Time)>
         }
     }
     found
+}
+
+/// The network in which nature chooses when the world acts, instead of the plan that assumes it (SPEC 13.3): from the
+/// bounds that the mission gives it, or up to the mission's end where they have none. What the mission reads as
+/// ordinary, and what is to be as planned, stays as it is.
+fn with_assumed(program: &Program, network: &Arc<Network>, uncertainty: &Uncertainty) -> Arc<Network> {
+    let assumed = tpn::assumed(program);
+    if assumed.is_empty() || network.controllability == Controllability::None {
+        return Arc::clone(network);
+    }
+    let scenario = network.occurrences.iter().find(|it| it.kind == OccurrenceKind::Scenario);
+    let scenario_arc = scenario.and_then(|scenario| scenario.arc);
+    let horizon = scenario_arc.map_or(Bound::Infinite, |arc| network.arcs[arc.index()].upper);
+    let mut changed = Network::clone(network);
+    for occurrence in &network.occurrences {
+        let is_world = matches!(occurrence.kind, OccurrenceKind::Delay | OccurrenceKind::Assertion);
+        let is_assumed = is_world && occurrence.span.is_some_and(|span| assumed.contains(&span));
+        let Some(arc) = occurrence.arc.filter(|_| is_assumed) else { continue };
+        let is_named = uncertainty.durations.contains_key(&occurrence.name);
+        if uncertainty.others == Others::Planned && !is_named {
+            continue;
+        }
+        let arc = &mut changed.arcs[arc.index()];
+        let upper = if arc.upper == Bound::Infinite { horizon } else { arc.upper };
+        if Bound::Finite(arc.lower) < upper && upper != Bound::Infinite {
+            (arc.upper, arc.is_contingent) = (upper, true);
+        }
+    }
+    Arc::new(changed)
 }
 
 /// How long each activity takes that is left to chance.

@@ -113,6 +113,30 @@ fn without_chance_every_run_succeeds() {
     assert_eq!((tally.succeeded, tally.breaks.len()), (10, 0));
 }
 
+/// The plan surveys at once, for 20 minutes, and the storm comes when it likes.
+const STORM: &str = "
+var DUST : {CLEAR, STORM};
+primitive Survey()[20,20];
+scenario Day[0,150] = { do { Survey() } watching DUST=STORM, { delay BOUNDS; DUST=STORM [10,10] } }";
+
+#[test]
+fn what_a_plan_assumes_of_the_world_comes_early_and_late() {
+    let assumed = Mission::read(&STORM.replace("BOUNDS", "[0,100]"));
+    let tally = assumed.sample(&settings(2000, Uncertainty::default()), 0..2000);
+    let (low, high) = tally.interval();
+    assert!(low < 0.8 && 0.8 < high, "{low} to {high}: the storm comes in the first 20 of 100 minutes");
+    // Without bounds of its own it may come until the mission ends.
+    let endless = Mission::read(&STORM.replace("BOUNDS", ""));
+    let (low, high) = endless.sample(&settings(2000, Uncertainty::default()), 0..2000).interval();
+    assert!(high < 0.95 && 0.7 < low, "{low} to {high}");
+    // As planned, where that is asked for or the mission forbids anything else.
+    let planned = Uncertainty { others: Others::Planned, ..Uncertainty::default() };
+    assert_eq!(assumed.sample(&settings(50, planned), 0..50).succeeded, 50);
+    let forbidden = format!("option controllability = none;{}", STORM.replace("BOUNDS", "[0,100]"));
+    let tally = Mission::read(&forbidden).sample(&settings(50, Uncertainty::default()), 0..50);
+    assert_eq!(tally.succeeded, 50);
+}
+
 /// With a fault in a fifth of all steps from Standby on, one engine often takes over from the other, and often not.
 #[test]
 fn components_fail_by_chance_while_programs_run() {

@@ -5,7 +5,7 @@
 use exact::{Bound, Rational, Time};
 use serde::{Deserialize, Serialize};
 
-use crate::network::{DecisionId, Extent, LabelId, Network, NodeId, Supply, UseId};
+use crate::network::{ArcId, DecisionId, Extent, LabelId, Network, NodeId, Supply, UseId};
 
 /// A plan of a [`crate::Network`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -61,6 +61,12 @@ impl Plan {
             self.orderings_added.iter().map(|ordering| self.ordering_precedence(network, ordering, &natures));
         let uses = self.uses_ordered.iter().map(|ordering| ordering.precedence(network));
         links.chain(orderings).chain(uses).collect()
+    }
+
+    /// Whether nature chooses some duration of the plan, and the mission asks to withstand that.
+    pub fn has_natures_choice(&self, network: &Network) -> bool {
+        let arcs = (0..network.arcs.len()).map(ArcId::from_index);
+        arcs.zip(&self.selected_arcs).any(|(arc, &is_selected)| is_selected && network.is_uncertain(arc))
     }
 
     /// The order of conflicting intervals, but for what goes without saying: what holds at first comes before everything,

@@ -35,8 +35,7 @@ impl Panel for StrategyPanel {
             show_empty(ui, context, "There is no plan to run against nature. The plan panel says why.");
             return;
         };
-        let mut arcs = (0..network.arcs.len()).map(ArcId::from_index);
-        if !arcs.any(|arc| plan.selected_arcs[arc.index()] && network.is_uncertain(arc)) {
+        if !plan.has_natures_choice(network) {
             let text = "Nature chooses nothing in this plan: the executive may choose all times. Durations marked \
                         contingent are nature's.";
             show_empty(ui, context, text);
@@ -168,7 +167,9 @@ fn executives(
     }
     match &course.next {
         None => {
-            ui.label(strong("Everything has happened: the plan withstood nature.").color(tokens.good));
+            ui.label(
+                strong("Everything has happened: the plan withstood nature in this run.").color(tokens.good),
+            );
         }
         Some(next) => {
             let text = format!("next, if nature ends nothing before: {}", act_text(network, next));

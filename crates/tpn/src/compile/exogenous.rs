@@ -2,9 +2,9 @@
 //! 13.3).
 
 use exact::Bound;
-use rmpl::Diagnostic;
 use rmpl::diagnostics::exogenous::{Choice, branch};
-use rmpl::program::{Bounds, Condition, ScenarioDecl, Statement, StatementKind};
+use rmpl::program::{Bounds, Condition, Program, ScenarioDecl, Statement, StatementKind};
+use rmpl::{Diagnostic, Span};
 
 use super::bounds::{self, Interval};
 use super::constants::Constants;
@@ -13,11 +13,22 @@ use super::statics::for_each_statement;
 
 /// A warning for each branch of `scenario` that calls nothing and leaves a choice.
 pub(super) fn check(scenario: &ScenarioDecl, constants: &Constants<'_>) -> Vec<Diagnostic> {
-    let branches = match &scenario.body.kind {
+    branches(scenario).iter().filter_map(|of| branch(&choices(of, constants))).collect()
+}
+
+/// The delays and assertions of the world's whose times the plan of a scenario chooses, where they are written.
+pub fn assumed(program: &Program) -> Vec<Span> {
+    let (constants, _) = Constants::new(program);
+    let branches = program.scenarios.iter().flat_map(branches);
+    branches.flat_map(|of| choices(of, &constants)).map(|choice| choice.statement).collect()
+}
+
+/// The branches of a scenario, one of which may be the world's.
+fn branches(scenario: &ScenarioDecl) -> &[Statement] {
+    match &scenario.body.kind {
         StatementKind::Parallel(branches) => branches.as_slice(),
         _ => std::slice::from_ref(&scenario.body),
-    };
-    branches.iter().filter_map(|of| branch(&choices(of, constants))).collect()
+    }
 }
 
 /// What `part` leaves to the plan, in textual order; nothing if it calls anything.

@@ -27,6 +27,8 @@ use rmpl::{Code, Diagnostic, Severity, Span};
 use smol_str::SmolStr;
 
 use crate::network::Network;
+pub use exogenous::assumed;
+
 use constants::Constants;
 use expand::Expander;
 

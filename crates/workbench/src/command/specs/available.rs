@@ -85,8 +85,7 @@ pub(super) fn with_vehicles(state: &AppState) -> Availability {
 pub(super) fn with_natures_choice(state: &AppState) -> Availability {
     let chosen = state.shown().and_then(|shown| {
         let (network, plan) = (shown.network.as_deref()?, shown.plan()?);
-        let mut arcs = plan.selected_arcs.iter().enumerate().filter(|(_, is_selected)| **is_selected);
-        Some(arcs.any(|(index, _)| network.is_uncertain(tpn::ArcId::from_index(index))))
+        Some(plan.has_natures_choice(network))
     });
     match chosen {
         Some(true) => Ok(()),
