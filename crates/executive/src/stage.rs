@@ -269,7 +269,83 @@ fn before(network: &Network, plan: &Plan) -> Vec<Vec<NodeId>> {
             before[later.index()].push(earlier);
         }
     }
+    wait_together(network, plan, &mut before);
     before
+}
+
+/// What comes at one instant because of `[0,0]` waits together: the first of it follows whatever a later one follows.
+/// Otherwise the end of a delay would come as soon as it may, and with it the activity behind it, before what that waits
+/// for is over.
+fn wait_together(network: &Network, plan: &Plan, before: &mut [Vec<NodeId>]) {
+    let group_of = instants(network, plan);
+    let mut groups: Vec<Group> = vec![Group::default(); before.len()];
+    for (node, earlier) in before.iter().enumerate() {
+        let group = group_of[node];
+        let outside = earlier.iter().filter(|earlier| group_of[earlier.index()] != group);
+        groups[group].follows.extend(outside);
+        groups[group].members += 1;
+        if earlier.iter().all(|earlier| group_of[earlier.index()] != group) {
+            groups[group].first.push(NodeId::from_index(node));
+        }
+    }
+    // Instants that follow each other are one; which of their events is first only their own order says.
+    let mut followers = vec![Vec::new(); groups.len()];
+    for (group, described) in groups.iter().enumerate() {
+        for earlier in &described.follows {
+            followers[group_of[earlier.index()]].push(group);
+        }
+    }
+    let mut missing: Vec<usize> = groups.iter().map(|group| group.follows.len()).collect();
+    let mut ready: Vec<usize> = (0..groups.len()).filter(|&group| missing[group] == 0).collect();
+    while let Some(group) = ready.pop() {
+        let Group { first, follows, members } = &groups[group];
+        if *members > 1 {
+            for node in first {
+                let own = &mut before[node.index()];
+                own.extend(follows);
+                own.sort_unstable();
+                own.dedup();
+            }
+        }
+        for &follower in &followers[group] {
+            missing[follower] -= 1;
+            if missing[follower] == 0 {
+                ready.push(follower);
+            }
+        }
+    }
+}
+
+/// Events that come at one instant.
+#[derive(Clone, Default)]
+struct Group {
+    members: usize,
+    /// Those that follow none of the others.
+    first: Vec<NodeId>,
+    /// What they follow, but for each other.
+    follows: Vec<NodeId>,
+}
+
+/// Which nodes come at one instant because of selected arcs of `[0,0]`: a number of each node's group.
+fn instants(network: &Network, plan: &Plan) -> Vec<usize> {
+    let mut tied = vec![Vec::new(); network.nodes.len()];
+    for (arc, _) in network.arcs.iter().zip(&plan.selected_arcs).filter(|(_, is_selected)| **is_selected) {
+        if arc.lower.is_zero() && arc.upper == Bound::ZERO {
+            tied[arc.from.index()].push(arc.to.index());
+            tied[arc.to.index()].push(arc.from.index());
+        }
+    }
+    let mut group_of: Vec<Option<usize>> = vec![None; tied.len()];
+    for first in 0..tied.len() {
+        let mut pending = vec![first];
+        while let Some(node) = pending.pop() {
+            if group_of[node].is_none() {
+                group_of[node] = Some(first);
+                pending.extend(&tied[node]);
+            }
+        }
+    }
+    group_of.into_iter().map(Option::unwrap_or_default).collect()
 }
 
 /// Whether `to` follows `from`.

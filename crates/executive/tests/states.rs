@@ -303,3 +303,21 @@ fn at_whatever_time_the_world_changes_something_the_rules_are_kept_or_the_run_st
         "{finished} finished, {stopped} stopped, {replanned}"
     );
 }
+
+/// What comes at one instant with a later event, such as the end of a delay before it, waits for what that waits for.
+#[test]
+fn a_delay_does_not_end_before_what_its_successor_waits_for() {
+    let source = "
+        resource Battery 0..10 = 1;
+        primitive Charge()[10,20] produces Battery 5;
+        primitive Use()[1,1] consumes Battery 3;
+        scenario S[0,100] = { Charge(), { delay; optional Use() } }";
+    for lasts in [10, 15, 20] {
+        let outcome =
+            execute(source, &[Disturbance::Duration { activity: "Charge#1".into(), duration: lasts.into() }]);
+        assert_eq!(outcome.ending, Ending::Finished);
+        assert_eq!(violations(&outcome), Vec::<String>::new(), "charging takes {lasts}");
+        assert_eq!(outcome.plans.len(), 1);
+        assert_eq!(outcome.log.last().map(|entry| entry.time), Some(Time::from(lasts + 1)));
+    }
+}
