@@ -16,6 +16,9 @@ pub(crate) struct Departures {
     movements: Vec<Movement>,
     /// What paths have told; `None` of what cannot be driven.
     known: BTreeMap<(OccurrenceId, SmolStr), Known>,
+    /// The routes whose paths were asked. Where several vehicles stand at one place each has a spot of its own there, so
+    /// that one leg can have several.
+    asked: Vec<Route>,
 }
 
 /// What a path has told.
@@ -38,20 +41,29 @@ impl Departures {
         let movements = (0..network.occurrences.len())
             .map(OccurrenceId::from_index)
             .filter_map(|occurrence| movement(network, program, occurrence));
-        Self { movements: movements.collect(), known: BTreeMap::new() }
+        Self { movements: movements.collect(), known: BTreeMap::new(), asked: Vec::new() }
     }
 
     /// Whether a path has told how long a route takes.
     pub(crate) fn knows(&self, route: &Route) -> bool {
-        route.from.as_ref().is_none_or(|from| self.known.contains_key(&(route.occurrence, from.clone())))
+        let is_it = |asked: &Route| {
+            (asked.occurrence, &asked.from, &asked.waypoints)
+                == (route.occurrence, &route.from, &route.waypoints)
+        };
+        route.from.is_none() || self.asked.iter().any(is_it)
     }
 
-    /// Learns how long a route takes at least, `None` if it cannot be driven, and its metres.
+    /// Learns how long a route takes at least, `None` if it cannot be driven, and its metres. Of several paths of one leg
+    /// the longest counts.
     pub(crate) fn learn(&mut self, route: &Route, least: Option<Time>, metres: Option<Rational>) {
         if let Some(from) = &route.from {
             // The exact time comes with the path; a rounder one that is a little less keeps the planner's numbers small.
             let least = least.map(|least| round_down(least.to_f64()).unwrap_or_default());
-            self.known.insert((route.occurrence, from.clone()), Known { least, metres });
+            let key = (route.occurrence, from.clone());
+            let earlier = self.known.get(&key).copied();
+            let longest = earlier.and_then(|earlier| earlier.metres).max(metres);
+            self.known.insert(key, Known { least, metres: longest });
+            self.asked.push(route.clone());
         }
     }
 
@@ -96,6 +108,25 @@ impl Departures {
         }
         departures
     }
+}
+
+/// Writes down how many metres a route drives that was planned.
+pub(crate) fn record(network: &mut Network, route: &Route, length_m: f64) {
+    let Some((from, metres)) = route.from.as_ref().zip(rounded_up(length_m)) else { return };
+    let Network { labels, variables, distances, .. } = network;
+    for distance in distances {
+        let arrival = &labels[distance.arrival.index()];
+        let variable = &variables[arrival.literal.variable.index()];
+        let place = variable.values.get(distance.from.index());
+        if arrival.owner == Some(route.occurrence) && place == Some(from) {
+            distance.metres = metres;
+        }
+    }
+}
+
+/// Metres as numbers that plans are weighed by: to the millimetre, rounded up.
+pub(crate) fn rounded_up(length_m: f64) -> Option<Rational> {
+    Rational::from_f64_up(length_m, 1000)
 }
 
 fn movement(network: &Network, program: &Program, occurrence: OccurrenceId) -> Option<Movement> {

@@ -17,7 +17,7 @@ use terrain::{ConfigurationSpace, Terrain};
 use tpn::path::{PathLeg, TraversePath};
 use tpn::{ArcId, ArcKind, Network, OccurrenceId, Plan, Supply};
 
-use crate::departures::Departures;
+use crate::departures::{self, Departures, rounded_up};
 use crate::driving::{self, Drive};
 use crate::ground::{FreeSpace, Grounds};
 use crate::listing::{self, Listed};
@@ -381,11 +381,6 @@ fn count_metres(network: &mut Network, occurrence: OccurrenceId, length_m: f64) 
     }
 }
 
-/// Metres as numbers that plans are weighed by: to the millimetre, rounded up.
-fn rounded_up(length_m: f64) -> Option<Rational> {
-    Rational::from_f64_up(length_m, 1000)
-}
-
 fn traverse_path(route: &Route, legs: &[Leg], map: &Terrain) -> Option<TraversePath> {
     let legs = legs.iter().map(|leg| {
         let timings = timings(route, leg, map);
@@ -522,7 +517,7 @@ pub(crate) fn name_blocked(outcome: &mut Outcome, network: &Network, undrivable:
 fn conclude(
     problem: &Problem<'_>,
     grounds: &mut Grounds,
-    network: Arc<Network>,
+    mut network: Arc<Network>,
     mut outcome: Outcome,
     inserted: BTreeMap<OccurrenceId, Inserted>,
 ) -> Planned {
@@ -532,7 +527,16 @@ fn conclude(
     let mut spaces = Vec::new();
     let world = &problem.program.world;
     if let (Some((key, map)), Some(plan)) = (problem.ground, outcome.plans.first()) {
-        for route in traverse::routes(&network, problem.program, plan, places(problem)) {
+        let routes = traverse::routes(&network, problem.program, plan, places(problem));
+        if !network.distances.is_empty() {
+            let described = Arc::make_mut(&mut network);
+            for route in &routes {
+                if let Some(Inserted { legs: Ok(legs), .. }) = inserted.get(&route.occurrence) {
+                    departures::record(described, route, traverse::joined(legs).length_m());
+                }
+            }
+        }
+        for route in routes {
             let Some(Inserted { legs: Ok(legs), .. }) = inserted.get(&route.occurrence) else { continue };
             let path = traverse::joined(legs);
             let space = grounds.space(key, map, world, route.model);

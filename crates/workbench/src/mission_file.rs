@@ -69,6 +69,16 @@ pub const EXAMPLES: &[Example] = &[
         source: include_str!("../../../assets/missions/storm.rmpl"),
     },
     Example {
+        name: "sol",
+        title: "A sol with more wishes than room",
+        source: include_str!("../../../assets/missions/sol.rmpl"),
+    },
+    Example {
+        name: "fleet",
+        title: "Four rovers and a blimp",
+        source: include_str!("../../../assets/missions/fleet.rmpl"),
+    },
+    Example {
         name: "orbit",
         title: "Into orbit",
         source: include_str!("../../../assets/missions/orbit.rmpl"),

@@ -382,9 +382,13 @@ fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
             Some(false) => ", the best found",
             None => "",
         };
+        let metres =
+            if network.vehicles.is_empty() { String::new() } else { format!(", {:.1} m", quality.length_m) };
         text.push_str(&format!(
-            "worth     cost {}, reward {}, end {}{optimal}\n",
-            quality.cost, quality.reward, quality.end
+            "worth     cost {}, reward {}, end {}{metres}{optimal}\n",
+            quality.cost,
+            quality.reward,
+            quality.end.readable()
         ));
     }
     let mut rows: Vec<(Time, Bound, String)> = Vec::new();
