@@ -380,8 +380,10 @@ export type Review = {
   /** Whether the two differ. */
   stale: boolean;
   running: boolean;
-  status: "passed" | "attention" | "failed" | null;
+  status: "information" | "passed" | "attention" | "failed" | null;
   counts: ReviewCounts | null;
+  /** What the mission is held against: see section 16 of the specification. */
+  rules: { margin: number | string | null; clearance_m: number | null; slope_deg: number | null; reserve: number | string | null; reserves: Record<string, number | string>; success_rate: { wanted: number; least: number } | null };
   items: Array<ReviewItem>;
   /** The latest sign-off of the present content, otherwise the latest of any. */
   signed: SignOff | null;
@@ -395,13 +397,17 @@ export type ReviewCounts = {
   passed: number;
   attention: number;
   failed: number;
+  /** Lines that say how things are, with nothing to hold them against. */
+  information: number;
 };
 
 /** A line of a review. */
 export type ReviewItem = {
   section: string;
-  status: "passed" | "attention" | "failed";
+  status: "information" | "passed" | "attention" | "failed";
   text: string;
+  /** What it is held against, and where that comes from. */
+  criterion: string | null;
   /** The line of its place in the text, from 1. */
   line: number | null;
   /** What it is about, by the names of all output. */

@@ -34,14 +34,18 @@ pub fn html(document: &Document<'_>) -> String {
     let mut out = format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{0}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
-        escaped(&title)
+         <title>{0}</title>\n<style>{STYLE}{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
+        escaped(&title),
+        page_margins(&document.review.content_hash)
     );
     out.push_str(&facts(document));
+    out.push_str(&tables::summary(document.review));
+    out.push_str(&tables::signatures(document.record, document.review));
     out.push_str(&tables::sections(document.review));
-    out.push_str(&tables::robustness(document.robustness));
+    out.push_str(&tables::robustness(document.review, document.robustness));
+    out.push_str(&tables::rules(document.review));
     if let Some(record) = document.record {
-        out.push_str(&tables::record(record, &document.review.content_hash));
+        out.push_str(&tables::record(record, document.review));
     }
     out.push_str(&figures(document));
     out.push_str("<h2 class=\"page\">Program</h2>\n");
@@ -50,11 +54,22 @@ pub fn html(document: &Document<'_>) -> String {
     out
 }
 
+/// What stands below each printed page: its number and which content it is about.
+fn page_margins(content_hash: &str) -> String {
+    // Hexadecimal digits only, so that nothing can end the text.
+    let hash: String = content_hash.chars().filter(char::is_ascii_hexdigit).collect();
+    format!(
+        "@page {{ @bottom-left {{ content: \"Content {hash}\"; font-size: 6.5pt; color: #4e5b6a; }} \
+         @bottom-right {{ content: \"Page \" counter(page) \" of \" counter(pages); font-size: 8pt; color: #4e5b6a; }} }}\n"
+    )
+}
+
 fn facts(document: &Document<'_>) -> String {
     let review = document.review;
     let [passed, attention, failed] = review.counts();
+    let information = review.count(Status::Information);
     let verdict = match review.status {
-        Status::Passed => "everything is as it should be",
+        Status::Information | Status::Passed => "everything is as it should be",
         Status::Attention => "some lines deserve a look",
         Status::Failed => "not ready",
     };
@@ -69,7 +84,7 @@ fn facts(document: &Document<'_>) -> String {
     };
     format!(
         "<dl class=\"facts\">\n<dt>Verdict</dt><dd>{}: {verdict}</dd>\n\
-         <dt>Checklist</dt><dd>{passed} passed, {attention} for attention, {failed} failed</dd>\n\
+         <dt>Checklist</dt><dd>{passed} passed, {attention} for attention, {failed} failed; {information} for information</dd>\n\
          <dt>Times</dt><dd>in {unit} from the start of the mission</dd>\n\
          <dt>Map, seed</dt><dd>{}, {}</dd>\n\
          <dt>Signed off</dt><dd>{}</dd>\n\
@@ -85,7 +100,8 @@ fn facts(document: &Document<'_>) -> String {
 /// Who has signed this very content; somebody who signed another one is named as such.
 fn signed(document: &Document<'_>) -> String {
     let record = document.record;
-    let current = record.and_then(|record| record.sign_off_of(&document.review.content_hash));
+    let current =
+        record.and_then(|record| record.sign_off_of(&document.review.content_hash, &document.review.rules));
     let last = record.and_then(|record| record.sign_offs.last());
     match (current, last) {
         (Some(signed), _) => {

@@ -23,9 +23,11 @@ thead { display: table-header-group; }
 .facts dd { margin: 0; overflow-wrap: anywhere; }
 .hash, code { font-family: 'Ubuntu Mono', 'JetBrains Mono', Menlo, Consolas, monospace; font-size: .95em; }
 .status { white-space: nowrap; font-weight: 600; }
+.information { color: #4e5b6a; }
 .passed { color: #007555; }
 .attention { color: #9a6200; }
 .failed { color: #b84300; }
+.signatures td { height: 2.2em; border-bottom: 1px solid #a9b5c2; width: 33%; }
 .muted { color: #6a7684; }
 figure { margin: .8em 0; }
 figure svg { display: block; max-width: 100%; height: auto; }

@@ -12,15 +12,22 @@ use crate::html::readable_time;
 pub(crate) fn sections(review: &Review) -> String {
     let mut out = String::new();
     for section in Section::ALL {
+        if section == Section::Robustness {
+            // It has a table of its own.
+            continue;
+        }
         out.push_str(&format!("<h2>{}</h2>\n", section.title()));
         if review.lines(section).is_empty() {
             out.push_str(&format!("<p class=\"muted\">{}</p>\n", escaped(review.nothing(section))));
             continue;
         }
         out.push_str(&match section {
-            Section::Plan | Section::States | Section::SeparationViolations | Section::Warnings => {
-                lines(&review.lines(section))
-            }
+            Section::Plan
+            | Section::States
+            | Section::Durations
+            | Section::SeparationViolations
+            | Section::Robustness
+            | Section::Warnings => lines(&review.lines(section)),
             Section::Resources => resources(review),
             Section::Choices => choices(review),
             Section::CausalLinks => links(review),
@@ -32,8 +39,55 @@ pub(crate) fn sections(review: &Review) -> String {
     out
 }
 
+/// What has failed and what deserves a look, of all sections, before anything else.
+pub(crate) fn summary(review: &Review) -> String {
+    let of_status = |wanted: Status| {
+        let rows = Section::ALL.iter().flat_map(move |&section| {
+            review
+                .lines(section)
+                .into_iter()
+                .filter(move |line| line.status == wanted)
+                .map(move |line| (section, line))
+        });
+        rows.map(|(section, line)| {
+            vec![
+                status(line.status),
+                section.title().to_owned(),
+                escaped(&line.text),
+                criterion(line),
+                place(line),
+            ]
+        })
+    };
+    let rows: Vec<Vec<String>> = of_status(Status::Failed).chain(of_status(Status::Attention)).collect();
+    let mut out = String::from("<h2>Summary</h2>\n");
+    if rows.is_empty() {
+        out.push_str("<p class=\"muted\">Nothing has failed, and nothing is for attention.</p>\n");
+    } else {
+        out.push_str(&table(&["", "Section", "What", "Held against", "Where"], rows));
+    }
+    out
+}
+
+/// Where people sign on paper, with those who have signed this very content.
+pub(crate) fn signatures(record: Option<&Record>, review: &Review) -> String {
+    let signed = record.into_iter().flat_map(|record| &record.sign_offs);
+    let is_current = |by: &&mission::review::record::SignOff| {
+        by.content_hash == review.content_hash && by.rules == review.rules
+    };
+    let mut rows: Vec<Vec<String>> = signed
+        .filter(is_current)
+        .map(|by| vec![escaped(&by.name), escaped(&readable_time(&by.time)), String::new()])
+        .collect();
+    rows.push(vec!["&nbsp;".to_owned(); 3]);
+    rows.push(vec!["&nbsp;".to_owned(); 3]);
+    let rows = table(&["Name and role", "Date", "Signature"], rows);
+    format!("<h2>Signatures</h2>\n<div class=\"signatures\">\n{rows}</div>\n")
+}
+
 /// Who signed what, and what was said.
-pub(crate) fn record(record: &Record, content_hash: &str) -> String {
+pub(crate) fn record(record: &Record, review: &Review) -> String {
+    let content_hash = review.content_hash.as_str();
     if record.is_empty() {
         return String::new();
     }
@@ -83,6 +137,7 @@ pub(crate) fn status(status: Status) -> String {
 pub(crate) fn word(status: &str, word: &str) -> String {
     let sign = match status {
         "passed" => "✓",
+        "information" => "i",
         "attention" => "!",
         _ => "✕",
     };
@@ -126,9 +181,21 @@ fn time(time: Bound) -> String {
 
 fn lines(lines: &[&Line]) -> String {
     table(
-        &["", "What", "Where"],
-        lines.iter().map(|line| vec![status(line.status), escaped(&line.text), place(line)]),
+        &["", "What", "Held against", "Where"],
+        lines.iter().map(|line| vec![status(line.status), escaped(&line.text), criterion(line), place(line)]),
     )
+}
+
+/// What a line is held against.
+fn criterion(line: &Line) -> String {
+    line.criterion.as_deref().map(escaped).unwrap_or_default()
+}
+
+/// The flight rules, each in a line.
+pub(crate) fn rules(review: &Review) -> String {
+    let rules = review.rules.in_words(&review.unit);
+    let rules: String = rules.iter().map(|rule| format!("<li>{}</li>", escaped(rule))).collect();
+    format!("<h2>Flight rules</h2>\n<ul>{rules}</ul>\n")
 }
 
 fn choices(review: &Review) -> String {
@@ -165,10 +232,11 @@ fn links(review: &Review) -> String {
             escaped(&link.tell),
             escaped(&link.lead.to_string()),
             escaped(&link.margin.to_string()),
+            criterion(&link.line),
             place(&link.line),
         ]
     });
-    table(&["", "Needed", "Carried by", "#Holds before", "#Outlasts by", "Where"], rows)
+    table(&["", "Needed", "Carried by", "#Holds before", "#Outlasts by", "Held against", "Where"], rows)
 }
 
 fn resources(review: &Review) -> String {
@@ -193,10 +261,14 @@ fn resources(review: &Review) -> String {
             escaped(&supply),
             escaped(&used),
             escaped(&margin),
+            criterion(&resource.line),
             place(&resource.line),
         ]
     });
-    table(&["", "Resource", "There is", "Used or left in every schedule", "Margin", "Where"], rows)
+    table(
+        &["", "Resource", "There is", "Used or left in every schedule", "Margin", "Held against", "Where"],
+        rows,
+    )
 }
 
 fn conflicts(review: &Review) -> String {
@@ -208,10 +280,11 @@ fn conflicts(review: &Review) -> String {
             escaped(&conflict.then),
             escaped(&conflict.gap.to_string()),
             by.to_owned(),
+            criterion(&conflict.line),
             place(&conflict.line),
         ]
     });
-    table(&["", "First", "Then", "#Apart", "Ordered by", "Where"], rows)
+    table(&["", "First", "Then", "#Apart", "Ordered by", "Held against", "Where"], rows)
 }
 
 /// Events of the program first; the points of paths, which are many and follow from them, in a table of their own.
@@ -237,8 +310,11 @@ fn events(review: &Review) -> String {
 }
 
 /// How many runs with chance reached the end, and what broke the others; before such runs, that there were none.
-pub(crate) fn robustness(found: Option<&Robustness>) -> String {
+pub(crate) fn robustness(review: &Review, found: Option<&Robustness>) -> String {
     let mut out = String::from("<h2>Robustness</h2>\n");
+    if let Some(line) = &review.robustness {
+        out.push_str(&lines(&[line]));
+    }
     let Some(found) = found.filter(|found| found.tally.runs > 0) else {
         out.push_str("<p class=\"muted\">No runs with chance were made.</p>\n");
         return out;
@@ -286,6 +362,7 @@ fn traverses(review: &Review) -> String {
             escaped(&traverse.duration.to_string()),
             clearance,
             format!("{:.1}", traverse.slope_max_rad.to_degrees()),
+            criterion(&traverse.line),
             place(&traverse.line),
         ]
     });
@@ -298,6 +375,7 @@ fn traverses(review: &Review) -> String {
         "#Duration",
         "#Clearance, m",
         "#Slope, °",
+        "Held against",
         "Where",
     ];
     table(&headings, rows)

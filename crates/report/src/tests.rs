@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use mission::review::record::{Comment, SignOff};
-use mission::review::{Record, Review, review};
+use mission::review::{FlightRules, Record, Review, review};
 use mission::{Core, CoreHost, Goal, Request, Response, SearchKind, Snapshot, Update};
 use rmpl::program::TimeUnit;
 use terrain::Terrain;
@@ -104,6 +104,22 @@ fn the_report_has_the_windows_the_margins_and_the_hash() {
     assert!(row_with(&page, "Ask(PATH1=OK)@Group-Traverse-Path#1").contains("[0, 45]"));
     assert!(page.contains("[1, 185]"));
     assert!(page.contains(&planned(SCENARIO).review.content_hash));
+}
+
+#[test]
+fn the_summary_comes_first_and_each_page_has_its_number_and_the_hash() {
+    let page = report(SCENARIO, "t01.rmpl");
+    let at = |text: &str| page.find(text).unwrap_or_else(|| panic!("no {text}"));
+    assert!(at("<h2>Summary</h2>") < at("<h2>Signatures</h2>"));
+    assert!(at("<h2>Signatures</h2>") < at("<h2>Causal links</h2>"));
+    assert!(at("<h2>Flight rules</h2>") > at("<h2>Robustness</h2>"));
+    let hash = planned(SCENARIO).review.content_hash;
+    assert!(page.contains(&format!("@bottom-left {{ content: \"Content {hash}\"")));
+    assert!(page.contains("\"Page \" counter(page) \" of \" counter(pages)"));
+    let summary = &page[at("<h2>Summary</h2>")..at("<h2>Signatures</h2>")];
+    assert!(summary.contains("outlasts it by 0 to 45 min") && summary.contains("margin more than 0 min"));
+    let fine = report("scenario S[0,9] = { delay }", "fine.rmpl");
+    assert!(fine.contains("Nothing has failed, and nothing is for attention."));
 }
 
 #[test]
@@ -275,6 +291,7 @@ fn a_report_names_who_signed_and_marks_what_belongs_to_another_content() {
         source: SCENARIO.to_owned(),
         goal: Goal::Default,
         seed: 0,
+        rules: FlightRules::default(),
     };
     let page = |record: &Record| {
         html(&Document {

@@ -7,7 +7,8 @@ use mission::review::review;
 use serde_json::{Value, json};
 use support::App;
 use workbench::command::{Command, EditorCommand};
-use workbench::host::{HostEvent, Remote as _};
+use workbench::host::{FileKind, HostEvent, Remote as _};
+use workbench::state::chance::ChanceCommand;
 use workbench::state::no_plan::NO_PLAN;
 use workbench::state::review::ReviewCommand;
 use workbench::state::search::SearchCommand;
@@ -114,4 +115,76 @@ fn a_review_that_comes_after_another_mission_was_opened_is_dropped() {
     app.world.news.borrow_mut().push_back(HostEvent::Answer(answer));
     app.settle();
     assert_eq!(app.json()["review"]["hash"], Value::Null);
+}
+
+/// The lines of a section of the review.
+fn lines(app: &App, section: &str) -> Vec<Value> {
+    let items = app.json()["review"]["items"].as_array().expect("a list").clone();
+    items.into_iter().filter(|it| it["section"] == section).collect()
+}
+
+#[test]
+fn runs_with_chance_are_kept_by_content_and_held_against_the_rule() {
+    let mut app = support::start();
+    app.run(Command::Review(ReviewCommand::Run));
+    assert_eq!(lines(&app, "robustness"), Vec::<Value>::new());
+    let settings = app.session.state().chance.settings.clone();
+    let settings = mission::RobustnessSettings { runs: 20, seed: 5, ..settings };
+    app.run(Command::Chance(ChanceCommand::Set(Box::new(settings))));
+    app.run(Command::Chance(ChanceCommand::Start));
+    for _ in 0..20 {
+        app.settle();
+    }
+    let made = app.json()["robustness"].clone();
+    assert_eq!(made["runs"], 20, "{made}");
+    let line = lines(&app, "robustness");
+    let [line] = line.as_slice() else { panic!("one line: {line:?}") };
+    let text = line["text"].as_str().expect("words");
+    assert!(text.contains("of 20 runs with chance reached the end (seed 5;"), "{text}");
+    assert!(line["criterion"].as_str().is_some_and(|it| it.starts_with("success rate at least 95 %")));
+    // Of another text nothing is known.
+    let source = app.session.source();
+    app.run(Command::SetSource(format!("{source} ")));
+    assert_eq!(app.session.state().robustness(), None);
+    app.dispatch("edit.undo", &json!(null));
+    assert_eq!(app.json()["robustness"], made, "the same mission again");
+    assert_eq!(lines(&app, "robustness"), [line.clone()]);
+    // The report has it.
+    app.world.saved.borrow_mut().clear();
+    app.run(Command::WriteReport);
+    let saved = app.world.saved.borrow();
+    let page = String::from_utf8(saved.last().expect("a report").1.clone()).expect("a text");
+    assert!(page.contains("of 20 runs with chance reached the end (seed 5;"));
+}
+
+#[test]
+fn flight_rules_are_changed_kept_with_the_mission_and_part_of_what_is_signed() {
+    let mut app = support::start();
+    app.run(Command::Review(ReviewCommand::Run));
+    let link = |app: &App| lines(app, "causal-links")[0]["status"].clone();
+    assert_eq!(link(&app), "attention", "a margin of 0 has not passed");
+    app.dispatch("review.sign", &json!({ "name": "Ada" }));
+    assert_eq!(app.json()["review"]["signed"]["stale"], false);
+    app.dispatch("review.rules", &json!({ "margin": null }));
+    assert_eq!(link(&app), "passed");
+    assert_eq!(app.json()["review"]["stale"], false, "the plan is the same");
+    assert_eq!(app.json()["review"]["signed"]["stale"], true, "these rules were not signed");
+    app.dispatch("review.rules", &json!({ "margin": 0 }));
+    assert_eq!(app.json()["review"]["signed"]["stale"], false);
+    app.dispatch("review.rules", &json!({ "slope_deg": 2.5 }));
+    let wrong = app.session.dispatch("review.rules", &json!({ "clearance_m": -1 }));
+    assert!(wrong.is_err() && app.json()["review"]["rules"]["clearance_m"] == 0.25);
+    // Another run finds them with the mission.
+    let again = support::start_in(std::rc::Rc::clone(&app.world));
+    drop(app);
+    let mut again = again;
+    again.settle();
+    assert_eq!(again.json()["review"]["rules"]["slope_deg"], 2.5);
+    again.run(Command::Review(ReviewCommand::SaveRules));
+    let saved = again.world.saved.borrow().last().expect("a file").1.clone();
+    again.dispatch("review.rules", &json!({ "slope_deg": 15 }));
+    let file = HostEvent::FileOpened { kind: FileKind::Json, name: "rules.json".into(), bytes: saved };
+    again.world.news.borrow_mut().push_back(file);
+    again.settle();
+    assert_eq!(again.json()["review"]["rules"]["slope_deg"], 2.5);
 }

@@ -1,10 +1,11 @@
 //! `enroute report`: reviews a mission, and writes the review as one HTML file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context as _;
-use mission::review::{Line, Record, Review, Section, Status, TimeRange, review};
+use mission::review::{FlightRules, Line, Record, Review, Section, Status, TimeRange, review};
+use mission::{Robustness, RobustnessSettings};
 use serde_json::{Value, json};
 
 use crate::deadline::TimeLimit;
@@ -25,6 +26,12 @@ pub struct Args {
     /// Comments and sign-offs, as the page saves them, to stand in the report.
     #[arg(long, value_name = "REVIEW.json")]
     record: Option<PathBuf>,
+    /// Flight rules to hold the plan against; otherwise those of the record, otherwise the usual ones.
+    #[arg(long, value_name = "RULES.json")]
+    rules: Option<PathBuf>,
+    /// What runs with chance came to, as `enroute robustness --format json` prints it.
+    #[arg(long, value_name = "ROBUSTNESS.json")]
+    robustness: Option<PathBuf>,
     /// Seeds path planning.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -39,7 +46,7 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let worked_out = work_out(&args.target, args.seed, args.time_limit.start())?;
     let WorkedOut { name, snapshot, ground } = &worked_out;
-    let review = review(snapshot, &args.target.goal()?, args.seed, &mut || false);
+    let mut review = review(snapshot, &args.target.goal()?, args.seed, &mut || false);
     let record = match &args.record {
         Some(path) => {
             let text = read_text(path)?;
@@ -47,13 +54,22 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         }
         None => None,
     };
+    let rules = match &args.rules {
+        Some(path) => read_rules(path)?,
+        None => record.as_ref().map(Record::rules).unwrap_or_default(),
+    };
+    let robustness = match &args.robustness {
+        Some(path) => Some(read_robustness(path, &review.content_hash)?),
+        None => None,
+    };
+    review.judge(&rules, robustness.as_ref());
     if let Some(path) = &args.output {
         let page = report::html(&report::Document {
             name,
             snapshot,
             review: &review,
             record: record.as_ref(),
-            robustness: None,
+            robustness: robustness.as_ref(),
             seed: args.seed,
             ground: ground.as_deref(),
         });
@@ -74,13 +90,44 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(exit(status))
 }
 
+/// Reads flight rules.
+pub fn read_rules(path: &Path) -> anyhow::Result<FlightRules> {
+    let rules = FlightRules::from_json(&read_text(path)?);
+    rules.map_err(|reason| anyhow::anyhow!("cannot read {}: {reason}", path.display()))
+}
+
+/// Reads what `enroute robustness` printed of this very mission.
+fn read_robustness(path: &Path, content_hash: &str) -> anyhow::Result<Robustness> {
+    let document: Value =
+        serde_json::from_str(&read_text(path)?).with_context(|| format!("cannot read {}", path.display()))?;
+    anyhow::ensure!(
+        document["mission"] == content_hash,
+        "{} is about another mission, map, goal or path seed",
+        path.display()
+    );
+    let read = || -> Option<Robustness> {
+        let settings = &document["settings"];
+        let settings = RobustnessSettings {
+            runs: settings["runs"].as_u64()?,
+            seed: settings["seed"].as_u64()?,
+            uncertainty: serde_json::from_value(settings["uncertainty"].clone()).ok()?,
+        };
+        Some(Robustness { settings, tally: serde_json::from_value(document["tally"].clone()).ok()? })
+    };
+    read().with_context(|| format!("cannot read {}: it holds no runs", path.display()))
+}
+
 fn summary(review: &Review) -> String {
     let [passed, attention, failed] = review.counts();
-    let mut text = format!("{passed} passed, {attention} for attention, {failed} failed\n");
+    let information = review.count(Status::Information);
+    let mut text = format!(
+        "{passed} passed, {attention} for attention, {failed} failed; {information} for information\n"
+    );
     for section in Section::ALL {
-        let lines = review.lines(section).into_iter().filter(|line| line.status != Status::Passed);
+        let lines = review.lines(section).into_iter().filter(|line| line.status > Status::Passed);
         for line in lines {
-            text.push_str(&format!("{}: {}\n", line.status.name(), line.text));
+            let criterion = line.criterion.as_ref().map(|it| format!(" [{it}]")).unwrap_or_default();
+            text.push_str(&format!("{}: {}{criterion}\n", line.status.name(), line.text));
         }
     }
     text.push_str(&format!("content {}\n", review.content_hash));
@@ -91,6 +138,7 @@ fn line_json(line: &Line, more: Value) -> Value {
     let mut value = json!({
         "status": line.status,
         "text": line.text,
+        "criterion": line.criterion,
         "span": line.span.map(|span| json!({ "start": span.start, "end": span.end, "line": line.line_number })),
         "names": line.names,
     });
@@ -109,6 +157,7 @@ fn review_json(review: &Review) -> Value {
     json!({
         "content_hash": review.content_hash,
         "status": review.status,
+        "rules": review.rules,
         "plan": plain(&review.plan),
         "choices": review.choices.iter().map(|it| line_json(&it.line, json!({
             "decision": it.name,
@@ -136,6 +185,8 @@ fn review_json(review: &Review) -> Value {
             "spare": it.spare,
             "room": it.room,
         }))).collect::<Vec<_>>(),
+        "durations": plain(&review.durations),
+        "robustness": review.robustness.as_ref().map(|line| line_json(line, json!({}))),
         "events": review.events.iter().map(|it| line_json(&it.line, json!({
             "event": it.name,
             "window": [it.window.earliest, it.window.latest],
@@ -149,6 +200,7 @@ fn review_json(review: &Review) -> Value {
             "duration": range_json(it.duration),
             "clearance_m": it.clearance_m,
             "slope_max_rad": it.slope_max_rad,
+            "slope_limit_rad": it.slope_limit_rad,
         }))).collect::<Vec<_>>(),
         "encounters": plain(&review.separation_violations),
         "warnings": plain(&review.warnings),

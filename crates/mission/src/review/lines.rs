@@ -2,17 +2,17 @@
 
 use rmpl::diagnostics::exogenous;
 use rmpl::files::Files;
-use rmpl::program::Controllability;
+use rmpl::program::{Controllability, TimeUnit};
 use rmpl::{LineIndex, Severity, Span};
 use tpn::{Network, NodeId};
 
 use super::demand_lines::status_by_checker;
 use super::plan_lines::PlanLines;
-use super::{Line, Review, Section, Status, content_hash};
+use super::{FlightRules, Line, Review, Status, content_hash};
 use crate::request::Goal;
 use crate::snapshot::{Planning, Snapshot, Stage};
 
-/// Reviews a snapshot; `goal` and `seed` are those it was planned with. When `stop` says so, the alternatives that have
+/// Reviews a snapshot, by the usual flight rules; `goal` and `seed` are those it was planned with. When `stop` says so, the alternatives that have
 /// not been looked at yet are left as [`super::Fate::NotExamined`].
 ///
 /// Alternatives that the plan does not take are planned once more each, so this takes as long as planning does, times
@@ -21,6 +21,8 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
     let places = Places::new(&snapshot.source);
     let mut review = Review {
         content_hash: content_hash(&snapshot.source, snapshot.map.as_ref(), goal, seed),
+        rules: FlightRules::default(),
+        unit: unit(snapshot).to_owned(),
         status: Status::Passed,
         plan: plan_section(snapshot, &places),
         choices: Vec::new(),
@@ -28,9 +30,11 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
         conflicts: Vec::new(),
         states: Vec::new(),
         resources: Vec::new(),
+        durations: Vec::new(),
         events: Vec::new(),
         traverses: Vec::new(),
         separation_violations: separation_violations(snapshot, &places),
+        robustness: None,
         warnings: warnings(snapshot, &places),
     };
     if let Some(mut lines) = PlanLines::new(snapshot, &places) {
@@ -39,12 +43,20 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
         review.conflicts = lines.conflicts();
         review.states = lines.demands().states();
         review.resources = lines.demands().resources();
+        review.durations = lines.durations();
         review.events = lines.events();
         review.traverses = lines.traverses();
     }
-    let lines = Section::ALL.iter().flat_map(|&section| review.lines(section));
-    review.status = lines.map(|line| line.status).max().unwrap_or(Status::Passed);
+    review.judge(&FlightRules::default(), None);
     review
+}
+
+/// What a mission counts time in.
+pub(super) fn unit(snapshot: &Snapshot) -> &'static str {
+    match snapshot.program.options.time_unit {
+        TimeUnit::Minute => "min",
+        TimeUnit::Second => "s",
+    }
 }
 
 /// Makes lines that know where in the text they lead.
@@ -68,7 +80,7 @@ impl<'source> Places<'source> {
         nodes: Vec<NodeId>,
     ) -> Line {
         let line_number = span.map(|span| self.files.line_column(self.source, &self.index, span.start).line);
-        Line { status, text, span, line_number, names, nodes }
+        Line { span, line_number, names, nodes, ..Line::new(status, text) }
     }
 
     fn plain(&self, status: Status, text: impl Into<String>) -> Line {
@@ -92,6 +104,7 @@ fn plan_section(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
     } else {
         let mut lines = vec![places.plain(Status::Passed, "there is a plan")];
         lines.extend(controllability(planning, network, places));
+        lines.extend(natures(planning, network, places));
         lines.extend(verdict(planning, places));
         lines.extend(assumptions(snapshot, places));
         lines.extend(worth(planning, network, places));
@@ -146,6 +159,25 @@ fn controllability(planning: &Planning, network: &Network, places: &Places<'_>) 
         ),
     };
     Some(places.line(status, text, None, names, nodes))
+}
+
+/// Each duration that nature chooses.
+fn natures(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<Line> {
+    let Some(plan) = planning.outcome.plans.first() else { return Vec::new() };
+    let line = |occurrence: &tpn::Occurrence| {
+        let id = occurrence.arc?;
+        let arc = &network.arcs[id.index()];
+        let is_selected = plan.selected_arcs.get(id.index()) == Some(&true);
+        if !arc.is_contingent || !is_selected {
+            return None;
+        }
+        let name = occurrence.name.to_string();
+        let range = format!("{} to {}", arc.lower.readable(), arc.upper.readable());
+        let text = format!("not controlled: nature ends {name} {range} after it began");
+        let nodes = vec![occurrence.end];
+        Some(places.line(Status::Information, text, occurrence.span, vec![name], nodes))
+    };
+    network.occurrences.iter().filter_map(line).collect()
 }
 
 /// How many of nature's ranges are listed.
@@ -257,7 +289,7 @@ fn warnings(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
         let status = match problem.severity {
             Severity::Error => Status::Failed,
             Severity::Warning => Status::Attention,
-            Severity::Note => Status::Passed,
+            Severity::Note => Status::Information,
         };
         let hint = problem.hint.as_ref().map(|hint| format!(" ({hint})")).unwrap_or_default();
         let text = format!("{}: {}{hint}", problem.code, problem.message);

@@ -1,7 +1,8 @@
 //! The review of a mission: a checklist that is computed, each line with its status and the place that it leads to.
 //!
 //! A review says what a plan is and how much room it has; it decides nothing. Every figure belongs to one text, map and
-//! seed, and [`content_hash`] names them: a review with another hash is stale.
+//! seed, and [`content_hash`] names them: a review with another hash is stale. What counts as enough is in
+//! [`FlightRules`].
 
 mod alternatives;
 mod demand_lines;
@@ -10,6 +11,7 @@ mod hash;
 mod lines;
 mod plan_lines;
 pub mod record;
+pub mod rules;
 pub mod schedule;
 
 use exact::{Bound, Time};
@@ -22,12 +24,17 @@ pub use demand_lines::ResourceReview;
 pub use hash::content_hash;
 pub use lines::review;
 pub use record::Record;
+pub use rules::{FlightRules, SuccessRate};
 
 /// A mission, reviewed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Review {
     /// What was reviewed: see [`content_hash`].
     pub content_hash: String,
+    /// What it is held against: see [`Review::judge`].
+    pub rules: FlightRules,
+    /// What times are counted in: `min` or `s`.
+    pub unit: String,
     /// The worst status of any line.
     pub status: Status,
     /// Whether there is a plan, and whether the independent checker agrees.
@@ -42,12 +49,16 @@ pub struct Review {
     pub states: Vec<Line>,
     /// The resources with their margins.
     pub resources: Vec<ResourceReview>,
+    /// Declared durations of which the plan can use only a part.
+    pub durations: Vec<Line>,
     /// The events, those with the least slack first.
     pub events: Vec<EventReview>,
     /// The traverses, in order of departure.
     pub traverses: Vec<TraverseReview>,
     /// Vehicles that come too near each other.
     pub separation_violations: Vec<Line>,
+    /// What runs with chance came to, if any were made.
+    pub robustness: Option<Line>,
     /// What is wrong with the text, or could be.
     pub warnings: Vec<Line>,
 }
@@ -56,6 +67,8 @@ pub struct Review {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
+    /// There is nothing to hold it against: it says how things are.
+    Information,
     /// As it should be.
     Passed,
     /// Somebody should look at it.
@@ -68,6 +81,7 @@ impl Status {
     /// The word for it in reports.
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Information => "information",
             Self::Passed => "passed",
             Self::Attention => "attention",
             Self::Failed => "failed",
@@ -80,8 +94,12 @@ impl Status {
 pub struct Line {
     /// How it stands.
     pub status: Status,
+    /// How it stands whatever the flight rules say.
+    pub checked: Status,
     /// What it says, in one sentence.
     pub text: String,
+    /// What it is held against, and where that comes from.
+    pub criterion: Option<String>,
     /// The place in the text that it leads to, if it has one.
     pub span: Option<Span>,
     /// The line of that place, from 1.
@@ -90,6 +108,22 @@ pub struct Line {
     pub names: Vec<String>,
     /// The events of the network that it is about.
     pub nodes: Vec<NodeId>,
+}
+
+impl Line {
+    /// A line that is about nothing in particular.
+    pub const fn new(status: Status, text: String) -> Self {
+        Self {
+            status,
+            checked: status,
+            text,
+            criterion: None,
+            span: None,
+            line_number: None,
+            names: Vec::new(),
+            nodes: Vec::new(),
+        }
+    }
 }
 
 /// A choice of the plan.
@@ -116,6 +150,8 @@ pub struct LinkReview {
     pub lead: TimeRange,
     /// How long the condition outlasts the need.
     pub margin: TimeRange,
+    /// Whether the condition is a state, which lasts until it is changed.
+    pub is_lasting: bool,
 }
 
 /// Two intervals that must not overlap, or two uses of a resource that must not come together.
@@ -131,6 +167,8 @@ pub struct ConflictReview {
     pub gap: TimeRange,
     /// Whether planning had to put them in order; otherwise the program's own bounds do.
     pub is_added: bool,
+    /// Whether these are uses of a resource, which may follow each other at once.
+    pub is_of_uses: bool,
 }
 
 /// When an event may happen.
@@ -167,6 +205,8 @@ pub struct TraverseReview {
     pub clearance_m: Option<f64>,
     /// The steepest slope along the path, in radians.
     pub slope_max_rad: f64,
+    /// What the vehicles can climb, in radians; `None` in the air.
+    pub slope_limit_rad: Option<f64>,
 }
 
 /// How long something takes in the schedules of a plan, in mission units.
@@ -200,28 +240,34 @@ pub enum Section {
     States,
     /// [`Review::resources`].
     Resources,
+    /// [`Review::durations`].
+    Durations,
     /// [`Review::events`].
     Events,
     /// [`Review::traverses`].
     Traverses,
     /// [`Review::separation_violations`].
     SeparationViolations,
+    /// [`Review::robustness`].
+    Robustness,
     /// [`Review::warnings`].
     Warnings,
 }
 
 impl Section {
     /// All, in the order in which they are read.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Plan,
         Self::Choices,
         Self::CausalLinks,
         Self::Conflicts,
         Self::States,
         Self::Resources,
+        Self::Durations,
         Self::Events,
         Self::Traverses,
         Self::SeparationViolations,
+        Self::Robustness,
         Self::Warnings,
     ];
 
@@ -234,9 +280,11 @@ impl Section {
             Self::Conflicts => "Threats and orderings",
             Self::States => "States and vehicles",
             Self::Resources => "Resources",
+            Self::Durations => "Durations that the plan narrows",
             Self::Events => "Windows and slack",
             Self::Traverses => "Traverses",
             Self::SeparationViolations => "Conflicts between vehicles",
+            Self::Robustness => "Robustness",
             Self::Warnings => "Warnings in the text",
         }
     }
@@ -252,9 +300,11 @@ impl Review {
             Section::Conflicts => self.conflicts.iter().map(|it| &it.line).collect(),
             Section::States => self.states.iter().collect(),
             Section::Resources => self.resources.iter().map(|it| &it.line).collect(),
+            Section::Durations => self.durations.iter().collect(),
             Section::Events => self.events.iter().map(|it| &it.line).collect(),
             Section::Traverses => self.traverses.iter().map(|it| &it.line).collect(),
             Section::SeparationViolations => self.separation_violations.iter().collect(),
+            Section::Robustness => self.robustness.iter().collect(),
             Section::Warnings => self.warnings.iter().collect(),
         }
     }
@@ -280,20 +330,26 @@ impl Review {
             Section::Conflicts => "No two conditions contradict each other, so there is no threat.",
             Section::States => "No variable keeps its value, and no vehicle moves.",
             Section::Resources => "No resource is used.",
+            Section::Durations => "Every duration can be used as it is declared.",
             Section::Traverses => "No vehicle drives.",
             Section::SeparationViolations => "No two vehicles come too near each other.",
+            Section::Robustness => "No runs with chance were made.",
         }
     }
 
-    /// How many lines have each status: passed, attention, failed.
+    /// How many lines have each status: passed, attention, failed. What is information is counted apart.
     pub fn counts(&self) -> [usize; 3] {
-        let mut counts = [0; 3];
-        for line in Section::ALL.iter().flat_map(|&section| self.lines(section)) {
-            counts[line.status as usize] += 1;
-        }
-        counts
+        [Status::Passed, Status::Attention, Status::Failed].map(|status| self.count(status))
+    }
+
+    /// How many lines have this status.
+    pub fn count(&self, status: Status) -> usize {
+        let lines = Section::ALL.iter().flat_map(|&section| self.lines(section));
+        lines.filter(|line| line.status == status).count()
     }
 }
 
+#[cfg(test)]
+mod mutations;
 #[cfg(test)]
 mod tests;

@@ -1,21 +1,20 @@
 //! The lines about a plan: its choices, links, conflicts, events and traverses.
 
-use exact::Bound;
+use exact::{Bound, Time};
 use rmpl::Span;
-use rmpl::program::{Change, LabelMode, TimeUnit};
-use tpn::{EventEnd, Extent, LabelId, Network, NodeId, Plan};
+use rmpl::program::{Change, LabelMode};
+use tpn::{EventEnd, Extent, LabelId, Network, NodeId, OccurrenceKind, Plan};
 
 use super::alternatives::{Alternative, Examiner};
 use super::demand_lines::{DemandLines, status_by_checker};
 use super::distances::Distances;
-use super::lines::Places;
+use super::lines::{Places, unit};
 use super::schedule::slack;
-use super::{ChoiceReview, ConflictReview, EventReview, Fate, LinkReview, Status, TimeRange, TraverseReview};
+use super::{
+    ChoiceReview, ConflictReview, EventReview, Fate, Line, LinkReview, Status, TimeRange, TraverseReview,
+};
 use crate::meetings;
 use crate::snapshot::{Planning, Snapshot};
-
-/// Vehicles that pass obstacles nearer than this, in metres, deserve a look.
-const NEAR_M: f64 = 0.25;
 
 /// What the lines about a plan are made from.
 pub(super) struct PlanLines<'input> {
@@ -86,21 +85,19 @@ impl<'input> PlanLines<'input> {
                 let text = self.lasting_link_text(*link, lead, margin);
                 (self.checked, text)
             } else {
-                // Without any room, the slightest delay breaks the link.
-                let is_rigid = margin.greatest == Bound::ZERO;
-                let status = if is_rigid { self.checked.max(Status::Attention) } else { self.checked };
                 let text = format!(
                     "{} provides {} and outlasts it by {}",
                     interval_text(&tell),
                     interval_text(&ask),
                     self.range_text(margin)
                 );
-                (status, text)
+                (self.checked, text)
             };
+            let is_lasting = self.network.is_lasting(link.ask);
             let (start, end) = self.network.interval(link.ask);
             let names = vec![ask.clone(), tell.clone()];
             let line = self.places.line(status, text, self.label_span(link.ask), names, vec![start, end]);
-            Some(LinkReview { line, ask, tell, lead, margin })
+            Some(LinkReview { line, ask, tell, lead, margin, is_lasting })
         };
         links.iter().zip(ranges.chunks(2)).filter_map(review).collect()
     }
@@ -165,7 +162,7 @@ impl<'input> PlanLines<'input> {
                 let names = vec![first.clone(), then.clone()];
                 let span = self.label_span(order.first);
                 let line = self.places.line(self.checked, text, span, names, vec![*end, *start]);
-                Some(ConflictReview { line, first, then, gap, is_added })
+                Some(ConflictReview { line, first, then, gap, is_added, is_of_uses: false })
             };
         orders.iter().zip(&gaps).zip(&pairs).filter_map(review).collect()
     }
@@ -213,7 +210,7 @@ impl<'input> PlanLines<'input> {
                 );
                 let line =
                     self.places.line(self.checked, text, used.span, vec![earlier, later], vec![*end, *start]);
-                Some(ConflictReview { line, first, then, gap, is_added: true })
+                Some(ConflictReview { line, first, then, gap, is_added: true, is_of_uses: true })
             };
         plan.uses_ordered.iter().zip(&gaps).zip(&pairs).filter_map(review).collect()
     }
@@ -228,6 +225,46 @@ impl<'input> PlanLines<'input> {
             self.plan.conflict_order.iter().filter(|order| order.first == label && is_told(order.then));
         let after = after.map(|order| (self.network.interval(order.then).0, order.then));
         after.min_by_key(|&(start, then)| (earliest(start), earliest(self.network.ready(then))))
+    }
+
+    /// The activities of which the plan can use only a part of what is declared.
+    pub(super) fn durations(&mut self) -> Vec<Line> {
+        let network = self.network;
+        let declared: Vec<(&tpn::Occurrence, Time, Time)> = network
+            .occurrences
+            .iter()
+            .filter(|occurrence| occurrence.kind == OccurrenceKind::Primitive)
+            .filter_map(|occurrence| {
+                let id = occurrence.arc?;
+                let arc = &network.arcs[id.index()];
+                let is_selected = self.plan.selected_arcs.get(id.index()) == Some(&true);
+                // Of what nature chooses a plan has to leave everything.
+                let is_own = is_selected && !network.is_uncertain(id);
+                is_own.then_some((occurrence, arc.lower, arc.upper.finite()?))
+            })
+            .collect();
+        let pairs: Vec<(NodeId, NodeId)> = declared.iter().map(|(it, ..)| (it.start, it.end)).collect();
+        let used = self.distances.between(&pairs);
+        let line =
+            |(&(occurrence, lower, upper), used): (&(&tpn::Occurrence, Time, Time), &Option<TimeRange>)| {
+                let used = (*used)?;
+                let (is_later, is_earlier) = (used.least > lower, used.greatest < Bound::Finite(upper));
+                if !is_later && !is_earlier {
+                    return None;
+                }
+                let name = occurrence.name.to_string();
+                let text = format!(
+                    "{name} is declared to take [{},{}], and the plan holds only if it takes {}",
+                    lower.readable(),
+                    upper.readable(),
+                    self.range_text(used)
+                );
+                let nodes = vec![occurrence.start, occurrence.end];
+                // Whoever is early can wait; whoever is late breaks the plan.
+                let status = if is_earlier { Status::Attention } else { Status::Information };
+                Some(self.places.line(status, text, occurrence.span, vec![name], nodes))
+            };
+        declared.iter().zip(&used).filter_map(line).collect()
     }
 
     pub(super) fn events(&self) -> Vec<EventReview> {
@@ -248,7 +285,7 @@ impl<'input> PlanLines<'input> {
                 };
                 let span = self.network.occurrences[event.occurrence.index()].span;
                 let nodes = vec![NodeId::from_index(index)];
-                let line = self.places.line(Status::Passed, text, span, vec![name.clone()], nodes);
+                let line = self.places.line(Status::Information, text, span, vec![name.clone()], nodes);
                 let is_vertex = matches!(event.end, EventEnd::PathVertex { .. });
                 events.push((is_vertex, EventReview { line, name, window, slack: slack(window) }));
             }
@@ -290,9 +327,9 @@ impl<'input> PlanLines<'input> {
         let clearance_m = traverse.clearance_m.is_finite().then_some(traverse.clearance_m);
         let status = match clearance_m {
             Some(clearance_m) if clearance_m < 0.0 => Status::Failed,
-            Some(clearance_m) if clearance_m < NEAR_M => Status::Attention,
             _ => Status::Passed,
         };
+        let slope_limit_rad = self.slope_limit_rad(traverse);
         let clearance = match clearance_m {
             Some(clearance_m) => format!("{clearance_m:.2} m clear of obstacles"),
             None => "no obstacle near".to_owned(),
@@ -316,15 +353,26 @@ impl<'input> PlanLines<'input> {
             duration,
             clearance_m,
             slope_max_rad: traverse.slope_max_rad,
+            slope_limit_rad,
         }
+    }
+
+    /// What all vehicles of a traverse can climb.
+    fn slope_limit_rad(&self, traverse: &crate::Traverse) -> Option<f64> {
+        let vehicles = &self.snapshot.program.world.vehicles;
+        let grades = traverse.vehicles.iter().filter_map(|&vehicle| {
+            let model = motion::vehicle_model(&vehicles.get(vehicle as usize)?.model.text)?;
+            match model.drive {
+                motion::Drive::SkidSteer { greatest_grade, .. } => Some(greatest_grade),
+                motion::Drive::Flight { .. } => None,
+            }
+        });
+        grades.reduce(f64::min).map(libm::atan)
     }
 
     /// How long something takes, with its unit.
     fn range_text(&self, range: TimeRange) -> String {
-        let unit = match self.snapshot.program.options.time_unit {
-            TimeUnit::Minute => "min",
-            TimeUnit::Second => "s",
-        };
+        let unit = unit(self.snapshot);
         let least = range.least.readable();
         match range.greatest {
             Bound::Infinite => format!("at least {least} {unit}"),

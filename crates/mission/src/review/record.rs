@@ -6,6 +6,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::FlightRules;
 use crate::request::Goal;
 
 /// Comments and sign-offs of one mission, oldest first.
@@ -18,6 +19,19 @@ pub struct Record {
     pub comments: Vec<Comment>,
     /// Who signed what.
     pub sign_offs: Vec<SignOff>,
+    /// The flight rules of the mission, if somebody has set them.
+    pub ruled: Option<Ruled>,
+}
+
+/// Flight rules, and who set them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ruled {
+    /// Who.
+    pub by: String,
+    /// When, as an ISO 8601 time in UTC.
+    pub time: String,
+    /// The rules.
+    pub rules: FlightRules,
 }
 
 /// A reviewer's words.
@@ -55,6 +69,9 @@ pub struct SignOff {
     /// The seed of its paths.
     #[serde(default)]
     pub seed: u64,
+    /// The flight rules that it was held against.
+    #[serde(default)]
+    pub rules: FlightRules,
 }
 
 /// The format of the document.
@@ -77,12 +94,17 @@ pub enum RecordError {
 impl Record {
     /// Whether nobody has said anything yet.
     pub fn is_empty(&self) -> bool {
-        self.comments.is_empty() && self.sign_offs.is_empty()
+        self.comments.is_empty() && self.sign_offs.is_empty() && self.ruled.is_none()
     }
 
-    /// The latest sign-off of this content.
-    pub fn sign_off_of(&self, content_hash: &str) -> Option<&SignOff> {
-        self.sign_offs.iter().rev().find(|it| it.content_hash == content_hash)
+    /// The latest sign-off of this content, held against these rules.
+    pub fn sign_off_of(&self, content_hash: &str, rules: &FlightRules) -> Option<&SignOff> {
+        self.sign_offs.iter().rev().find(|it| it.content_hash == content_hash && it.rules == *rules)
+    }
+
+    /// The flight rules: those of the mission, otherwise the usual ones.
+    pub fn rules(&self) -> FlightRules {
+        self.ruled.as_ref().map(|ruled| ruled.rules.clone()).unwrap_or_default()
     }
 
     /// The document, on several lines.
@@ -118,6 +140,12 @@ impl Record {
                 self.sign_offs.push(sign_off);
             }
         }
+        // The rules that were set last.
+        if let Some(theirs) = other.ruled
+            && self.ruled.as_ref().is_none_or(|mine| mine.time < theirs.time)
+        {
+            self.ruled = Some(theirs);
+        }
         // Times in UTC and of one shape are in order when their texts are; equal ones keep theirs.
         self.comments.sort_by(|left, right| left.time.cmp(&right.time));
         self.sign_offs.sort_by(|left, right| left.time.cmp(&right.time));
@@ -148,6 +176,7 @@ mod tests {
             source: "scenario S = { }".to_owned(),
             goal: Goal::Default,
             seed: 7,
+            rules: FlightRules::default(),
         }
     }
 
@@ -157,6 +186,11 @@ mod tests {
             mission: "enroute".to_owned(),
             comments: vec![comment("2026-01-02T03:04:05Z", "Why \"this\" path?\nIt is longer.")],
             sign_offs: vec![sign_off("2026-01-02T03:05:00Z", "ab")],
+            ruled: Some(Ruled {
+                by: "C. Chair".to_owned(),
+                time: "2026-01-01T00:00:00Z".to_owned(),
+                rules: FlightRules { slope_deg: None, ..FlightRules::default() },
+            }),
         };
         assert_eq!(Record::from_json(&record.to_json()), Ok(record));
     }
@@ -199,7 +233,10 @@ mod tests {
             sign_offs: vec![sign_off("1", "ab"), sign_off("2", "cd"), sign_off("3", "ab")],
             ..Record::default()
         };
-        assert_eq!(record.sign_off_of("ab").map(|it| it.time.as_str()), Some("3"));
-        assert_eq!(record.sign_off_of("ef"), None);
+        let rules = FlightRules::default();
+        assert_eq!(record.sign_off_of("ab", &rules).map(|it| it.time.as_str()), Some("3"));
+        assert_eq!(record.sign_off_of("ef", &rules), None);
+        let others = FlightRules { slope_deg: None, ..rules };
+        assert_eq!(record.sign_off_of("ab", &others), None, "other rules were not signed");
     }
 }

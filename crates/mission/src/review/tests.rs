@@ -7,8 +7,8 @@ use exact::{Bound, Time};
 use super::{Fate, Review, Section, Status, TimeRange, content_hash, review};
 use crate::{Core, CoreHost, Goal, Request, Response, SearchKind, Snapshot, Update};
 
-const SCENARIO: &str = include_str!("../../../../tests/conformance/t01_enroute_scenario.rmpl");
-const MISSION: &str = include_str!("../../../../assets/missions/enroute.rmpl");
+pub(super) const SCENARIO: &str = include_str!("../../../../tests/conformance/t01_enroute_scenario.rmpl");
+pub(super) const MISSION: &str = include_str!("../../../../assets/missions/enroute.rmpl");
 
 #[derive(Default)]
 struct Answers(Option<Arc<Snapshot>>);
@@ -29,7 +29,7 @@ impl CoreHost for Answers {
     }
 }
 
-fn snapshot(source: &str) -> Arc<Snapshot> {
+pub(super) fn snapshot(source: &str) -> Arc<Snapshot> {
     let update = Update {
         revision: 1,
         source: source.into(),
@@ -43,7 +43,7 @@ fn snapshot(source: &str) -> Arc<Snapshot> {
     answers.0.expect("an update is always answered")
 }
 
-fn reviewed(source: &str) -> Review {
+pub(super) fn reviewed(source: &str) -> Review {
     review(&snapshot(source), &Goal::Default, 0, &mut || false)
 }
 
@@ -211,7 +211,7 @@ fn the_hash_follows_text_map_and_seed() {
     assert_eq!(reviewed(SCENARIO), reviewed(SCENARIO));
 }
 
-const LASTING: &str = "state ARM : { IN, OUT } = IN;
+pub(super) const LASTING: &str = "state ARM : { IN, OUT } = IN;
 resource Battery 0..100 = 60;
 resource Power capacity 3;
 primitive Deploy()[4,8] requires ARM=IN sets ARM=OUT consumes Battery 50 uses Power 2;
@@ -256,7 +256,7 @@ fn states_and_resources_are_reviewed_with_their_margins() {
 }
 
 /// The review of a mission's plan, had the checker said this of it.
-fn reviewed_with(source: &str, verdict: Option<verify::Verdict>) -> Review {
+pub(super) fn reviewed_with(source: &str, verdict: Option<verify::Verdict>) -> Review {
     let snapshot = snapshot(source);
     let planning = snapshot.planning.as_deref().expect("it was planned").clone();
     let planning = crate::Planning { verdict, ..planning };
@@ -264,7 +264,7 @@ fn reviewed_with(source: &str, verdict: Option<verify::Verdict>) -> Review {
     review(&changed, &Goal::Default, 0, &mut || false)
 }
 
-fn refused() -> verify::Verdict {
+pub(super) fn refused() -> verify::Verdict {
     verify::Verdict { valid: false, violations: Vec::new() }
 }
 

@@ -23,6 +23,7 @@ pub(super) fn line(
     let shown = row::Row {
         status: Some(line.status),
         text: &sentence(&line.text),
+        criterion: line.criterion.as_deref().unwrap_or_default(),
         place: &place,
         is_selected,
         indent: 0.0,
@@ -55,6 +56,7 @@ pub(super) fn choices(ui: &mut Ui, list: &List<'_>, count: usize, commands: &mut
             let shown = row::Row {
                 status: is_taken.then_some(Status::Passed),
                 text: &text,
+                criterion: "",
                 place: "",
                 is_selected: list.selected.contains(&name),
                 indent: 20.0,

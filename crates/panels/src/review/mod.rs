@@ -7,6 +7,7 @@ mod lines;
 mod people;
 mod robustness;
 mod row;
+mod rules;
 mod verdict;
 
 use std::collections::BTreeSet;
@@ -29,6 +30,7 @@ pub struct ReviewPanel {
     /// The sections of which everything is listed.
     whole: BTreeSet<&'static str>,
     people: people::People,
+    rules: rules::Rules,
 }
 
 /// Lines of a section that are listed before "Show all".
@@ -55,6 +57,7 @@ impl Panel for ReviewPanel {
                     let list = List { context, review, is_stale, selected: &selected };
                     self.sections(ui, &list, commands);
                 }
+                self.rules.show(ui, context, &mut self.closed, commands);
                 self.people.show(ui, context, &mut self.closed, commands);
             });
         });
@@ -73,6 +76,10 @@ struct List<'a> {
 impl ReviewPanel {
     fn sections(&mut self, ui: &mut Ui, list: &List<'_>, commands: &mut CommandSender) {
         for section in Section::ALL {
+            if section == Section::Robustness {
+                self.robustness(ui, list, commands);
+                continue;
+            }
             let lines = list.review.lines(section);
             let status = list.review.section_status(section);
             let note = section_note(&lines.iter().map(|line| line.status).collect::<Vec<_>>(), section);
@@ -83,13 +90,19 @@ impl ReviewPanel {
             if is_open {
                 ui.push_id(section.title(), |ui| self.section(ui, list, section, commands));
             }
-            if section == Section::SeparationViolations {
-                let figures = list.context.state.robustness().map(AsRef::as_ref);
-                let note = robustness::note(figures);
-                if header(ui, list.context, &mut self.closed, "Robustness", None, &note) {
-                    robustness::show(ui, list.context, figures, commands);
-                }
+        }
+    }
+
+    fn robustness(&mut self, ui: &mut Ui, list: &List<'_>, commands: &mut CommandSender) {
+        let figures = list.context.state.robustness().map(AsRef::as_ref);
+        let note = robustness::note(figures);
+        let line = list.review.robustness.as_ref();
+        let title = Section::Robustness.title();
+        if header(ui, list.context, &mut self.closed, title, line.map(|line| line.status), &note) {
+            if let Some(line) = line {
+                lines::line(ui, list, Section::Robustness, 0, line, commands);
             }
+            robustness::show(ui, list.context, figures, commands);
         }
     }
 
@@ -138,6 +151,7 @@ fn is_stale(context: &Context<'_>) -> bool {
 fn status_look(tokens: &Tokens, status: Status, is_stale: bool) -> (Icon, &'static str, egui::Color32) {
     if is_stale {
         let word = match status {
+            Status::Information => "was information",
             Status::Passed => "had passed",
             Status::Attention => "had attention",
             Status::Failed => "had failed",
@@ -145,6 +159,7 @@ fn status_look(tokens: &Tokens, status: Status, is_stale: bool) -> (Icon, &'stat
         return (Icon::Nothing, word, tokens.text_faint);
     }
     match status {
+        Status::Information => (Icon::Info, "information", tokens.text_muted),
         Status::Passed => (Icon::Check, "passed", tokens.good),
         Status::Attention => (Icon::Warning, "attention", tokens.warning),
         Status::Failed => (Icon::Error, "failed", tokens.error),
@@ -159,7 +174,7 @@ fn section_note(statuses: &[Status], section: Section) -> String {
     if section == Section::Events {
         return format!("{} events, tightest first", statuses.len());
     }
-    [Status::Failed, Status::Attention, Status::Passed]
+    [Status::Failed, Status::Attention, Status::Passed, Status::Information]
         .into_iter()
         .filter_map(|status| {
             let count = statuses.iter().filter(|it| **it == status).count();

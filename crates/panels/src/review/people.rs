@@ -143,7 +143,7 @@ impl People {
     }
 }
 
-fn indented(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
+pub(super) fn indented(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     let margin = Margin { left: row::INDENT as i8, right: 0, top: 2, bottom: 4 };
     Frame::new().inner_margin(margin).show(ui, |ui| {
         ui.set_width(ui.available_width());

@@ -23,6 +23,8 @@ pub(super) struct Row<'a> {
     pub(super) status: Option<Status>,
     /// What it says.
     pub(super) text: &'a str,
+    /// What it is held against; below it.
+    pub(super) criterion: &'a str,
     /// What stands on the right: a line number.
     pub(super) place: &'a str,
     /// Whether what it is about is selected.
@@ -46,12 +48,17 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, row: &Row<'_>) -> Respons
     let meta_width = if is_narrow { 0.0 } else { 118.0 };
     let color = if row.is_quiet { tokens.text_muted } else { tokens.text };
     let wrap = (width - left - space::M - meta_width).max(60.0);
-    let galley = ui.painter().layout(row.text.to_owned(), body, color, wrap);
+    let mut job = egui::text::LayoutJob::simple(row.text.to_owned(), body, color, wrap);
+    if !row.criterion.is_empty() {
+        let format = egui::TextFormat::simple(small.clone(), tokens.text_muted);
+        job.append(&format!("\n{}", row.criterion), 0.0, format);
+    }
+    let galley = ui.fonts_mut(|fonts| fonts.layout_job(job));
     let below = if is_narrow && !(word.is_empty() && row.place.is_empty()) { 15.0 } else { 0.0 };
     let height = (galley.size().y + below + 6.0).max(space::ROW);
     let (rect, response) = ui.allocate_exact_size(egui::vec2(width, height), Sense::click());
     response.widget_info(|| {
-        let parts = [word, row.text, row.place].into_iter().filter(|part| !part.is_empty());
+        let parts = [word, row.text, row.criterion, row.place].into_iter().filter(|part| !part.is_empty());
         let name = parts.collect::<Vec<_>>().join(": ");
         WidgetInfo::selected(Role::Button, true, row.is_selected, name)
     });
@@ -132,6 +139,11 @@ pub(super) fn heading(
         painter.galley(at, note, color);
     }
     response
+}
+
+/// A word beside a field.
+pub(super) fn quiet_word(ui: &mut Ui, text: &str) {
+    ui.label(egui::RichText::new(text).weak());
 }
 
 /// A sentence that is no line of the checklist.

@@ -35,7 +35,7 @@ pub(super) fn show(
         Some((review, false)) => {
             let (sign, _, color) = status_look(tokens, review.status, false);
             let fill = match review.status {
-                Status::Passed => good,
+                Status::Information | Status::Passed => good,
                 Status::Attention => warning,
                 Status::Failed => error,
             };
@@ -61,7 +61,10 @@ pub(super) fn show(
             }
             let [passed, attention, failed] = review.counts();
             let had = if is_stale { "It had " } else { "" };
-            let counts = format!("{had}{passed} passed, {attention} for attention, {failed} failed");
+            let information = review.count(Status::Information);
+            let counts = format!(
+                "{had}{passed} passed, {attention} for attention, {failed} failed; {information} for information"
+            );
             ui.label(RichText::new(counts).color(tokens.text));
             if !is_stale {
                 step(ui, context, commands);
@@ -81,7 +84,7 @@ pub(super) fn show(
 fn title(review: &Review) -> String {
     let [_, attention, failed] = review.counts();
     match review.status {
-        Status::Passed => "Everything is as it should be".to_owned(),
+        Status::Information | Status::Passed => "Everything is as it should be".to_owned(),
         Status::Attention if attention == 1 => "1 line deserves a look".to_owned(),
         Status::Attention => format!("{attention} lines deserve a look"),
         Status::Failed if failed == 1 => "Not ready: 1 line failed".to_owned(),

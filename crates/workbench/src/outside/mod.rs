@@ -26,6 +26,7 @@ pub fn keep_review(host: &mut dyn Host, state: &mut AppState, joins: bool) {
     let key = ReviewState::key(&state.mission_key());
     if joins && let Some(Ok(kept)) = host.stored(&key).map(|text| Record::from_json(&text)) {
         state.review.join(kept);
+        state.judge_reviews();
     }
     let outcome = if state.review.record().is_empty() {
         host.forget(&key);

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use mission::review::Record;
+use mission::review::rules::RULES_FORMAT;
 use mission::{Request, Response, Snapshot};
 use rmpl::Span;
 use smol_str::SmolStr;
@@ -453,9 +454,11 @@ impl AppState {
             FileKind::Map => self.open_map_file(name, bytes),
             FileKind::Json => match String::from_utf8(bytes) {
                 Ok(text) => {
-                    let document = serde_json::from_str(&text).unwrap_or_default();
+                    let document: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
                     if let Ok(mission) = Mission::from_json(&text) {
                         self.open_whole(mission);
+                    } else if document["format"] == RULES_FORMAT {
+                        self.import_rules(name, &text);
                     } else if !self.open_run(&document) {
                         self.import_record(name, &text);
                     }

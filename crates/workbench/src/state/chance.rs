@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use mission::review::content_hash;
 use mission::{Request, Response, Robustness, RobustnessSettings, Tally, Uncertainty};
 
 use super::{AppState, ToastKind};
@@ -11,12 +12,15 @@ use super::{AppState, ToastKind};
 pub struct ChanceState {
     /// What is asked for.
     pub settings: RobustnessSettings,
-    /// The revision that is being sampled.
-    running: Option<u64>,
+    /// The revision that is being sampled, and its content.
+    running: Option<(u64, String)>,
     tally: Tally,
-    /// What the runs made so far came to, and of which revision.
-    robustness: Option<(u64, Arc<Robustness>)>,
+    /// What the runs of each content came to, those that were made last first: an edit and its undo find them again.
+    of_content: Vec<(String, Arc<Robustness>)>,
 }
+
+/// Contents of which runs are kept.
+const MAX_CONTENTS: usize = 8;
 
 /// What can be asked about chance.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +41,7 @@ pub const MAX_RUNS: u64 = 100_000;
 impl Default for ChanceState {
     fn default() -> Self {
         let settings = RobustnessSettings { runs: USUAL_RUNS, seed: 1, uncertainty: Uncertainty::default() };
-        Self { settings, running: None, tally: Tally::default(), robustness: None }
+        Self { settings, running: None, tally: Tally::default(), of_content: Vec::new() }
     }
 }
 
@@ -48,8 +52,19 @@ impl ChanceState {
     }
 
     /// The runs asked for are not made any more; what was found is kept.
-    pub(super) const fn give_up(&mut self) {
+    pub(super) fn give_up(&mut self) {
         self.running = None;
+    }
+
+    /// What the runs of this content came to: see [`mission::review::content_hash`].
+    pub fn of_content(&self, content_hash: &str) -> Option<Arc<Robustness>> {
+        self.of_content.iter().find(|(of, _)| of == content_hash).map(|(_, found)| Arc::clone(found))
+    }
+
+    fn keep(&mut self, content: String, robustness: Robustness) {
+        self.of_content.retain(|(of, _)| *of != content);
+        self.of_content.insert(0, (content, Arc::new(robustness)));
+        self.of_content.truncate(MAX_CONTENTS);
     }
 
     /// How many runs have been made of those asked for last.
@@ -59,20 +74,27 @@ impl ChanceState {
 }
 
 impl AppState {
-    /// How the plan that is shown fares in many runs with chance, if runs were made of it.
+    /// How the present mission fares in many runs with chance, if runs were made of it.
     pub fn robustness(&self) -> Option<&Arc<Robustness>> {
-        let (revision, robustness) = self.chance.robustness.as_ref()?;
-        self.shown().filter(|shown| shown.revision == *revision).map(|_| robustness)
+        let content = self.review.hash()?;
+        self.chance.of_content.iter().find(|(of, _)| of == content).map(|(_, found)| found)
     }
 
     pub(super) fn apply_to_chance(&mut self, command: ChanceCommand) {
         match command {
             ChanceCommand::Start => {
                 self.chance.tally = Tally::default();
-                self.chance.running = self.update_shown().map(|update| update.revision);
+                self.chance.running = self.update_shown().zip(self.shown()).map(|(update, shown)| {
+                    let map = shown.map.as_ref();
+                    let content = content_hash(&update.source, map, &update.goal, update.seed);
+                    (update.revision, content)
+                });
                 self.sample_on();
             }
-            ChanceCommand::Stop => self.chance.running = None,
+            ChanceCommand::Stop => {
+                self.chance.running = None;
+                self.judge_reviews();
+            }
             ChanceCommand::Set(settings) => {
                 self.chance.settings = *settings;
                 self.chance.settings.runs = self.chance.settings.runs.clamp(1, MAX_RUNS);
@@ -83,7 +105,7 @@ impl AppState {
 
     /// Asks for the next runs, unless all are made or the text has changed.
     fn sample_on(&mut self) {
-        let wanted = self.chance.running;
+        let wanted = self.chance.running.as_ref().map(|running| running.0);
         let update = self.update_shown().filter(|update| Some(update.revision) == wanted);
         let from = self.chance.tally.runs;
         match update {
@@ -97,16 +119,19 @@ impl AppState {
 
     pub(super) fn take_sample(&mut self, answer: Response) {
         let Response::Sampled { revision, settings, from, tally } = answer else { return };
-        let is_wanted = self.chance.running == Some(revision)
-            && *settings == self.chance.settings
-            && from == self.chance.tally.runs;
+        let Some((running, content)) = self.chance.running.clone() else { return };
+        let is_wanted =
+            running == revision && *settings == self.chance.settings && from == self.chance.tally.runs;
         if !is_wanted {
             return;
         }
         self.chance.tally.merge(&tally);
         let robustness = Robustness { settings: *settings, tally: self.chance.tally.clone() };
-        self.chance.robustness = Some((revision, Arc::new(robustness)));
+        self.chance.keep(content, robustness);
         self.sample_on();
+        if !self.chance.is_running() {
+            self.judge_reviews();
+        }
         if !self.chance.is_running() && self.chance.tally.runs >= self.chance.settings.runs {
             let text = format!("{} runs made", self.chance.tally.runs);
             self.toasts.add(ToastKind::Done, text);

@@ -6,9 +6,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use mission::review::record::{Comment, SignOff};
-use mission::review::{Record, Review, Status, content_hash};
-use mission::{Request, SearchKind, Stage, Update};
+use mission::review::record::{Comment, Ruled, SignOff};
+use mission::review::{FlightRules, Record, Review, Status, content_hash};
+use mission::{Request, Robustness, SearchKind, Stage, Update};
 use smol_str::SmolStr;
 
 use crate::state::{AppState, Effect, PlanSettings, ToastKind};
@@ -36,6 +36,10 @@ pub enum ReviewCommand {
     },
     /// Takes a comment away.
     RemoveComment(usize),
+    /// Holds the mission against these flight rules from now on.
+    SetRules(Box<FlightRules>),
+    /// Lets the user save the flight rules as a file.
+    SaveRules,
     /// Lets the user save comments and sign-offs as a file.
     SaveRecord,
     /// Lets the user choose such a file; what it has is added.
@@ -70,6 +74,8 @@ pub struct ReviewState {
 struct Done {
     search: SearchKind,
     review: Arc<Review>,
+    /// The runs with chance that `review` was held against.
+    robustness: Option<Arc<Robustness>>,
 }
 
 /// The hash of the present content, and what it was computed from.
@@ -134,7 +140,8 @@ impl ReviewState {
 
     /// How the sign-off stands.
     pub fn signed(&self) -> Signed<'_> {
-        let current = self.hash().and_then(|hash| self.record.sign_off_of(hash));
+        let rules = self.record.rules();
+        let current = self.hash().and_then(|hash| self.record.sign_off_of(hash, &rules));
         match (current, self.record.sign_offs.last()) {
             (Some(sign_off), _) => Signed::Current(sign_off),
             (None, Some(last)) => Signed::Stale(last),
@@ -187,6 +194,11 @@ impl AppState {
                     self.effects.push(Effect::KeepReview { joins: false });
                 }
             }
+            ReviewCommand::SetRules(rules) => self.set_rules(*rules),
+            ReviewCommand::SaveRules => self.effects.push(Effect::SaveFile {
+                name: format!("{}.rules.json", self.mission),
+                bytes: self.review.record.rules().to_json().into_bytes(),
+            }),
             ReviewCommand::SaveRecord => self.effects.push(Effect::SaveFile {
                 name: format!("{}.review.json", self.mission),
                 bytes: self.review.record.to_json().into_bytes(),
@@ -211,10 +223,50 @@ impl AppState {
         // What nobody waits for any more may be of another mission.
         let Some((_, search)) = self.review.running.take_if(|running| running.0 == revision) else { return };
         self.review.done.retain(|it| it.review.content_hash != review.content_hash || it.search != search);
-        self.review.done.insert(0, Done { search, review });
+        self.review.done.insert(0, Done { search, review, robustness: None });
         self.review.done.truncate(MAX_DONE);
+        self.judge_reviews();
         if std::mem::take(&mut self.review.wants_report) && self.current_review().is_some() {
             self.write_report();
+        }
+    }
+
+    /// Holds every review against the present rules, and against the runs that were made of its content.
+    pub(crate) fn judge_reviews(&mut self) {
+        let rules = self.review.record.rules();
+        for done in &mut self.review.done {
+            let robustness = self.chance.of_content(&done.review.content_hash);
+            let is_same = match (&robustness, &done.robustness) {
+                (Some(new), Some(old)) => Arc::ptr_eq(new, old),
+                (None, None) => true,
+                _ => false,
+            };
+            if !is_same || done.review.rules != rules {
+                Arc::make_mut(&mut done.review).judge(&rules, robustness.as_deref());
+                done.robustness = robustness;
+            }
+        }
+    }
+
+    fn set_rules(&mut self, rules: FlightRules) {
+        if let Some(problem) = rules.problem() {
+            self.toasts.add(ToastKind::Failed, format!("These flight rules cannot be used: {problem}"));
+            return;
+        }
+        let (by, time) = (self.settings.reviewer.clone(), self.utc_now());
+        self.review.record.ruled = Some(Ruled { by, time, rules });
+        self.keep_review();
+        self.judge_reviews();
+    }
+
+    /// Takes flight rules from a file.
+    pub(super) fn import_rules(&mut self, name: &str, text: &str) {
+        match FlightRules::from_json(text) {
+            Ok(rules) => {
+                self.set_rules(rules);
+                self.toasts.add(ToastKind::Done, format!("{name}: these are the flight rules now"));
+            }
+            Err(reason) => self.toasts.add(ToastKind::Failed, format!("{name}: {reason}")),
         }
     }
 
@@ -243,6 +295,7 @@ impl AppState {
             source: self.document.text().to_owned(),
             goal: self.settings.plan.goal.clone(),
             seed: self.settings.plan.seed,
+            rules: review.rules.clone(),
         };
         name.clone_into(&mut self.settings.reviewer);
         self.toasts.add(ToastKind::Done, format!("Signed off by {name}"));
@@ -275,6 +328,7 @@ impl AppState {
         match Record::from_json(text) {
             Ok(record) => {
                 let count = self.review.record.merge(record);
+                self.judge_reviews();
                 let entries = if count == 1 { "entry" } else { "entries" };
                 self.toasts.add(ToastKind::Done, format!("{name}: {count} new {entries}"));
                 self.keep_review();
@@ -304,6 +358,7 @@ impl AppState {
             self.effects.push(Effect::KeepReview { joins: true });
         }
         self.review.record = record;
+        self.judge_reviews();
     }
 
     /// The open original has become a mission of its own: what was said of it is said of the mission too.
@@ -317,6 +372,7 @@ impl AppState {
     /// Adds what came with a mission.
     pub(crate) fn join_review(&mut self, record: Record) {
         self.review.record.merge(record);
+        self.judge_reviews();
         self.keep_review();
     }
 
@@ -363,6 +419,6 @@ pub fn may_sign(review: &Review) -> Result<(), &'static str> {
     match review.status {
         _ if !review.is_planned() => Err("there is no plan to sign"),
         Status::Failed => Err("lines of the review have failed"),
-        Status::Passed | Status::Attention => Ok(()),
+        Status::Information | Status::Passed | Status::Attention => Ok(()),
     }
 }

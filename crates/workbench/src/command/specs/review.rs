@@ -1,5 +1,6 @@
 //! Judging and comparing plans, and documents about them.
 
+use mission::review::FlightRules;
 use serde_json::Value;
 
 use super::arguments::text_argument;
@@ -82,6 +83,20 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
             Some(Err(reason)) => Err(reason.to_owned()),
             None => Err("the present text has not been reviewed".to_owned()),
         }
+    }),
+    called("review.rules", "Change the flight rules", Group::Review, |state, arguments| {
+        // What is not named stays as it is.
+        let mut rules = serde_json::to_value(state.review.record().rules()).map_err(|it| it.to_string())?;
+        let members = arguments.as_object().ok_or("it takes the rules to change by name")?;
+        if let Some(known) = rules.as_object_mut() {
+            known.extend(members.iter().map(|(name, rule)| (name.clone(), rule.clone())));
+        }
+        let rules: FlightRules = serde_json::from_value(rules).map_err(|it| it.to_string())?;
+        rules.problem().map_or(Ok(()), |problem| Err(problem.to_owned()))?;
+        Ok(Command::Review(ReviewCommand::SetRules(Box::new(rules))))
+    }),
+    plain("review.saveRules", "Save the flight rules", Group::Review, &[], Scope::Everywhere, |_| {
+        Command::Review(ReviewCommand::SaveRules)
     }),
     called("review.comment", "Comment", Group::Review, |_, arguments| {
         Ok(Command::Review(ReviewCommand::Comment {

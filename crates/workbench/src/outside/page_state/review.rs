@@ -1,7 +1,7 @@
 //! The review of the mission.
 
 use mission::review::record::Comment;
-use mission::review::{Section, Status};
+use mission::review::{FlightRules, Section, Status};
 use serde::Serialize;
 #[cfg(test)]
 use ts_rs::TS;
@@ -21,9 +21,17 @@ pub struct Review {
     /// Whether the two differ.
     stale: bool,
     running: bool,
-    #[cfg_attr(test, ts(type = "\"passed\" | \"attention\" | \"failed\" | null"))]
+    #[cfg_attr(test, ts(type = "\"information\" | \"passed\" | \"attention\" | \"failed\" | null"))]
     status: Option<Status>,
     counts: Option<ReviewCounts>,
+    /// What the mission is held against: see section 16 of the specification.
+    #[cfg_attr(
+        test,
+        ts(
+            type = "{ margin: number | string | null; clearance_m: number | null; slope_deg: number | null; reserve: number | string | null; reserves: Record<string, number | string>; success_rate: { wanted: number; least: number } | null }"
+        )
+    )]
+    rules: FlightRules,
     items: Vec<ReviewItem>,
     /// The latest sign-off of the present content, otherwise the latest of any.
     signed: Option<SignOff>,
@@ -45,6 +53,8 @@ pub struct ReviewCounts {
     passed: usize,
     attention: usize,
     failed: usize,
+    /// Lines that say how things are, with nothing to hold them against.
+    information: usize,
 }
 
 /// A line of a review.
@@ -53,9 +63,11 @@ pub struct ReviewCounts {
 pub struct ReviewItem {
     #[cfg_attr(test, ts(type = "string"))]
     section: Section,
-    #[cfg_attr(test, ts(type = "\"passed\" | \"attention\" | \"failed\""))]
+    #[cfg_attr(test, ts(type = "\"information\" | \"passed\" | \"attention\" | \"failed\""))]
     status: Status,
     text: String,
+    /// What it is held against, and where that comes from.
+    criterion: Option<String>,
     /// The line of its place in the text, from 1.
     line: Option<u32>,
     /// What it is about, by the names of all output.
@@ -96,8 +108,9 @@ pub(super) fn review(state: &AppState) -> Review {
         status: shown.map(|(review, _)| review.status),
         counts: shown.map(|(review, _)| {
             let [passed, attention, failed] = review.counts();
-            ReviewCounts { passed, attention, failed }
+            ReviewCounts { passed, attention, failed, information: review.count(Status::Information) }
         }),
+        rules: state.review.record().rules(),
         items: shown.map(|(review, _)| items(review)).unwrap_or_default(),
         signed,
         comments: state.review.record().comments.clone(),
@@ -111,6 +124,7 @@ fn items(review: &mission::review::Review) -> Vec<ReviewItem> {
             section,
             status: line.status,
             text: line.text.clone(),
+            criterion: line.criterion.clone(),
             line: line.line_number,
             names: line.names.iter().map(ToString::to_string).collect(),
         })

@@ -1,0 +1,129 @@
+//! The flight rules: the thresholds that the checklist is held against, to see and to change.
+
+use std::collections::BTreeSet;
+
+use egui::{Button, DragValue, RichText, Ui};
+use exact::{Rational, Time};
+use mission::review::{FlightRules, SuccessRate};
+use theme::space;
+use workbench::command::{Command, CommandSender};
+use workbench::state::review::ReviewCommand;
+
+use super::{header, people, row};
+use crate::Context;
+
+/// Figures are kept to thousandths.
+const PARTS: u32 = 1000;
+
+/// What was changed and is not in force yet.
+#[derive(Default)]
+pub(super) struct Rules {
+    /// The rules in force when the change began, and as they are to be.
+    draft: Option<(FlightRules, FlightRules)>,
+}
+
+impl Rules {
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        context: &Context<'_>,
+        closed: &mut BTreeSet<&'static str>,
+        commands: &mut CommandSender,
+    ) {
+        let record = context.state.review.record();
+        let present = record.rules();
+        // What others have set in the meantime counts.
+        self.draft.take_if(|(before, draft)| *before != present || *draft == present);
+        let note = match (&self.draft, &record.ruled) {
+            (Some(_), _) => "changed, not in force yet".to_owned(),
+            (None, Some(ruled)) if !ruled.by.is_empty() => format!("set by {}", ruled.by),
+            (None, Some(_)) => "of this mission".to_owned(),
+            (None, None) => "the usual ones".to_owned(),
+        };
+        if !header(ui, context, closed, "Flight rules", None, &note) {
+            return;
+        }
+        let mut rules = self.draft.as_ref().map_or_else(|| present.clone(), |(_, draft)| draft.clone());
+        people::indented(ui, |ui| {
+            fields(ui, context, &mut rules);
+            ui.add_space(space::S);
+            let problem = rules.problem();
+            ui.horizontal_wrapped(|ui| {
+                let is_ready = rules != present && problem.is_none();
+                if ui.add_enabled(is_ready, Button::new("Use these rules")).clicked() {
+                    let rules = Box::new(rules.clone());
+                    commands.send(Command::Review(ReviewCommand::SetRules(rules)));
+                }
+                let is_usual = rules == FlightRules::default();
+                if ui.add_enabled(!is_usual, Button::new("The usual rules")).clicked() {
+                    rules = FlightRules::default();
+                }
+                if ui.button("Save the rules to a file").clicked() {
+                    commands.send(Command::Review(ReviewCommand::SaveRules));
+                }
+            });
+            if let Some(problem) = problem {
+                ui.label(RichText::new(problem).color(context.tokens.error));
+            }
+        });
+        self.draft = (rules != present).then_some((present, rules));
+    }
+}
+
+fn fields(ui: &mut Ui, context: &Context<'_>, rules: &mut FlightRules) {
+    let usual = FlightRules::default();
+    let mut margin = rules.margin.map(Time::to_f64);
+    if optional(ui, "Margins, at least", &mut margin, 0.0, 1.0e6) {
+        rules.margin = margin.and_then(|margin| Time::from_f64_nearest(margin, PARTS));
+    }
+    optional(ui, "Clearance, at least (m)", &mut rules.clearance_m, 0.25, 1000.0);
+    optional(ui, "Slope, at most (°)", &mut rules.slope_deg, 15.0, 90.0);
+    let mut reserve = rules.reserve.map(Rational::to_f64);
+    if optional(ui, "Reserve of each resource, at least", &mut reserve, 0.0, 1.0e6) {
+        rules.reserve = reserve.and_then(|reserve| Rational::from_f64_nearest(reserve, PARTS));
+    }
+    let network = context.snapshot.and_then(|snapshot| snapshot.network.as_deref());
+    let resources = network.map(|network| network.resources.as_slice()).unwrap_or_default();
+    for resource in resources.iter().filter(|resource| !resource.name.contains('#')) {
+        let mut own = rules.reserves.get(&resource.name).map(|reserve| reserve.to_f64());
+        if optional(ui, &format!("Reserve of {}, at least", resource.name), &mut own, 0.0, 1.0e6) {
+            match own.and_then(|own| Rational::from_f64_nearest(own, PARTS)) {
+                Some(own) => rules.reserves.insert(resource.name.clone(), own),
+                None => rules.reserves.remove(&resource.name),
+            };
+        }
+    }
+    let mut rate =
+        rules.success_rate.or(usual.success_rate).unwrap_or(SuccessRate { wanted: 1.0, least: 0.0 });
+    let mut is_held = rules.success_rate.is_some();
+    let mut wanted = is_held.then_some(rate.wanted * 100.0);
+    let mut least = is_held.then_some(rate.least * 100.0);
+    let is_changed = optional(ui, "Success rate, at least (%)", &mut wanted, 95.0, 100.0)
+        | optional(ui, "Success rate that is no failure, at least (%)", &mut least, 80.0, 100.0);
+    if is_changed {
+        // The two are one rule.
+        is_held =
+            if is_held { wanted.is_some() && least.is_some() } else { wanted.is_some() || least.is_some() };
+        rate.wanted = wanted.map_or(rate.wanted, |wanted| wanted / 100.0);
+        rate.least = least.map_or(rate.least, |least| least / 100.0);
+        rules.success_rate = is_held.then_some(rate);
+    }
+}
+
+/// A threshold that may be absent. Returns whether it has been changed.
+fn optional(ui: &mut Ui, label: &str, value: &mut Option<f64>, usual: f64, most: f64) -> bool {
+    let before = *value;
+    ui.horizontal(|ui| {
+        let mut is_there = value.is_some();
+        if ui.checkbox(&mut is_there, label).changed() {
+            *value = is_there.then_some(usual);
+        }
+        if let Some(value) = value {
+            let field = DragValue::new(value).range(0.0..=most).speed(0.1).max_decimals(3);
+            ui.add(field).accessible_name(label);
+        } else {
+            row::quiet_word(ui, "not looked at");
+        }
+    });
+    before != *value
+}
