@@ -148,7 +148,7 @@ fn runs_with_chance_are_kept_by_content_and_held_against_the_rule() {
     assert_eq!(app.session.state().robustness(), None);
     app.dispatch("edit.undo", &json!(null));
     assert_eq!(app.json()["robustness"], made, "the same mission again");
-    assert_eq!(lines(&app, "robustness"), [line.clone()]);
+    assert_eq!(lines(&app, "robustness"), std::slice::from_ref(line));
     // The report has it.
     app.world.saved.borrow_mut().clear();
     app.run(Command::WriteReport);

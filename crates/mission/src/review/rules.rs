@@ -99,7 +99,7 @@ impl FlightRules {
     }
 
     /// Where a rule comes from, for people.
-    fn source(&self, is_default: impl Fn(&Self) -> bool) -> &'static str {
+    fn source(is_default: impl Fn(&Self) -> bool) -> &'static str {
         if is_default(&Self::default()) { "flight rules, by default" } else { "flight rules of this mission" }
     }
 
@@ -108,7 +108,7 @@ impl FlightRules {
         let mut words = vec![match self.margin {
             None => "margins are not looked at".to_owned(),
             Some(margin) => {
-                format!("margins are {}", at_least(margin.readable(), margin.is_positive(), unit))
+                format!("margins are {}", at_least(&margin.readable(), margin.is_positive(), unit))
             }
         }];
         words.push(match self.clearance_m {
@@ -124,12 +124,12 @@ impl FlightRules {
             Some(reserve) => {
                 format!(
                     "of each resource {} is left",
-                    at_least(reserve.readable(), reserve.is_positive(), "")
+                    at_least(&reserve.readable(), reserve.is_positive(), "")
                 )
             }
         });
         words.extend(self.reserves.iter().map(|(name, reserve)| {
-            format!("of {name} {} is left", at_least(reserve.readable(), reserve.is_positive(), ""))
+            format!("of {name} {} is left", at_least(&reserve.readable(), reserve.is_positive(), ""))
         }));
         words.push(match self.success_rate {
             None => "success rates are not looked at".to_owned(),
@@ -143,7 +143,7 @@ impl FlightRules {
     }
 }
 
-fn at_least(amount: String, is_positive: bool, unit: &str) -> String {
+fn at_least(amount: &str, is_positive: bool, unit: &str) -> String {
     let what = if is_positive { format!("at least {amount}") } else { "more than 0".to_owned() };
     format!("{what} {unit}").trim_end().to_owned()
 }
@@ -161,11 +161,11 @@ impl Line {
     }
 
     /// Holds it against a rule.
-    fn judge(&mut self, is_kept: bool, criterion: String, source: &str) {
+    fn judge(&mut self, is_kept: bool, criterion: &str, source: &str) {
         self.judge_as(if is_kept { Status::Passed } else { Status::Attention }, criterion, source);
     }
 
-    fn judge_as(&mut self, status: Status, criterion: String, source: &str) {
+    fn judge_as(&mut self, status: Status, criterion: &str, source: &str) {
         self.status = self.status.max(status);
         let text = format!("{criterion} ({source})");
         match &mut self.criterion {
@@ -218,16 +218,16 @@ impl Review {
 
     fn judge_margins(&mut self, rules: &FlightRules, unit: &str) {
         let Some(margin) = rules.margin else { return };
-        let source = rules.source(|it| it.margin == rules.margin);
-        let criterion = format!("margin {}", at_least(margin.readable(), margin.is_positive(), unit));
+        let source = FlightRules::source(|it| it.margin == rules.margin);
+        let criterion = format!("margin {}", at_least(&margin.readable(), margin.is_positive(), unit));
         let is_kept = |least: Time| least.is_positive() && least >= margin;
         // What lasts is held until the next change, which waits for the need.
         for link in self.causal_links.iter_mut().filter(|link| !link.is_lasting) {
-            link.line.judge(is_kept(link.margin.least), criterion.clone(), source);
+            link.line.judge(is_kept(link.margin.least), &criterion, source);
         }
         // Uses of a resource may follow each other at once.
         for conflict in self.conflicts.iter_mut().filter(|conflict| !conflict.is_of_uses) {
-            conflict.line.judge(is_kept(conflict.gap.least), criterion.clone(), source);
+            conflict.line.judge(is_kept(conflict.gap.least), &criterion, source);
         }
     }
 
@@ -238,34 +238,34 @@ impl Review {
                 matches!(resource.supply, Supply::Reusable { capacity } if capacity <= Rational::ONE);
             let own = rules.reserves.get(resource.name.as_str()).copied();
             let Some(reserve) = own.or(rules.reserve.filter(|_| !is_exclusive)) else { continue };
-            let source = rules.source(|it| own.is_none() && it.reserve == rules.reserve);
-            let criterion = format!("reserve {}", at_least(reserve.readable(), reserve.is_positive(), ""));
+            let source = FlightRules::source(|it| own.is_none() && it.reserve == rules.reserve);
+            let criterion = format!("reserve {}", at_least(&reserve.readable(), reserve.is_positive(), ""));
             let is_kept = resource.spare.is_positive() && resource.spare >= reserve;
-            resource.line.judge(is_kept, criterion, source);
+            resource.line.judge(is_kept, &criterion, source);
         }
     }
 
     fn judge_traverses(&mut self, rules: &FlightRules) {
         for traverse in &mut self.traverses {
             if let (Some(clearance_m), Some(least_m)) = (traverse.clearance_m, rules.clearance_m) {
-                let source = rules.source(|it| it.clearance_m == rules.clearance_m);
+                let source = FlightRules::source(|it| it.clearance_m == rules.clearance_m);
                 traverse.line.judge(
                     clearance_m >= least_m,
-                    format!("clearance at least {least_m} m"),
+                    &format!("clearance at least {least_m} m"),
                     source,
                 );
             }
             let slope_deg = traverse.slope_max_rad.to_degrees();
             if let Some(most_deg) = rules.slope_deg {
-                let source = rules.source(|it| it.slope_deg == rules.slope_deg);
-                traverse.line.judge(slope_deg <= most_deg, format!("slope at most {most_deg}°"), source);
+                let source = FlightRules::source(|it| it.slope_deg == rules.slope_deg);
+                traverse.line.judge(slope_deg <= most_deg, &format!("slope at most {most_deg}°"), source);
             }
             if let Some(most_rad) = traverse.slope_limit_rad {
                 let most_deg = most_rad.to_degrees();
                 // Slopes are measured between samples, to about a tenth of a degree.
                 let status = if slope_deg <= most_deg + 0.1 { Status::Passed } else { Status::Failed };
                 let criterion = format!("slope at most {most_deg:.1}°");
-                traverse.line.judge_as(status, criterion, "what the vehicles can climb");
+                traverse.line.judge_as(status, &criterion, "what the vehicles can climb");
             }
         }
     }
@@ -307,7 +307,7 @@ fn success(rules: &FlightRules, found: &Robustness) -> Line {
     let checked = if found.is_complete() { Status::Passed } else { Status::Attention };
     let mut line = Line::new(checked, text);
     if let Some(wanted) = rules.success_rate {
-        let source = rules.source(|it| it.success_rate == rules.success_rate);
+        let source = FlightRules::source(|it| it.success_rate == rules.success_rate);
         let status = match rate {
             _ if rate < wanted.least => Status::Failed,
             _ if rate < wanted.wanted => Status::Attention,
@@ -318,7 +318,7 @@ fn success(rules: &FlightRules, found: &Robustness) -> Line {
             percent(wanted.wanted),
             percent(wanted.least)
         );
-        line.judge_as(status, criterion, source);
+        line.judge_as(status, &criterion, source);
     }
     line
 }
