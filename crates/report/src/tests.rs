@@ -118,7 +118,7 @@ fn the_summary_comes_first_and_each_page_has_its_number_and_the_hash() {
     assert!(page.contains("\"Page \" counter(page) \" of \" counter(pages)"));
     let summary = &page[at("<h2>Summary</h2>")..at("<h2>Signatures</h2>")];
     assert!(summary.contains("outlasts it by 0 to 45 min") && summary.contains("margin more than 0 min"));
-    let fine = report("scenario S[0,9] = { delay }", "fine.rmpl");
+    let fine = report("primitive A()[1,2]; scenario S[0,9] = { A() }", "fine.rmpl");
     assert!(fine.contains("Nothing has failed, and nothing is for attention."));
 }
 
