@@ -144,6 +144,31 @@ pub(crate) fn word(status: &str, word: &str) -> String {
     format!("<span class=\"status {status}\"><b>{sign}</b> {word}</span>")
 }
 
+/// Rows of a table that are written: what has not passed before what has, where there are more.
+const MAX_ROWS: usize = 2000;
+
+/// The rows of a table that are written, in their order, and how many are not.
+fn readable(mut rows: Vec<Vec<String>>) -> (Vec<Vec<String>>, usize) {
+    let more = rows.len().saturating_sub(MAX_ROWS);
+    if more > 0 {
+        let has_passed = |row: &Vec<String>| row.first().is_some_and(|cell| cell.starts_with(PASSED));
+        let mut room = MAX_ROWS;
+        let mut keep = vec![false; rows.len()];
+        for passed in [false, true] {
+            for (_, keep) in rows.iter().zip(&mut keep).filter(|(row, _)| has_passed(row) == passed) {
+                *keep = room > 0;
+                room = room.saturating_sub(1);
+            }
+        }
+        let mut keep = keep.into_iter();
+        rows.retain(|_| keep.next().unwrap_or(false));
+    }
+    (rows, more)
+}
+
+/// How the cell of what has passed begins.
+const PASSED: &str = "<span class=\"status passed\">";
+
 /// A table of rows of cells that are HTML already; a heading that begins with `#` is that of figures.
 fn table(headings: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let is_figure: Vec<bool> = headings.iter().map(|heading| heading.starts_with('#')).collect();
@@ -156,12 +181,19 @@ fn table(headings: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Stri
         out.push_str(&format!("<th{}>{text}</th>", class(column)));
     }
     out.push_str("</tr></thead><tbody>\n");
+    let (rows, more) = readable(rows.into_iter().collect());
     for row in rows {
         out.push_str("<tr>");
         for (column, cell) in row.iter().enumerate() {
             out.push_str(&format!("<td{}>{cell}</td>", class(column)));
         }
         out.push_str("</tr>\n");
+    }
+    if more > 0 {
+        let columns = headings.len();
+        out.push_str(&format!(
+            "<tr><td colspan=\"{columns}\">and {more} more that are not listed here</td></tr>\n"
+        ));
     }
     out.push_str("</tbody></table>\n");
     out
@@ -379,4 +411,22 @@ fn traverses(review: &Review) -> String {
         "Where",
     ];
     table(&headings, rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_many_rows_those_that_have_not_passed_are_written_and_the_others_counted() {
+        let row = |number: usize| {
+            let of = if number % 1000 == 999 { Status::Failed } else { Status::Passed };
+            vec![status(of), format!("row {number}")]
+        };
+        let html = table(&["", "What"], (0..80_000).map(row));
+        assert_eq!(html.matches("status failed").count(), 80);
+        assert_eq!(html.matches("<tr>").count(), 1 + MAX_ROWS + 1);
+        assert!(html.contains("and 78000 more that are not listed here"));
+        assert!(!table(&["", "What"], (0..MAX_ROWS).map(row)).contains("not listed"));
+    }
 }
