@@ -11,6 +11,9 @@ use crate::likelihood::Likelihoods;
 use crate::model::{Commands, Model, Observation};
 use crate::successor::{EstimateError, distributions};
 
+/// States that an exact update keeps at most, about a hundred megabytes.
+const MAX_STATES: usize = 300_000;
+
 /// The belief after `commands` were given and `observation` was made.
 ///
 /// Exponential in the number of components that may fail; for larger models see [`crate::update_best`].
@@ -38,6 +41,14 @@ pub fn update_exact(
 ) -> Result<Belief, EstimateError> {
     let prior: Vec<&State> = belief.entries().iter().map(|(state, _)| state).collect();
     let distributions = distributions(model, &prior, commands)?;
+    let of_row = |row: usize| {
+        let choices = (0..distributions.components()).map(|component| distributions.of(row, component).len());
+        choices.fold(1_usize, usize::saturating_mul)
+    };
+    let possible = (0..prior.len()).map(of_row).fold(0, usize::saturating_add);
+    if possible > MAX_STATES {
+        return Err(EstimateError::TooMany(MAX_STATES));
+    }
     let mut predicted: BTreeMap<State, BigUint> = BTreeMap::new();
     for (row, (_, weight)) in belief.entries().iter().enumerate() {
         let mut reached: Vec<(Vec<u8>, BigUint)> =

@@ -27,6 +27,9 @@ pub enum EstimateError {
     /// No state of the belief can lead to the observation.
     #[error("no state that is believed possible explains the observations")]
     Unexplained,
+    /// There are more states than can be kept.
+    #[error("more than {0} states are possible: ask for the most likely ones")]
+    TooMany(usize),
     /// The modes that were asked for contradict each other.
     #[error("these modes cannot hold together: {0}")]
     Impossible(String),

@@ -69,6 +69,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let (posterior, limit_reached) = match result {
         Ok((belief, limit_reached)) => (Some(belief), limit_reached),
         Err(EstimateError::Unexplained) => (None, false),
+        Err(error @ EstimateError::TooMany(_)) => {
+            return Err(anyhow!(error).context("--k 100 finds the hundred most likely states"));
+        }
         Err(error) => return Err(error.into()),
     };
     let why = conflicts(&model, prior.most_likely(), &commands, &observation, 8)?;
