@@ -29,6 +29,8 @@ const EARLY: f64 = 0.985;
 /// Vehicles give up after so many other ways, and after so many times the time that they were to take.
 const MAX_REROUTES: u32 = 12;
 const MAX_TIMES: f64 = 4.0;
+/// Steps of simulation that one drive takes at most, so that none goes on without end.
+const MAX_STEPS: u32 = 500_000;
 /// What is seen this near to what the map shows, in metres, is taken for that.
 const KNOWN_M: f64 = 0.9;
 /// Metres beyond the path are counted by so many.
@@ -209,8 +211,16 @@ impl<'a> Trip<'a> {
         let most_s = MAX_TIMES * self.wanted_s + 600.0 * self.convoy.step_s();
         self.avoid_what_is_known();
         self.record_all(&[]);
+        let mut steps_left = MAX_STEPS;
         while !self.convoy.has_arrived() {
             let time_s = self.convoy.time_s();
+            if steps_left == 0 {
+                return Err(format!(
+                    "{} after {time_s:.0} s: longer drives are not simulated",
+                    self.stuck(0)
+                ));
+            }
+            steps_left -= 1;
             if time_s > most_s {
                 return Err(format!("{} after {:.0} times the time planned", self.stuck(0), MAX_TIMES));
             }
