@@ -209,6 +209,37 @@ fn a_pds_label_says_where_the_samples_are_and_what_they_mean() {
 }
 
 #[test]
+fn the_missing_constant_of_a_label_may_be_written_as_bits() {
+    let label = |kind: &str, bits: u32, missing: &str| {
+        let text = format!(
+            "PDS_VERSION_ID = PDS3\r\nRECORD_BYTES = 256\r\n^IMAGE = 2\r\nLINES = 1\r\nLINE_SAMPLES = 2\r\n\
+             SAMPLE_TYPE = {kind}\r\nSAMPLE_BITS = {bits}\r\nMISSING_CONSTANT = {missing}\r\nEND\r\n"
+        );
+        let mut bytes = text.into_bytes();
+        bytes.resize(256, b' ');
+        bytes
+    };
+    let mut real = label("PC_REAL", 32, "16#FF7FFFFB#");
+    real.extend(f32::from_bits(0xff7f_fffb).to_le_bytes());
+    real.extend(7.5_f32.to_le_bytes());
+    let raster = read(&real).unwrap();
+    assert!(raster.samples[0].is_nan());
+    assert_eq!(raster.samples[1], 7.5);
+    let mut integer = label("MSB_INTEGER", 16, "16#8000#");
+    integer.extend(i16::MIN.to_be_bytes());
+    integer.extend(3_i16.to_be_bytes());
+    let raster = read(&integer).unwrap();
+    assert!(raster.samples[0].is_nan());
+    assert_eq!(raster.samples[1], 3.0);
+    // What cannot be read is refused rather than taken for a height.
+    for wrong in ["16#XY#", "16#FF7FFFFB#", "NULL"] {
+        let mut bytes = label("MSB_INTEGER", 16, wrong);
+        bytes.extend([0; 4]);
+        assert!(read(&bytes).is_err(), "{wrong}");
+    }
+}
+
+#[test]
 fn the_callers_scale_hole_and_cell_size_apply() {
     let options = ImportOptions {
         cell_size_m: Some(3.0),

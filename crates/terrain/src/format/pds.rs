@@ -57,6 +57,25 @@ impl SampleType {
         }
     }
 
+    /// The value of a sample whose bits are written as in `16#FF7FFFFB#`, most significant first.
+    fn of_bits(self, written: &str) -> Option<f64> {
+        let digits = written.trim().trim_matches('"').strip_prefix("16#")?.split('#').next()?;
+        let bits = u32::from_str_radix(digits, 16).ok()?;
+        let bytes = bits.to_be_bytes();
+        let (unused, sample) = bytes.split_at(bytes.len() - self.bytes());
+        if unused.iter().any(|&byte| byte != 0) {
+            return None;
+        }
+        let mut sample = sample.to_vec();
+        if matches!(
+            self,
+            Self::I16LittleEndian | Self::U16LittleEndian | Self::I32LittleEndian | Self::F32LittleEndian
+        ) {
+            sample.reverse();
+        }
+        Some(self.value(&sample))
+    }
+
     fn of_label(name: &str, bits: u32) -> Option<Self> {
         let name = name.trim_matches('"').to_ascii_uppercase();
         let little = ["LSB_", "PC_", "VAX_"].iter().any(|prefix| name.starts_with(prefix));
@@ -175,6 +194,19 @@ fn read_label(bytes: &[u8], attached: bool) -> Result<RawLayout, FormatError> {
         _ => Err(malformed(format!("its label does not give {keyword}"))),
     };
     let (width, height) = (size("LINE_SAMPLES")?, size("LINES")?);
+    let (name, bits) = (label.value("SAMPLE_TYPE").unwrap_or_default(), size("SAMPLE_BITS")?);
+    let sample_type = SampleType::of_label(name, bits).ok_or_else(|| FormatError::Unsupported {
+        format: FORMAT,
+        problem: format!("samples of type {name} with {bits} bits"),
+    })?;
+    let constant = |keyword: &str| match label.value(keyword) {
+        None => Ok(None),
+        // Not every label has a value for it.
+        Some(written) if written.trim_matches('"').eq_ignore_ascii_case("N/A") => Ok(None),
+        Some(written) => (label.number(keyword).or_else(|| sample_type.of_bits(written)))
+            .map(Some)
+            .ok_or_else(|| malformed(format!("its {keyword} is no number: {written}"))),
+    };
     if number("BANDS").is_some_and(|bands| bands != 1.0)
         || ["LINE_PREFIX_BYTES", "LINE_SUFFIX_BYTES"]
             .iter()
@@ -183,12 +215,6 @@ fn read_label(bytes: &[u8], attached: bool) -> Result<RawLayout, FormatError> {
         let problem = "more than one band, or bytes between the lines".into();
         return Err(FormatError::Unsupported { format: FORMAT, problem });
     }
-    let name = label.value("SAMPLE_TYPE").unwrap_or_default();
-    let bits = size("SAMPLE_BITS")?;
-    let sample_type = SampleType::of_label(name, bits).ok_or_else(|| FormatError::Unsupported {
-        format: FORMAT,
-        problem: format!("samples of type {name} with {bits} bits"),
-    })?;
     Ok(RawLayout {
         width,
         height,
@@ -196,7 +222,7 @@ fn read_label(bytes: &[u8], attached: bool) -> Result<RawLayout, FormatError> {
         start_byte: label.image_start(attached)?,
         scaling_factor: number("SCALING_FACTOR").unwrap_or(1.0),
         offset_m: number("OFFSET").unwrap_or(0.0),
-        no_data: number("MISSING_CONSTANT").or_else(|| number("CORE_NULL")),
+        no_data: constant("MISSING_CONSTANT")?.or(constant("CORE_NULL")?),
         cell_size_m: label.cell_size_m(),
     })
 }
