@@ -1,6 +1,9 @@
 //! `--time-limit`: until when a command that plans must have its plan.
 
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
+
+use crate::output::{LIMIT, print_error};
 
 /// The option.
 #[derive(clap::Args, Clone, Copy, Debug)]
@@ -13,6 +16,16 @@ pub struct TimeLimit {
 /// The moment; `None` if there is none.
 #[derive(Clone, Copy, Debug)]
 pub struct Deadline(Option<Instant>);
+
+/// A limit that ends the process.
+pub struct Enforced(Arc<Mutex<bool>>);
+
+impl Enforced {
+    /// There is an answer: the limit has no say any more.
+    pub fn answered(self) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = true;
+    }
+}
 
 /// There was no answer in time.
 #[derive(Clone, Copy, Debug, thiserror::Error)]
@@ -32,6 +45,24 @@ impl Deadline {
     /// Whether the time is up.
     pub fn is_over(self) -> bool {
         self.0.is_some_and(|deadline| Instant::now() >= deadline)
+    }
+
+    /// From now on the process ends when the time is up, whatever it does, until there is an answer.
+    pub fn enforce(self) -> Enforced {
+        let enforced = Enforced(Arc::new(Mutex::new(false)));
+        if let Some(moment) = self.0 {
+            let is_answered = Arc::clone(&enforced.0);
+            std::thread::spawn(move || {
+                std::thread::sleep(moment.saturating_duration_since(Instant::now()));
+                // Who answers does not let go before the answer is there.
+                let is_answered = is_answered.lock().unwrap_or_else(PoisonError::into_inner);
+                if !*is_answered {
+                    print_error(&format!("error: {TimeIsUp}"));
+                    std::process::exit(i32::from(LIMIT));
+                }
+            });
+        }
+        enforced
     }
 
     /// An error if what was planned is not decided because the time is up.

@@ -19,7 +19,11 @@ const REACH_CHARS: usize = 2 * DEFAULT_TERM_WIDTH;
 /// Characters of a place that are marked at most: less than a line of a terminal, so that its end can be seen.
 const MAX_MARKED_CHARS: usize = DEFAULT_TERM_WIDTH / 2;
 
-/// Prints diagnostics on standard error with the lines they are about, coloured only on a terminal.
+/// Diagnostics that are printed at most; what else there is is counted.
+const MAX_PRINTED: usize = 50;
+
+/// Prints diagnostics on standard error with the lines they are about, coloured only on a terminal: errors before
+/// warnings where there is not room for all, and how many more there are.
 pub fn print_problems(name: &str, source: &str, problems: &[Problem]) -> anyhow::Result<()> {
     let is_terminal = std::io::stderr().is_terminal();
     let renderer = if is_terminal { Renderer::styled() } else { Renderer::plain() };
@@ -32,9 +36,31 @@ pub fn print_problems(name: &str, source: &str, problems: &[Problem]) -> anyhow:
         let local = Problem { span: problem.span_in_file(), ..problem.clone() };
         describe(&renderer, &name, text, &LineIndex::new(text), &local)
     };
-    let text: String = problems.iter().map(told).collect();
+    let (shown, more) = shown(problems);
+    let text: String = shown.into_iter().map(told).chain(more).collect();
     std::io::stderr().lock().write_all(text.as_bytes())?;
     Ok(())
+}
+
+/// The diagnostics that are printed, in textual order, and a line that counts the others.
+fn shown(problems: &[Problem]) -> (Vec<&Problem>, Option<String>) {
+    let mut order: Vec<usize> = (0..problems.len()).collect();
+    order.sort_by_key(|&index| (problems[index].severity, index));
+    order.truncate(MAX_PRINTED);
+    order.sort_unstable();
+    let shown: Vec<&Problem> = order.into_iter().map(|index| &problems[index]).collect();
+    let counted = |severity: Severity, word: &str| {
+        let count = |those: &mut dyn Iterator<Item = &Problem>| {
+            those.filter(|it| it.severity == severity).map(|it| 1 + it.more as usize).sum::<usize>()
+        };
+        let more = count(&mut problems.iter()) - count(&mut shown.iter().copied());
+        let plural = if more == 1 { "" } else { "s" };
+        (more > 0).then(|| format!("{more} more {word}{plural}"))
+    };
+    let kinds = [(Severity::Error, "error"), (Severity::Warning, "warning"), (Severity::Note, "note")];
+    let more: Vec<String> = kinds.into_iter().filter_map(|(kind, word)| counted(kind, word)).collect();
+    let line = (!more.is_empty()).then(|| format!("and {}\n", more.join(" and ")));
+    (shown, line)
 }
 
 /// The path of a file of the mission whose first file is `name`.
@@ -114,6 +140,7 @@ mod tests {
             file_start: 0,
             hint: Some("mend \u{202e}it".into()),
             fixes: Vec::new(),
+            more: 0,
         };
         describe(&Renderer::plain(), "a\u{1b}b.rmpl", source, &lines, &problem)
     }
@@ -132,6 +159,31 @@ mod tests {
   = hint: mend �it
 "
         );
+    }
+
+    #[test]
+    fn of_many_diagnostics_the_errors_are_printed_first_and_the_rest_is_counted() {
+        let one = |severity: Severity, line: u32, more: u32| Problem {
+            code: "X-TEST".into(),
+            severity,
+            message: String::new(),
+            span: rmpl::Span::new(line, line),
+            line,
+            column: 1,
+            file: None,
+            file_start: 0,
+            hint: None,
+            fixes: Vec::new(),
+            more,
+        };
+        let mut problems: Vec<Problem> = (1..=500).map(|line| one(Severity::Warning, line, 0)).collect();
+        problems[499].more = 9_500;
+        problems.push(one(Severity::Error, 501, 0));
+        let (printed, more) = shown(&problems);
+        assert_eq!(printed.len(), MAX_PRINTED);
+        assert_eq!(printed.last().map(|last| last.severity), Some(Severity::Error));
+        assert_eq!(more.as_deref(), Some("and 9951 more warnings\n"));
+        assert_eq!(shown(&problems[..20]).1, None);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use mission::{Grounds, MapKey};
 use rmpl::program::World;
 use terrain::Terrain;
 
-use crate::input::read_bytes;
+use crate::input::{folder_of, inside, read_bytes};
 
 /// The map of a mission that has places, with its key.
 pub type Ground = Option<(MapKey, Arc<Terrain>)>;
@@ -25,7 +25,7 @@ pub fn ground(mission: &Path, world: &World) -> anyhow::Result<(Grounds, Ground)
     }
     let (ground, diagnostics) = grounds.resolve(world);
     if let Some(diagnostic) = diagnostics.first() {
-        let beside = "a map file stands beside the mission's";
+        let beside = "a map file stands in the mission's folder";
         let hint = diagnostic.hint.as_deref().map_or(beside.to_owned(), |hint| format!("{hint}; {beside}"));
         anyhow::bail!("{} ({hint})", diagnostic.message);
     }
@@ -36,10 +36,12 @@ pub fn ground(mission: &Path, world: &World) -> anyhow::Result<(Grounds, Ground)
 pub fn map_file(mission: &Path, world: &World) -> anyhow::Result<Option<(String, Vec<u8>)>> {
     let Some(declared) = &world.terrain else { return Ok(None) };
     let name = declared.asset.as_str();
-    let file = mission.parent().unwrap_or(Path::new("")).join(name);
-    if terrain::asset_names().any(|known| known == name) || !file.is_file() {
+    if terrain::asset_names().any(|known| known == name) {
         return Ok(None);
     }
+    // What is elsewhere is no map of the mission, whatever it is.
+    let found = inside(folder_of(mission), name);
+    let Some(file) = found.filter(|file| file.is_file()) else { return Ok(None) };
     let bytes = read_bytes(&file, LARGEST_MAP_BYTES).with_context(|| cannot_read(name))?;
     Ok(Some((name.to_owned(), bytes)))
 }

@@ -1,7 +1,7 @@
 //! Reading the files that commands are given; `-` is standard input.
 
 use std::io::Read as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 
@@ -11,6 +11,8 @@ const LONGEST_TEXT_BYTES: u64 = 64 << 20;
 /// The text of `path`, which must be UTF-8.
 pub fn read_text(path: &Path) -> anyhow::Result<String> {
     let bytes = read_bytes(path, LONGEST_TEXT_BYTES)?;
+    // What editors of another system put before a text says nothing.
+    let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).map(<[u8]>::to_vec).unwrap_or(bytes);
     String::from_utf8(bytes).map_err(|error| {
         anyhow::anyhow!(
             "{} is not UTF-8 text: the first bad byte is at offset {}",
@@ -31,13 +33,9 @@ pub fn mission_of(path: &Path, text: &str) -> anyhow::Result<String> {
     let Some(name) = path.file_name().and_then(|name| name.to_str()).filter(|name| *name != "-") else {
         return Ok(rmpl::files::join("", text, |_| None));
     };
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let inside = |file: &str| {
-        let found = folder.join(file).canonicalize().ok()?;
-        found.starts_with(folder.canonicalize().ok()?).then_some(found)
-    };
+    let folder = folder_of(path);
     let mut problem = None;
-    let joined = rmpl::files::join(name, text, |file| match read_text(&inside(file)?) {
+    let joined = rmpl::files::join(name, text, |file| match read_text(&inside(folder, file)?) {
         Ok(text) => Some(text),
         Err(error) => {
             problem.get_or_insert(error);
@@ -45,6 +43,18 @@ pub fn mission_of(path: &Path, text: &str) -> anyhow::Result<String> {
         }
     });
     problem.map_or(Ok(joined), Err)
+}
+
+/// The folder of a mission's first file.
+pub fn folder_of(mission: &Path) -> &Path {
+    mission.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// The path of `file`, if it is in `folder` or in a folder in there: links that lead out, `..` and paths from the root do
+/// not.
+pub fn inside(folder: &Path, file: &str) -> Option<PathBuf> {
+    let found = folder.join(file).canonicalize().ok()?;
+    found.starts_with(folder.canonicalize().ok()?).then_some(found)
 }
 
 /// The bytes of `path`, refused when there are more than `most`.

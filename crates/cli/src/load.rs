@@ -6,6 +6,7 @@ use std::time::Instant;
 use anyhow::Context as _;
 use exact::{Bound, Time};
 use mission::{Goal, Problem};
+use rmpl::diagnostics::network;
 use rmpl::program::Program;
 use tpn::Network;
 
@@ -55,11 +56,8 @@ impl Target {
         };
         let begun = Instant::now();
         if is_network(&name, &source) {
-            let network = tpn::interchange::Source::read(&source)
-                .with_context(|| format!("cannot read {name}"))?
-                .into_network();
+            let (network, problems) = read_network(&name, &source)?;
             let parse_millis = begun.elapsed().as_secs_f64() * 1000.0;
-            let problems = Vec::new();
             return Ok(Loaded {
                 name,
                 source,
@@ -92,7 +90,17 @@ impl Target {
     }
 }
 
-fn is_network(name: &str, source: &str) -> bool {
+/// The network that a file holds, and what is to be said of the file.
+pub fn read_network(name: &str, source: &str) -> anyhow::Result<(Network, Vec<Problem>)> {
+    let read = tpn::interchange::Source::read(source).with_context(|| format!("cannot read {name}"))?;
+    let not_honoured = read.not_honoured();
+    let told = (!not_honoured.is_empty()).then(|| network::not_honoured(&not_honoured));
+    let problems = Problem::all(told.as_slice(), source);
+    Ok((read.into_network(), problems))
+}
+
+/// Whether a file holds a network rather than a mission text.
+pub fn is_network(name: &str, source: &str) -> bool {
     let is_named_so = [".json", ".edn"].iter().any(|ending| name.ends_with(ending));
     is_named_so || (name == "-" && source.trim_start().starts_with('{'))
 }

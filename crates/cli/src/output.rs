@@ -27,11 +27,23 @@ pub enum Format {
     Json,
 }
 
-/// A JSON document `enroute-<kind>/1` with its diagnostics and the members of `body`, an object.
+/// Characters of a word that people are shown: of longer ones, such as names of a thousand letters, the middle is left
+/// out.
+const MAX_WORD_CHARS: usize = 100;
+
+/// A column of names is no wider than this.
+const MAX_COLUMN_CHARS: usize = 60;
+
+/// A JSON document `enroute-<kind>/1` with its diagnostics and the members of `body`, an object. Where there are more
+/// diagnostics than are listed, it says how many there are.
 pub fn document(kind: &str, problems: &[Problem], body: Value) -> Value {
     let mut members = Map::new();
     members.insert("format".into(), json!(format!("enroute-{kind}/1")));
     members.insert("diagnostics".into(), Value::Array(problems.iter().map(problem_json).collect()));
+    let unlisted: u64 = problems.iter().map(|problem| u64::from(problem.more)).sum();
+    if unlisted > 0 {
+        members.insert("diagnostics_not_listed".into(), json!(unlisted));
+    }
     if let Value::Object(body) = body {
         members.extend(body);
     }
@@ -60,11 +72,74 @@ fn problem_json(problem: &Problem) -> Value {
 
 /// Prints a JSON document on standard output.
 pub fn print_json(value: &Value) -> anyhow::Result<()> {
-    print_text(&format!("{}\n", serde_json::to_string_pretty(value)?))
+    print_verbatim(&format!("{}\n", escaped(&serde_json::to_string_pretty(value)?)))
 }
 
-/// Prints text on standard output; a reader that has gone away ends the output quietly.
+/// JSON in which no character commands a terminal: such ones stand in texts only, where JSON has another way to write
+/// them.
+pub fn escaped(json: &str) -> String {
+    use std::fmt::Write as _;
+    let mut text = String::with_capacity(json.len());
+    for letter in json.chars() {
+        if letter != '\n' && commands_terminal(letter) {
+            let _ = write!(text, "\\u{:04x}", u32::from(letter));
+        } else {
+            text.push(letter);
+        }
+    }
+    text
+}
+
+/// Whether a terminal takes a character for a command or for a change of direction.
+pub const fn commands_terminal(letter: char) -> bool {
+    matches!(letter,
+        '\0'..='\u{1f}' | '\u{7f}'..='\u{9f}' | '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
+    )
+}
+
+/// Prints text for people on standard output. What comes from files may hold anything: what would command a terminal is
+/// shown as a sign, and of words as long as a book the middle is left out.
 pub fn print_text(text: &str) -> anyhow::Result<()> {
+    print_verbatim(&legible(text))
+}
+
+/// Text that can be shown to people.
+pub fn legible(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for word in text.split_inclusive([' ', '\n']) {
+        let word: String = (word.chars())
+            .map(|letter| match letter {
+                '\n' | '\t' => letter,
+                '\0'..='\u{1f}' => char::from_u32(0x2400 + u32::from(letter)).unwrap_or(letter),
+                _ if commands_terminal(letter) => char::REPLACEMENT_CHARACTER,
+                _ => letter,
+            })
+            .collect();
+        shown.push_str(&without_middle(&word, MAX_WORD_CHARS));
+    }
+    shown
+}
+
+/// A text of at most so many characters, without its middle where it has more.
+fn without_middle(text: &str, most: usize) -> std::borrow::Cow<'_, str> {
+    if text.len() <= most || text.chars().count() <= most {
+        return text.into();
+    }
+    let end = text.char_indices().rev().nth(most / 3 - 1).map_or(0, |(at, _)| at);
+    let start: String = text.chars().take(most - most / 3 - 1).collect();
+    format!("{start}…{}", &text[end..]).into()
+}
+
+/// Names as a column: all of one width, the longest of them cut.
+pub fn column<'name>(names: impl Iterator<Item = &'name str>) -> Vec<String> {
+    let names: Vec<_> = names.map(|name| without_middle(name, MAX_COLUMN_CHARS)).collect();
+    let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
+    names.iter().map(|name| format!("{name:<width$}")).collect()
+}
+
+/// Prints what a program reads, or a file's own text, on standard output; a reader that has gone away ends the output
+/// quietly.
+pub fn print_verbatim(text: &str) -> anyhow::Result<()> {
     match std::io::stdout().lock().write_all(text.as_bytes()) {
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
         result => Ok(result?),
@@ -73,7 +148,7 @@ pub fn print_text(text: &str) -> anyhow::Result<()> {
 
 /// Prints a line on standard error; where that is closed, there is nobody to tell.
 pub fn print_error(line: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "{line}");
+    let _ = writeln!(std::io::stderr().lock(), "{}", legible(line));
 }
 
 /// Whether any of `problems` is an error.
@@ -84,4 +159,28 @@ pub fn any_error(problems: &[Problem]) -> bool {
 /// The process's exit status.
 pub fn exit(status: u8) -> ExitCode {
     ExitCode::from(status)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_that_is_printed_commands_a_terminal() {
+        let text = "a\u{1b}[31mb \u{202e}c\u{9b}2J\td\n";
+        assert_eq!(legible(text), "a␛[31mb �c�2J\td\n");
+        let json = serde_json::to_string(&json!({ "name": text })).expect("it is written");
+        let written = escaped(&json);
+        assert!(!written.contains(commands_terminal), "{written}");
+        let read: Value = serde_json::from_str(&written).expect("it is JSON still");
+        assert_eq!(read["name"], text);
+    }
+
+    #[test]
+    fn a_column_of_names_is_narrow_whatever_they_are() {
+        let long = "n".repeat(70_000);
+        let column = column(["Drive#1.start", &long, "日本"].into_iter());
+        assert!(column.iter().all(|name| name.chars().count() == MAX_COLUMN_CHARS), "{column:?}");
+        assert!(legible(&format!("link {long} carries {long}\n")).chars().count() < 250);
+    }
 }

@@ -9,8 +9,8 @@ use terrain::Terrain;
 
 use crate::deadline::{Deadline, TimeIsUp};
 use crate::ground::map_file;
-use crate::input::read_mission;
-use crate::load::Target;
+use crate::input::{read_mission, read_text};
+use crate::load::{Target, is_network, read_network};
 
 /// A mission, worked out.
 pub struct WorkedOut {
@@ -22,13 +22,29 @@ pub struct WorkedOut {
     pub ground: Option<Arc<Terrain>>,
 }
 
-/// Works out the mission that `target` names. Fails when it cannot be read, or is a network.
+/// Works out the mission or the network that `target` names. Fails when it cannot be read.
 pub fn work_out(target: &Target, seed: u64, deadline: Deadline) -> anyhow::Result<WorkedOut> {
-    let is_network = target.file.extension().is_some_and(|ending| ending == "json" || ending == "edn");
-    anyhow::ensure!(!is_network, "this command wants a mission text, not a network");
     let name = target.file.file_name().filter(|name| *name != "-");
     let name = name.map_or_else(|| "mission".to_owned(), |name| name.to_string_lossy().into_owned());
-    work_out_text(name, &target.file, &read_mission(&target.file)?, target.goal()?, seed, deadline)
+    if is_network(&target.file.to_string_lossy(), "") {
+        return work_out_network(name, &read_text(&target.file)?, deadline);
+    }
+    let source = read_mission(&target.file)?;
+    if target.file == Path::new("-") && is_network("-", &source) {
+        return work_out_network(name, &source, deadline);
+    }
+    work_out_text(name, &target.file, &source, target.goal()?, seed, deadline)
+}
+
+/// Works out a network of a file.
+fn work_out_network(name: String, source: &str, deadline: Deadline) -> anyhow::Result<WorkedOut> {
+    let (network, problems) = read_network(&name, source)?;
+    let snapshot =
+        Snapshot::of_network(source.into(), Arc::new(network), problems, &mut || deadline.is_over());
+    if let Some(planning) = &snapshot.planning {
+        deadline.check(&planning.outcome)?;
+    }
+    Ok(WorkedOut { name, snapshot: Arc::new(snapshot), ground: None })
 }
 
 /// Works out a mission text. The map file that it names, if it names one, lies beside `file`.

@@ -89,11 +89,15 @@ impl Grounds {
         let Some(declared) = &world.terrain else {
             return (self.flat(world), Vec::new());
         };
-        let version = self.imported.get(&declared.asset).map_or(0, |imported| imported.version);
+        let imported = self.imported.get(&declared.asset);
+        let version = imported.map_or(0, |imported| imported.version);
+        // A map of a file has its own scale, unless the mission says another one.
+        let of_file = imported.map(|imported| imported.map.frame().cell_size_m);
+        let cell_m = declared.cell_m.or(of_file).unwrap_or(terrain::format::DEFAULT_CELL_SIZE_M);
         let millimetres = |metres: f64| (metres * 1000.0).round();
         let key = MapKey {
             asset: declared.asset.clone(),
-            cell_mm: millimetres(declared.cell_m) as u32,
+            cell_mm: millimetres(cell_m) as u32,
             origin_mm: declared.origin_m.map(|metres| millimetres(metres) as i64),
             version,
         };
@@ -107,7 +111,7 @@ impl Grounds {
         let Some(made) = made else {
             return (None, vec![self.unknown_terrain(declared)]);
         };
-        let map = Arc::new(made.placed(declared.cell_m, declared.origin_m.into()));
+        let map = Arc::new(made.placed(cell_m, declared.origin_m.into()));
         self.maps.retain(|other, _| other.asset == key.asset);
         self.maps.insert(key.clone(), Arc::clone(&map));
         (Some((key, map)), Vec::new())

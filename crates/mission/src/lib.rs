@@ -52,7 +52,7 @@ pub use link::{Link, LinkEvent, News, Transport};
 pub use path_growth::{GrowthStanding, PathGrowth};
 pub use problem::{Problem, TextEdit, TextFix};
 pub use program_chance::{ProgramChance, sample_program};
-pub use reading::compile;
+pub use reading::{compile, compile_scenarios};
 pub use request::{Goal, Request, Response, Update};
 pub use robustness::{Robustness, RobustnessSettings, Tally, Uncertainty};
 pub use simulation::{DriveFrame, SimulatedDrive, SimulatedVehicle};

@@ -30,6 +30,9 @@ pub struct Problem {
     pub hint: Option<String>,
     /// Changes of the text that mend it.
     pub fixes: Vec<TextFix>,
+    /// How many more of its severity there are, which are not listed.
+    #[serde(default)]
+    pub more: u32,
 }
 
 /// A change that mends a problem.
@@ -52,7 +55,7 @@ impl Problem {
         Self {
             code: SmolStr::new(diagnostic.code.0),
             severity: diagnostic.severity,
-            message: diagnostic.message.clone(),
+            message: diagnostic.whole_message(),
             span: diagnostic.span,
             file: (file.start > 0).then(|| SmolStr::new(&file.name)),
             file_start: file.start,
@@ -64,16 +67,17 @@ impl Problem {
                 .iter()
                 .map(|fix| TextFix { label: fix.label.clone(), edits: fix.edits.clone() })
                 .collect(),
+            more: diagnostic.more,
         }
     }
 
-    /// All of `diagnostics`, in textual order.
+    /// All of `diagnostics`, in textual order, as far as they are listed.
     pub fn all(diagnostics: &[Diagnostic], text: &str) -> Vec<Self> {
         let (lines, files) = (LineIndex::new(text), Files::of(text));
-        let mut problems: Vec<Self> =
-            diagnostics.iter().map(|found| Self::new(found, text, &lines, &files)).collect();
-        problems.sort_by_key(|problem| (problem.span, problem.severity));
-        problems
+        let mut sorted: Vec<&Diagnostic> = diagnostics.iter().collect();
+        sorted.sort_by_key(|found| (found.span, found.severity));
+        let listed = rmpl::listed(sorted.into_iter().cloned());
+        listed.iter().map(|found| Self::new(found, text, &lines, &files)).collect()
     }
 
     /// The span in the text of its own file.

@@ -175,6 +175,25 @@ impl Compiled {
     }
 }
 
+/// The networks of all scenarios, in textual order, as far as no error prevents one; adds what compiling finds to
+/// `diagnostics`. Only with `keep` do the networks stay: they may be many.
+pub fn compile_scenarios(
+    program: &Program,
+    diagnostics: &mut Vec<Diagnostic>,
+    keep: bool,
+) -> Option<Vec<Network>> {
+    let mut networks = Vec::new();
+    let mut is_whole = true;
+    let found = tpn::compile_scenarios(program, |network| {
+        is_whole &= network.is_some();
+        networks.extend(network.filter(|_| keep));
+    });
+    tpn::merge_diagnostics(diagnostics, found);
+    diagnostics.extend(Programs::compile(program).1);
+    let is_sound = diagnostics.iter().all(|found| found.severity != Severity::Error);
+    (is_whole && is_sound).then_some(networks)
+}
+
 /// The network of what is to be planned, if no error prevents it; adds what compiling finds to `diagnostics`.
 pub fn compile(program: &Program, goal: &Goal, diagnostics: &mut Vec<Diagnostic>) -> Option<Network> {
     let (network, found) = tpn::compile(program, &top(program, goal));

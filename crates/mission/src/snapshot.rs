@@ -14,6 +14,7 @@ use tpn::{Network, OccurrenceId};
 
 use crate::content::PartKeys;
 use crate::listing::LeftOut;
+use crate::planning;
 use crate::problem::Problem;
 
 /// One revision of a mission, as far as it has been evaluated.
@@ -224,6 +225,25 @@ impl Snapshot {
             separation_violations: Arc::default(),
             keys: PartKeys::default(),
             timings: Timings::default(),
+        }
+    }
+
+    /// Of a network that a file holds, planned unless `stop` says so before; there is no program and no ground. Such a
+    /// network has no structure that drawings follow, and its parts no places in the text.
+    pub fn of_network(
+        source: Arc<str>,
+        network: Arc<Network>,
+        problems: Vec<Problem>,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Self {
+        let outcome = kirk::plan(&network, &kirk::Options::default(), &mut |_: &kirk::Stats| stop());
+        let planned = planning::without_paths(&network, outcome);
+        Self {
+            stage: Stage::Complete,
+            problems: problems.into(),
+            network: Some(network),
+            planning: Some(planned.planning),
+            ..Self::empty(1, source)
         }
     }
 

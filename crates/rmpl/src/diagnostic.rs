@@ -62,12 +62,24 @@ pub struct Diagnostic {
     pub hint: Option<String>,
     /// Changes that mend it.
     pub fixes: Vec<Fix>,
+    /// How many more of its severity there are behind it, which nobody lists.
+    pub more: u32,
 }
+
+/// Of each severity, so many diagnostics of one text are listed; the last one says how many more there are.
+pub const MAX_LISTED: usize = 500;
+
+/// Characters of a word that are shown in messages: longer ones, such as names of a thousand letters, are cut.
+const MAX_WORD_CHARS: usize = 80;
+
+/// Characters of a message.
+const MAX_MESSAGE_CHARS: usize = 1000;
 
 impl Diagnostic {
     /// An error without hint or fixes.
     pub fn error(code: Code, span: Span, message: impl Into<String>) -> Self {
-        Self { code, severity: Severity::Error, span, message: message.into(), hint: None, fixes: Vec::new() }
+        let message = legible(message.into());
+        Self { code, severity: Severity::Error, span, message, hint: None, fixes: Vec::new(), more: 0 }
     }
 
     /// A warning without hint or fixes.
@@ -77,14 +89,96 @@ impl Diagnostic {
 
     /// The same with a hint.
     pub fn with_hint(mut self, hint: impl Into<String>) -> Self {
-        self.hint = Some(hint.into());
+        self.hint = Some(legible(hint.into()));
         self
     }
 
     /// The same with one more fix.
     pub fn with_fix(mut self, fix: Fix) -> Self {
-        self.fixes.push(fix);
+        self.fixes.push(Fix { label: legible(fix.label), ..fix });
         self
+    }
+
+    /// The message, with how many more there are.
+    pub fn whole_message(&self) -> String {
+        let what = match self.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+            Severity::Note => "note",
+        };
+        match self.more {
+            0 => self.message.clone(),
+            1 => format!("{}; and 1 more {what}", self.message),
+            more => format!("{}; and {more} more {what}s", self.message),
+        }
+    }
+}
+
+/// At most [`MAX_LISTED`] of each severity, the first ones; the last of each says how many more there are.
+pub fn listed(all: impl IntoIterator<Item = Diagnostic>) -> Vec<Diagnostic> {
+    let mut listed = Listed::default();
+    for found in all {
+        listed.add(&found, 0);
+    }
+    listed.list
+}
+
+/// Diagnostics that are listed, and those that are only counted.
+#[derive(Debug, Default)]
+pub(crate) struct Listed {
+    pub(crate) list: Vec<Diagnostic>,
+    counts: [usize; 3],
+    last: [usize; 3],
+}
+
+impl Listed {
+    /// One more, moved by `offset`.
+    pub(crate) fn add(&mut self, found: &Diagnostic, offset: u32) {
+        let kind = found.severity as usize;
+        if self.counts[kind] < MAX_LISTED {
+            self.counts[kind] += 1;
+            self.last[kind] = self.list.len();
+            self.list.push(found.clone().moved(offset));
+        } else if let Some(last) = self.list.get_mut(self.last[kind]) {
+            last.more = last.more.saturating_add(1).saturating_add(found.more);
+        }
+    }
+}
+
+/// What can be read: long words lose their middle, and a long message its end.
+fn legible(text: String) -> String {
+    if text.len() <= MAX_WORD_CHARS {
+        return text;
+    }
+    let words = text.split_inclusive(char::is_whitespace);
+    let is_long = |word: &str| word.chars().count() > MAX_WORD_CHARS;
+    let mut told = String::with_capacity(text.len().min(2 * MAX_MESSAGE_CHARS));
+    let mut count = 0;
+    for word in words {
+        let from = told.len();
+        if is_long(word) {
+            let end = word.char_indices().rev().nth(MAX_WORD_CHARS / 4 - 1).map_or(0, |(at, _)| at);
+            told.extend(word.chars().take(MAX_WORD_CHARS / 2).chain(['…']));
+            told.push_str(&word[end..]);
+        } else {
+            told.push_str(word);
+        }
+        count += told[from..].chars().count();
+        if count > MAX_MESSAGE_CHARS {
+            told.push('…');
+            break;
+        }
+    }
+    told
+}
+
+/// The first of `names`, and how many more there are.
+pub(crate) fn some_of(names: &[&str]) -> String {
+    const SHOWN: usize = 20;
+    let shown = names.get(..SHOWN).unwrap_or(names).join(", ");
+    match names.len().saturating_sub(SHOWN) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
     }
 }
 
@@ -96,5 +190,41 @@ impl Known {
     /// Whether nothing of the kind has been said at this place, which from now on it has.
     pub(crate) fn is_new(&mut self, found: &Diagnostic) -> bool {
         self.0.insert((found.code, found.span, found.message.clone()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn told(count: usize, severity: Severity) -> impl Iterator<Item = Diagnostic> {
+        let code = Code("X-TEST");
+        (0..count).map(move |at| Diagnostic {
+            severity,
+            ..Diagnostic::error(code, Span::new(at as u32, at as u32 + 1), format!("number {at}"))
+        })
+    }
+
+    #[test]
+    fn what_is_not_listed_is_counted_once_however_often_lists_are_joined() {
+        let first = listed(told(700, Severity::Warning).chain(told(3, Severity::Error)));
+        assert_eq!(first.len(), MAX_LISTED + 3);
+        assert_eq!(first[MAX_LISTED - 1].more, 200);
+        assert_eq!(first[MAX_LISTED - 1].whole_message(), "number 499; and 200 more warnings");
+        let joined = listed(first.into_iter().chain(listed(told(700, Severity::Warning))));
+        let sum: usize = joined.iter().map(|found| 1 + found.more as usize).sum();
+        assert_eq!((joined.len(), sum), (MAX_LISTED + 3, 1403));
+    }
+
+    #[test]
+    fn long_names_and_long_messages_are_cut() {
+        let name = "a".repeat(70_000);
+        let found = Diagnostic::error(Code("X"), Span::default(), format!("no `{name}` is declared"));
+        assert!(found.message.chars().count() < 100, "{}", found.message);
+        assert!(found.message.ends_with("aaa` is declared"), "{}", found.message);
+        let many = found.with_hint("one of A, B, ".repeat(10_000)).hint.unwrap_or_default();
+        assert!(many.chars().count() < MAX_MESSAGE_CHARS + 100);
+        let short = Diagnostic::error(Code("X"), Span::default(), "as it is,  with its blanks ".repeat(5));
+        assert_eq!(short.message, "as it is,  with its blanks ".repeat(5));
     }
 }

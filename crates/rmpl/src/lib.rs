@@ -19,7 +19,7 @@ pub mod span;
 pub mod spans;
 pub mod syntax;
 
-pub use diagnostic::{Code, Diagnostic, Edit, Fix, Severity};
+pub use diagnostic::{Code, Diagnostic, Edit, Fix, MAX_LISTED, Severity, listed};
 pub use diagnostics::explain;
 pub use explanation::Explanation;
 pub use format::{format, format_edit};

@@ -7,11 +7,11 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use exact::{Rational, Time};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::analysis::local::local_diagnostics;
 use crate::analysis::{Checked, DeclarationKey, Index, Meaning, Names, Summary, check, recursion, summarize};
-use crate::diagnostic::{Diagnostic, Edit, Known, Severity};
+use crate::diagnostic::{Diagnostic, Edit, Known, Listed, Severity};
 use crate::diagnostics::{syntax, undefined};
 use crate::files::{self, MARK};
 use crate::lower::{Item, Lowering, OptionValue};
@@ -76,6 +76,21 @@ impl Parse {
         let mut parse = Self { text, ..Self::default() };
         let fresh = parse.read_declarations(0, |_, _| false);
         parse.exchange(0..0, fresh);
+        parse
+    }
+
+    /// The trees of a text alone: what its names mean is not asked.
+    pub(crate) fn trees(text: String) -> Self {
+        let mut parse = Self { text, ..Self::default() };
+        let fresh = parse.read_declarations(0, |_, _| false);
+        let checked = Arc::new(Checked::default());
+        let place = |(start, declaration)| Place {
+            start,
+            key: parse.index.new_key(),
+            declaration: Arc::new(declaration),
+            checked: Arc::clone(&checked),
+        };
+        parse.places = fresh.into_iter().map(place).collect();
         parse
     }
 
@@ -173,9 +188,7 @@ impl Parse {
         self.index.release(keys);
         let changed = old.start..old.start + fresh.len();
         self.places.splice(old, fresh);
-        for (position, place) in self.places.iter().enumerate() {
-            self.index.set_position(place.key, position as u32);
-        }
+        self.index.find_rivals(self.places.iter().map(|place| place.key));
         self.check_again(&changed);
     }
 
@@ -198,9 +211,10 @@ impl Parse {
                 ));
             }
         }
-        let changed_keys = self.places.get(changed.clone()).unwrap_or_default().iter().map(|place| place.key);
-        let moves_circle =
-            changed_keys.into_iter().any(|key| self.cycles.iter().any(|(other, _)| *other == key));
+        let in_cycles: FxHashSet<DeclarationKey> = self.cycles.iter().map(|(key, _)| *key).collect();
+        let mut changed_keys =
+            self.places.get(changed.clone()).unwrap_or_default().iter().map(|place| place.key);
+        let moves_circle = !in_cycles.is_empty() && changed_keys.any(|key| in_cycles.contains(&key));
         if self.index.take_calls_changed() || moves_circle {
             let summaries = self.places.iter().map(|place| (place.key, &place.declaration.summary));
             self.cycles = recursion(&self.names, &self.index, summaries);
@@ -239,23 +253,11 @@ impl Parse {
         self.places.get(after.checked_sub(1)?).map(|place| place.root(&self.text))
     }
 
-    /// Everything there is to tell the author, in textual order.
+    /// What there is to tell the author, in textual order: of each severity the first [`MAX_LISTED`], of which the last
+    /// one says how many more there are.
+    ///
+    /// [`MAX_LISTED`]: crate::diagnostic::MAX_LISTED
     pub fn diagnostics(&self) -> Vec<Diagnostic> {
-        let mut all = Vec::new();
-        let mut told = FxHashSet::default();
-        for place in &self.places {
-            let first = all.len();
-            let own = place.declaration.diagnostics.iter();
-            let shown = place.checked.diagnostics.iter().filter_map(|(once, diagnostic)| {
-                once.is_none_or(|once| told.insert(once)).then_some(diagnostic)
-            });
-            let cycles = self.cycles.iter().filter(|(key, _)| *key == place.key);
-            let here = own.chain(shown).chain(cycles.map(|(_, diagnostic)| diagnostic));
-            all.extend(here.map(|diagnostic| diagnostic.clone().moved(place.start)));
-            if let Some(here) = all.get_mut(first..) {
-                here.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.severity));
-            }
-        }
         let imports: Vec<(Span, ImportDecl)> = (self.places.iter())
             .filter_map(|place| match &place.declaration.item {
                 Some(Item::Import(import)) => {
@@ -265,22 +267,42 @@ impl Parse {
                 _ => None,
             })
             .collect();
-        if !imports.is_empty() {
-            let found = files::check(self, &imports);
-            if found.iter().any(|found| found.code == undefined::CODE) {
-                // What the missing file declares is missing once.
-                let is_consequence = |code: &str| {
-                    matches!(
-                        code,
-                        "E-UNDEF" | "E-NAME" | "W-UNDEF" | "W-SIMILAR" | "W-SUPPORT" | "W-TRAVERSE"
-                    )
-                };
-                all.retain(|told| !is_consequence(told.code.0));
-            }
-            all.extend(found);
-            all.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.severity));
+        let of_imports = files::check(self, &imports);
+        let lacks_a_file = of_imports.iter().any(|found| found.code == undefined::CODE);
+        // What the missing file declares is missing once.
+        let is_consequence = |found: &Diagnostic| {
+            lacks_a_file
+                && matches!(
+                    found.code.0,
+                    "E-UNDEF" | "E-NAME" | "W-UNDEF" | "W-SIMILAR" | "W-SUPPORT" | "W-TRAVERSE"
+                )
+        };
+        let mut cycles: FxHashMap<DeclarationKey, Vec<&Diagnostic>> = FxHashMap::default();
+        for (key, found) in &self.cycles {
+            cycles.entry(*key).or_default().push(found);
         }
-        all
+        let mut all = Listed::default();
+        let mut told = FxHashSet::default();
+        for place in &self.places {
+            let own = place.declaration.diagnostics.iter();
+            let shown = place.checked.diagnostics.iter().filter_map(|(once, diagnostic)| {
+                once.is_none_or(|once| told.insert(once)).then_some(diagnostic)
+            });
+            let cycles = cycles.get(&place.key).into_iter().flatten().copied();
+            let mut here: Vec<&Diagnostic> =
+                own.chain(shown).chain(cycles).filter(|found| !is_consequence(found)).collect();
+            here.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.severity));
+            for found in here {
+                all.add(found, place.start);
+            }
+        }
+        if !of_imports.is_empty() {
+            for found in &of_imports {
+                all.add(found, 0);
+            }
+            all.list.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.severity));
+        }
+        all.list
     }
 
     /// What names mean in this file.

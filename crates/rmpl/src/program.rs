@@ -653,8 +653,8 @@ pub struct TerrainDecl {
     pub asset: SmolStr,
     /// Where the asset is named, with its quotes.
     pub asset_span: Span,
-    /// Metres per cell; 0.6 by default.
-    pub cell_m: f64,
+    /// Metres per cell; without it those that the map's file says, or 0.6.
+    pub cell_m: Option<f64>,
     /// Mission coordinates of the map's south-west corner, in metres.
     pub origin_m: [f64; 2],
     /// The whole declaration.

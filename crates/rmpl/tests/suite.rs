@@ -128,6 +128,7 @@ fn every_kind_of_diagnostic_occurs_in_the_manual() {
         "W-ENCOUNTER",
         "W-EXOGENOUS",
         "W-PLANT",
+        "W-NETWORK",
     ];
     for page in rmpl::diagnostics::EXPLANATIONS {
         assert!(

@@ -29,6 +29,7 @@ pub enum Source {
 impl Source {
     /// Reads `text`: `enroute-tpn/1` JSON, or plan-schema in JSON or EDN.
     pub fn read(text: &str) -> Result<Self, ReadError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         if let Ok(value) = serde_json::from_str::<Value>(text)
             && value.get("nodes").is_some()
             && value.get("arcs").is_some()
@@ -36,6 +37,14 @@ impl Source {
             return Ok(Self::Enroute(Box::new(network_from_json(&value)?)));
         }
         Ok(Self::PlanSchema(Box::new(Document::parse(text)?)))
+    }
+
+    /// What the file says and planning does not honour, in words.
+    pub fn not_honoured(&self) -> Vec<String> {
+        match self {
+            Self::Enroute(_) => Vec::new(),
+            Self::PlanSchema(document) => document.not_honoured(),
+        }
     }
 
     /// The network.

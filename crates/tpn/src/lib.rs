@@ -18,7 +18,7 @@ mod spans;
 pub mod text;
 mod vocabulary;
 
-pub use compile::{Top, assumed, compile, merge_diagnostics};
+pub use compile::{Top, assumed, compile, compile_scenarios, merge_diagnostics};
 pub use network::{
     Arc, ArcId, ArcKind, Block, BlockId, BlockKind, Decision, DecisionId, Departure, Distance, EventEnd,
     EventRef, Extent, Goal, Label, LabelId, Literal, Network, Node, NodeId, Occurrence, OccurrenceId,

@@ -6,13 +6,14 @@ use std::sync::Arc;
 
 use anyhow::Context as _;
 use mission::{Goal, Paths, Problem, planning};
+use rmpl::program::World;
 use serde_json::json;
-use tpn::Network;
 
 use crate::deadline::{Deadline, TimeLimit};
 use crate::diagnostics::print_problems;
 use crate::ground::ground;
-use crate::input::read_mission;
+use crate::input::{read_mission, read_text};
+use crate::load::{is_network, read_network};
 use crate::output::{Format, WRONG, YES, any_error, document, exit, print_json, print_text};
 
 /// Reports mistakes in mission and program files.
@@ -34,10 +35,14 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let deadline = args.time_limit.start();
     let mut documents = Vec::new();
     for file in &args.files {
-        let source = read_mission(file)?;
-        let problems = check(file, &source, deadline)?;
-        wrong |= any_error(&problems);
         let name = file.display().to_string();
+        let source = if is_network(&name, "") { read_text(file)? } else { read_mission(file)? };
+        let problems = if is_network(&name, &source) {
+            read_network(&name, &source)?.1
+        } else {
+            check(file, &source, deadline)?
+        };
+        wrong |= any_error(&problems);
         match args.format {
             Format::Text => print_problems(&name, &source, &problems)?,
             Format::Json => documents.push(document("check", &problems, json!({ "file": name }))),
@@ -63,14 +68,15 @@ fn check(file: &Path, source: &str, deadline: Deadline) -> anyhow::Result<Vec<Pr
     let mut diagnostics = parse.diagnostics();
     // Every scenario is compiled, and without one every activity on its own terms is enough to check the default.
     let program = parse.program();
-    let goals: Vec<Goal> =
-        program.scenarios.iter().map(|scenario| Goal::Scenario(scenario.name.text.clone())).collect();
-    let is_library = program.scenarios.is_empty() && program.activities.is_empty();
-    let goals = if goals.is_empty() && !is_library { vec![Goal::Default] } else { goals };
-    let networks: Vec<Option<Network>> =
-        goals.iter().map(|goal| mission::compile(&program, goal, &mut diagnostics)).collect();
-    let is_whole = networks.iter().all(Option::is_some);
-    let ground = if is_whole { ground(file, &program.world).ok() } else { None };
+    let has_ground = program.world != World::default();
+    let networks = match (program.scenarios.is_empty(), program.activities.is_empty()) {
+        (false, _) => mission::compile_scenarios(&program, &mut diagnostics, has_ground),
+        (true, false) => {
+            mission::compile(&program, &Goal::Default, &mut diagnostics).map(|network| vec![network])
+        }
+        (true, true) => Some(Vec::new()),
+    };
+    let ground = if networks.is_some() && has_ground { ground(file, &program.world).ok() } else { None };
     // What planning warns of is about vehicles on the ground.
     if let Some((mut grounds, Some((key, map)))) = ground {
         let mut paths = Paths::default();

@@ -15,7 +15,7 @@ use crate::deadline::TimeLimit;
 use crate::diagnostics::print_problems;
 use crate::input::read_json;
 use crate::load::{Loaded, Target};
-use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
+use crate::output::{Format, NO, WRONG, YES, column, document, exit, print_json, print_text};
 
 /// Says what remains possible of a plan once some of its events have happened.
 #[derive(clap::Args)]
@@ -135,10 +135,10 @@ fn progress_text(network: &Network, plan: &Plan, progress: &Progress) -> String 
         Progress::Consistent(windows, waits) => {
             let named = named_windows(network, windows);
             let before = named_windows(network, &plan.windows);
-            let widest = named.keys().map(|name| name.chars().count()).max().unwrap_or(0);
-            let lines = named.iter().map(|(name, window)| {
+            let shown = column(named.keys().map(String::as_str));
+            let lines = named.iter().zip(&shown).map(|((name, window), shown)| {
                 let changed = if before.get(name) == Some(window) { "" } else { "  changed" };
-                format!("{name:<widest$}  [{}, {}]{changed}\n", window.earliest, window.latest)
+                format!("{shown}  [{}, {}]{changed}\n", window.earliest, window.latest)
             });
             let waits = waits.iter().map(|wait| {
                 let (event, natures) = names(network, wait);

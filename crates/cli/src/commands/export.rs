@@ -14,7 +14,7 @@ use serde_json::json;
 use crate::deadline::TimeLimit;
 use crate::diagnostics::print_problems;
 use crate::load::Target;
-use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
+use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_verbatim};
 use crate::worked_out::{WorkedOut, work_out};
 
 /// Writes a plan's schedule for other tools.
@@ -79,7 +79,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Some(path) => {
             std::fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))?;
         }
-        None => print_text(&text)?,
+        None => print_verbatim(&text)?,
     }
     Ok(exit(YES))
 }

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::Context as _;
 
 use crate::input::read_text;
-use crate::output::{NO, YES, exit, print_text};
+use crate::output::{NO, YES, exit, print_text, print_verbatim};
 
 /// Formats mission files in place; standard input is formatted to standard output.
 #[derive(clap::Args)]
@@ -31,7 +31,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
                 print_text(&format!("{} is not formatted\n", file.display()))?;
             }
         } else if file == Path::new("-") {
-            print_text(&formatted)?;
+            print_verbatim(&formatted)?;
         } else if formatted != source {
             std::fs::write(file, formatted).with_context(|| format!("cannot write {}", file.display()))?;
         }

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use crate::diagnostics::print_problems;
 use crate::input::read_text;
-use crate::output::{Format, WRONG, YES, any_error, document, exit, print_json, print_text};
+use crate::output::{Format, WRONG, YES, any_error, document, exit, print_json, print_text, print_verbatim};
 
 /// Compiles a control program to a hierarchical constraint automaton.
 #[derive(clap::Args)]
@@ -51,8 +51,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Some(automaton) => match form {
             Form::Json => print_json(&document("hca", &problems, automaton_json(automaton)))?,
             Form::Text => print_text(&automaton_text(automaton))?,
-            Form::Dot => print_text(&hca::dot::dot(automaton))?,
-            Form::Svg => print_text(&drawing(automaton))?,
+            Form::Dot => print_verbatim(&hca::dot::dot(automaton))?,
+            Form::Svg => print_verbatim(&drawing(automaton))?,
         },
         None if form == Form::Json => print_json(&document("hca", &problems, json!({})))?,
         None => {}

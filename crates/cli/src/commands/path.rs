@@ -65,6 +65,9 @@ pub struct Args {
     format: Format,
 }
 
+/// Edges of a tree are no shorter than this many cells: shorter ones lead nowhere.
+const MIN_STEP_CELLS: f64 = 0.01;
+
 /// The planners by their names on the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Planner {
@@ -127,6 +130,10 @@ fn load(args: &Args) -> anyhow::Result<ConfigurationSpace> {
     let raster =
         read_raster(&bytes, &ImportOptions::default()).with_context(|| format!("cannot read {name}"))?;
     let frame = GridFrame::new(raster.width, raster.height, args.cell);
+    if let Some(step) = args.step {
+        let least = args.cell * MIN_STEP_CELLS;
+        anyhow::ensure!(step >= least, "--step must be at least {least}, a hundredth of a cell");
+    }
     Ok(ConfigurationSpace::new(Occupancy::from_obstacles(frame, &raster.obstacles()), args.radius))
 }
 
@@ -202,9 +209,12 @@ fn run_json(run: &Run) -> Value {
         "raw_length": run.path.is_ok().then_some(run.raw_length),
         "samples": run.statistics.samples,
         "vertices": run.statistics.vertices,
-        "millis": all,
-        "search_millis": search,
-        "first_path_millis": run.path.is_ok().then_some(first),
+        // All that differs from one call to the next.
+        "timings": {
+            "millis": all,
+            "search_millis": search,
+            "first_path_millis": run.path.is_ok().then_some(first),
+        },
         "seed": run.seed,
         "failure": failure,
         "proved": matches!(

@@ -22,7 +22,9 @@ use crate::deadline::TimeLimit;
 use crate::diagnostics::{path_of_file, print_problems};
 use crate::ground::ground;
 use crate::load::{Loaded, Target, parse_threat_gap};
-use crate::output::{Format, LIMIT, NO, WRONG, YES, any_error, document, exit, print_json, print_text};
+use crate::output::{
+    Format, LIMIT, NO, WRONG, YES, any_error, column, document, exit, print_json, print_text,
+};
 
 /// Plans a mission: which alternatives, which causal links, which orderings, and the window of every event.
 #[derive(clap::Args)]
@@ -212,10 +214,13 @@ fn outcome_json(planned: &Planned, loaded: &Loaded, [compile_millis, plan_millis
         })).collect::<Vec<_>>(),
         "traverses": world.map(|world| traverses_json(&planned.traverses, &planned.network, world)),
         "encounters": world.map(|world| separation_violations_json(&planned.separation_violations, world)),
-        "stats": {
+        // All that differs from one call to the next.
+        "timings": {
             "parse_millis": loaded.parse_millis,
             "compile_millis": compile_millis - loaded.parse_millis,
             "plan_millis": plan_millis,
+        },
+        "stats": {
             "nodes": stats.nodes,
             "arcs": stats.arcs,
             "decisions": stats.decisions,
@@ -399,9 +404,9 @@ fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
         }
     }
     rows.sort();
-    let widest = rows.iter().map(|(_, _, name)| name.chars().count()).max().unwrap_or(0);
-    for (earliest, latest, name) in rows {
-        text.push_str(&format!("  {name:<widest$}  [{}, {}]\n", earliest.readable(), latest.readable()));
+    let names = column(rows.iter().map(|(_, _, name)| name.as_str()));
+    for ((earliest, latest, _), name) in rows.iter().zip(names) {
+        text.push_str(&format!("  {name}  [{}, {}]\n", earliest.readable(), latest.readable()));
     }
     text
 }

@@ -44,7 +44,9 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let worked_out = work_out(&args.target, args.seed, args.time_limit.start())?;
+    let deadline = args.time_limit.start();
+    let worked_out = work_out(&args.target, args.seed, deadline)?;
+    let limit = deadline.enforce();
     let WorkedOut { name, snapshot, ground } = &worked_out;
     let mut review = review(snapshot, &args.target.goal()?, args.seed, &mut || false);
     let record = match &args.record {
@@ -73,6 +75,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             seed: args.seed,
             ground: ground.as_deref(),
         });
+        limit.answered();
         std::fs::write(path, page).with_context(|| format!("cannot write {}", path.display()))?;
     }
     match args.format {

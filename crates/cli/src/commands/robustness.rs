@@ -10,6 +10,7 @@ use mission::planning::{self, Problem};
 use mission::robustness::Traverses;
 use mission::sampling::Sampler;
 use mission::{Paths, RobustnessSettings, Tally, Uncertainty};
+use rmpl::program::Program;
 use serde::{Deserialize, Serialize};
 
 use crate::deadline::{TimeIsUp, TimeLimit};
@@ -17,7 +18,7 @@ use crate::diagnostics::print_problems;
 use crate::ground::ground;
 use crate::input::{read_json, read_text};
 use crate::load::Target;
-use crate::output::{Format, NO, WRONG, YES, exit, print_text};
+use crate::output::{Format, NO, WRONG, YES, escaped, exit, print_text, print_verbatim};
 
 /// Executes a mission's plan many times with chance: how often it reaches its end, and what breaks it.
 ///
@@ -131,7 +132,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         merge(&args.merge)?
     };
     match args.format {
-        Format::Json => print_text(&format!("{}\n", serde_json::to_string(&line)?))?,
+        Format::Json => print_verbatim(&format!("{}\n", escaped(&serde_json::to_string(&line)?)))?,
         Format::Text => print_text(&describe(&line))?,
     }
     Ok(exit(YES))
@@ -139,7 +140,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 
 fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>> {
     let loaded = target.load()?;
-    let program = loaded.program.as_ref().context("only a mission text can be executed, not a network")?;
+    let nothing = Program::default();
+    let program = loaded.program.as_ref().unwrap_or(&nothing);
     let Some(network) = loaded.network.clone().map(Arc::new) else {
         print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
         return Ok(Err(exit(WRONG)));
@@ -168,11 +170,15 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
     let deadline = args.time_limit.start();
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || deadline.is_over());
     deadline.check(&planned.planning.outcome)?;
+    if args.format == Format::Text {
+        print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
+    }
     let Some(sampler) = Sampler::new(program, &planned, &uncertainty) else {
         print_text("the mission has no plan to execute; `enroute plan` says why\n")?;
         return Ok(Err(exit(NO)));
     };
     let sampler = sampler?;
+    let limit = deadline.enforce();
     let settings = RobustnessSettings { runs: args.runs, seed: args.seed, uncertainty: uncertainty.clone() };
     let mut tally = Tally::default();
     let mut number = args.shard.part - 1;
@@ -181,6 +187,7 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
         sampler.run(&problem, &settings, number, &mut grounds, &mut paths, &mut tally)?;
         number += args.shard.of;
     }
+    limit.answered();
     let map = ground.as_ref().map(|(key, _)| key);
     let mission = mission::review::content_hash(&loaded.source, map, &target.goal()?, args.path_seed);
     let shards = vec![format!("{}/{}", args.shard.part, args.shard.of)];

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use anyhow::Context as _;
 use executive::{Ending, Entry, Happening, Script};
 use mission::execution::{self, Ran};
 use mission::planning::{self, Problem};
@@ -51,7 +50,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     };
     script.adversary |= args.adversary;
     let disturbances = &script.disturbances;
-    let program = loaded.program.as_ref().context("only a mission text can be simulated, not a network")?;
+    // A network has no activities beside its own, and no ground.
+    let nothing = Program::default();
+    let program = loaded.program.as_ref().unwrap_or(&nothing);
     let Some(network) = loaded.network.clone().map(Arc::new) else {
         print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
         return Ok(exit(WRONG));
@@ -76,7 +77,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if matches!(args.format, Format::Text) {
         print_problems(&loaded.name, &loaded.source, &problems)?;
     }
-    let Some(outcome) = execution::execute(&problem, &planned, &script, &mut grounds, &mut paths) else {
+    let limit = deadline.enforce();
+    let executed = execution::execute(&problem, &planned, &script, &mut grounds, &mut paths);
+    limit.answered();
+    let Some(outcome) = executed else {
         match args.format {
             Format::Text => print_text("the mission has no plan to execute; `enroute plan` says why\n")?,
             Format::Json => {

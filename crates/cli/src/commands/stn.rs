@@ -16,7 +16,7 @@ use stnu::{Document, ParseError};
 use self::controllability::Controllability;
 use crate::diagnostics::print_problems;
 use crate::input::read_text;
-use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
+use crate::output::{Format, NO, WRONG, YES, column, document, exit, print_json, print_text};
 
 /// The file's times were rounded.
 const W_ROUNDED: Code = Code("W-ROUNDED");
@@ -139,11 +139,11 @@ fn diagnostic(source: &str, line: usize, message: String) -> Diagnostic {
 
 fn windows_text(network: &Document, windows: &[Window]) -> String {
     let mut text = "consistent\n".to_owned();
-    let width = network.names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
-    for (name, window) in network.names.iter().zip(windows) {
+    let names = column(network.names.iter().map(String::as_str));
+    for (name, window) in names.iter().zip(windows) {
         let earliest = window.earliest.map_or("-inf".to_owned(), |tick| network.time(tick).to_string());
         let latest = window.latest.map_or("inf".to_owned(), |tick| network.time(tick).to_string());
-        text.push_str(&format!("{name:<width$}  [{earliest}, {latest}]\n"));
+        text.push_str(&format!("{name}  [{earliest}, {latest}]\n"));
     }
     text
 }

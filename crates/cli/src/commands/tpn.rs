@@ -10,7 +10,7 @@ use tpn::interchange::Source;
 
 use crate::diagnostics::print_problems;
 use crate::load::{Loaded, Target};
-use crate::output::{Format, WRONG, YES, document, exit, print_json, print_text};
+use crate::output::{Format, WRONG, YES, document, exit, print_json, print_text, print_verbatim};
 
 /// Compiles a mission to its temporal plan network.
 #[derive(clap::Args)]
@@ -56,8 +56,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             print_json(&document("tpn", &loaded.problems, tpn::network_json::network_to_json(network)))?;
         }
         Notation::Text => print_text(&tpn::text::to_text(network))?,
-        Notation::Dot => print_text(&tpn::text::to_dot(network))?,
-        Notation::Svg => print_text(&drawing(network))?,
+        Notation::Dot => print_verbatim(&tpn::text::to_dot(network))?,
+        Notation::Svg => print_verbatim(&drawing(network))?,
         Notation::PlanSchema => print_json(&plan_schema(&loaded, network)?)?,
     }
     Ok(exit(YES))

@@ -2,6 +2,9 @@
 
 use exact::Bound;
 
+use rustc_hash::{FxHashMap, FxHashSet};
+use smol_str::SmolStr;
+
 use super::index::{DeclarationKey, Facts, Index, Namespace};
 use super::names::{Names, Symbol};
 use super::structure;
@@ -34,7 +37,15 @@ pub(crate) fn check(
     index: &Index,
 ) -> Checked {
     let checked = Checked { revision: index.revision(), ..Checked::default() };
-    let mut checker = Checker { summary, names, index, checked };
+    let mut checker = Checker {
+        summary,
+        names,
+        index,
+        checked,
+        told: FxHashSet::default(),
+        nearest: FxHashMap::default(),
+        arguments: arguments_by_call(summary),
+    };
     if let Some(definition) = &summary.definition {
         checker.definition(key, definition);
     }
@@ -98,6 +109,25 @@ pub(super) struct Checker<'a> {
     pub(super) names: &'a Names,
     pub(super) index: &'a Index,
     checked: Checked,
+    /// What need not be said again.
+    told: FxHashSet<(Namespace, Symbol)>,
+    /// Similar names that were looked for.
+    nearest: FxHashMap<(Namespace, Symbol), Option<SmolStr>>,
+    /// The names handed to each call, by its number.
+    arguments: FxHashMap<u32, Vec<Use>>,
+}
+
+/// So many different names that are declared nowhere have similar ones suggested, in one declaration.
+const MAX_SUGGESTED: usize = 1000;
+
+fn arguments_by_call(summary: &Summary) -> FxHashMap<u32, Vec<Use>> {
+    let mut arguments: FxHashMap<u32, Vec<Use>> = FxHashMap::default();
+    for used in &summary.uses {
+        if let UseKind::Argument(call) = used.kind {
+            arguments.entry(call).or_default().push(*used);
+        }
+    }
+    arguments
 }
 
 impl<'a> Checker<'a> {
@@ -110,26 +140,40 @@ impl<'a> Checker<'a> {
     }
 
     pub(super) fn push_once(&mut self, namespace: Namespace, name: Symbol, diagnostic: Diagnostic) {
-        self.checked.diagnostics.push((Some((namespace, name)), diagnostic));
+        if self.told.insert((namespace, name)) {
+            self.checked.diagnostics.push((Some((namespace, name)), diagnostic));
+        }
+    }
+
+    /// Whether the one thing that is said of a name has been said in this declaration.
+    pub(super) fn is_told(&self, namespace: Namespace, name: Symbol) -> bool {
+        self.told.contains(&(namespace, name))
     }
 
     pub(super) fn text(&self, symbol: Symbol) -> &'a str {
         self.names.text(symbol)
     }
 
-    pub(super) fn nearest(&mut self, written: Symbol, namespace: Namespace) -> Option<smol_str::SmolStr> {
+    pub(super) fn nearest(&mut self, written: Symbol, namespace: Namespace) -> Option<SmolStr> {
         self.checked.depends_on_names |= namespace.bit();
-        self.names.nearest(written, self.index.defined(namespace).iter().copied())
+        if let Some(known) = self.nearest.get(&(namespace, written)) {
+            return known.clone();
+        }
+        if self.nearest.len() >= MAX_SUGGESTED {
+            return None;
+        }
+        let found = self.index.nearest(self.names, written, namespace);
+        self.nearest.insert((namespace, written), found.clone());
+        found
     }
 
     fn definition(&mut self, key: DeclarationKey, definition: &Definition) {
-        let facts = self.index.facts(definition.name);
-        let rivals = facts.definitions.iter().filter(|(namespace, _)| *namespace == definition.namespace);
-        if rivals.count() > 1 && self.index.first_key(definition.namespace, definition.name) != Some(key) {
+        if self.index.first_key(definition.namespace, definition.name) != Some(key) {
             let name = self.text(definition.name);
             self.push(duplicate::declaration(definition.namespace, name, definition.span));
             return;
         }
+        let facts = self.index.facts(definition.name);
         if self.index.scenarios > 0 && is_unused(definition.namespace, facts) {
             let what = match definition.namespace {
                 Namespace::Callable if definition.is_activity => "activity",
@@ -191,8 +235,7 @@ impl<'a> Checker<'a> {
     }
 
     fn traverse(&mut self, number: u32, call: &Call) {
-        let arguments: Vec<Use> =
-            self.summary.uses.iter().filter(|used| used.kind == UseKind::Argument(number)).copied().collect();
+        let arguments = self.arguments.remove(&number).unwrap_or_default();
         let is_location = |used: &Use| self.index.facts(used.name).definition(Namespace::Location).is_some();
         let is_vehicle = |used: &Use| self.index.facts(used.name).definition(Namespace::Vehicle).is_some();
         let known = arguments.iter().filter(|used| is_location(used)).count();

@@ -1,5 +1,12 @@
 //! What all declarations together declare and use, counted per name, so that one declaration can be exchanged.
 
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::OnceLock;
+
+use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
+
+use super::alike::Alphabet;
 use super::names::{Names, Symbol};
 use super::summary::{Definition, Literal, Origin, Summary, UseKind};
 use crate::program::LabelMode;
@@ -43,7 +50,7 @@ impl Namespace {
 }
 
 /// A condition that something in the file asserts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Told {
     pub(crate) value: Option<Symbol>,
     pub(crate) negated: bool,
@@ -53,7 +60,6 @@ pub(crate) struct Told {
     pub(crate) is_any: bool,
     /// It keeps a watched condition away, which asserts nothing of a state variable.
     pub(crate) is_watched: bool,
-    count: u32,
 }
 
 /// What a file says about one name.
@@ -78,7 +84,8 @@ pub(crate) struct Facts {
     pub(crate) literals: u32,
     /// Conditions that compare it with a value.
     pub(crate) compared: u32,
-    pub(crate) told: Vec<Told>,
+    /// What is asserted of it, each with how often.
+    pub(crate) told: BTreeMap<Told, u32>,
     definition_fingerprint: u64,
     told_fingerprint: u64,
     changed_at: u32,
@@ -111,14 +118,16 @@ impl Facts {
     }
 }
 
+/// Of more names than this, only those are compared with a written one that begin or end like it: what one mistake costs
+/// is bounded, however many names there are.
+pub(crate) const MAX_COMPARED: usize = 256;
+
 /// All facts of a file.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Index {
     facts: Vec<Facts>,
     /// The definition of each declaration, by key.
     definitions: Vec<Option<Definition>>,
-    /// The position of each declaration in the text, by key.
-    order: Vec<u32>,
     revision: u32,
     pub(crate) scenarios: u32,
     strict: u32,
@@ -130,7 +139,11 @@ pub(crate) struct Index {
     contingents: u32,
     global_changed_at: u32,
     /// The names defined in each namespace, in no order.
-    defined: [Vec<Symbol>; Namespace::COUNT],
+    defined: [BTreeSet<Symbol>; Namespace::COUNT],
+    /// The same in alphabetical order, from when a similar name is looked for until they change.
+    alphabets: [OnceLock<Alphabet>; Namespace::COUNT],
+    /// Of names that several declarations define, the one that comes first.
+    first_of_rivals: FxHashMap<(Namespace, Symbol), DeclarationKey>,
     names_changed_at: [u32; Namespace::COUNT],
     last_change: u32,
     calls_changed: bool,
@@ -152,7 +165,7 @@ impl Index {
             constraints: 0,
             literals: 0,
             compared: 0,
-            told: Vec::new(),
+            told: BTreeMap::new(),
             definition_fingerprint: 0,
             told_fingerprint: 0,
             changed_at: 0,
@@ -178,7 +191,6 @@ impl Index {
             return key;
         }
         self.definitions.push(None);
-        self.order.push(u32::MAX);
         DeclarationKey(self.definitions.len() as u32 - 1)
     }
 
@@ -192,29 +204,46 @@ impl Index {
         self.definitions.len()
     }
 
-    pub(crate) fn set_position(&mut self, key: DeclarationKey, position: u32) {
-        if let Some(slot) = self.order.get_mut(key.index()) {
-            *slot = position;
-        }
-    }
-
-    pub(crate) fn position(&self, key: DeclarationKey) -> u32 {
-        self.order.get(key.index()).copied().unwrap_or(u32::MAX)
-    }
-
     /// The definition of `symbol` that counts: the first in the text.
     pub(crate) fn definition(&self, namespace: Namespace, symbol: Symbol) -> Option<&Definition> {
         self.first_key(namespace, symbol).and_then(|key| self.definitions.get(key.index())?.as_ref())
     }
 
     pub(crate) fn first_key(&self, namespace: Namespace, symbol: Symbol) -> Option<DeclarationKey> {
-        let found = self.facts(symbol).definitions.iter().filter(|(found, _)| *found == namespace);
-        found.map(|&(_, key)| key).min_by_key(|&key| self.position(key))
+        let mut found = self.facts(symbol).definitions.iter().filter(|(found, _)| *found == namespace);
+        let &(_, only) = found.next()?;
+        if found.next().is_none() {
+            return Some(only);
+        }
+        self.first_of_rivals.get(&(namespace, symbol)).copied()
+    }
+
+    /// Finds out which declaration of each name comes first; `keys` are those of all declarations, in textual order.
+    pub(crate) fn find_rivals(&mut self, keys: impl Iterator<Item = DeclarationKey>) {
+        self.first_of_rivals.clear();
+        for key in keys {
+            let Some(Some(definition)) = self.definitions.get(key.index()) else { continue };
+            let named = (definition.namespace, definition.name);
+            if self.facts(definition.name).definitions.len() > 1 {
+                self.first_of_rivals.entry(named).or_insert(key);
+            }
+        }
     }
 
     /// All names defined in `namespace`, in no order.
-    pub(crate) fn defined(&self, namespace: Namespace) -> &[Symbol] {
+    pub(crate) const fn defined(&self, namespace: Namespace) -> &BTreeSet<Symbol> {
         &self.defined[namespace as usize]
+    }
+
+    /// The name defined in `namespace` that `written` was probably meant to be.
+    pub(crate) fn nearest(&self, names: &Names, written: Symbol, namespace: Namespace) -> Option<SmolStr> {
+        let defined = self.defined(namespace);
+        if defined.len() <= MAX_COMPARED {
+            return names.nearest(written, defined.iter().copied());
+        }
+        let alphabet =
+            self.alphabets[namespace as usize].get_or_init(|| Alphabet::new(names, defined.iter().copied()));
+        names.nearest(written, alphabet.around(names, names.text(written)))
     }
 
     /// Whether something that the check depended on has changed since revision `at`.
@@ -262,6 +291,7 @@ impl Index {
             if names_before[namespace] != names_after[namespace] {
                 *changed_at = self.revision;
                 self.last_change = self.revision;
+                self.alphabets[namespace].take();
             }
         }
         let calls_before = fingerprint_of_calls(old.clone());
@@ -321,11 +351,9 @@ impl Index {
             if was_defined != facts.definition(definition.namespace).is_some() {
                 let namespace = definition.namespace as usize;
                 if is_added {
-                    self.defined[namespace].push(definition.name);
-                } else if let Some(at) =
-                    self.defined[namespace].iter().position(|&name| name == definition.name)
-                {
-                    self.defined[namespace].swap_remove(at);
+                    self.defined[namespace].insert(definition.name);
+                } else {
+                    self.defined[namespace].remove(&definition.name);
                 }
             }
             if definition.namespace == Namespace::Scenario {
@@ -353,8 +381,12 @@ impl Index {
             step(named);
             let defined = &mut self.defined[Namespace::Occurrence as usize];
             match (was_named, *named > 0) {
-                (false, true) => defined.push(name),
-                (true, false) => defined.retain(|&other| other != name),
+                (false, true) => {
+                    defined.insert(name);
+                }
+                (true, false) => {
+                    defined.remove(&name);
+                }
                 _ => {}
             }
         }
@@ -407,7 +439,6 @@ impl Index {
             is_split: false,
             is_any: literal.value_is_formal || literal.values.len() > 1,
             is_watched: literal.origin == Origin::Watched,
-            count: 0,
         };
         self.facts[literal.variable.index()].tell(told, is_added);
         if let Some((variable, value)) = literal.split {
@@ -419,17 +450,18 @@ impl Index {
 
 impl Facts {
     fn tell(&mut self, told: Told, is_added: bool) {
-        let same = |other: &Told| Told { count: 0, ..*other } == told;
-        if let Some(at) = self.told.iter().position(same) {
-            let entry = &mut self.told[at];
-            entry.count = if is_added { entry.count + 1 } else { entry.count.saturating_sub(1) };
-            if entry.count == 0 {
-                self.told.swap_remove(at);
+        if is_added {
+            let count = self.told.entry(told).or_default();
+            *count += 1;
+            if *count == 1 {
+                self.told_fingerprint = self.told_fingerprint.wrapping_add(told.fingerprint());
+            }
+        } else if let Some(count) = self.told.get_mut(&told) {
+            *count -= 1;
+            if *count == 0 {
+                self.told.remove(&told);
                 self.told_fingerprint = self.told_fingerprint.wrapping_sub(told.fingerprint());
             }
-        } else if is_added {
-            self.told.push(Told { count: 1, ..told });
-            self.told_fingerprint = self.told_fingerprint.wrapping_add(told.fingerprint());
         }
     }
 }
@@ -437,14 +469,7 @@ impl Facts {
 impl Told {
     /// What holds of a state variable at the scenario's start.
     pub(crate) const fn at_first(value: Symbol) -> Self {
-        Self {
-            value: Some(value),
-            negated: false,
-            is_split: false,
-            is_any: false,
-            is_watched: false,
-            count: 1,
-        }
+        Self { value: Some(value), negated: false, is_split: false, is_any: false, is_watched: false }
     }
 
     fn fingerprint(self) -> u64 {

@@ -1,7 +1,7 @@
 //! What is wrong with a condition or an effect in view of the rest of the file.
 
 use super::check::Checker;
-use super::index::{Namespace, Told};
+use super::index::{MAX_COMPARED, Namespace, Told};
 use super::names::Symbol;
 use super::summary::{Literal, Origin, Vehicle};
 use crate::diagnostics::{similar, support, undefined, value};
@@ -77,6 +77,9 @@ impl Checker<'_> {
     /// An effect on what is no state variable.
     fn no_state(&mut self, literal: &Literal) {
         let name = self.text(literal.variable);
+        if self.is_told(Namespace::Variable, literal.variable) {
+            return;
+        }
         if self.meaning().domain(literal.variable).is_some() {
             self.push(undefined::effect_on_variable(name, literal.variable_span));
             return;
@@ -86,7 +89,7 @@ impl Checker<'_> {
             self.names.find(nearest).is_some_and(|nearest| self.meaning().is_state(nearest))
         });
         let own = literal.values.first().filter(|_| !literal.value_is_formal).map(|&(value, _)| value);
-        let told = self.index.facts(literal.variable).told.iter().filter(|told| !told.is_any);
+        let told = self.index.facts(literal.variable).told.keys().filter(|told| !told.is_any);
         let told = told.filter_map(|told| told.value);
         let here = self.summary.literals.iter().filter(|other| other.variable == literal.variable);
         let here = here.filter(|other| !other.value_is_formal).flat_map(|other| &other.values);
@@ -133,7 +136,7 @@ impl Checker<'_> {
             let name = self.text(variable);
             let diagnostic = match wrong {
                 Some(&(value, span)) => {
-                    let nearest = self.names.nearest(value, domain.iter().copied());
+                    let nearest = self.names.nearest(value, domain.iter().copied().take(MAX_COMPARED));
                     value::outside_domain(name, self.text(value), span, &values, nearest.as_deref())
                 }
                 None => value::no_value(name, literal.variable_span, &values),
@@ -212,7 +215,13 @@ impl Checker<'_> {
                 }
         };
         let told = &self.index.facts(variable).told;
-        let mut changes = told.iter().filter(|told| !(is_state && told.is_watched));
+        // Most conditions are asserted as they are asked; only the others are compared with all that is asserted.
+        let as_asked =
+            Told { value, negated: literal.negated, is_split: false, is_any: false, is_watched: false };
+        if told.contains_key(&as_asked) {
+            return;
+        }
+        let mut changes = told.keys().filter(|told| !(is_state && told.is_watched));
         if !initial.as_ref().is_some_and(supports) && !changes.any(|told| is_about(told) && supports(told)) {
             self.push(support::never(literal, self.text(literal.variable), is_state, self.names));
         }

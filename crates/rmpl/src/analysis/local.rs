@@ -2,8 +2,11 @@
 
 use exact::{Bound, Rational};
 
+use rustc_hash::{FxHashMap, FxHashSet};
+use smol_str::SmolStr;
+
+use super::alike::edit_distance_at_most;
 use super::constant::{self, ConstantError};
-use super::names::edit_distance_at_most;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostics::{bounds, choice, duplicate, mixed, option, syntax, value};
 use crate::lower::{Item, OptionDecl, OptionValue};
@@ -26,6 +29,29 @@ pub(crate) fn local_diagnostics(item: &Item, root: SyntaxNode<'_>) -> Vec<Diagno
         local.choices(root);
     }
     local.found
+}
+
+/// The occurrences that are named so far where a statement stands.
+#[derive(Default)]
+struct Occurrences {
+    names: Vec<Name>,
+    spans: FxHashMap<SmolStr, Vec<Span>>,
+}
+
+impl Occurrences {
+    fn add(&mut self, name: Name) {
+        self.spans.entry(name.text.clone()).or_default().push(name.span);
+        self.names.push(name);
+    }
+
+    /// Forgets all but the first `before` names, and gives them back.
+    fn forget(&mut self, before: usize) -> Vec<Name> {
+        let names = self.names.split_off(before);
+        for name in names.iter().rev() {
+            self.spans.get_mut(&name.text).and_then(Vec::pop);
+        }
+        names
+    }
 }
 
 struct Local {
@@ -58,7 +84,7 @@ impl Local {
                 if let Some(moves) = &decl.moves {
                     self.distinct(&moves.vehicles, "vehicle");
                     if let Some((least, greatest)) = moves.speed_mps
-                        && (least > greatest || !greatest.is_positive())
+                        && (least > greatest || least.is_negative() || !greatest.is_positive())
                     {
                         self.found.push(value::speeds(moves.span));
                     }
@@ -70,17 +96,17 @@ impl Local {
                 names.extend(self.header(&decl.bounds));
                 self.distinct(&names, "parameter");
                 self.statement(&decl.body);
-                self.named(&decl.body, &mut Vec::new());
+                self.named(&decl.body, &mut Occurrences::default());
             }
             Item::Scenario(decl) => {
                 self.bounds(decl.bounds.as_ref());
                 self.statement(&decl.body);
-                self.named(&decl.body, &mut Vec::new());
+                self.named(&decl.body, &mut Occurrences::default());
             }
             Item::Constrain(decl) => self.bounds(Some(&decl.bounds)),
             Item::Option(decl) => self.option(decl),
             Item::Terrain(decl) => {
-                if decl.cell_m <= 0.0 {
+                if decl.cell_m.is_some_and(|cell_m| cell_m <= 0.0) {
                     self.found.push(value::not_positive("the size of a cell", decl.span));
                 }
             }
@@ -106,8 +132,9 @@ impl Local {
     }
 
     fn distinct(&mut self, names: &[Name], what: &str) {
-        for (index, name) in names.iter().enumerate() {
-            if names.iter().take(index).any(|earlier| earlier.text == name.text) {
+        let mut known = FxHashSet::default();
+        for name in names {
+            if !known.insert(name.text.as_str()) {
                 self.found.push(duplicate::in_list(name, what));
             }
         }
@@ -259,27 +286,32 @@ impl Local {
 
     /// Names of occurrences that stand twice where both can be selected. `known` are those before, and those in
     /// `statement` behind it.
-    fn named(&mut self, statement: &Statement, known: &mut Vec<Name>) {
+    fn named(&mut self, statement: &Statement, known: &mut Occurrences) {
         match &statement.kind {
             StatementKind::Choose(alternatives) => {
-                let before = known.len();
+                let before = known.names.len();
                 let mut added: Vec<Name> = Vec::new();
                 for alternative in alternatives {
                     self.named(alternative, known);
-                    added.extend(known.drain(before..));
+                    added.append(&mut known.forget(before));
                 }
-                known.append(&mut added);
+                for name in added {
+                    known.add(name);
+                }
             }
             StatementKind::Sequence(parts)
             | StatementKind::Parallel(parts)
             | StatementKind::Unordered(parts) => parts.iter().for_each(|part| self.named(part, known)),
             StatementKind::Named(body, name) => {
                 // What `or` copies stands in one place.
-                let is_other = |other: &Name| other.text == name.text && other.span != name.span;
-                if known.iter().any(is_other) {
+                if known
+                    .spans
+                    .get(&name.text)
+                    .is_some_and(|spans| spans.iter().any(|span| *span != name.span))
+                {
                     self.found.push(duplicate::occurrence(name));
                 }
-                known.push(name.clone());
+                known.add(name.clone());
                 self.named(body, known);
             }
             StatementKind::Maintaining(body, _)

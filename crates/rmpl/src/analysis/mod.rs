@@ -3,6 +3,7 @@
 //! Each declaration is summarised once, when it is parsed; the index counts what all summaries declare and use; a
 //! declaration is checked again only when something that it mentions has changed.
 
+mod alike;
 mod check;
 mod collect;
 pub(crate) mod constant;
@@ -14,9 +15,10 @@ mod recursion;
 mod structure;
 mod summary;
 
+pub(crate) use alike::edit_distance_at_most;
 pub(crate) use check::{Checked, Meaning, check};
 pub(crate) use collect::summarize;
 pub(crate) use index::{DeclarationKey, Index, Namespace};
-pub(crate) use names::{Names, Symbol, edit_distance_at_most};
+pub(crate) use names::{Names, Symbol};
 pub(crate) use recursion::recursion;
 pub(crate) use summary::{Call, Literal, Origin, Summary, UseKind};

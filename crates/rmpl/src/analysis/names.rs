@@ -3,6 +3,8 @@
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
+use super::alike::{MAX_LETTERS, edit_distance_at_most};
+
 /// Shorter names are alike by chance.
 const SHORTEST_ALIKE: usize = 3;
 
@@ -58,7 +60,7 @@ impl Names {
     ) -> Option<SmolStr> {
         let text = self.text(written);
         let own_letters = letters(text);
-        if text.len() < SHORTEST_ALIKE {
+        if text.len() < SHORTEST_ALIKE || text.len() > MAX_LETTERS {
             return None;
         }
         let mut limit = (text.len() / 3).clamp(1, 3);
@@ -82,42 +84,4 @@ impl Names {
 /// Which letters a name has: one edit changes at most two of the bits.
 fn letters(text: &str) -> u64 {
     text.bytes().fold(0, |letters, byte| letters | 1 << (byte.to_ascii_lowercase() & 63))
-}
-
-/// The number of insertions, deletions, replacements and swaps of neighbours from one name to the other, ignoring
-/// case, if it is at most `limit`. Names that differ only in digits at the same places are different on purpose.
-pub(crate) fn edit_distance_at_most(left: &str, right: &str, limit: usize) -> Option<usize> {
-    let (left_bytes, right_bytes) = (left.as_bytes(), right.as_bytes());
-    // Names of very different lengths are most of all pairs, and need no closer look.
-    if left.len().abs_diff(right.len()) > limit || differ_in_digits_only(left_bytes, right_bytes) {
-        return None;
-    }
-    let lowercase = |name: &str| name.chars().map(|c| c.to_ascii_lowercase()).collect::<SmolStr>();
-    let distance = strsim::osa_distance(&lowercase(left), &lowercase(right));
-    (distance <= limit).then_some(distance)
-}
-
-/// `PATH1` and `PATH2` are no misspellings of each other.
-fn differ_in_digits_only(left: &[u8], right: &[u8]) -> bool {
-    let letters =
-        |name: &[u8]| -> Vec<u8> { name.iter().copied().filter(|byte| !byte.is_ascii_digit()).collect() };
-    left != right && (left.iter().chain(right).any(u8::is_ascii_digit)) && letters(left) == letters(right)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_swap_of_neighbours_counts_as_one_mistake() {
-        assert_eq!(edit_distance_at_most("Drvie", "Drive", 2), Some(1));
-        assert_eq!(edit_distance_at_most("Drive", "Dive", 2), Some(1));
-        assert_eq!(edit_distance_at_most("Drive", "Sample", 2), None);
-    }
-
-    #[test]
-    fn names_that_differ_in_their_number_are_not_alike() {
-        assert_eq!(edit_distance_at_most("PATH1", "PATH2", 2), None);
-        assert_eq!(edit_distance_at_most("PTAH1", "PATH1", 2), Some(1));
-    }
 }

@@ -61,7 +61,7 @@ pub fn parse(text: &str) -> ParsedControl {
     diagnostics.extend(found);
     diagnostics.extend(check::check(&file));
     diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
-    ParsedControl { tokens, tree, file, diagnostics }
+    ParsedControl { tokens, tree, file, diagnostics: crate::diagnostic::listed(diagnostics) }
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ pub mod form;
 pub mod lex;
 pub mod limit;
 pub mod mixed;
+pub mod network;
 pub mod no_scenario;
 pub mod option;
 pub mod plant;
@@ -64,6 +65,7 @@ pub const EXPLANATIONS: &[&Explanation] = &[
     &traverse::EXPLANATION,
     &encounter::EXPLANATION,
     &plant::EXPLANATION,
+    &network::EXPLANATION,
 ];
 
 /// The manual page of a code such as `E-BOUNDS`; upper and lower case are the same.

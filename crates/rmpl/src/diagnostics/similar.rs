@@ -1,6 +1,6 @@
 //! `W-SIMILAR`: an undeclared name that looks like a declared one.
 
-use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::diagnostic::{Code, Diagnostic, Severity, some_of};
 use crate::explanation::Explanation;
 use crate::parser::replacement;
 use crate::span::Span;
@@ -45,6 +45,5 @@ fn alike(message: String, nearest: &str, span: Span) -> Diagnostic {
 /// `X_V` where `X` is declared without a value `V`.
 pub(crate) fn value(written: &str, variable: &str, domain: &[&str], span: Span) -> Diagnostic {
     let message = format!("`{written}` is a condition of its own: `{variable}` has no such value");
-    Diagnostic::warning(CODE, span, message)
-        .with_hint(format!("`{variable}` is one of {}", domain.join(", ")))
+    Diagnostic::warning(CODE, span, message).with_hint(format!("`{variable}` is one of {}", some_of(domain)))
 }

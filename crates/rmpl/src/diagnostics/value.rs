@@ -1,6 +1,6 @@
 //! `E-VALUE`: a value outside what is allowed.
 
-use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::diagnostic::{Code, Diagnostic, Severity, some_of};
 use crate::explanation::Explanation;
 use crate::parser::{insertion, replacement};
 use crate::program::Name;
@@ -33,7 +33,7 @@ pub(crate) fn outside_domain(
     nearest: Option<&str>,
 ) -> Diagnostic {
     let diagnostic = Diagnostic::error(CODE, span, format!("`{value}` is not a value of `{variable}`"))
-        .with_hint(format!("`{variable}` is one of {}", domain.join(", ")));
+        .with_hint(format!("`{variable}` is one of {}", some_of(domain)));
     match nearest {
         Some(nearest) => diagnostic.with_fix(replacement(format!("Change to `{nearest}`"), span, nearest)),
         None => diagnostic,
@@ -44,7 +44,7 @@ pub(crate) fn outside_domain(
 pub(crate) fn no_value(variable: &str, span: Span, domain: &[&str]) -> Diagnostic {
     let diagnostic =
         Diagnostic::error(CODE, span, format!("`{variable}` is a variable: say which value it has"))
-            .with_hint(format!("`{variable}` is one of {}", domain.join(", ")));
+            .with_hint(format!("`{variable}` is one of {}", some_of(domain)));
     domain.iter().take(MAX_FIXES).fold(diagnostic, |diagnostic, value| {
         diagnostic.with_fix(insertion(format!("Write `{variable}={value}`"), span.end, format!("={value}")))
     })
@@ -95,6 +95,6 @@ pub(crate) fn speeds(span: Span) -> Diagnostic {
     Diagnostic::error(
         CODE,
         span,
-        "the speeds must be the least and the greatest, in this order, and not zero",
+        "the speeds must be the least and the greatest, in this order, not negative and not both zero",
     )
 }

@@ -7,7 +7,7 @@ mod layout;
 mod spacing;
 
 use crate::diagnostic::Edit;
-use crate::parse::{Parse, parse};
+use crate::parse::Parse;
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
 
@@ -23,10 +23,14 @@ pub(crate) const INDENT: usize = 2;
 /// The text in the house layout. Formatting twice gives the same as formatting once, and the meaning stays: the
 /// formatted text has the same tokens, comments and trees. Linear in the length of the text.
 pub fn format(text: &str) -> String {
-    let parsed = parse(text);
+    let parsed = Parse::trees(text.to_owned());
     let formatted = print(&parsed);
     // Line starts steer the recovery from mistakes; where moving one would change a tree, the text is left alone.
-    if formatted == text || is_same(&parsed, &parse(&formatted)) { formatted } else { text.to_owned() }
+    if formatted == text || is_same(&parsed, &Parse::trees(formatted.clone())) {
+        formatted
+    } else {
+        text.to_owned()
+    }
 }
 
 /// The one edit that turns `text` into its formatted form; `None` if it is formatted already.

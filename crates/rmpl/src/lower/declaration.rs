@@ -13,9 +13,6 @@ use crate::program::{
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode};
 
-/// Metres per cell of a terrain that does not say (SPEC 1.8).
-const DEFAULT_CELL_M: f64 = 0.6;
-
 impl Lowering<'_> {
     pub(super) fn activity(&mut self, node: SyntaxNode<'_>) -> Option<ActivityDecl> {
         let name = names(node).next()?;
@@ -97,8 +94,11 @@ pub(super) fn moves(node: SyntaxNode<'_>) -> Option<Moves> {
     let vehicles: Vec<Name> = names(node).skip(1).collect();
     let speeds = node.child(SyntaxKind::Speed).and_then(|speed| speed.child(SyntaxKind::Coordinates));
     let speeds: Vec<_> = speeds.map(numbers).unwrap_or_default();
+    let signed = |&(is_negative, magnitude, _): &(bool, Rational, Span)| {
+        if is_negative { Rational::ZERO.checked_sub(magnitude) } else { Some(magnitude) }
+    };
     let speed_mps = match speeds.as_slice() {
-        [(false, least, _), (false, greatest, _)] => Some((*least, *greatest)),
+        [least, greatest] => signed(least).zip(signed(greatest)),
         _ => None,
     };
     (!vehicles.is_empty()).then_some(Moves { vehicles, speed_mps, span: node.span() })
@@ -156,7 +156,7 @@ pub(super) fn terrain(node: SyntaxNode<'_>) -> Option<TerrainDecl> {
     Some(TerrainDecl {
         asset: SmolStr::new(asset.text.trim_matches('"')),
         asset_span: asset.span,
-        cell_m: cell.map_or(DEFAULT_CELL_M, |(negative, magnitude, _)| signed(negative, magnitude)),
+        cell_m: cell.map(|(negative, magnitude, _)| signed(negative, magnitude)),
         origin_m,
         span: node.span(),
     })

@@ -21,7 +21,7 @@ pub(crate) use clause::CLAUSE_WORDS;
 use crate::diagnostic::{Diagnostic, Fix};
 use crate::diagnostics::{lex, syntax};
 use crate::span::Span;
-use crate::syntax::{DeclarationTree, Lexer, RawNode, SyntaxKind, Token};
+use crate::syntax::{DeclarationTree, LexProblem, LexProblemKind, Lexer, RawNode, SyntaxKind, Token};
 
 /// How deep braces, parentheses, `do` and `if` may nest, so that no text exhausts the stack.
 pub(crate) const MAX_NESTING: u32 = 128;
@@ -71,6 +71,8 @@ struct Parser<'t> {
     /// The value of `current` at the last report.
     reported_at: Option<u32>,
     depth: u32,
+    /// The declaration nests too deeply, and the rest of it is skipped.
+    is_cut: bool,
 }
 
 impl<'t> Parser<'t> {
@@ -86,6 +88,7 @@ impl<'t> Parser<'t> {
             diagnostics: Vec::new(),
             reported_at: None,
             depth: 0,
+            is_cut: false,
         };
         parser.current = parser.next_significant(0);
         parser.kind = parser.kind_at(parser.current);
@@ -215,12 +218,13 @@ impl<'t> Parser<'t> {
         Mark(self.nodes.len() as u32)
     }
 
-    /// Runs `inner` one level deeper, or reports that the text nests too deeply and skips to the end of the group.
+    /// Runs `inner` one level deeper, or reports that the text nests too deeply and skips the rest of the declaration.
     fn nested(&mut self, inner: impl FnOnce(&mut Self)) {
         if self.depth >= MAX_NESTING {
             let span = self.span_of(self.current);
             self.report(syntax::too_deep(span));
-            self.skip_group_or_token();
+            self.is_cut = true;
+            self.skip_until(Self::at_declaration_at_line_start);
             return;
         }
         self.depth += 1;
@@ -232,7 +236,7 @@ impl<'t> Parser<'t> {
 
     /// Adds a diagnostic, unless one was given since the last token was accepted.
     fn report(&mut self, diagnostic: Diagnostic) {
-        if self.reported_at != Some(self.current) {
+        if self.reported_at != Some(self.current) && !self.is_cut {
             self.diagnostics.push(diagnostic);
         }
         self.reported_at = Some(self.current);
@@ -301,10 +305,9 @@ impl<'t> Parser<'t> {
         let end = self.end_of_declaration();
         self.tokens.truncate(end as usize);
         let length = self.tokens.last().map_or(0, |token| token.end);
-        for problem in std::mem::take(&mut self.lexer.problems) {
-            if problem.start < length {
-                self.diagnostics.push(lex::diagnostic(problem, self.text));
-            }
+        let problems = std::mem::take(&mut self.lexer.problems);
+        for problem in runs(problems.into_iter().filter(|problem| problem.start < length), self.text) {
+            self.diagnostics.push(lex::diagnostic(problem, self.text));
         }
         if let Some(root) = self.nodes.first_mut() {
             root.end_token = end;
@@ -338,6 +341,25 @@ impl<'t> Parser<'t> {
         }
         end
     }
+}
+
+/// Characters without a meaning that only blanks part are one mistake.
+fn runs(problems: impl Iterator<Item = LexProblem>, text: &str) -> Vec<LexProblem> {
+    let mut runs: Vec<LexProblem> = Vec::new();
+    for problem in problems {
+        match runs.last_mut() {
+            Some(last)
+                if (last.kind, problem.kind) == (LexProblemKind::Unknown, LexProblemKind::Unknown)
+                    && text
+                        .get(last.end as usize..problem.start as usize)
+                        .is_some_and(|between| between.trim().is_empty()) =>
+            {
+                last.end = problem.end;
+            }
+            _ => runs.push(problem),
+        }
+    }
+    runs
 }
 
 /// A fix of one insertion.

@@ -1,6 +1,7 @@
 //! The compile rules of SPEC 3.3, one function per construct, over the program with its calls expanded.
 
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use exact::{Bound, Time};
 use rmpl::diagnostics::limit;
@@ -63,10 +64,10 @@ pub(super) struct Piece {
 /// Expands a program into a network.
 pub(super) struct Expander<'program> {
     pub(super) program: &'program Program,
-    pub(super) vocabulary: Vocabulary<'program>,
-    pub(super) constants: Constants<'program>,
-    pub(super) activities: BTreeMap<&'program str, &'program ActivityDecl>,
-    pub(super) primitives: BTreeMap<&'program str, &'program PrimitiveDecl>,
+    pub(super) vocabulary: Rc<Vocabulary<'program>>,
+    pub(super) constants: Rc<Constants<'program>>,
+    pub(super) activities: Rc<BTreeMap<&'program str, &'program ActivityDecl>>,
+    pub(super) primitives: Rc<BTreeMap<&'program str, &'program PrimitiveDecl>>,
     pub(super) builder: Builder,
     pub(super) diagnostics: Vec<Diagnostic>,
     /// The activities being expanded, outermost first.
@@ -80,6 +81,16 @@ pub(super) struct Expander<'program> {
     pub(super) named: Named<'program>,
 }
 
+/// What every scenario of a program is expanded with.
+#[derive(Clone)]
+pub(super) struct Declared<'program> {
+    program: &'program Program,
+    vocabulary: Rc<Vocabulary<'program>>,
+    pub(super) constants: Rc<Constants<'program>>,
+    activities: Rc<BTreeMap<&'program str, &'program ActivityDecl>>,
+    primitives: Rc<BTreeMap<&'program str, &'program PrimitiveDecl>>,
+}
+
 /// The outermost piece.
 pub(super) struct Root {
     pub(super) block: BlockId,
@@ -89,7 +100,7 @@ pub(super) struct Root {
     pub(super) arc: Option<ArcId>,
 }
 
-impl<'program> Expander<'program> {
+impl<'program> Declared<'program> {
     pub(super) fn new(program: &'program Program, constants: Constants<'program>) -> Self {
         let mut activities = BTreeMap::new();
         for activity in &program.activities {
@@ -99,9 +110,22 @@ impl<'program> Expander<'program> {
         for primitive in &program.primitives {
             primitives.entry(primitive.name.text.as_str()).or_insert(primitive);
         }
+        Self {
+            program,
+            vocabulary: Rc::new(Vocabulary::new(program)),
+            constants: Rc::new(constants),
+            activities: Rc::new(activities),
+            primitives: Rc::new(primitives),
+        }
+    }
+}
+
+impl<'program> Expander<'program> {
+    pub(super) fn new(declared: Declared<'program>) -> Self {
+        let Declared { program, vocabulary, constants, activities, primitives } = declared;
         let mut expander = Self {
             program,
-            vocabulary: Vocabulary::new(program),
+            vocabulary,
             constants,
             activities,
             primitives,

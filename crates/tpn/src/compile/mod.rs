@@ -23,14 +23,14 @@ use std::collections::BTreeSet;
 use exact::{Bound, Time};
 use rmpl::diagnostics::recursion;
 use rmpl::program::{Program, ScenarioDecl};
-use rmpl::{Code, Diagnostic, Severity, Span};
+use rmpl::{Code, Diagnostic, Severity, Span, listed};
 use smol_str::SmolStr;
 
 use crate::network::Network;
 pub use exogenous::assumed;
 
 use constants::Constants;
-use expand::Expander;
+use expand::{Declared, Expander};
 
 /// There is no scenario, or none of the name that was asked for.
 const E_NOSCENARIO: Code = Code("E-NOSCENARIO");
@@ -77,28 +77,73 @@ pub fn compile(program: &Program, top: &Top) -> (Option<Network>, Vec<Diagnostic
     let are_constants_sound = diagnostics.is_empty();
     diagnostics.extend(statics::check(program, &constants));
     if !are_constants_sound || diagnostics.iter().any(|found| found.code == recursion::CODE) {
-        return (None, without_repeats(diagnostics));
+        return (None, listed(without_repeats(diagnostics)));
     }
-    let mut expander = Expander::new(program, constants);
-    let root = match top {
-        Top::Scenario(name) => find_scenario(program, name.as_ref())
-            .map(|scenario| {
-                diagnostics.extend(exogenous::check(scenario, &expander.constants));
-                expander.scenario(scenario)
-            })
-            .map_err(|error| diagnostics.push(error)),
-        Top::Activity { name, lower, upper } => {
-            expander.top_activity(name, *lower, *upper).map_err(|error| diagnostics.push(error))
-        }
-    };
-    if root.is_ok() {
-        expander.constrain();
-    }
-    let (network, found) = expander.finish(root.ok());
+    let (network, found) = expand(program, Declared::new(program, constants), top);
     diagnostics.extend(found);
-    let diagnostics = without_repeats(diagnostics);
+    let diagnostics = listed(without_repeats(diagnostics));
     let is_sound = diagnostics.iter().all(|found| found.severity != Severity::Error);
     (network.filter(|_| is_sound), diagnostics)
+}
+
+/// Compiles every scenario of `program`, and hands each network to `take` unless an error prevents it. What is wrong with
+/// any of them comes back. What the scenarios share is read once, so that time is linear in the program and its networks.
+pub fn compile_scenarios(program: &Program, mut take: impl FnMut(Option<Network>)) -> Vec<Diagnostic> {
+    let (constants, mut diagnostics) = Constants::new(program);
+    let are_constants_sound = diagnostics.is_empty();
+    diagnostics.extend(statics::check(program, &constants));
+    if !are_constants_sound || diagnostics.iter().any(|found| found.code == recursion::CODE) {
+        return listed(without_repeats(diagnostics));
+    }
+    let declared = Declared::new(program, constants);
+    let mut names = BTreeSet::new();
+    for scenario in program.scenarios.iter().filter(|scenario| names.insert(&scenario.name.text)) {
+        let (network, found) = expand_scenario(Expander::new(declared.clone()), scenario);
+        let is_sound = found.iter().all(|found| found.severity != Severity::Error);
+        diagnostics.extend(found);
+        take(network.filter(|_| is_sound));
+    }
+    listed(without_repeats(diagnostics))
+}
+
+fn expand<'program>(
+    program: &'program Program,
+    declared: Declared<'program>,
+    top: &Top,
+) -> (Option<Network>, Vec<Diagnostic>) {
+    let mut expander = Expander::new(declared);
+    match top {
+        Top::Scenario(name) => match find_scenario(program, name.as_ref()) {
+            Ok(scenario) => expand_scenario(expander, scenario),
+            Err(error) => with_first(error, expander.finish(None)),
+        },
+        Top::Activity { name, lower, upper } => match expander.top_activity(name, *lower, *upper) {
+            Ok(root) => {
+                expander.constrain();
+                expander.finish(Some(root))
+            }
+            Err(error) => with_first(error, expander.finish(None)),
+        },
+    }
+}
+
+fn expand_scenario<'program>(
+    mut expander: Expander<'program>,
+    scenario: &'program ScenarioDecl,
+) -> (Option<Network>, Vec<Diagnostic>) {
+    let mut diagnostics = exogenous::check(scenario, &expander.constants);
+    let root = expander.scenario(scenario);
+    expander.constrain();
+    let (network, found) = expander.finish(Some(root));
+    diagnostics.extend(found);
+    (network, diagnostics)
+}
+
+fn with_first(
+    error: Diagnostic,
+    (network, found): (Option<Network>, Vec<Diagnostic>),
+) -> (Option<Network>, Vec<Diagnostic>) {
+    (network, std::iter::once(error).chain(found).collect())
 }
 
 /// Adds to `front_end`, the diagnostics of reading a text, those of compiling it that say something new: a mistake
@@ -106,7 +151,11 @@ pub fn compile(program: &Program, top: &Top) -> (Option<Network>, Vec<Diagnostic
 pub fn merge_diagnostics(front_end: &mut Vec<Diagnostic>, compiled: Vec<Diagnostic>) {
     let overlap = |one: Span, other: Span| one.start <= other.end && other.start <= one.end;
     let known = front_end.len();
-    for found in compiled {
+    // What is behind the end of a list that was cut has been counted.
+    let cut = front_end.iter().find(|told| told.more > 0 && told.severity == Severity::Error);
+    let end = cut.map_or(u32::MAX, |told| told.span.start);
+    let is_counted = |found: &Diagnostic| found.severity == Severity::Error && found.span.start > end;
+    for found in compiled.into_iter().filter(|found| !is_counted(found)) {
         let told = |earlier: &Diagnostic| earlier.code == found.code && overlap(earlier.span, found.span);
         if !front_end[..known].iter().any(told) {
             front_end.push(found);

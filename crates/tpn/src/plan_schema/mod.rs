@@ -4,6 +4,8 @@ mod edn;
 mod read;
 mod write;
 
+use std::collections::BTreeMap;
+
 use serde_json::{Map, Value};
 
 pub use edn::EdnError;
@@ -64,6 +66,7 @@ pub struct Document {
 impl Document {
     /// Reads a file in either notation.
     pub fn parse(text: &str) -> Result<Self, PlanSchemaError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let value = match serde_json::from_str::<Value>(text) {
             Ok(value) => value,
             Err(json) => {
@@ -78,12 +81,79 @@ impl Document {
 
     /// Whether `text` looks like a plan-schema file in either notation, rather than a mission in RMPL.
     pub fn looks_like(text: &str) -> bool {
-        let text = text.trim_start();
+        let text = text.trim_start_matches('\u{feff}').trim_start();
         text.starts_with('{') && (text.contains("network-id") || text.contains("tpn-type"))
+    }
+
+    /// What the file says and planning does not honour, in words, each with how often: costs and rewards, durations that
+    /// are not the executive's to choose, guards, probabilities, and kinds of object that are not known.
+    pub fn not_honoured(&self) -> Vec<String> {
+        let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+        for object in self.objects.values().filter(|object| object.is_object()) {
+            for said in said_in_vain(object) {
+                *counts.entry(said).or_default() += 1;
+            }
+        }
+        let told = |(what, count)| if count == 1 { what } else { format!("{what} ({count} times)") };
+        counts.into_iter().map(told).collect()
     }
 
     /// The file again in JSON, unknown keys included.
     pub fn to_json(&self) -> Value {
         Value::Object(self.objects.clone())
+    }
+}
+
+/// What one object says that planning does not honour.
+fn said_in_vain(object: &Value) -> Vec<String> {
+    const KNOWN: [&str; 11] = [
+        "network",
+        "state",
+        "c-begin",
+        "c-end",
+        "p-begin",
+        "p-end",
+        "activity",
+        "null-activity",
+        "delay-activity",
+        "temporal-constraint",
+        "",
+    ];
+    let kind = read::kind(object).to_ascii_lowercase();
+    let mut said = Vec::new();
+    if kind.contains("cost") {
+        said.push("a limit on cost".to_owned());
+    } else if kind.contains("reward") {
+        said.push("a limit on reward".to_owned());
+    } else if !KNOWN.contains(&kind.as_str()) {
+        said.push(format!("an object of the unknown type `{kind}`"));
+    }
+    let counts = |key: &str| object.get(key).and_then(Value::as_f64).is_some_and(|number| number != 0.0);
+    if counts("cost") {
+        said.push("a cost".to_owned());
+    }
+    if counts("reward") {
+        said.push("a reward".to_owned());
+    }
+    if kind.ends_with("activity") && object.get("controllable") == Some(&Value::Bool(false)) {
+        said.push("a duration that is not controllable".to_owned());
+    }
+    let holds = |key: &str| object.get(key).is_some_and(|value| !is_nothing(value));
+    if holds("guard") || holds("guards") {
+        said.push("a guard".to_owned());
+    }
+    if holds("probability") || holds("probabilities") {
+        said.push("a probability".to_owned());
+    }
+    said
+}
+
+fn is_nothing(value: &Value) -> bool {
+    match value {
+        Value::Null => true,
+        Value::Array(items) => items.is_empty(),
+        Value::Object(members) => members.is_empty(),
+        Value::String(text) => text.is_empty(),
+        Value::Bool(_) | Value::Number(_) => false,
     }
 }

@@ -17,7 +17,8 @@ use crate::vocabulary::Vocabulary;
 
 /// Reads the network that `network-id` names.
 pub(super) fn read(objects: Map<String, Value>) -> Result<Document, PlanSchemaError> {
-    let mut reader = Reader::new(&objects);
+    let read = with_known_types(&objects);
+    let mut reader = Reader::new(&read);
     let network = reader.network_object()?;
     let threat_gap = reader.read_declarations(&network)?;
     let begin = reader.reference(&network, "begin-node")?;
@@ -49,6 +50,17 @@ pub(super) fn read(objects: Map<String, Value>) -> Result<Document, PlanSchemaEr
     Ok(Document { network, objects, node_uids, arc_uids, not_planned })
 }
 
+/// The objects with their types in lower case, whatever case a tool writes.
+fn with_known_types(objects: &Map<String, Value>) -> Map<String, Value> {
+    let mut objects = objects.clone();
+    for object in objects.values_mut() {
+        if let Some(Value::String(kind)) = object.get_mut("tpn-type") {
+            kind.make_ascii_lowercase();
+        }
+    }
+    objects
+}
+
 struct Reader<'file> {
     objects: &'file Map<String, Value>,
     ids: BTreeMap<String, NodeId>,
@@ -64,6 +76,8 @@ struct Reader<'file> {
     node_uids: Vec<Option<String>>,
     arc_uids: Vec<Option<String>>,
     not_planned: Vec<String>,
+    /// Nodes that nothing leaves because they only show a contradiction.
+    dead_ends: Vec<NodeId>,
 }
 
 /// An interval that is being read.
@@ -85,6 +99,7 @@ impl<'file> Reader<'file> {
             node_uids: Vec::new(),
             arc_uids: Vec::new(),
             not_planned: Vec::new(),
+            dead_ends: Vec::new(),
         }
     }
 
@@ -134,6 +149,9 @@ impl<'file> Reader<'file> {
         let mut leaves = vec![false; self.nodes.len()];
         for arc in self.arcs.iter().filter(|arc| arc.kind != ArcKind::Span) {
             leaves[arc.from.index()] = true;
+        }
+        for dead in &self.dead_ends {
+            leaves[dead.index()] = true;
         }
         let mut ends = (0..self.nodes.len()).filter(|&node| !leaves[node]);
         match (ends.next(), ends.next()) {
@@ -243,10 +261,21 @@ impl<'file> Reader<'file> {
                     let object = self.object(uid, constraint)?;
                     self.read_labels(span, object, constraint)?;
                 }
+                _ if self.ids.get(&end) == Some(&node) => self.add_self_loop(node, bounds, constraint),
                 _ => self.not_planned.push(constraint.to_owned()),
             }
         }
         Ok(())
+    }
+
+    /// A constraint from an event to itself: it allows 0, and then says nothing, or nothing can keep it.
+    fn add_self_loop(&mut self, node: NodeId, bounds: Bounds, constraint: &str) {
+        if bounds.0 > Time::ZERO {
+            let dead = self.add_node(None);
+            self.dead_ends.push(dead);
+            self.add_arc(node, dead, ArcKind::Glue, (Time::ZERO, Bound::ZERO), None);
+            self.add_arc(node, dead, ArcKind::Span, bounds, Some(constraint));
+        }
     }
 
     /// The node of `uid` if anything leads to it; constraints on what cannot happen mean nothing.
@@ -325,10 +354,24 @@ impl<'file> Reader<'file> {
         }
         let error =
             |problem: &str| PlanSchemaError::Bounds { uid: uid.to_owned(), problem: problem.to_owned() };
-        let value = object.get("value").and_then(Value::as_array).map(Vec::as_slice);
-        let Some([lower, upper]) = value else { return Err(error("`value` is not a pair of bounds")) };
-        let lower = Time::deserialize(lower).map_err(|_| error("the lower bound is no time"))?;
-        let upper = Bound::deserialize(upper).map_err(|_| error("the upper bound is no time"))?;
+        // What is left out is what bounds anything.
+        let (lower, upper) = match object.get("value") {
+            None | Some(Value::Null) => (&Value::Null, &Value::Null),
+            Some(Value::Array(sides)) if sides.is_empty() => (&Value::Null, &Value::Null),
+            Some(Value::Array(sides)) => match sides.as_slice() {
+                [lower, upper] => (lower, upper),
+                _ => return Err(error("`value` is not a pair of bounds")),
+            },
+            Some(_) => return Err(error("`value` is not a pair of bounds")),
+        };
+        let lower = match lower {
+            Value::Null => Time::ZERO,
+            lower => Time::deserialize(lower).map_err(|_| error("the lower bound is no time"))?,
+        };
+        let upper = match upper {
+            Value::Null => Bound::Infinite,
+            upper => Bound::deserialize(upper).map_err(|_| error("the upper bound is no time"))?,
+        };
         if lower.is_negative() || Bound::Finite(lower) > upper {
             return Err(error("a duration is at least 0, and its lower bound not above its upper one"));
         }
@@ -462,7 +505,7 @@ fn link(network: &mut Network) {
     }
 }
 
-fn kind(object: &Value) -> &str {
+pub(super) fn kind(object: &Value) -> &str {
     object.get("tpn-type").and_then(Value::as_str).unwrap_or("")
 }
 

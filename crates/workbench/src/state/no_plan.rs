@@ -34,6 +34,7 @@ pub(super) fn problems(snapshot: &Snapshot) -> Vec<Problem> {
             column: place.column,
             hint: (!fixes.is_empty()).then(|| "each of the fixes alone would give a plan".to_owned()),
             fixes: fixes.to_vec(),
+            more: 0,
         }
     };
     if let Some(network) = snapshot.network.as_deref()

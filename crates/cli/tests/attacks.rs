@@ -1,0 +1,171 @@
+//! What once broke the command line: each input is answered, shortly, and without harm.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::{Value, json};
+
+fn enroute(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_enroute")).args(arguments).output().expect("the command runs")
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("attacks").join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+fn written(folder: &Path, name: &str, text: &str) -> String {
+    let path = folder.join(name);
+    std::fs::write(&path, text).expect("written");
+    path.to_str().expect("UTF-8").to_owned()
+}
+
+#[test]
+fn a_name_of_tens_of_thousands_of_letters_is_planned_and_shown_in_short() {
+    let folder = folder("names");
+    for letters in [65_530, 70_000] {
+        let name = "a".repeat(letters);
+        let text = format!("primitive {name}()[1,2];\nscenario M[0,inf] = {{ {name}(); {name}() }}\n");
+        let file = written(&folder, "long.rmpl", &text);
+        let plan = enroute(&["plan", &file]);
+        assert_eq!(plan.status.code(), Some(0), "{:?}", String::from_utf8_lossy(&plan.stderr));
+        assert!(plan.stdout.len() < 2_000, "{} bytes", plan.stdout.len());
+        let observed = written(&folder, "observed.json", "{\"executed\":{},\"now\":0}");
+        let execute = enroute(&["execute", &file, "--observe", &observed]);
+        assert_eq!(execute.status.code(), Some(0), "{:?}", String::from_utf8_lossy(&execute.stderr));
+        assert!(execute.stdout.len() < 2_000, "{} bytes", execute.stdout.len());
+    }
+}
+
+#[test]
+fn of_thousands_of_mistakes_some_are_printed_and_all_are_counted() {
+    let folder = folder("mistakes");
+    let mut text = "scenario M[0,inf] = { ".to_owned();
+    for number in 0..10_000 {
+        let _ = write!(text, "Q{number}(); ");
+    }
+    let file = written(&folder, "many.rmpl", &(text + "}"));
+    let check = enroute(&["check", &file]);
+    let printed = String::from_utf8_lossy(&check.stderr);
+    assert_eq!(printed.matches("W-UNDEF").count(), 50);
+    assert!(printed.ends_with("and 9950 more warnings\n"), "{}", &printed[printed.len() - 200..]);
+    let check = enroute(&["check", &file, "--format", "json"]);
+    let document: Value = serde_json::from_slice(&check.stdout).expect("JSON");
+    assert_eq!(document["diagnostics"].as_array().map(Vec::len), Some(500));
+    assert_eq!(document["diagnostics_not_listed"], json!(9_500));
+}
+
+#[test]
+fn each_of_many_scenarios_is_compiled() {
+    let mut text = "primitive P()[1,2];\n".to_owned();
+    for number in 0..3_000 {
+        let _ = writeln!(text, "scenario S{number}[0,10] = {{ P() }}");
+    }
+    text += "scenario Last[0,10] = { P()[0,C] }\nconst C = 1/0;\n";
+    let file = written(&folder("scenarios"), "many.rmpl", &text);
+    assert_eq!(enroute(&["check", &file]).status.code(), Some(2));
+    let file =
+        written(&folder("scenarios-sound"), "many.rmpl", text.split("scenario Last").next().unwrap_or(""));
+    assert_eq!(enroute(&["check", &file]).status.code(), Some(0));
+}
+
+#[test]
+fn what_a_file_says_commands_no_terminal() {
+    let folder = folder("commands");
+    let name = "Dr\u{1b}]0;x\u{7}ive\u{202e}\u{9b}2J";
+    let network = json!({
+        "network-id": "net",
+        "net": { "tpn-type": "network", "begin-node": "n1", "end-node": "n2" },
+        "n1": { "tpn-type": "state", "activities": ["a1"] },
+        "n2": { "tpn-type": "state", "activities": [] },
+        "a1": { "tpn-type": "activity", "name": name, "end-node": "n2", "cost": 1 },
+    });
+    let file = written(&folder, "evil.tpn.json", &network.to_string());
+    let page = written(&folder, "report.html", "");
+    for command in [
+        &["plan"][..],
+        &["plan", "--format", "json"],
+        &["tpn"],
+        &["import"],
+        &["check"],
+        &["simulate"],
+        &["simulate", "--format", "json"],
+        &["robustness", "--runs", "5"],
+        &["robustness", "--runs", "5", "--format", "json"],
+        &["report", "-o", &page],
+    ] {
+        let output = enroute(&[command, &[&file]].concat());
+        assert_eq!(output.status.code(), Some(0), "{command:?}: {output:?}");
+        for text in [&output.stdout, &output.stderr] {
+            let text = String::from_utf8(text.clone()).expect("UTF-8");
+            let harmful = text.find(['\u{1b}', '\u{7}', '\u{202e}', '\u{9b}']);
+            assert_eq!(harmful, None, "{command:?}: {text:?}");
+        }
+    }
+    let plan = enroute(&["plan", "--format", "json", &file]);
+    let document: Value = serde_json::from_slice(&plan.stdout).expect("JSON");
+    assert!(document["plans"][0]["windows"].get(format!("{name}#1.end")).is_some(), "{document}");
+}
+
+#[test]
+fn a_map_is_read_from_the_missions_own_folder_only() {
+    let folder = folder("maps");
+    std::fs::create_dir_all(folder.join("mission/maps")).expect("a folder");
+    let map = "ncols 4\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 5\n".to_owned() + &"0 0 0 0\n".repeat(4);
+    written(&folder, "secret.asc", &map);
+    written(&folder, "mission/maps/own.asc", &map);
+    let plan = |terrain: &str| {
+        let text = format!(
+            "terrain \"{terrain}\" cell 5;\nlocation A (2, 2);\nlocation B (18, 18);\nvehicle R : ATRV at A;\n\
+             primitive Go(to)[1,100] moves R;\nscenario M[0,100] = {{ Go(B) }}\n"
+        );
+        let file = written(&folder, "mission/day.rmpl", &text);
+        enroute(&["plan", &file, "--no-paths"]);
+        enroute(&["plan", &file])
+    };
+    let own = plan("maps/own.asc");
+    assert_eq!(own.status.code(), Some(0), "{own:?}");
+    let root = folder.join("secret.asc");
+    for outside in ["../secret.asc", root.to_str().expect("UTF-8"), "maps/../../secret.asc"] {
+        let refused = plan(outside);
+        assert_eq!(refused.status.code(), Some(2), "{outside}: {refused:?}");
+        let told = String::from_utf8_lossy(&refused.stderr);
+        assert!(told.contains("in the mission's folder"), "{told}");
+    }
+}
+
+#[test]
+fn numbers_without_a_sense_are_refused() {
+    let folder = folder("numbers");
+    let text = "location A (2, 2);\nlocation B (18, 18);\nvehicle R : ATRV at A;\n\
+                primitive Go(to)[1,100] moves R speed (-1, 2);\nscenario M[0,100] = { Go(B) }\n";
+    let file = written(&folder, "speed.rmpl", text);
+    assert_eq!(enroute(&["check", &file]).status.code(), Some(2));
+    let map = written(
+        &folder,
+        "map.pgm",
+        "P2\n4 4\n255\n255 255 255 255\n255 255 255 255\n255 255 255 255\n255 255 255 255\n",
+    );
+    let path =
+        |more: &[&str]| enroute(&[&["path", &map, "--from", "0.5,0.5", "--to", "3.5,3.5"], more].concat());
+    assert_eq!(path(&["--step", "0.5"]).status.code(), Some(0));
+    for wrong in [["--step", "1e-9"], ["--step", "NaN"], ["--goal-bias", "NaN"], ["--radius", "inf"]] {
+        assert_eq!(path(&wrong).status.code(), Some(2), "{wrong:?}");
+    }
+}
+
+#[test]
+fn the_same_call_gives_the_same_document_but_for_its_timings() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/missions/enroute.rmpl");
+    let document = || {
+        let plan = enroute(&["plan", file, "--format", "json"]);
+        let mut document: Value = serde_json::from_slice(&plan.stdout).expect("JSON");
+        let timings = document.as_object_mut().and_then(|members| members.remove("timings"));
+        assert!(timings.is_some_and(|timings| timings["plan_millis"].is_number()));
+        document
+    };
+    assert_eq!(document(), document());
+}
