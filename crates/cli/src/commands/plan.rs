@@ -23,7 +23,7 @@ use crate::diagnostics::{path_of_file, print_problems};
 use crate::ground::ground;
 use crate::load::{Loaded, Target, parse_threat_gap};
 use crate::output::{
-    Format, LIMIT, NO, WRONG, YES, any_error, column, document, exit, print_json, print_text,
+    Format, LIMIT, NO, WRONG, YES, any_error, column, document, exit, print_json, print_text, without_timings,
 };
 
 /// Plans a mission: which alternatives, which causal links, which orderings, and the window of every event.
@@ -57,6 +57,9 @@ pub struct Args {
     /// Plans without looking for paths of traverses.
     #[arg(long)]
     no_paths: bool,
+    /// Leaves out how long it took, so that the same call gives the same document.
+    #[arg(long)]
+    no_timings: bool,
     /// For whom the answer is.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -99,7 +102,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let outcome = &planned.planning.outcome;
     match args.format {
         Format::Json => {
-            let body = outcome_json(&planned, &loaded, [compile_millis, plan_millis]);
+            let mut body = outcome_json(&planned, &loaded, [compile_millis, plan_millis]);
+            if args.no_timings {
+                without_timings(&mut body["stats"]);
+            }
             let mut problems = loaded.problems.clone();
             problems.extend(Problem::all(&planned.warnings, &loaded.source));
             print_json(&document("plan", &problems, body))?;
@@ -214,13 +220,10 @@ fn outcome_json(planned: &Planned, loaded: &Loaded, [compile_millis, plan_millis
         })).collect::<Vec<_>>(),
         "traverses": world.map(|world| traverses_json(&planned.traverses, &planned.network, world)),
         "encounters": world.map(|world| separation_violations_json(&planned.separation_violations, world)),
-        // All that differs from one call to the next.
-        "timings": {
+        "stats": {
             "parse_millis": loaded.parse_millis,
             "compile_millis": compile_millis - loaded.parse_millis,
             "plan_millis": plan_millis,
-        },
-        "stats": {
             "nodes": stats.nodes,
             "arcs": stats.arcs,
             "decisions": stats.decisions,
@@ -388,7 +391,7 @@ fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
             None => "",
         };
         let metres =
-            if network.vehicles.is_empty() { String::new() } else { format!(", {:.1} m", quality.length_m) };
+            if quality.length_m == 0.0 { String::new() } else { format!(", {:.1} m", quality.length_m) };
         text.push_str(&format!(
             "worth     cost {}, reward {}, end {}{metres}{optimal}\n",
             quality.cost,
