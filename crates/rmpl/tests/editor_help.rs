@@ -43,6 +43,16 @@ fn a_statement_may_be_a_keyword_a_call_or_a_condition() {
 }
 
 #[test]
+fn nature_chooses_for_primitives_and_not_for_definitions() {
+    for call in ["Drive(BASE)", "delay", "P=OK"] {
+        check_completion_in_mission(&format!("scenario S = {{ {call} $0 }}"), &["contingent"], &[]);
+    }
+    for call in ["Survey(BASE)", "Survey((BASE))", "Survey"] {
+        check_completion_in_mission(&format!("scenario S = {{ {call} $0 }}"), &[], &["contingent"]);
+    }
+}
+
+#[test]
 fn what_is_typed_narrows_the_list() {
     check_completion_in_mission("scenario S = { Dr$0 }", &["Drive"], &["Survey", "choose"]);
     check_completion_in_mission("scenario S = { dr$0 }", &["Drive"], &["Survey"]);

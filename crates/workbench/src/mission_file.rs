@@ -64,6 +64,11 @@ pub const EXAMPLES: &[Example] = &[
         source: include_str!("../../../assets/missions/stations.rmpl"),
     },
     Example {
+        name: "controllability",
+        title: "Consistent, and not controllable",
+        source: include_str!("../../../assets/missions/controllability.rmpl"),
+    },
+    Example {
         name: "storm",
         title: "A storm that comes when it comes",
         source: include_str!("../../../assets/missions/storm.rmpl"),

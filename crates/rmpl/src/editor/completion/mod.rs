@@ -5,10 +5,12 @@ mod items;
 mod place;
 
 use crate::parse::Parse;
+use crate::parser::CONTINGENT;
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
 
 use super::cursor::declaration_at_cursor;
+use super::outline::{OutlineKind, outline};
 
 use items::items;
 use place::place;
@@ -86,6 +88,10 @@ pub fn complete(parse: &Parse, offset: u32) -> Completion {
         .copied()
         .collect();
     let mut items = items(parse, offset, &place(&context));
+    if callee(&context).is_some_and(|name| is_definition(parse, name)) {
+        // How long a definition takes follows from its parts.
+        items.retain(|item| item.label != CONTINGENT);
+    }
     let rank = |item: &CompletionItem| rank(&item.label, prefix);
     items.retain(|item| rank(item).is_some());
     items.sort_by(|one, other| {
@@ -97,6 +103,32 @@ pub fn complete(parse: &Parse, offset: u32) -> Completion {
     });
     items.dedup_by(|one, other| one.label == other.label);
     Completion { replaces, items }
+}
+
+/// What is called by the call that the tokens end with, if they do.
+fn callee<'parse>(context: &[SyntaxToken<'parse>]) -> Option<&'parse str> {
+    let (last, before) = context.split_last()?;
+    if last.kind == SyntaxKind::Name {
+        return Some(last.text);
+    }
+    let mut open = usize::from(last.kind == SyntaxKind::RightParen);
+    let mut tokens = before.iter().rev();
+    while open > 0 {
+        match tokens.next()?.kind {
+            SyntaxKind::RightParen => open += 1,
+            SyntaxKind::LeftParen => open -= 1,
+            _ => {}
+        }
+    }
+    tokens
+        .next()
+        .filter(|token| last.kind == SyntaxKind::RightParen && token.kind == SyntaxKind::Name)
+        .map(|it| it.text)
+}
+
+/// Whether an activity has a definition, and is no primitive.
+fn is_definition(parse: &Parse, name: &str) -> bool {
+    outline(parse).iter().any(|item| item.kind == OutlineKind::Activity && item.name == name)
 }
 
 /// Whether the cursor is in a comment, a text in quotes or a number, where nothing is completed.
