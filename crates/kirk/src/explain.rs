@@ -158,7 +158,8 @@ fn reason(
     Ok(Reason { message, spans, choices, kind, conflict: members, cycle, is_minimal, failing_run: None })
 }
 
-/// The places of a conflict: its conditions, then the bounds that take time.
+/// The places of a conflict: its conditions, then the bounds that take time; without a cycle those that it needs, what
+/// nature chooses last.
 pub(crate) fn spans(network: &Network, members: &[Member], cycle: &[CycleMember]) -> Vec<Span> {
     let conditions = members.iter().filter_map(|member| match member {
         Member::Condition(label) => {
@@ -185,8 +186,18 @@ pub(crate) fn spans(network: &Network, members: &[Member], cycle: &[CycleMember]
         }
         _ => None,
     });
+    let needed = |is_natures: bool| {
+        members.iter().filter_map(move |member| match member {
+            Member::Bound(Constraint::Lower(arc) | Constraint::Upper(arc)) if cycle.is_empty() => {
+                let described = &network.arcs[arc.index()];
+                let is_told = !wording::is_structural(described.kind);
+                described.span.filter(|_| is_told && network.is_uncertain(*arc) == is_natures)
+            }
+            _ => None,
+        })
+    };
     let mut spans: Vec<Span> = Vec::new();
-    for span in conditions.chain(bounds) {
+    for span in conditions.chain(bounds).chain(needed(false)).chain(needed(true)) {
         if !spans.contains(&span) {
             spans.push(span);
         }

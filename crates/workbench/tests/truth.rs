@@ -44,6 +44,16 @@ fn no_plan_is_a_problem_at_what_the_reason_names() {
 }
 
 #[test]
+fn what_nature_can_break_is_underlined_at_the_bound_that_it_breaks() {
+    let source = "primitive Drive() contingent [20,40];\nscenario S[0,60] = { { delay; Drive() }[30,35] }\n";
+    let app = showing(source);
+    let problems = no_plan(&app);
+    let [problem] = problems.as_slice() else { panic!("{problems:?}") };
+    let at = |side: &str| problem["span"][side].as_u64().expect("a place") as usize;
+    assert_eq!(&source[at("start")..at("end")], "[30,35]");
+}
+
+#[test]
 fn its_fixes_are_quick_fixes_in_the_text() {
     let mut app = showing(TOO_LONG);
     app.run(Command::Editor(EditorCommand::GoToProblem { forwards: true }));

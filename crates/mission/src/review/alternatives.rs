@@ -4,11 +4,12 @@
 use exact::{Bound, Time};
 use kirk::{Failure, Options, Outcome, Stats, Status};
 use rmpl::Span;
+use rmpl::program::Measure;
 use serde::{Deserialize, Serialize};
 use tpn::{Choice, DecisionId, Network, Plan};
 
-use crate::planning;
 use crate::snapshot::Undrivable;
+use crate::{planning, worth};
 
 /// An alternative of a choice.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,8 +39,13 @@ pub enum Fate {
         /// Places in the text that have to do with it, the most telling first.
         spans: Vec<Span>,
     },
-    /// There is a plan with it, before its own paths are looked for; an earlier alternative was preferred.
+    /// There is a plan with it, before its own paths are looked for; another one was found first.
     AlsoPossible,
+    /// There is a plan with it, but none is better by the mission's objective.
+    NoBetter {
+        /// What the best one comes to, given the choices before it; `None` where that depends on paths.
+        at_best: Option<String>,
+    },
     /// It was not worked out: too many alternatives, or too long a search.
     NotExamined,
 }
@@ -51,8 +57,10 @@ impl Fate {
             Self::Taken => "taken".to_owned(),
             Self::Impossible { reason, .. } => format!("impossible: {reason}"),
             Self::AlsoPossible => {
-                "not needed: also possible, but the plan takes the first in the text that works".to_owned()
+                "not needed: there is a plan with it too, and this one was found first".to_owned()
             }
+            Self::NoBetter { at_best: Some(worth) } => format!("not taken: with it {worth} at best"),
+            Self::NoBetter { at_best: None } => "not taken: no plan with it is better".to_owned(),
             Self::NotExamined => "not examined: too large a search for a review".to_owned(),
         }
     }
@@ -133,6 +141,9 @@ impl<'input> Examiner<'input> {
             kirk::plan(&network, &options, &mut |stats: &Stats| stats.expanded >= MAX_EXPANDED || stop());
         planning::name_blocked(&mut outcome, &network, self.undrivable);
         match outcome.status {
+            Status::Plan if self.plan.quality.is_optimal == Some(true) => {
+                Fate::NoBetter { at_best: outcome.plans.first().and_then(|plan| at_best(&network, plan)) }
+            }
             Status::Plan => Fate::AlsoPossible,
             Status::NoPlan => impossible(&outcome, other),
             Status::Limit | Status::Error => Fate::NotExamined,
@@ -153,6 +164,13 @@ impl<'input> Examiner<'input> {
         }
         network
     }
+}
+
+/// What a plan comes to that is the best, as far as no path has to be known for it.
+fn at_best(network: &Network, plan: &Plan) -> Option<String> {
+    let measures = worth::measures(network);
+    let is_known = plan.quality.is_optimal == Some(true) && !measures.contains(&Measure::Length);
+    is_known.then(|| measures.into_iter().map(|it| worth::figure(plan, it)).collect::<Vec<_>>().join(", "))
 }
 
 fn impossible(outcome: &Outcome, other: Choice) -> Fate {

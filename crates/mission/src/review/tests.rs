@@ -90,6 +90,26 @@ fn an_alternative_that_would_do_as_well_is_said_to() {
 }
 
 #[test]
+fn an_alternative_of_a_best_plan_says_what_it_would_come_to() {
+    let review = reviewed(
+        "primitive Near()[5,5] rewards 3; primitive Far()[20,20] rewards 10;
+         scenario S[0,30] = { choose { Near(), Far() }; optional Near() } objective maximize reward, minimize end;",
+    );
+    assert_eq!(review.choices[0].alternatives[1].fate, Fate::Taken);
+    let sentences: Vec<String> =
+        review.choices.iter().flat_map(|it| &it.alternatives).map(|it| it.fate.sentence()).collect();
+    assert_eq!(
+        sentences,
+        [
+            "not taken: with it reward 6, end 10 at best",
+            "taken",
+            "taken",
+            "not taken: with it reward 10, end 20 at best"
+        ]
+    );
+}
+
+#[test]
 fn the_path_1_condition_outlasts_the_drive_by_up_to_45_minutes() {
     let review = reviewed(SCENARIO);
     let [link] = review.causal_links.as_slice() else { panic!("one link: {:?}", review.causal_links) };
