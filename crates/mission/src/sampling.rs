@@ -264,8 +264,7 @@ fn with_assumed(program: &Program, network: &Arc<Network>, uncertainty: &Uncerta
         let is_world = matches!(occurrence.kind, OccurrenceKind::Delay | OccurrenceKind::Assertion);
         let is_assumed = is_world && occurrence.span.is_some_and(|span| assumed.contains(&span));
         let Some(arc) = occurrence.arc.filter(|_| is_assumed) else { continue };
-        let is_named = uncertainty.durations.contains_key(&occurrence.name);
-        if uncertainty.others == Others::Planned && !is_named {
+        if uncertainty.others == Others::Planned && said_of(occurrence, uncertainty).is_none() {
             continue;
         }
         let arc = &mut changed.arcs[arc.index()];
@@ -315,12 +314,17 @@ fn durations(
 fn natures(network: &Network, uncertainty: &Uncertainty) -> Vec<(SmolStr, Distribution)> {
     natures_ranges(network)
         .map(|(occurrence, [lower, upper])| {
-            let said = &uncertainty.durations;
-            let named = said.get(&occurrence.name).or_else(|| said.get(&occurrence.activity));
-            let named = named.or_else(|| said.get(base(&occurrence.name)));
-            (occurrence.name.clone(), named.copied().unwrap_or(Distribution::Uniform(lower, upper)))
+            let named = said_of(occurrence, uncertainty);
+            (occurrence.name.clone(), named.unwrap_or(Distribution::Uniform(lower, upper)))
         })
         .collect()
+}
+
+/// What is said of the duration of an occurrence that nature chooses.
+fn said_of(occurrence: &Occurrence, uncertainty: &Uncertainty) -> Option<Distribution> {
+    let said = &uncertainty.durations;
+    let named = said.get(&occurrence.name).or_else(|| said.get(&occurrence.activity));
+    named.or_else(|| said.get(base(&occurrence.name))).copied()
 }
 
 /// Anything between the bounds, for an activity that is not ended by the executive itself: one that is watched.

@@ -59,7 +59,9 @@ impl Fate {
             Self::AlsoPossible => {
                 "not needed: there is a plan with it too, and this one was found first".to_owned()
             }
-            Self::NoBetter { at_best: Some(worth) } => format!("not taken: with it {worth} at best"),
+            Self::NoBetter { at_best: Some(worth) } => {
+                format!("not taken: with it and the choices before it {worth} at best")
+            }
             Self::NoBetter { at_best: None } => "not taken: no plan with it is better".to_owned(),
             Self::NotExamined => "not examined: too large a search for a review".to_owned(),
         }
@@ -168,9 +170,8 @@ impl<'input> Examiner<'input> {
 
 /// What a plan comes to that is the best, as far as no path has to be known for it.
 fn at_best(network: &Network, plan: &Plan) -> Option<String> {
-    let measures = worth::measures(network);
-    let is_known = plan.quality.is_optimal == Some(true) && !measures.contains(&Measure::Length);
-    is_known.then(|| measures.into_iter().map(|it| worth::figure(plan, it)).collect::<Vec<_>>().join(", "))
+    let needs_paths = worth::measures(network).contains(&Measure::Length);
+    worth::words(network, plan).filter(|_| plan.quality.is_optimal == Some(true) && !needs_paths)
 }
 
 fn impossible(outcome: &Outcome, other: Choice) -> Fate {

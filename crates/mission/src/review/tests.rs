@@ -101,10 +101,10 @@ fn an_alternative_of_a_best_plan_says_what_it_would_come_to() {
     assert_eq!(
         sentences,
         [
-            "not taken: with it reward 6, end 10 at best",
+            "not taken: with it and the choices before it reward 6, end 10 at best",
             "taken",
             "taken",
-            "not taken: with it reward 10, end 20 at best"
+            "not taken: with it and the choices before it reward 10, end 20 at best"
         ]
     );
 }
