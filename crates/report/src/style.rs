@@ -15,8 +15,9 @@ table { border-collapse: collapse; width: 100%; margin: .5em 0 1em; font-size: .
 th { text-align: left; font-weight: 600; color: #4e5b6a; border-bottom: 1px solid #a9b5c2; }
 th, td { padding: .25em .8em .25em 0; vertical-align: top; overflow-wrap: anywhere; }
 td { border-bottom: 1px solid #eef1f4; }
-td.figure, th.figure { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
-th, td:last-child { white-space: nowrap; overflow-wrap: normal; }
+td.figure, th.figure { text-align: right; font-variant-numeric: tabular-nums; }
+th { overflow-wrap: normal; vertical-align: bottom; }
+td.figure, td:last-child { white-space: nowrap; overflow-wrap: normal; }
 thead { display: table-header-group; }
 .facts { display: grid; grid-template-columns: max-content 1fr; gap: .1em 1.2em; margin: 1em 0; }
 .facts dt { color: #4e5b6a; }
