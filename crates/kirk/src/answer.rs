@@ -134,6 +134,30 @@ fn first_plan(
     if options.trace_events.is_some() || !model.has_contexts {
         return first_in_order(model, options, Stats::default(), termination);
     }
+    let (outcome, has_doubts, is_stopped) = run_briefly(model, options, termination)?;
+    if is_stopped || outcome.status == Status::Plan || (outcome.status == Status::NoPlan && !has_doubts) {
+        return Ok((outcome, has_doubts));
+    }
+    first_by_solver(model, options, outcome.stats, termination)
+}
+
+/// The first plan in textual order of those in which no choice forces intervals to touch, if few failures are met.
+pub(crate) fn first_soon(
+    model: &Model,
+    options: &Options,
+    termination: &mut dyn Termination,
+) -> Result<Option<Outcome>, TimeOverflow> {
+    let options = Options { search: Search::ConflictDirected, ..*options };
+    let (outcome, ..) = run_briefly(model, &options, termination)?;
+    Ok((outcome.status == Status::Plan).then_some(outcome))
+}
+
+/// One search that trusts gaps and ends after few failures, whether it has doubts, and whether it was stopped.
+fn run_briefly(
+    model: &Model,
+    options: &Options,
+    termination: &mut dyn Termination,
+) -> Result<(Outcome, bool, bool), TimeOverflow> {
     let most = if model.decisions.is_empty() { MAX_BACKTRACKS_UNDECIDED } else { MAX_BACKTRACKS };
     let mut is_stopped = false;
     let mut soon = |stats: &Stats| {
@@ -141,10 +165,7 @@ fn first_plan(
         is_stopped || stats.backtracks > most
     };
     let (outcome, has_doubts) = run(model, options, (Gaps::Trusted, Stats::default()), &mut soon)?;
-    if is_stopped || outcome.status == Status::Plan || (outcome.status == Status::NoPlan && !has_doubts) {
-        return Ok((outcome, has_doubts));
-    }
-    first_by_solver(model, options, outcome.stats, termination)
+    Ok((outcome, has_doubts, is_stopped))
 }
 
 /// A plan by the solver.

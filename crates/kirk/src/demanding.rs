@@ -8,6 +8,7 @@
 use exact::Rational;
 use tpn::{Choice, LabelId, Network, Ordering, Plan};
 
+use crate::controllable;
 use crate::demands::{LastingVariable, ModelGoal, lasting_variables};
 use crate::model::Model;
 use crate::options::{Options, Outcome, Stats, Status, Termination};
@@ -23,11 +24,19 @@ const MAX_CONFLICTS_IN_ORDER: u64 = 5_000;
 
 /// Whether the network has anything that only the solver plans. Quadratic in the changes of a variable.
 pub(crate) fn has_demands(model: &Model) -> bool {
+    model.has_uncertainty || has_executives_demands(model)
+}
+
+/// Whether durations that nature chooses are all that only the solver plans.
+pub(crate) fn is_only_natures(model: &Model) -> bool {
+    model.has_uncertainty && !has_executives_demands(model)
+}
+
+fn has_executives_demands(model: &Model) -> bool {
     let demands = &model.demands;
     let is_open =
         |variable: &LastingVariable| !variable.asks.is_empty() || !are_nested(model, &variable.changes);
-    model.has_uncertainty
-        || !model.constraints.is_empty()
+    !model.constraints.is_empty()
         || !demands.resources.is_empty()
         || !demands.goals.is_empty()
         || demands.variables.iter().any(is_open)
@@ -85,6 +94,9 @@ pub(crate) fn search(
     options: &Options,
     termination: &mut dyn Termination,
 ) -> Result<Outcome, TimeOverflow> {
+    if let Some(outcome) = controllable::first_plan(network, model, options, termination)? {
+        return Ok(outcome);
+    }
     let has_goals = !model.demands.goals.is_empty();
     let mut searching = Searching {
         network,

@@ -7,6 +7,7 @@
 mod answer;
 mod antichain;
 mod conditions;
+mod controllable;
 mod demanding;
 mod demands;
 mod enclosed;

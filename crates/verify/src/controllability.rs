@@ -52,13 +52,18 @@ enum Origin {
 /// Why no strategy keeps all of `edges`, if none does. `points` is the number of points.
 ///
 /// Constraints that follow from constraints that follow from shortest durations are found in as many rounds as they are
-/// deep, at most one for each link: O(links² · edges · log points + links · points · edges) at worst.
+/// deep, at most one for each link; in each, only those links are looked at again from whose ends something new can be
+/// reached: O(links² · edges · log points + links · points · edges) at worst.
 pub(crate) fn refute_dynamic(points: usize, edges: &[Edge], links: &[Link]) -> Option<Vec<Part>> {
     let mut steps = given(edges, links);
-    let mut known: BTreeMap<(u32, u32, Option<usize>), i128> = BTreeMap::new();
+    // The tightest step of each kind that was found, by its place.
+    let mut known: BTreeMap<(u32, u32, Option<usize>), u32> = BTreeMap::new();
+    let mut is_tightest = vec![true; steps.len()];
+    let mut looked_beyond: Vec<Vec<u32>> = vec![Vec::new(); links.len()];
+    let mut open: Vec<usize> = (0..links.len()).collect();
     for round in 0..=links.len() {
-        let longest = (0..).zip(&steps);
-        let longest = longest.map(|(reason, step): (u32, &Step)| Edge {
+        let longest = (0..).zip(&steps).zip(&is_tightest).filter(|(_, is_tightest)| **is_tightest);
+        let longest = longest.map(|((reason, step), _): ((u32, &Step), _)| Edge {
             from: step.from,
             to: step.to,
             weight: step.weight,
@@ -71,16 +76,26 @@ pub(crate) fn refute_dynamic(points: usize, edges: &[Edge], links: &[Link]) -> O
         if round == links.len() {
             break;
         }
-        let found: Vec<Step> =
-            (0..links.len()).flat_map(|link| before_the_end(link, links, &graph, &steps)).collect();
-        let before = steps.len();
-        for step in found {
-            let weight = known.entry((step.from, step.to, step.awaited)).or_insert(i128::MAX);
-            if step.weight < *weight {
-                *weight = step.weight;
-                steps.push(step);
-            }
+        let mut found = Vec::new();
+        for &link in &open {
+            looked_beyond[link] = before_the_end(link, links, &graph, &steps, &mut found);
         }
+        let (mut has_new, before) = (vec![false; points], steps.len());
+        for step in found {
+            let kind = (step.from, step.to, step.awaited);
+            if let Some(&tightest) = known.get(&kind) {
+                if steps[tightest as usize].weight <= step.weight {
+                    continue;
+                }
+                is_tightest[tightest as usize] = false;
+            }
+            known.insert(kind, steps.len() as u32);
+            has_new[step.from as usize] = true;
+            is_tightest.push(true);
+            steps.push(step);
+        }
+        let sees_new = |link: &usize| looked_beyond[*link].iter().any(|&point| has_new[point as usize]);
+        open = (0..links.len()).filter(sees_new).collect();
         if steps.len() == before {
             break;
         }
@@ -109,17 +124,41 @@ fn given(edges: &[Edge], links: &[Link]) -> Vec<Step> {
     steps
 }
 
+/// How a point is reached from a link's end.
+#[derive(Clone, Copy, Debug)]
+struct Reached {
+    /// The distance, less the difference of the potentials.
+    reduced: i128,
+    /// The last step; none at the end itself.
+    by: Option<u32>,
+    /// Whether the way leads through a point before the end: what follows for the point follows from that one, too.
+    is_implied: bool,
+}
+
 /// What must happen before a link's end is seen, as constraints on its start. Points are looked at in the order of
-/// distance from the end; one that is before it is not looked beyond, since the constraint on the start leads there.
-fn before_the_end(place: usize, links: &[Link], graph: &Distances, steps: &[Step]) -> Vec<Step> {
+/// distance from the end; the constraint on the start leads to one that is before it, so that from there on only that is
+/// found out what follows anyway. Returns the points that were looked beyond.
+fn before_the_end(
+    place: usize,
+    links: &[Link],
+    graph: &Distances,
+    steps: &[Step],
+    found: &mut Vec<Step>,
+) -> Vec<u32> {
     let link = &links[place];
     let potential = graph.potential();
-    let mut found = Vec::new();
+    let mut looked_beyond = Vec::new();
     let mut is_settled = vec![false; potential.len()];
-    let mut best: Vec<Option<(i128, Option<u32>)>> = vec![None; potential.len()];
-    let mut queue = BinaryHeap::from([Reverse((0_i128, link.end))]);
-    best[link.end as usize] = Some((0, None));
-    while let Some(Reverse((reduced, point))) = queue.pop() {
+    let mut best: Vec<Option<Reached>> = vec![None; potential.len()];
+    // Of two ways of one length the implied one comes first.
+    let mut queue = BinaryHeap::from([Reverse((0_i128, true, link.end))]);
+    best[link.end as usize] = Some(Reached { reduced: 0, by: None, is_implied: false });
+    let mut num_open = 1_usize;
+    while num_open > 0
+        && let Some(Reverse((_, is_own, point))) = queue.pop()
+    {
+        num_open -= usize::from(is_own);
+        let Some(Reached { reduced, is_implied, .. }) = best[point as usize] else { continue };
         if std::mem::replace(&mut is_settled[point as usize], true) {
             continue;
         }
@@ -127,7 +166,7 @@ fn before_the_end(place: usize, links: &[Link], graph: &Distances, steps: &[Step
         let step_to = |to: u32, distance: i128, awaited: Option<usize>, last: Option<u32>| {
             let mut path: Vec<u32> = last.into_iter().collect();
             let mut at = point;
-            while let Some((_, Some(by))) = best[at as usize] {
+            while let Some(Reached { by: Some(by), .. }) = best[at as usize] {
                 path.push(by);
                 at = steps[by as usize].from;
             }
@@ -136,36 +175,47 @@ fn before_the_end(place: usize, links: &[Link], graph: &Distances, steps: &[Step
             let awaited = awaited.filter(|&other| weight < -links[other].lower);
             Step { from: link.start, to, weight, awaited, origin: Origin::Shortest(place, path) }
         };
-        if distance < 0 {
+        let is_before = distance < 0;
+        if is_before && !is_implied {
             found.push(step_to(point, distance, None, None));
-            continue;
+        }
+        if !is_before && !is_implied {
+            looked_beyond.push(point);
         }
         let mut next = Vec::new();
         for edge in graph.edges_from(point) {
             let step = &steps[edge.reason as usize];
-            // Whoever has seen the end waits for it no longer.
-            if step.awaited == Some(place) {
-                continue;
+            if is_before || is_implied {
+                if step.awaited.is_some() {
+                    continue;
+                }
+            } else {
+                // Whoever has seen the end waits for it no longer.
+                if step.awaited == Some(place) {
+                    continue;
+                }
+                let reached = distance + step.weight;
+                if let Some(other) = step.awaited.filter(|&other| reached < -links[other].lower) {
+                    found.push(step_to(step.to, reached, Some(other), Some(edge.reason)));
+                    continue;
+                }
             }
-            let reached = distance + step.weight;
-            if let Some(other) = step.awaited.filter(|&other| reached < -links[other].lower) {
-                found.push(step_to(step.to, reached, Some(other), Some(edge.reason)));
-                continue;
-            }
-            next.push((
-                step.to,
-                reduced + edge.weight + potential[point as usize] - potential[step.to as usize],
-                edge.reason,
-            ));
+            let through = reduced + edge.weight + potential[point as usize] - potential[step.to as usize];
+            next.push((step.to, through, edge.reason));
         }
+        let is_implied = is_before || is_implied;
         for (to, through, by) in next {
-            if best[to as usize].is_none_or(|(known, _)| through < known) {
-                best[to as usize] = Some((through, Some(by)));
-                queue.push(Reverse((through, to)));
+            let is_better = best[to as usize].is_none_or(|known| {
+                through < known.reduced || (through == known.reduced && is_implied && !known.is_implied)
+            });
+            if is_better && !is_settled[to as usize] {
+                best[to as usize] = Some(Reached { reduced: through, by: Some(by), is_implied });
+                num_open += usize::from(!is_implied);
+                queue.push(Reverse((through, !is_implied, to)));
             }
         }
     }
-    found
+    looked_beyond
 }
 
 /// What a cycle of steps depends on.

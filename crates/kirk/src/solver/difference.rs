@@ -5,11 +5,18 @@
 //! all times are settled, the least values satisfy every constraint in force, so that bounds alone decide consistency;
 //! cycles whose weights add up to less than zero are looked for where a bound keeps moving, because bounds would creep
 //! along them for as long as their range allows.
+//!
+//! Of the bounds that wait, the one that has moved furthest since propagation began is carried on first. Where the bounds
+//! before satisfied all constraints but those that are new, what a bound moves another by is at most what it has moved
+//! itself, so that each is carried on once (Cotton and Maler 2006).
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 use typed_index_collections::TiVec;
 
 use super::literal::{Literal, Side, Variable};
-use super::trail::{Cause, Conflict, Trail};
+use super::trail::{self, Cause, Conflict, Trail};
 use crate::ids::{DifferenceId, EventId};
 
 /// `to ≤ from + weight`, as a step from side to side. The literal implies that both ends exist, or it always holds and
@@ -37,9 +44,20 @@ pub(crate) struct Differences {
     steps: TiVec<Side, Vec<Step>>,
     /// By the side that makes their literal hold.
     waiting: TiVec<Side, Vec<DifferenceId>>,
-    /// How often the bound of each side has moved in the present propagation.
-    moves: TiVec<Side, u32>,
+    /// What the present propagation has done to each side.
+    movements: TiVec<Side, Movement>,
     moved: Vec<Side>,
+    /// Bounds to carry on, with how far they have moved.
+    pending: BinaryHeap<(i64, Reverse<EventId>)>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Movement {
+    /// The bound before; counts where the side is among those that moved.
+    before: i64,
+    has_moved: bool,
+    /// How often the bound was carried on.
+    times: u32,
 }
 
 /// After so many moves of one bound the cycle is looked for that may cause them.
@@ -49,7 +67,7 @@ impl Differences {
     pub(crate) fn resize(&mut self, num_variables: usize) {
         self.steps.resize(num_variables * 2, Vec::new());
         self.waiting.resize(num_variables * 2, Vec::new());
-        self.moves.resize(num_variables * 2, 0);
+        self.movements.resize(num_variables * 2, Movement::default());
     }
 
     /// Adds a step.
@@ -110,10 +128,11 @@ impl Differences {
         room.min().unwrap_or(i64::MAX)
     }
 
-    /// Starts counting moves anew.
+    /// Begins a propagation.
     pub(crate) fn begin(&mut self) {
+        self.pending.clear();
         for side in self.moved.drain(..) {
-            self.moves[side] = 0;
+            self.movements[side] = Movement::default();
         }
     }
 
@@ -123,8 +142,8 @@ impl Differences {
         carry(trail, trail.bound(from), Step { to, id, weight, when })
     }
 
-    /// Carries on what an event tells.
-    pub(crate) fn propagate(&mut self, trail: &mut Trail, event: EventId) -> Result<(), Conflict> {
+    /// Looks at the constraints that an event puts in force, and lets its bound wait to be carried on.
+    pub(crate) fn moved(&mut self, trail: &mut Trail, event: EventId) -> Result<(), Conflict> {
         let side = trail.events[event].side;
         for &id in &self.waiting[side] {
             self.check(trail, id)?;
@@ -132,30 +151,45 @@ impl Differences {
         if self.steps[side].is_empty() {
             return Ok(());
         }
-        // A later event of the same side carries more.
-        let bound = trail.bound(side);
-        if bound < trail.events[event].most {
-            return Ok(());
-        }
-        let moves = &mut self.moves[side];
-        *moves += 1;
-        if *moves == 1 {
+        let trail::Event { most, before, .. } = trail.events[event];
+        let movement = &mut self.movements[side];
+        if !std::mem::replace(&mut movement.has_moved, true) {
+            movement.before = before;
             self.moved.push(side);
-        } else if moves.is_multiple_of(MOVES_BEFORE_CYCLE)
-            && let Some(mut reason) = self.negative_cycle(trail, event)
-        {
-            let presence = trail.presence(side.variable());
-            if trail.holds(presence) {
-                reason.push(presence);
-                return Err(reason);
-            }
-            let cause = trail.note(reason);
-            return trail.set(!presence, cause);
         }
-        for &step in &self.steps[side] {
-            carry(trail, bound, step)?;
-        }
+        self.pending.push((movement.before.saturating_sub(most), Reverse(event)));
         Ok(())
+    }
+
+    /// Carries on the bound that has moved furthest. `false` if none waits.
+    pub(crate) fn propagate(&mut self, trail: &mut Trail) -> Result<bool, Conflict> {
+        while let Some((_, Reverse(event))) = self.pending.pop() {
+            let side = trail.events[event].side;
+            // A later event of the same side carries more.
+            let bound = trail.bound(side);
+            if bound < trail.events[event].most {
+                continue;
+            }
+            let times = &mut self.movements[side].times;
+            *times += 1;
+            if times.is_multiple_of(MOVES_BEFORE_CYCLE)
+                && let Some(mut reason) = self.negative_cycle(trail, event)
+            {
+                let presence = trail.presence(side.variable());
+                if trail.holds(presence) {
+                    reason.push(presence);
+                    return Err(reason);
+                }
+                let cause = trail.note(reason);
+                trail.set(!presence, cause)?;
+                return Ok(true);
+            }
+            for &step in &self.steps[side] {
+                carry(trail, bound, step)?;
+            }
+            return Ok(true);
+        }
+        Ok(false)
     }
 
     /// Why a literal holds that a difference is the cause of, or is refuted by.

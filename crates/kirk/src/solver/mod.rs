@@ -337,12 +337,18 @@ impl Solver {
                 for position in 0..self.reached[side].len() {
                     self.activity.insert(self.reached[side][position]);
                 }
-                self.differences.propagate(&mut self.trail, event)?;
+                self.differences.moved(&mut self.trail, event)?;
                 self.alternatives.queue.moved(side);
                 self.disjunctives.queue.moved(side);
                 self.linears.queue.moved(side);
             }
+            if self.differences.propagate(&mut self.trail)? {
+                continue;
+            }
             self.alternatives.propagate(&mut self.trail)?;
+            if self.head < self.trail.events.len() {
+                continue;
+            }
             if let Err(conflict) = self.linears.propagate(&mut self.trail) {
                 self.origin = Origin::Goal;
                 return Err(conflict);
