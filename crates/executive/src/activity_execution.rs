@@ -1,6 +1,7 @@
 //! Who carries an activity out: between its start, which the plan decides, and its end, which is reported.
 
 use exact::{Overflow, Rational, Time};
+use smol_str::SmolStr;
 use tpn::{EventRef, Network, OccurrenceId};
 
 use crate::log::Entry;
@@ -33,6 +34,26 @@ pub enum Ends {
     Never(String),
 }
 
+/// What goes otherwise than it was said when activities were started, from now on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Revision {
+    /// Activities under way, each with how it will go instead.
+    pub executions: Vec<(OccurrenceId, ActivityExecution)>,
+    /// What will be read from the plant, in order of time; instead of all that was to be read.
+    pub readings: Vec<PlantReading>,
+}
+
+/// That the mode of a component of the plant is another one, as far as that can be told.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlantReading {
+    /// When that is found out.
+    pub at: Time,
+    /// The variable that stands for the mode.
+    pub variable: SmolStr,
+    /// Its value from then on.
+    pub value: SmolStr,
+}
+
 /// Carries activities out. Whatever it does must follow from its own inputs: a run is worked out as often as it is
 /// looked at.
 pub trait ActivityExecutor {
@@ -51,6 +72,11 @@ pub trait ActivityExecutor {
 
     /// Activities that were started are given up at `now`: what of them is not over is ended early.
     fn abandon(&mut self, _: &Network, _: &[OccurrenceId], _: Time) {}
+
+    /// What the last start or giving up has changed for others; said once.
+    fn revise(&mut self) -> Option<Revision> {
+        None
+    }
 
     /// All durations that it gives are multiples of this, which is above 0.
     fn granularity(&self) -> Time {

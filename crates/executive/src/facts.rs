@@ -27,6 +27,8 @@ pub struct Facts {
     pub states: Vec<(VariableId, ValueId, Time)>,
     /// By how much levels changed that nobody planned to change, and when.
     pub levels: Vec<(ResourceId, Rational, Time)>,
+    /// What activities that said to set something have brought about instead.
+    pub outcomes: Vec<(LabelId, ValueId)>,
     /// The alternatives that were given up while they ran.
     pub taken_back: Vec<TakenBack>,
     /// Where vehicles stand that no activity of a plan has brought there.
@@ -69,6 +71,9 @@ impl Facts {
         }
         for &(occurrence, _) in &self.begins {
             free_start(&mut changed, occurrence);
+        }
+        for &(label, value) in &self.outcomes {
+            set_outcome(&mut changed, label, value);
         }
         let mut times = vec![None; network.nodes.len()];
         for &(node, time) in &self.happened {
@@ -172,6 +177,15 @@ impl Facts {
             }
         }
     }
+}
+
+/// A label gives another value than the text says.
+fn set_outcome(network: &mut Network, label: LabelId, value: ValueId) {
+    let Some(label) = network.labels.get_mut(label.index()) else { return };
+    let variable = &network.variables[label.literal.variable.index()];
+    let Some(name) = variable.values.get(value.index()) else { return };
+    label.text = format_smolstr!("{}={name}", variable.name);
+    label.literal.values = ValueSet::In(vec![value]);
 }
 
 /// Holds `node` to come between `earliest` and `latest` after the start.

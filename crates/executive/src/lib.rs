@@ -20,7 +20,7 @@ mod uncertain_progress;
 pub mod world;
 mod world_state;
 
-pub use activity_execution::{ActivityExecution, ActivityExecutor, AsPlanned, Ends};
+pub use activity_execution::{ActivityExecution, ActivityExecutor, AsPlanned, Ends, PlantReading, Revision};
 pub use dispatch::Dispatcher;
 pub use facts::Facts;
 pub use log::{Ending, Entry, Happening};

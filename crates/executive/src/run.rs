@@ -15,9 +15,12 @@ use exact::{Bound, Overflow, Rational, Time};
 use rmpl::program::Controllability;
 use smol_str::SmolStr;
 use stn::PointId;
-use tpn::{ArcId, EventEnd, EventRef, Network, NodeId, OccurrenceId, OccurrenceKind, Plan, ResourceId};
+use tpn::{
+    ArcId, EventEnd, EventRef, Network, NodeId, OccurrenceId, OccurrenceKind, Plan, ResourceId, ValueId,
+    VariableId,
+};
 
-use crate::activity_execution::{ActivityExecutor, AsPlanned, Ends};
+use crate::activity_execution::{ActivityExecution, ActivityExecutor, AsPlanned, Ends, PlantReading};
 use crate::adversary::Adversary;
 use crate::dispatch::SettleError;
 use crate::facts::Facts;
@@ -95,6 +98,8 @@ pub fn run_stage(
         odometers: VecDeque::new(),
         extra_m: BTreeMap::new(),
         num_changes: 0,
+        readings: VecDeque::new(),
+        estimated: BTreeMap::new(),
         off_plan: BTreeMap::new(),
         news: Facts::default(),
         plans: Vec::new(),
@@ -127,6 +132,10 @@ struct Run<'a> {
     extra_m: BTreeMap<OccurrenceId, Rational>,
     /// How many of the world's changes have happened.
     num_changes: usize,
+    /// What will be read from the plant, in order of time.
+    readings: VecDeque<PlantReading>,
+    /// What was read from it last; before, it is as it begins.
+    estimated: BTreeMap<VariableId, ValueId>,
     /// How far reservoirs have come off the present plan by what nobody planned.
     off_plan: BTreeMap<ResourceId, Rational>,
     /// What the world has made known against the plan, kept over all replans.
@@ -601,9 +610,9 @@ impl Run<'_> {
             self.write(Happening::Executed { name });
             self.begin(event)?;
         }
-        self.change_states(node);
+        let violation = self.change_states(node);
         self.look_beyond(point)?;
-        Ok(None)
+        Ok(violation)
     }
 
     /// Calls the activity whose start has just happened.
@@ -622,13 +631,33 @@ impl Run<'_> {
         let execution =
             self.executor.start(&self.stage.network, event.occurrence, self.now).map_err(too_late)?;
         self.expect_metres(event.occurrence, &execution).map_err(too_late)?;
-        self.executions.insert(event.occurrence, execution.ends);
+        self.revise();
+        self.expect(event.occurrence, execution);
+        Ok(())
+    }
+
+    /// Takes in how an activity will go.
+    fn expect(&mut self, occurrence: OccurrenceId, execution: ActivityExecution) {
+        self.executions.insert(occurrence, execution.ends);
         self.passes.extend(execution.passes);
         for entry in execution.entries {
             let at = self.coming.partition_point(|(_, before)| before.time <= entry.time);
-            self.coming.insert(at, (event.occurrence, entry));
+            self.coming.insert(at, (occurrence, entry));
         }
-        Ok(())
+    }
+
+    /// Takes in what will go otherwise than it was said.
+    fn revise(&mut self) {
+        let Some(revision) = self.executor.revise() else { return };
+        for (occurrence, mut execution) in revision.executions {
+            if !self.executions.contains_key(&occurrence) {
+                continue;
+            }
+            self.coming.retain(|(of, entry)| *of != occurrence || entry.time <= self.now);
+            execution.entries.retain(|entry| entry.time > self.now);
+            self.expect(occurrence, execution);
+        }
+        self.readings = revision.readings.into();
     }
 
     /// Plans again from now; an answer says why there is no plan.

@@ -90,6 +90,15 @@ impl Effects {
         effects
     }
 
+    /// What gives variables their values at an event.
+    pub(crate) fn given_at(&self, node: NodeId) -> Vec<LabelId> {
+        let given = |effect: &Effect| match effect {
+            Effect::Gives(label) => Some(*label),
+            _ => None,
+        };
+        self.by_node.get(&node).into_iter().flatten().filter_map(given).collect()
+    }
+
     /// The requirements that end at an event.
     pub(crate) fn ending_at(&self, node: NodeId) -> &[LabelId] {
         self.endings.get(&node).map_or(&[], Vec::as_slice)

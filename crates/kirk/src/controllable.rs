@@ -37,8 +37,7 @@ fn is_ordered_by_structure(model: &Model, plan: &Plan) -> bool {
 fn withstands_nature(network: &Network, plan: &Plan, termination: &mut dyn Termination) -> Option<bool> {
     let scale = controllability::scale(network).ok()?;
     let precedences = plan.precedences(network);
-    let faced =
-        controllability::plan_network(network, &plan.selected_arcs, &precedences, scale).ok()?;
+    let faced = controllability::plan_network(network, &plan.selected_arcs, &precedences, scale).ok()?;
     let mut stop = || termination.should_stop(&Stats::default());
     let refutation = faced.refute(network.controllability, &mut stop).ok()?;
     Some(refutation.is_none())

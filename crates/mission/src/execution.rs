@@ -22,7 +22,8 @@ use tpn::{Network, OccurrenceKind, Plan, Supply, Window};
 use crate::ground::Grounds;
 use crate::nature::{self, Nature};
 use crate::planning::{self, Planned, Problem};
-use crate::programs::{ProgramPerformer, Programs};
+use crate::program_executor::ProgramExecutor;
+use crate::programs::Programs;
 use crate::simulation::{self, Courses, Driving, SimulatedDrive};
 use crate::snapshot::{Traverse, VehicleMotion};
 use crate::traverse::Paths;
@@ -100,13 +101,13 @@ pub fn execute(
     if let Some(driving) = &mut driving {
         driving.hurry(chosen);
     }
-    let (programs, _) = Programs::compile(problem.program);
+    let (programs, _) = Programs::compile(problem.program, Some(problem.network));
     let mut as_planned = AsPlanned;
     let others: &mut dyn ActivityExecutor = match &mut driving {
         Some(driving) => driving,
         None => &mut as_planned,
     };
-    let mut executor = ProgramPerformer::new(&programs, disturbances, None, others);
+    let mut executor = ProgramExecutor::new(&programs, disturbances, None, others);
     let granularity = executor.granularity();
     let grid = world.times(&planned.network).map_err(PlanError::from);
     let stage = grid.and_then(|mut grid| {

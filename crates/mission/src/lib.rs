@@ -25,6 +25,7 @@ pub mod paths_json;
 pub mod planning;
 pub mod problem;
 pub mod program_chance;
+pub mod program_executor;
 pub mod programs;
 mod reading;
 pub mod request;

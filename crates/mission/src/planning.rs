@@ -22,7 +22,7 @@ use crate::driving::{self, Drive};
 use crate::ground::{FreeSpace, Grounds};
 use crate::listing::{self, Listed};
 use crate::meetings;
-use crate::programs;
+use crate::programs::{self, Programs};
 use crate::separation;
 use crate::simulation::nearest_free;
 use crate::snapshot::{
@@ -561,7 +561,8 @@ fn conclude(
     let separation_violations = separation::violations(&drives, &motions, world);
     warnings.extend(separation::warnings(&separation_violations, &drives, &network, world));
     if let Some(plan) = outcome.plans.first() {
-        warnings.extend(programs::overlaps(problem.program, &network, plan));
+        let (programs, _) = Programs::compile(problem.program, Some(&network));
+        warnings.extend(programs::overlaps(&programs, &network, plan));
     }
     let undrivable: Vec<Undrivable> = inserted
         .into_values()

@@ -1,40 +1,41 @@
-//! The control programs of a mission: compiled against their plant, and run when an activity that names one is started.
-//!
-//! All programs of a mission control one plant. It stays as a program leaves it, and so does what is believed of it, so
-//! that a later program goes on from there. A plant takes commands of one program at a time.
+//! The control programs of a mission, compiled against their plant.
 
-use std::collections::BTreeMap;
-use std::fmt::Write as _;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use exact::{Bound, Overflow, Time};
-use executive::model_based::{Estimation, Estimator, Options, Run, StepInput, StepRecord, System};
-use executive::{ActivityExecution, ActivityExecutor, Disturbance, Ends, Entry, Happening};
-use plant::{Belief, Model, Random, State};
-use rmpl::program::{Name, Program};
-use rmpl::{Code, Diagnostic};
+use exact::Time;
+use executive::Disturbance;
+use executive::model_based::System;
+use plant::{ComponentId, Model};
+use rmpl::control::Name as ControlName;
+use rmpl::program::{Name, PrimitiveDecl, Program, Runs};
+use rmpl::{Code, Diagnostic, Span};
 use smol_str::SmolStr;
-use tpn::{Network, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Plan};
+use tpn::{Network, NodeId, Occurrence, OccurrenceKind, Plan};
 
 use crate::review::TimeRange;
 use crate::review::distances::Distances;
 
-/// The programs of a mission, by the activity that runs each.
+/// The programs of a mission, by the activity that runs each and what it hands over.
 #[derive(Clone, Debug, Default)]
 pub struct Programs {
-    systems: BTreeMap<SmolStr, Arc<System>>,
+    systems: BTreeMap<Runner, Arc<System>>,
     /// How long a step takes, in mission units.
     step: Time,
 }
 
-/// A program is given up after this many steps, even if its activity may last forever.
-const MAX_STEPS: i64 = 1000;
+/// An activity and what it hands to its control program.
+type Runner = (SmolStr, Vec<SmolStr>);
+
+/// The place of names that no control block has written.
+const ELSEWHERE: Span = Span { start: u32::MAX, end: u32::MAX };
 
 impl Programs {
-    /// Compiles the programs that the primitives of `program` run, and says what is wrong with them.
+    /// Compiles the programs that the primitives of `program` run, and says what is wrong with them. One that is handed
+    /// what the activity is called with is compiled for each call in `network`.
     ///
     /// A control block with mistakes of its own has been reported by the language, and gives no programs here.
-    pub fn compile(program: &Program) -> (Self, Vec<Diagnostic>) {
+    pub fn compile(program: &Program, network: Option<&Network>) -> (Self, Vec<Diagnostic>) {
         let mut programs = Self { systems: BTreeMap::new(), step: program.options.control_step };
         let mut found = Vec::new();
         for extra in program.control.iter().skip(1) {
@@ -53,33 +54,56 @@ impl Programs {
             return (programs, found);
         }
         let offset = block.map_or(0, |block| block.text_span.start);
-        for (primitive, name) in runners {
+        for (primitive, runs) in runners {
+            let name = &runs.program;
             let Some(definition) = parsed.file.definitions.iter().find(|it| it.name.text == name.text) else {
                 let known = parsed.file.definitions.iter().map(|it| it.name.text.as_str());
                 found.push(unknown(name, block.is_some(), rmpl::control::nearest(&name.text, known)));
                 continue;
             };
-            if !definition.parameters.is_empty() {
-                let message = format!("`{}` has parameters and cannot be run by itself", name.text);
-                found.push(Diagnostic::error(Code("E-ARITY"), name.span, message));
+            if definition.parameters.len() != runs.arguments.len() {
+                found.push(arity(name, definition.parameters.len(), runs.arguments.len()));
                 continue;
             }
             if parsed.file.instances.is_empty() {
                 found.push(no_plant(name));
                 continue;
             }
-            let (system, diagnostics) = System::compile_definition(&parsed.file, &name.text);
-            for diagnostic in diagnostics {
-                let diagnostic = moved(diagnostic, offset);
-                if !found.contains(&diagnostic) {
-                    found.push(diagnostic);
+            for (runner, arguments, span) in calls(primitive, runs, network) {
+                if programs.systems.contains_key(&runner) {
+                    continue;
                 }
-            }
-            if let Some(system) = system {
-                programs.systems.insert(primitive.name.text.clone(), system);
+                let main = ControlName { text: name.text.clone(), span: ELSEWHERE };
+                let (system, diagnostics) = System::compile_definition(&parsed.file, &main, &arguments);
+                for diagnostic in diagnostics {
+                    let diagnostic = moved(diagnostic, offset, span);
+                    if !found.contains(&diagnostic) {
+                        found.push(diagnostic);
+                    }
+                }
+                let Some(system) = system else { continue };
+                for argument in
+                    arguments.iter().filter(|argument| !is_of_plant(&system.model, &argument.text))
+                {
+                    let diagnostic = not_of_plant(&system.model, argument, span);
+                    if !found.contains(&diagnostic) {
+                        found.push(diagnostic);
+                    }
+                }
+                programs.systems.insert(runner, system);
             }
         }
         (programs, found)
+    }
+
+    /// Whether some program is handed what its activity is called with.
+    pub fn depend_on_calls(program: &Program) -> bool {
+        program.primitives.iter().any(|primitive| {
+            let handed = primitive.runs.iter().flat_map(|runs| &runs.arguments);
+            handed
+                .into_iter()
+                .any(|argument| primitive.formals.iter().any(|formal| formal.text == argument.text))
+        })
     }
 
     /// Whether there are none.
@@ -88,8 +112,13 @@ impl Programs {
     }
 
     /// The program that an activity runs, with its plant.
-    pub fn system(&self, activity: &str) -> Option<&Arc<System>> {
-        self.systems.get(activity)
+    pub fn system(&self, occurrence: &Occurrence) -> Option<&Arc<System>> {
+        if occurrence.kind != OccurrenceKind::Primitive || self.systems.is_empty() {
+            return None;
+        }
+        let with =
+            |arguments: &[SmolStr]| self.systems.get(&(occurrence.activity.clone(), arguments.to_vec()));
+        with(&occurrence.arguments).or_else(|| with(&[]))
     }
 
     /// How long a step takes, in mission units.
@@ -104,7 +133,7 @@ impl Programs {
             let Disturbance::Fault { activity, component, mode, .. } = disturbance else { continue };
             let occurrence = network.occurrences.iter().find(|occurrence| occurrence.name == *activity);
             let Some(occurrence) = occurrence else { continue };
-            match self.system(&occurrence.activity) {
+            match self.system(occurrence) {
                 None => unknown.push(format!("control program of {activity}")),
                 Some(system) if named(&system.model, component, mode).is_none() => {
                     unknown.push(format!("{component}={mode}"));
@@ -116,26 +145,63 @@ impl Programs {
     }
 }
 
-/// The warning of two programs that may want the plant at once.
+/// The ways in which a primitive is called as far as its control program can tell, each with what that is handed and where
+/// the call is written. One that hands over nothing of its own is called in one way.
+fn calls(
+    primitive: &PrimitiveDecl,
+    runs: &Runs,
+    network: Option<&Network>,
+) -> Vec<(Runner, Vec<ControlName>, Span)> {
+    let formal = |argument: &Name| primitive.formals.iter().position(|formal| formal.text == argument.text);
+    let name = |text: &SmolStr| ControlName { text: text.clone(), span: ELSEWHERE };
+    if runs.arguments.iter().all(|argument| formal(argument).is_none()) {
+        let arguments = runs.arguments.iter().map(|argument| name(&argument.text)).collect();
+        return vec![((primitive.name.text.clone(), Vec::new()), arguments, runs.program.span)];
+    }
+    let is_call = |it: &&Occurrence| {
+        it.kind == OccurrenceKind::Primitive && it.activity == primitive.name.text && !it.arguments.is_empty()
+    };
+    let occurrences = network.into_iter().flat_map(|network| &network.occurrences).filter(is_call);
+    let call = |occurrence: &Occurrence| {
+        let handed = |argument: &Name| match formal(argument) {
+            Some(place) => occurrence.arguments.get(place).map(name),
+            None => Some(name(&argument.text)),
+        };
+        let arguments: Option<Vec<ControlName>> = runs.arguments.iter().map(handed).collect();
+        let runner = (primitive.name.text.clone(), occurrence.arguments.clone());
+        Some((runner, arguments?, occurrence.span.unwrap_or(runs.program.span)))
+    };
+    occurrences.filter_map(call).collect()
+}
+
+/// The warning of two programs that may want the same components at once.
 pub const BUSY: Code = Code("W-PLANT");
 
-/// Warns of activities of `plan` whose control programs may run at the same time: all programs of a mission command one
-/// plant, one at a time.
-pub fn overlaps(program: &Program, network: &Network, plan: &Plan) -> Vec<Diagnostic> {
-    let runs = |activity: &SmolStr| {
-        program.primitives.iter().any(|it| it.name.text == *activity && it.runs.is_some())
-    };
+/// Warns of activities of `plan` that may run at the same time and whose control programs command the same components: one
+/// of them waits for the other.
+pub fn overlaps(programs: &Programs, network: &Network, plan: &Plan) -> Vec<Diagnostic> {
     let is_selected =
         |occurrence: &Occurrence| plan.windows.get(occurrence.start.index()).is_some_and(Option::is_some);
-    let running: Vec<&Occurrence> = (network.occurrences.iter())
-        .filter(|it| it.kind == OccurrenceKind::Primitive && runs(&it.activity) && is_selected(it))
+    let running: Vec<(&Occurrence, BTreeSet<ComponentId>, &Model)> = (network.occurrences.iter())
+        .filter(|it| is_selected(it))
+        .filter_map(|it| programs.system(it).map(|system| (it, system.commanded(), &*system.model)))
         .collect();
     let pairs: Vec<[&Occurrence; 2]> = (running.iter().enumerate())
-        .flat_map(|(index, &second)| running[..index].iter().map(move |&first| [first, second]))
+        .flat_map(|(index, second)| {
+            let share =
+                move |first: &&(&Occurrence, BTreeSet<ComponentId>, &Model)| !first.1.is_disjoint(&second.1);
+            running[..index].iter().filter(share).map(move |first| [first.0, second.0])
+        })
         .collect();
     if pairs.is_empty() {
         return Vec::new();
     }
+    let shared = |pair: &[&Occurrence; 2]| {
+        let of = |one: &Occurrence| running.iter().find(|(other, ..)| std::ptr::eq(*other, one));
+        let (first, second) = (of(pair[0])?, of(pair[1])?);
+        let both = first.1.intersection(&second.1).next()?;
+        Some(first.2.component(*both)?.name.clone())
+    };
     let Some(mut distances) = Distances::new(network, plan) else { return Vec::new() };
     let gaps: Vec<(NodeId, NodeId)> =
         pairs.iter().flat_map(|[a, b]| [(a.end, b.start), (b.end, a.start)]).collect();
@@ -144,19 +210,22 @@ pub fn overlaps(program: &Program, network: &Network, plan: &Plan) -> Vec<Diagno
         |gaps: &[Option<TimeRange>]| gaps.iter().all(|gap| gap.is_none_or(|gap| gap.least.is_negative()));
     (pairs.iter().zip(gaps.chunks(2)))
         .filter(|(_, gaps)| may_overlap(gaps))
-        .filter_map(|([first, second], _)| {
+        .filter_map(|(pair, _)| {
+            let [first, second] = pair;
             let message = format!(
-                "{} and {} may run at the same time, but their programs command one plant: the one that starts second \
-                 would find it taken, and the mission would be stopped",
-                first.name, second.name
+                "{} and {} may run at the same time, and the programs of both command {}: the one that starts second \
+                 waits until the other has ended",
+                first.name,
+                second.name,
+                shared(pair)?
             );
-            let hint = "put one after the other, or run one program that does both";
+            let hint = "put one after the other, or see that the bounds leave time to wait";
             Some(Diagnostic::warning(BUSY, second.span?, message).with_hint(hint))
         })
         .collect()
 }
 
-fn named(model: &Model, component: &str, mode: &str) -> Option<(plant::ComponentId, u8)> {
+pub(crate) fn named(model: &Model, component: &str, mode: &str) -> Option<(plant::ComponentId, u8)> {
     let id = model.component_named(component)?;
     Some((id, model.mode_named(id, mode)?))
 }
@@ -177,197 +246,45 @@ fn no_plant(name: &Name) -> Diagnostic {
         .with_hint("declare its components by DEFCLASS and DEFINSTANCE in the control block")
 }
 
-fn moved(mut diagnostic: Diagnostic, offset: u32) -> Diagnostic {
-    let shift = |span: rmpl::Span| rmpl::Span::new(span.start + offset, span.end + offset);
+fn arity(name: &Name, expected: usize, handed: usize) -> Diagnostic {
+    let names = |count: usize| match count {
+        0 => "no names".to_owned(),
+        1 => "one name".to_owned(),
+        count => format!("{count} names"),
+    };
+    let message = format!("`{}` takes {}, and is handed {}", name.text, names(expected), names(handed));
+    let diagnostic = Diagnostic::error(Code("E-ARITY"), name.span, message);
+    diagnostic
+        .with_hint("hand it components of the plant, or parameters that stand for them: `runs P(EngineA)`")
+}
+
+/// Whether a name is one of a plant's components, variables, modes or values.
+fn is_of_plant(model: &Model, name: &str) -> bool {
+    model.component_named(name).is_some()
+        || model.variable_named(name).is_some()
+        || model.components.iter().flat_map(|component| &component.modes).any(|mode| mode.name == name)
+        || model.variables.iter().flat_map(|variable| &variable.values).any(|value| value == name)
+}
+
+fn not_of_plant(model: &Model, argument: &ControlName, call: Span) -> Diagnostic {
+    let message = format!("the plant has no component `{}` for the program to command", argument.text);
+    let known = model.components.iter().map(|component| component.name.as_str());
+    let nearest = rmpl::control::nearest(&argument.text, known);
+    let diagnostic = Diagnostic::error(Code("E-UNDEF"), call, message);
+    match nearest {
+        Some(nearest) => diagnostic.with_hint(format!("did you mean `{nearest}`?")),
+        None => diagnostic,
+    }
+}
+
+/// A place in a control block as one of the mission; what no block has written is written where it is called.
+fn moved(mut diagnostic: Diagnostic, offset: u32, call: Span) -> Diagnostic {
+    let shift = |span: Span| {
+        if span == ELSEWHERE { call } else { Span::new(span.start + offset, span.end + offset) }
+    };
     diagnostic.span = shift(diagnostic.span);
     for edit in diagnostic.fixes.iter_mut().flat_map(|fix| &mut fix.edits) {
         edit.span = shift(edit.span);
     }
     diagnostic
-}
-
-/// Runs control programs when the executive starts their activities; leaves all other activities to another executor.
-pub struct ProgramPerformer<'run> {
-    programs: &'run Programs,
-    disturbances: &'run [Disturbance],
-    /// Lets components fail by chance.
-    chance: Option<Random>,
-    others: &'run mut dyn ActivityExecutor,
-    /// The plant as the last program left it, and what was believed of it.
-    plant: Option<(State, Belief)>,
-    /// The plant after each step of the last program, and when that was over.
-    history: Vec<(Time, State, Belief)>,
-    /// Which activity controls the plant, and until when; no time if it never stops.
-    control: Option<(SmolStr, Option<Time>)>,
-}
-
-impl<'run> ProgramPerformer<'run> {
-    /// With a seed, components fail by chance; without, only those fail that `disturbances` name.
-    pub fn new(
-        programs: &'run Programs,
-        disturbances: &'run [Disturbance],
-        seed: Option<u64>,
-        others: &'run mut dyn ActivityExecutor,
-    ) -> Self {
-        Self {
-            programs,
-            disturbances,
-            chance: seed.map(Random::new),
-            others,
-            plant: None,
-            history: Vec::new(),
-            control: None,
-        }
-    }
-
-    fn run(
-        &mut self,
-        system: &Arc<System>,
-        network: &Network,
-        id: OccurrenceId,
-        start: Time,
-    ) -> Result<ActivityExecution, Overflow> {
-        let occurrence = &network.occurrences[id.index()];
-        let name = occurrence.name.clone();
-        if let Some((other, until)) = &self.control
-            && until.is_none_or(|until| until > start)
-        {
-            let until = until.map_or_else(String::new, |until| format!(" until {}", until.readable()));
-            let reason = format!("the program of {other} commands the plant{until}");
-            return Ok(ActivityExecution { ends: Ends::Never(reason), ..ActivityExecution::default() });
-        }
-        let step = self.programs.step;
-        let upper = occurrence.arc.and_then(|arc| network.arcs.get(arc.index()));
-        let most_steps = match upper.map(|arc| arc.upper) {
-            // One step more than there is time for shows whether it would have ended later.
-            Some(Bound::Finite(upper)) => {
-                let steps = upper.checked_ratio(step).ok_or(Overflow)?.floor();
-                steps.saturating_add(1).clamp(1, MAX_STEPS)
-            }
-            _ => MAX_STEPS,
-        };
-        let options = Options { seed: self.chance.as_mut().map(Random::next_bits), ..Options::default() };
-        let estimator = Estimator::new(Arc::clone(&system.planner), Estimation::for_model(&system.model));
-        let mut run = match self.plant.take() {
-            Some((state, belief)) => Run::resumed(system, options, estimator, state, belief),
-            None => Run::with_estimator(system, options, estimator),
-        };
-        let mut entries = Vec::new();
-        let mut history = vec![(start, run.true_state().clone(), run.belief().clone())];
-        let mut trouble = None;
-        let mut steps = 0;
-        while !run.is_done() && steps < most_steps {
-            steps += 1;
-            let input = self.faults(&system.model, &name, steps);
-            match run.step(&input) {
-                Ok(record) => {
-                    let happening = Happening::Progress { name: name.clone(), text: text(system, record) };
-                    let time = step.checked_mul(steps).and_then(|after| start.checked_add(after));
-                    let time = time.ok_or(Overflow)?;
-                    entries.push(Entry { time, happening });
-                    history.push((time, run.true_state().clone(), run.belief().clone()));
-                }
-                Err(error) => {
-                    trouble = Some(format!("step {steps} of the program cannot be taken: {error}"));
-                    break;
-                }
-            }
-        }
-        let ends = match trouble {
-            Some(trouble) => Ends::Never(trouble),
-            None if run.is_done() => Ends::After(step.checked_mul(steps).ok_or(Overflow)?),
-            None => Ends::Never(format!("its program did not reach its end in {steps} steps")),
-        };
-        self.plant = Some((run.true_state().clone(), run.belief().clone()));
-        let until = match &ends {
-            Ends::After(duration) => Some(start.checked_add(*duration).ok_or(Overflow)?),
-            _ => None,
-        };
-        self.history = history;
-        self.control = Some((name, until));
-        Ok(ActivityExecution { ends, entries, ..ActivityExecution::default() })
-    }
-
-    /// Programs of activities that are given up command nothing any more; the plant is as they had brought it by then.
-    fn stop_programs(&mut self, network: &Network, of: &[OccurrenceId], now: Time) {
-        let is_given_up = |name: &SmolStr| of.iter().any(|id| network.occurrences[id.index()].name == *name);
-        if self
-            .control
-            .as_ref()
-            .is_none_or(|(name, until)| !is_given_up(name) || until.is_some_and(|until| until <= now))
-        {
-            return;
-        }
-        let by_then = self.history.iter().rfind(|(at, ..)| *at <= now);
-        if let Some((_, state, belief)) = by_then {
-            self.plant = Some((state.clone(), belief.clone()));
-        }
-        self.control = None;
-    }
-
-    /// The faults of one step.
-    fn faults(&self, model: &Model, activity: &SmolStr, step: i64) -> StepInput {
-        let mut input = StepInput::default();
-        for disturbance in self.disturbances {
-            if let Disturbance::Fault { activity: at, step: when, component, mode } = disturbance
-                && at == activity
-                && i64::from(*when) == step
-                && let Some((component, mode)) = named(model, component, mode)
-            {
-                input.injected.insert(component, mode);
-            }
-        }
-        input
-    }
-}
-
-impl ActivityExecutor for ProgramPerformer<'_> {
-    fn start(
-        &mut self,
-        network: &Network,
-        occurrence: OccurrenceId,
-        start: Time,
-    ) -> Result<ActivityExecution, Overflow> {
-        let activity = network.occurrences.get(occurrence.index()).map_or("", |it| it.activity.as_str());
-        match self.programs.system(activity).cloned() {
-            Some(system) => self.run(&system, network, occurrence, start),
-            None => self.others.start(network, occurrence, start),
-        }
-    }
-
-    fn whereabouts(&self, network: &Network, of: &[OccurrenceId], now: Time) -> Vec<(u32, [f64; 2])> {
-        self.others.whereabouts(network, of, now)
-    }
-
-    fn abandon(&mut self, network: &Network, of: &[OccurrenceId], now: Time) {
-        self.others.abandon(network, of, now);
-        self.stop_programs(network, of, now);
-    }
-
-    fn granularity(&self) -> Time {
-        let others = self.others.granularity();
-        if self.programs.is_empty() {
-            return others;
-        }
-        // A part too small to be kept is found out when the plan is made ready.
-        self.programs.step.common_part(others).unwrap_or(others)
-    }
-}
-
-/// What a step did, in words: commands, then what is estimated to have changed.
-fn text(system: &System, record: &StepRecord) -> String {
-    let model = &system.model;
-    let commands: Vec<String> =
-        model.command_names(&record.commands).iter().map(|(name, value)| format!("{name}.{value}")).collect();
-    let commands = if commands.is_empty() { "no command".to_owned() } else { commands.join(", ") };
-    let mut text = format!("step {}: {commands}", record.trace.step);
-    for (&component, &mode) in &record.input.injected {
-        let name = model.component(component).map_or("?", |component| component.name.as_str());
-        let _ = write!(text, "; {name} comes into {}", model.mode_name(component, mode));
-    }
-    let found: Vec<String> = record.conflicts.iter().map(|conflict| conflict.describe(model)).collect();
-    if !found.is_empty() {
-        let _ = write!(text, "; {}", found.join("; "));
-    }
-    text
 }

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use exact::Time;
-use rmpl::program::{ControlDecl, Name, Program};
+use rmpl::program::{ControlDecl, Program, Runs};
 use rmpl::spans::{Spans as _, difference};
 use rmpl::{Diagnostic, Edit, Parse, Severity};
 use smol_str::SmolStr;
@@ -53,7 +53,9 @@ struct Compiled {
 #[derive(Debug)]
 struct CompiledPrograms {
     control: Vec<ControlDecl>,
-    runners: Vec<(SmolStr, Name)>,
+    runners: Vec<(SmolStr, Runs)>,
+    /// What activities are called with whose programs are handed that.
+    calls: Vec<(SmolStr, Vec<SmolStr>)>,
     step: Time,
     programs: Arc<Programs>,
     found: Vec<Diagnostic>,
@@ -118,25 +120,39 @@ impl Reading {
         Some(self.compiled.as_ref()?.network.as_ref()?.key)
     }
 
-    /// The control programs that the mission's activities run, compiled once for each content.
-    pub(crate) fn programs(&mut self) -> Arc<Programs> {
+    /// Compiles the control programs that the mission's activities run, once for each content.
+    fn compile_programs(&mut self, network: Option<&Network>) {
         let program = self.program();
-        let runners: Vec<(SmolStr, Name)> = (program.value.primitives.iter())
+        let runners: Vec<(SmolStr, Runs)> = (program.value.primitives.iter())
             .filter_map(|primitive| Some((primitive.name.text.clone(), primitive.runs.clone()?)))
             .collect();
+        let is_handed = |activity: &SmolStr| {
+            runners.iter().any(|(name, runs)| name == activity && !runs.arguments.is_empty())
+        };
+        let occurrences = network.into_iter().flat_map(|network| &network.occurrences);
+        let mut calls: Vec<(SmolStr, Vec<SmolStr>)> = occurrences
+            .filter(|it| is_handed(&it.activity))
+            .map(|it| (it.activity.clone(), it.arguments.clone()))
+            .collect();
+        calls.sort_unstable();
+        calls.dedup();
         let step = program.value.options.control_step;
-        let known = self.programs.as_ref().filter(|known| {
-            known.control == program.value.control && known.runners == runners && known.step == step
+        let is_known = self.programs.as_ref().is_some_and(|known| {
+            known.control == program.value.control
+                && known.runners == runners
+                && known.calls == calls
+                && known.step == step
         });
-        if let Some(known) = known {
-            return Arc::clone(&known.programs);
+        if !is_known {
+            let (programs, found) = Programs::compile(&program.value, network);
+            let (control, programs) = (program.value.control.clone(), Arc::new(programs));
+            self.programs = Some(CompiledPrograms { control, runners, calls, step, programs, found });
         }
-        let (programs, found) = Programs::compile(&program.value);
-        let programs = Arc::new(programs);
-        let control = program.value.control.clone();
-        self.programs =
-            Some(CompiledPrograms { control, runners, step, programs: Arc::clone(&programs), found });
-        programs
+    }
+
+    /// The control programs of the network that was compiled last.
+    pub(crate) fn programs(&self) -> Arc<Programs> {
+        self.programs.as_ref().map_or_else(Arc::default, |known| Arc::clone(&known.programs))
     }
 
     /// The network of `goal`, if no error prevents it, and all that is wrong with the text.
@@ -150,8 +166,8 @@ impl Reading {
             return known.answer();
         }
         let program = self.program();
-        self.programs();
         let (network, found) = tpn::compile(&program.value, &top(&program.value, goal));
+        self.compile_programs(network.as_ref());
         let network = network.map(|network| Keyed { key: keys.fresh(), value: Arc::new(network) });
         let goal = goal.clone();
         let mut compiled = Compiled { goal, network, is_sound: false, found, diagnostics: Vec::new() };
@@ -184,12 +200,22 @@ pub fn compile_scenarios(
 ) -> Option<Vec<Network>> {
     let mut networks = Vec::new();
     let mut is_whole = true;
+    let (_, mut of_programs) = Programs::compile(program, None);
+    let depend_on_calls = Programs::depend_on_calls(program);
     let found = tpn::compile_scenarios(program, |network| {
+        if depend_on_calls {
+            let (_, found) = Programs::compile(program, network.as_ref());
+            for diagnostic in found {
+                if !of_programs.contains(&diagnostic) {
+                    of_programs.push(diagnostic);
+                }
+            }
+        }
         is_whole &= network.is_some();
         networks.extend(network.filter(|_| keep));
     });
     tpn::merge_diagnostics(diagnostics, found);
-    diagnostics.extend(Programs::compile(program).1);
+    diagnostics.extend(of_programs);
     let is_sound = diagnostics.iter().all(|found| found.severity != Severity::Error);
     (is_whole && is_sound).then_some(networks)
 }
@@ -198,7 +224,7 @@ pub fn compile_scenarios(
 pub fn compile(program: &Program, goal: &Goal, diagnostics: &mut Vec<Diagnostic>) -> Option<Network> {
     let (network, found) = tpn::compile(program, &top(program, goal));
     tpn::merge_diagnostics(diagnostics, found);
-    diagnostics.extend(Programs::compile(program).1);
+    diagnostics.extend(Programs::compile(program, network.as_ref()).1);
     network.filter(|_| diagnostics.iter().all(|found| found.severity != Severity::Error))
 }
 

@@ -19,7 +19,8 @@ use crate::execution::{self, Ran};
 use crate::ground::Grounds;
 use crate::nature::{self, Nature};
 use crate::planning::{Planned, Problem};
-use crate::programs::{ProgramPerformer, Programs};
+use crate::program_executor::ProgramExecutor;
+use crate::programs::Programs;
 use crate::robustness::{
     Breaks, Distribution, Faults, Incident, Others, RobustnessSettings, Rocks, Tally, Traverses, Uncertainty,
 };
@@ -57,7 +58,7 @@ impl Sampler {
     ) -> Option<Result<Self, PlanError>> {
         let plan = planned.planning.outcome.plans.first()?;
         let network = &planned.network;
-        let (programs, _) = Programs::compile(program);
+        let (programs, _) = Programs::compile(program, Some(network));
         let courses = (uncertainty.traverses == Traverses::Driven).then(|| {
             let mut courses = Courses::default();
             courses.learn(program, planned);
@@ -123,7 +124,7 @@ impl Sampler {
             Some(driving) => driving,
             None => &mut as_planned,
         };
-        let mut executor = ProgramPerformer::new(&self.programs, &[], fault_seed, others);
+        let mut executor = ProgramExecutor::new(&self.programs, &[], fault_seed, others);
         let ran = execution::execute_stage(
             problem,
             self.stage.clone(),
@@ -294,7 +295,7 @@ fn durations(
     let primitives = network.occurrences.iter().enumerate();
     primitives
         .filter(|(_, occurrence)| occurrence.kind == OccurrenceKind::Primitive && !is_natures(occurrence))
-        .filter(|(_, occurrence)| programs.system(&occurrence.activity).is_none())
+        .filter(|(_, occurrence)| programs.system(occurrence).is_none())
         .filter_map(|(index, occurrence)| {
             let named = uncertainty.durations.get(&occurrence.name);
             let named = named.or_else(|| uncertainty.durations.get(&occurrence.activity));

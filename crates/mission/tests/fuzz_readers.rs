@@ -171,7 +171,7 @@ fn no_document_panics() {
     let mission = rmpl::parse(include_str!("../../../assets/missions/enroute.rmpl"));
     let program = mission.program();
     let network = mission::compile(&program, &mission::Goal::Default, &mut Vec::new()).expect("the example");
-    let (programs, _) = mission::programs::Programs::compile(&program);
+    let (programs, _) = mission::programs::Programs::compile(&program, Some(&network));
     fuzz(&DOCUMENTS, |text| {
         if let Ok(script) = serde_json::from_str::<Script>(text) {
             let _ =

@@ -163,7 +163,7 @@ fn disturbances_of_what_the_mission_does_not_have_are_refused() {
     let program = parse.program();
     let mut diagnostics = parse.diagnostics();
     let network = mission::compile(&program, &Goal::Default, &mut diagnostics).expect("it compiles");
-    let (programs, _) = Programs::compile(&program);
+    let (programs, _) = Programs::compile(&program, Some(&network));
     let answer = |json: &str| {
         let script: Script = serde_json::from_str(&format!("{{\"disturbances\": [{json}]}}"))
             .map_err(|error| error.to_string())?;

@@ -203,24 +203,198 @@ fn plan_warnings(source: &str) -> Vec<String> {
 }
 
 #[test]
-fn programs_that_may_run_at_once_are_warned_of_and_the_second_one_stops_the_mission() {
+fn programs_that_command_the_same_and_may_run_at_once_are_warned_of_and_the_second_one_waits() {
     let beside = two_programs("{ Insert(), Survey() }");
     let [warning] = &plan_warnings(&beside)[..] else { panic!("{:?}", plan_warnings(&beside)) };
     assert!(warning.starts_with("W-PLANT Insert#1 and Survey#1 may run at the same time"), "{warning}");
     let (_, ran) = execute(&beside, &[]);
-    assert_eq!(ran.outcome.ending, Ending::Stopped);
-    let reason = ran.outcome.log.iter().find_map(|entry| match &entry.happening {
-        Happening::Violation { reason, .. } => Some(reason.as_str()),
-        _ => None,
-    });
-    assert!(
-        reason.is_some_and(|it| it.contains("the program of Insert#1 commands the plant until 8")),
-        "{reason:?}"
-    );
+    assert_eq!(ran.outcome.ending, Ending::Finished, "{:?}", ran.outcome.log);
+    let (first, second) = (time(&ran, "Insert#1.end"), time(&ran, "Survey#1.end"));
+    // Two steps of two minutes, for the plant is as the first one left it.
+    let lasted = second.zip(first).and_then(|(second, first)| second.checked_sub(first));
+    assert_eq!(lasted, Some(Time::from(4)), "{:?}", ran.outcome.log);
 }
 
 #[test]
 fn programs_one_after_the_other_are_not_warned_of() {
     assert_eq!(plan_warnings(&two_programs("Insert(); Survey()")), Vec::<String>::new());
     assert_eq!(plan_warnings(ORBIT), Vec::<String>::new());
+}
+
+/// Two engines of their own, and a program that starts whichever it is handed; each takes two steps to fire.
+const ENGINES: &str = "
+control {
+  (DEFCLASS Engine () (COMMAND cmd {none on off}) (VAR shown {off warm firing failed} OBSERVABLE)
+    (MODE Off (shown = off)) (MODE Warm (shown = warm)) (MODE Firing (shown = firing)) (MODE Failed (shown = failed))
+    (TRANSITION Off Warm (cmd = on)) (TRANSITION Warm Firing (cmd = on))
+    (TRANSITION Firing Off (cmd = off)) (TRANSITION Warm Off (cmd = off))
+    (FAULT Off Failed 0.01) (FAULT Warm Failed 0.01) (FAULT Firing Failed 0.01))
+  (DEFINSTANCE EngineA Engine INIT Off)
+  (DEFINSTANCE EngineB Engine INIT Off)
+  Fire (e):: (DO-WATCHING (e = Firing) (e = Firing))
+  Try (e):: (DO-WATCHING ((e = Firing) OR (e = Failed)) (e = Firing))
+  Rest (e):: (DO-WATCHING (e = Off) (e = Off))
+}";
+
+fn engines(text: &str) -> String {
+    format!("{text}{ENGINES}")
+}
+
+fn progress(ran: &Ran) -> Vec<(i64, String)> {
+    let text = |entry: &executive::Entry| match &entry.happening {
+        Happening::Progress { name, text } => Some((entry.time.to_f64() as i64, format!("{name} {text}"))),
+        _ => None,
+    };
+    ran.outcome.log.iter().filter_map(text).collect()
+}
+
+fn violations(ran: &Ran) -> Vec<String> {
+    let reason = |entry: &executive::Entry| match &entry.happening {
+        Happening::Violation { reason, .. } => Some(reason.clone()),
+        _ => None,
+    };
+    ran.outcome.log.iter().filter_map(reason).collect()
+}
+
+fn fails(activity: &str, step: u32, component: &str) -> Disturbance {
+    let (activity, component, mode) = (activity.into(), component.into(), "Failed".into());
+    Disturbance::Fault { activity, step, component, mode }
+}
+
+#[test]
+fn programs_that_command_different_components_run_at_once() {
+    let text = engines(
+        "primitive Start(e)[1,9] runs Fire(e);\nscenario S[0,20] = { Start(EngineA), Start(EngineB) }",
+    );
+    assert_eq!(plan_warnings(&text), Vec::<String>::new());
+    let (_, ran) = execute(&text, &[]);
+    assert_eq!(ran.outcome.ending, Ending::Finished, "{:?}", ran.outcome.log);
+    assert_eq!(
+        progress(&ran),
+        [
+            (1, "Start#1 step 1: EngineA.on".to_owned()),
+            (1, "Start#2 step 1: EngineB.on".to_owned()),
+            (2, "Start#1 step 2: EngineA.on".to_owned()),
+            (2, "Start#2 step 2: EngineB.on".to_owned()),
+        ]
+    );
+    assert_eq!([time(&ran, "Start#1.end"), time(&ran, "Start#2.end")], [Some(2.into()); 2]);
+}
+
+/// The plant has one clock: whoever starts between two steps takes its first one with the next.
+#[test]
+fn a_program_that_starts_between_two_steps_joins_the_next() {
+    let text = engines(
+        "option control_step = 2;\nprimitive Start(e)[1,9] runs Fire(e);
+         scenario S[0,20] = { Start(EngineA), { delay[1,1]; Start(EngineB) } }",
+    );
+    let (_, ran) = execute(&text, &[]);
+    assert_eq!(time(&ran, "Start#1.end"), Some(4.into()), "{:?}", ran.outcome.log);
+    assert_eq!(time(&ran, "Start#2.end"), Some(6.into()), "{:?}", ran.outcome.log);
+}
+
+#[test]
+fn a_program_waits_for_the_one_that_commands_its_component() {
+    let text = engines(
+        "primitive Start(e)[1,9] runs Fire(e);\nprimitive Stop(e)[1,9] runs Rest(e);
+         scenario S[0,20] = { Start(EngineA), { delay[1,1]; Stop(EngineA) } }",
+    );
+    let found = plan_warnings(&text);
+    assert!(found.len() == 1 && found[0].contains("the programs of both command EngineA"), "{found:?}");
+    let (_, ran) = execute(&text, &[]);
+    assert_eq!(ran.outcome.ending, Ending::Finished, "{:?}", ran.outcome.log);
+    // Two steps to fire, then one to stop, which began at 1.
+    assert_eq!([time(&ran, "Start#1.end"), time(&ran, "Stop#1.end")], [Some(2.into()), Some(3.into())]);
+    assert_eq!(progress(&ran).last(), Some(&(3, "Stop#1 step 1: EngineA.off".to_owned())));
+}
+
+#[test]
+fn a_program_that_waits_too_long_says_for_whom() {
+    let text = engines(
+        "primitive Start(e)[1,9] runs Fire(e);\nprimitive Stop(e)[1,2] runs Rest(e);
+         scenario S[0,20] = { Start(EngineA), { delay[1,1]; Stop(EngineA) } }",
+    );
+    let (_, ran) = execute(&text, &[fails("Start#1", 1, "EngineA")]);
+    assert_eq!(ran.outcome.ending, Ending::Stopped);
+    let found = violations(&ran);
+    assert!(found[0].contains("its program waits for that of Start#1, which has not ended"), "{found:?}");
+}
+
+#[test]
+fn what_programs_are_handed_is_checked_where_the_activity_is_called() {
+    let of = |text: &str| diagnostics(&engines(text));
+    let found = of("primitive Start()[1,9] runs Fire;\nscenario S[0,20] = { Start() }");
+    assert_eq!(found, ["E-ARITY `Fire` takes one name, and is handed no names"]);
+    let text = engines("primitive Start(e)[1,9] runs Fire(e);\nscenario S[0,20] = { Start(EngineC) }");
+    let parse = rmpl::parse(&text);
+    let mut found = parse.diagnostics();
+    mission::compile(&parse.program(), &Goal::Default, &mut found);
+    let [found] = found.as_slice() else { panic!("{found:?}") };
+    assert_eq!(found.code.0, "E-UNDEF");
+    assert_eq!(&text[found.span.range()], "Start(EngineC)", "{found:?}");
+}
+
+/// The mission relies on what the program was to bring about; the estimate says that it has not.
+#[test]
+fn an_effect_that_the_estimate_denies_is_none_and_the_mission_plans_again() {
+    let text = engines(
+        "state EngineA.mode from plant;\nstate EngineB.mode from plant;
+         primitive StartA()[1,9] runs Try(EngineA) sets EngineA.mode=Firing;
+         primitive StartB()[1,9] runs Try(EngineB) sets EngineB.mode=Firing;
+         primitive BurnA()[5,5] requires EngineA.mode=Firing;
+         primitive BurnB()[5,5] requires EngineB.mode=Firing;
+         scenario S[0,40] = { StartA(); choose { BurnA(), { StartB(); BurnB() } } }",
+    );
+    let (_, ran) = execute(&text, &[]);
+    assert_eq!(ran.outcome.ending, Ending::Finished, "{:?}", ran.outcome.log);
+    assert!(violations(&ran).is_empty(), "{:?}", ran.outcome.log);
+    let (_, ran) = execute(&text, &[fails("StartA#1", 2, "EngineA")]);
+    assert_eq!(ran.outcome.ending, Ending::Finished, "{:?}", ran.outcome.log);
+    assert!(
+        time(&ran, "BurnB#1.end").is_some() && time(&ran, "BurnA#1.end").is_none(),
+        "{:?}",
+        ran.outcome.log
+    );
+    let found = violations(&ran);
+    assert!(found[0].contains("BurnA#1 needs EngineA.mode=Firing"), "{found:?}");
+    let said = progress(&ran);
+    let word = "is over, and EngineA.mode is estimated to be Failed: EngineA.mode=Firing has not come";
+    assert!(said.iter().any(|(_, text)| text.contains(word)), "{said:?}");
+}
+
+/// What a mission relies on may be lost to a program that it did not expect to.
+#[test]
+fn a_mode_that_a_program_changes_is_missed_by_what_needs_it() {
+    let text = engines(
+        "state EngineA.mode from plant;\nprimitive Start(e)[1,9] runs Fire(e);
+         primitive Image()[6,6] requires EngineA.mode=Off;
+         scenario S[0,20] = { Image(), { delay[2,2]; Start(EngineA) } }",
+    );
+    let (_, ran) = execute(&text, &[]);
+    assert_eq!(ran.outcome.ending, Ending::Stopped, "{:?}", ran.outcome.log);
+    let found = violations(&ran);
+    assert!(
+        found[0].contains("Image#1 needs EngineA.mode=Off") && found[0].contains("became Warm at 3"),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn states_of_components_are_checked_against_the_plant() {
+    let of = |text: &str| diagnostics(&engines(text));
+    let sound = "state EngineA.mode from plant;\nprimitive Image()[6,6] requires EngineA.mode=Off;
+        scenario S[0,20] = { Image() }";
+    assert_eq!(of(sound), Vec::<String>::new());
+    assert_eq!(of(&sound.replace("EngineA", "EngineC")), ["E-UNDEF the plant has no component `EngineC`"]);
+    let found = of(&sound.replace("mode=Off", "mode=Of"));
+    assert!(found.len() == 1 && found[0].starts_with("E-VALUE"), "{found:?}");
+    let undeclared = sound.replace("state EngineA.mode from plant;", "");
+    assert_eq!(of(&undeclared), ["E-UNDEF no state variable `EngineA.mode` is declared"]);
+    // The plant is written below, and follows its own edits.
+    let mut parse = rmpl::parse(&engines(sound));
+    let at = parse.text().find("INIT Off").expect("the first engine") as u32 + 5;
+    parse.edit(&rmpl::Edit { span: rmpl::Span::new(at, at + 3), text: "Warm".to_owned() });
+    let variable = &parse.program().variables[0];
+    assert_eq!(variable.initial.as_ref().map(|name| name.text.as_str()), Some("Warm"));
+    assert_eq!(variable.values.len(), 4);
 }

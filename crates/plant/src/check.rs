@@ -6,8 +6,8 @@ use rmpl::control::{Constraint, ConstraintKind, ControlFile, Instance, Name, nea
 use rmpl::{Code, Diagnostic, Span};
 use smol_str::SmolStr;
 
-use crate::inherit::{MergedClass, MergedVariable};
 use crate::probability;
+use rmpl::control::{MergedClass, MergedVariable};
 
 /// Value sets are words of 64 bits.
 const MAX_VALUES: usize = 64;

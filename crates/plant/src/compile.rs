@@ -3,13 +3,12 @@
 use std::collections::BTreeMap;
 
 use num_integer::lcm;
-use rmpl::control::{Constraint, ConstraintKind, ControlFile, Name};
+use rmpl::control::{Constraint, ConstraintKind, ControlFile, MergedClass, MergedVariable, Name, merge_all};
 use rmpl::{Code, Diagnostic, Severity, Span};
 use smol_str::{SmolStr, ToSmolStr as _, format_smolstr};
 
 use crate::check::check;
 use crate::formula::Formula;
-use crate::inherit::{MergedClass, MergedVariable, merge_all};
 use crate::island;
 use crate::model::{
     CommandVariable, CommandVariableId, Component, ComponentId, Fault, Mode, Model, PlantVariable,

@@ -12,7 +12,6 @@ pub mod diagnosis;
 mod domains;
 pub mod exact;
 pub mod formula;
-mod inherit;
 mod island;
 pub mod likelihood;
 pub mod model;

@@ -1,5 +1,6 @@
 //! Precompiled reactive policies: for every component and pair of modes, what to do first (SPEC 9.2).
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use crate::belief::State;
@@ -66,6 +67,27 @@ impl Planner {
     /// The model.
     pub const fn model(&self) -> &Arc<Model> {
         &self.model
+    }
+
+    /// The components that may take commands when these ones are brought into other modes: what their transitions ask of
+    /// others has to be brought about first.
+    pub fn commanded_for(&self, components: impl IntoIterator<Item = ComponentId>) -> BTreeSet<ComponentId> {
+        let mut commanded = BTreeSet::new();
+        let mut open: Vec<ComponentId> = components.into_iter().collect();
+        while let Some(component) = open.pop() {
+            if !commanded.insert(component) {
+                continue;
+            }
+            let steps = self.steps.get(component.0 as usize).into_iter().flatten().flatten();
+            for step in steps {
+                let command = |&(id, _): &(CommandVariableId, u64)| {
+                    self.model.command_variables.get(id.0 as usize).map(|command| command.component)
+                };
+                open.extend(step.commands.iter().filter_map(command));
+                open.extend(step.conditions.iter().map(|&(other, _)| other));
+            }
+        }
+        commanded
     }
 
     /// The first step of a shortest path of a component from one mode to another, were all conditions to hold.

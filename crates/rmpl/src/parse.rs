@@ -8,15 +8,17 @@ use std::sync::Arc;
 
 use exact::{Rational, Time};
 use rustc_hash::{FxHashMap, FxHashSet};
+use smol_str::SmolStr;
 
 use crate::analysis::local::local_diagnostics;
 use crate::analysis::{Checked, DeclarationKey, Index, Meaning, Names, Summary, check, recursion, summarize};
+use crate::control::{ComponentModes, component_modes};
 use crate::diagnostic::{Diagnostic, Edit, Known, Listed, Severity};
 use crate::diagnostics::{syntax, undefined};
 use crate::files::{self, MARK};
 use crate::lower::{Item, Lowering, OptionValue};
 use crate::parser::{Scratch, parse_declaration};
-use crate::program::{Controllability, ImportDecl, Program, TimeUnit};
+use crate::program::{Controllability, ImportDecl, Name, Program, TimeUnit};
 use crate::span::Span;
 use crate::syntax::{DeclarationTree, SyntaxNode};
 
@@ -333,8 +335,30 @@ impl Parse {
                 add(&mut program, item);
             }
         }
+        fill_states_of_plant(&mut program);
         program
     }
+}
+
+/// Gives states that are read from the plant the modes of their components. Of several control blocks the first counts.
+fn fill_states_of_plant(program: &mut Program) {
+    let Program { variables, control, .. } = program;
+    let mut states = variables.iter_mut().filter(|variable| variable.is_from_plant).peekable();
+    let Some(block) = control.first().filter(|_| states.peek().is_some()) else { return };
+    let components = component_modes(&crate::control::parse(&block.text).file);
+    for state in states {
+        let of = |component: &&ComponentModes| state_of_plant(&component.name) == state.name.text;
+        if let Some(component) = components.iter().find(of) {
+            let named = |text: &SmolStr| Name { text: text.clone(), span: state.name.span };
+            state.values = component.modes.iter().map(named).collect();
+            state.initial = Some(named(&component.initial));
+        }
+    }
+}
+
+/// The name of the state that a component's mode is.
+pub(crate) fn state_of_plant(component: &str) -> SmolStr {
+    smol_str::format_smolstr!("{component}.mode")
 }
 
 fn add(program: &mut Program, item: Item) {

@@ -78,6 +78,9 @@ pub struct VariableDecl {
     pub values: Vec<Name>,
     /// The value at the scenario's start, which lasts until something changes it: of a `state` only.
     pub initial: Option<Name>,
+    /// `from plant`: what it is is estimated, and its domain and first value are those of the component (SPEC 15). Both
+    /// are empty where the plant has none of that name.
+    pub is_from_plant: bool,
     /// The whole declaration.
     pub span: Span,
 }
@@ -169,7 +172,7 @@ pub struct PrimitiveDecl {
     /// Present if the primitive is a traverse.
     pub moves: Option<Moves>,
     /// The control program that the primitive runs when it is executed.
-    pub runs: Option<Name>,
+    pub runs: Option<Runs>,
     /// What each activity of it requires, in textual order (SPEC 10.1).
     pub requires: Vec<Requirement>,
     /// What each activity of it changes.
@@ -184,6 +187,15 @@ pub struct PrimitiveDecl {
     pub aborts: Option<Bounds>,
     /// The whole declaration.
     pub span: Span,
+}
+
+/// `runs OrbitInsert(EngineA)`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Runs {
+    /// The control program.
+    pub program: Name,
+    /// What it is handed: names of its plant, or parameters of the primitive that stand for them.
+    pub arguments: Vec<Name>,
 }
 
 /// `requires ARM=OUT` or `requires at start ARM=OUT`

@@ -8,8 +8,8 @@ use crate::program::{
     ActivityDecl, Amount, Argument, ArgumentValue, Bounds, Condition, ConstantDecl, ConstrainDecl,
     ControlDecl, Effect, EventName, Expr, ExprKind, GoalDecl, HeaderBound, HeaderBounds, ImportDecl,
     LocationDecl, Moves, Name, ObjectiveDecl, ObstacleDecl, PrimitiveDecl, Program, Requirement,
-    ResourceDecl, ResourceUse, ScenarioDecl, Statement, StatementKind, Supply, TerrainDecl, VariableDecl,
-    VehicleDecl, World,
+    ResourceDecl, ResourceUse, Runs, ScenarioDecl, Statement, StatementKind, Supply, TerrainDecl,
+    VariableDecl, VehicleDecl, World,
 };
 use crate::span::Span;
 
@@ -108,6 +108,7 @@ spans! {
         world
     }
     Name { span }
+    Runs { program, arguments }
     ControlDecl { text_span, span }
     ConstantDecl { name, value, span }
     VariableDecl { name, values, initial, span }

@@ -161,7 +161,7 @@ fn clauses_stand_in_any_order_and_repeat() {
     );
     let decl = &program("primitive P(v)[1,2] sets A=X moves v speed (1, 2) uses R runs Prog;").primitives[0];
     assert!(decl.moves.is_some());
-    assert_eq!(decl.runs.as_ref().unwrap().text, "Prog");
+    assert_eq!(decl.runs.as_ref().unwrap().program.text, "Prog");
 }
 
 #[test]

@@ -274,6 +274,13 @@ pub struct Variable {
     pub is_lasting: bool,
 }
 
+impl Variable {
+    /// Whether its value is read from the plant: `C.mode` (SPEC 15).
+    pub fn is_read(&self) -> bool {
+        self.is_lasting && self.name.strip_suffix(".mode").is_some()
+    }
+}
+
 /// A resource (SPEC 11).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Resource {

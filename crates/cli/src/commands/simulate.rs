@@ -57,7 +57,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
         return Ok(exit(WRONG));
     };
-    let (programs, _) = mission::programs::Programs::compile(program);
+    let (programs, _) = mission::programs::Programs::compile(program, Some(&network));
     execution::check_disturbances(&network, program, &programs, disturbances).map_err(anyhow::Error::msg)?;
     let (mut grounds, ground) = ground(&args.target.file, &program.world)?;
     let mut paths = Paths::default();

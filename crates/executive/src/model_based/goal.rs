@@ -1,6 +1,6 @@
 //! From asserted constraints to goals that the reactive planner takes.
 
-use plant::{Goal, Model, Planner, State};
+use plant::{ComponentId, Goal, Model, Planner, State};
 use rmpl::control::{Constraint, ConstraintKind};
 
 /// A constraint with more goal configurations is pursued by its first ones only.
@@ -14,6 +14,11 @@ pub(super) struct GoalConfigurations {
 }
 
 impl GoalConfigurations {
+    /// The components that it speaks of.
+    pub(super) fn components(&self) -> impl Iterator<Item = ComponentId> + '_ {
+        self.configurations.iter().flatten().map(|goal| goal.component)
+    }
+
     /// The goals to pursue from a state: of the configurations already reached, then of those in reach, the first.
     ///
     /// `None` for a constraint that can never hold.

@@ -3,12 +3,14 @@
 //! Each step asserts goals, commands the plant towards them, lets nature answer, observes, updates the belief, and
 //! moves the automaton by the most likely state.
 
+mod closed_loop;
 mod estimator;
 mod goal;
 mod monte_carlo;
 mod run;
 mod system;
 
+pub use closed_loop::{ClosedLoop, LoopStep, Program};
 pub use estimator::{Estimation, Estimator};
 pub use monte_carlo::{FaultTally, ProgramTally, Trials, run_seed, sample, wilson_interval};
 pub use run::{Knowledge, Options, Run, StepInput, StepRecord};

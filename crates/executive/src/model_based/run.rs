@@ -4,14 +4,11 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use hca::{Marking, Stepper, TraceStep};
-use plant::successor::nominal;
-use plant::{
-    Belief, Commands, ComponentId, Conflict, EstimateError, Goal, Observation, Random, SimulatedPlant, State,
-    VariableId,
-};
+use plant::{Belief, Commands, ComponentId, Conflict, EstimateError, Observation, Random, State, VariableId};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
+use super::closed_loop::{ClosedLoop, Program};
 use super::estimator::{Estimation, Estimator};
 use super::system::System;
 
@@ -74,21 +71,41 @@ pub struct StepRecord {
 #[derive(Clone, Debug)]
 struct Standing {
     marking: Marking,
-    belief: Belief,
-    state: State,
-    random: Option<Random>,
+    closed: ClosedLoop,
+}
+
+/// The one program of a run.
+#[derive(Clone, Debug)]
+struct Single {
+    system: Arc<System>,
+    stepper: Stepper,
+    steps: u32,
+}
+
+impl Program for Single {
+    fn system(&self) -> &Arc<System> {
+        &self.system
+    }
+
+    fn stepper(&self) -> &Stepper {
+        &self.stepper
+    }
+
+    fn stepper_mut(&mut self) -> &mut Stepper {
+        &mut self.stepper
+    }
+
+    fn steps(&self) -> u32 {
+        self.steps
+    }
 }
 
 /// A run. It owns what it runs, so that it can be kept and stepped on.
 #[derive(Clone, Debug)]
 pub struct Run {
-    system: Arc<System>,
-    options: Options,
+    program: Single,
     estimator: Estimator,
-    stepper: Stepper,
-    plant: SimulatedPlant,
-    belief: Belief,
-    random: Option<Random>,
+    closed: ClosedLoop,
     records: Vec<StepRecord>,
     before: Vec<Standing>,
 }
@@ -103,31 +120,14 @@ impl Run {
 
     /// The same with an estimator that remembers what earlier runs asked.
     pub fn with_estimator(system: &Arc<System>, options: Options, estimator: Estimator) -> Self {
+        let stepper = Stepper::new(&system.automaton);
         Self {
-            options,
             estimator,
-            stepper: Stepper::new(&system.automaton),
-            plant: SimulatedPlant::new(&system.model, None),
-            belief: Belief::certain(system.model.initial_state()),
-            random: options.seed.map(Random::new),
+            closed: ClosedLoop::new(system, options.knowledge, options.seed.map(Random::new)),
+            program: Single { system: Arc::clone(system), stepper, steps: 0 },
             records: Vec::new(),
             before: Vec::new(),
-            system: Arc::clone(system),
         }
-    }
-
-    /// Starts with the plant as an earlier run left it, and with what was believed then.
-    pub fn resumed(
-        system: &Arc<System>,
-        options: Options,
-        estimator: Estimator,
-        state: State,
-        belief: Belief,
-    ) -> Self {
-        let mut run = Self::with_estimator(system, options, estimator);
-        run.plant = SimulatedPlant::new(&system.model, Some(state));
-        run.belief = belief;
-        run
     }
 
     /// Runs again what was logged.
@@ -151,37 +151,36 @@ impl Run {
 
     /// The current marking.
     pub const fn marking(&self) -> &Marking {
-        self.stepper.marking()
+        self.program.stepper.marking()
     }
 
     /// The current belief.
     pub const fn belief(&self) -> &Belief {
-        &self.belief
+        self.closed.belief()
     }
 
     /// The plant's true state.
     pub const fn true_state(&self) -> &State {
-        self.plant.state()
+        self.closed.true_state()
     }
 
     /// Whether the program has ended.
     pub fn is_done(&self) -> bool {
-        self.stepper.is_done()
+        self.program.stepper.is_done()
     }
 
     /// The marked locations, goals and labels of the next step.
     pub fn upcoming(&self) -> TraceStep {
-        TraceStep::at(&self.stepper, self.records.len() as u32 + 1)
+        TraceStep::at(&self.program.stepper, self.records.len() as u32 + 1)
     }
 
     /// Takes back the last step; false if there is none.
     pub fn step_back(&mut self) -> bool {
         let Some(standing) = self.before.pop() else { return false };
         self.records.pop();
-        self.stepper.set_marking(&standing.marking);
-        self.belief = standing.belief;
-        self.plant = SimulatedPlant::new(&self.system.model, Some(standing.state));
-        self.random = standing.random;
+        self.program.stepper.set_marking(&standing.marking);
+        self.program.steps -= 1;
+        self.closed = standing.closed;
         true
     }
 
@@ -196,101 +195,27 @@ impl Run {
 
     /// Takes one step. After an error the run stands where it stood.
     pub fn step(&mut self, input: &StepInput) -> Result<&StepRecord, EstimateError> {
-        let standing = Standing {
-            marking: self.stepper.marking().clone(),
-            belief: self.belief.clone(),
-            state: self.plant.state().clone(),
-            random: self.random.clone(),
-        };
-        match self.advance(input) {
-            Ok(record) => {
-                self.before.push(standing);
-                self.records.push(record);
-                Ok(&self.records[self.records.len() - 1])
-            }
-            Err(error) => {
-                self.plant = SimulatedPlant::new(&self.system.model, Some(standing.state));
-                self.random = standing.random;
-                Err(error)
-            }
-        }
-    }
-
-    fn advance(&mut self, input: &StepInput) -> Result<StepRecord, EstimateError> {
-        let system = Arc::clone(&self.system);
-        let mut trace = self.upcoming();
-        let (commands, unachievable) = self.command();
-        let mut failed = Vec::new();
-        match &mut self.random {
-            Some(random) => {
-                let expected = nominal(&system.model, self.plant.state(), &commands)?;
-                self.plant.step_with_chance(&commands, &input.injected, random)?;
-                let state = self.plant.state();
-                let is_chance = |id: &ComponentId| {
-                    state.mode(*id) != expected.mode(*id) && !input.injected.contains_key(id)
-                };
-                let by_chance = system.model.component_ids().filter(is_chance);
-                failed.extend(by_chance.map(|id| (id, state.mode(id))));
-            }
-            None => self.plant.step(&commands, &input.injected)?,
-        }
-        let mut observation = self.plant.observation();
-        observation.0.extend(&input.observed);
-        let update = self.estimator.estimate(&self.belief, &commands, &observation)?;
-        self.belief = update.belief.clone();
-        let most = match self.options.knowledge {
-            Knowledge::MostLikely => 1,
-            Knowledge::CommonTo(most) => most.max(1),
-        };
-        let shown = if update.is_unexplained { Observation::default() } else { observation.clone() };
-        let estimates: Vec<hca::Estimate> =
-            self.belief.states().take(most).map(|(state, _)| system.estimate(state, &shown)).collect();
-        self.stepper.step_observed(&estimates, &mut trace);
-        Ok(StepRecord {
+        let standing =
+            Standing { marking: self.program.stepper.marking().clone(), closed: self.closed.clone() };
+        let programs = std::slice::from_mut(&mut self.program);
+        let step = self.closed.step(programs, &mut self.estimator, input)?;
+        self.program.steps += 1;
+        self.before.push(standing);
+        // There is one trace for the one program.
+        let trace = step.traces.into_iter().next().unwrap_or_else(|| self.upcoming());
+        self.records.push(StepRecord {
             trace,
             input: input.clone(),
-            commands,
-            unachievable,
-            failed,
-            true_state: self.plant.state().clone(),
-            observation,
-            belief: update.belief,
-            is_unexplained: update.is_unexplained,
-            conflicts: update.conflicts,
-        })
-    }
-
-    /// The commands towards the goals of the marked locations, from the most likely state.
-    fn command(&mut self) -> (Commands, Vec<(SmolStr, String)>) {
-        let system = Arc::clone(&self.system);
-        let state = self.belief.most_likely().clone();
-        let mut goals: Vec<Goal> = Vec::new();
-        let mut unachievable: Vec<(SmolStr, String)> = Vec::new();
-        for location in self.stepper.marking().iter() {
-            let Some(configurations) = system.goal_configurations(location) else { continue };
-            if let Some(found) = configurations.goals(self.estimator.planner(), &state) {
-                goals.extend(found);
-            } else {
-                let label = system
-                    .automaton
-                    .location(location)
-                    .map(|location| location.label.clone())
-                    .unwrap_or_default();
-                let goal = SmolStr::new(label.trim_start_matches("assert "));
-                unachievable.push((goal, "no mode of the plant makes it true".into()));
-            }
-        }
-        goals.sort_unstable();
-        goals.dedup();
-        let next = self.estimator.plan(&state, &goals);
-        let described = next
-            .unreachable
-            .iter()
-            .map(|failed| (failed.goal.describe(&system.model).into(), failed.reason.clone()));
-        unachievable.extend(described);
-        unachievable.sort();
-        unachievable.dedup();
-        (next.commands, unachievable)
+            commands: step.commands,
+            unachievable: step.unachievable,
+            failed: step.failed,
+            true_state: self.closed.true_state().clone(),
+            observation: step.observation,
+            belief: self.closed.belief().clone(),
+            is_unexplained: step.is_unexplained,
+            conflicts: step.conflicts,
+        });
+        Ok(&self.records[self.records.len() - 1])
     }
 
     /// What the run has found out about its plant, for another run.

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use hca::{Automaton, Estimate, VariableId as ProgramVariableId, Vocabulary};
 use plant::{ComponentId, Model, Observation, Planner, State, VariableId};
 use rmpl::control::{
-    Argument, Constraint, ConstraintKind, ControlFile, Expression, ExpressionKind, Name, expand_main, nearest,
+    Argument, Constraint, ConstraintKind, ControlFile, Definition, Expression, ExpressionKind, Name,
+    expand_main, nearest,
 };
 use rmpl::{Code, Diagnostic, Severity};
 use smol_str::SmolStr;
@@ -103,15 +104,25 @@ impl System {
         SystemCompilation { system, program_diagnostics, model_diagnostics }
     }
 
-    /// Compiles the definition called `main` of a file that holds its plant, too. Spans are those of the file.
-    pub fn compile_definition(file: &ControlFile, main: &str) -> (Option<Arc<Self>>, Vec<Diagnostic>) {
+    /// Compiles the definition called `main` of a file that holds its plant, too, with what its parameters stand for. Spans
+    /// are those of the file, and of what is wrong with a name that is handed over, that name's own.
+    pub fn compile_definition(
+        file: &ControlFile,
+        main: &Name,
+        arguments: &[Name],
+    ) -> (Option<Arc<Self>>, Vec<Diagnostic>) {
         let mut file = file.clone();
-        let Some(at) = file.definitions.iter().position(|definition| definition.name.text == main) else {
+        let Some(at) = file.definitions.iter().position(|definition| definition.name.text == main.text)
+        else {
             return (None, Vec::new());
         };
         // The last definition is the one that runs.
-        let definition = file.definitions.remove(at);
-        file.definitions.push(definition);
+        if arguments.is_empty() {
+            let definition = file.definitions.remove(at);
+            file.definitions.push(definition);
+        } else {
+            file.definitions.push(call(main, arguments));
+        }
         let (plant, found) = plant::compile(&file);
         match plant {
             Some(plant) if found.iter().all(|found| found.severity != Severity::Error) => bind(&file, plant),
@@ -140,10 +151,25 @@ impl System {
         estimate
     }
 
+    /// The components that the program commands: those that its goals speak of, and those that these rest on.
+    pub fn commanded(&self) -> BTreeSet<ComponentId> {
+        let goals = self.goal_configurations.iter().flatten();
+        self.planner.commanded_for(goals.flat_map(GoalConfigurations::components))
+    }
+
     /// The configurations of the plant that satisfy what a location asserts, if it asserts anything.
     pub(super) fn goal_configurations(&self, location: hca::LocationId) -> Option<&GoalConfigurations> {
         self.goal_configurations.get(location.0 as usize)?.as_ref()
     }
+}
+
+/// A definition that calls another one.
+fn call(main: &Name, arguments: &[Name]) -> Definition {
+    let arguments = arguments.iter().cloned().map(Argument::Word).collect();
+    let kind = ExpressionKind::Call { name: main.clone(), arguments, bare: false };
+    // No definition that is written has this name.
+    let name = Name { text: SmolStr::new_static("(call)"), span: main.span };
+    Definition { name, parameters: Vec::new(), body: Expression { kind, span: main.span }, span: main.span }
 }
 
 fn bind(file: &rmpl::control::ControlFile, model: Model) -> (Option<Arc<System>>, Vec<Diagnostic>) {

@@ -85,6 +85,7 @@ impl Run<'_> {
             for happening in self.state.abandon(&network, &changing, &used) {
                 self.write(happening);
             }
+            self.revise();
             return Ok(Retreat::Planned);
         }
         Ok(Retreat::Impossible(hindrance))

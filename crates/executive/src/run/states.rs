@@ -6,10 +6,15 @@
 
 use exact::{Overflow, Rational, Time};
 use rmpl::program::Change;
-use tpn::{NodeId, OccurrenceId, OccurrenceKind, ResourceId, Supply, UseId, ValueId, VariableId};
+use smol_str::SmolStr;
+use tpn::{
+    Extent, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind, ResourceId, Supply, UseId, ValueId,
+    ValueSet, VariableId,
+};
 
 use super::{News, Run, Violation, shown};
-use crate::activity_execution::ActivityExecution;
+use crate::activity_execution::{ActivityExecution, PlantReading};
+use crate::log::Happening;
 use crate::plan_network::PlanError;
 use crate::world::WorldChange;
 use crate::world_state::Lack;
@@ -27,7 +32,8 @@ impl Run<'_> {
         loop {
             let driven = self.odometers.front().map(|odometer| odometer.at);
             let changed = self.world.changes().get(self.num_changes).map(WorldChange::at);
-            let next = driven.into_iter().chain(changed).min().filter(|&at| at <= until);
+            let read = self.readings.front().map(|reading| reading.at);
+            let next = driven.into_iter().chain(changed).chain(read).min().filter(|&at| at <= until);
             if next.unwrap_or(until) > self.now
                 && let Some(violation) = self.lack()
             {
@@ -35,7 +41,13 @@ impl Run<'_> {
             }
             let Some(at) = next else { return Ok(None) };
             self.advance(at);
-            let violation = if driven == Some(at) { self.count_metres() } else { self.change_world()? };
+            let violation = if driven == Some(at) {
+                self.count_metres()
+            } else if read == Some(at) {
+                self.read_plant()?
+            } else {
+                self.change_world()?
+            };
             if violation.is_some() {
                 return Ok(violation);
             }
@@ -56,8 +68,9 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// What happens to an event's states and levels is written down, and what is required just then is looked at.
-    pub(super) fn change_states(&mut self, node: NodeId) {
+    /// What happens to an event's states and levels is written down, and what is required just then is looked at. An effect
+    /// on what is read from the plant is what the plant is estimated to be (SPEC 15).
+    pub(super) fn change_states(&mut self, node: NodeId) -> Option<Violation> {
         let stage = &self.stage;
         let happenings = self.state.happen(&stage.network, &stage.plan, &stage.effects, node);
         for &requirement in stage.effects.ending_at(node) {
@@ -69,6 +82,73 @@ impl Run<'_> {
         for happening in happenings {
             self.write(happening);
         }
+        let network = std::sync::Arc::clone(&self.stage.network);
+        let given = self.stage.effects.given_at(node);
+        let violations = given.into_iter().map(|label| self.check_effect(&network, label));
+        violations.collect::<Vec<_>>().into_iter().flatten().next()
+    }
+
+    /// Checks what an activity has set against the estimate: what it relies on is lost where that says otherwise.
+    fn check_effect(&mut self, network: &Network, label: LabelId) -> Option<Violation> {
+        let of = &network.labels[label.index()];
+        let variable = of.literal.variable;
+        let described = &network.variables[variable.index()];
+        if !described.is_read() {
+            return None;
+        }
+        let initial = || {
+            let first = network
+                .labels
+                .iter()
+                .find(|label| label.extent == Extent::Initial && label.literal.variable == variable)?;
+            match &first.literal.values {
+                ValueSet::In(values) => values.first().copied(),
+                ValueSet::NotIn(_) => None,
+            }
+        };
+        let estimated = self.estimated.get(&variable).copied().or_else(initial)?;
+        if of.literal.values.contains(estimated) {
+            return None;
+        }
+        let value = described.values.get(estimated.index()).map_or("", |value| value.as_str());
+        let name =
+            of.owner.map_or_else(SmolStr::default, |owner| network.occurrences[owner.index()].name.clone());
+        let text =
+            format!("is over, and {} is estimated to be {value}: {} has not come", described.name, of.text);
+        self.write(Happening::Progress { name, text });
+        if let Some(happening) = self.state.set_value(network, variable, estimated) {
+            self.write(happening);
+        }
+        self.news.outcomes.push((label, estimated));
+        self.lost_requirement(variable, estimated)
+    }
+
+    /// The plant is found to be otherwise than before. While an activity changes what is read nothing comes of that: what
+    /// it says to have set is checked when it is over.
+    fn read_plant(&mut self) -> Result<Option<Violation>, PlanError> {
+        let Some(PlantReading { variable, value, .. }) = self.readings.pop_front() else { return Ok(None) };
+        let network = std::sync::Arc::clone(&self.stage.network);
+        let Some((variable, value)) = named(&network, &variable, &value) else { return Ok(None) };
+        self.estimated.insert(variable, value);
+        if self.state.value(variable) == Some(value) {
+            return Ok(None);
+        }
+        self.take_value(&network, variable, value)
+    }
+
+    /// A variable has another value, which nobody planned.
+    fn take_value(
+        &mut self,
+        network: &Network,
+        variable: VariableId,
+        value: ValueId,
+    ) -> Result<Option<Violation>, PlanError> {
+        let Some(happening) = self.state.set_value(network, variable, value) else { return Ok(None) };
+        self.write(happening);
+        self.news.states.retain(|&(known, _, at)| (known, at) != (variable, self.now));
+        self.news.states.push((variable, value, self.now));
+        self.end_assertions(variable, value)?;
+        Ok(self.lost_requirement(variable, value))
     }
 
     /// What is not as it must be when the present instant is over.
@@ -159,19 +239,8 @@ impl Run<'_> {
         let network = std::sync::Arc::clone(&self.stage.network);
         match change {
             WorldChange::State { variable, value, .. } => {
-                let is_named = |it: &tpn::Variable| it.is_lasting && it.name == *variable;
-                let Some(index) = network.variables.iter().position(is_named) else { return Ok(None) };
-                let variable = VariableId::from_index(index);
-                let known = network.variables[index].values.iter().position(|known| known == value);
-                let Some(value) = known.map(ValueId::from_index) else { return Ok(None) };
-                let Some(happening) = self.state.set_value(&network, variable, value) else {
-                    return Ok(None);
-                };
-                self.write(happening);
-                self.news.states.retain(|&(known, _, at)| (known, at) != (variable, self.now));
-                self.news.states.push((variable, value, self.now));
-                self.end_assertions(variable, value)?;
-                Ok(self.lost_requirement(variable, value))
+                let Some((variable, value)) = named(&network, variable, value) else { return Ok(None) };
+                self.take_value(&network, variable, value)
             }
             WorldChange::Level { resource, level, .. } => {
                 let is_named = |it: &tpn::Resource| it.name == *resource;
@@ -374,6 +443,14 @@ impl Run<'_> {
         }
         None
     }
+}
+
+/// A variable that keeps its value and one of its values, by their names.
+fn named(network: &Network, variable: &str, value: &str) -> Option<(VariableId, ValueId)> {
+    let is_named = |it: &tpn::Variable| it.is_lasting && it.name == variable;
+    let index = network.variables.iter().position(is_named)?;
+    let known = network.variables[index].values.iter().position(|known| known == value)?;
+    Some((VariableId::from_index(index), ValueId::from_index(known)))
 }
 
 /// A number without its sign.

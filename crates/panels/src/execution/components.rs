@@ -39,7 +39,8 @@ impl Components {
     ) {
         let Some(snapshot) = context.snapshot else { return };
         if self.known.as_ref().is_none_or(|(revision, _)| *revision != snapshot.revision) {
-            self.known = Some((snapshot.revision, Programs::compile(&snapshot.program).0));
+            self.known =
+                Some((snapshot.revision, Programs::compile(&snapshot.program, Some(shown.network)).0));
         }
         let Some((_, programs)) = self.known.as_ref().filter(|(_, programs)| !programs.is_empty()) else {
             return;
@@ -49,7 +50,7 @@ impl Components {
             let Some(occurrence) = shown.network.occurrences.get(pending.occurrence.index()) else {
                 continue;
             };
-            let Some(system) = programs.system(&occurrence.activity) else { continue };
+            let Some(system) = programs.system(occurrence) else { continue };
             let choices = choices(&system.model);
             if choices.is_empty() {
                 continue;

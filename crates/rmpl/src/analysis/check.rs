@@ -83,6 +83,12 @@ pub(crate) struct Meaning<'a> {
 }
 
 impl Meaning<'_> {
+    /// Whether a variable is the state of a component that the plant does not have, which has been reported.
+    pub(crate) fn is_unknown_component(&self, variable: Symbol) -> bool {
+        let definition = self.index.definition(Namespace::Variable, variable);
+        definition.is_some_and(|definition| definition.is_from_plant && definition.values.is_empty())
+    }
+
     /// The domain of a declared variable.
     pub(crate) fn domain(&self, variable: Symbol) -> Option<&[Symbol]> {
         self.index.definition(Namespace::Variable, variable).map(|definition| definition.values.as_slice())
@@ -91,7 +97,7 @@ impl Meaning<'_> {
     /// Whether a declared variable keeps its value until something changes it.
     pub(crate) fn is_state(&self, variable: Symbol) -> bool {
         let definition = self.index.definition(Namespace::Variable, variable);
-        definition.is_some_and(|definition| definition.initial.is_some())
+        definition.is_some_and(|definition| definition.initial.is_some() || definition.is_from_plant)
     }
 
     /// Whether `X_V`, with `X` and `V` given, is about `X` (SPEC 1.3).
@@ -173,6 +179,10 @@ impl<'a> Checker<'a> {
             self.push(duplicate::declaration(definition.namespace, name, definition.span));
             return;
         }
+        if definition.is_from_plant && !self.index.has_component(definition.name) {
+            self.no_component(definition);
+            return;
+        }
         let facts = self.index.facts(definition.name);
         if self.index.scenarios > 0 && is_unused(definition.namespace, facts) {
             let what = match definition.namespace {
@@ -185,6 +195,13 @@ impl<'a> Checker<'a> {
             };
             self.push(unused::unused(what, self.text(definition.name), definition.span));
         }
+    }
+
+    /// The state of a component that the plant does not have.
+    fn no_component(&mut self, definition: &Definition) {
+        let nearest = self.names.nearest(definition.name, self.index.components());
+        let name = self.text(definition.name);
+        self.push(undefined::component(name, definition.span, nearest.as_deref()));
     }
 
     fn option(&mut self, option: &OptionDecl) {

@@ -9,11 +9,13 @@ use smol_str::SmolStr;
 use super::constant;
 use super::index::Namespace;
 use super::names::{Names, Symbol};
-use super::summary::{Call, Definition, Literal, Origin, Summary, Use, UseKind, Vehicle};
+use super::summary::{Call, ComponentState, Definition, Literal, Origin, Summary, Use, UseKind, Vehicle};
+use crate::control::component_modes;
 use crate::lower::{Item, OptionValue};
+use crate::parse::state_of_plant;
 use crate::program::{
-    Argument, ArgumentValue, Bounds, Change, Condition, Expr, ExprKind, HeaderBound, HeaderBounds, LabelMode,
-    Name, PrimitiveDecl, Statement, StatementKind, Supply,
+    Argument, ArgumentValue, Bounds, Change, Condition, ControlDecl, Expr, ExprKind, HeaderBound,
+    HeaderBounds, LabelMode, Name, PrimitiveDecl, Statement, StatementKind, Supply,
 };
 use crate::span::Span;
 
@@ -52,6 +54,9 @@ impl Collector<'_> {
                 self.define(Namespace::Variable, &decl.name, 0, None, values);
                 if let Some(initial) = &decl.initial {
                     self.begins_with(initial);
+                }
+                if let Some(definition) = &mut self.summary.definition {
+                    definition.is_from_plant = decl.is_from_plant;
                 }
             }
             Item::Resource(decl) => {
@@ -131,7 +136,8 @@ impl Collector<'_> {
                 }
                 self.bounds(Some(&decl.bounds));
             }
-            Item::Control(_) | Item::Import(_) => {}
+            Item::Control(decl) => self.components(decl),
+            Item::Import(_) => {}
             Item::Location(decl) => self.define(Namespace::Location, &decl.name, 0, None, Vec::new()),
             Item::Obstacle(decl) => self.define(Namespace::Obstacle, &decl.name, 0, None, Vec::new()),
             Item::Vehicle(decl) => {
@@ -143,6 +149,16 @@ impl Collector<'_> {
     }
 
     /// What the declared variable is at first.
+    fn components(&mut self, decl: &ControlDecl) {
+        let components = component_modes(&crate::control::parse(&decl.text).file);
+        let states = components.into_iter().map(|component| ComponentState {
+            name: self.names.intern(&state_of_plant(&component.name)),
+            modes: component.modes.iter().map(|mode| self.names.intern(mode)).collect(),
+            initial: self.names.intern(&component.initial),
+        });
+        self.summary.components = states.collect();
+    }
+
     fn begins_with(&mut self, initial: &Name) {
         let symbol = self.names.intern(&initial.text);
         if let Some(definition) = &mut self.summary.definition {
@@ -198,6 +214,7 @@ impl Collector<'_> {
             is_contingent: false,
             values,
             initial: None,
+            is_from_plant: false,
             is_activity: false,
             moves: false,
             // The lowest bit says activity or primitive.

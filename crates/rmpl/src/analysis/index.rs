@@ -8,7 +8,7 @@ use smol_str::SmolStr;
 
 use super::alike::Alphabet;
 use super::names::{Names, Symbol};
-use super::summary::{Definition, Literal, Origin, Summary, UseKind};
+use super::summary::{ComponentState, Definition, Literal, Origin, Summary, UseKind};
 use crate::program::LabelMode;
 
 /// A declaration, as long as it is not parsed again.
@@ -144,6 +144,10 @@ pub(crate) struct Index {
     alphabets: [OnceLock<Alphabet>; Namespace::COUNT],
     /// Of names that several declarations define, the one that comes first.
     first_of_rivals: FxHashMap<(Namespace, Symbol), DeclarationKey>,
+    /// What components of the plant can be, by their states' names.
+    components: FxHashMap<Symbol, ComponentState>,
+    /// The declarations of states that are read from the plant.
+    states_of_plant: BTreeSet<DeclarationKey>,
     names_changed_at: [u32; Namespace::COUNT],
     last_change: u32,
     calls_changed: bool,
@@ -171,6 +175,16 @@ impl Index {
             changed_at: 0,
         };
         self.facts.get(symbol.index()).unwrap_or(&NOTHING)
+    }
+
+    /// Whether the plant has a component with a state of this name.
+    pub(crate) fn has_component(&self, state: Symbol) -> bool {
+        self.components.contains_key(&state)
+    }
+
+    /// The names of the states of the plant's components, in no order.
+    pub(crate) fn components(&self) -> impl Iterator<Item = Symbol> + '_ {
+        self.components.keys().copied()
     }
 
     pub(crate) const fn is_strict(&self) -> bool {
@@ -314,9 +328,25 @@ impl Index {
                 self.last_change = self.revision;
             }
         }
+        self.fill_states_of_plant();
         if global_before != self.globals() {
             self.global_changed_at = self.revision;
             self.last_change = self.revision;
+        }
+    }
+
+    /// Gives states that are read from the plant the modes of their components, as these are now.
+    fn fill_states_of_plant(&mut self) {
+        for key in &self.states_of_plant {
+            let Some(Some(definition)) = self.definitions.get_mut(key.index()) else { continue };
+            let component = self.components.get(&definition.name);
+            let initial = component.map(|component| component.initial);
+            let values = component.map_or(&[][..], |component| component.modes.as_slice());
+            if definition.values != values || definition.initial != initial {
+                (definition.values, definition.initial) = (values.to_vec(), initial);
+                self.facts[definition.name.index()].changed_at = self.revision;
+                self.last_change = self.revision;
+            }
         }
     }
 
@@ -358,6 +388,20 @@ impl Index {
             }
             if definition.namespace == Namespace::Scenario {
                 step(&mut self.scenarios);
+            }
+        }
+        for component in &summary.components {
+            if is_added {
+                self.components.entry(component.name).or_insert_with(|| component.clone());
+            } else {
+                self.components.remove(&component.name);
+            }
+        }
+        if summary.definition.as_ref().is_some_and(|definition| definition.is_from_plant) {
+            if is_added {
+                self.states_of_plant.insert(key);
+            } else {
+                self.states_of_plant.remove(&key);
             }
         }
         if let Some(slot) = self.definitions.get_mut(key.index()) {
@@ -499,7 +543,8 @@ fn names_defined<'a>(
         }
         let Some(definition) = &summary.definition else { continue };
         // Among variables, those that keep their value are a kind of their own.
-        let named = (definition.name.index() as u64) << 1 | u64::from(definition.initial.is_some());
+        let named = (definition.name.index() as u64) << 1
+            | u64::from(definition.initial.is_some() || definition.is_from_plant);
         let hash = (named + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let sum = &mut sums[definition.namespace as usize];
         *sum = sum.wrapping_add(hash ^ hash >> 29);

@@ -19,7 +19,11 @@ impl Checker<'_> {
             return;
         }
         let (variable, value) = self.resolve(literal);
-        if literal.origin == Origin::Effect && !self.meaning().is_state(variable) {
+        if self.meaning().is_unknown_component(variable) {
+            return;
+        }
+        let is_of_component = self.text(variable).strip_suffix(".mode").is_some();
+        if (literal.origin == Origin::Effect || is_of_component) && !self.meaning().is_state(variable) {
             self.no_state(literal);
             return;
         }

@@ -26,8 +26,19 @@ pub(crate) struct Summary {
     pub(crate) has_contingents: bool,
     /// A parameter stands for a vehicle that is moved.
     pub(crate) moves_a_parameter: bool,
+    /// The components of the plant that it models.
+    pub(crate) components: Vec<ComponentState>,
     /// Where the declaration begins, behind the comments before it.
     pub(crate) start: u32,
+}
+
+/// What a component of a plant can be, as a state.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct ComponentState {
+    /// `Engine.mode`
+    pub(crate) name: Symbol,
+    pub(crate) modes: Vec<Symbol>,
+    pub(crate) initial: Symbol,
 }
 
 /// A name that the declaration introduces.
@@ -45,6 +56,8 @@ pub(crate) struct Definition {
     pub(crate) values: Vec<Symbol>,
     /// The first value of a state variable, or the location where a vehicle starts.
     pub(crate) initial: Option<Symbol>,
+    /// The domain and the first value of a state variable are those of a component.
+    pub(crate) is_from_plant: bool,
     pub(crate) is_activity: bool,
     /// It is a traverse (SPEC 1.8).
     pub(crate) moves: bool,

@@ -2,42 +2,54 @@
 
 use std::collections::BTreeMap;
 
-use rmpl::control::{Class, Constraint, ControlFile, FieldKind, Name, nearest};
-use rmpl::{Code, Diagnostic, Span};
 use smol_str::SmolStr;
+
+use super::suggest::nearest;
+use super::syntax::{Class, Constraint, ControlFile, FieldKind, Instance, Name};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::span::Span;
 
 /// A variable after inheritance.
 #[derive(Clone, Debug)]
-pub(crate) struct MergedVariable {
-    pub(crate) name: Name,
-    pub(crate) values: Vec<SmolStr>,
-    pub(crate) observable: bool,
-    pub(crate) shows: Option<Name>,
+pub struct MergedVariable {
+    /// As the most specific class writes it.
+    pub name: Name,
+    /// The values that all classes leave it.
+    pub values: Vec<SmolStr>,
+    /// Whether it can be observed.
+    pub observable: bool,
+    /// What it shows, if it says so.
+    pub shows: Option<Name>,
 }
 
 /// A class with all its fields.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct MergedClass<'file> {
+pub struct MergedClass<'file> {
     /// The names of the class and of all that it extends.
-    pub(crate) lineage: Vec<SmolStr>,
-    pub(crate) variables: Vec<MergedVariable>,
-    pub(crate) commands: Vec<MergedVariable>,
-    pub(crate) ports: Vec<(&'file Name, &'file Name)>,
+    pub lineage: Vec<SmolStr>,
+    /// Its variables, those of the most general class first.
+    pub variables: Vec<MergedVariable>,
+    /// Its commands.
+    pub commands: Vec<MergedVariable>,
+    /// Its ports, each with the class of what stands there.
+    pub ports: Vec<(&'file Name, &'file Name)>,
     /// Each mode with the constraints that all hold in it.
-    pub(crate) modes: Vec<(&'file Name, Vec<&'file Constraint>)>,
-    pub(crate) transitions: Vec<(&'file Name, &'file Name, &'file Constraint)>,
-    pub(crate) faults: Vec<(&'file Name, &'file Name, &'file Name)>,
+    pub modes: Vec<(&'file Name, Vec<&'file Constraint>)>,
+    /// From, to and guard.
+    pub transitions: Vec<(&'file Name, &'file Name, &'file Constraint)>,
+    /// From, to and probability.
+    pub faults: Vec<(&'file Name, &'file Name, &'file Name)>,
 }
 
 impl MergedClass<'_> {
     /// The place of a mode.
-    pub(crate) fn mode(&self, name: &str) -> Option<usize> {
+    pub fn mode(&self, name: &str) -> Option<usize> {
         self.modes.iter().position(|(mode, _)| mode.text == name)
     }
 }
 
 /// All classes by name, and what is wrong with them.
-pub(crate) fn merge_all(file: &ControlFile) -> (BTreeMap<SmolStr, MergedClass<'_>>, Vec<Diagnostic>) {
+pub fn merge_all(file: &ControlFile) -> (BTreeMap<SmolStr, MergedClass<'_>>, Vec<Diagnostic>) {
     let mut merger = Merger { classes: BTreeMap::new(), diagnostics: Vec::new(), on_circles: Vec::new() };
     for class in &file.classes {
         if merger.classes.insert(class.name.text.as_str(), class).is_some() {
@@ -57,6 +69,31 @@ pub(crate) fn merge_all(file: &ControlFile) -> (BTreeMap<SmolStr, MergedClass<'_
         }
     }
     (merged, merger.diagnostics)
+}
+
+/// A component of a plant, with what it can be.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ComponentModes {
+    /// The component.
+    pub name: SmolStr,
+    /// Its modes, in the order of its class.
+    pub modes: Vec<SmolStr>,
+    /// The mode that it begins in.
+    pub initial: SmolStr,
+}
+
+/// The components of a plant whose classes have modes, in textual order.
+pub fn component_modes(file: &ControlFile) -> Vec<ComponentModes> {
+    let (classes, _) = merge_all(file);
+    let of = |instance: &Instance| {
+        let class = classes.get(&instance.class.text)?;
+        let modes: Vec<SmolStr> = class.modes.iter().map(|(mode, _)| mode.text.clone()).collect();
+        let first = modes.first()?;
+        let named = instance.initial.as_ref().filter(|initial| modes.contains(&initial.text));
+        let initial = named.map_or_else(|| first.clone(), |initial| initial.text.clone());
+        Some(ComponentModes { name: instance.name.text.clone(), modes, initial })
+    };
+    file.instances.iter().filter_map(of).collect()
 }
 
 struct Merger<'file> {

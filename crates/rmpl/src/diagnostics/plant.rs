@@ -1,4 +1,4 @@
-//! `W-PLANT`: activities whose control programs may want the plant at the same time. Only planning can find it.
+//! `W-PLANT`: activities whose control programs may want the same component at the same time. Only planning can find it.
 
 use crate::diagnostic::{Code, Severity};
 use crate::explanation::Explanation;
@@ -10,14 +10,14 @@ pub const CODE: Code = Code("W-PLANT");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
-    title: "control programs that may run at the same time",
-    meaning: "All control programs of a mission command one plant, which takes commands of one program at a time. The plan
-allows two activities that run programs to overlap: the one that starts second would find the plant taken, and the mission
-would be stopped.",
+    title: "control programs that wait for each other",
+    meaning: "Control programs that command different components of the plant run at once. The plan allows two activities to
+overlap whose programs command the same one: the program that starts second waits until the first one has ended, and its
+activity lasts that much longer.",
     example: "primitive Insert()[6,16] runs OrbitInsert;
 primitive Survey()[4,30] runs TakePictures;
 scenario Day[0,60] = { Insert(), Survey() }",
-    fix: "Put one after the other, or run one program that does both.",
+    fix: "Put one after the other, or leave the second one time to wait.",
     mended: "primitive Insert()[6,16] runs OrbitInsert;
 primitive Survey()[4,30] runs TakePictures;
 scenario Day[0,60] = { Insert(); Survey() }",

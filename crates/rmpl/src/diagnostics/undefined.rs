@@ -105,12 +105,30 @@ pub(crate) fn state(
 ) -> Diagnostic {
     let diagnostic = Diagnostic::error(CODE, span, format!("no state variable `{name}` is declared"));
     change_to(diagnostic, nearest, span).unwrap_or_else(|diagnostic| {
+        if name.strip_suffix(".mode").is_some() {
+            return diagnostic
+                .with_hint("the mode of a component is a state that is read from the plant")
+                .with_fix(insertion(
+                    format!("Add `state {name} from plant`"),
+                    start,
+                    format!("state {name} from plant;\n"),
+                ));
+        }
         let values = if values.is_empty() { &["NONE"] } else { values };
         let first = values.iter().find(|value| Some(**value) != set).or(values.first()).unwrap_or(&"NONE");
         let declaration = format!("state {name} : {{{}}} = {first};\n", values.join(", "));
         diagnostic
             .with_hint("what an activity sets lasts: its declaration says which values it has, and the first")
             .with_fix(insertion(format!("Add `state {name} …`"), start, declaration))
+    })
+}
+
+/// The state of a component that the plant does not have.
+pub(crate) fn component(name: &str, span: Span, nearest: Option<&str>) -> Diagnostic {
+    let component = name.strip_suffix(".mode").unwrap_or(name);
+    let diagnostic = Diagnostic::error(CODE, span, format!("the plant has no component `{component}`"));
+    change_to(diagnostic, nearest, span).unwrap_or_else(|diagnostic| {
+        diagnostic.with_hint("a control block models the plant: `control { (DEFCLASS …) (DEFINSTANCE …) }`")
     })
 }
 

@@ -411,7 +411,14 @@ fn word_in_its_place(word: &str) -> Option<&'static str> {
         "import" => "`import \"file\";`: the declarations of another file of the mission count here, too.",
         "moves" => "`moves V1, V2`: the activity is a traverse; the first vehicle leads.",
         "speed" => "`speed (least, greatest)` in metres per second.",
-        "runs" => "`runs P`: executing the activity runs the control program P.",
+        "runs" => {
+            "`runs P`: executing the activity runs the control program P; `runs P(C)` hands it the component C, or a parameter \
+             of the activity that stands for one."
+        }
+        "mode" | "from" | "plant" => {
+            "`state C.mode from plant;`: a mission reads the mode of the component C as a state. It begins as the plant does, and \
+             is what is most likely while control programs run."
+        }
         "cell" => "`cell 0.6`: metres per cell of the map.",
         "origin" => "`origin (x, y)`: where the map's south-west corner is, in metres.",
         _ => return None,

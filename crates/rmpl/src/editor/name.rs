@@ -94,6 +94,15 @@ pub(super) fn names_in(parse: &Parse, root: SyntaxNode<'_>) -> Vec<NameUse> {
     collector.found
 }
 
+/// Whether `C.mode` stands here: component and modes are names of the control block.
+fn is_mode(dotted: SyntaxNode<'_>) -> bool {
+    dotted
+        .own_tokens()
+        .filter(|token| token.kind == SyntaxKind::Name)
+        .nth(1)
+        .is_some_and(|part| part.text == "mode")
+}
+
 struct Collector<'a> {
     meaning: Meaning<'a>,
     declaration: Span,
@@ -112,7 +121,7 @@ impl<'a> Collector<'a> {
             SyntaxKind::ResourceUse => self.refer(names().next(), NameKind::Resource),
             // `using` and the resource; other words of `do` are keywords.
             SyntaxKind::Do => self.refer(names().nth(1), NameKind::Resource),
-            SyntaxKind::Dotted => self.vehicle(names().next()),
+            SyntaxKind::Dotted if !is_mode(node) => self.vehicle(names().next()),
             SyntaxKind::Naming => self.define(names().nth(1), NameKind::Occurrence),
             SyntaxKind::EventName => self.refer(names().next(), NameKind::Occurrence),
             SyntaxKind::Effect => self.effect(node),
@@ -210,8 +219,10 @@ impl<'a> Collector<'a> {
     /// `X=V` behind `sets`
     fn effect(&mut self, node: SyntaxNode<'a>) {
         let mut names = node.own_tokens().filter(|token| token.kind == SyntaxKind::Name);
-        if node.child(SyntaxKind::Dotted).is_some() {
-            names.for_each(|location| self.refer_to(location, NameKind::Location));
+        if let Some(dotted) = node.child(SyntaxKind::Dotted) {
+            if !is_mode(dotted) {
+                names.for_each(|location| self.refer_to(location, NameKind::Location));
+            }
             return;
         }
         let (Some(variable), value) = (names.next(), names.next()) else { return };
@@ -271,7 +282,10 @@ impl<'a> Collector<'a> {
     }
 
     fn condition(&mut self, node: SyntaxNode<'a>) {
-        if node.child(SyntaxKind::Dotted).is_some() {
+        if let Some(dotted) = node.child(SyntaxKind::Dotted) {
+            if is_mode(dotted) {
+                return;
+            }
             let domain = node.child(SyntaxKind::Domain);
             let places = domain.unwrap_or(node).own_tokens().filter(|token| token.kind == SyntaxKind::Name);
             places.for_each(|location| self.refer_to(location, NameKind::Location));

@@ -71,17 +71,21 @@ fn item(node: SyntaxNode<'_>) -> Option<OutlineItem> {
         _ => return None,
     };
     let wanted = if kind == OutlineKind::Terrain { SyntaxKind::String } else { SyntaxKind::Name };
-    let name = node.own_tokens().filter(|token| token.kind == wanted).nth(nth)?;
+    // The name of a component's state has two parts.
+    let dotted = node.child(SyntaxKind::Dotted).filter(|_| kind == OutlineKind::State);
+    let own =
+        || node.own_tokens().filter(|token| token.kind == wanted).nth(nth).map(|name| (name.text, name.span));
+    let (name, name_span) = dotted.map_or_else(own, |dotted| Some((dotted.text(), dotted.span())))?;
     let body = node.child(SyntaxKind::Block).map(SyntaxNode::span);
     let end = body.map_or(node.span().end, |body| body.start);
     let start = node.span().start;
-    let rest = node.text().get((name.span.end - start) as usize..(end - start) as usize).unwrap_or("");
+    let rest = node.text().get((name_span.end - start) as usize..(end - start) as usize).unwrap_or("");
     let detail: Vec<&str> = rest.trim_matches([';', '=', ' ', '\n']).split_whitespace().collect();
     Some(OutlineItem {
         kind,
-        name: name.text.trim_matches('"').to_owned(),
+        name: name.trim_matches('"').to_owned(),
         detail: detail.join(" "),
-        name_span: name.span,
+        name_span,
         span: node.span(),
     })
 }

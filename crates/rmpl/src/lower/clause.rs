@@ -5,7 +5,7 @@ use super::condition::{Formula, formula, is_condition};
 use super::declaration::{formals, moves};
 use super::{Lowering, name_of, names, variable_in};
 use crate::diagnostics::syntax;
-use crate::program::{Amount, Change, Condition, Effect, Per, PrimitiveDecl, Requirement, ResourceUse};
+use crate::program::{Amount, Change, Condition, Effect, Per, PrimitiveDecl, Requirement, ResourceUse, Runs};
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode};
 
@@ -16,7 +16,7 @@ impl Lowering<'_> {
             formals: formals(node),
             bounds: bounds_in(node),
             moves: node.child(SyntaxKind::Moves).and_then(moves),
-            runs: node.child(SyntaxKind::Runs).and_then(|runs| names(runs).nth(1)),
+            runs: node.child(SyntaxKind::Runs).and_then(runs),
             requires: Vec::new(),
             sets: Vec::new(),
             uses: Vec::new(),
@@ -104,4 +104,10 @@ fn effect(node: SyntaxNode<'_>) -> Option<Effect> {
     let value = name_of(behind.find(|token| is_value(token.kind))?);
     let span = variable.span.cover(value.span);
     Some(Effect { variable, value, span })
+}
+
+/// The first name is the word `runs` itself.
+fn runs(node: SyntaxNode<'_>) -> Option<Runs> {
+    let arguments = node.child(SyntaxKind::Arguments).into_iter().flat_map(names).collect();
+    Some(Runs { program: names(node).nth(1)?, arguments })
 }

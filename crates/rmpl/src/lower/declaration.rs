@@ -75,7 +75,7 @@ pub(super) fn constant(node: SyntaxNode<'_>) -> Option<ConstantDecl> {
 pub(super) fn variable(node: SyntaxNode<'_>) -> Option<VariableDecl> {
     let name = names(node).next()?;
     let values = names(node.child(SyntaxKind::Domain)?).collect();
-    Some(VariableDecl { name, values, initial: None, span: node.span() })
+    Some(VariableDecl { name, values, initial: None, is_from_plant: false, span: node.span() })
 }
 
 /// The text between the braces of a control block.

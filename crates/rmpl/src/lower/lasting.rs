@@ -3,18 +3,28 @@
 use exact::Rational;
 
 use super::bounds::expression;
-use super::names;
+use super::{names, variable_in};
 use crate::program::{GoalDecl, Measure, ObjectiveDecl, ResourceDecl, Supply, VariableDecl};
 use crate::syntax::{SyntaxKind, SyntaxNode};
 
 pub(super) fn state(node: SyntaxNode<'_>) -> Option<VariableDecl> {
+    if node.child(SyntaxKind::FromPlant).is_some() {
+        let name = variable_in(node)?;
+        return Some(VariableDecl {
+            name,
+            values: Vec::new(),
+            initial: None,
+            is_from_plant: true,
+            span: node.span(),
+        });
+    }
     // The first name is the word `state` itself.
     let name = names(node).nth(1)?;
     let values: Vec<_> = names(node.child(SyntaxKind::Domain)?).collect();
     let initial = node.child(SyntaxKind::Initial).and_then(|initial| names(initial).next());
     // A state whose first value is still to be written is one already.
     let initial = initial.or_else(|| values.first().cloned())?;
-    Some(VariableDecl { name, values, initial: Some(initial), span: node.span() })
+    Some(VariableDecl { name, values, initial: Some(initial), is_from_plant: false, span: node.span() })
 }
 
 pub(super) fn resource(node: SyntaxNode<'_>) -> Option<ResourceDecl> {

@@ -108,7 +108,8 @@ fn name_of(token: SyntaxToken<'_>) -> Name {
     Name { text, span: token.span }
 }
 
-/// The variable of a condition or an effect: that of a vehicle's place is one name `V.at`.
+/// The variable of a condition or an effect: that of a vehicle's place is one name `V.at`, that of a component's mode
+/// `C.mode`.
 fn variable_in(node: SyntaxNode<'_>) -> Option<Name> {
     let Some(dotted) = node.child(SyntaxKind::Dotted) else { return names(node).next() };
     let mut parts = names(dotted);

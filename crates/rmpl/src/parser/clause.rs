@@ -56,6 +56,15 @@ impl Parser<'_> {
         let node = self.open();
         self.bump();
         self.declared_name("the name of a control program");
+        if self.at(SyntaxKind::LeftParen) {
+            let arguments = self.open();
+            self.bump();
+            if !self.at(SyntaxKind::RightParen) {
+                self.names_until(SyntaxKind::RightParen, "an argument: a name of the plant, or a parameter");
+            }
+            self.expect_behind(SyntaxKind::RightParen, ")");
+            self.close(arguments, SyntaxKind::Arguments);
+        }
         self.close(node, SyntaxKind::Runs);
     }
 

@@ -162,24 +162,33 @@ impl Parser<'_> {
         }
     }
 
-    /// The name of a variable: that of a vehicle's place is `V.at`.
+    /// The name of a variable: that of a vehicle's place is `V.at`, that of a component's mode `C.mode`.
     pub(super) fn variable_name(&mut self) -> bool {
         if !self.at(SyntaxKind::Name) || self.peek() != SyntaxKind::Dot {
             return self.eat(SyntaxKind::Name);
         }
+        self.dotted_name(&["at", "mode"]);
+        true
+    }
+
+    /// A name, and behind its dot one of these words.
+    pub(super) fn dotted_name(&mut self, words: &[&str]) {
         let node = self.open();
         self.bump();
         self.bump();
         let is_adjacent = self.start_of(self.current) == self.previous_end();
-        if !is_adjacent || !self.eat_word("at") {
-            self.report_expected("`at` right behind `.`: the place of a vehicle is a variable");
+        if !is_adjacent || !words.iter().any(|word| self.eat_word(word)) {
+            self.report_expected(if words.contains(&"at") {
+                "`at` or `mode` right behind `.`: the place of a vehicle and the mode of a component are variables"
+            } else {
+                "`mode` right behind `.`: what a component is like is a state"
+            });
             if self.at(SyntaxKind::Name) {
                 self.bump();
                 self.hush();
             }
         }
         self.close(node, SyntaxKind::Dotted);
-        true
     }
 
     /// The value behind `=`.

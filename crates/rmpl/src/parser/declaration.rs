@@ -85,7 +85,7 @@ impl Parser<'_> {
     }
 
     /// Names separated by commas, at least one; stops before `close`.
-    fn names_until(&mut self, close: SyntaxKind, wanted: &str) {
+    pub(super) fn names_until(&mut self, close: SyntaxKind, wanted: &str) {
         loop {
             if !self.eat(SyntaxKind::Name) {
                 self.report_expected(wanted);

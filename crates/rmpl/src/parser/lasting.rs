@@ -19,8 +19,13 @@ impl Parser<'_> {
         self.close(node, kind);
     }
 
-    /// `state X : {V1, V2} = V1;`
+    /// `state X : {V1, V2} = V1;` or `state C.mode from plant;`
     fn state(&mut self) -> SyntaxKind {
+        if self.at(SyntaxKind::Name) && self.peek() == SyntaxKind::Dot {
+            self.dotted_name(&["mode"]);
+            self.source();
+            return SyntaxKind::StateDecl;
+        }
         self.declared_name("the name of the state");
         if self.expect(SyntaxKind::Colon) || self.at(SyntaxKind::LeftBrace) {
             self.domain();
@@ -34,6 +39,19 @@ impl Parser<'_> {
             self.report_expected("`=` and the value at the start");
         }
         SyntaxKind::StateDecl
+    }
+
+    fn source(&mut self) {
+        let node = self.open();
+        if self.at_word("from") {
+            self.bump();
+            if !self.eat_word("plant") {
+                self.report_expected("`plant`: the control block models it");
+            }
+        } else {
+            self.report_expected("`from plant`: what a component is like is estimated");
+        }
+        self.close(node, SyntaxKind::FromPlant);
     }
 
     /// `resource NAME;`, `resource NAME capacity 3;` or `resource NAME 0..100 = 40;`

@@ -136,7 +136,7 @@ pub enum SyntaxKind {
     Moves,
     /// `speed (a, b)`
     Speed,
-    /// `runs Name`
+    /// `runs Name`, perhaps with arguments.
     Runs,
     /// `(x, y, …)` of a world declaration.
     Coordinates,
@@ -230,8 +230,10 @@ pub enum SyntaxKind {
     NotOf,
     /// Conditions in parentheses.
     ConditionGroup,
-    /// `Rover.at` in a condition or an effect.
+    /// `Rover.at` or `Engine.mode` in a condition or an effect, and in the declaration of the latter.
     Dotted,
+    /// `from plant` of a state.
+    FromPlant,
     /// `as NAME` behind a statement.
     Naming,
     /// `NAME.start` or `NAME.end`

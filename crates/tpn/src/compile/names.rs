@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use rmpl::program::{ArgumentValue, Condition, Program, Statement, StatementKind};
+use rmpl::program::{ArgumentValue, Condition, Program, Statement, StatementKind, VariableDecl};
 use rmpl::{Code, Diagnostic, Span};
 use smol_str::{SmolStr, format_smolstr};
 
@@ -84,7 +84,9 @@ impl<'program> Vocabulary<'program> {
     /// Reads declarations and literals in one pass.
     pub(super) fn new(program: &'program Program) -> Self {
         let mut domains = BTreeMap::new();
-        for declared in &program.variables {
+        // That the plant lacks a component is said once, and not of each of its values.
+        let is_known = |declared: &&VariableDecl| !declared.is_from_plant || !declared.values.is_empty();
+        for declared in program.variables.iter().filter(is_known) {
             let values = declared.values.iter().map(|value| value.text.as_str()).collect();
             domains.entry(declared.name.text.as_str()).or_insert(values);
         }
@@ -184,7 +186,8 @@ impl<'program> Vocabulary<'program> {
     fn check(&self, fact: &Fact, condition: &Condition) -> Result<(), Diagnostic> {
         let Some(domain) = self.domain(fact.variable.as_str()) else {
             return match fact.variable.split_once('.') {
-                None => Ok(()),
+                // The language has said of a component that the plant lacks it.
+                None | Some((_, "mode")) => Ok(()),
                 Some((owner, _)) => {
                     let message =
                         format!("there is no vehicle `{owner}`, so nothing is known of where it is");

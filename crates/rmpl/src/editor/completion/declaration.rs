@@ -64,8 +64,12 @@ fn in_constrain(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
 
 /// `state X : {A, B} = …`
 fn in_state(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
-    if last.kind != SyntaxKind::Equals {
-        return Place::Nothing;
+    match (last.kind, last.text) {
+        (SyntaxKind::Name, "mode") if context.iter().any(|token| token.kind == SyntaxKind::Dot) => {
+            return Place::Words(vec!["from plant"]);
+        }
+        (SyntaxKind::Equals, _) => {}
+        _ => return Place::Nothing,
     }
     let domain = context.iter().skip_while(|token| token.kind != SyntaxKind::LeftBrace);
     let values = domain.filter(|token| token.kind == SyntaxKind::Name);

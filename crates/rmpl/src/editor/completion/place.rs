@@ -45,7 +45,12 @@ pub(super) fn place(context: &[SyntaxToken<'_>]) -> Place {
     let Some(last) = context.last() else { return Place::File };
     if last.kind == Kind::Dot {
         let is_event = context.first().is_some_and(|first| first.text == "constrain");
-        return Place::Words(if is_event { vec!["start", "end"] } else { vec!["at"] });
+        let is_state = context.first().is_some_and(|first| first.text == "state") && context.len() == 3;
+        return Place::Words(match (is_event, is_state) {
+            (true, _) => vec!["start", "end"],
+            (_, true) => vec!["mode"],
+            _ => vec!["at", "mode"],
+        });
     }
     if let Some(place) = in_declaration(context, *last) {
         return place;
@@ -94,11 +99,14 @@ pub(super) fn in_set(context: &[SyntaxToken<'_>], at: usize) -> Option<Place> {
     is_set.then(|| value_of(context, at - 1))
 }
 
-/// The values of the variable before `at`; those of `V.at` are the locations.
+/// The values of the variable before `at`; those of `V.at` are the locations, those of `C.mode` the component's modes.
 pub(super) fn value_of(context: &[SyntaxToken<'_>], at: usize) -> Place {
     let before = |back: usize| at.checked_sub(back).and_then(|at| context.get(at));
     if before(2).is_some_and(|token| token.kind == SyntaxKind::Dot) {
-        return Place::Location;
+        return match (before(3), before(1)) {
+            (Some(owner), Some(part)) if part.text == "mode" => Place::Value(format!("{}.mode", owner.text)),
+            _ => Place::Location,
+        };
     }
     Place::Value(before(1).map_or(String::new(), |name| name.text.to_owned()))
 }

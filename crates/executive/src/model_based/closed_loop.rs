@@ -1,0 +1,187 @@
+//! The closed loop of one step: goals, commands, what nature answers, what is observed, what is believed then (SPEC 9.3).
+//!
+//! One plant may be under several programs at once: each step commands it towards the goals of all of them, and all move on
+//! by the same estimate.
+
+use std::sync::Arc;
+
+use hca::{Stepper, TraceStep};
+use plant::successor::nominal;
+use plant::{
+    Belief, Commands, ComponentId, Conflict, EstimateError, Goal, Observation, Random, SimulatedPlant, State,
+};
+use smol_str::SmolStr;
+
+use super::estimator::Estimator;
+use super::run::{Knowledge, StepInput};
+use super::system::System;
+
+/// A program under way.
+pub trait Program {
+    /// The program with its plant.
+    fn system(&self) -> &Arc<System>;
+
+    /// Where it stands.
+    fn stepper(&self) -> &Stepper;
+
+    /// The same, to move it on.
+    fn stepper_mut(&mut self) -> &mut Stepper;
+
+    /// How many steps it has taken.
+    fn steps(&self) -> u32;
+}
+
+/// A plant under control, with what is believed of it.
+#[derive(Clone, Debug)]
+pub struct ClosedLoop {
+    plant: SimulatedPlant,
+    belief: Belief,
+    random: Option<Random>,
+    knowledge: Knowledge,
+}
+
+/// What happened in one step.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LoopStep {
+    /// What each program did, in the order in which they were given.
+    pub traces: Vec<TraceStep>,
+    /// The commands given.
+    pub commands: Commands,
+    /// Goals that are not pursued, each with the reason.
+    pub unachievable: Vec<(SmolStr, String)>,
+    /// Components that chance brought into another mode than the commanded one, with that mode.
+    pub failed: Vec<(ComponentId, u8)>,
+    /// What was observed.
+    pub observation: Observation,
+    /// Whether nothing that was believed possible explains the observation, which was then left out of account.
+    pub is_unexplained: bool,
+    /// Which mode assumptions the observation contradicts.
+    pub conflicts: Vec<Conflict>,
+}
+
+impl ClosedLoop {
+    /// A plant in its initial state, which is known. With a source of chance components fail with their probabilities.
+    pub fn new(system: &System, knowledge: Knowledge, random: Option<Random>) -> Self {
+        Self {
+            plant: SimulatedPlant::new(&system.model, None),
+            belief: Belief::certain(system.model.initial_state()),
+            random,
+            knowledge,
+        }
+    }
+
+    /// The plant's true state.
+    pub const fn true_state(&self) -> &State {
+        self.plant.state()
+    }
+
+    /// What is believed.
+    pub const fn belief(&self) -> &Belief {
+        &self.belief
+    }
+
+    /// One step of all `programs`, of which there is at least one, with what comes from outside. After an error the plant
+    /// and the programs stand where they stood.
+    pub fn step<P: Program>(
+        &mut self,
+        programs: &mut [P],
+        estimator: &mut Estimator,
+        input: &StepInput,
+    ) -> Result<LoopStep, EstimateError> {
+        let before = (self.plant.state().clone(), self.random.clone());
+        let Some(system) = programs.first().map(|program| Arc::clone(program.system())) else {
+            return Err(EstimateError::Unexplained);
+        };
+        let stepped = self.advance(&system, programs, estimator, input);
+        if stepped.is_err() {
+            self.plant = SimulatedPlant::new(&system.model, Some(before.0));
+            self.random = before.1;
+        }
+        stepped
+    }
+
+    fn advance<P: Program>(
+        &mut self,
+        system: &System,
+        programs: &mut [P],
+        estimator: &mut Estimator,
+        input: &StepInput,
+    ) -> Result<LoopStep, EstimateError> {
+        let upcoming = |program: &P| TraceStep::at(program.stepper(), program.steps() + 1);
+        let mut traces: Vec<TraceStep> = programs.iter().map(upcoming).collect();
+        let (commands, unachievable) = self.command(programs, estimator);
+        let mut failed = Vec::new();
+        match &mut self.random {
+            Some(random) => {
+                let expected = nominal(&system.model, self.plant.state(), &commands)?;
+                self.plant.step_with_chance(&commands, &input.injected, random)?;
+                let state = self.plant.state();
+                let is_chance = |id: &ComponentId| {
+                    state.mode(*id) != expected.mode(*id) && !input.injected.contains_key(id)
+                };
+                let by_chance = system.model.component_ids().filter(is_chance);
+                failed.extend(by_chance.map(|id| (id, state.mode(id))));
+            }
+            None => self.plant.step(&commands, &input.injected)?,
+        }
+        let mut observation = self.plant.observation();
+        observation.0.extend(&input.observed);
+        let update = estimator.estimate(&self.belief, &commands, &observation)?;
+        self.belief = update.belief;
+        let most = match self.knowledge {
+            Knowledge::MostLikely => 1,
+            Knowledge::CommonTo(most) => most.max(1),
+        };
+        let shown = if update.is_unexplained { Observation::default() } else { observation.clone() };
+        for (program, trace) in programs.iter_mut().zip(&mut traces) {
+            let likely = self.belief.states().take(most);
+            let estimates: Vec<hca::Estimate> =
+                likely.map(|(state, _)| program.system().estimate(state, &shown)).collect();
+            program.stepper_mut().step_observed(&estimates, trace);
+        }
+        Ok(LoopStep {
+            traces,
+            commands,
+            unachievable,
+            failed,
+            observation,
+            is_unexplained: update.is_unexplained,
+            conflicts: update.conflicts,
+        })
+    }
+
+    /// The commands towards the goals of the marked locations, from the most likely state.
+    fn command<P: Program>(
+        &self,
+        programs: &[P],
+        estimator: &mut Estimator,
+    ) -> (Commands, Vec<(SmolStr, String)>) {
+        let state = self.belief.most_likely();
+        let mut goals: Vec<Goal> = Vec::new();
+        let mut unachievable: Vec<(SmolStr, String)> = Vec::new();
+        for program in programs {
+            let system = program.system();
+            for location in program.stepper().marking().iter() {
+                let Some(configurations) = system.goal_configurations(location) else { continue };
+                if let Some(found) = configurations.goals(estimator.planner(), state) {
+                    goals.extend(found);
+                } else {
+                    let label = system.automaton.location(location).map(|location| location.label.clone());
+                    let label = label.unwrap_or_default();
+                    let goal = SmolStr::new(label.trim_start_matches("assert "));
+                    unachievable.push((goal, "no mode of the plant makes it true".into()));
+                }
+            }
+        }
+        goals.sort_unstable();
+        goals.dedup();
+        let next = estimator.plan(state, &goals);
+        let model = estimator.planner().model();
+        let described =
+            next.unreachable.iter().map(|failed| (failed.goal.describe(model).into(), failed.reason.clone()));
+        unachievable.extend(described);
+        unachievable.sort();
+        unachievable.dedup();
+        (next.commands, unachievable)
+    }
+}

@@ -1,0 +1,416 @@
+//! Runs control programs when the executive starts their activities (SPEC 15).
+//!
+//! All programs of a mission control one plant, which stays as they leave it, and so does what is believed of it. Programs
+//! that command different components run at once: each step commands the plant towards the goals of all of them. One that
+//! commands what another one does waits until that has ended. The plant steps as long as some program runs; one that is
+//! started between two steps takes its first one with the next.
+//!
+//! How activities will go is worked out when one is started, and again when another one is started or given up: the runs
+//! go back to that time and on from there.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+use std::sync::Arc;
+
+use exact::{Bound, Overflow, Time};
+use executive::model_based::{
+    ClosedLoop, Estimation, Estimator, Knowledge, LoopStep, Program as ProgramUnderWay, StepInput, System,
+};
+use executive::{
+    ActivityExecution, ActivityExecutor, Disturbance, Ends, Entry, Happening, PlantReading, Revision,
+};
+use hca::Stepper;
+use plant::{ComponentId, Model, Random};
+use smol_str::SmolStr;
+use tpn::{Network, OccurrenceId};
+
+use crate::programs::{Programs, named};
+
+/// A program is given up after this many steps, even if its activity may last forever.
+const MAX_STEPS: i64 = 1000;
+
+/// Runs control programs when the executive starts their activities; leaves all other activities to another executor.
+pub struct ProgramExecutor<'run> {
+    programs: &'run Programs,
+    disturbances: &'run [Disturbance],
+    /// Lets components fail by chance.
+    chance: Option<Random>,
+    others: &'run mut dyn ActivityExecutor,
+    estimator: Option<Estimator>,
+    /// The plant and the programs after each step, in order of time; the last one is what is known to come.
+    moments: Vec<Moment>,
+    /// How activities go as far as their programs say.
+    told: BTreeMap<OccurrenceId, ActivityExecution>,
+    revision: Option<Revision>,
+}
+
+/// Where everything stands after a step.
+#[derive(Clone)]
+struct Moment {
+    time: Time,
+    closed: ClosedLoop,
+    running: Vec<Active>,
+    /// In the order in which they were started.
+    waiting: Vec<Active>,
+}
+
+/// An activity with its program.
+#[derive(Clone)]
+struct Active {
+    occurrence: OccurrenceId,
+    name: SmolStr,
+    system: Arc<System>,
+    commanded: Arc<BTreeSet<ComponentId>>,
+    stepper: Stepper,
+    steps: u32,
+    started: Time,
+    /// When it is known not to end in time.
+    given_up: Time,
+}
+
+impl ProgramUnderWay for Active {
+    fn system(&self) -> &Arc<System> {
+        &self.system
+    }
+
+    fn stepper(&self) -> &Stepper {
+        &self.stepper
+    }
+
+    fn stepper_mut(&mut self) -> &mut Stepper {
+        &mut self.stepper
+    }
+
+    fn steps(&self) -> u32 {
+        self.steps
+    }
+}
+
+impl Moment {
+    /// Lets those begin that wait for nobody any more.
+    fn let_begin(&mut self) {
+        let mut waiting = Vec::new();
+        for active in std::mem::take(&mut self.waiting) {
+            let mut before = self.running.iter().chain(&waiting);
+            let is_free = before.all(|other| other.commanded.is_disjoint(&active.commanded));
+            let target =
+                if is_free && active.started <= self.time { &mut self.running } else { &mut waiting };
+            target.push(active);
+        }
+        self.waiting = waiting;
+    }
+
+    fn active(&self) -> impl Iterator<Item = &Active> {
+        self.running.iter().chain(&self.waiting)
+    }
+
+    /// Whom a program that waits is kept from beginning by.
+    fn holder(&self, waiting: &Active) -> Option<&Active> {
+        let mut others = self.active().filter(|other| other.occurrence != waiting.occurrence);
+        others.find(|other| !other.commanded.is_disjoint(&waiting.commanded))
+    }
+}
+
+impl<'run> ProgramExecutor<'run> {
+    /// With a seed, components fail by chance; without, only those fail that `disturbances` name.
+    pub fn new(
+        programs: &'run Programs,
+        disturbances: &'run [Disturbance],
+        seed: Option<u64>,
+        others: &'run mut dyn ActivityExecutor,
+    ) -> Self {
+        Self {
+            programs,
+            disturbances,
+            chance: seed.map(Random::new),
+            others,
+            estimator: None,
+            moments: Vec::new(),
+            told: BTreeMap::new(),
+            revision: None,
+        }
+    }
+
+    /// Starts the program of an activity, which may change how the others under way will go.
+    fn begin(
+        &mut self,
+        system: &Arc<System>,
+        network: &Network,
+        id: OccurrenceId,
+        start: Time,
+    ) -> Result<ActivityExecution, Overflow> {
+        let active = self.activity(system, network, id, start)?;
+        self.go_back(start);
+        match self.moments.last_mut() {
+            // Nothing runs: the steps are counted from here on.
+            Some(moment) if moment.running.is_empty() && moment.waiting.is_empty() => {
+                let resumed = Moment { time: start, waiting: vec![active], ..moment.clone() };
+                self.moments.push(resumed);
+            }
+            Some(moment) => moment.waiting.push(active),
+            None => {
+                let random = self.chance.as_mut().map(|chance| Random::new(chance.next_bits()));
+                let closed = ClosedLoop::new(system, Knowledge::MostLikely, random);
+                let (running, waiting) = (Vec::new(), vec![active]);
+                self.moments.push(Moment { time: start, closed, running, waiting });
+            }
+        }
+        self.run_on(network, start)?;
+        let own = self.told.get(&id).cloned().unwrap_or_default();
+        self.revision.as_mut().into_iter().for_each(|it| it.executions.retain(|(other, _)| *other != id));
+        Ok(own)
+    }
+
+    fn activity(
+        &self,
+        system: &Arc<System>,
+        network: &Network,
+        id: OccurrenceId,
+        start: Time,
+    ) -> Result<Active, Overflow> {
+        let occurrence = &network.occurrences[id.index()];
+        let step = self.programs.step();
+        let upper = occurrence.arc.and_then(|arc| network.arcs.get(arc.index())).map(|arc| arc.upper);
+        let most_steps = match upper {
+            // One step more than there is time for shows whether it would have ended later.
+            Some(Bound::Finite(upper)) => {
+                let steps = upper.checked_ratio(step).ok_or(Overflow)?.floor();
+                steps.saturating_add(1).clamp(1, MAX_STEPS)
+            }
+            _ => MAX_STEPS,
+        };
+        let most = step.checked_mul(most_steps).ok_or(Overflow)?;
+        Ok(Active {
+            occurrence: id,
+            name: occurrence.name.clone(),
+            system: Arc::clone(system),
+            commanded: Arc::new(system.commanded()),
+            stepper: Stepper::new(&system.automaton),
+            steps: 0,
+            started: start,
+            given_up: start.checked_add(most).ok_or(Overflow)?,
+        })
+    }
+
+    /// What was to come after `now` is forgotten.
+    fn go_back(&mut self, now: Time) {
+        let known = self.moments.partition_point(|moment| moment.time <= now);
+        self.moments.truncate(known);
+        let Some(moment) = self.moments.last() else { return };
+        for active in moment.active() {
+            if let Some(told) = self.told.get_mut(&active.occurrence) {
+                told.ends = Ends::AsPlanned;
+                told.entries.retain(|entry| entry.time <= now);
+            }
+        }
+    }
+
+    /// Runs all programs to their ends, or until none can end in time any more.
+    fn run_on(&mut self, network: &Network, now: Time) -> Result<(), Overflow> {
+        let first = self.moments.len().saturating_sub(1);
+        let concerned: Vec<OccurrenceId> = self
+            .moments
+            .last()
+            .into_iter()
+            .flat_map(Moment::active)
+            .map(|active| active.occurrence)
+            .collect();
+        while self.step()? {}
+        let executions = concerned.iter().filter_map(|id| Some((*id, self.told.get(id)?.clone()))).collect();
+        let readings = self.readings(network, first, now);
+        self.revision = Some(Revision { executions, readings });
+        Ok(())
+    }
+
+    /// Takes one step. `false` if there is nobody left to wait for.
+    fn step(&mut self) -> Result<bool, Overflow> {
+        let Some(last) = self.moments.last_mut() else { return Ok(false) };
+        last.let_begin();
+        let mut moment = last.clone();
+        self.end_what_is_done(&mut moment)?;
+        let is_awaited = |active: &Active| active.given_up > moment.time;
+        if !moment.active().any(is_awaited) {
+            // Whoever ended at once has no step of its own.
+            self.moments.pop();
+            self.moments.push(moment);
+            return Ok(false);
+        }
+        let time = moment.time.checked_add(self.programs.step()).ok_or(Overflow)?;
+        if let Some(active) = moment.running.first() {
+            let estimator = self.estimator.get_or_insert_with(|| {
+                let system = active.system();
+                Estimator::new(Arc::clone(&system.planner), Estimation::for_model(&system.model))
+            });
+            let input = faults(self.disturbances, &moment.running);
+            let step = match moment.closed.step(&mut moment.running, estimator, &input) {
+                Ok(step) => step,
+                Err(error) => {
+                    for active in &moment.running {
+                        let number = active.steps + 1;
+                        let reason = format!("step {number} of the program cannot be taken: {error}");
+                        self.told.entry(active.occurrence).or_default().ends = Ends::Never(reason);
+                    }
+                    moment.time = moment.active().map(|active| active.given_up).max().unwrap_or(time);
+                    self.give_up(&moment);
+                    return Ok(false);
+                }
+            };
+            for active in &mut moment.running {
+                active.steps += 1;
+                let text = text(active, &step, &input);
+                let happening = Happening::Progress { name: active.name.clone(), text };
+                self.told.entry(active.occurrence).or_default().entries.push(Entry { time, happening });
+            }
+        }
+        moment.time = time;
+        self.end_what_is_done(&mut moment)?;
+        self.give_up(&moment);
+        self.moments.push(moment);
+        Ok(true)
+    }
+
+    fn end_what_is_done(&mut self, moment: &mut Moment) -> Result<(), Overflow> {
+        for active in moment.running.iter().filter(|active| active.stepper.is_done()) {
+            let lasted = moment.time.checked_sub(active.started).ok_or(Overflow)?;
+            self.told.entry(active.occurrence).or_default().ends = Ends::After(lasted);
+        }
+        moment.running.retain(|active| !active.stepper.is_done());
+        moment.let_begin();
+        Ok(())
+    }
+
+    /// Says of those whose time is over that they do not end in time. They go on commanding.
+    fn give_up(&mut self, moment: &Moment) {
+        for active in moment.active().filter(|active| active.given_up <= moment.time) {
+            let told = self.told.entry(active.occurrence).or_default();
+            if told.ends != Ends::AsPlanned {
+                continue;
+            }
+            let holder = moment.holder(active).filter(|_| active.steps == 0);
+            told.ends = Ends::Never(match holder {
+                Some(holder) => format!("its program waits for that of {}, which has not ended", holder.name),
+                None => format!("its program did not reach its end in {} steps", active.steps),
+            });
+        }
+    }
+
+    /// How the modes that the mission reads are estimated to change after `now`, by moments from `first` on.
+    fn readings(&self, network: &Network, first: usize, now: Time) -> Vec<PlantReading> {
+        let variables = network.variables.iter().filter(|variable| variable.is_lasting);
+        let read: Vec<(&SmolStr, &str)> = variables
+            .filter_map(|variable| Some((&variable.name, variable.name.strip_suffix(".mode")?)))
+            .collect();
+        let mut readings = Vec::new();
+        let moments = self.moments.get(first..).unwrap_or_default();
+        for pair in moments.windows(2) {
+            let [before, after] = pair else { continue };
+            let Some(active) = before.active().next().filter(|_| after.time > now) else { continue };
+            let model = &active.system.model;
+            for &(variable, component) in &read {
+                let Some(id) = model.component_named(component) else { continue };
+                let mode = |moment: &Moment| moment.closed.belief().most_likely().mode(id);
+                if mode(before) != mode(after) {
+                    let value = SmolStr::new(model.mode_name(id, mode(after)));
+                    readings.push(PlantReading { at: after.time, variable: variable.clone(), value });
+                }
+            }
+        }
+        readings
+    }
+
+    /// Programs of activities that are given up command nothing any more; the plant is as they had brought it by then.
+    fn stop_programs(&mut self, network: &Network, of: &[OccurrenceId], now: Time) {
+        let is_given_up = |active: &Active| of.contains(&active.occurrence);
+        let known = self.moments.partition_point(|moment| moment.time <= now);
+        let is_under_way = known
+            .checked_sub(1)
+            .and_then(|last| self.moments.get(last))
+            .is_some_and(|moment| moment.active().any(is_given_up));
+        if !is_under_way {
+            return;
+        }
+        self.go_back(now);
+        if let Some(moment) = self.moments.last_mut() {
+            moment.running.retain(|active| !is_given_up(active));
+            moment.waiting.retain(|active| !is_given_up(active));
+        }
+        // Times that do not fit are found out when the activities are started.
+        let _ = self.run_on(network, now);
+    }
+}
+
+impl ActivityExecutor for ProgramExecutor<'_> {
+    fn start(
+        &mut self,
+        network: &Network,
+        occurrence: OccurrenceId,
+        start: Time,
+    ) -> Result<ActivityExecution, Overflow> {
+        let described = network.occurrences.get(occurrence.index());
+        match described.and_then(|described| self.programs.system(described)).cloned() {
+            Some(system) => self.begin(&system, network, occurrence, start),
+            None => self.others.start(network, occurrence, start),
+        }
+    }
+
+    fn whereabouts(&self, network: &Network, of: &[OccurrenceId], now: Time) -> Vec<(u32, [f64; 2])> {
+        self.others.whereabouts(network, of, now)
+    }
+
+    fn abandon(&mut self, network: &Network, of: &[OccurrenceId], now: Time) {
+        self.others.abandon(network, of, now);
+        self.stop_programs(network, of, now);
+    }
+
+    fn revise(&mut self) -> Option<Revision> {
+        self.revision.take()
+    }
+
+    fn granularity(&self) -> Time {
+        let others = self.others.granularity();
+        if self.programs.is_empty() {
+            return others;
+        }
+        // A part too small to be kept is found out when the plan is made ready.
+        self.programs.step().common_part(others).unwrap_or(others)
+    }
+}
+
+/// The faults of the next step.
+fn faults(disturbances: &[Disturbance], running: &[Active]) -> StepInput {
+    let mut input = StepInput::default();
+    for disturbance in disturbances {
+        let Disturbance::Fault { activity, step, component, mode } = disturbance else { continue };
+        let fits = |active: &&Active| active.name == *activity && *step == active.steps + 1;
+        if let Some(active) = running.iter().find(fits)
+            && let Some((component, mode)) = named(&active.system.model, component, mode)
+        {
+            input.injected.insert(component, mode);
+        }
+    }
+    input
+}
+
+/// What a step of a program did, in words: its commands, then what is found out.
+fn text(active: &Active, step: &LoopStep, input: &StepInput) -> String {
+    let model: &Model = &active.system.model;
+    let mut own = step.commands.clone();
+    for (value, variable) in own.0.iter_mut().zip(&model.command_variables) {
+        if !active.commanded.contains(&variable.component) {
+            *value = 0;
+        }
+    }
+    let commands = model.command_names(&own);
+    let commands: Vec<String> = commands.iter().map(|(name, value)| format!("{name}.{value}")).collect();
+    let commands = if commands.is_empty() { "no command".to_owned() } else { commands.join(", ") };
+    let mut text = format!("step {}: {commands}", active.steps);
+    for (&component, &mode) in &input.injected {
+        let name = model.component(component).map_or("?", |component| component.name.as_str());
+        let _ = write!(text, "; {name} comes into {}", model.mode_name(component, mode));
+    }
+    let found: Vec<String> = step.conflicts.iter().map(|conflict| conflict.describe(model)).collect();
+    if !found.is_empty() {
+        let _ = write!(text, "; {}", found.join("; "));
+    }
+    text
+}
