@@ -101,7 +101,7 @@ pub fn execute(
     if let Some(driving) = &mut driving {
         driving.hurry(chosen);
     }
-    let (programs, _) = Programs::compile(problem.program, Some(problem.network));
+    let programs = problem.programs();
     let mut as_planned = AsPlanned;
     let others: &mut dyn ActivityExecutor = match &mut driving {
         Some(driving) => driving,

@@ -3,6 +3,7 @@
 //! Inserted paths only add constraints. So when every traverse of a plan has its paths, that plan is the first plan of
 //! the network with all paths, though none were computed for alternatives that the search never selects (SPEC 7.3).
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -45,6 +46,16 @@ pub struct Problem<'input> {
     pub seed: u64,
     /// What has already happened, when planning again during execution.
     pub facts: Option<&'input Facts>,
+    /// The control programs that its activities run; compiled where they are needed if they are not given.
+    pub programs: Option<&'input Programs>,
+}
+
+impl<'input> Problem<'input> {
+    /// The control programs that its activities run.
+    pub(crate) fn programs(&self) -> Cow<'input, Programs> {
+        self.programs
+            .map_or_else(|| Cow::Owned(Programs::compile(self.program, Some(self.network)).0), Cow::Borrowed)
+    }
 }
 
 /// A mission, planned.
@@ -561,8 +572,7 @@ fn conclude(
     let separation_violations = separation::violations(&drives, &motions, world);
     warnings.extend(separation::warnings(&separation_violations, &drives, &network, world));
     if let Some(plan) = outcome.plans.first() {
-        let (programs, _) = Programs::compile(problem.program, Some(&network));
-        warnings.extend(programs::overlaps(&programs, &network, plan));
+        warnings.extend(programs::overlaps(&problem.programs(), &network, plan));
     }
     let undrivable: Vec<Undrivable> = inserted
         .into_values()

@@ -52,13 +52,14 @@ pub struct Sampler {
 impl Sampler {
     /// Makes the plan of `planned` ready; `None` if there is none.
     pub fn new(
-        program: &Program,
+        problem: &Problem<'_>,
         planned: &Planned,
         uncertainty: &Uncertainty,
     ) -> Option<Result<Self, PlanError>> {
+        let program = problem.program;
         let plan = planned.planning.outcome.plans.first()?;
         let network = &planned.network;
-        let (programs, _) = Programs::compile(program, Some(network));
+        let programs = problem.programs().into_owned();
         let courses = (uncertainty.traverses == Traverses::Driven).then(|| {
             let mut courses = Courses::default();
             courses.learn(program, planned);

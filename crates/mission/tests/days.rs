@@ -28,7 +28,7 @@ fn day(source: &str) -> Day {
         let verdict = verify::check_plan(&planned.network, plan);
         assert!(verdict.valid, "{:?}", verdict.violations);
         let settings = RobustnessSettings { runs: 30, seed: 1, uncertainty: Uncertainty::default() };
-        let sampler = Sampler::new(problem.program, &planned, &settings.uncertainty);
+        let sampler = Sampler::new(problem, &planned, &settings.uncertainty);
         let sampler = sampler.expect("there is a plan").expect("its times fit");
         let mut tally = Tally::default();
         for number in 0..settings.runs {

@@ -29,7 +29,7 @@ impl Runs for Mission {
     fn sample(&self, runs: u64, uncertainty: &Uncertainty) -> Tally {
         let settings = RobustnessSettings { runs, seed: 3, uncertainty: uncertainty.clone() };
         self.with_plan((kirk::Options::default(), 0), |problem, planned, grounds, paths| {
-            let sampler = Sampler::new(&self.program, &planned, uncertainty);
+            let sampler = Sampler::new(problem, &planned, uncertainty);
             let sampler = sampler.expect("there is a plan").expect("its times fit");
             let mut tally = Tally::default();
             for number in 0..runs {

@@ -45,6 +45,7 @@ impl Planner {
             options: kirk::Options::default(),
             seed,
             facts: None,
+            programs: None,
         };
         let planned = planning::plan(&problem, &mut self.grounds, &mut self.paths, &mut || false);
         Answer { map: ground.map(|(_, map)| map), planned, program }

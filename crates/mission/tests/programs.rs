@@ -30,6 +30,7 @@ fn execute(source: &str, disturbances: &[Disturbance]) -> (Arc<Network>, Ran) {
         options: kirk::Options::default(),
         seed: 0,
         facts: None,
+        programs: None,
     };
     let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
@@ -196,6 +197,7 @@ fn plan_warnings(source: &str) -> Vec<String> {
         options: kirk::Options::default(),
         seed: 0,
         facts: None,
+        programs: None,
     };
     let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);

@@ -32,6 +32,7 @@ impl Mission {
             options: kirk::Options::default(),
             seed: 0,
             facts: None,
+            programs: None,
         }
     }
 
@@ -41,7 +42,7 @@ impl Mission {
     }
 
     fn sample(&self, settings: &RobustnessSettings, numbers: impl Iterator<Item = u64>) -> Tally {
-        let sampler = Sampler::new(&self.program, &self.planned(), &settings.uncertainty);
+        let sampler = Sampler::new(&self.problem(), &self.planned(), &settings.uncertainty);
         let sampler = sampler.expect("there is a plan").expect("its times fit");
         let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
         let mut tally = Tally::default();
@@ -206,7 +207,7 @@ fn driven(rocks: Rocks, numbers: std::ops::Range<u64>) -> Tally {
         ..Uncertainty::default()
     };
     let settings = settings(numbers.end, uncertainty);
-    let sampler = Sampler::new(&mission.program, &planned, &settings.uncertainty);
+    let sampler = Sampler::new(&mission.problem(), &planned, &settings.uncertainty);
     let sampler = sampler.expect("there is a plan").expect("its times fit");
     let mut tally = Tally::default();
     for number in numbers {

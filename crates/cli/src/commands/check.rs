@@ -88,6 +88,7 @@ fn check(file: &Path, source: &str, deadline: Deadline) -> anyhow::Result<Vec<Pr
                 options: kirk::Options { explain: false, relax: false, ..kirk::Options::default() },
                 seed: 0,
                 facts: None,
+                programs: None,
             };
             let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || deadline.is_over());
             deadline.check(&planned.planning.outcome)?;

@@ -167,6 +167,7 @@ impl Args {
             options,
             seed: self.seed,
             facts: None,
+            programs: None,
         };
         let mut stop = || deadline.is_over();
         Ok(planning::plan(&problem, &mut grounds, &mut Paths::default(), &mut stop))

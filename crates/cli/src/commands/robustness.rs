@@ -166,6 +166,7 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
         options: kirk::Options::default(),
         seed: args.path_seed,
         facts: None,
+        programs: None,
     };
     let deadline = args.time_limit.start();
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || deadline.is_over());
@@ -173,7 +174,7 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
     if args.format == Format::Text {
         print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
     }
-    let Some(sampler) = Sampler::new(program, &planned, &uncertainty) else {
+    let Some(sampler) = Sampler::new(&problem, &planned, &uncertainty) else {
         print_text("the mission has no plan to execute; `enroute plan` says why\n")?;
         return Ok(Err(exit(NO)));
     };

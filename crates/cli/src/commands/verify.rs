@@ -171,6 +171,7 @@ fn with_paths(
         options: kirk::Options::default(),
         seed: args.seed,
         facts: None,
+        programs: None,
     };
     let mut paths = Paths::default();
     let deadline = args.time_limit.start();

@@ -125,6 +125,7 @@ impl Core {
             }
             return self.last.as_ref();
         }
+        let programs = self.reading.programs();
         let problem = planning::Problem {
             network: &network.value,
             program: &program,
@@ -132,6 +133,7 @@ impl Core {
             options,
             seed: update.seed,
             facts: None,
+            programs: Some(&programs),
         };
         let mut stop = || host.is_superseded();
         let planned = planning::plan(&problem, &mut self.grounds, &mut self.paths, &mut stop);

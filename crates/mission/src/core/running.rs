@@ -45,6 +45,7 @@ impl Evaluated {
             options: kirk::Options { search: update.search, ..kirk::Options::default() },
             seed: update.seed,
             facts: None,
+            programs: Some(&self.programs),
         }
     }
 }
@@ -106,7 +107,7 @@ impl Core {
             known.revision == update.revision && known.uncertainty == settings.uncertainty
         });
         if !is_known {
-            let sampler = Sampler::new(&evaluated.program, &evaluated.planned, &settings.uncertainty)
+            let sampler = Sampler::new(&evaluated.problem(update), &evaluated.planned, &settings.uncertainty)
                 .ok_or_else(|| NO_PLAN.to_owned())?
                 .map_err(|error| error.to_string())?;
             let uncertainty = settings.uncertainty.clone();

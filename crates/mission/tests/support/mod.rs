@@ -39,6 +39,7 @@ impl Mission {
             options,
             seed,
             facts: None,
+            programs: None,
         };
         let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
         work(&problem, planned, &mut grounds, &mut paths)

@@ -2,6 +2,7 @@
 
 use egui::{ComboBox, DragValue, RichText, Ui};
 use executive::Disturbance;
+use mission::ContentKey;
 use mission::programs::Programs;
 use num_traits::ToPrimitive as _;
 use smol_str::SmolStr;
@@ -16,7 +17,7 @@ use crate::plan::section;
 /// What is to fail, by places in the lists, and the programs that are known.
 #[derive(Default)]
 pub(super) struct Components {
-    known: Option<(u64, Programs)>,
+    known: Option<([ContentKey; 2], Programs)>,
     component: usize,
     mode: usize,
     step: u32,
@@ -38,9 +39,9 @@ impl Components {
         commands: &mut CommandSender,
     ) {
         let Some(snapshot) = context.snapshot else { return };
-        if self.known.as_ref().is_none_or(|(revision, _)| *revision != snapshot.revision) {
-            self.known =
-                Some((snapshot.revision, Programs::compile(&snapshot.program, Some(shown.network)).0));
+        let keys = [snapshot.keys.program, snapshot.keys.network];
+        if self.known.as_ref().is_none_or(|(known, _)| *known != keys) {
+            self.known = Some((keys, Programs::compile(&snapshot.program, Some(shown.network)).0));
         }
         let Some((_, programs)) = self.known.as_ref().filter(|(_, programs)| !programs.is_empty()) else {
             return;
