@@ -31,9 +31,14 @@ self.addEventListener("fetch", (event) => {
 
 async function answer(request) {
   const cache = await caches.open(CACHE);
-  const wanted = request.mode === "navigate" ? "index.html" : request;
-  const kept = await cache.match(wanted, { ignoreSearch: true });
+  const kept = await cache.match(isOfPage(request) ? "index.html" : request, { ignoreSearch: true });
   return isolated(kept ?? (await fetch(request)));
+}
+
+// The page has one address; another one beside it is its server's to answer.
+function isOfPage({ mode, url }) {
+  const { pathname } = new URL(self.registration.scope);
+  return mode === "navigate" && [pathname, `${pathname}index.html`].includes(new URL(url).pathname);
 }
 
 // Shared memory, by which the page asks its worker to stop, is given only to pages that are isolated from others.

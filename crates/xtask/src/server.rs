@@ -12,7 +12,7 @@ use std::{
         atomic::{AtomicBool, AtomicU64, Ordering},
     },
     thread,
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use anyhow::{Result, anyhow};
@@ -26,11 +26,17 @@ const LONGEST_HEAD: usize = 64 * 1024;
 /// How long a connection may say nothing; browsers open some in advance that they never use.
 const PATIENCE: Duration = Duration::from_mins(1);
 
+/// How long the head of a request may take once it has begun, and each piece of the answer.
+const LONGEST_TRANSFER: Duration = Duration::from_secs(20);
+
 /// Asked by a page that wants to be loaded anew when it was rebuilt; answers how often that happened.
 const BUILDS_PATH: &str = "/dev/builds";
 
 /// What a page that is being developed carries to notice that it was rebuilt.
-const RELOAD_SCRIPT: &str = include_str!("reload.html");
+const RELOAD_SCRIPT: &str = include_str!("reload.js");
+
+/// Where it finds that.
+const RELOAD_PATH: &str = "/dev/reload.js";
 
 /// Serves a folder until it is dropped.
 pub struct SiteServer {
@@ -116,10 +122,15 @@ impl Site {
     /// Reads one request and answers it.
     fn serve(&self, mut connection: TcpStream) -> io::Result<()> {
         connection.set_read_timeout(Some(PATIENCE))?;
-        let Some((method, path)) = read_request(&mut connection)? else {
+        connection.set_write_timeout(Some(LONGEST_TRANSFER))?;
+        let Some(Request { method, path, host }) = read_request(&mut connection)? else {
             return Ok(());
         };
         let mut answer = match method.as_str() {
+            // Another name for this machine may be anybody's, whose pages must not read what is served here.
+            _ if !is_own_name(&host) => {
+                Answer::text("421 Misdirected Request", format!("this is not {host}\n"))
+            }
             "GET" | "HEAD" => self.answer(&path)?,
             _ => Answer::text("405 Method Not Allowed", "read only\n".to_owned()),
         };
@@ -129,7 +140,8 @@ impl Site {
             connection,
             "HTTP/1.1 {}\r\nContent-Type: {}\r\nContent-Length: {}\r\nCache-Control: no-store\r\n\
              Cross-Origin-Opener-Policy: same-origin\r\nCross-Origin-Embedder-Policy: require-corp\r\n\
-             Connection: close\r\n\r\n",
+             X-Content-Type-Options: nosniff\r\nContent-Security-Policy: frame-ancestors 'none'\r\n\
+             Referrer-Policy: no-referrer\r\nConnection: close\r\n\r\n",
             answer.status, answer.media_type, answer.length
         )?;
         if method == "GET" {
@@ -142,12 +154,17 @@ impl Site {
         if path == BUILDS_PATH {
             return Ok(Answer::text("200 OK", self.builds.load(Ordering::Relaxed).to_string()));
         }
+        if self.reloading && path == RELOAD_PATH {
+            let script = Answer::text("200 OK", RELOAD_SCRIPT.to_owned());
+            return Ok(Answer { media_type: "text/javascript; charset=utf-8", ..script });
+        }
         let Some(path) = file_of(&self.folder, path) else {
             return Ok(Answer::text("404 Not Found", format!("there is no {path}\n")));
         };
         let media_type = media_type(&path);
         if self.reloading && path.extension().is_some_and(|extension| extension == "html") {
-            let page = fs::read_to_string(&path)?.replace("</body>", RELOAD_SCRIPT);
+            let carried = format!("<script type=\"module\" src=\"{RELOAD_PATH}\"></script>\n  </body>");
+            let page = fs::read_to_string(&path)?.replace("</body>", &carried);
             return Ok(Answer { media_type, ..Answer::text("200 OK", page) });
         }
         let file = File::open(&path)?;
@@ -167,10 +184,20 @@ impl Answer {
     }
 }
 
-/// Reads the head of a request: its method, and the path without what follows `?`. `None` if nothing was asked.
-fn read_request(connection: &mut TcpStream) -> io::Result<Option<(String, String)>> {
+/// What is asked for.
+struct Request {
+    method: String,
+    /// Without what follows `?`.
+    path: String,
+    /// The name by which the server was addressed.
+    host: String,
+}
+
+/// Reads the head of a request. `None` if nothing was asked.
+fn read_request(connection: &mut TcpStream) -> io::Result<Option<Request>> {
     let mut head = Vec::new();
     let mut piece = [0; 4096];
+    let mut begun: Option<Instant> = None;
     while head.len() < LONGEST_HEAD {
         let length = connection.read(&mut piece)?;
         if length == 0 {
@@ -183,12 +210,27 @@ fn read_request(connection: &mut TcpStream) -> io::Result<Option<(String, String
             Ok(httparse::Status::Partial) => {}
             Ok(httparse::Status::Complete(_)) => {
                 let path = request.path.unwrap_or("/").split(['?', '#']).next().unwrap_or("/");
-                return Ok(Some((request.method.unwrap_or_default().to_owned(), path.to_owned())));
+                let host = request.headers.iter().find(|header| header.name.eq_ignore_ascii_case("host"));
+                let host =
+                    host.map_or_else(String::new, |host| String::from_utf8_lossy(host.value).into_owned());
+                let method = request.method.unwrap_or_default().to_owned();
+                return Ok(Some(Request { method, path: path.to_owned(), host }));
             }
             Err(reason) => return Err(io::Error::other(reason)),
         }
+        let spent = begun.get_or_insert_with(Instant::now).elapsed();
+        let Some(left) = LONGEST_TRANSFER.checked_sub(spent).filter(|left| !left.is_zero()) else {
+            return Err(io::Error::other("the head of the request takes too long"));
+        };
+        connection.set_read_timeout(Some(left))?;
     }
     Err(io::Error::other("the head of the request is too long"))
+}
+
+/// Whether a `Host` header, with or without a port, names this machine to itself.
+fn is_own_name(host: &str) -> bool {
+    let name = host.rsplit_once(':').filter(|(_, port)| port.bytes().all(|it| it.is_ascii_digit()));
+    matches!(name.map_or(host, |(name, _)| name), "127.0.0.1" | "localhost" | "[::1]")
 }
 
 /// The file that a path of an address names, if it lies within `folder`.
@@ -226,7 +268,7 @@ mod tests {
 
     fn ask(server: &SiteServer, request: &str) -> String {
         let mut connection = TcpStream::connect(server.address).expect("a listening server");
-        write!(connection, "{request}\r\nHost: here\r\n\r\n").expect("an open connection");
+        write!(connection, "{request}\r\nHost: {}\r\n\r\n", server.address).expect("an open connection");
         let mut answer = String::new();
         connection.read_to_string(&mut answer).expect("an answer");
         answer
@@ -250,6 +292,28 @@ mod tests {
         assert!(ask(&server, "GET /missing.js HTTP/1.1").starts_with("HTTP/1.1 404"));
         assert!(ask(&server, "POST /start.js HTTP/1.1").starts_with("HTTP/1.1 405"));
         assert!(ask(&server, "HEAD /start.js HTTP/1.1").ends_with("\r\n\r\n"));
+    }
+
+    #[test]
+    fn other_names_of_this_machine_are_not_answered_to() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let server = SiteServer::start(folder, 0, false).expect("any port");
+        let answer = |host: &str| {
+            let mut connection = TcpStream::connect(server.address).expect("a listening server");
+            write!(connection, "GET /Cargo.toml HTTP/1.1\r\nHost: {host}\r\n\r\n")
+                .expect("an open connection");
+            let mut answer = String::new();
+            connection.read_to_string(&mut answer).expect("an answer");
+            answer
+        };
+        for host in ["localhost", "localhost:8080", "127.0.0.1:1", "[::1]:80"] {
+            let answer = answer(host);
+            assert!(answer.starts_with("HTTP/1.1 200"), "{host}: {answer}");
+            assert!(answer.contains("X-Content-Type-Options: nosniff\r\n"), "{answer}");
+        }
+        for host in ["", "evil.example", "evil.example:8080", "127.0.0.1.evil.example", "localhost.evil"] {
+            assert!(answer(host).starts_with("HTTP/1.1 421"), "{host}");
+        }
     }
 
     #[test]

@@ -92,3 +92,27 @@ fn a_front_end_that_stops_gives_the_text_back_when_the_page_is_loaded_again() ->
     page.tab.wait_until("enroute.source() === 'A()[l,u] = { Work()[1,2] }'")?;
     Ok(())
 }
+
+/// The page's policy lets nothing run that it did not bring itself, and itself breaks nothing of it.
+#[test]
+fn nothing_runs_that_the_page_did_not_bring() -> Result<()> {
+    let page = Opened::planned()?;
+    page.tab.evaluate(
+        "window.refused = [];
+         document.addEventListener('securitypolicyviolation', (event) => refused.push(event.violatedDirective))",
+    )?;
+    page.wait_for("state.status === 'plan'")?;
+    page.tab.evaluate("enroute.dispatch('view.theme', { theme: 'light' })")?;
+    page.tab.evaluate("new Promise((done) => setTimeout(done, 300))")?;
+    assert_eq!(page.tab.evaluate("refused.join()")?, "");
+    let script = "(async () => {
+        const script = document.createElement('script');
+        script.textContent = 'window.injected = true';
+        document.body.append(script);
+        document.body.insertAdjacentHTML('beforeend', '<img src=\"x\" onerror=\"window.injected = true\">');
+        await new Promise((done) => setTimeout(done, 300));
+        return window.injected === undefined && refused.length > 0;
+    })()";
+    assert_eq!(page.tab.evaluate(script)?, true);
+    Ok(())
+}
