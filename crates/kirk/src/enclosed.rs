@@ -8,6 +8,8 @@
 
 use tpn::{ArcId, LabelId, NodeId};
 
+use typed_index_collections::TiVec;
+
 use crate::model::{INFINITE, Model, node};
 
 /// Larger parts are left to the search.
@@ -37,9 +39,14 @@ pub(crate) enum Durations {
 }
 
 impl Enclosed {
-    /// The part of `arcs` between two nodes; `None` if something else touches its inside, or if there is nothing to
-    /// find out about it.
-    pub(crate) fn new(model: &Model, (start, end): (NodeId, NodeId), mut arcs: Vec<ArcId>) -> Option<Self> {
+    /// The part of `arcs` between two nodes, of a network with these numbers of arcs at its nodes; `None` if something else
+    /// touches its inside, or if there is nothing to find out about it. Takes as long as the part is large.
+    pub(crate) fn new(
+        model: &Model,
+        num_arcs_at: &TiVec<NodeId, u32>,
+        (start, end): (NodeId, NodeId),
+        mut arcs: Vec<ArcId>,
+    ) -> Option<Self> {
         let conditions = &model.conditions;
         arcs.sort_unstable();
         arcs.dedup();
@@ -63,10 +70,12 @@ impl Enclosed {
             !label.is_ask && others.iter().all(|other| labels.binary_search(other).is_ok())
         };
         // An arc at an inner node that the blocks do not account for could lead anywhere.
-        let is_inner = |node: NodeId| points[2..].contains(&node);
-        let mut incident =
-            model.arcs.iter_enumerated().filter(|(_, arc)| is_inner(arc.from) || is_inner(arc.to));
-        if !labels.iter().all(is_enclosed) || !incident.all(|(arc, _)| arcs.binary_search(&arc).is_ok()) {
+        let own_at = |node: NodeId| {
+            let ends = arcs.iter().flat_map(|&arc| [model.arcs[arc].from, model.arcs[arc].to]);
+            ends.filter(|&end| end == node).count() as u32
+        };
+        let is_accounted_for = |&node: &NodeId| own_at(node) == num_arcs_at[node];
+        if !labels.iter().all(is_enclosed) || !points[2..].iter().all(is_accounted_for) {
             return None;
         }
         let arc = |label: LabelId| conditions.labels[label].arc;

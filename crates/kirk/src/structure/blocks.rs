@@ -120,6 +120,11 @@ impl Structure {
     /// Finds, for each variable, the smallest block with all its labels, and keeps those that are enclosed.
     pub(super) fn find_enclosed(&mut self, model: &Model) {
         let conditions = &model.conditions;
+        let mut num_arcs_at: TiVec<NodeId, u32> = vec![0; model.num_nodes].into();
+        for arc in &model.arcs {
+            num_arcs_at[arc.from] += 1;
+            num_arcs_at[arc.to] += 1;
+        }
         for variable in &conditions.variables {
             let mut blocks =
                 variable.labels.iter().map(|&label| self.arc_blocks[conditions.labels[label].arc]);
@@ -137,7 +142,7 @@ impl Structure {
                 arcs.extend([enter, leave].into_iter().flatten());
                 arcs.extend_from_slice(self.own_arcs(id));
             }
-            let Some(enclosed) = Enclosed::new(model, block.ends, arcs) else { continue };
+            let Some(enclosed) = Enclosed::new(model, &num_arcs_at, block.ends, arcs) else { continue };
             self.blocks[common].enclosed = Some(self.enclosed.push_and_get_key(enclosed));
             for id in inside {
                 self.blocks[id].is_inside_enclosed = true;
