@@ -15,7 +15,7 @@ use clap::{Parser, Subcommand};
 
 use commands::{
     check, compare, estimate, execute, explain, export, fmt, hca, import, path, plan, reconfigure, report,
-    robustness, run, simulate, step, stn, tpn, verify,
+    review, robustness, run, simulate, step, stn, tpn, verify,
 };
 
 /// Plans, checks and explains missions written in RMPL.
@@ -46,6 +46,7 @@ enum Command {
     Reconfigure(reconfigure::Args),
     Import(import::Args),
     Report(report::Args),
+    Review(review::Args),
     Export(export::Args),
     Compare(compare::Args),
 }
@@ -70,6 +71,7 @@ fn main() -> ExitCode {
         Command::Reconfigure(args) => reconfigure::run(args),
         Command::Import(args) => import::run(args),
         Command::Report(args) => report::run(args),
+        Command::Review(args) => review::run(args),
         Command::Export(args) => export::run(args),
         Command::Compare(args) => compare::run(args),
     };

@@ -1,15 +1,61 @@
-//! A plan's schedule for other tools: tables, Open MCT and calendars. All times are those of the earliest schedule,
-//! which every plan's constraints allow; windows are given where the format has room for them.
+//! A plan's schedule for other tools: tables, JSON, Open MCT and calendars. All times are those of the earliest schedule,
+//! which every plan's constraints allow; windows are given where the format has room for them. Each says which content it
+//! is of, how that stands with its board, and which events somebody has pinned.
 
+use exact::{Bound, Time};
 use mission::Snapshot;
+use mission::review::PlanStatus;
 use mission::review::schedule::{Scheduled, scheduled, slack};
+use rmpl::program::TimeUnit;
 use serde_json::{Map, Value, json};
-use tpn::{Network, Occurrence, OccurrenceKind};
+use tpn::{Network, NodeId, Occurrence, OccurrenceKind, Plan, Window};
 
 use crate::calendar::Calendar;
 
+/// What is said of a schedule beside its times.
+#[derive(Clone, Copy, Debug)]
+pub struct About<'a> {
+    /// What was planned: see [`mission::review::content_hash`].
+    pub content_hash: &'a str,
+    /// How it stands with its board.
+    pub status: PlanStatus,
+    /// When the mission starts, if that is known.
+    pub calendar: Option<&'a Calendar>,
+    /// The events that are pinned, with their times.
+    pub pins: &'a [(NodeId, Time)],
+    /// The plan with the windows that the pins leave; otherwise that of the snapshot.
+    pub plan: Option<&'a Plan>,
+}
+
+impl About<'_> {
+    fn is_pinned(&self, node: NodeId) -> bool {
+        self.pins.iter().any(|(pinned, _)| *pinned == node)
+    }
+
+    /// Which of its ends are pinned: `start`, `end`, `start end` or nothing.
+    fn pinned(&self, occurrence: &Occurrence) -> String {
+        let ends = [("start", occurrence.start), ("end", occurrence.end)];
+        let pinned = ends.into_iter().filter(|(_, node)| self.is_pinned(*node));
+        pinned.map(|(end, _)| end).collect::<Vec<_>>().join(" ")
+    }
+
+    /// A time as a date in UTC; empty without a calendar or beyond it.
+    fn utc(&self, time: Time) -> String {
+        let time = self.calendar.and_then(|calendar| calendar.at(time));
+        time.map(|time| time.to_string()).unwrap_or_default()
+    }
+}
+
+/// What a mission counts time in: `min` or `s`.
+const fn unit(snapshot: &Snapshot) -> &'static str {
+    match snapshot.program.options.time_unit {
+        TimeUnit::Minute => "min",
+        TimeUnit::Second => "s",
+    }
+}
+
 /// The columns of [`csv`].
-pub const CSV_COLUMNS: [&str; 10] = [
+pub const CSV_COLUMNS: [&str; 16] = [
     "name",
     "kind",
     "activity",
@@ -20,12 +66,18 @@ pub const CSV_COLUMNS: [&str; 10] = [
     "end_latest",
     "start_slack",
     "end_slack",
+    "unit",
+    "start_utc",
+    "end_utc",
+    "pinned",
+    "plan_status",
+    "content_hash",
 ];
 
 /// The schedule as comma-separated values after RFC 4180, with a line of headings; times are exact, in mission units,
 /// as decimals or fractions, and `inf` where nothing bounds them. `None` without a plan.
-pub fn csv(snapshot: &Snapshot) -> Option<String> {
-    let (network, rows) = rows(snapshot)?;
+pub fn csv(snapshot: &Snapshot, about: &About<'_>) -> Option<String> {
+    let (network, rows) = rows(snapshot, about)?;
     let mut out = CSV_COLUMNS.join(",");
     out.push_str("\r\n");
     for row in rows {
@@ -42,6 +94,12 @@ pub fn csv(snapshot: &Snapshot) -> Option<String> {
             row.end.latest.to_string(),
             slack(row.start).to_string(),
             slack(row.end).to_string(),
+            unit(snapshot).to_owned(),
+            about.utc(row.start.earliest),
+            about.utc(row.end.earliest),
+            about.pinned(occurrence),
+            about.status.name().to_owned(),
+            about.content_hash.to_owned(),
         ];
         out.push_str(&cells.map(|cell| csv_cell(&cell)).join(","));
         out.push_str("\r\n");
@@ -49,10 +107,57 @@ pub fn csv(snapshot: &Snapshot) -> Option<String> {
     Some(out)
 }
 
+/// The schedule as a document `enroute-schedule/1`. `None` without a plan.
+pub fn json(snapshot: &Snapshot, about: &About<'_>) -> Option<Value> {
+    let (network, rows) = rows(snapshot, about)?;
+    let utc = |time: Time| Some(about.utc(time)).filter(|text| !text.is_empty());
+    let window = |window: Window, node: NodeId| {
+        let latest = match window.latest {
+            Bound::Finite(latest) => utc(latest),
+            Bound::Infinite => None,
+        };
+        json!({
+            "earliest": window.earliest,
+            "latest": window.latest,
+            "slack": slack(window),
+            "earliest_utc": utc(window.earliest),
+            "latest_utc": latest,
+            "pinned": about.is_pinned(node),
+        })
+    };
+    let rows = rows.iter().map(|row| {
+        let occurrence = &network.occurrences[row.occurrence.index()];
+        json!({
+            "name": occurrence.name,
+            "kind": kind_name(occurrence.kind),
+            "activity": occurrence.activity,
+            "arguments": occurrence.arguments,
+            "start": window(row.start, occurrence.start),
+            "end": window(row.end, occurrence.end),
+        })
+    });
+    let pinned = about.pins.iter().map(|(node, time)| {
+        let events = network.nodes.get(node.index()).into_iter().flat_map(|node| &node.events);
+        let events: Vec<String> = events.map(|&event| network.event_name(event)).collect();
+        json!({ "events": events, "time": time })
+    });
+    Some(json!({
+        "format": "enroute-schedule/1",
+        "diagnostics": [],
+        "content_hash": about.content_hash,
+        "plan_status": about.status,
+        "unit": unit(snapshot),
+        "epoch": about.calendar.map(|calendar| calendar.epoch().to_string()),
+        "pinned": pinned.collect::<Vec<Value>>(),
+        "activities": rows.collect::<Vec<Value>>(),
+    }))
+}
+
 /// The schedule as an Open MCT plan: one member for each group, with its activities; times are milliseconds since
-/// 1970. `None` without a plan or beyond the calendar.
-pub fn open_mct(snapshot: &Snapshot, calendar: &Calendar) -> Option<Value> {
-    let (network, rows) = rows(snapshot)?;
+/// 1970. `None` without a plan or a calendar, or beyond it. What Open MCT does not know stands in each activity.
+pub fn open_mct(snapshot: &Snapshot, about: &About<'_>) -> Option<Value> {
+    let calendar = about.calendar?;
+    let (network, rows) = rows(snapshot, about)?;
     let mut groups = Map::new();
     for row in rows {
         let occurrence = &network.occurrences[row.occurrence.index()];
@@ -64,6 +169,10 @@ pub fn open_mct(snapshot: &Snapshot, calendar: &Calendar) -> Option<Value> {
             "type": group,
             "color": color,
             "textColor": text_color,
+            "unit": unit(snapshot),
+            "pinned": about.pinned(occurrence),
+            "planStatus": about.status.name(),
+            "contentHash": about.content_hash,
         });
         let entries = groups.entry(group).or_insert_with(|| Value::Array(Vec::new()));
         if let Value::Array(entries) = entries {
@@ -73,31 +182,43 @@ pub fn open_mct(snapshot: &Snapshot, calendar: &Calendar) -> Option<Value> {
     Some(Value::Object(groups))
 }
 
-/// The schedule as an iCalendar (RFC 5545) with one event for each activity and assertion, in UTC and to the second.
-/// `None` without a plan or beyond the calendar.
+/// The schedule as an iCalendar (RFC 5545) with one event for each activity and assertion, in UTC and to the second:
+/// confirmed where the plan is approved, tentative otherwise. `None` without a plan or a calendar, or beyond it.
 ///
-/// `content_hash` makes the events' identifiers, so that importing the same plan again replaces its events. The
+/// The content hash makes the events' identifiers, so that importing the same plan again replaces its events. The
 /// events are stamped with the start of the mission: nothing here reads a clock.
-pub fn icalendar(snapshot: &Snapshot, calendar: &Calendar, content_hash: &str) -> Option<String> {
-    let (network, rows) = rows(snapshot)?;
+pub fn icalendar(snapshot: &Snapshot, about: &About<'_>) -> Option<String> {
+    let calendar = about.calendar?;
+    let (network, rows) = rows(snapshot, about)?;
     let stamp = |time: jiff::Timestamp| time.strftime("%Y%m%dT%H%M%SZ").to_string();
+    let content_hash = about.content_hash;
     let mut out = String::new();
     let mut write = |line: &str| write_folded(line, &mut out);
     for line in ["BEGIN:VCALENDAR", "VERSION:2.0", "PRODID:-//Enroute//Mission schedule//EN"] {
         write(line);
     }
+    write(&format!("X-ENROUTE-CONTENT-HASH:{content_hash}"));
+    write(&format!("X-ENROUTE-PLAN-STATUS:{}", about.status.name()));
+    write(&format!("X-ENROUTE-TIME-UNIT:{}", unit(snapshot)));
     for row in rows {
         let occurrence = &network.occurrences[row.occurrence.index()];
         let (start, end) = (calendar.at(row.start.earliest)?, calendar.at(row.end.earliest)?);
+        let pinned = match about.pinned(occurrence) {
+            ends if ends.is_empty() => ends,
+            ends => format!("; pinned: {ends}"),
+        };
         let description = format!(
-            "Starts from {} to {}, ends from {} to {} after the start of the mission",
+            "Starts from {} to {}, ends from {} to {} {} after the start of the mission{pinned}; {}, content {}",
             row.start.earliest.readable(),
             row.start.latest.readable(),
             row.end.earliest.readable(),
-            row.end.latest.readable()
+            row.end.latest.readable(),
+            unit(snapshot),
+            about.status.name(),
+            mission::review::record::short(content_hash)
         );
         write("BEGIN:VEVENT");
-        write(&format!("UID:{}-{}@enroute", row.occurrence.0, content_hash));
+        write(&format!("UID:{}-{content_hash}@enroute", row.occurrence.0));
         write(&format!("DTSTAMP:{}", stamp(calendar.epoch())));
         write(&format!("DTSTART:{}", stamp(start)));
         // An event without an end ends when it starts; an end must be later than the start.
@@ -107,6 +228,7 @@ pub fn icalendar(snapshot: &Snapshot, calendar: &Calendar, content_hash: &str) -
         write(&format!("SUMMARY:{}", calendar_text(&occurrence.name)));
         write(&format!("DESCRIPTION:{}", calendar_text(&description)));
         write(&format!("CATEGORIES:{}", calendar_text(open_mct_group(occurrence).0)));
+        write(if about.status.is_approved() { "STATUS:CONFIRMED" } else { "STATUS:TENTATIVE" });
         write("END:VEVENT");
     }
     write("END:VCALENDAR");
@@ -114,9 +236,10 @@ pub fn icalendar(snapshot: &Snapshot, calendar: &Calendar, content_hash: &str) -
 }
 
 /// What downstream tools list: activities and assertions, not delays.
-fn rows(snapshot: &Snapshot) -> Option<(&Network, Vec<Scheduled>)> {
+fn rows<'a>(snapshot: &'a Snapshot, about: &About<'_>) -> Option<(&'a Network, Vec<Scheduled>)> {
     let network = snapshot.network.as_deref()?;
-    let mut rows = scheduled(network, snapshot.plan()?);
+    let planned = snapshot.plan()?;
+    let mut rows = scheduled(network, about.plan.unwrap_or(planned));
     rows.retain(|row| network.occurrences[row.occurrence.index()].kind != OccurrenceKind::Delay);
     Some((network, rows))
 }

@@ -7,7 +7,7 @@ use terrain::Terrain;
 
 use crate::escape::escaped;
 use crate::style::STYLE;
-use crate::{figure, listing, tables};
+use crate::{board, figure, listing, tables};
 
 /// What goes into a report.
 #[derive(Clone, Copy)]
@@ -18,7 +18,7 @@ pub struct Document<'a> {
     pub snapshot: &'a Snapshot,
     /// Its review.
     pub review: &'a Review,
-    /// What reviewers said and signed, if that is to stand in the report.
+    /// What the board said and approved, if that is to stand in the report.
     pub record: Option<&'a Record>,
     /// How its plan fares in many runs with chance, if that is known.
     pub robustness: Option<&'a Robustness>,
@@ -31,6 +31,8 @@ pub struct Document<'a> {
 /// Writes the report.
 pub fn html(document: &Document<'_>) -> String {
     let title = format!("Mission review: {}", document.name);
+    let nothing = Record::default();
+    let record = document.record.unwrap_or(&nothing);
     let mut out = format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
@@ -38,15 +40,14 @@ pub fn html(document: &Document<'_>) -> String {
         escaped(&title),
         page_margins(&document.review.content_hash)
     );
-    out.push_str(&facts(document));
-    out.push_str(&tables::summary(document.review));
-    out.push_str(&tables::signatures(document.record, document.review));
+    out.push_str(&facts(document, record));
+    out.push_str(&tables::summary(document.review, document.record));
+    out.push_str(&board::signatures(record, document.review));
+    out.push_str(&board::changes(document, record));
     out.push_str(&tables::sections(document.review));
     out.push_str(&tables::robustness(document.review, document.robustness));
     out.push_str(&tables::rules(document.review));
-    if let Some(record) = document.record {
-        out.push_str(&tables::record(record, document.review));
-    }
+    out.push_str(&board::history(record, document.review));
     out.push_str(&figures(document));
     out.push_str("<h2 class=\"page\">Program</h2>\n");
     out.push_str(&listing::listing(&document.snapshot.source));
@@ -64,7 +65,7 @@ fn page_margins(content_hash: &str) -> String {
     )
 }
 
-fn facts(document: &Document<'_>) -> String {
+fn facts(document: &Document<'_>, record: &Record) -> String {
     let review = document.review;
     let [passed, attention, failed] = review.counts();
     let information = review.count(Status::Information);
@@ -87,34 +88,14 @@ fn facts(document: &Document<'_>) -> String {
          <dt>Checklist</dt><dd>{passed} passed, {attention} for attention, {failed} failed; {information} for information</dd>\n\
          <dt>Times</dt><dd>in {unit} from the start of the mission</dd>\n\
          <dt>Map, seed</dt><dd>{}, {}</dd>\n\
-         <dt>Signed off</dt><dd>{}</dd>\n\
+         <dt>Board</dt><dd>{}</dd>\n\
          <dt>Content hash</dt><dd class=\"hash\">{}</dd>\n</dl>\n",
         tables::status(review.status),
         escaped(&map),
         document.seed,
-        signed(document),
+        board::fact(record, review),
         escaped(&review.content_hash)
     )
-}
-
-/// Who has signed this very content; somebody who signed another one is named as such.
-fn signed(document: &Document<'_>) -> String {
-    let record = document.record;
-    let current =
-        record.and_then(|record| record.sign_off_of(&document.review.content_hash, &document.review.rules));
-    let last = record.and_then(|record| record.sign_offs.last());
-    match (current, last) {
-        (Some(signed), _) => {
-            format!("by {}, {}", escaped(&signed.name), escaped(&readable_time(&signed.time)))
-        }
-        (None, Some(stale)) => format!(
-            "{} not as it is now; other content by {}, {}",
-            tables::word("attention", "stale"),
-            escaped(&stale.name),
-            escaped(&readable_time(&stale.time))
-        ),
-        (None, None) => "not signed off".to_owned(),
-    }
 }
 
 /// `2026-01-02T03:04:05Z` as `2026-01-02 03:04 UTC`; another text as it is.

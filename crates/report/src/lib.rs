@@ -3,6 +3,7 @@
 //! Every function here turns data into text; reading and writing files is the caller's. The same snapshot gives the
 //! same bytes everywhere.
 
+mod board;
 pub mod calendar;
 mod escape;
 pub mod export;

@@ -19,6 +19,8 @@ td.figure, th.figure { text-align: right; font-variant-numeric: tabular-nums; }
 th { overflow-wrap: normal; vertical-align: bottom; }
 td.figure, td:last-child { white-space: nowrap; overflow-wrap: normal; }
 thead { display: table-header-group; }
+del { background: #fbe4e1; text-decoration: none; }
+ins { background: #dff3e4; text-decoration: none; }
 .facts { display: grid; grid-template-columns: max-content 1fr; gap: .1em 1.2em; margin: 1em 0; }
 .facts dt { color: #4e5b6a; }
 .facts dd { margin: 0; overflow-wrap: anywhere; }

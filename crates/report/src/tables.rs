@@ -2,11 +2,12 @@
 
 use exact::Bound;
 use mission::Robustness;
+use mission::review::record::LineKey;
 use mission::review::{Alternative, EventReview, Line, Record, Review, Section, Status};
 use tpn::{Levels, Supply};
 
+use crate::board;
 use crate::escape::escaped;
-use crate::html::readable_time;
 
 /// All sections, each with its heading; one without lines says so.
 pub(crate) fn sections(review: &Review) -> String {
@@ -40,7 +41,9 @@ pub(crate) fn sections(review: &Review) -> String {
 }
 
 /// What has failed and what deserves a look, of all sections, before anything else.
-pub(crate) fn summary(review: &Review) -> String {
+pub(crate) fn summary(review: &Review, record: Option<&Record>) -> String {
+    let acknowledged = record.map(Record::acknowledgements).unwrap_or_default();
+    let acknowledged = &acknowledged;
     let of_status = |wanted: Status| {
         let rows = Section::ALL.iter().flat_map(move |&section| {
             review
@@ -55,6 +58,7 @@ pub(crate) fn summary(review: &Review) -> String {
                 section.title().to_owned(),
                 escaped(&line.text),
                 criterion(line),
+                board::acknowledgement(acknowledged, &LineKey::new(section, line)),
                 place(line),
             ]
         })
@@ -64,68 +68,9 @@ pub(crate) fn summary(review: &Review) -> String {
     if rows.is_empty() {
         out.push_str("<p class=\"muted\">Nothing has failed, and nothing is for attention.</p>\n");
     } else {
-        out.push_str(&table(&["", "Section", "What", "Held against", "Where"], rows));
+        out.push_str(&table(&["", "Section", "What", "Held against", "Acknowledged by", "Where"], rows));
     }
     out
-}
-
-/// Where people sign on paper, with those who have signed this very content.
-pub(crate) fn signatures(record: Option<&Record>, review: &Review) -> String {
-    let signed = record.into_iter().flat_map(|record| &record.sign_offs);
-    let is_current = |by: &&mission::review::record::SignOff| {
-        by.content_hash == review.content_hash && by.rules == review.rules
-    };
-    let mut rows: Vec<Vec<String>> = signed
-        .filter(is_current)
-        .map(|by| vec![escaped(&by.name), escaped(&readable_time(&by.time)), String::new()])
-        .collect();
-    rows.push(vec!["&nbsp;".to_owned(); 3]);
-    rows.push(vec!["&nbsp;".to_owned(); 3]);
-    let rows = table(&["Name and role", "Date", "Signature"], rows);
-    format!("<h2>Signatures</h2>\n<div class=\"signatures\">\n{rows}</div>\n")
-}
-
-/// Who signed what, and what was said.
-pub(crate) fn record(record: &Record, review: &Review) -> String {
-    let content_hash = review.content_hash.as_str();
-    if record.is_empty() {
-        return String::new();
-    }
-    let state = |hash: &str| {
-        if hash == content_hash { word("passed", "current") } else { word("attention", "stale") }
-    };
-    let mut out = String::from("<h2>Sign-off and comments</h2>\n");
-    if !record.sign_offs.is_empty() {
-        let rows = record.sign_offs.iter().rev().map(|signed| {
-            let [passed, attention, failed] = signed.counts;
-            vec![
-                state(&signed.content_hash),
-                escaped(&signed.name),
-                escaped(&readable_time(&signed.time)),
-                format!("{passed} passed, {attention} for attention, {failed} failed"),
-                format!("<code>{}</code>", escaped(short_hash(&signed.content_hash))),
-            ]
-        });
-        out.push_str(&table(&["", "Signed off by", "When", "Checklist", "Content"], rows));
-    }
-    if !record.comments.is_empty() {
-        let rows = record.comments.iter().map(|comment| {
-            vec![
-                state(&comment.content_hash),
-                escaped(&comment.author),
-                escaped(&readable_time(&comment.time)),
-                escaped(comment.about.as_deref().unwrap_or("the mission")),
-                escaped(&comment.text).replace('\n', "<br>"),
-            ]
-        });
-        out.push_str(&table(&["", "Comment by", "When", "About", "Words"], rows));
-    }
-    out
-}
-
-/// As much of a hash as people compare.
-fn short_hash(hash: &str) -> &str {
-    hash.get(..12).unwrap_or(hash)
 }
 
 /// The word for a status, with its sign and in its colour.
@@ -170,7 +115,7 @@ fn readable(mut rows: Vec<Vec<String>>) -> (Vec<Vec<String>>, usize) {
 const PASSED: &str = "<span class=\"status passed\">";
 
 /// A table of rows of cells that are HTML already; a heading that begins with `#` is that of figures.
-fn table(headings: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+pub(crate) fn table(headings: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let is_figure: Vec<bool> = headings.iter().map(|heading| heading.starts_with('#')).collect();
     let class = |column: usize| {
         if is_figure.get(column).copied().unwrap_or(false) { " class=\"figure\"" } else { "" }

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use mission::review::record::{Comment, SignOff};
-use mission::review::{FlightRules, Record, Review, review};
+use mission::review::record::{Act, LineKey, Subject, Who};
+use mission::review::{PlanStatus, Record, Review, Section, review};
 use mission::{Core, CoreHost, Goal, Request, Response, SearchKind, Snapshot, Update};
 use rmpl::program::TimeUnit;
 use terrain::Terrain;
@@ -73,6 +73,13 @@ fn report(source: &str, name: &str) -> String {
         ground: planned.ground.as_deref(),
     })
 }
+
+fn about(calendar: Option<&Calendar>) -> export::About<'_> {
+    export::About { content_hash: HASH, status: PlanStatus::InReview, calendar, pins: &[], plan: None }
+}
+
+/// A content.
+const HASH: &str = "00112233445566778899aabbccddeeff00112233445566778899aabbccddeeff";
 
 fn calendar() -> Calendar {
     Calendar::new(EPOCH, TimeUnit::Minute).expect("a date")
@@ -191,12 +198,12 @@ fn a_mission_without_a_plan_has_a_report_that_says_why() {
 
 #[test]
 fn the_table_is_read_back_with_its_times() {
-    let text = export::csv(&planned(MISSION).snapshot).expect("a plan");
+    let text = export::csv(&planned(MISSION).snapshot, &about(None)).expect("a plan");
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     assert_eq!(reader.headers().expect("headings"), &csv::StringRecord::from(export::CSV_COLUMNS.to_vec()));
     let rows: Vec<csv::StringRecord> = reader.records().collect::<Result<_, _>>().expect("rows");
     let row = |name: &str| rows.iter().find(|row| &row[0] == name).unwrap_or_else(|| panic!("no {name}"));
-    let wait: Vec<&str> = row("Group-Wait#1").iter().skip(3).collect();
+    let wait: Vec<&str> = row("Group-Wait#1").iter().skip(3).take(7).collect();
     assert_eq!(wait, ["TAI_HOLD1 TAI_HOLD2", "415", "460", "415", "514", "45", "99"]);
     assert_eq!(&row("scenario#1")[7], "800");
     assert!(text.ends_with("\r\n") && !text.replace("\r\n", "").contains('\n'));
@@ -204,7 +211,7 @@ fn the_table_is_read_back_with_its_times() {
 
 #[test]
 fn the_open_mct_plan_has_its_groups_and_milliseconds() {
-    let plan = export::open_mct(&planned(SCENARIO).snapshot, &calendar()).expect("a plan");
+    let plan = export::open_mct(&planned(SCENARIO).snapshot, &about(Some(&calendar()))).expect("a plan");
     let plan: serde_json::Value = serde_json::from_str(&plan.to_string()).expect("JSON");
     let groups = plan.as_object().expect("an object of groups");
     for entry in groups.values().flat_map(|group| group.as_array().expect("a list")) {
@@ -245,7 +252,7 @@ fn calendar_events(text: &str) -> Vec<Vec<(String, String)>> {
 fn the_calendar_has_an_event_for_each_activity() {
     let planned = planned(SCENARIO);
     let text =
-        export::icalendar(&planned.snapshot, &calendar(), &planned.review.content_hash).expect("a plan");
+        export::icalendar(&planned.snapshot, &about(Some(&calendar()))).expect("a plan");
     assert!(
         text.starts_with("BEGIN:VCALENDAR\r\nVERSION:2.0\r\nPRODID:") && text.ends_with("END:VCALENDAR\r\n")
     );
@@ -280,45 +287,128 @@ fn a_start_of_the_mission_is_a_date_with_or_without_a_time() {
     assert_eq!([at("tomorrow"), at("2004-13-01"), at("")], [None, None, None]);
 }
 
-#[test]
-fn a_report_names_who_signed_and_marks_what_belongs_to_another_content() {
-    let planned = planned(SCENARIO);
-    let sign_off = |name: &str, content_hash: &str| SignOff {
-        name: name.to_owned(),
-        time: "2026-01-02T03:04:05Z".to_owned(),
-        content_hash: content_hash.to_owned(),
-        counts: [9, 1, 0],
-        source: SCENARIO.to_owned(),
-        goal: Goal::Default,
+/// A page with this record.
+fn page_with(planned: &Planned, record: &Record) -> String {
+    html(&Document {
+        name: "t01.rmpl",
+        snapshot: &planned.snapshot,
+        review: &planned.review,
+        record: Some(record),
+        robustness: None,
         seed: 0,
-        rules: FlightRules::default(),
+        ground: None,
+    })
+}
+
+fn who(by: &str, review: &Review) -> Who {
+    Who {
+        by: by.to_owned(),
+        role: "Reviewer".to_owned(),
+        time: "2026-01-02T03:04:05Z".to_owned(),
+        content_hash: review.content_hash.clone(),
+        plan_hash: review.plan_hash.clone(),
+    }
+}
+
+/// What is approved of a mission.
+fn subject(planned: &Planned) -> Subject {
+    let (network, plan) =
+        (planned.snapshot.network.as_deref().expect("a network"), planned.snapshot.plan().expect("a plan"));
+    let plan = tpn::plan_json::plan_to_json(network, plan);
+    Subject::new(&planned.review, &planned.snapshot.source, Goal::Default, 0, plan, None)
+}
+
+#[test]
+fn a_report_has_the_history_of_the_board_its_status_and_who_took_what_back() {
+    let planned = planned(SCENARIO);
+    let mut record = Record::default();
+    assert!(page_with(&planned, &record).contains("draft</span>: Reviewer 0 of 1"));
+    let about = Some("Group-Wait#1".to_owned());
+    let text = "Long wait.\nIs that <intended>?".to_owned();
+    record.add(who("Grace", &planned.review), Act::Comment { about, text });
+    let asked = record.entries()[0].digest().to_owned();
+    let page = page_with(&planned, &record);
+    assert!(page.contains("in review</span>") && page.contains("<h3>Open comments</h3>"));
+    assert!(page.contains("Long wait.<br>Is that &lt;intended&gt;?") && page.contains("1 comment is open"));
+    record.add(who("Ada <A>", &planned.review), Act::Resolve { of: asked, text: "Yes.".to_owned() });
+    for section in Section::ALL {
+        for line in planned.review.lines(section) {
+            let line = LineKey::new(section, line);
+            record.add(who("Ada <A>", &planned.review), Act::Acknowledge { line, text: "As meant.".to_owned() });
+        }
+    }
+    record.approve(who("Ada <A>", &planned.review), subject(&planned), "Mind the wind.".to_owned());
+    let page = page_with(&planned, &record);
+    assert!(page.contains("approved with comments</span>: Reviewer 1 of 1"), "{page}");
+    assert!(page.contains("Ada &lt;A&gt; (Reviewer): As meant."), "who acknowledged stands in the summary");
+    assert!(page.contains("resolved entry 1") && page.contains("Mind the wind."));
+    assert!(page.contains("Text, plan, checklist, flight rules and runs with chance are the same."));
+    assert!(page.contains(record.heads().next().expect("a last entry")));
+    let approved = record.entries().last().expect("the approval").digest().to_owned();
+    record.add(who("Grace", &planned.review), Act::Withdraw { of: approved, text: "Too early.".to_owned() });
+    let page = page_with(&planned, &record);
+    assert!(page.contains("taken back by Grace") && !page.contains("approved with comments"));
+}
+
+#[test]
+fn a_report_of_an_edited_mission_says_that_the_approval_lapsed_and_what_differs() {
+    let before = planned("primitive A()[1,2]; scenario S[0,9] = { A() }");
+    let after = planned("primitive A()[3,4]; scenario S[0,9] = { A() }");
+    let mut record = Record::default();
+    record.approve(who("Ada", &before.review), subject(&before), String::new());
+    assert!(page_with(&before, &record).contains("approved</span>: Reviewer 1 of 1"));
+    let page = page_with(&after, &record);
+    let lapsed = "approval lapsed</span>: Reviewer 0 of 1; Ada approved 2026-01-02 03:04 UTC: text, map";
+    assert!(page.contains(lapsed), "{page}");
+    assert!(page.contains("<del>− primitive A()[1,2]; scenario S[0,9] = { A() }</del>"));
+    assert!(page.contains("<ins>+ primitive A()[3,4]; scenario S[0,9] = { A() }</ins>"));
+    assert!(page.contains("activity A#1 moved: "));
+}
+
+#[test]
+fn schedules_say_what_they_are_of_how_that_stands_and_what_is_pinned() {
+    let planned = planned(SCENARIO);
+    let (network, plan) =
+        (planned.snapshot.network.as_deref().expect("a network"), planned.snapshot.plan().expect("a plan"));
+    let wait = network.occurrences.iter().find(|it| it.name == "Group-Wait#1").expect("the wait");
+    let calendar = calendar();
+    let mut pinned = plan.clone();
+    let time = exact::Time::from(500);
+    let window = tpn::Window { earliest: time, latest: exact::Bound::Finite(time) };
+    pinned.windows[wait.end.index()] = Some(window);
+    let pins = [(wait.end, time)];
+    let about = export::About {
+        pins: &pins,
+        plan: Some(&pinned),
+        status: PlanStatus::Approved,
+        ..about(Some(&calendar))
     };
-    let page = |record: &Record| {
-        html(&Document {
-            name: "t01.rmpl",
-            snapshot: &planned.snapshot,
-            review: &planned.review,
-            record: Some(record),
-            robustness: None,
-            seed: 0,
-            ground: None,
-        })
-    };
-    let hash = &planned.review.content_hash;
-    let mut record = Record { sign_offs: vec![sign_off("Ada <A>", "0")], ..Record::default() };
-    assert!(page(&record).contains("other content by Ada &lt;A&gt;, 2026-01-02 03:04 UTC"));
-    record.sign_offs.push(sign_off("Grace", hash));
-    record.comments.push(Comment {
-        author: "Grace".to_owned(),
-        time: "2026-01-02T03:00:00Z".to_owned(),
-        about: Some("Group-Wait#1".to_owned()),
-        text: "Long wait.\nIs that intended?".to_owned(),
-        content_hash: hash.clone(),
-    });
-    let page = page(&record);
-    assert!(page.contains("<dd>by Grace, 2026-01-02 03:04 UTC</dd>"));
-    assert!(page.contains("Long wait.<br>Is that intended?"));
-    assert_eq!(page.matches("> stale<").count(), 1);
+    let table = export::csv(&planned.snapshot, &about).expect("a plan");
+    let row = table.lines().find(|line| line.starts_with("Group-Wait#1,")).expect("the wait");
+    assert!(row.ends_with(&format!(",500,500,45,0,min,2004-01-25T12:00:00Z,2004-01-25T13:25:00Z,end,approved,{HASH}")), "{row}");
+    let document = export::json(&planned.snapshot, &about).expect("a plan");
+    assert_eq!(document["format"], "enroute-schedule/1");
+    assert_eq!((&document["content_hash"], &document["plan_status"]), (&HASH.into(), &"approved".into()));
+    assert_eq!((&document["unit"], &document["epoch"]), (&"min".into(), &EPOCH.into()));
+    assert_eq!(document["pinned"][0]["time"], 500);
+    let events = document["pinned"][0]["events"].as_array().expect("names");
+    assert!(events.contains(&"Group-Wait#1.end".into()), "{events:?}");
+    let rows = document["activities"].as_array().expect("a list");
+    let row = rows.iter().find(|row| row["name"] == "Group-Wait#1").expect("the wait");
+    assert_eq!(row["end"]["earliest_utc"], "2004-01-25T13:25:00Z");
+    assert_eq!((&row["end"]["pinned"], &row["start"]["pinned"]), (&true.into(), &false.into()));
+    let without = export::json(&planned.snapshot, &self::about(None)).expect("a plan");
+    assert!(without["epoch"].is_null() && without["activities"][0]["start"]["earliest_utc"].is_null());
+    let ics = export::icalendar(&planned.snapshot, &about).expect("a calendar").replace("\r\n ", "");
+    for line in [&format!("X-ENROUTE-CONTENT-HASH:{HASH}"), "X-ENROUTE-TIME-UNIT:min", "STATUS:CONFIRMED"] {
+        assert!(ics.contains(&format!("{line}\r\n")), "{line}");
+    }
+    assert!(ics.contains("pinned: end\\; approved\\, content 001122334455"), "{ics}");
+    let plan = export::open_mct(&planned.snapshot, &about).expect("a calendar");
+    let wait = plan["Activities"].as_array().expect("a list").iter().find(|it| it["name"] == "Group-Wait#1");
+    let wait = wait.expect("the wait");
+    assert_eq!((&wait["pinned"], &wait["planStatus"], &wait["unit"]), (&"end".into(), &"approved".into(), &"min".into()));
+    assert!(export::open_mct(&planned.snapshot, &self::about(None)).is_none());
 }
 
 #[test]

@@ -204,6 +204,9 @@ impl Session {
                 Effect::JoinReview(record) => {
                     self.state.join_review(*record);
                 }
+                Effect::SetReviewAside(aside) => {
+                    outside::set_review_aside(self.host.as_mut(), &mut self.state, aside);
+                }
                 Effect::ReadMap(id, name) => Keeper::read_map(self.host.as_mut(), &id, &name),
                 Effect::ShowAddress => outside::show_address(&self.state, self.host.as_mut()),
                 Effect::RecallReview => outside::recall_review(self.host.as_ref(), &mut self.state),

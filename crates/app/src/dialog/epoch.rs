@@ -28,8 +28,11 @@ pub(super) fn show(
     if !enter {
         field.request_focus();
     }
-    let is_date = Calendar::new(text.trim(), TimeUnit::Second).is_some();
-    let (note, color) = if is_date || text.is_empty() {
+    let is_left_out = text.trim().is_empty() && !form.needs_epoch();
+    let is_date = is_left_out || Calendar::new(text.trim(), TimeUnit::Second).is_some();
+    let (note, color) = if is_left_out {
+        ("Without a date, times count from the start of the mission alone.", context.tokens.text_muted)
+    } else if is_date || text.is_empty() {
         ("A date or a date with time; without an offset it is in UTC.", context.tokens.text_muted)
     } else {
         ("Not a date such as 2004-01-25 or 2004-01-25T05:05:00Z", context.tokens.error)

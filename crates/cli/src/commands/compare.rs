@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use anyhow::Context as _;
 use mission::compare::{Change, Comparison, Side, compare};
 use mission::review::Record;
+use mission::review::record::is_record;
 use mission::{Goal, Problem};
 use serde_json::{Value, json};
 use tpn::Window;
@@ -22,7 +23,7 @@ use crate::worked_out::{WorkedOut, work_out_text};
 /// The exit status is 0 when nothing differs, and 1 when something does.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The plan before: a mission text, a plan or a signed review in JSON; `-` is standard input.
+    /// The plan before: a mission text, a plan or an approved review in JSON; `-` is standard input.
     before: PathBuf,
     /// The plan after, likewise.
     after: PathBuf,
@@ -89,11 +90,11 @@ impl Args {
             return self.worked_out(path, &mission_of(path, &text)?, target.goal()?, self.seed);
         }
         let value: Value = serde_json::from_str(&text).with_context(|| format!("{name} is not JSON"))?;
-        if value["format"] == mission::review::record::FORMAT {
+        if is_record(&value) {
             let record = Record::from_json(&text).with_context(|| format!("cannot read {name}"))?;
-            let signed =
-                record.sign_offs.last().with_context(|| format!("nobody has signed the review {name}"))?;
-            return self.worked_out(path, &signed.source, signed.goal.clone(), signed.seed);
+            let approved = record.last_approval();
+            let (_, approved) = approved.with_context(|| format!("nobody has approved in the review {name}"))?;
+            return self.worked_out(path, &approved.source, approved.goal.clone(), approved.seed);
         }
         let side = Side::of_json(&name, &value).with_context(|| format!("cannot read {name}"))?;
         Ok(Read { side, source: String::new(), problems: Vec::new() })

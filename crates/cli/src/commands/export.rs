@@ -6,11 +6,13 @@ use std::process::ExitCode;
 
 use anyhow::Context as _;
 use clap::ValueEnum;
-use mission::review::content_hash;
+use mission::review::record::Runs;
+use mission::review::{PlanStatus, Present, content_hash, review, standing};
 use report::calendar::Calendar;
 use report::export;
-use serde_json::json;
+use serde_json::{Value, json};
 
+use crate::commands::report::read_record;
 use crate::deadline::TimeLimit;
 use crate::diagnostics::print_problems;
 use crate::load::Target;
@@ -25,7 +27,8 @@ pub struct Args {
     /// The format.
     #[arg(long = "as", value_enum, value_name = "FORMAT")]
     form: Form,
-    /// When the mission starts, as 2004-01-25 or 2004-01-25T05:05:00Z; needed where times are dates.
+    /// When the mission starts, as 2004-01-25 or 2004-01-25T05:05:00Z, for dates beside times; needed where all times are
+    /// dates.
     #[arg(
         long,
         value_name = "ISO-DATE",
@@ -33,6 +36,9 @@ pub struct Args {
         required_if_eq("form", "open-mct")
     )]
     epoch: Option<String>,
+    /// The history of the review, as the page saves it: how the plan stands with its board is written.
+    #[arg(long, value_name = "REVIEW.json")]
+    review: Option<PathBuf>,
     /// Writes to a file instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -51,6 +57,8 @@ pub struct Args {
 enum Form {
     /// Comma-separated values with windows and slack.
     Csv,
+    /// A JSON document with all that is known of the schedule.
+    Json,
     /// A plan for Open MCT.
     OpenMct,
     /// A calendar.
@@ -86,25 +94,31 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 
 impl Args {
     fn text(&self, WorkedOut { snapshot, .. }: &WorkedOut) -> anyhow::Result<String> {
+        let goal = self.target.goal()?;
+        let record = self.review.as_deref().map(read_record).transpose()?;
+        let hash = content_hash(&snapshot.source, snapshot.map.as_ref(), &goal, self.seed);
+        let status = record.map_or(PlanStatus::Draft, |record| {
+            let mut review = review(snapshot, &goal, self.seed, &mut || false);
+            let found = record.runs_of(&hash).map(Runs::robustness);
+            review.judge(record.rules(), found.as_ref());
+            standing(&record, &Present::of_review(&review)).status
+        });
+        let calendar = self.epoch.as_deref().map(|epoch| calendar(epoch, snapshot)).transpose()?;
+        let calendar = calendar.as_ref();
+        let about = export::About { content_hash: &hash, status, calendar, pins: &[], plan: None };
         let beyond = "the schedule does not fit into the calendar";
+        let written = |document: Value| Ok(format!("{}\n", serde_json::to_string_pretty(&document)?));
         match self.form {
-            Form::Csv => export::csv(snapshot).context("no plan"),
-            Form::OpenMct => {
-                let plan = export::open_mct(snapshot, &self.calendar(snapshot)?).context(beyond)?;
-                Ok(format!("{}\n", serde_json::to_string_pretty(&plan)?))
-            }
-            Form::Icalendar => {
-                let hash =
-                    content_hash(&snapshot.source, snapshot.map.as_ref(), &self.target.goal()?, self.seed);
-                export::icalendar(snapshot, &self.calendar(snapshot)?, &hash).context(beyond)
-            }
+            Form::Csv => export::csv(snapshot, &about).context(beyond),
+            Form::Json => written(export::json(snapshot, &about).context(beyond)?),
+            Form::OpenMct => written(export::open_mct(snapshot, &about).context(beyond)?),
+            Form::Icalendar => export::icalendar(snapshot, &about).context(beyond),
         }
     }
+}
 
-    fn calendar(&self, snapshot: &mission::Snapshot) -> anyhow::Result<Calendar> {
-        let epoch = self.epoch.as_deref().unwrap_or_default();
-        Calendar::new(epoch, snapshot.program.options.time_unit).with_context(|| {
-            format!("--epoch wants a date such as 2004-01-25 or 2004-01-25T05:05:00Z, not `{epoch}`")
-        })
-    }
+fn calendar(epoch: &str, snapshot: &mission::Snapshot) -> anyhow::Result<Calendar> {
+    Calendar::new(epoch, snapshot.program.options.time_unit).with_context(|| {
+        format!("--epoch wants a date such as 2004-01-25 or 2004-01-25T05:05:00Z, not `{epoch}`")
+    })
 }

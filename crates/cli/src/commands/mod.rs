@@ -13,6 +13,7 @@ pub mod path;
 pub mod plan;
 pub mod reconfigure;
 pub mod report;
+pub mod review;
 pub mod robustness;
 pub mod run;
 pub mod simulate;

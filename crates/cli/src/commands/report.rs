@@ -4,7 +4,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context as _;
-use mission::review::{FlightRules, Line, Record, Review, Section, Status, TimeRange, review};
+use mission::review::record::Runs;
+use mission::review::{
+    FlightRules, Line, Present, Record, Review, Section, Status, TimeRange, review, standing,
+};
 use mission::{Robustness, RobustnessSettings};
 use serde_json::{Value, json};
 
@@ -23,10 +26,10 @@ pub struct Args {
     /// Writes the report as one HTML file.
     #[arg(short, long, value_name = "OUT.html", required_if_eq("format", "text"))]
     output: Option<PathBuf>,
-    /// Comments and sign-offs, as the page saves them, to stand in the report.
-    #[arg(long, value_name = "REVIEW.json")]
-    record: Option<PathBuf>,
-    /// Flight rules to hold the plan against; otherwise those of the record, otherwise the usual ones.
+    /// The history of the review, as the page saves it, to stand in the report.
+    #[arg(long, alias = "record", value_name = "REVIEW.json")]
+    review: Option<PathBuf>,
+    /// Flight rules to hold the plan against; otherwise those of the review, otherwise the usual ones.
     #[arg(long, value_name = "RULES.json")]
     rules: Option<PathBuf>,
     /// What runs with chance came to, as `enroute robustness --format json` prints it.
@@ -49,20 +52,14 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let limit = deadline.enforce();
     let WorkedOut { name, snapshot, ground } = &worked_out;
     let mut review = review(snapshot, &args.target.goal()?, args.seed, &mut || false);
-    let record = match &args.record {
-        Some(path) => {
-            let text = read_text(path)?;
-            Some(Record::from_json(&text).with_context(|| format!("cannot read {}", path.display()))?)
-        }
-        None => None,
-    };
+    let record = args.review.as_deref().map(read_record).transpose()?.unwrap_or_default();
     let rules = match &args.rules {
         Some(path) => read_rules(path)?,
-        None => record.as_ref().map(Record::rules).unwrap_or_default(),
+        None => record.rules().clone(),
     };
     let robustness = match &args.robustness {
         Some(path) => Some(read_robustness(path, &review.content_hash)?),
-        None => None,
+        None => record.runs_of(&review.content_hash).map(Runs::robustness),
     };
     review.judge(&rules, robustness.as_ref());
     if let Some(path) = &args.output {
@@ -70,7 +67,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             name,
             snapshot,
             review: &review,
-            record: record.as_ref(),
+            record: Some(&record),
             robustness: robustness.as_ref(),
             seed: args.seed,
             ground: ground.as_deref(),
@@ -79,10 +76,16 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         std::fs::write(path, page).with_context(|| format!("cannot write {}", path.display()))?;
     }
     match args.format {
-        Format::Json => print_json(&document("report", &snapshot.problems, review_json(&review)))?,
+        Format::Json => {
+            let mut body = review_json(&review);
+            body["plan_status"] = json!(standing(&record, &Present::of_review(&review)).status);
+            print_json(&document("report", &snapshot.problems, body))?;
+        }
         Format::Text => {
             print_problems(name, &snapshot.source, &snapshot.problems)?;
             print_text(&summary(&review))?;
+            let standing = standing(&record, &Present::of_review(&review));
+            print_text(&format!("{}: {}\n", standing.status.name(), standing.seats_in_words()))?;
         }
     }
     let status = match (&snapshot.network, review.status) {
@@ -91,6 +94,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         _ => YES,
     };
     Ok(exit(status))
+}
+
+/// Reads the history of a review, and checks it.
+pub fn read_record(path: &Path) -> anyhow::Result<Record> {
+    let record = Record::from_json(&read_text(path)?);
+    record.with_context(|| format!("cannot use {}", path.display()))
 }
 
 /// Reads flight rules.
@@ -159,6 +168,7 @@ fn review_json(review: &Review) -> Value {
     let plain = |lines: &[Line]| lines.iter().map(|line| line_json(line, json!({}))).collect::<Vec<_>>();
     json!({
         "content_hash": review.content_hash,
+        "plan_hash": review.plan_hash,
         "status": review.status,
         "rules": review.rules,
         "plan": plain(&review.plan),

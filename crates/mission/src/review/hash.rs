@@ -1,9 +1,10 @@
 //! What a review was made of, as one figure.
 
 use sha2::{Digest as _, Sha256};
+use tpn::plan_json::plan_to_json;
 
 use crate::request::Goal;
-use crate::snapshot::MapKey;
+use crate::snapshot::{MapKey, Snapshot};
 
 /// Changes when the meaning of the hashed bytes does.
 const DOMAIN: &[u8] = b"enroute-review/1";
@@ -41,6 +42,29 @@ pub fn content_hash(source: &str, map: Option<&MapKey>, goal: &Goal, seed: u64) 
         }
     }
     part(&seed.to_le_bytes());
+    in_hexadecimal(hash)
+}
+
+/// The SHA-256 of the plan in hexadecimal: its choices, links, orders, windows and figures by name, and how long its
+/// ways are, to the millimetre. Empty without a plan. One content has another plan with another search, and may have one
+/// in another version of this program.
+pub fn plan_hash(snapshot: &Snapshot) -> String {
+    let Some((network, plan)) = snapshot.network.as_deref().zip(snapshot.plan()) else { return String::new() };
+    let mut text = plan_to_json(network, plan).to_string();
+    for traverse in snapshot.traverses.iter() {
+        text.push_str(&format!("\n{:.3}", traverse.length_m));
+    }
+    sha256(text.as_bytes())
+}
+
+/// The SHA-256 of some bytes in hexadecimal.
+pub(super) fn sha256(bytes: &[u8]) -> String {
+    let mut hash = Sha256::new();
+    hash.update(bytes);
+    in_hexadecimal(hash)
+}
+
+fn in_hexadecimal(hash: Sha256) -> String {
     hash.finalize().iter().fold(String::with_capacity(64), |mut text, byte| {
         for half in [byte >> 4, byte & 15] {
             text.push(char::from_digit(u32::from(half), 16).unwrap_or('0'));

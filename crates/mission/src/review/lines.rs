@@ -8,7 +8,7 @@ use tpn::{Network, NodeId};
 
 use super::demand_lines::status_by_checker;
 use super::plan_lines::PlanLines;
-use super::{FlightRules, Line, Review, Status, content_hash};
+use super::{FlightRules, Line, Review, Status, content_hash, plan_hash};
 use crate::request::Goal;
 use crate::snapshot::{Planning, Snapshot, Stage};
 
@@ -21,6 +21,7 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
     let places = Places::new(&snapshot.source);
     let mut review = Review {
         content_hash: content_hash(&snapshot.source, snapshot.map.as_ref(), goal, seed),
+        plan_hash: plan_hash(snapshot),
         rules: FlightRules::default(),
         unit: unit(snapshot).to_owned(),
         status: Status::Passed,

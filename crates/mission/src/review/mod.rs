@@ -5,14 +5,18 @@
 //! [`FlightRules`].
 
 mod alternatives;
+pub mod board;
 mod demand_lines;
 pub(crate) mod distances;
+mod former_record;
 mod hash;
 mod lines;
 mod plan_lines;
 pub mod record;
 pub mod rules;
 pub mod schedule;
+pub mod sealed;
+pub mod since;
 
 use exact::{Bound, Time};
 use rmpl::Span;
@@ -21,16 +25,20 @@ use tpn::{NodeId, OccurrenceId, Window};
 
 pub use alternatives::{Alternative, Fate};
 pub use demand_lines::ResourceReview;
-pub use hash::content_hash;
+pub use board::{PlanStatus, Present, Standing, standing};
+pub use hash::{content_hash, plan_hash};
 pub use lines::review;
 pub use record::Record;
 pub use rules::{FlightRules, SuccessRate};
+pub use since::{Since, since};
 
 /// A mission, reviewed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Review {
     /// What was reviewed: see [`content_hash`].
     pub content_hash: String,
+    /// The plan that was found: see [`plan_hash`]; empty without one.
+    pub plan_hash: String,
     /// What it is held against: see [`Review::judge`].
     pub rules: FlightRules,
     /// What times are counted in: `min` or `s`.
@@ -350,6 +358,10 @@ impl Review {
 }
 
 #[cfg(test)]
+mod board_tests;
+#[cfg(test)]
 mod mutations;
+#[cfg(test)]
+mod record_tests;
 #[cfg(test)]
 mod tests;

@@ -1,242 +1,577 @@
-//! What people add to a review: comments and sign-offs, as a document that is kept with the mission.
+//! What a board adds to a review: an append-only history of who said, acknowledged, approved and took back what, as a
+//! document that is kept with the mission (SPEC 16.2).
 //!
-//! Each entry carries the hash of what it is about. A sign-off counts only for that content: after an edit it is
-//! stale, and after undoing the edit it counts again.
+//! Each entry names the content and the plan that it is about, and is sealed over the entries before it: one that is
+//! altered, missing or put elsewhere is noticed when the document is read. It is no signature: whoever writes the whole
+//! document anew is found out by the last digest alone, which a report prints.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Map, Value, json};
 
-use super::FlightRules;
+use super::former_record;
+use super::sealed::Sealed;
+use super::{FlightRules, Line, Review, Section, Status};
 use crate::request::Goal;
+use crate::robustness::{Robustness, RobustnessSettings, Tally, Uncertainty};
 
-/// Comments and sign-offs of one mission, oldest first.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+/// The history of one mission's review, with what was approved and the runs that were made.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Record {
     /// The mission's name.
     pub mission: String,
-    /// What reviewers wrote.
-    pub comments: Vec<Comment>,
-    /// Who signed what.
-    pub sign_offs: Vec<SignOff>,
-    /// The flight rules of the mission, if somebody has set them.
-    pub ruled: Option<Ruled>,
+    /// Each entry after those that it was made after.
+    entries: Vec<Entry>,
+    /// The digests of the entries that no other was made after.
+    heads: BTreeSet<String>,
+    /// What approvals are about, by its digest.
+    subjects: BTreeMap<String, Sealed<Subject>>,
+    /// What runs with chance came to, the latest content last. Anybody can make them again, so they are not sealed.
+    pub runs: Vec<Runs>,
 }
 
-/// Flight rules, and who set them.
+/// An entry of the history; nothing changes it any more.
+pub type Entry = Sealed<Said>;
+
+/// What an entry says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Ruled {
+pub struct Said {
     /// Who.
     pub by: String,
+    /// In which role; empty if in none.
+    pub role: String,
     /// When, as an ISO 8601 time in UTC.
     pub time: String,
-    /// The rules.
-    pub rules: FlightRules,
-}
-
-/// A reviewer's words.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Comment {
-    /// Who wrote it.
-    pub author: String,
-    /// When, as an ISO 8601 time in UTC.
-    pub time: String,
-    /// What it is about, by the names of all output; the whole mission if nothing is named.
-    #[serde(default)]
-    pub about: Option<String>,
-    /// The words.
-    pub text: String,
-    /// The content it was written for.
+    /// The content that it is about: see [`super::content_hash`].
     pub content_hash: String,
+    /// The plan that it is about: see [`super::plan_hash`]; empty if none was known.
+    pub plan_hash: String,
+    /// The digests of the entries that were the last ones: one, or several where histories were joined.
+    pub former: Vec<String>,
+    /// What was done.
+    pub act: Act,
 }
 
-/// Somebody vouches for a plan.
+/// What somebody did. `of` is the digest of the entry that it is about.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SignOff {
-    /// Who.
-    pub name: String,
-    /// When, as an ISO 8601 time in UTC.
-    pub time: String,
-    /// What was signed: see [`super::content_hash`].
-    pub content_hash: String,
-    /// How many lines of the review had passed, were for attention, and had failed.
-    pub counts: [usize; 3],
-    /// The signed text itself, so that later ones can be compared with it.
+#[serde(rename_all = "kebab-case")]
+pub enum Act {
+    /// Wrote a comment, which is open until it is resolved.
+    Comment {
+        /// What it is about, by the names of all output; the whole mission if nothing is named.
+        about: Option<String>,
+        /// The words.
+        text: String,
+    },
+    /// Resolved a comment.
+    Resolve {
+        /// The comment.
+        of: String,
+        /// How.
+        text: String,
+    },
+    /// Opened a resolved comment again.
+    Reopen {
+        /// The comment.
+        of: String,
+        /// Why.
+        text: String,
+    },
+    /// Acknowledged a line for attention.
+    Acknowledge {
+        /// The line.
+        line: LineKey,
+        /// Why it may be so.
+        text: String,
+    },
+    /// Approved.
+    Approve {
+        /// The digest of what was approved: a [`Subject`].
+        subject: String,
+        /// What goes with it; empty for an approval without comments.
+        text: String,
+    },
+    /// Took an entry back.
+    Withdraw {
+        /// The entry.
+        of: String,
+        /// Why.
+        text: String,
+    },
+    /// Set the flight rules.
+    Rules {
+        /// The rules.
+        rules: FlightRules,
+    },
+}
+
+impl Act {
+    /// The word for it.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Comment { .. } => "commented",
+            Self::Resolve { .. } => "resolved",
+            Self::Reopen { .. } => "reopened",
+            Self::Acknowledge { .. } => "acknowledged",
+            Self::Approve { .. } => "approved",
+            Self::Withdraw { .. } => "took back",
+            Self::Rules { .. } => "set the flight rules",
+        }
+    }
+
+    /// What was said with it.
+    pub fn text(&self) -> &str {
+        match self {
+            Self::Comment { text, .. }
+            | Self::Resolve { text, .. }
+            | Self::Reopen { text, .. }
+            | Self::Acknowledge { text, .. }
+            | Self::Approve { text, .. }
+            | Self::Withdraw { text, .. } => text,
+            Self::Rules { .. } => "",
+        }
+    }
+
+    /// The entry that it is about.
+    pub fn of(&self) -> Option<&str> {
+        match self {
+            Self::Resolve { of, .. } | Self::Reopen { of, .. } | Self::Withdraw { of, .. } => Some(of),
+            Self::Comment { .. } | Self::Acknowledge { .. } | Self::Approve { .. } | Self::Rules { .. } => None,
+        }
+    }
+}
+
+/// What tells a line of a checklist from others: an acknowledgement holds as long as the line says the same.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct LineKey {
+    /// Its section.
+    pub section: Section,
+    /// What it says.
+    pub text: String,
+    /// What it is held against.
+    pub criterion: Option<String>,
+}
+
+impl LineKey {
+    /// The key of a line.
+    pub fn new(section: Section, line: &Line) -> Self {
+        Self { section, text: line.text.clone(), criterion: line.criterion.clone() }
+    }
+}
+
+/// What was approved, as it was then: later contents can be compared with it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Subject {
+    /// The text.
     pub source: String,
     /// What was planned.
-    #[serde(default)]
     pub goal: Goal,
     /// The seed of its paths.
-    #[serde(default)]
     pub seed: u64,
     /// The flight rules that it was held against.
-    #[serde(default)]
     pub rules: FlightRules,
+    /// How many lines of the review had passed, were for attention, and had failed.
+    pub counts: [usize; 3],
+    /// The lines of the checklist, those of events and their windows excepted.
+    #[serde(default)]
+    pub lines: Vec<SeenLine>,
+    /// The plan, as `enroute plan` prints one (DESIGN 4.2); nothing where it was not kept.
+    #[serde(default)]
+    pub plan: Value,
+    /// What runs with chance had come to, if any had been made.
+    #[serde(default)]
+    pub robustness: Option<Rate>,
 }
 
+/// A line of a checklist as it was seen.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SeenLine {
+    /// Its section.
+    pub section: Section,
+    /// How it stood.
+    pub status: Status,
+    /// What it said.
+    pub text: String,
+    /// What it was about, by the names of all output.
+    pub names: Vec<String>,
+}
+
+/// How many of some runs with chance reached the end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Rate {
+    /// How many reached the end.
+    pub succeeded: u64,
+    /// Of how many.
+    pub runs: u64,
+    /// The seed of the runs.
+    pub seed: u64,
+}
+
+impl Rate {
+    /// Of runs that were made.
+    pub fn new(found: &Robustness) -> Self {
+        Self { succeeded: found.tally.succeeded, runs: found.tally.runs, seed: found.settings.seed }
+    }
+}
+
+impl Subject {
+    /// What is approved when a review is: `plan` is that of the reviewed content, as JSON.
+    pub fn new(review: &Review, source: &str, goal: Goal, seed: u64, plan: Value, found: Option<&Robustness>) -> Self {
+        Self {
+            source: source.to_owned(),
+            goal,
+            seed,
+            rules: review.rules.clone(),
+            counts: review.counts(),
+            lines: seen_lines(review),
+            plan,
+            robustness: found.map(Rate::new),
+        }
+    }
+}
+
+/// The lines of a checklist, those of events and their windows excepted.
+pub fn seen_lines(review: &Review) -> Vec<SeenLine> {
+    let sections = Section::ALL.into_iter().filter(|&section| section != Section::Events);
+    let lines = sections.flat_map(|section| review.lines(section).into_iter().map(move |line| (section, line)));
+    let seen = lines.map(|(section, line)| SeenLine {
+        section,
+        status: line.status,
+        text: line.text.clone(),
+        names: line.names.clone(),
+    });
+    seen.collect()
+}
+
+/// What runs with chance came to of one content.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Runs {
+    /// The content: see [`super::content_hash`].
+    pub content_hash: String,
+    /// How many were asked for.
+    pub runs: u64,
+    /// Their seed.
+    pub seed: u64,
+    /// What was left to chance.
+    pub uncertainty: Uncertainty,
+    /// What those came to that were made.
+    pub tally: Tally,
+}
+
+impl Runs {
+    /// Of a content.
+    pub fn new(content_hash: &str, found: &Robustness) -> Self {
+        let Robustness { settings: RobustnessSettings { runs, seed, uncertainty }, tally } = found.clone();
+        Self { content_hash: content_hash.to_owned(), runs, seed, uncertainty, tally }
+    }
+
+    /// What is known of the content's robustness.
+    pub fn robustness(&self) -> Robustness {
+        let Self { runs, seed, uncertainty, tally, .. } = self.clone();
+        Robustness { settings: RobustnessSettings { runs, seed, uncertainty }, tally }
+    }
+}
+
+/// Contents of which runs are kept.
+pub const MAX_RUNS_KEPT: usize = 8;
+
+/// Who does something, when, and about what.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Who {
+    /// The name.
+    pub by: String,
+    /// The role; empty for none.
+    pub role: String,
+    /// When, as an ISO 8601 time in UTC.
+    pub time: String,
+    /// The content that it is about.
+    pub content_hash: String,
+    /// The plan that it is about; empty if none is known.
+    pub plan_hash: String,
+}
+
+/// The rules of a mission of which nobody has set any.
+static USUAL_RULES: LazyLock<FlightRules> = LazyLock::new(FlightRules::default);
+
 /// The format of the document.
-pub const FORMAT: &str = "enroute-review/1";
+pub const FORMAT: &str = "enroute-review/2";
+
+/// How the formats of all versions begin.
+const FORMATS: &str = "enroute-review/";
 
 /// Why a text is no record of a review.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RecordError {
-    /// It is another kind of document, or a later version.
+    /// It is another kind of document.
     #[error("this is not a review: its format is {found}, not \"{FORMAT}\"")]
     Format {
+        /// What it says of itself.
+        found: String,
+    },
+    /// A later version of the program wrote it.
+    #[error("this review is of a later version of this program: its format is {found}, and \"{FORMAT}\" is known here")]
+    Newer {
         /// What it says of itself.
         found: String,
     },
     /// It is damaged.
     #[error("this review cannot be read: {0}")]
     Damaged(String),
+    /// Its history has been altered.
+    #[error("the history of this review has been altered: {0}")]
+    Broken(String),
+}
+
+/// Whether a document says that it is a review, of whatever version.
+pub fn is_record(document: &Value) -> bool {
+    document["format"].as_str().is_some_and(|format| format.starts_with(FORMATS))
 }
 
 impl Record {
-    /// Whether nobody has said anything yet.
+    /// The record of a mission of which nobody has said anything.
+    pub fn new(mission: &str) -> Self {
+        Self { mission: mission.to_owned(), ..Self::default() }
+    }
+
+    /// Whether nobody has said anything yet, and no runs are kept.
     pub fn is_empty(&self) -> bool {
-        self.comments.is_empty() && self.sign_offs.is_empty() && self.ruled.is_none()
+        self.entries.is_empty() && self.runs.is_empty()
     }
 
-    /// The latest sign-off of this content, held against these rules.
-    pub fn sign_off_of(&self, content_hash: &str, rules: &FlightRules) -> Option<&SignOff> {
-        self.sign_offs.iter().rev().find(|it| it.content_hash == content_hash && it.rules == *rules)
+    /// The history, each entry after those that it was made after.
+    pub fn entries(&self) -> &[Entry] {
+        &self.entries
     }
 
-    /// The flight rules: those of the mission, otherwise the usual ones.
-    pub fn rules(&self) -> FlightRules {
-        self.ruled.as_ref().map(|ruled| ruled.rules.clone()).unwrap_or_default()
+    /// The entry of this digest.
+    pub fn entry(&self, digest: &str) -> Option<&Entry> {
+        self.entries.iter().find(|entry| entry.digest() == digest)
+    }
+
+    /// What an approval is about.
+    pub fn subject(&self, entry: &Said) -> Option<&Subject> {
+        match &entry.act {
+            Act::Approve { subject, .. } => self.subjects.get(subject).map(|sealed| &**sealed),
+            _ => None,
+        }
+    }
+
+    /// The digests of the last entries: those that no other was made after, usually one. Who knows them knows the history.
+    pub fn heads(&self) -> impl Iterator<Item = &str> {
+        self.heads.iter().map(String::as_str)
+    }
+
+    fn push(&mut self, entry: Entry) {
+        for former in &entry.former {
+            self.heads.remove(former);
+        }
+        self.heads.insert(entry.digest().to_owned());
+        self.entries.push(entry);
+    }
+
+    /// The entries that have been taken back, by whom.
+    pub fn withdrawn(&self) -> BTreeMap<&str, &Entry> {
+        let withdrawals = self.entries.iter().filter_map(|entry| match &entry.act {
+            Act::Withdraw { of, .. } => Some((of.as_str(), entry)),
+            _ => None,
+        });
+        withdrawals.collect()
+    }
+
+    /// The latest approval that has not been taken back, with what was approved.
+    pub fn last_approval(&self) -> Option<(&Entry, &Subject)> {
+        let withdrawn = self.withdrawn();
+        let standing = self.entries.iter().rev().filter(|entry| !withdrawn.contains_key(entry.digest()));
+        standing.into_iter().find_map(|entry| Some((entry, self.subject(entry)?)))
+    }
+
+    /// The flight rules: those that were set last, otherwise the usual ones.
+    pub fn rules(&self) -> &FlightRules {
+        self.ruled().map_or(&USUAL_RULES, |(_, rules)| rules)
+    }
+
+    /// The flight rules that were set last, with who set them.
+    pub fn ruled(&self) -> Option<(&Entry, &FlightRules)> {
+        self.entries.iter().rev().find_map(|entry| match &entry.act {
+            Act::Rules { rules } => Some((entry, rules)),
+            _ => None,
+        })
+    }
+
+    /// Adds an entry after all others.
+    pub fn add(&mut self, who: Who, act: Act) {
+        let Who { by, role, time, content_hash, plan_hash } = who;
+        let former = self.heads.iter().cloned().collect();
+        self.push(Sealed::new(Said { by, role, time, content_hash, plan_hash, former, act }));
+    }
+
+    /// Adds an approval of `subject`.
+    pub fn approve(&mut self, who: Who, subject: Subject, text: String) {
+        let subject = Sealed::new(subject);
+        let digest = subject.digest().to_owned();
+        self.subjects.insert(digest.clone(), subject);
+        self.add(who, Act::Approve { subject: digest, text });
+    }
+
+    /// Keeps what runs of a content came to, instead of what runs of the same content came to before.
+    pub fn keep_runs(&mut self, runs: Runs) {
+        self.runs.retain(|known| known.content_hash != runs.content_hash);
+        self.runs.push(runs);
+        let more = self.runs.len().saturating_sub(MAX_RUNS_KEPT);
+        self.runs.drain(..more);
+    }
+
+    /// What runs of this content came to.
+    pub fn runs_of(&self, content_hash: &str) -> Option<&Runs> {
+        self.runs.iter().find(|runs| runs.content_hash == content_hash)
     }
 
     /// The document, on several lines.
     pub fn to_json(&self) -> String {
-        let mut value = serde_json::to_value(self).unwrap_or_default();
-        value["format"] = FORMAT.into();
-        value["diagnostics"] = Value::Array(Vec::new());
-        let mut text = serde_json::to_string_pretty(&value).unwrap_or_default();
+        let entries = self.entries.iter().map(|entry| json!({ "digest": entry.digest(), "said": entry.raw() }));
+        let subjects: Map<String, Value> =
+            self.subjects.iter().map(|(digest, subject)| (digest.clone(), subject.raw().clone())).collect();
+        let document = json!({
+            "format": FORMAT,
+            "diagnostics": [],
+            "mission": self.mission,
+            "entries": entries.collect::<Vec<Value>>(),
+            "heads": self.heads,
+            "subjects": subjects,
+            "runs": self.runs,
+        });
+        let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();
         text.push('\n');
         text
     }
 
-    /// Reads the document.
+    /// Reads the document, and checks its history. Documents of the version before have none: what was said and signed
+    /// becomes one, in order of time.
     pub fn from_json(text: &str) -> Result<Self, RecordError> {
-        let value: Value =
-            serde_json::from_str(text).map_err(|error| RecordError::Damaged(error.to_string()))?;
-        if value["format"] != FORMAT {
-            return Err(RecordError::Format { found: value["format"].to_string() });
+        let damaged = |error: serde_json::Error| RecordError::Damaged(error.to_string());
+        let mut value: Value = serde_json::from_str(text).map_err(damaged)?;
+        match value["format"].as_str() {
+            Some(FORMAT) => {}
+            Some(former_record::FORMAT) => return former_record::read(value).map_err(damaged),
+            Some(newer) if newer.starts_with(FORMATS) => {
+                return Err(RecordError::Newer { found: newer.to_owned() });
+            }
+            _ => return Err(RecordError::Format { found: value["format"].to_string() }),
         }
-        serde_json::from_value(value).map_err(|error| RecordError::Damaged(error.to_string()))
+        let mut record = Self {
+            mission: value["mission"].as_str().unwrap_or_default().to_owned(),
+            runs: serde_json::from_value(value["runs"].take()).map_err(damaged)?,
+            ..Self::default()
+        };
+        if record.runs.iter().any(|runs| runs.tally.succeeded > runs.tally.runs) {
+            return Err(RecordError::Damaged("more runs reached the end than were made".to_owned()));
+        }
+        let Value::Object(subjects) = value["subjects"].take() else { return Err(lacks("subjects")) };
+        for (digest, subject) in subjects {
+            let subject = Sealed::<Subject>::read(subject).map_err(damaged)?;
+            if subject.digest() != digest {
+                let what = format!("what was approved as {} is not what is there now", short(&digest));
+                return Err(RecordError::Broken(what));
+            }
+            record.subjects.insert(digest, subject);
+        }
+        let Value::Array(entries) = value["entries"].take() else { return Err(lacks("entries")) };
+        let mut known = BTreeSet::new();
+        for (index, mut entry) in entries.into_iter().enumerate() {
+            let said = Entry::read(entry["said"].take()).map_err(damaged)?;
+            record.check(&said, entry["digest"].as_str().unwrap_or_default(), &known).map_err(|why| {
+                RecordError::Broken(format!("entry {} ({}, {}) {why}", index + 1, said.by, said.time))
+            })?;
+            known.insert(said.digest().to_owned());
+            record.push(said);
+        }
+        let heads: BTreeSet<String> = serde_json::from_value(value["heads"].take()).map_err(damaged)?;
+        if heads != record.heads {
+            return Err(RecordError::Broken("its last entry is not the one that was last".to_owned()));
+        }
+        Ok(record)
     }
 
-    /// Adds what another record has and this one has not, in order of time. Answers how many entries are new.
+    /// What is wrong with an entry that comes after the `known` ones.
+    fn check(&self, entry: &Entry, digest: &str, known: &BTreeSet<String>) -> Result<(), &'static str> {
+        match &entry.act {
+            _ if entry.digest() != digest => Err("does not say what it said"),
+            _ if known.contains(digest) => Err("is there twice"),
+            _ if !entry.former.iter().all(|former| known.contains(former)) => {
+                Err("follows one that is not there")
+            }
+            Act::Approve { subject, .. } if !self.subjects.contains_key(subject) => {
+                Err("approves what is not there")
+            }
+            act if act.of().is_some_and(|of| !known.contains(of)) => Err("is about one that is not there"),
+            _ => Ok(()),
+        }
+    }
+
+    /// Adds what another record has and this one has not. Returns how many entries are new. Each entry stays after those
+    /// that it was made after; otherwise they are in order of time.
     pub fn merge(&mut self, other: Self) -> usize {
-        let before = self.comments.len() + self.sign_offs.len();
-        for comment in other.comments {
-            if !self.comments.contains(&comment) {
-                self.comments.push(comment);
+        let before = self.entries.len();
+        let known: BTreeSet<String> = self.entries.iter().map(|it| it.digest().to_owned()).collect();
+        let new: Vec<Entry> =
+            other.entries.into_iter().filter(|entry| !known.contains(entry.digest())).collect();
+        if !new.is_empty() {
+            let all = std::mem::take(&mut self.entries).into_iter().chain(new).collect();
+            self.heads.clear();
+            for entry in in_order(all) {
+                self.push(entry);
             }
         }
-        for sign_off in other.sign_offs {
-            if !self.sign_offs.contains(&sign_off) {
-                self.sign_offs.push(sign_off);
+        self.subjects.extend(other.subjects);
+        for runs in other.runs {
+            if self.runs_of(&runs.content_hash).is_none_or(|known| known.tally.runs < runs.tally.runs) {
+                self.keep_runs(runs);
             }
         }
-        // The rules that were set last.
-        if let Some(theirs) = other.ruled
-            && self.ruled.as_ref().is_none_or(|mine| mine.time < theirs.time)
-        {
-            self.ruled = Some(theirs);
-        }
-        // Times in UTC and of one shape are in order when their texts are; equal ones keep theirs.
-        self.comments.sort_by(|left, right| left.time.cmp(&right.time));
-        self.sign_offs.sort_by(|left, right| left.time.cmp(&right.time));
-        self.comments.len() + self.sign_offs.len() - before
+        self.entries.len() - before
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn comment(time: &str, text: &str) -> Comment {
-        Comment {
-            author: "A. Reviewer".to_owned(),
-            time: time.to_owned(),
-            about: Some("Group-Wait#1".to_owned()),
-            text: text.to_owned(),
-            content_hash: "0".repeat(64),
+/// Entries in order of time, each after those that it was made after: one order, whatever order they come in.
+fn in_order(entries: Vec<Entry>) -> Vec<Entry> {
+    let all: BTreeSet<&str> = entries.iter().map(|entry| entry.digest()).collect();
+    let mut waits_for: Vec<usize> = Vec::with_capacity(entries.len());
+    let mut after: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    let mut ready = BTreeSet::new();
+    // Times in UTC and of one shape are in order when their texts are.
+    let key = |index: usize| (entries[index].time.as_str(), entries[index].digest(), index);
+    for (index, entry) in entries.iter().enumerate() {
+        let former: BTreeSet<&str> =
+            entry.former.iter().map(String::as_str).filter(|former| all.contains(former)).collect();
+        waits_for.push(former.len());
+        if former.is_empty() {
+            ready.insert(key(index));
+        }
+        for former in former {
+            after.entry(former).or_default().push(index);
         }
     }
-
-    fn sign_off(time: &str, hash: &str) -> SignOff {
-        SignOff {
-            name: "A. Reviewer".to_owned(),
-            time: time.to_owned(),
-            content_hash: hash.to_owned(),
-            counts: [3, 1, 0],
-            source: "scenario S = { }".to_owned(),
-            goal: Goal::Default,
-            seed: 7,
-            rules: FlightRules::default(),
+    let mut order = Vec::with_capacity(entries.len());
+    while let Some((_, digest, index)) = ready.pop_first() {
+        order.push(index);
+        for &next in after.get(digest).into_iter().flatten() {
+            waits_for[next] -= 1;
+            if waits_for[next] == 0 {
+                ready.insert(key(next));
+            }
         }
     }
+    let mut entries: Vec<Option<Entry>> = entries.into_iter().map(Some).collect();
+    order.into_iter().filter_map(|index| entries[index].take()).collect()
+}
 
-    #[test]
-    fn a_record_is_read_back_as_it_was_written() {
-        let record = Record {
-            mission: "enroute".to_owned(),
-            comments: vec![comment("2026-01-02T03:04:05Z", "Why \"this\" path?\nIt is longer.")],
-            sign_offs: vec![sign_off("2026-01-02T03:05:00Z", "ab")],
-            ruled: Some(Ruled {
-                by: "C. Chair".to_owned(),
-                time: "2026-01-01T00:00:00Z".to_owned(),
-                rules: FlightRules { slope_deg: None, ..FlightRules::default() },
-            }),
-        };
-        assert_eq!(Record::from_json(&record.to_json()), Ok(record));
-    }
+fn lacks(member: &str) -> RecordError {
+    RecordError::Damaged(format!("it has no `{member}`"))
+}
 
-    #[test]
-    fn other_documents_are_refused() {
-        assert!(matches!(
-            Record::from_json("{\"format\":\"enroute-plan/1\"}"),
-            Err(RecordError::Format { found }) if found.contains("enroute-plan/1")
-        ));
-        assert!(matches!(Record::from_json("{"), Err(RecordError::Damaged(_))));
-        assert!(matches!(
-            Record::from_json("{\"format\":\"enroute-review/1\",\"comments\":[{}]}"),
-            Err(RecordError::Damaged(_))
-        ));
-    }
-
-    #[test]
-    fn merging_keeps_both_and_nothing_twice() {
-        let mut mine = Record {
-            comments: vec![comment("2026-01-01T00:00:00Z", "mine"), comment("2026-01-03T00:00:00Z", "both")],
-            ..Record::default()
-        };
-        let theirs = Record {
-            comments: vec![
-                comment("2026-01-03T00:00:00Z", "both"),
-                comment("2026-01-02T00:00:00Z", "theirs"),
-            ],
-            sign_offs: vec![sign_off("2026-01-04T00:00:00Z", "ab")],
-            ..Record::default()
-        };
-        assert_eq!(mine.merge(theirs), 2);
-        let texts: Vec<&str> = mine.comments.iter().map(|it| it.text.as_str()).collect();
-        assert_eq!(texts, ["mine", "theirs", "both"]);
-    }
-
-    #[test]
-    fn the_latest_sign_off_of_a_content_counts() {
-        let record = Record {
-            sign_offs: vec![sign_off("1", "ab"), sign_off("2", "cd"), sign_off("3", "ab")],
-            ..Record::default()
-        };
-        let rules = FlightRules::default();
-        assert_eq!(record.sign_off_of("ab", &rules).map(|it| it.time.as_str()), Some("3"));
-        assert_eq!(record.sign_off_of("ef", &rules), None);
-        let others = FlightRules { slope_deg: None, ..rules };
-        assert_eq!(record.sign_off_of("ab", &others), None, "other rules were not signed");
-    }
+/// As much of a digest as people compare.
+pub fn short(digest: &str) -> &str {
+    digest.get(..12).unwrap_or(digest)
 }

@@ -10,6 +10,7 @@ use serde_json::Value;
 use smol_str::SmolStr;
 use tpn::Supply;
 
+use super::board::{self, Seat};
 use super::{Line, Review, Section, Status};
 use crate::Robustness;
 
@@ -30,6 +31,8 @@ pub struct FlightRules {
     pub reserves: BTreeMap<SmolStr, Rational>,
     /// How many of the runs with chance reach the end.
     pub success_rate: Option<SuccessRate>,
+    /// Who has to approve.
+    pub board: Vec<Seat>,
 }
 
 /// The share of runs that is asked for, from 0 to 1.
@@ -54,6 +57,7 @@ impl Default for FlightRules {
             reserve: Some(Rational::ZERO),
             reserves: BTreeMap::new(),
             success_rate: Some(SuccessRate { wanted: 0.95, least: 0.8 }),
+            board: board::default_board(),
         }
     }
 }
@@ -73,7 +77,7 @@ impl FlightRules {
                 Some("a success rate is from 0 to 1")
             }
             Some(rate) if rate.least > rate.wanted => Some("what fails is no more than what is wanted"),
-            _ => None,
+            _ => board::problem(&self.board),
         }
     }
 
@@ -139,6 +143,8 @@ impl FlightRules {
                 percent(rate.least)
             ),
         });
+        let seats = self.board.iter().map(|seat| format!("{} {}", seat.approvals, seat.role));
+        words.push(format!("who approves: {}", seats.collect::<Vec<_>>().join(", ")));
         words
     }
 }

@@ -84,12 +84,12 @@ fn sources(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let state = context.state;
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new("Compare with").color(context.tokens.text_muted));
-        let has_signed = !state.review.record().sign_offs.is_empty();
-        let signed = ui.add_enabled(has_signed, egui::Button::new("Last sign-off"));
-        if signed.on_disabled_hover_text("nobody has signed this mission off yet").clicked() {
-            commands.send(Command::Compare(CompareCommand::WithSignedOff));
+        let has_approval = state.review.record().last_approval().is_some();
+        let approved = ui.add_enabled(has_approval, egui::Button::new("Last approval"));
+        if approved.on_disabled_hover_text("nobody has approved this mission yet").clicked() {
+            commands.send(Command::Compare(CompareCommand::WithApproved));
         }
-        let file = ui.button("A file…").on_hover_text("A mission, a saved plan or a signed review");
+        let file = ui.button("A file…").on_hover_text("A mission, a saved plan or an approved review");
         if file.clicked() {
             commands.send(Command::Compare(CompareCommand::OpenFile));
         }
@@ -110,7 +110,7 @@ fn sources(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
 fn introduction(ui: &mut Ui, context: &Context<'_>) {
     ui.add_space(space::L);
     ui.label(strong("Nothing to compare with yet").color(context.tokens.text));
-    let text = "Choose the last signed-off text, another mission or a saved plan, or keep this plan and edit on: \
+    let text = "Choose the last approved text, another mission or a saved plan, or keep this plan and edit on: \
                 what is added, removed, moved or re-chosen is listed by name, over one timeline and one map.";
     ui.label(RichText::new(text).color(context.tokens.text_muted));
 }

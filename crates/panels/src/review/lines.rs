@@ -2,11 +2,13 @@
 
 use egui::Ui;
 use mission::Snapshot;
+use mission::review::record::LineKey;
 use mission::review::{Fate, Line, Section, Status};
 use tpn::{CausalLink, DecisionId, LabelId, Ordering};
 use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
 
+use super::people::People;
 use super::{List, row};
 
 /// Shows a line of any section.
@@ -16,6 +18,7 @@ pub(super) fn line(
     section: Section,
     index: usize,
     line: &Line,
+    people: &mut People,
     commands: &mut CommandSender,
 ) {
     let is_selected = list.selected.contains(&key(section, line));
@@ -37,12 +40,24 @@ pub(super) fn line(
             commands.send(Command::Seek(violation.time));
         }
     }
+    if line.status == Status::Attention && !list.is_stale {
+        let known = list.acknowledged.get(&LineKey::new(section, line)).copied();
+        ui.push_id((section, index), |ui| {
+            people.acknowledgement(ui, list.context, (section, line), known, commands);
+        });
+    }
 }
 
 /// Shows the choices with their alternatives and why they were not taken.
-pub(super) fn choices(ui: &mut Ui, list: &List<'_>, count: usize, commands: &mut CommandSender) {
+pub(super) fn choices(
+    ui: &mut Ui,
+    list: &List<'_>,
+    count: usize,
+    people: &mut People,
+    commands: &mut CommandSender,
+) {
     for (index, choice) in list.review.choices.iter().enumerate().take(count) {
-        line(ui, list, Section::Choices, index, &choice.line, commands);
+        line(ui, list, Section::Choices, index, &choice.line, people, commands);
         for alternative in &choice.alternatives {
             let is_said = alternative.text.starts_with(alternative.name.trim_end_matches(')'));
             let what = if is_said {

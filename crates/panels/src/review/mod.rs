@@ -1,8 +1,10 @@
-//! The review: a checklist that is computed, what reviewers say, and the sign-off.
+//! The review: a checklist that is computed, and what its board says of it until it approves.
 //!
 //! Each line leads to its place in all other panels. A state is always a sign and a word, never a colour alone.
 
+mod changes;
 mod events;
+mod history;
 mod lines;
 mod people;
 mod robustness;
@@ -10,9 +12,10 @@ mod row;
 mod rules;
 mod verdict;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use egui::{Frame, Margin, ScrollArea, Ui};
+use mission::review::record::{Entry, LineKey};
 use mission::review::{Review, Section, Status};
 use theme::icon::Icon;
 use theme::{Tokens, space};
@@ -31,6 +34,7 @@ pub struct ReviewPanel {
     whole: BTreeSet<&'static str>,
     people: people::People,
     rules: rules::Rules,
+    changes: changes::Changes,
 }
 
 /// Lines of a section that are listed before "Show all".
@@ -51,14 +55,22 @@ impl Panel for ReviewPanel {
             Frame::new().inner_margin(Margin::symmetric(10, 8)).show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = space::S;
                 let shown = state.review.shown(state.settings.plan.search);
-                verdict::show(ui, context, shown, commands);
+                let standing = state.standing();
+                verdict::show(ui, context, shown, standing.as_ref(), &mut self.people, commands);
+                self.changes.show(ui, context, &mut self.closed, commands);
                 if let Some((review, is_stale)) = shown {
                     let selected = row::selected_names(context);
-                    let list = List { context, review, is_stale, selected: &selected };
+                    let acknowledged = state.review.record().acknowledgements();
+                    let list = List { context, review, is_stale, selected: &selected, acknowledged };
                     self.sections(ui, &list, commands);
                 }
                 self.rules.show(ui, context, &mut self.closed, commands);
-                self.people.show(ui, context, &mut self.closed, commands);
+                let Self { people, closed, .. } = self;
+                people.comments(ui, context, standing.as_ref(), closed, commands);
+                if let Some(standing) = &standing {
+                    people.approval(ui, context, standing, closed, commands);
+                }
+                history::show(ui, context, closed, commands);
             });
         });
     }
@@ -71,6 +83,8 @@ struct List<'a> {
     is_stale: bool,
     /// The names of what is selected.
     selected: &'a [String],
+    /// Who acknowledged which line.
+    acknowledged: BTreeMap<&'a LineKey, &'a Entry>,
 }
 
 impl ReviewPanel {
@@ -100,7 +114,7 @@ impl ReviewPanel {
         let title = Section::Robustness.title();
         if header(ui, list.context, &mut self.closed, title, line.map(|line| line.status), &note) {
             if let Some(line) = line {
-                lines::line(ui, list, Section::Robustness, 0, line, commands);
+                lines::line(ui, list, Section::Robustness, 0, line, &mut self.people, commands);
             }
             robustness::show(ui, list.context, figures, commands);
         }
@@ -116,11 +130,11 @@ impl ReviewPanel {
         let most = if section == Section::Events { events::FIRST_EVENTS } else { FIRST_LINES };
         let count = if is_whole { lines.len() } else { lines.len().min(most) };
         match section {
-            Section::Choices => lines::choices(ui, list, count, commands),
+            Section::Choices => lines::choices(ui, list, count, &mut self.people, commands),
             Section::Events => events::show(ui, list, count, commands),
             _ => {
                 for (index, line) in lines.iter().enumerate().take(count) {
-                    lines::line(ui, list, section, index, line, commands);
+                    lines::line(ui, list, section, index, line, &mut self.people, commands);
                 }
             }
         }

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Button, DragValue, RichText, Ui};
+use egui::{Button, DragValue, RichText, TextEdit, Ui};
 use exact::{Rational, Time};
+use mission::review::board::{MAX_APPROVALS, MAX_SEATS, Seat};
 use mission::review::{FlightRules, SuccessRate};
 use theme::space;
 use workbench::command::{Command, CommandSender};
@@ -31,12 +32,12 @@ impl Rules {
         commands: &mut CommandSender,
     ) {
         let record = context.state.review.record();
-        let present = record.rules();
+        let present = record.rules().clone();
         // What others have set in the meantime counts.
         self.draft.take_if(|(before, draft)| *before != present || *draft == present);
-        let note = match (&self.draft, &record.ruled) {
+        let note = match (&self.draft, record.ruled()) {
             (Some(_), _) => "changed, not in force yet".to_owned(),
-            (None, Some(ruled)) if !ruled.by.is_empty() => format!("set by {}", ruled.by),
+            (None, Some((ruled, _))) if !ruled.by.is_empty() => format!("set by {}", ruled.by),
             (None, Some(_)) => "of this mission".to_owned(),
             (None, None) => "the usual ones".to_owned(),
         };
@@ -107,6 +108,36 @@ fn fields(ui: &mut Ui, context: &Context<'_>, rules: &mut FlightRules) {
         rate.wanted = wanted.map_or(rate.wanted, |wanted| wanted / 100.0);
         rate.least = least.map_or(rate.least, |least| least / 100.0);
         rules.success_rate = is_held.then_some(rate);
+    }
+    board(ui, &mut rules.board);
+}
+
+/// Who has to approve, and how many of them.
+fn board(ui: &mut Ui, board: &mut Vec<Seat>) {
+    ui.add_space(space::S);
+    row::quiet_word(ui, "Who has to approve");
+    let mut gone = None;
+    let is_only = board.len() == 1;
+    for (index, seat) in board.iter_mut().enumerate() {
+        ui.push_id(index, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                let number = index + 1;
+                let count = DragValue::new(&mut seat.approvals).range(1..=MAX_APPROVALS).speed(0.05);
+                ui.add(count).accessible_name(format!("Approvals of role {number}"));
+                let role = TextEdit::singleline(&mut seat.role).hint_text("Role").desired_width(160.0);
+                ui.add(role).accessible_name(format!("Role {number}"));
+                let remove = ui.add_enabled(!is_only, Button::new("Remove"));
+                if remove.accessible_name(format!("Remove role {number}")).clicked() {
+                    gone = Some(index);
+                }
+            });
+        });
+    }
+    if let Some(index) = gone {
+        board.remove(index);
+    }
+    if ui.add_enabled(board.len() < MAX_SEATS, Button::new("Add a role")).clicked() {
+        board.push(Seat { role: String::new(), approvals: 1 });
     }
 }
 

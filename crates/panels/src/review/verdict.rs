@@ -1,16 +1,17 @@
-//! The head of the review: what it comes to, whether it is stale, and who has signed.
+//! The head of the review: what it comes to, whether it is stale, and how the plan stands with its board.
 
 use std::sync::Arc;
 
 use egui::{Frame, Margin, RichText, Ui};
-use mission::review::{Review, Status};
+use mission::review::{PlanStatus, Review, Standing, Status};
 use theme::icon::{self, Icon};
 use theme::{space, strong};
 use workbench::command::{Command, CommandSender};
 use workbench::state;
-use workbench::state::review::{ReviewCommand, Signed};
+use workbench::state::review::ReviewCommand;
 use workbench::state::search::SearchCommand;
 
+use super::people::{People, who};
 use super::status_look;
 use crate::Context;
 
@@ -22,6 +23,8 @@ pub(super) fn show(
     ui: &mut Ui,
     context: &Context<'_>,
     shown: Option<(&Arc<Review>, bool)>,
+    standing: Option<&Standing<'_>>,
+    people: &mut People,
     commands: &mut CommandSender,
 ) {
     let tokens = context.tokens;
@@ -75,7 +78,10 @@ pub(super) fn show(
             ui.label(RichText::new(text).color(tokens.text_muted));
         }
         ui.add_space(space::XS);
-        signed(ui, context);
+        if let Some(standing) = standing {
+            board(ui, context, standing);
+        }
+        people.identity(ui, context);
         ui.add_space(space::S);
         buttons(ui, context, shown, commands);
     });
@@ -120,23 +126,25 @@ fn content(ui: &mut Ui, context: &Context<'_>, review: &Review, commands: &mut C
     }
 }
 
-fn signed(ui: &mut Ui, context: &Context<'_>) {
+/// How the plan stands with its board.
+fn board(ui: &mut Ui, context: &Context<'_>, standing: &Standing<'_>) {
     let tokens = context.tokens;
-    let (sign, color, text) = match context.state.review.signed() {
-        Signed::Never => (Icon::Nothing, tokens.text_muted, "Not signed off".to_owned()),
-        Signed::Current(by) => {
-            (Icon::Check, tokens.good, format!("Signed off by {}, {}", by.name, moment(&by.time)))
-        }
-        Signed::Stale(by) => (
-            Icon::Warning,
-            tokens.warning,
-            format!("Sign-off is stale: {} signed another content, {}", by.name, moment(&by.time)),
-        ),
+    let (sign, color) = match standing.status {
+        PlanStatus::Draft => (Icon::Nothing, tokens.text_muted),
+        PlanStatus::InReview => (Icon::Info, tokens.info),
+        PlanStatus::Approved => (Icon::Check, tokens.good),
+        PlanStatus::ApprovedWithComments => (Icon::Check, tokens.warning),
+        PlanStatus::Lapsed => (Icon::Warning, tokens.warning),
     };
     ui.horizontal_wrapped(|ui| {
         icon::label(ui, sign, color);
-        ui.label(RichText::new(text).color(color));
+        ui.label(strong(format!("Plan: {}", standing.status.name())).color(color));
+        ui.label(RichText::new(standing.seats_in_words()).color(tokens.text));
     });
+    if let (PlanStatus::Lapsed, Some((last, why))) = (standing.status, standing.lapsed) {
+        let text = format!("{} approved {}; since then {why}.", who(last), moment(&last.time));
+        ui.label(RichText::new(text).color(tokens.text));
+    }
 }
 
 fn buttons(

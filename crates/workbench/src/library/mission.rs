@@ -5,6 +5,7 @@
 use std::sync::Arc;
 
 use mission::review::Record;
+use mission::review::record::RecordError;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use smol_str::SmolStr;
@@ -180,8 +181,8 @@ impl Mission {
         Ok(mission)
     }
 
-    /// What reviewers said, if the file holds it.
-    pub fn review_record(&self) -> Option<Record> {
-        Record::from_json(&self.review.as_ref()?.to_string()).ok()
+    /// What its board said, if the file holds it, or why that cannot be used.
+    pub fn review_record(&self) -> Option<Result<Record, RecordError>> {
+        self.review.as_ref().map(|review| Record::from_json(&review.to_string()))
     }
 }

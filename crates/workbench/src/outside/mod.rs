@@ -5,36 +5,79 @@ mod keeper;
 mod page_state;
 
 use mission::review::Record;
+use mission::review::record::RecordError;
 
 use crate::host::Host;
-use crate::state::review::ReviewState;
+use crate::state::review::{Aside, ReviewState};
 use crate::state::{AppState, Settings};
 
 pub use address::{fragment, open_fragment, show_address};
 pub use keeper::Keeper;
 pub use page_state::PageState;
 
-/// What reviewers said of the open mission when it was last kept.
+/// What the board said of the open mission when that was last kept.
 pub fn recall_review(host: &dyn Host, state: &mut AppState) {
-    let kept = host.stored(&ReviewState::key(&state.mission_key()));
-    state.recall_review(kept.as_deref());
+    let mission = state.mission_key();
+    let kept = host.stored(&ReviewState::key(&mission));
+    let aside = host.stored(&ReviewState::aside_key(&mission, 0));
+    state.recall_review(kept.as_deref(), aside);
 }
 
-/// Keeps what reviewers said of the open mission; `joins` adds what is kept already, perhaps by another tab. A full
-/// storage leaves what is kept as it was, and the app's own record too: the review then says that it is not kept.
+/// Keeps what the board said of the open mission; `joins` adds what is kept already, perhaps by another tab. A full
+/// storage leaves what is kept as it was, and the app's own record too: the review then says that it is not kept. What
+/// is kept and cannot be used is never written over: that of a later version of this program stays where it is, and
+/// anything else is moved aside first.
 pub fn keep_review(host: &mut dyn Host, state: &mut AppState, joins: bool) {
     let key = ReviewState::key(&state.mission_key());
-    if joins && let Some(Ok(kept)) = host.stored(&key).map(|text| Record::from_json(&text)) {
-        state.review.join(kept);
-        state.judge_reviews();
+    let outcome = make_way(host, state, &key, joins).and_then(|()| {
+        if state.review.record().is_empty() {
+            host.forget(&key);
+            Ok(())
+        } else {
+            host.store(&key, &state.review.record().to_json()).map_err(|reason| reason.to_string())
+        }
+    });
+    state.review.kept(outcome);
+}
+
+/// Joins what is kept, or sees that writing over it loses nothing.
+fn make_way(host: &mut dyn Host, state: &mut AppState, key: &str, joins: bool) -> Result<(), String> {
+    let Some(kept) = host.stored(key) else { return Ok(()) };
+    match Record::from_json(&kept) {
+        Ok(record) if joins => {
+            state.review.join(record);
+            state.judge_reviews();
+            Ok(())
+        }
+        Ok(_) => Ok(()),
+        Err(newer @ RecordError::Newer { .. }) => Err(newer.to_string()),
+        Err(_) => put_aside(host, state, &kept),
     }
-    let outcome = if state.review.record().is_empty() {
-        host.forget(&key);
-        Ok(())
-    } else {
-        host.store(&key, &state.review.record().to_json())
-    };
-    state.review.kept(outcome.map_err(|reason| reason.to_string()));
+}
+
+/// Keeps a record that came with the open mission and cannot be used.
+pub fn set_review_aside(host: &mut dyn Host, state: &mut AppState, aside: Aside) {
+    let outcome = put_aside(host, state, &aside.text);
+    state.review.set_aside(aside);
+    if outcome.is_err() {
+        state.review.kept(outcome);
+    }
+}
+
+/// Records of one mission that are kept aside, at most.
+const MAX_ASIDE: usize = 20;
+
+fn put_aside(host: &mut dyn Host, state: &AppState, text: &str) -> Result<(), String> {
+    let mission = state.mission_key();
+    for number in 0..MAX_ASIDE {
+        let key = ReviewState::aside_key(&mission, number);
+        match host.stored(&key) {
+            Some(known) if known == text => return Ok(()),
+            Some(_) => {}
+            None => return host.store(&key, text).map_err(|reason| reason.to_string()),
+        }
+    }
+    Err("too many reviews that cannot be used are kept aside already".to_owned())
 }
 
 const SETTINGS_KEY: &str = "enroute/settings-1";

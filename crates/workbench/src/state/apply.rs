@@ -14,6 +14,7 @@ use crate::library::{Mission, MissionId, MissionKind};
 use crate::mission_file;
 use crate::state::chance::ChanceCommand;
 use crate::state::program_chance::ProgramChanceCommand;
+use crate::state::review::Aside;
 use crate::state::search::{self, SearchCommand};
 use crate::state::settings::TEXT_SCALES;
 use crate::state::terrain::TerrainState;
@@ -59,6 +60,8 @@ pub enum Effect {
     RecallReview,
     /// Add to what reviewers said of the open mission.
     JoinReview(Box<Record>),
+    /// Keep what came as the review of the open mission and cannot be used.
+    SetReviewAside(Aside),
     /// Read a map of a mission from where it is kept.
     ReadMap(MissionId, SmolStr),
     /// Let the address name what is open, so that loading the page again finds it.

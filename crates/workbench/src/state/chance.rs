@@ -61,6 +61,14 @@ impl ChanceState {
         self.of_content.iter().find(|(of, _)| of == content_hash).map(|(_, found)| Arc::clone(found))
     }
 
+    /// Takes what is known from elsewhere, unless more runs were made here.
+    pub(super) fn learn(&mut self, content_hash: &str, found: Robustness) {
+        let known = self.of_content(content_hash).map_or(0, |known| known.tally.runs);
+        if found.tally.runs > known {
+            self.keep(content_hash.to_owned(), found);
+        }
+    }
+
     fn keep(&mut self, content: String, robustness: Robustness) {
         self.of_content.retain(|(of, _)| *of != content);
         self.of_content.insert(0, (content, Arc::new(robustness)));
@@ -92,8 +100,11 @@ impl AppState {
                 self.sample_on();
             }
             ChanceCommand::Stop => {
-                self.chance.running = None;
+                let stopped = self.chance.running.take();
                 self.judge_reviews();
+                if let Some((_, content)) = stopped {
+                    self.keep_runs(&content);
+                }
             }
             ChanceCommand::Set(settings) => {
                 self.chance.settings = *settings;
@@ -127,10 +138,11 @@ impl AppState {
         }
         self.chance.tally.merge(&tally);
         let robustness = Robustness { settings: *settings, tally: self.chance.tally.clone() };
-        self.chance.keep(content, robustness);
+        self.chance.keep(content.clone(), robustness);
         self.sample_on();
         if !self.chance.is_running() {
             self.judge_reviews();
+            self.keep_runs(&content);
         }
         if !self.chance.is_running() && self.chance.tally.runs >= self.chance.settings.runs {
             let text = format!("{} runs made", self.chance.tally.runs);

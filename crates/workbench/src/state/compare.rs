@@ -1,9 +1,10 @@
-//! What the open mission is compared with: a pinned revision, the last signed-off text, another mission, a saved plan.
+//! What the open mission is compared with: a pinned revision, the last approved text, another mission, a saved plan.
 
 use std::sync::Arc;
 
 use mission::compare::Side;
 use mission::review::Record;
+use mission::review::record::{Subject, is_record};
 use mission::{Goal, Request, SearchKind, Snapshot, Update};
 use serde_json::Value;
 
@@ -14,8 +15,8 @@ use crate::state::{AppState, Effect, ToastKind};
 pub enum CompareCommand {
     /// Keeps the present plan, to compare later ones with.
     Pin,
-    /// Compares with the text that was signed off last.
-    WithSignedOff,
+    /// Compares with the text that was approved last.
+    WithApproved,
     /// Lets the user choose a mission, a plan or a review to compare with.
     OpenFile,
     /// Stops comparing.
@@ -56,12 +57,13 @@ impl AppState {
                 self.compare.reference = Some(Arc::new(Side::of_snapshot(&name, shown)));
                 self.compare.waiting = None;
             }
-            CompareCommand::WithSignedOff => match self.review.record().sign_offs.last().cloned() {
-                Some(signed) => {
-                    let name = format!("signed off by {} on {}", signed.name, day_of(&signed.time));
-                    self.evaluate_reference(name, &signed.source, signed.goal, signed.seed);
+            CompareCommand::WithApproved => match self.review.record().last_approval() {
+                Some((entry, approved)) => {
+                    let name = format!("approved by {} on {}", entry.by, day_of(&entry.time));
+                    let Subject { source, goal, seed, .. } = approved.clone();
+                    self.evaluate_reference(name, &source, goal, seed);
                 }
-                None => self.toasts.add(ToastKind::Info, "Nobody has signed this mission off yet"),
+                None => self.toasts.add(ToastKind::Info, "Nobody has approved this mission yet"),
             },
             CompareCommand::OpenFile => {
                 self.effects.push(Effect::OpenFile(crate::host::FileKind::Comparison));
@@ -86,12 +88,14 @@ impl AppState {
             Ok(document) => document,
             Err(reason) => return self.toasts.add(ToastKind::Failed, failed(reason.to_string())),
         };
-        if document["format"] == mission::review::record::FORMAT {
-            match Record::from_json(text).map(|record| record.sign_offs.last().cloned()) {
-                Ok(Some(signed)) => {
-                    self.evaluate_reference(name.to_owned(), &signed.source, signed.goal, signed.seed);
+        if is_record(&document) {
+            let approved = Record::from_json(text)
+                .map(|record| record.last_approval().map(|(_, approved)| approved.clone()));
+            match approved {
+                Ok(Some(Subject { source, goal, seed, .. })) => {
+                    self.evaluate_reference(name.to_owned(), &source, goal, seed);
                 }
-                Ok(None) => self.toasts.add(ToastKind::Failed, failed("nobody has signed it".to_owned())),
+                Ok(None) => self.toasts.add(ToastKind::Failed, failed("nobody has approved it".to_owned())),
                 Err(reason) => self.toasts.add(ToastKind::Failed, failed(reason.to_string())),
             }
             return;

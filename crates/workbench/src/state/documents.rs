@@ -1,5 +1,6 @@
 //! Documents that are written from the open mission: the report, and schedules for other tools.
 
+use mission::review::PlanStatus;
 use report::calendar::Calendar;
 use report::export;
 
@@ -10,6 +11,8 @@ use crate::state::{AppState, Effect, ToastKind};
 pub enum ScheduleForm {
     /// Comma-separated values with windows and slack, in mission units.
     Csv,
+    /// A JSON document with all that is known of the schedule.
+    Json,
     /// A plan for Open MCT.
     OpenMct,
     /// A calendar.
@@ -21,6 +24,7 @@ impl ScheduleForm {
     pub const fn title(self) -> &'static str {
         match self {
             Self::Csv => "CSV schedule",
+            Self::Json => "JSON schedule",
             Self::OpenMct => "Open MCT plan",
             Self::Icalendar => "iCalendar",
         }
@@ -30,6 +34,7 @@ impl ScheduleForm {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Csv => "csv",
+            Self::Json => "json",
             Self::OpenMct => "open-mct",
             Self::Icalendar => "icalendar",
         }
@@ -37,17 +42,18 @@ impl ScheduleForm {
 
     /// The form of this name.
     pub fn by_name(name: &str) -> Option<Self> {
-        [Self::Csv, Self::OpenMct, Self::Icalendar].into_iter().find(|form| form.name() == name)
+        [Self::Csv, Self::Json, Self::OpenMct, Self::Icalendar].into_iter().find(|form| form.name() == name)
     }
 
     /// Whether its times are dates, so that it must be known when the mission starts.
     pub const fn needs_epoch(self) -> bool {
-        !matches!(self, Self::Csv)
+        matches!(self, Self::OpenMct | Self::Icalendar)
     }
 
     const fn ending(self) -> &'static str {
         match self {
             Self::Csv => "schedule.csv",
+            Self::Json => "schedule.json",
             Self::OpenMct => "open-mct.json",
             Self::Icalendar => "ics",
         }
@@ -85,7 +91,7 @@ impl AppState {
     pub(super) fn write_schedule(&mut self, form: ScheduleForm, epoch: &str) {
         match self.schedule(form, epoch) {
             Ok(text) => {
-                if form.needs_epoch() {
+                if !epoch.is_empty() {
                     epoch.clone_into(&mut self.settings.epoch);
                 }
                 self.effects.push(Effect::SaveFile {
@@ -103,21 +109,29 @@ impl AppState {
             .shown()
             .filter(|shown| shown.plan().is_some() && !self.snapshots.is_stale(self.document.revision()))
             .ok_or("There is no plan, so there is no schedule")?;
-        let calendar = || {
-            Calendar::new(epoch, snapshot.program.options.time_unit)
-                .ok_or_else(|| format!("\"{epoch}\" is no date such as 2004-01-25 or 2004-01-25T05:05:00Z"))
+        let calendar = match epoch {
+            "" if !form.needs_epoch() => None,
+            epoch => Some(Calendar::new(epoch, snapshot.program.options.time_unit).ok_or_else(|| {
+                format!("\"{epoch}\" is no date such as 2004-01-25 or 2004-01-25T05:05:00Z")
+            })?),
+        };
+        let plan = self.pins.plan(snapshot);
+        let about = export::About {
+            content_hash: self.review.hash().unwrap_or_default(),
+            status: self.standing().map_or(PlanStatus::Draft, |standing| standing.status),
+            calendar: calendar.as_ref(),
+            pins: &plan.map(|_| self.pins.all()).unwrap_or_default(),
+            plan,
+        };
+        let written = |document: serde_json::Value| {
+            let text = serde_json::to_string_pretty(&document).map_err(|error| error.to_string())?;
+            Ok(format!("{text}\n"))
         };
         match form {
-            ScheduleForm::Csv => export::csv(snapshot).ok_or_else(beyond),
-            ScheduleForm::OpenMct => {
-                let plan = export::open_mct(snapshot, &calendar()?).ok_or_else(beyond)?;
-                let text = serde_json::to_string_pretty(&plan).map_err(|error| error.to_string())?;
-                Ok(format!("{text}\n"))
-            }
-            ScheduleForm::Icalendar => {
-                let hash = self.review.hash().unwrap_or_default();
-                export::icalendar(snapshot, &calendar()?, hash).ok_or_else(beyond)
-            }
+            ScheduleForm::Csv => export::csv(snapshot, &about).ok_or_else(beyond),
+            ScheduleForm::Json => written(export::json(snapshot, &about).ok_or_else(beyond)?),
+            ScheduleForm::OpenMct => written(export::open_mct(snapshot, &about).ok_or_else(beyond)?),
+            ScheduleForm::Icalendar => export::icalendar(snapshot, &about).ok_or_else(beyond),
         }
     }
 }

@@ -10,6 +10,7 @@ use crate::Dialog;
 use crate::host::FileKind;
 use crate::library::{MapFile, Mission, MissionError, MissionId, MissionKind, Open, Template};
 use crate::mission_file;
+use crate::state::review::Aside;
 use crate::state::{AppState, Effect, ToastKind};
 
 /// Something that is asked of the library. Where an id may be missing, the open mission is meant.
@@ -283,10 +284,18 @@ impl AppState {
     /// Opens what one file held as a mission of its own.
     pub(super) fn open_whole(&mut self, mission: Mission) {
         let record = mission.review_record();
+        let text = mission.review.as_ref().map(ToString::to_string);
         let id = self.library.add_whole(mission, self.frame.unix_millis);
         self.open_mission(&id);
-        if let Some(record) = record {
-            self.effects.push(Effect::JoinReview(Box::new(record)));
+        match record {
+            Some(Ok(record)) => self.effects.push(Effect::JoinReview(Box::new(record))),
+            Some(Err(reason)) => {
+                let words = format!("The review of this mission cannot be used: {reason}. It is kept aside");
+                self.toasts.add(ToastKind::Failed, words);
+                let aside = Aside { reason: reason.to_string(), text: text.unwrap_or_default() };
+                self.effects.push(Effect::SetReviewAside(aside));
+            }
+            None => {}
         }
     }
 

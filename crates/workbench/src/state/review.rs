@@ -1,4 +1,4 @@
-//! The review of the open mission: what was computed, what reviewers said and signed, and whether it still holds.
+//! The review of the open mission: what was computed, what its board has said and approved, and whether that still holds.
 //!
 //! A review belongs to one text, map, goal and seed, named by their hash. An edit makes it stale; undoing the edit makes
 //! it current again, because the hash is the same again.
@@ -6,10 +6,12 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use mission::review::record::{Comment, Ruled, SignOff};
-use mission::review::{FlightRules, Record, Review, Status, content_hash};
+use mission::review::record::{Act, Runs, Subject, Who};
+use mission::review::{FlightRules, Present, Record, Review, Standing, content_hash, standing};
 use mission::{Request, Robustness, SearchKind, Stage, Update};
+use serde_json::Value;
 use smol_str::SmolStr;
+use tpn::plan_json::plan_to_json;
 
 use crate::state::{AppState, Effect, PlanSettings, ToastKind};
 
@@ -18,32 +20,48 @@ use crate::state::{AppState, Effect, PlanSettings, ToastKind};
 pub enum ReviewCommand {
     /// Reviews the present text.
     Run,
-    /// Signs what the review is about.
-    Sign {
-        /// Who signs.
-        name: String,
-    },
-    /// Takes the latest sign-off of the present content back.
-    Withdraw,
-    /// Adds a comment.
-    Comment {
-        /// Who writes.
-        author: String,
-        /// What it is about, by name; the whole mission if nothing is named.
-        about: Option<String>,
-        /// The words.
+    /// Approves what the review is about.
+    Approve {
+        /// Who approves.
+        by: Person,
+        /// What goes with it; empty for an approval without comments.
         text: String,
     },
-    /// Takes a comment away.
-    RemoveComment(usize),
+    /// Does something that needs no approval: comments, resolves, acknowledges, takes back.
+    Say {
+        /// Who.
+        by: Person,
+        /// What.
+        act: Act,
+    },
     /// Holds the mission against these flight rules from now on.
     SetRules(Box<FlightRules>),
     /// Lets the user save the flight rules as a file.
     SaveRules,
-    /// Lets the user save comments and sign-offs as a file.
+    /// Lets the user save the history as a file.
     SaveRecord,
     /// Lets the user choose such a file; what it has is added.
     OpenRecord,
+    /// Lets the user save what was kept and cannot be used.
+    SaveAside,
+}
+
+/// Somebody of the board.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Person {
+    /// The name.
+    pub name: String,
+    /// The role; empty for the only one of the board, or for none.
+    pub role: String,
+}
+
+/// A record that was kept or came with a mission, and cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Aside {
+    /// Why.
+    pub reason: String,
+    /// The record.
+    pub text: String,
 }
 
 /// What is known of the review.
@@ -55,8 +73,10 @@ pub struct ReviewState {
     running: Option<(u64, SearchKind)>,
     /// The content that was last asked to be reviewed, so that nothing is asked twice of its own accord.
     asked: Option<String>,
-    /// What reviewers said and signed.
+    /// What the board has said and approved.
     record: Record,
+    /// What was found instead of a record, and is left where it is.
+    aside: Option<Aside>,
     /// Why `record` is not kept beyond this run, if it could not be.
     unkept: Option<String>,
     /// The key of the mission that `record` is about.
@@ -90,17 +110,6 @@ struct Current {
 /// Reviews that are kept, so that undoing finds them again.
 const MAX_DONE: usize = 6;
 
-/// How the sign-off of a mission stands.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Signed<'a> {
-    /// Nobody has signed.
-    Never,
-    /// Signed as it is now.
-    Current(&'a SignOff),
-    /// Signed as it was before.
-    Stale(&'a SignOff),
-}
-
 impl ReviewState {
     /// The review to show, and whether it is stale: that of the present content if there is one, otherwise the latest.
     pub fn shown(&self, search: SearchKind) -> Option<(&Arc<Review>, bool)> {
@@ -128,9 +137,14 @@ impl ReviewState {
         self.hash().is_some() && self.asked.is_none()
     }
 
-    /// What reviewers said and signed.
+    /// What the board has said and approved.
     pub fn record(&self) -> &Record {
         &self.record
+    }
+
+    /// What was found instead of a record, and is left where it is.
+    pub fn aside(&self) -> Option<&Aside> {
+        self.aside.as_ref()
     }
 
     /// Why it is not kept beyond this run, if it could not be.
@@ -138,20 +152,20 @@ impl ReviewState {
         self.unkept.as_deref()
     }
 
-    /// How the sign-off stands.
-    pub fn signed(&self) -> Signed<'_> {
-        let rules = self.record.rules();
-        let current = self.hash().and_then(|hash| self.record.sign_off_of(hash, &rules));
-        match (current, self.record.sign_offs.last()) {
-            (Some(sign_off), _) => Signed::Current(sign_off),
-            (None, Some(last)) => Signed::Stale(last),
-            (None, None) => Signed::Never,
-        }
-    }
-
     /// Under which key the record of a mission is kept.
     pub(crate) fn key(mission: &str) -> String {
         format!("enroute/review-1/{mission}")
+    }
+
+    /// Under which key a record is kept that cannot be used.
+    pub(crate) fn aside_key(mission: &str, number: usize) -> String {
+        let key = Self::key(mission);
+        if number == 0 { format!("{key}/aside") } else { format!("{key}/aside-{number}") }
+    }
+
+    /// Something was found that cannot be used; it is kept.
+    pub(crate) fn set_aside(&mut self, aside: Aside) {
+        self.aside = Some(aside);
     }
 
     /// The host has kept the record, or says why not.
@@ -179,21 +193,8 @@ impl AppState {
     pub(super) fn apply_to_review(&mut self, command: ReviewCommand) {
         match command {
             ReviewCommand::Run => self.run_review(),
-            ReviewCommand::Sign { name } => self.sign(name.trim()),
-            ReviewCommand::Withdraw => {
-                if let Signed::Current(sign_off) = self.review.signed() {
-                    let taken_back = sign_off.clone();
-                    self.review.record.sign_offs.retain(|it| *it != taken_back);
-                    self.effects.push(Effect::KeepReview { joins: false });
-                }
-            }
-            ReviewCommand::Comment { author, about, text } => self.comment(author.trim(), about, text.trim()),
-            ReviewCommand::RemoveComment(index) => {
-                if index < self.review.record.comments.len() {
-                    self.review.record.comments.remove(index);
-                    self.effects.push(Effect::KeepReview { joins: false });
-                }
-            }
+            ReviewCommand::Approve { by, text } => self.approve(by, text.trim()),
+            ReviewCommand::Say { by, act } => self.say(by, act),
             ReviewCommand::SetRules(rules) => self.set_rules(*rules),
             ReviewCommand::SaveRules => self.effects.push(Effect::SaveFile {
                 name: format!("{}.rules.json", self.mission),
@@ -204,6 +205,13 @@ impl AppState {
                 bytes: self.review.record.to_json().into_bytes(),
             }),
             ReviewCommand::OpenRecord => self.effects.push(Effect::OpenFile(crate::host::FileKind::Json)),
+            ReviewCommand::SaveAside => {
+                if let Some(aside) = &self.review.aside {
+                    let name = format!("{}.aside.review.json", self.mission);
+                    let bytes = aside.text.clone().into_bytes();
+                    self.effects.push(Effect::SaveFile { name, bytes });
+                }
+            }
         }
     }
 
@@ -233,7 +241,7 @@ impl AppState {
 
     /// Holds every review against the present rules, and against the runs that were made of its content.
     pub(crate) fn judge_reviews(&mut self) {
-        let rules = self.review.record.rules();
+        let rules = self.review.record.rules().clone();
         for done in &mut self.review.done {
             let robustness = self.chance.of_content(&done.review.content_hash);
             let is_same = match (&robustness, &done.robustness) {
@@ -253,8 +261,11 @@ impl AppState {
             self.toasts.add(ToastKind::Failed, format!("These flight rules cannot be used: {problem}"));
             return;
         }
-        let (by, time) = (self.settings.reviewer.clone(), self.utc_now());
-        self.review.record.ruled = Some(Ruled { by, time, rules });
+        if *self.review.record.rules() == rules {
+            return;
+        }
+        let by = Person { name: self.settings.reviewer.clone(), role: self.settings.reviewer_role.clone() };
+        self.review.record.add(self.who(by), Act::Rules { rules });
         self.keep_review();
         self.judge_reviews();
     }
@@ -281,46 +292,131 @@ impl AppState {
         self.review.shown(self.settings.plan.search).filter(|(_, is_stale)| !is_stale).map(|(it, _)| it)
     }
 
-    fn sign(&mut self, name: &str) {
-        let Some(review) = self.current_review().filter(|review| may_sign(review).is_ok()) else { return };
-        if name.is_empty() {
-            self.toasts.add(ToastKind::Failed, "A sign-off needs a name");
+    /// How the plan stands with its board; `None` before it is known what the plan is about.
+    pub fn standing(&self) -> Option<Standing<'_>> {
+        let review = self.current_review().map(AsRef::as_ref);
+        let present = Present {
+            content_hash: self.review.hash()?,
+            plan_hash: review.map(|review| review.plan_hash.as_str()),
+            rules: self.review.record.rules(),
+            review,
+        };
+        Some(standing(&self.review.record, &present))
+    }
+
+    /// Somebody with the role that is meant: the only one of the board where none is named.
+    pub(crate) fn seated(&self, by: Person) -> Person {
+        let role = match self.review.record.rules().board.as_slice() {
+            [seat] if by.role.trim().is_empty() => seat.role.clone(),
+            _ => by.role.trim().to_owned(),
+        };
+        Person { name: by.name.trim().to_owned(), role }
+    }
+
+    /// Somebody who does something about the present content, now. The name and the role are remembered.
+    fn who(&mut self, by: Person) -> Who {
+        self.settings.reviewer.clone_from(&by.name);
+        self.settings.reviewer_role.clone_from(&by.role);
+        let plan_hash = self.current_review().map(|review| review.plan_hash.clone()).unwrap_or_default();
+        Who {
+            by: by.name,
+            role: by.role,
+            time: self.utc_now(),
+            content_hash: self.review.hash().unwrap_or_default().to_owned(),
+            plan_hash,
+        }
+    }
+
+    fn approve(&mut self, by: Person, text: &str) {
+        let by = self.seated(by);
+        let refused = match self.standing() {
+            Some(standing) => standing.may_approve(&by.name, &by.role).err(),
+            None => Some("the mission has not been worked out".to_owned()),
+        };
+        if let Some(reason) = refused {
+            self.toasts.add(ToastKind::Failed, format!("Not approved: {reason}"));
             return;
         }
-        let sign_off = SignOff {
-            name: name.to_owned(),
-            time: self.utc_now(),
-            content_hash: review.content_hash.clone(),
-            counts: review.counts(),
-            source: self.document.text().to_owned(),
-            goal: self.settings.plan.goal.clone(),
-            seed: self.settings.plan.seed,
-            rules: review.rules.clone(),
-        };
-        name.clone_into(&mut self.settings.reviewer);
-        self.toasts.add(ToastKind::Done, format!("Signed off by {name}"));
-        self.review.record.sign_offs.push(sign_off);
+        let Some(review) = self.current_review().cloned() else { return };
+        let snapshot = self.snapshots.latest();
+        let planned = snapshot.and_then(|it| Some((it.network.as_deref()?, it.plan()?)));
+        let plan = planned.map_or(Value::Null, |(network, plan)| plan_to_json(network, plan));
+        let PlanSettings { goal, seed, .. } = self.settings.plan.clone();
+        let found = self.robustness().cloned();
+        let subject = Subject::new(&review, self.document.text(), goal, seed, plan, found.as_deref());
+        self.toasts.add(ToastKind::Done, format!("Approved by {} ({})", by.name, by.role));
+        let who = self.who(by);
+        self.review.record.approve(who, subject, text.to_owned());
         self.keep_review();
     }
 
-    fn comment(&mut self, author: &str, about: Option<String>, text: &str) {
-        if text.is_empty() {
+    fn say(&mut self, by: Person, act: Act) {
+        let refused = self.may_say(&by, &act).err();
+        if let Some(reason) = refused {
+            self.toasts.add(ToastKind::Failed, reason);
             return;
         }
-        if author.is_empty() {
-            self.toasts.add(ToastKind::Failed, "A comment needs the name of its author");
-            return;
-        }
-        let comment = Comment {
-            author: author.to_owned(),
-            time: self.utc_now(),
-            about,
-            text: text.to_owned(),
-            content_hash: self.review.hash().unwrap_or_default().to_owned(),
-        };
-        author.clone_into(&mut self.settings.reviewer);
-        self.review.record.comments.push(comment);
+        let by = self.seated(by);
+        let who = self.who(by);
+        self.review.record.add(who, act);
         self.keep_review();
+    }
+
+    /// Whether somebody may do something; `Err` says why not.
+    pub fn may_say(&self, by: &Person, act: &Act) -> Result<(), String> {
+        let record = &self.review.record;
+        let of = act.of().map(|of| record.entry(of).ok_or_else(|| format!("there is no entry {of}")));
+        let of = of.transpose()?;
+        let is_open = |of: &str| {
+            let open = mission::review::board::open_comments(record);
+            open.iter().any(|comment| comment.digest() == of)
+        };
+        let is_empty = act.text().trim().is_empty();
+        match act {
+            _ if by.name.trim().is_empty() => Err("Whoever does something for a review has a name".to_owned()),
+            Act::Comment { .. } if is_empty => Err("A comment needs words".to_owned()),
+            Act::Acknowledge { .. } if is_empty => {
+                Err("To acknowledge a line it takes a reason why it may be so".to_owned())
+            }
+            Act::Resolve { of, .. } if !is_open(of) => Err("The comment is not open".to_owned()),
+            Act::Reopen { of, .. } if is_open(of) => Err("The comment is open".to_owned()),
+            Act::Resolve { .. } | Act::Reopen { .. }
+                if !of.is_some_and(|of| matches!(of.act, Act::Comment { .. })) =>
+            {
+                Err("Only comments are resolved".to_owned())
+            }
+            Act::Resolve { of, .. } | Act::Reopen { of, .. } | Act::Withdraw { of, .. }
+                if record.withdrawn().contains_key(of.as_str()) =>
+            {
+                Err("That has been taken back already".to_owned())
+            }
+            Act::Withdraw { .. }
+                if !of.is_some_and(|of| {
+                    matches!(of.act, Act::Comment { .. } | Act::Acknowledge { .. } | Act::Approve { .. })
+                }) =>
+            {
+                Err("Comments, acknowledgements and approvals are taken back".to_owned())
+            }
+            Act::Approve { .. } | Act::Rules { .. } => Err("That is not said but done".to_owned()),
+            _ => Ok(()),
+        }
+    }
+
+    /// Keeps what the runs of the present content came to, with the mission.
+    pub(super) fn keep_runs(&mut self, content_hash: &str) {
+        let Some(found) = self.chance.of_content(content_hash).filter(|found| found.tally.runs > 0) else { return };
+        if self.review.hash() == Some(content_hash) {
+            self.review.record.keep_runs(Runs::new(content_hash, &found));
+            self.keep_review();
+        }
+    }
+
+    /// Takes the runs that the record has for those that were made here, as far as it has more.
+    fn learn_runs(&mut self) {
+        for runs in &self.review.record.runs {
+            self.chance.learn(&runs.content_hash, runs.robustness());
+        }
+        self.judge_reviews();
     }
 
     /// Adds what a file has.
@@ -328,12 +424,14 @@ impl AppState {
         match Record::from_json(text) {
             Ok(record) => {
                 let count = self.review.record.merge(record);
-                self.judge_reviews();
+                self.learn_runs();
                 let entries = if count == 1 { "entry" } else { "entries" };
                 self.toasts.add(ToastKind::Done, format!("{name}: {count} new {entries}"));
                 self.keep_review();
             }
-            Err(reason) => self.toasts.add(ToastKind::Failed, format!("{name}: {reason}")),
+            Err(reason) => {
+                self.toasts.add(ToastKind::Failed, format!("{name}: {reason}. Nothing of it was added"));
+            }
         }
     }
 
@@ -342,23 +440,30 @@ impl AppState {
         self.effects.push(Effect::KeepReview { joins: true });
     }
 
-    /// The host found this kept under the open mission's name.
-    pub(crate) fn recall_review(&mut self, kept: Option<&str>) {
+    /// The host found this kept under the open mission's name, and this that could not be used before.
+    pub(crate) fn recall_review(&mut self, kept: Option<&str>, aside: Option<String>) {
         self.review.of = self.mission_key();
         let set_aside = self.review.set_aside.remove(&self.review.of);
-        let kept = kept.map(Record::from_json);
-        if let Some(Err(reason)) = &kept {
-            // It stays where it is until something new is kept.
-            self.toasts.add(ToastKind::Failed, format!("The kept review cannot be read: {reason}"));
-        }
-        let mut record = kept.and_then(Result::ok).unwrap_or_default();
-        record.mission = self.mission.to_string();
+        let reason = "it was found here before, and could not be used".to_owned();
+        self.review.aside = aside.map(|text| Aside { reason, text });
+        let record = match kept.map(|text| (text, Record::from_json(text))) {
+            Some((_, Ok(record))) => record,
+            Some((text, Err(reason))) => {
+                // It stays where it is; what is kept from here on goes beside it.
+                let words = format!("The kept review cannot be used: {reason}. It is kept aside");
+                self.toasts.add(ToastKind::Failed, words);
+                self.review.aside = Some(Aside { reason: reason.to_string(), text: text.to_owned() });
+                Record::default()
+            }
+            None => Record::default(),
+        };
+        self.review.record = record;
+        self.review.record.mission = self.mission.to_string();
         if let Some(set_aside) = set_aside {
-            record.merge(set_aside);
+            self.review.record.merge(set_aside);
             self.effects.push(Effect::KeepReview { joins: true });
         }
-        self.review.record = record;
-        self.judge_reviews();
+        self.learn_runs();
     }
 
     /// The open original has become a mission of its own: what was said of it is said of the mission too.
@@ -372,7 +477,7 @@ impl AppState {
     /// Adds what came with a mission.
     pub(crate) fn join_review(&mut self, record: Record) {
         self.review.record.merge(record);
-        self.judge_reviews();
+        self.learn_runs();
         self.keep_review();
     }
 
@@ -411,14 +516,5 @@ impl AppState {
     /// Now, as an ISO 8601 time in UTC.
     fn utc_now(&self) -> String {
         report::calendar::utc_text(self.frame.unix_millis)
-    }
-}
-
-/// Whether a review can be signed; `Err` says why not.
-pub fn may_sign(review: &Review) -> Result<(), &'static str> {
-    match review.status {
-        _ if !review.is_planned() => Err("there is no plan to sign"),
-        Status::Failed => Err("lines of the review have failed"),
-        Status::Information | Status::Passed | Status::Attention => Ok(()),
     }
 }

@@ -16,8 +16,10 @@ pub struct Settings {
     pub plan: PlanSettings,
     /// What each panel shows.
     pub views: Views,
-    /// Who comments and signs.
+    /// Who comments and approves.
     pub reviewer: String,
+    /// In which role.
+    pub reviewer_role: String,
     /// When missions start, as it was last given for a schedule with dates.
     pub epoch: String,
 }
@@ -30,6 +32,7 @@ impl Default for Settings {
             plan: PlanSettings::default(),
             views: Views::default(),
             reviewer: String::new(),
+            reviewer_role: String::new(),
             epoch: String::new(),
         }
     }

@@ -126,11 +126,11 @@ pub(super) fn with_mission(state: &AppState) -> Availability {
     if is_reviewed { Ok(()) } else { Err("there is no mission to review") }
 }
 
-pub(super) fn with_sign_off(state: &AppState) -> Availability {
-    let is_signed = !state.review.record().sign_offs.is_empty();
-    if is_signed { Ok(()) } else { Err("nobody has signed this mission off yet") }
+pub(super) fn with_approval(state: &AppState) -> Availability {
+    let is_approved = state.review.record().last_approval().is_some();
+    if is_approved { Ok(()) } else { Err("nobody has approved this mission yet") }
 }
 
 pub(super) fn with_record(state: &AppState) -> Availability {
-    if state.review.record().is_empty() { Err("there are no comments and no sign-offs") } else { Ok(()) }
+    if state.review.record().is_empty() { Err("nobody has said anything of this mission yet") } else { Ok(()) }
 }

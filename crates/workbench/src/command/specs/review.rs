@@ -1,10 +1,11 @@
 //! Judging and comparing plans, and documents about them.
 
-use mission::review::FlightRules;
+use mission::review::record::{Act, LineKey};
+use mission::review::{FlightRules, Section};
 use serde_json::Value;
 
 use super::arguments::text_argument;
-use super::available::{with_mission, with_natures_choice, with_pins, with_plan, with_record, with_sign_off};
+use super::available::{with_approval, with_mission, with_natures_choice, with_pins, with_plan, with_record};
 use super::{called, plain, when};
 use crate::Dialog;
 use crate::command::Command;
@@ -12,7 +13,7 @@ use crate::command::registry::{CommandSpec, Group, Scope};
 use crate::state::compare::CompareCommand;
 use crate::state::documents::ScheduleForm;
 use crate::state::pins::event_by_name;
-use crate::state::review::{ReviewCommand, may_sign};
+use crate::state::review::{Person, ReviewCommand};
 use crate::state::{AppState, PinCommand};
 
 /// In the order of the menus.
@@ -30,8 +31,14 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         with_mission,
     ),
     when(
-        plain("export.csv", "Export the schedule as CSV", Group::Review, &[], Scope::Everywhere, |_| {
-            Command::WriteSchedule { form: ScheduleForm::Csv, epoch: String::new() }
+        plain("export.csv", "Export the schedule as CSV…", Group::Review, &[], Scope::Everywhere, |state| {
+            ask_epoch(state, ScheduleForm::Csv)
+        }),
+        with_plan,
+    ),
+    when(
+        plain("export.json", "Export the schedule as JSON…", Group::Review, &[], Scope::Everywhere, |state| {
+            ask_epoch(state, ScheduleForm::Json)
         }),
         with_plan,
     ),
@@ -55,34 +62,51 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     ),
     when(
         plain(
-            "compare.signedOff",
-            "Compare with the last sign-off",
+            "compare.approved",
+            "Compare with the last approval",
             Group::Review,
             &[],
             Scope::Everywhere,
-            |_| Command::Compare(CompareCommand::WithSignedOff),
+            |_| Command::Compare(CompareCommand::WithApproved),
         ),
-        with_sign_off,
+        with_approval,
     ),
     plain("compare.file", "Compare with a file…", Group::Review, &[], Scope::Everywhere, |_| {
         Command::Compare(CompareCommand::OpenFile)
     }),
     when(
-        plain("review.save", "Save comments and sign-offs", Group::Review, &[], Scope::Everywhere, |_| {
+        plain("review.save", "Save the history of the review", Group::Review, &[], Scope::Everywhere, |_| {
             Command::Review(ReviewCommand::SaveRecord)
         }),
         with_record,
     ),
-    plain("review.open", "Add comments and sign-offs…", Group::Review, &[], Scope::Everywhere, |_| {
+    plain("review.open", "Add the history of a review…", Group::Review, &[], Scope::Everywhere, |_| {
         Command::Review(ReviewCommand::OpenRecord)
     }),
-    called("review.sign", "Sign off", Group::Review, |state, arguments| {
-        let name = text_argument(arguments, "name")?;
-        match state.current_review().map(|review| may_sign(review)) {
-            Some(Ok(())) => Ok(Command::Review(ReviewCommand::Sign { name: name.to_owned() })),
-            Some(Err(reason)) => Err(reason.to_owned()),
-            None => Err("the present text has not been reviewed".to_owned()),
-        }
+    called("review.approve", "Approve", Group::Review, |state, arguments| {
+        let by = state.seated(person(arguments, "name")?);
+        let standing = state.standing().ok_or("the mission has not been worked out")?;
+        standing.may_approve(&by.name, &by.role)?;
+        Ok(Command::Review(ReviewCommand::Approve { by, text: words(arguments) }))
+    }),
+    called("review.acknowledge", "Acknowledge a line", Group::Review, |state, arguments| {
+        let review = state.current_review().ok_or("the present text has not been reviewed")?;
+        let mut lines = Section::ALL.iter().flat_map(|&section| {
+            review.lines(section).into_iter().map(move |line| (section, line))
+        });
+        let index = arguments.get("item").and_then(Value::as_u64).and_then(|index| usize::try_from(index).ok());
+        let (section, line) =
+            index.and_then(|index| lines.nth(index)).ok_or("\"item\" is the number of a line of the review")?;
+        said(state, arguments, Act::Acknowledge { line: LineKey::new(section, line), text: words(arguments) })
+    }),
+    called("review.resolve", "Resolve a comment", Group::Review, |state, arguments| {
+        said(state, arguments, Act::Resolve { of: entry(arguments)?, text: words(arguments) })
+    }),
+    called("review.reopen", "Open a comment again", Group::Review, |state, arguments| {
+        said(state, arguments, Act::Reopen { of: entry(arguments)?, text: words(arguments) })
+    }),
+    called("review.withdraw", "Take something back", Group::Review, |state, arguments| {
+        said(state, arguments, Act::Withdraw { of: entry(arguments)?, text: words(arguments) })
     }),
     called("review.rules", "Change the flight rules", Group::Review, |state, arguments| {
         // What is not named stays as it is.
@@ -98,17 +122,17 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     plain("review.saveRules", "Save the flight rules", Group::Review, &[], Scope::Everywhere, |_| {
         Command::Review(ReviewCommand::SaveRules)
     }),
-    called("review.comment", "Comment", Group::Review, |_, arguments| {
-        Ok(Command::Review(ReviewCommand::Comment {
-            author: text_argument(arguments, "author")?.to_owned(),
-            about: arguments.get("about").and_then(Value::as_str).map(str::to_owned),
-            text: text_argument(arguments, "text")?.to_owned(),
-        }))
+    called("review.comment", "Comment", Group::Review, |state, arguments| {
+        let about = arguments.get("about").and_then(Value::as_str).map(str::to_owned);
+        let by = person(arguments, "author")?;
+        let act = Act::Comment { about, text: text_argument(arguments, "text")?.trim().to_owned() };
+        state.may_say(&by, &act)?;
+        Ok(Command::Review(ReviewCommand::Say { by, act }))
     }),
     called("export.schedule", "Export the schedule", Group::Review, |_, arguments| {
         let name = text_argument(arguments, "as")?;
         let form = ScheduleForm::by_name(name)
-            .ok_or_else(|| "\"as\" is \"csv\", \"open-mct\" or \"icalendar\"".to_owned())?;
+            .ok_or_else(|| "\"as\" is \"csv\", \"json\", \"open-mct\" or \"icalendar\"".to_owned())?;
         let epoch = arguments.get("epoch").and_then(Value::as_str).unwrap_or_default().to_owned();
         Ok(Command::WriteSchedule { form, epoch })
     }),
@@ -147,6 +171,28 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         with_plan,
     ),
 ];
+
+/// Who does it: the argument `name`, or what it is called, and `role`.
+fn person(arguments: &Value, name: &str) -> Result<Person, String> {
+    let role = arguments.get("role").and_then(Value::as_str).unwrap_or_default();
+    Ok(Person { name: text_argument(arguments, name)?.to_owned(), role: role.to_owned() })
+}
+
+/// What is said with it, if anything.
+fn words(arguments: &Value) -> String {
+    arguments.get("text").and_then(Value::as_str).unwrap_or_default().trim().to_owned()
+}
+
+/// The entry that it is about.
+fn entry(arguments: &Value) -> Result<String, String> {
+    Ok(text_argument(arguments, "id")?.to_owned())
+}
+
+fn said(state: &AppState, arguments: &Value, act: Act) -> Result<Command, String> {
+    let by = person(arguments, "name")?;
+    state.may_say(&by, &act)?;
+    Ok(Command::Review(ReviewCommand::Say { by, act }))
+}
 
 /// Asks when the mission starts, beginning with what was said last.
 fn ask_epoch(state: &AppState, form: ScheduleForm) -> Command {

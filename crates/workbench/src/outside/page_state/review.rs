@@ -1,13 +1,12 @@
 //! The review of the mission.
 
-use mission::review::record::Comment;
-use mission::review::{FlightRules, Section, Status};
+use mission::review::record::{Act, Entry, LineKey};
+use mission::review::{FlightRules, Line, PlanStatus, Present, Record, Section, Status};
 use serde::Serialize;
 #[cfg(test)]
 use ts_rs::TS;
 
 use crate::state::AppState;
-use crate::state::review::Signed;
 
 /// The review of the mission.
 #[derive(Debug, Serialize)]
@@ -18,6 +17,8 @@ pub struct Review {
     hash: Option<String>,
     /// The hash of the present text, map and seed.
     current_hash: Option<String>,
+    /// The hash of the reviewed plan; empty without one.
+    plan_hash: Option<String>,
     /// Whether the two differ.
     stale: bool,
     running: bool,
@@ -28,21 +29,31 @@ pub struct Review {
     #[cfg_attr(
         test,
         ts(
-            type = "{ margin: number | string | null; clearance_m: number | null; slope_deg: number | null; reserve: number | string | null; reserves: Record<string, number | string>; success_rate: { wanted: number; least: number } | null }"
+            type = "{ margin: number | string | null; clearance_m: number | null; slope_deg: number | null; reserve: number | string | null; reserves: Record<string, number | string>; success_rate: { wanted: number; least: number } | null; board: { role: string; approvals: number }[] }"
         )
     )]
     rules: FlightRules,
     items: Vec<ReviewItem>,
-    /// The latest sign-off of the present content, otherwise the latest of any.
-    signed: Option<SignOff>,
+    /// How the plan stands with its board.
     #[cfg_attr(
         test,
-        ts(
-            type = "{ author: string; time: string; about: string | null; text: string; content_hash: string }[]"
-        )
+        ts(type = "\"draft\" | \"in-review\" | \"approved\" | \"approved-with-comments\" | \"lapsed\" | null")
     )]
-    comments: Vec<Comment>,
-    /// Why comments and sign-offs are not kept beyond this visit, if they are not.
+    plan_status: Option<PlanStatus>,
+    /// Who has to approve, and who has.
+    board: Vec<BoardSeat>,
+    /// What stands in the way of any approval.
+    blockers: Vec<String>,
+    /// The latest approval that has not been taken back.
+    signed: Option<SignOff>,
+    comments: Vec<ReviewComment>,
+    /// Everything that was done, in order.
+    history: Vec<HistoryEntry>,
+    /// The digests of the last entries of the history.
+    heads: Vec<String>,
+    /// Why a review that was kept for this mission is kept aside and not used, if one is.
+    aside: Option<String>,
+    /// Why the history is not kept beyond this visit, if it is not.
     unkept: Option<String>,
 }
 
@@ -72,37 +83,93 @@ pub struct ReviewItem {
     line: Option<u32>,
     /// What it is about, by the names of all output.
     names: Vec<String>,
+    /// Who acknowledged it as it is, and why it may be so.
+    #[cfg_attr(test, ts(type = "{ by: string; text: string } | null"))]
+    acknowledged: Option<Acknowledged>,
 }
 
-/// Somebody vouches for a plan.
+/// Somebody has acknowledged a line.
+#[derive(Debug, Serialize)]
+pub struct Acknowledged {
+    by: String,
+    text: String,
+}
+
+/// A role of the board.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct BoardSeat {
+    role: String,
+    /// How many people have to approve.
+    wanted: usize,
+    /// Who has approved the present plan.
+    given: Vec<String>,
+}
+
+/// What somebody wrote.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct ReviewComment {
+    /// What `review.resolve`, `review.reopen` and `review.withdraw` take.
+    id: String,
+    author: String,
+    role: String,
+    /// An ISO 8601 time in UTC.
+    time: String,
+    about: Option<String>,
+    text: String,
+    content_hash: String,
+    /// Whether it is neither resolved nor taken back.
+    open: bool,
+}
+
+/// Something that somebody did.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct HistoryEntry {
+    /// Its digest.
+    id: String,
+    by: String,
+    role: String,
+    /// An ISO 8601 time in UTC.
+    time: String,
+    /// What was done, in words.
+    act: String,
+    /// What was said with it.
+    text: String,
+    /// The entry that it is about.
+    of: Option<String>,
+    /// The content that it is about.
+    hash: String,
+    /// The plan that it is about; empty if none was known.
+    plan_hash: String,
+    /// Whether somebody took it back.
+    withdrawn: bool,
+}
+
+/// Somebody has approved a plan.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct SignOff {
     name: String,
     /// An ISO 8601 time in UTC.
     time: String,
-    /// The content that was signed.
+    role: String,
+    /// The content that was approved.
     hash: String,
-    /// Whether the present content is another.
+    /// Whether the present content, plan or rules are others.
     stale: bool,
 }
 
 pub(super) fn review(state: &AppState) -> Review {
-    let sign_off = |by: &mission::review::record::SignOff, stale: bool| SignOff {
-        name: by.name.clone(),
-        time: by.time.clone(),
-        hash: by.content_hash.clone(),
-        stale,
-    };
-    let signed = match state.review.signed() {
-        Signed::Never => None,
-        Signed::Current(by) => Some(sign_off(by, false)),
-        Signed::Stale(by) => Some(sign_off(by, true)),
-    };
+    let record = state.review.record();
+    let standing = state.standing();
     let shown = state.review.shown(state.settings.plan.search);
     Review {
         hash: shown.map(|(review, _)| review.content_hash.clone()),
         current_hash: state.review.hash().map(ToString::to_string),
+        plan_hash: shown.map(|(review, _)| review.plan_hash.clone()),
         stale: shown.is_some_and(|(_, is_stale)| is_stale),
         running: state.review.is_running(),
         status: shown.map(|(review, _)| review.status),
@@ -110,24 +177,99 @@ pub(super) fn review(state: &AppState) -> Review {
             let [passed, attention, failed] = review.counts();
             ReviewCounts { passed, attention, failed, information: review.count(Status::Information) }
         }),
-        rules: state.review.record().rules(),
-        items: shown.map(|(review, _)| items(review)).unwrap_or_default(),
-        signed,
-        comments: state.review.record().comments.clone(),
+        rules: record.rules().clone(),
+        items: shown.map(|(review, _)| items(review, record)).unwrap_or_default(),
+        plan_status: standing.as_ref().map(|standing| standing.status),
+        board: standing.iter().flat_map(|standing| &standing.seats).map(seat).collect(),
+        blockers: standing.as_ref().map(mission::review::Standing::blockers).unwrap_or_default(),
+        signed: signed(state),
+        comments: comments(record),
+        history: history(record),
+        heads: record.heads().map(str::to_owned).collect(),
+        aside: state.review.aside().map(|aside| aside.reason.clone()),
         unkept: state.review.unkept().map(ToString::to_string),
     }
 }
 
-fn items(review: &mission::review::Review) -> Vec<ReviewItem> {
-    let items = Section::ALL.iter().flat_map(|&section| {
-        review.lines(section).into_iter().map(move |line| ReviewItem {
+fn seat(seat: &mission::review::board::Approvals<'_>) -> BoardSeat {
+    let given = seat.given.iter().map(|entry| entry.by.clone()).collect();
+    BoardSeat { role: seat.role.to_owned(), wanted: seat.wanted, given }
+}
+
+/// The latest approval that has not been taken back.
+fn signed(state: &AppState) -> Option<SignOff> {
+    let record = state.review.record();
+    let (entry, subject) = record.last_approval()?;
+    let review = state.current_review().map(AsRef::as_ref);
+    let present = Present {
+        content_hash: state.review.hash().unwrap_or_default(),
+        plan_hash: review.map(|review| review.plan_hash.as_str()),
+        rules: record.rules(),
+        review,
+    };
+    Some(SignOff {
+        name: entry.by.clone(),
+        time: entry.time.clone(),
+        role: entry.role.clone(),
+        hash: entry.content_hash.clone(),
+        stale: present.difference(entry, subject).is_some(),
+    })
+}
+
+fn comments(record: &Record) -> Vec<ReviewComment> {
+    let open = mission::review::board::open_comments(record);
+    let comment = |entry: &Entry| {
+        let Act::Comment { about, text } = &entry.act else { return None };
+        Some(ReviewComment {
+            id: entry.digest().to_owned(),
+            author: entry.by.clone(),
+            role: entry.role.clone(),
+            time: entry.time.clone(),
+            about: about.clone(),
+            text: text.clone(),
+            content_hash: entry.content_hash.clone(),
+            open: open.iter().any(|it| it.digest() == entry.digest()),
+        })
+    };
+    record.entries().iter().filter_map(comment).collect()
+}
+
+fn history(record: &Record) -> Vec<HistoryEntry> {
+    let withdrawn = record.withdrawn();
+    let entry = |entry: &Entry| HistoryEntry {
+        id: entry.digest().to_owned(),
+        by: entry.by.clone(),
+        role: entry.role.clone(),
+        time: entry.time.clone(),
+        act: entry.act.name().to_owned(),
+        text: entry.act.text().to_owned(),
+        of: entry.act.of().map(str::to_owned),
+        hash: entry.content_hash.clone(),
+        plan_hash: entry.plan_hash.clone(),
+        withdrawn: withdrawn.contains_key(entry.digest()),
+    };
+    record.entries().iter().map(entry).collect()
+}
+
+fn items(review: &mission::review::Review, record: &Record) -> Vec<ReviewItem> {
+    let acknowledged = record.acknowledgements();
+    let by = |section: Section, line: &Line| {
+        let entry = (line.status == Status::Attention)
+            .then(|| acknowledged.get(&LineKey::new(section, line)))
+            .flatten()?;
+        Some(Acknowledged { by: entry.by.clone(), text: entry.act.text().to_owned() })
+    };
+    let mut items = Vec::new();
+    for section in Section::ALL {
+        items.extend(review.lines(section).into_iter().map(|line| ReviewItem {
             section,
             status: line.status,
             text: line.text.clone(),
             criterion: line.criterion.clone(),
             line: line.line_number,
             names: line.names.iter().map(ToString::to_string).collect(),
-        })
-    });
-    items.collect()
+            acknowledged: by(section, line),
+        }));
+    }
+    items
 }

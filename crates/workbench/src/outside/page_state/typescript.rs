@@ -207,6 +207,9 @@ fn interface() -> String {
     declare::<review::Review>(&mut out);
     declare::<review::ReviewCounts>(&mut out);
     declare::<review::ReviewItem>(&mut out);
+    declare::<review::BoardSeat>(&mut out);
+    declare::<review::ReviewComment>(&mut out);
+    declare::<review::HistoryEntry>(&mut out);
     declare::<review::SignOff>(&mut out);
     declare::<program::ProgramRun>(&mut out);
     declare::<program::Fired>(&mut out);

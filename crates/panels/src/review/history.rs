@@ -1,0 +1,130 @@
+//! The history of the review: who did what about which content, who took it back, and its way into files.
+
+use std::collections::BTreeSet;
+
+use egui::{Button, Frame, Margin, RichText, Ui};
+use mission::review::record::{Entry, short};
+use theme::icon::{self, Icon};
+use theme::{space, strong};
+use workbench::command::{Command, CommandSender};
+use workbench::state::review::ReviewCommand;
+
+use super::people::{indented, who};
+use super::verdict::moment;
+use super::{header, row};
+use crate::Context;
+
+/// Entries that are listed, the last ones; a file has all.
+const MAX_ENTRIES: usize = 60;
+
+/// Shows the history, the last entry first.
+pub(super) fn show(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    closed: &mut BTreeSet<&'static str>,
+    commands: &mut CommandSender,
+) {
+    let review = &context.state.review;
+    if let Some(reason) = review.unkept() {
+        let text = format!("{reason}. It is lost when this window closes, unless it is saved to a file.");
+        let save = ("Save it to a file", ReviewCommand::SaveRecord);
+        warning(ui, context, "The history of the review is not kept", &text, save, commands);
+    }
+    if let Some(aside) = review.aside() {
+        let text = format!("{}. It is kept aside, and nothing is written over it.", aside.reason);
+        let save = ("Save what is kept aside", ReviewCommand::SaveAside);
+        warning(ui, context, "A review of this mission cannot be used", &text, save, commands);
+    }
+    let record = review.record();
+    let entries = record.entries();
+    let note = match entries.len() {
+        0 => "nothing yet".to_owned(),
+        1 => "1 entry".to_owned(),
+        count => format!("{count} entries"),
+    };
+    if !header(ui, context, closed, "History", None, &note) {
+        return;
+    }
+    let withdrawn = record.withdrawn();
+    for (index, entry) in entries.iter().enumerate().rev().take(MAX_ENTRIES) {
+        let taken_back = withdrawn.get(entry.digest()).map(|by| format!("taken back by {}", who(by)));
+        let number = |of: &str| entries.iter().position(|it| it.digest() == of).map_or(0, |of| of + 1);
+        let of = entry.act.of().map(|of| format!(" {}", number(of))).unwrap_or_default();
+        show_entry(ui, context, entry, &format!("{}  ", index + 1), &of, taken_back);
+    }
+    if entries.len() > MAX_ENTRIES {
+        row::quiet(ui, context, "Earlier entries are in the file and in the report.");
+    }
+    indented(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            let save = ui.add_enabled(!record.is_empty(), Button::new("Save to a file"));
+            if save.on_hover_text("The history with its digests, as a JSON file").clicked() {
+                commands.send(Command::Review(ReviewCommand::SaveRecord));
+            }
+            let open = ui.button("Add from a file…");
+            if open.on_hover_text("Checks the history of a JSON file, and joins it with this one").clicked() {
+                commands.send(Command::Review(ReviewCommand::OpenRecord));
+            }
+        });
+    });
+}
+
+fn show_entry(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    entry: &Entry,
+    number: &str,
+    of: &str,
+    taken_back: Option<String>,
+) {
+    let tokens = context.tokens;
+    indented(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(RichText::new(number).small().color(tokens.text_muted));
+            let done = format!("{} {}{of}", who(entry), entry.act.name());
+            let done = strong(done).color(tokens.text);
+            ui.label(if taken_back.is_some() { done.strikethrough() } else { done });
+            let is_stale = context.state.review.hash() != Some(entry.content_hash.as_str());
+            let about = if is_stale { ", other content" } else { "" };
+            let when = format!("{}{about}", moment(&entry.time));
+            let label = ui.label(RichText::new(when).small().color(tokens.text_muted));
+            label.on_hover_text(format!(
+                "Content {}…\nPlan {}…\nEntry {}…",
+                short(&entry.content_hash),
+                short(&entry.plan_hash),
+                short(entry.digest())
+            ));
+            if let Some(taken_back) = taken_back {
+                ui.label(RichText::new(taken_back).small().color(tokens.warning));
+            }
+        });
+        if !entry.act.text().is_empty() {
+            ui.label(RichText::new(entry.act.text()).color(tokens.text_muted));
+        }
+    });
+}
+
+/// Says that something could be lost, and offers to save it.
+fn warning(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    title: &str,
+    text: &str,
+    (label, save): (&str, ReviewCommand),
+    commands: &mut CommandSender,
+) {
+    let tokens = context.tokens;
+    ui.add_space(space::S);
+    let frame = Frame::new().fill(tokens.soft[2]).corner_radius(6.0).inner_margin(Margin::symmetric(10, 8));
+    frame.show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.horizontal_wrapped(|ui| {
+            icon::label(ui, Icon::Warning, tokens.error);
+            ui.label(strong(title).color(tokens.error));
+        });
+        ui.label(RichText::new(super::lines::sentence(text)).color(tokens.text));
+        if ui.button(label).clicked() {
+            commands.send(Command::Review(save));
+        }
+    });
+}

@@ -1,0 +1,217 @@
+//! The board in a report: how the plan stands, who approved it, what is open, what differs since the last approval, and
+//! the whole history.
+
+use std::collections::BTreeMap;
+
+use mission::review::record::{Act, Entry, LineKey, Rate, short};
+use mission::review::since::{LineChange, TextChange};
+use mission::review::{PlanStatus, Present, Record, Review, Since, Standing, Status, since, standing};
+
+use crate::Document;
+use crate::escape::escaped;
+use crate::html::readable_time;
+use crate::tables::{status, table, word};
+
+/// The word for how a plan stands, with its sign and in its colour.
+pub(crate) fn status_word(status: PlanStatus) -> String {
+    let look = match status {
+        PlanStatus::Draft | PlanStatus::InReview => "information",
+        PlanStatus::Approved => "passed",
+        PlanStatus::ApprovedWithComments | PlanStatus::Lapsed => "attention",
+    };
+    word(look, status.name())
+}
+
+/// How the plan stands, in the table of facts.
+pub(crate) fn fact(record: &Record, review: &Review) -> String {
+    let standing = standing(record, &Present::of_review(review));
+    let lapsed = match (standing.status, standing.lapsed) {
+        (PlanStatus::Lapsed, Some((last, why))) => {
+            format!("; {} approved {}: {why}", escaped(&last.by), escaped(&readable_time(&last.time)))
+        }
+        _ => String::new(),
+    };
+    format!("{}: {}{lapsed}", status_word(standing.status), escaped(&standing.seats_in_words()))
+}
+
+/// Where the board signs on paper, with those who have approved this very plan.
+pub(crate) fn signatures(record: &Record, review: &Review) -> String {
+    let standing = standing(record, &Present::of_review(review));
+    let mut rows = Vec::new();
+    for seat in &standing.seats {
+        for entry in &seat.given {
+            rows.push(vec![
+                escaped(seat.role),
+                escaped(&entry.by),
+                escaped(&readable_time(&entry.time)),
+                escaped(entry.act.text()),
+                format!("<code>{}</code>", escaped(short(entry.digest()))),
+                String::new(),
+            ]);
+        }
+        for _ in seat.given.len()..seat.wanted {
+            let mut row = vec!["&nbsp;".to_owned(); 6];
+            row[0] = escaped(seat.role);
+            rows.push(row);
+        }
+    }
+    let rows = table(&["Role", "Name", "Date", "With these words", "Entry", "Signature"], rows);
+    let blockers = standing.blockers();
+    let open = if blockers.is_empty() {
+        String::new()
+    } else {
+        format!("<p>In the way of an approval: {}.</p>\n", escaped(&blockers.join(", ")))
+    };
+    format!("<h2>Signatures</h2>\n{open}<div class=\"signatures\">\n{rows}</div>\n{}", open_comments(&standing))
+}
+
+fn open_comments(standing: &Standing<'_>) -> String {
+    if standing.open_comments.is_empty() {
+        return String::new();
+    }
+    let rows = standing.open_comments.iter().map(|entry| {
+        vec![status(Status::Attention), who(entry), escaped(&readable_time(&entry.time)), words(entry)]
+    });
+    format!("<h3>Open comments</h3>\n{}", table(&["", "Who", "When", "Words"], rows))
+}
+
+/// Who acknowledged a line and why, if somebody has.
+pub(crate) fn acknowledgement(acknowledged: &BTreeMap<&LineKey, &Entry>, key: &LineKey) -> String {
+    let entry = acknowledged.get(key);
+    entry.map(|entry| format!("{}: {}", who(entry), lines_of(entry.act.text()))).unwrap_or_default()
+}
+
+/// What differs since the last approval; nothing where nobody has approved.
+pub(crate) fn changes(document: &Document<'_>, record: &Record) -> String {
+    let Some((entry, approved)) = record.last_approval() else { return String::new() };
+    let since = since(approved, document.snapshot, document.review, document.robustness);
+    let mut out = format!(
+        "<h2>Since the last approval</h2>\n<p class=\"muted\">By {}, {}, of content <code>{}</code>.</p>\n",
+        who(entry),
+        escaped(&readable_time(&entry.time)),
+        escaped(short(&entry.content_hash))
+    );
+    if since.is_nothing() {
+        out.push_str("<p>Text, plan, checklist, flight rules and runs with chance are the same.</p>\n");
+        return out;
+    }
+    if !since.text.is_empty() {
+        out.push_str(&format!("<h3>Text</h3>\n<pre class=\"program\">{}</pre>\n", text(&since.text)));
+    }
+    out.push_str(&plan(&since));
+    if !since.lines.is_empty() {
+        let rows = since.lines.iter().map(line);
+        out.push_str(&format!("<h3>Checklist</h3>\n{}", table(&["Section", "What"], rows)));
+    }
+    if !since.rules.is_empty() {
+        let rows = since.rules.iter().map(|pair| pair.iter().map(|rule| escaped(rule)).collect());
+        out.push_str(&format!("<h3>Flight rules</h3>\n{}", table(&["Were", "Are"], rows)));
+    }
+    if let Some(rates) = since.robustness {
+        let [before, after] = rates.map(rate);
+        out.push_str(&format!("<h3>Robustness</h3>\n<p>{before} → {after}</p>\n"));
+    }
+    out
+}
+
+fn plan(since: &Since) -> String {
+    let heading = "<h3>Plan</h3>\n";
+    match &since.plan {
+        None => format!("{heading}<p>The approved plan was not kept.</p>\n"),
+        Some(plan) if plan.is_same() => String::new(),
+        Some(plan) => {
+            let rows = plan.differences.iter().map(|it| vec![escaped(it.subject.name()), escaped(&it.sentence())]);
+            format!("{heading}<p>{}</p>\n{}", escaped(&plan.summary()), table(&["", "What"], rows))
+        }
+    }
+}
+
+/// Lines of text that are written, at most.
+const MAX_TEXT_LINES: usize = 400;
+
+fn text(changes: &[TextChange]) -> String {
+    let mut lines = Vec::new();
+    for change in changes {
+        lines.push(format!("<i class=\"comment\">@ line {}</i>", change.after_line));
+        lines.extend(change.removed.iter().map(|line| format!("<del>− {}</del>", escaped(line))));
+        lines.extend(change.added.iter().map(|line| format!("<ins>+ {}</ins>", escaped(line))));
+    }
+    let more = lines.len().saturating_sub(MAX_TEXT_LINES);
+    lines.truncate(MAX_TEXT_LINES);
+    if more > 0 {
+        lines.push(format!("and {more} more lines that are not listed here"));
+    }
+    lines.join("\n")
+}
+
+fn line(change: &LineChange) -> Vec<String> {
+    let section = change.section().map(|section| section.title()).unwrap_or_default();
+    vec![section.to_owned(), escaped(&change.sentence())]
+}
+
+fn rate(rate: Option<Rate>) -> String {
+    match rate {
+        Some(rate) => format!("{} of {} runs (seed {})", rate.succeeded, rate.runs, rate.seed),
+        None => "no runs".to_owned(),
+    }
+}
+
+/// Everything that was done, in order, and the digest that vouches for it.
+pub(crate) fn history(record: &Record, review: &Review) -> String {
+    if record.entries().is_empty() {
+        return String::new();
+    }
+    let withdrawn = record.withdrawn();
+    let numbers: Vec<&str> = record.entries().iter().map(|entry| entry.digest()).collect();
+    let number = |digest: &str| numbers.iter().position(|it| *it == digest).map_or(0, |index| index + 1);
+    let rows = record.entries().iter().enumerate().map(|(index, entry)| {
+        let of = entry.act.of().map(|of| format!(" entry {}", number(of))).unwrap_or_default();
+        let taken_back = withdrawn.get(entry.digest());
+        let state = match taken_back {
+            Some(by) => word("attention", &format!("taken back by {}", escaped(&by.by))),
+            None if entry.content_hash == review.content_hash => word("passed", "current"),
+            None if matches!(entry.act, Act::Rules { .. }) => String::new(),
+            None => word("information", "other content"),
+        };
+        vec![
+            (index + 1).to_string(),
+            escaped(&readable_time(&entry.time)),
+            who(entry),
+            format!("{}{of}", entry.act.name()),
+            words(entry),
+            state,
+            format!("<code>{}</code>", escaped(short(&entry.content_hash))),
+            format!("<code>{}</code>", escaped(short(entry.digest()))),
+        ]
+    });
+    let headings = ["#", "When", "Who", "What", "Words", "", "Content", "Entry"];
+    let rows = table(&headings, rows);
+    let heads: Vec<String> = record.heads().map(|head| format!("<code>{}</code>", escaped(head))).collect();
+    format!(
+        "<h2>History of the review</h2>\n{rows}<p class=\"muted\">Each entry is sealed over the ones before. Last entry: {}</p>\n",
+        heads.join(", ")
+    )
+}
+
+fn who(entry: &Entry) -> String {
+    let name = if entry.by.is_empty() { "somebody" } else { entry.by.as_str() };
+    if entry.role.is_empty() {
+        escaped(name)
+    } else {
+        format!("{} ({})", escaped(name), escaped(&entry.role))
+    }
+}
+
+/// What was said, and what it is about.
+fn words(entry: &Entry) -> String {
+    let text = lines_of(entry.act.text());
+    match &entry.act {
+        Act::Comment { about: Some(about), .. } => format!("<i>{}</i><br>{text}", escaped(about)),
+        Act::Acknowledge { line, .. } => format!("<i>{}</i><br>{text}", escaped(&line.text)),
+        _ => text,
+    }
+}
+
+fn lines_of(text: &str) -> String {
+    escaped(text).replace('\n', "<br>")
+}
