@@ -377,18 +377,32 @@ export type Review = {
   hash: string | null;
   /** The hash of the present text, map and seed. */
   currentHash: string | null;
+  /** The hash of the reviewed plan; empty without one. */
+  planHash: string | null;
   /** Whether the two differ. */
   stale: boolean;
   running: boolean;
   status: "information" | "passed" | "attention" | "failed" | null;
   counts: ReviewCounts | null;
   /** What the mission is held against: see section 16 of the specification. */
-  rules: { margin: number | string | null; clearance_m: number | null; slope_deg: number | null; reserve: number | string | null; reserves: Record<string, number | string>; success_rate: { wanted: number; least: number } | null };
+  rules: { margin: number | string | null; clearance_m: number | null; slope_deg: number | null; reserve: number | string | null; reserves: Record<string, number | string>; success_rate: { wanted: number; least: number } | null; board: { role: string; approvals: number }[] };
   items: Array<ReviewItem>;
-  /** The latest sign-off of the present content, otherwise the latest of any. */
+  /** How the plan stands with its board. */
+  planStatus: "draft" | "in-review" | "approved" | "approved-with-comments" | "lapsed" | null;
+  /** Who has to approve, and who has. */
+  board: Array<BoardSeat>;
+  /** What stands in the way of any approval. */
+  blockers: Array<string>;
+  /** The latest approval that has not been taken back. */
   signed: SignOff | null;
-  comments: { author: string; time: string; about: string | null; text: string; content_hash: string }[];
-  /** Why comments and sign-offs are not kept beyond this visit, if they are not. */
+  comments: Array<ReviewComment>;
+  /** Everything that was done, in order. */
+  history: Array<HistoryEntry>;
+  /** The digests of the last entries of the history. */
+  heads: Array<string>;
+  /** Why a review that was kept for this mission is kept aside and not used, if one is. */
+  aside: string | null;
+  /** Why the history is not kept beyond this visit, if it is not. */
   unkept: string | null;
 };
 
@@ -412,16 +426,65 @@ export type ReviewItem = {
   line: number | null;
   /** What it is about, by the names of all output. */
   names: Array<string>;
+  /** Who acknowledged it as it is, and why it may be so. */
+  acknowledged: { by: string; text: string } | null;
 };
 
-/** Somebody vouches for a plan. */
+/** A role of the board. */
+export type BoardSeat = {
+  role: string;
+  /** How many people have to approve. */
+  wanted: number;
+  /** Who has approved the present plan. */
+  given: Array<string>;
+};
+
+/** What somebody wrote. */
+export type ReviewComment = {
+  /** What `review.resolve`, `review.reopen` and `review.withdraw` take. */
+  id: string;
+  author: string;
+  role: string;
+  /** An ISO 8601 time in UTC. */
+  time: string;
+  about: string | null;
+  text: string;
+  content_hash: string;
+  /** Whether it is neither resolved nor taken back. */
+  open: boolean;
+};
+
+/** Something that somebody did. */
+export type HistoryEntry = {
+  /** Its digest. */
+  id: string;
+  by: string;
+  role: string;
+  /** An ISO 8601 time in UTC. */
+  time: string;
+  /** What was done, in words. */
+  act: string;
+  /** What was said with it. */
+  text: string;
+  /** The entry that it is about. */
+  of: string | null;
+  /** The content that it is about. */
+  hash: string;
+  /** The plan that it is about; empty if none was known. */
+  planHash: string;
+  /** Whether somebody took it back. */
+  withdrawn: boolean;
+};
+
+/** Somebody has approved a plan. */
 export type SignOff = {
   name: string;
   /** An ISO 8601 time in UTC. */
   time: string;
-  /** The content that was signed. */
+  role: string;
+  /** The content that was approved. */
   hash: string;
-  /** Whether the present content is another. */
+  /** Whether the present content, plan or rules are others. */
   stale: boolean;
 };
 

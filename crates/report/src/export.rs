@@ -47,7 +47,7 @@ impl About<'_> {
 }
 
 /// What a mission counts time in: `min` or `s`.
-const fn unit(snapshot: &Snapshot) -> &'static str {
+fn unit(snapshot: &Snapshot) -> &'static str {
     match snapshot.program.options.time_unit {
         TimeUnit::Minute => "min",
         TimeUnit::Second => "s",

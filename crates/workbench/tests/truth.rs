@@ -173,7 +173,8 @@ fn flight_rules_are_changed_kept_with_the_mission_and_part_of_what_is_signed() {
     app.run(Command::Review(ReviewCommand::Run));
     let link = |app: &App| lines(app, "causal-links")[0]["status"].clone();
     assert_eq!(link(&app), "attention", "a margin of 0 has not passed");
-    app.dispatch("review.sign", &json!({ "name": "Ada" }));
+    app.acknowledge_all("Ada");
+    app.dispatch("review.approve", &json!({ "name": "Ada" }));
     assert_eq!(app.json()["review"]["signed"]["stale"], false);
     app.dispatch("review.rules", &json!({ "margin": null }));
     assert_eq!(link(&app), "passed");

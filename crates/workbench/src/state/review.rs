@@ -265,7 +265,8 @@ impl AppState {
             return;
         }
         let by = Person { name: self.settings.reviewer.clone(), role: self.settings.reviewer_role.clone() };
-        self.review.record.add(self.who(by), Act::Rules { rules });
+        let who = self.who(by);
+        self.review.record.add(who, Act::Rules { rules });
         self.keep_review();
         self.judge_reviews();
     }

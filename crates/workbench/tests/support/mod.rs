@@ -60,6 +60,17 @@ impl App {
         self.settle();
     }
 
+    /// Acknowledges every line for attention of the review, one by one.
+    pub fn acknowledge_all(&mut self, name: &str) {
+        let items = self.json()["review"]["items"].as_array().expect("a list").clone();
+        for (index, item) in items.iter().enumerate() {
+            if item["status"] == "attention" && item["acknowledged"].is_null() {
+                let arguments = serde_json::json!({ "name": name, "item": index, "text": "As meant." });
+                self.dispatch("review.acknowledge", &arguments);
+            }
+        }
+    }
+
     /// The state as a host page sees it.
     pub fn json(&self) -> Value {
         serde_json::to_value(workbench::host::Remote::state(&self.session)).expect("plain data")

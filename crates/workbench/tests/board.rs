@@ -1,0 +1,261 @@
+//! A board at work: from a draft to an approval over one edit, through files, tabs, reloads and what was tampered with.
+
+mod support;
+
+use std::rc::Rc;
+
+use mission::review::Record;
+use serde_json::{Value, json};
+use support::App;
+use workbench::command::Command;
+use workbench::host::{FileKind, HostEvent, Remote as _};
+use workbench::state::chance::ChanceCommand;
+use workbench::state::review::ReviewCommand;
+
+/// The open mission, reviewed, before a board of two roles.
+fn before_the_board() -> App {
+    let mut app = support::start();
+    app.run(Command::Review(ReviewCommand::Run));
+    let board = json!([{ "role": "Science", "approvals": 1 }, { "role": "Mobility", "approvals": 1 }]);
+    app.dispatch("review.rules", &json!({ "board": board }));
+    app
+}
+
+fn status(app: &App) -> Value {
+    app.json()["review"]["planStatus"].clone()
+}
+
+fn edit(app: &mut App, from: &str, to: &str) {
+    let source = app.session.source();
+    assert!(source.contains(from), "{from}");
+    app.run(Command::SetSource(source.replace(from, to)));
+    app.run(Command::Review(ReviewCommand::Run));
+}
+
+fn refused(app: &mut App, command: &str, arguments: &Value) -> String {
+    let answer = app.session.dispatch(command, arguments);
+    answer.expect_err("it is refused").to_string()
+}
+
+/// What the last act was, and by whom.
+fn last_act(app: &App) -> (String, String) {
+    let history = app.json()["review"]["history"].clone();
+    let last = history.as_array().and_then(|all| all.last().cloned()).expect("an entry");
+    let text = |member: &str| last[member].as_str().expect("a text").to_owned();
+    (text("by"), text("act"))
+}
+
+#[test]
+fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
+    let mut app = before_the_board();
+    assert_eq!(status(&app), "draft");
+    // A comment is open, and stands in the way.
+    let asked = json!({ "author": "Ada", "role": "Science", "about": "Group-Wait#1", "text": "Why so long?" });
+    app.dispatch("review.comment", &asked);
+    assert_eq!(status(&app), "in-review");
+    let ada = json!({ "name": "Ada", "role": "Science" });
+    let why = refused(&mut app, "review.approve", &ada);
+    assert!(why.contains("not acknowledged") && why.contains("1 comment is open"), "{why}");
+    // It is resolved by name; a second time is refused.
+    let id = app.json()["review"]["comments"][0]["id"].clone();
+    let resolve = json!({ "name": "Grace", "role": "Mobility", "id": id, "text": "It waits for light." });
+    app.dispatch("review.resolve", &resolve);
+    assert!(refused(&mut app, "review.resolve", &resolve).contains("not open"));
+    assert_eq!(app.json()["review"]["comments"][0]["open"], false);
+    // Lines for attention are acknowledged with a reason, each.
+    let items = app.json()["review"]["items"].as_array().expect("a list").clone();
+    let index = items.iter().position(|item| item["status"] == "attention").expect("a line");
+    let silent = json!({ "name": "Ada", "item": index, "text": " " });
+    assert!(refused(&mut app, "review.acknowledge", &silent).contains("reason"));
+    app.acknowledge_all("Ada");
+    assert_eq!(app.json()["review"]["items"][index]["acknowledged"], json!({ "by": "Ada", "text": "As meant." }));
+    // One role, then the other.
+    app.dispatch("review.approve", &ada);
+    assert_eq!(status(&app), "in-review");
+    assert!(refused(&mut app, "review.approve", &ada).contains("already"));
+    assert!(refused(&mut app, "review.approve", &json!({ "name": "Ada" })).contains("no role"));
+    let grace = json!({ "name": "Grace", "role": "Mobility", "text": "Mind the slope." });
+    app.dispatch("review.approve", &grace);
+    assert_eq!(status(&app), "approved-with-comments");
+    // An edit lapses it, and its undo brings it back.
+    edit(&mut app, "PATH1=OK [450,450]", "PATH1=OK [460,460]");
+    assert_eq!(status(&app), "lapsed");
+    assert_eq!(app.json()["review"]["signed"]["stale"], true);
+    app.dispatch("edit.undo", &json!(null));
+    assert_eq!(status(&app), "approved-with-comments");
+    app.dispatch("edit.redo", &json!(null));
+    assert_eq!(status(&app), "lapsed");
+    // The board approves the edited plan; what differs is acknowledged anew, what does not is not.
+    let left = app.json()["review"]["blockers"].clone();
+    app.acknowledge_all("Grace");
+    assert_eq!(app.json()["review"]["blockers"], json!([]), "{left}");
+    app.dispatch("review.approve", &ada);
+    assert_eq!(status(&app), "in-review");
+    app.dispatch("review.approve", &json!({ "name": "Grace", "role": "Mobility" }));
+    assert_eq!(status(&app), "approved");
+    // Grace takes her approval back, and that stays in the history.
+    let history = app.json()["review"]["history"].clone();
+    let given = history.as_array().and_then(|all| all.last()).expect("an entry")["id"].clone();
+    let withdraw = json!({ "name": "Grace", "role": "Mobility", "id": given, "text": "Not read to the end." });
+    app.dispatch("review.withdraw", &withdraw);
+    assert!(refused(&mut app, "review.withdraw", &withdraw).contains("already"));
+    assert_eq!(status(&app), "in-review");
+    assert_eq!(last_act(&app), ("Grace".to_owned(), "took back".to_owned()));
+    let taken = app.json()["review"]["history"].as_array().expect("a list").iter().any(|entry| {
+        entry["id"] == given && entry["withdrawn"] == true && entry["act"] == "approved"
+    });
+    assert!(taken, "what was taken back is still told");
+    // Another run finds all of it, and the report has it.
+    let told = app.json()["review"]["history"].clone();
+    app.run(Command::WriteReport);
+    let page = String::from_utf8(app.world.saved.borrow().last().expect("a report").1.clone()).expect("a text");
+    for part in ["History of the review", "taken back by Grace", "Since the last approval", "Mind the slope."] {
+        assert!(page.contains(part), "{part}");
+    }
+    let world = Rc::clone(&app.world);
+    drop(app);
+    let mut again = support::start_in(world);
+    again.settle();
+    assert_eq!(again.json()["review"]["history"], told);
+}
+
+fn open_json(app: &mut App, text: &str) {
+    let file = HostEvent::FileOpened {
+        kind: FileKind::Json,
+        name: "board.review.json".into(),
+        bytes: text.as_bytes().to_vec(),
+    };
+    app.world.news.borrow_mut().push_back(file);
+    app.settle();
+}
+
+/// What the last message said.
+fn last_toast(app: &App) -> String {
+    app.session.state().toasts.shown().last().map(|toast| toast.text.to_string()).unwrap_or_default()
+}
+
+/// A history of one comment, with its text altered.
+fn tampered(app: &App) -> String {
+    let text = app.session.state().review.record().to_json();
+    let altered = text.replace("Why so long?", "Fine as it is.");
+    assert_ne!(text, altered);
+    altered
+}
+
+#[test]
+fn a_history_that_was_altered_is_refused_and_nothing_of_it_is_added() {
+    let mut author = before_the_board();
+    author.dispatch("review.comment", &json!({ "author": "Ada", "role": "Science", "text": "Why so long?" }));
+    let altered = tampered(&author);
+    let mut app = support::start();
+    open_json(&mut app, &altered);
+    assert_eq!(app.json()["review"]["history"], json!([]));
+    let said = last_toast(&app);
+    assert!(said.contains("altered") && said.contains("entry 2 (Ada"), "{said}");
+    open_json(&mut app, &author.session.state().review.record().to_json());
+    assert_eq!(app.json()["review"]["history"], author.json()["review"]["history"]);
+}
+
+const KEY: &str = "enroute/review-1/enroute";
+
+#[test]
+fn what_is_kept_and_cannot_be_used_is_kept_aside_and_never_lost() {
+    let mut author = before_the_board();
+    author.dispatch("review.comment", &json!({ "author": "Ada", "role": "Science", "text": "Why so long?" }));
+    let altered = tampered(&author);
+    let world = Rc::clone(&author.world);
+    drop(author);
+    world.storage.borrow_mut().insert(KEY.into(), altered.clone());
+    let mut app = support::start_in(Rc::clone(&world));
+    app.settle();
+    assert!(app.json()["review"]["aside"].as_str().is_some_and(|why| why.contains("altered")));
+    assert_eq!(app.json()["review"]["history"], json!([]));
+    app.dispatch("review.comment", &json!({ "author": "Grace", "text": "Begun anew." }));
+    assert_eq!(world.storage.borrow().get(&format!("{KEY}/aside")), Some(&altered));
+    assert_eq!(app.json()["review"]["unkept"], Value::Null);
+    app.run(Command::Review(ReviewCommand::SaveAside));
+    assert_eq!(world.saved.borrow().last().expect("a file").1, altered.as_bytes());
+    drop(app);
+    let mut again = support::start_in(world);
+    again.settle();
+    assert_eq!(again.json()["review"]["comments"][0]["text"], "Begun anew.");
+    assert!(again.json()["review"]["aside"].is_string(), "it can still be saved");
+}
+
+#[test]
+fn a_review_of_a_later_version_is_never_written_over() {
+    let world = Rc::<support::World>::default();
+    let newer = json!({ "format": "enroute-review/3", "votes": [1, 2] }).to_string();
+    world.storage.borrow_mut().insert(KEY.into(), newer.clone());
+    let mut app = support::start_in(Rc::clone(&world));
+    app.settle();
+    app.dispatch("review.comment", &json!({ "author": "Ada", "text": "Here?" }));
+    assert_eq!(world.storage.borrow().get(KEY), Some(&newer));
+    let why = app.json()["review"]["unkept"].clone();
+    assert!(why.as_str().is_some_and(|why| why.contains("later version")), "{why}");
+    assert_eq!(app.json()["review"]["comments"][0]["text"], "Here?");
+}
+
+#[test]
+fn a_whole_mission_with_an_altered_history_opens_and_says_so() {
+    let mut author = before_the_board();
+    author.dispatch("review.comment", &json!({ "author": "Ada", "role": "Science", "text": "Why so long?" }));
+    author.dispatch("file.saveAs", &json!(null));
+    let saved = author.world.saved.borrow().last().expect("a file").1.clone();
+    let text = String::from_utf8(saved).expect("a text").replace("Why so long?", "Fine as it is.");
+    let mut app = support::start();
+    open_json(&mut app, &text);
+    assert!(app.json()["review"]["aside"].as_str().is_some_and(|why| why.contains("altered")));
+    let aside = app.world.storage.borrow().values().any(|kept| kept.contains("Fine as it is."));
+    assert!(aside, "it is kept");
+}
+
+#[test]
+fn runs_with_chance_survive_a_reload_and_reach_the_report_and_the_file() {
+    let mut app = support::start();
+    app.run(Command::Review(ReviewCommand::Run));
+    let settings = app.session.state().chance.settings.clone();
+    let settings = mission::RobustnessSettings { runs: 20, seed: 5, ..settings };
+    app.run(Command::Chance(ChanceCommand::Set(Box::new(settings))));
+    app.run(Command::Chance(ChanceCommand::Start));
+    for _ in 0..20 {
+        app.settle();
+    }
+    let made = app.json()["robustness"].clone();
+    assert_eq!(made["runs"], 20, "{made}");
+    let kept = app.session.state().review.record().to_json();
+    let record = Record::from_json(&kept).expect("a record");
+    let hash = app.json()["review"]["hash"].as_str().expect("a hash").to_owned();
+    let runs = record.runs_of(&hash).expect("they are kept by content");
+    assert_eq!((runs.seed, runs.runs, runs.tally.runs), (5, 20, 20));
+    let world = Rc::clone(&app.world);
+    drop(app);
+    let mut again = support::start_in(world);
+    again.settle();
+    again.run(Command::Review(ReviewCommand::Run));
+    assert_eq!(again.json()["robustness"]["runs"], 20);
+    again.run(Command::WriteReport);
+    let saved = again.world.saved.borrow();
+    let page = String::from_utf8(saved.last().expect("a report").1.clone()).expect("a text");
+    assert!(page.contains("of 20 runs with chance reached the end (seed 5;"));
+}
+
+#[test]
+fn schedules_say_how_the_plan_stands_and_what_is_pinned() {
+    let mut app = support::start();
+    app.run(Command::Review(ReviewCommand::Run));
+    app.acknowledge_all("Ada");
+    app.dispatch("review.approve", &json!({ "name": "Ada" }));
+    assert_eq!(status(&app), "approved");
+    app.dispatch("plan.pin", &json!({ "event": "Group-Wait#1.end", "time": 450 }));
+    app.dispatch("export.schedule", &json!({ "as": "json", "epoch": "2004-01-25T05:05:00Z" }));
+    let bytes = app.world.saved.borrow().last().expect("a file").1.clone();
+    let schedule: Value = serde_json::from_slice(&bytes).expect("JSON");
+    assert_eq!(schedule["plan_status"], "approved");
+    assert_eq!(schedule["content_hash"], app.json()["review"]["hash"]);
+    assert_eq!(schedule["pinned"][0]["time"], 450);
+    let rows = schedule["activities"].as_array().expect("a list");
+    let wait = rows.iter().find(|row| row["name"] == "Group-Wait#1").expect("the wait");
+    assert_eq!((&wait["end"]["earliest"], &wait["end"]["latest"]), (&json!(450), &json!(450)));
+    assert_eq!(wait["end"]["earliest_utc"], "2004-01-25T12:35:00Z");
+}
