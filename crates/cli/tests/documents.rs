@@ -46,7 +46,7 @@ fn a_calendar_needs_to_know_when_the_mission_starts() {
 fn the_schedule_of_a_mission_is_a_table() {
     let output = enroute(&["export", MISSION, "--as", "csv"]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
-    let row = "Group-Wait#1,primitive,Group-Wait,TAI_HOLD1 TAI_HOLD2,415,460,415,514,45,99\r\n";
+    let row = "Group-Wait#1,primitive,Group-Wait,TAI_HOLD1 TAI_HOLD2,415,460,415,514,45,99,min,,,,draft,";
     assert!(written(&output).contains(row), "{}", written(&output));
 }
 
@@ -127,4 +127,94 @@ fn every_command_that_plans_stops_at_its_time_limit() {
         let in_time = enroute(&[arguments, &["--time-limit", "1e300"]].concat());
         assert_eq!(in_time.status.code(), Some(0), "{arguments:?}: {in_time:?}");
     }
+}
+
+/// The history of a board that approved the mission, as a file; what was approved is taken from a report.
+fn approved_history(name: &str) -> (PathBuf, String) {
+    use mission::review::record::{Act, LineKey, Record, Subject, Who};
+    use mission::review::{FlightRules, Section};
+    let output = enroute(&["report", SMALL, "--format", "json"]);
+    let report: Value = serde_json::from_str(&written(&output)).expect("JSON");
+    let text = |member: &str| report[member].as_str().expect("a text").to_owned();
+    let who = |by: &str| Who {
+        by: by.to_owned(),
+        role: "Reviewer".to_owned(),
+        time: "2026-01-02T03:04:05Z".to_owned(),
+        content_hash: text("content_hash"),
+        plan_hash: text("plan_hash"),
+    };
+    let mut record = Record::new("small");
+    for line in report["plan"].as_array().expect("lines").iter().filter(|line| line["status"] == "attention") {
+        let said = |member: &str| line[member].as_str().map(str::to_owned);
+        let (section, criterion) = (Section::Plan, said("criterion"));
+        let line = LineKey { section, text: said("text").expect("words"), criterion };
+        record.add(who("Ada"), Act::Acknowledge { line, text: "As meant.".to_owned() });
+    }
+    let source = std::fs::read_to_string(root().join(SMALL)).expect("the mission");
+    let subject = Subject {
+        source,
+        goal: mission::Goal::Default,
+        seed: 0,
+        rules: FlightRules::default(),
+        counts: [0; 3],
+        lines: Vec::new(),
+        plan: Value::Null,
+        robustness: None,
+    };
+    record.approve(who("Ada"), subject, String::new());
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::write(&path, record.to_json()).expect("a file");
+    (path, record.to_json())
+}
+
+fn root() -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
+}
+
+/// A mission of which nothing fails.
+const SMALL: &str = "tests/conformance/t08_sequence_windows.rmpl";
+
+#[test]
+fn a_history_is_checked_and_says_how_the_plan_stands() {
+    let (path, text) = approved_history("approved.review.json");
+    let path = path.to_str().expect("a path in UTF-8");
+    let alone = enroute(&["review", path]);
+    assert_eq!(alone.status.code(), Some(0), "{alone:?}");
+    assert!(written(&alone).contains("the history is as it was written"), "{}", written(&alone));
+    let of_mission = enroute(&["review", path, "--mission", SMALL, "--format", "json"]);
+    let answer: Value = serde_json::from_str(&written(&of_mission)).expect("JSON");
+    assert_eq!((of_mission.status.code(), &answer["plan_status"]), (Some(0), &json!("approved")), "{answer}");
+    assert_eq!((&answer["intact"], &answer["format"]), (&json!(true), &json!("enroute-review-check/1")));
+    let of_other = enroute(&["review", path, "--mission", MISSION]);
+    assert_eq!(of_other.status.code(), Some(1), "{of_other:?}");
+    assert!(written(&of_other).contains("approval lapsed"), "{}", written(&of_other));
+    // What was altered is said, and is no approval.
+    let altered = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("altered.review.json");
+    std::fs::write(&altered, text.replace("\"by\": \"Ada\"", "\"by\": \"Eve\"")).expect("a file");
+    let altered = altered.to_str().expect("a path in UTF-8");
+    let found = enroute(&["review", altered]);
+    assert_eq!(found.status.code(), Some(1), "{found:?}");
+    assert!(written(&found).contains("has been altered: entry 1 (Eve"), "{}", written(&found));
+    for refused in [enroute(&["report", SMALL, "--review", altered, "--format", "json"]), enroute(&["review", SMALL])] {
+        assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+    }
+}
+
+#[test]
+fn reports_and_schedules_say_how_the_plan_stands() {
+    let (path, _) = approved_history("for-report.review.json");
+    let path = path.to_str().expect("a path in UTF-8");
+    let page = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("approved.html");
+    let output = enroute(&["report", SMALL, "--review", path, "-o", page.to_str().expect("a path in UTF-8")]);
+    assert!(written(&output).contains("approved: Reviewer 1 of 1"), "{}", written(&output));
+    let page = std::fs::read_to_string(page).expect("the report");
+    assert!(page.contains("History of the review") && page.contains("approved</span>: Reviewer 1 of 1"));
+    let schedule = enroute(&["export", SMALL, "--as", "json", "--review", path, "--epoch", "2004-01-25"]);
+    let schedule: Value = serde_json::from_str(&written(&schedule)).expect("JSON");
+    assert_eq!(schedule["plan_status"], "approved");
+    assert_eq!(schedule["epoch"], "2004-01-25T00:00:00Z");
+    let without = enroute(&["export", SMALL, "--as", "json"]);
+    let without: Value = serde_json::from_str(&written(&without)).expect("JSON");
+    assert_eq!((&without["plan_status"], &without["epoch"]), (&json!("draft"), &Value::Null));
+    assert_eq!(without["content_hash"], schedule["content_hash"]);
 }
