@@ -1,4 +1,4 @@
-//! The review as a reviewer meets it: computed lines that lead to their places, staleness, sign-off, comments, files.
+//! The review as a reviewer meets it: computed lines that lead to their places, staleness, comments, acknowledgements, approvals, files.
 
 mod support;
 
@@ -152,33 +152,110 @@ fn a_review_that_is_run_again_is_of_the_present_text_and_the_old_one_is_found_ag
     assert_eq!(review(&app), before, "nothing has to be reviewed twice");
 }
 
+/// Acknowledges every line for attention, as a host page does.
+fn acknowledge_all(app: &mut App) {
+    let items = review(app)["items"].as_array().expect("lines").clone();
+    for (index, item) in items.iter().enumerate() {
+        if item["status"] == "attention" && item["acknowledged"].is_null() {
+            let arguments = json!({ "name": "Ada", "item": index, "text": "As meant." });
+            app.harness.state_mut().dispatch("review.acknowledge", &arguments).expect("a line");
+            app.settle();
+        }
+    }
+}
+
+/// Approves what is shown, as a host page does.
+fn approve(app: &mut App, name: &str) {
+    acknowledge_all(app);
+    app.harness.state_mut().dispatch("review.approve", &json!({ "name": name })).expect("a current review");
+    app.settle();
+}
+
 #[test]
-fn a_sign_off_is_for_one_content_and_stays_with_it() {
+fn an_approval_is_for_one_content_and_stays_with_it() {
     let mut app = reviewing();
-    type_into(&mut app, "Name of who signs", "Ada Lovelace");
-    click(&mut app, "Sign off");
+    type_into(&mut app, "Your name", "Ada Lovelace");
+    // Each line for attention is acknowledged below itself, with the keyboard.
+    let left = |app: &App| {
+        let items = review(app)["items"].as_array().expect("lines").clone();
+        items.iter().filter(|it| it["status"] == "attention" && it["acknowledged"].is_null()).count()
+    };
+    let lines = left(&app);
+    assert!(lines > 0);
+    for done in 1..=lines {
+        let label = app.harness.query_all_by_role(Role::Button).find_map(|node| {
+            node.accesskit_node().label().filter(|label| label.starts_with("Acknowledge… "))
+        });
+        click(&mut app, &label.expect("a line to acknowledge"));
+        type_into(&mut app, "Why may it be so?", "As meant.");
+        app.harness.key_press(egui::Key::Enter);
+        app.settle();
+        assert_eq!(left(&app), lines - done);
+    }
+    click(&mut app, "Approve");
     let signed = review(&app)["signed"].clone();
     assert_eq!(signed["name"], "Ada Lovelace");
     assert_eq!(signed["stale"], false);
     assert_eq!(signed["hash"], review(&app)["currentHash"]);
     assert!(signed["time"].as_str().is_some_and(|time| time.starts_with("2026-01-02T03:04:")), "{signed}");
+    assert_eq!(review(&app)["planStatus"], "approved");
+    app.harness.get_by_label("Plan: approved");
     edit(&mut app);
     assert_eq!(review(&app)["signed"]["stale"], true);
-    let refused = app.harness.state_mut().dispatch("review.sign", &json!({ "name": "Ada" }));
-    assert!(refused.is_err(), "a stale review cannot be signed");
+    app.harness.get_by_label("Plan: approval lapsed");
+    let refused = app.harness.state_mut().dispatch("review.approve", &json!({ "name": "Ada" }));
+    assert!(refused.is_err(), "a stale review cannot be approved");
+    click(&mut app, "Review again");
+    assert!(has(&app, "Since the last approval, text 1, plan "));
     undo(&mut app);
     assert_eq!(review(&app)["signed"], signed);
+    assert!(has(&app, "Since the last approval, nothing differs"));
+    // Taking it back is an entry of the history.
+    click(&mut app, "Take back… Ada Lovelace");
+    type_into(&mut app, "Why is it taken back?", "Too early.");
+    click(&mut app, "Take back");
+    assert_eq!(review(&app)["planStatus"], "in-review");
+    let last = review(&app)["history"].as_array().and_then(|all| all.last().cloned()).expect("an entry");
+    assert_eq!((&last["act"], &last["text"]), (&json!("took back"), &json!("Too early.")));
 }
 
 #[test]
-fn a_mission_without_a_plan_cannot_be_signed() {
+fn a_comment_is_resolved_and_opened_again_by_name() {
+    let mut app = reviewing();
+    let asked = json!({ "author": "Grace", "text": "Why so long?" });
+    app.harness.state_mut().dispatch("review.comment", &asked).expect("a comment");
+    app.settle();
+    assert!(has(&app, "Comments, 1 open of 1"));
+    click(&mut app, "Resolve… Why so long?");
+    type_into(&mut app, "How is it resolved?", "It waits for light.");
+    click(&mut app, "Resolve");
+    assert!(has(&app, "Comments, 0 open of 1"));
+    click(&mut app, "Open again… Why so long?");
+    click(&mut app, "Open again");
+    assert_eq!(review(&app)["comments"][0]["open"], true);
+    assert_eq!(review(&app)["history"].as_array().map(Vec::len), Some(3));
+}
+
+#[test]
+fn the_board_is_part_of_the_flight_rules() {
+    let mut app = reviewing();
+    click(&mut app, "Add a role");
+    type_into(&mut app, "Role 2", "Mobility");
+    click(&mut app, "Use these rules");
+    let board = review(&app)["rules"]["board"].clone();
+    assert_eq!(board[1], json!({ "role": "Mobility", "approvals": 1 }));
+    assert!(has(&app, "Approval, Reviewer 0 of 1, Mobility 0 of 1"));
+}
+
+#[test]
+fn a_mission_without_a_plan_cannot_be_approved() {
     let mut app = reviewing();
     let source = app.harness.state().source();
     app.harness.state_mut().set_source(&source.replace("PATH1=OK [450,450]", "PATH1=OK [404,404]"));
     app.settle();
     click(&mut app, "Review again");
     assert_eq!(review(&app)["status"], "failed");
-    let refused = app.harness.state_mut().dispatch("review.sign", &json!({ "name": "Ada" }));
+    let refused = app.harness.state_mut().dispatch("review.approve", &json!({ "name": "Ada" }));
     assert!(refused.is_err_and(|error| error.to_string().contains("no plan")));
 }
 
@@ -258,7 +335,7 @@ fn a_full_storage_is_said_and_loses_nothing() {
         .expect("a comment");
     app.settle();
     assert!(review(&app)["unkept"].as_str().is_some_and(|reason| reason.contains("no room")));
-    app.harness.get_by_label("Comments and sign-offs are not kept");
+    app.harness.get_by_label("The history of the review is not kept");
     let key = "enroute/review-1/enroute";
     assert_eq!(app.world.storage.borrow().get(key), kept.get(key), "what was kept is unharmed");
     // Another mission and back: what could not be kept is still there.
@@ -287,14 +364,16 @@ fn what_was_said_goes_into_a_file_and_comes_back_from_it() {
         .state_mut()
         .dispatch("review.comment", &json!({ "author": "Grace", "text": "Fine." }))
         .expect("a comment");
-    app.harness.state_mut().dispatch("review.sign", &json!({ "name": "Grace" })).expect("a current review");
-    app.settle();
+    let id = review(&app)["comments"][0]["id"].clone();
+    let resolve = json!({ "name": "Grace", "id": id });
+    app.harness.state_mut().dispatch("review.resolve", &resolve).expect("an open comment");
+    approve(&mut app, "Grace");
     app.harness.state_mut().dispatch("review.save", &json!(null)).expect("something to save");
     app.settle();
     let (name, bytes) = app.world.saved.borrow().last().cloned().expect("a file");
     assert_eq!(name, "enroute.review.json");
     let document: Value = serde_json::from_slice(&bytes).expect("JSON");
-    assert_eq!(document["format"], "enroute-review/1");
+    assert_eq!(document["format"], "enroute-review/2");
 
     let mut other = reviewing();
     assert_eq!(review(&other)["signed"], Value::Null);
@@ -337,8 +416,7 @@ fn the_review_fits_into_a_narrow_panel() {
 #[test]
 fn the_report_is_written_with_the_review_that_is_shown() {
     let mut app = reviewing();
-    app.harness.state_mut().dispatch("review.sign", &json!({ "name": "Ada <A>" })).expect("a review");
-    app.settle();
+    approve(&mut app, "Ada <A>");
     click(&mut app, "Write the report");
     let (name, bytes) = app.world.saved.borrow().last().cloned().expect("a file");
     assert_eq!(name, "enroute.report.html");
@@ -363,6 +441,8 @@ fn schedules_are_written_from_the_menu_once_the_start_is_known() {
     let mut app = support::start();
     app.settle();
     app.harness.state_mut().dispatch("export.csv", &json!(null)).expect("a plan");
+    app.settle();
+    click(&mut app, "Export");
     app.harness.state_mut().dispatch("export.icalendar", &json!(null)).expect("a plan");
     app.settle();
     assert_eq!(app.json()["dialog"], "epoch");
@@ -377,7 +457,7 @@ fn schedules_are_written_from_the_menu_once_the_start_is_known() {
     assert_eq!(names, ["enroute.schedule.csv", "enroute.ics", "enroute.open-mct.json"]);
     let text = |index: usize| String::from_utf8(saved[index].1.clone()).expect("UTF-8");
     assert!(
-        text(0).contains("Group-Wait#1,primitive,Group-Wait,TAI_HOLD1 TAI_HOLD2,415,460,415,514,45,99\r\n")
+        text(0).contains("Group-Wait#1,primitive,Group-Wait,TAI_HOLD1 TAI_HOLD2,415,460,415,514,45,99,min,,,,draft,")
     );
     assert!(text(1).contains("DTSTART:20040125T051500Z\r\n"));
     let plan: Value = serde_json::from_str(&text(2)).expect("JSON");
@@ -401,13 +481,13 @@ fn a_pinned_plan_shows_what_an_edit_changes() {
 }
 
 #[test]
-fn the_last_sign_off_can_be_compared_with_the_present_text() {
+fn the_last_approval_can_be_compared_with_the_present_text() {
     let mut app = reviewing();
-    app.harness.state_mut().dispatch("review.sign", &json!({ "name": "Ada" })).expect("a current review");
+    approve(&mut app, "Ada");
     edit(&mut app);
-    app.harness.state_mut().dispatch("compare.signedOff", &json!(null)).expect("it is signed");
+    app.harness.state_mut().dispatch("compare.approved", &json!(null)).expect("it is approved");
     app.settle();
-    assert_eq!(app.json()["compare"]["with"], "signed off by Ada on 2026-01-02");
+    assert_eq!(app.json()["compare"]["with"], "approved by Ada on 2026-01-02");
     assert!(has(&app, "condition Tell(PATH1=OK)#1 moved"));
 }
 

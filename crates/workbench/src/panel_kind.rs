@@ -28,7 +28,7 @@ pub enum PanelKind {
     Strategy,
     /// The run of a control program.
     Automaton,
-    /// The checklist of the review, comments and sign-off.
+    /// The checklist of the review, comments and approvals.
     Review,
     /// Two plans side by side.
     Compare,

@@ -42,7 +42,7 @@ pub(super) fn line(
     }
     if line.status == Status::Attention && !list.is_stale {
         let known = list.acknowledged.get(&LineKey::new(section, line)).copied();
-        ui.push_id((section, index), |ui| {
+        ui.push_id((section.title(), index), |ui| {
             people.acknowledgement(ui, list.context, (section, line), known, commands);
         });
     }

@@ -89,7 +89,7 @@ fn the_report_is_a_page_that_stands_alone_and_prints_on_both_papers() -> Result<
         "Traverses",
         "Conflicts between vehicles",
         "Warnings in the text",
-        "Sign-off and comments",
+        "History of the review",
         "Timeline",
         "Network",
         "Map",
