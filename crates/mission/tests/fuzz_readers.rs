@@ -21,10 +21,11 @@ const CONTROL: [&str; 3] = [
     "(",
 ];
 
-const DOCUMENTS: [&str; 3] = [
+const DOCUMENTS: [&str; 4] = [
     include_str!("corpus/disturbances.json"),
     include_str!("corpus/uncertainty.json"),
     include_str!("corpus/review.json"),
+    include_str!("corpus/board.json"),
 ];
 
 /// What breaks readers: signs of every notation, numbers at the ends of their ranges, texts that cannot be shown.

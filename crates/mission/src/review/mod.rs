@@ -8,6 +8,7 @@ mod alternatives;
 pub mod board;
 mod demand_lines;
 pub(crate) mod distances;
+mod entry;
 mod former_record;
 mod hash;
 mod lines;

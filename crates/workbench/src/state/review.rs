@@ -3,15 +3,15 @@
 //! A review belongs to one text, map, goal and seed, named by their hash. An edit makes it stale; undoing the edit makes
 //! it current again, because the hash is the same again.
 
+mod board;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use mission::review::record::{Act, Runs, Subject, Who};
-use mission::review::{FlightRules, Present, Record, Review, Standing, content_hash, standing};
+use mission::review::record::Act;
+use mission::review::{FlightRules, Record, Review, content_hash};
 use mission::{Request, Robustness, SearchKind, Stage, Update};
-use serde_json::Value;
 use smol_str::SmolStr;
-use tpn::plan_json::plan_to_json;
 
 use crate::state::{AppState, Effect, PlanSettings, ToastKind};
 
@@ -291,133 +291,6 @@ impl AppState {
     /// The review of the present content, if it has been made.
     pub fn current_review(&self) -> Option<&Arc<Review>> {
         self.review.shown(self.settings.plan.search).filter(|(_, is_stale)| !is_stale).map(|(it, _)| it)
-    }
-
-    /// How the plan stands with its board; `None` before it is known what the plan is about.
-    pub fn standing(&self) -> Option<Standing<'_>> {
-        let review = self.current_review().map(AsRef::as_ref);
-        let present = Present {
-            content_hash: self.review.hash()?,
-            plan_hash: review.map(|review| review.plan_hash.as_str()),
-            rules: self.review.record.rules(),
-            review,
-        };
-        Some(standing(&self.review.record, &present))
-    }
-
-    /// Somebody with the role that is meant: the only one of the board where none is named.
-    pub(crate) fn seated(&self, by: Person) -> Person {
-        let role = match self.review.record.rules().board.as_slice() {
-            [seat] if by.role.trim().is_empty() => seat.role.clone(),
-            _ => by.role.trim().to_owned(),
-        };
-        Person { name: by.name.trim().to_owned(), role }
-    }
-
-    /// Somebody who does something about the present content, now. The name and the role are remembered.
-    fn who(&mut self, by: Person) -> Who {
-        self.settings.reviewer.clone_from(&by.name);
-        self.settings.reviewer_role.clone_from(&by.role);
-        let plan_hash = self.current_review().map(|review| review.plan_hash.clone()).unwrap_or_default();
-        Who {
-            by: by.name,
-            role: by.role,
-            time: self.utc_now(),
-            content_hash: self.review.hash().unwrap_or_default().to_owned(),
-            plan_hash,
-        }
-    }
-
-    fn approve(&mut self, by: Person, text: &str) {
-        let by = self.seated(by);
-        let refused = match self.standing() {
-            Some(standing) => standing.may_approve(&by.name, &by.role).err(),
-            None => Some("the mission has not been worked out".to_owned()),
-        };
-        if let Some(reason) = refused {
-            self.toasts.add(ToastKind::Failed, format!("Not approved: {reason}"));
-            return;
-        }
-        let Some(review) = self.current_review().cloned() else { return };
-        let snapshot = self.snapshots.latest();
-        let planned = snapshot.and_then(|it| Some((it.network.as_deref()?, it.plan()?)));
-        let plan = planned.map_or(Value::Null, |(network, plan)| plan_to_json(network, plan));
-        let PlanSettings { goal, seed, .. } = self.settings.plan.clone();
-        let found = self.robustness().cloned();
-        let subject = Subject::new(&review, self.document.text(), goal, seed, plan, found.as_deref());
-        self.toasts.add(ToastKind::Done, format!("Approved by {} ({})", by.name, by.role));
-        let who = self.who(by);
-        self.review.record.approve(who, subject, text.to_owned());
-        self.keep_review();
-    }
-
-    fn say(&mut self, by: Person, act: Act) {
-        let refused = self.may_say(&by, &act).err();
-        if let Some(reason) = refused {
-            self.toasts.add(ToastKind::Failed, reason);
-            return;
-        }
-        let by = self.seated(by);
-        let who = self.who(by);
-        self.review.record.add(who, act);
-        self.keep_review();
-    }
-
-    /// Whether somebody may do something; `Err` says why not.
-    pub fn may_say(&self, by: &Person, act: &Act) -> Result<(), String> {
-        let record = &self.review.record;
-        let of = act.of().map(|of| record.entry(of).ok_or_else(|| format!("there is no entry {of}")));
-        let of = of.transpose()?;
-        let is_open = |of: &str| {
-            let open = mission::review::board::open_comments(record);
-            open.iter().any(|comment| comment.digest() == of)
-        };
-        let is_empty = act.text().trim().is_empty();
-        match act {
-            _ if by.name.trim().is_empty() => Err("Whoever does something for a review has a name".to_owned()),
-            Act::Comment { .. } if is_empty => Err("A comment needs words".to_owned()),
-            Act::Acknowledge { .. } if is_empty => {
-                Err("To acknowledge a line it takes a reason why it may be so".to_owned())
-            }
-            Act::Resolve { of, .. } if !is_open(of) => Err("The comment is not open".to_owned()),
-            Act::Reopen { of, .. } if is_open(of) => Err("The comment is open".to_owned()),
-            Act::Resolve { .. } | Act::Reopen { .. }
-                if !of.is_some_and(|of| matches!(of.act, Act::Comment { .. })) =>
-            {
-                Err("Only comments are resolved".to_owned())
-            }
-            Act::Resolve { of, .. } | Act::Reopen { of, .. } | Act::Withdraw { of, .. }
-                if record.withdrawn().contains_key(of.as_str()) =>
-            {
-                Err("That has been taken back already".to_owned())
-            }
-            Act::Withdraw { .. }
-                if !of.is_some_and(|of| {
-                    matches!(of.act, Act::Comment { .. } | Act::Acknowledge { .. } | Act::Approve { .. })
-                }) =>
-            {
-                Err("Comments, acknowledgements and approvals are taken back".to_owned())
-            }
-            Act::Approve { .. } | Act::Rules { .. } => Err("That is not said but done".to_owned()),
-            _ => Ok(()),
-        }
-    }
-
-    /// Keeps what the runs of the present content came to, with the mission.
-    pub(super) fn keep_runs(&mut self, content_hash: &str) {
-        let Some(found) = self.chance.of_content(content_hash).filter(|found| found.tally.runs > 0) else { return };
-        if self.review.hash() == Some(content_hash) {
-            self.review.record.keep_runs(Runs::new(content_hash, &found));
-            self.keep_review();
-        }
-    }
-
-    /// Takes the runs that the record has for those that were made here, as far as it has more.
-    fn learn_runs(&mut self) {
-        for runs in &self.review.record.runs {
-            self.chance.learn(&runs.content_hash, runs.robustness());
-        }
-        self.judge_reviews();
     }
 
     /// Adds what a file has.

@@ -8,6 +8,7 @@ mod opened;
 mod accessibility;
 mod api;
 mod automaton;
+mod board;
 mod drawing;
 mod editing;
 mod execution;

@@ -201,7 +201,11 @@ fn a_signed_review_is_still_there_after_the_page_was_closed() -> Result<()> {
     let page = Opened::planned()?;
     page.tab.evaluate("enroute.dispatch('view.workspace', { name: 'review' })")?;
     page.wait_for("state.review.hash !== null && !state.review.stale")?;
-    page.tab.evaluate("enroute.dispatch('review.sign', { name: 'Ada' })")?;
+    page.tab.evaluate(
+        "enroute.state().review.items.forEach((it, item) => it.status === 'attention'
+            && enroute.dispatch('review.acknowledge', { name: 'Ada', item, text: 'As meant.' }))",
+    )?;
+    page.tab.evaluate("enroute.dispatch('review.approve', { name: 'Ada' })")?;
     page.wait_for("state.review.signed?.stale === false")?;
     page.tab.evaluate("window.isOldPage = true; location.reload()")?;
     page.tab.wait_until("!('isOldPage' in window) && 'enroute' in window")?;

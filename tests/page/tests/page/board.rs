@@ -1,0 +1,91 @@
+//! A board takes a plan from draft to approval over one edit, with mouse and keyboard.
+
+use anyhow::{Context as _, Result};
+use serde_json::Value;
+use xtask::browser::{Key, Modifiers};
+
+use crate::opened::Opened;
+
+/// The panel of the review with all the room there is.
+fn reviewing() -> Result<Opened> {
+    let page = Opened::with_fragment("mission=enroute&workspace=review")?;
+    page.wait_for("state.review.hash !== null && !state.review.stale")?;
+    for panel in ["plan", "timeline", "compare", "network", "terrain", "editor", "problems", "outline"] {
+        page.tab.evaluate(&format!("enroute.dispatch('view.closePanel', '{panel}')"))?;
+    }
+    page.settle()?;
+    Ok(page)
+}
+
+/// The names of the buttons that begin so, in the order in which they stand.
+fn buttons(page: &Opened, start: &str) -> Result<Vec<String>> {
+    let script = format!(
+        "enroute.widgets('button').map((it) => it.label).filter((label) => label?.startsWith('{start}'))"
+    );
+    let names = page.tab.evaluate(&script)?;
+    let names = names.as_array().context("a list")?;
+    Ok(names.iter().filter_map(Value::as_str).map(str::to_owned).collect())
+}
+
+/// Folds a section with the keyboard, so that what follows comes into view.
+fn fold(page: &Opened, start: &str) -> Result<()> {
+    let name = buttons(page, start)?.first().cloned().with_context(|| format!("no section {start}"))?;
+    page.tab.click_widget("button", &name)?;
+    page.settle()
+}
+
+/// Clicks the first button that begins so.
+fn click(page: &Opened, start: &str) -> Result<()> {
+    let name = buttons(page, start)?.first().cloned().with_context(|| format!("no button {start}"))?;
+    page.tab.click_widget("button", &name)?;
+    page.settle()
+}
+
+fn type_into(page: &Opened, field: &str, text: &str) -> Result<()> {
+    page.tab.click_widget("textbox", field)?;
+    page.tab.type_text(text)?;
+    page.settle()
+}
+
+#[test]
+fn a_board_goes_from_draft_to_approval_and_an_edit_lapses_it() -> Result<()> {
+    let page = reviewing()?;
+    assert_eq!(page.state()?["review"]["planStatus"], "draft");
+    type_into(&page, "Your name", "Ada")?;
+    for section in ["Plan", "Choices", "Threats", "States", "Resources", "Durations", "Windows"] {
+        fold(&page, section)?;
+    }
+    // Each line for attention is acknowledged with a reason, sent by Enter.
+    while page.state()?["review"]["blockers"].as_array().is_some_and(|all| !all.is_empty()) {
+        let before = page.state()?["review"]["history"].as_array().map_or(0, Vec::len);
+        if buttons(&page, "Acknowledge… ")?.is_empty() {
+            // It is in a section that is folded.
+            fold(&page, "Plan, ")?;
+        }
+        click(&page, "Acknowledge… ")?;
+        type_into(&page, "Why may it be so?", "As meant.")?;
+        page.tab.press(Key::Enter, Modifiers::NONE)?;
+        page.wait_for(&format!("state.review.history.length === {}", before + 1))?;
+        page.settle()?;
+    }
+    for section in ["Causal links", "Traverses", "Conflicts", "Robustness", "Warnings", "Flight rules"] {
+        fold(&page, section)?;
+    }
+    click(&page, "Approve")?;
+    page.wait_for("state.review.planStatus === 'approved'")?;
+    page.tab.evaluate("enroute.setSource(enroute.source().replace('PATH1=OK [450,450]', 'PATH1=OK [460,460]'))")?;
+    page.wait_for("state.review.planStatus === 'lapsed'")?;
+    click(&page, "Review again")?;
+    page.wait_for("!state.review.stale")?;
+    assert!(!buttons(&page, "Since the last approval, text 1")?.is_empty());
+    // What was done is still there after the page was loaded again.
+    page.tab.evaluate("enroute.dispatch('edit.undo')")?;
+    page.wait_for("state.review.planStatus === 'approved'")?;
+    let heads = page.state()?["review"]["heads"].clone();
+    page.tab.evaluate("window.isOldPage = true; location.reload()")?;
+    page.tab.wait_until("!('isOldPage' in window) && 'enroute' in window")?;
+    page.tab.wait_until_ready()?;
+    page.wait_for("state.review.planStatus === 'approved'")?;
+    assert_eq!(page.state()?["review"]["heads"], heads);
+    Ok(())
+}
