@@ -42,6 +42,12 @@ fn click(app: &mut App, start: &str) {
     app.settle();
 }
 
+/// Clicks the button of this very name.
+fn click_exactly(app: &mut App, name: &str) {
+    app.harness.get_by_role_and_label(Role::Button, name).click();
+    app.settle();
+}
+
 fn type_into(app: &mut App, field: &str, text: &str) {
     app.harness.get_by_role_and_label(Role::TextInput, field).focus();
     app.settle();
@@ -192,7 +198,7 @@ fn an_approval_is_for_one_content_and_stays_with_it() {
         app.settle();
         assert_eq!(left(&app), lines - done);
     }
-    click(&mut app, "Approve");
+    click_exactly(&mut app, "Approve");
     let signed = review(&app)["signed"].clone();
     assert_eq!(signed["name"], "Ada Lovelace");
     assert_eq!(signed["stale"], false);
@@ -213,7 +219,7 @@ fn an_approval_is_for_one_content_and_stays_with_it() {
     // Taking it back is an entry of the history.
     click(&mut app, "Take back… Ada Lovelace");
     type_into(&mut app, "Why is it taken back?", "Too early.");
-    click(&mut app, "Take back");
+    click_exactly(&mut app, "Take back");
     assert_eq!(review(&app)["planStatus"], "in-review");
     let last = review(&app)["history"].as_array().and_then(|all| all.last().cloned()).expect("an entry");
     assert_eq!((&last["act"], &last["text"]), (&json!("took back"), &json!("Too early.")));
@@ -228,10 +234,10 @@ fn a_comment_is_resolved_and_opened_again_by_name() {
     assert!(has(&app, "Comments, 1 open of 1"));
     click(&mut app, "Resolve… Why so long?");
     type_into(&mut app, "How is it resolved?", "It waits for light.");
-    click(&mut app, "Resolve");
+    click_exactly(&mut app, "Resolve");
     assert!(has(&app, "Comments, 0 open of 1"));
     click(&mut app, "Open again… Why so long?");
-    click(&mut app, "Open again");
+    click_exactly(&mut app, "Open again");
     assert_eq!(review(&app)["comments"][0]["open"], true);
     assert_eq!(review(&app)["history"].as_array().map(Vec::len), Some(3));
 }
@@ -456,9 +462,9 @@ fn schedules_are_written_from_the_menu_once_the_start_is_known() {
     let names: Vec<&str> = saved.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["enroute.schedule.csv", "enroute.ics", "enroute.open-mct.json"]);
     let text = |index: usize| String::from_utf8(saved[index].1.clone()).expect("UTF-8");
-    assert!(
-        text(0).contains("Group-Wait#1,primitive,Group-Wait,TAI_HOLD1 TAI_HOLD2,415,460,415,514,45,99,min,,,,draft,")
-    );
+    assert!(text(0).contains(
+        "Group-Wait#1,primitive,Group-Wait,TAI_HOLD1 TAI_HOLD2,415,460,415,514,45,99,min,,,,draft,"
+    ));
     assert!(text(1).contains("DTSTART:20040125T051500Z\r\n"));
     let plan: Value = serde_json::from_str(&text(2)).expect("JSON");
     assert!(plan["Activities"].as_array().is_some_and(|entries| !entries.is_empty()));

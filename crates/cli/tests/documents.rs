@@ -144,7 +144,8 @@ fn approved_history(name: &str) -> (PathBuf, String) {
         plan_hash: text("plan_hash"),
     };
     let mut record = Record::new("small");
-    for line in report["plan"].as_array().expect("lines").iter().filter(|line| line["status"] == "attention") {
+    for line in report["plan"].as_array().expect("lines").iter().filter(|line| line["status"] == "attention")
+    {
         let said = |member: &str| line[member].as_str().map(str::to_owned);
         let (section, criterion) = (Section::Plan, said("criterion"));
         let line = LineKey { section, text: said("text").expect("words"), criterion };
@@ -195,7 +196,9 @@ fn a_history_is_checked_and_says_how_the_plan_stands() {
     let found = enroute(&["review", altered]);
     assert_eq!(found.status.code(), Some(1), "{found:?}");
     assert!(written(&found).contains("has been altered: entry 1 (Eve"), "{}", written(&found));
-    for refused in [enroute(&["report", SMALL, "--review", altered, "--format", "json"]), enroute(&["review", SMALL])] {
+    for refused in
+        [enroute(&["report", SMALL, "--review", altered, "--format", "json"]), enroute(&["review", SMALL])]
+    {
         assert_eq!(refused.status.code(), Some(2), "{refused:?}");
     }
 }

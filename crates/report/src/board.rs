@@ -62,7 +62,10 @@ pub(crate) fn signatures(record: &Record, review: &Review) -> String {
     } else {
         format!("<p>In the way of an approval: {}.</p>\n", escaped(&blockers.join(", ")))
     };
-    format!("<h2>Signatures</h2>\n{open}<div class=\"signatures\">\n{rows}</div>\n{}", open_comments(&standing))
+    format!(
+        "<h2>Signatures</h2>\n{open}<div class=\"signatures\">\n{rows}</div>\n{}",
+        open_comments(&standing)
+    )
 }
 
 fn open_comments(standing: &Standing<'_>) -> String {
@@ -120,7 +123,8 @@ fn plan(since: &Since) -> String {
         None => format!("{heading}<p>The approved plan was not kept.</p>\n"),
         Some(plan) if plan.is_same() => String::new(),
         Some(plan) => {
-            let rows = plan.differences.iter().map(|it| vec![escaped(it.subject.name()), escaped(&it.sentence())]);
+            let rows =
+                plan.differences.iter().map(|it| vec![escaped(it.subject.name()), escaped(&it.sentence())]);
             format!("{heading}<p>{}</p>\n{}", escaped(&plan.summary()), table(&["", "What"], rows))
         }
     }
@@ -145,7 +149,7 @@ fn text(changes: &[TextChange]) -> String {
 }
 
 fn line(change: &LineChange) -> Vec<String> {
-    let section = change.section().map(|section| section.title()).unwrap_or_default();
+    let section = change.section().map(mission::review::Section::title).unwrap_or_default();
     vec![section.to_owned(), escaped(&change.sentence())]
 }
 
@@ -162,7 +166,7 @@ pub(crate) fn history(record: &Record, review: &Review) -> String {
         return String::new();
     }
     let withdrawn = record.withdrawn();
-    let numbers: Vec<&str> = record.entries().iter().map(|entry| entry.digest()).collect();
+    let numbers: Vec<&str> = record.entries().iter().map(mission::review::sealed::Sealed::digest).collect();
     let number = |digest: &str| numbers.iter().position(|it| *it == digest).map_or(0, |index| index + 1);
     let rows = record.entries().iter().enumerate().map(|(index, entry)| {
         let of = entry.act.of().map(|of| format!(" entry {}", number(of))).unwrap_or_default();

@@ -251,8 +251,7 @@ fn calendar_events(text: &str) -> Vec<Vec<(String, String)>> {
 #[test]
 fn the_calendar_has_an_event_for_each_activity() {
     let planned = planned(SCENARIO);
-    let text =
-        export::icalendar(&planned.snapshot, &about(Some(&calendar()))).expect("a plan");
+    let text = export::icalendar(&planned.snapshot, &about(Some(&calendar()))).expect("a plan");
     assert!(
         text.starts_with("BEGIN:VCALENDAR\r\nVERSION:2.0\r\nPRODID:") && text.ends_with("END:VCALENDAR\r\n")
     );
@@ -334,7 +333,10 @@ fn a_report_has_the_history_of_the_board_its_status_and_who_took_what_back() {
     for section in Section::ALL {
         for line in planned.review.lines(section) {
             let line = LineKey::new(section, line);
-            record.add(who("Ada <A>", &planned.review), Act::Acknowledge { line, text: "As meant.".to_owned() });
+            record.add(
+                who("Ada <A>", &planned.review),
+                Act::Acknowledge { line, text: "As meant.".to_owned() },
+            );
         }
     }
     record.approve(who("Ada <A>", &planned.review), subject(&planned), "Mind the wind.".to_owned());
@@ -385,7 +387,12 @@ fn schedules_say_what_they_are_of_how_that_stands_and_what_is_pinned() {
     };
     let table = export::csv(&planned.snapshot, &about).expect("a plan");
     let row = table.lines().find(|line| line.starts_with("Group-Wait#1,")).expect("the wait");
-    assert!(row.ends_with(&format!(",500,500,45,0,min,2004-01-25T12:00:00Z,2004-01-25T13:25:00Z,end,approved,{HASH}")), "{row}");
+    assert!(
+        row.ends_with(&format!(
+            ",500,500,45,0,min,2004-01-25T12:00:00Z,2004-01-25T13:25:00Z,end,approved,{HASH}"
+        )),
+        "{row}"
+    );
     let document = export::json(&planned.snapshot, &about).expect("a plan");
     assert_eq!(document["format"], "enroute-schedule/1");
     assert_eq!((&document["content_hash"], &document["plan_status"]), (&HASH.into(), &"approved".into()));
@@ -407,7 +414,10 @@ fn schedules_say_what_they_are_of_how_that_stands_and_what_is_pinned() {
     let plan = export::open_mct(&planned.snapshot, &about).expect("a calendar");
     let wait = plan["Activities"].as_array().expect("a list").iter().find(|it| it["name"] == "Group-Wait#1");
     let wait = wait.expect("the wait");
-    assert_eq!((&wait["pinned"], &wait["planStatus"], &wait["unit"]), (&"end".into(), &"approved".into(), &"min".into()));
+    assert_eq!(
+        (&wait["pinned"], &wait["planStatus"], &wait["unit"]),
+        (&"end".into(), &"approved".into(), &"min".into())
+    );
     assert!(export::open_mct(&planned.snapshot, &self::about(None)).is_none());
 }
 

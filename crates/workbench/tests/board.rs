@@ -50,7 +50,8 @@ fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
     let mut app = before_the_board();
     assert_eq!(status(&app), "draft");
     // A comment is open, and stands in the way.
-    let asked = json!({ "author": "Ada", "role": "Science", "about": "Group-Wait#1", "text": "Why so long?" });
+    let asked =
+        json!({ "author": "Ada", "role": "Science", "about": "Group-Wait#1", "text": "Why so long?" });
     app.dispatch("review.comment", &asked);
     assert_eq!(status(&app), "in-review");
     let ada = json!({ "name": "Ada", "role": "Science" });
@@ -68,7 +69,10 @@ fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
     let silent = json!({ "name": "Ada", "item": index, "text": " " });
     assert!(refused(&mut app, "review.acknowledge", &silent).contains("reason"));
     app.acknowledge_all("Ada");
-    assert_eq!(app.json()["review"]["items"][index]["acknowledged"], json!({ "by": "Ada", "text": "As meant." }));
+    assert_eq!(
+        app.json()["review"]["items"][index]["acknowledged"],
+        json!({ "by": "Ada", "text": "As meant." })
+    );
     // One role, then the other.
     app.dispatch("review.approve", &ada);
     assert_eq!(status(&app), "in-review");
@@ -96,20 +100,25 @@ fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
     // Grace takes her approval back, and that stays in the history.
     let history = app.json()["review"]["history"].clone();
     let given = history.as_array().and_then(|all| all.last()).expect("an entry")["id"].clone();
-    let withdraw = json!({ "name": "Grace", "role": "Mobility", "id": given, "text": "Not read to the end." });
+    let withdraw =
+        json!({ "name": "Grace", "role": "Mobility", "id": given, "text": "Not read to the end." });
     app.dispatch("review.withdraw", &withdraw);
     assert!(refused(&mut app, "review.withdraw", &withdraw).contains("already"));
     assert_eq!(status(&app), "in-review");
     assert_eq!(last_act(&app), ("Grace".to_owned(), "took back".to_owned()));
-    let taken = app.json()["review"]["history"].as_array().expect("a list").iter().any(|entry| {
-        entry["id"] == given && entry["withdrawn"] == true && entry["act"] == "approved"
-    });
+    let taken = app.json()["review"]["history"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .any(|entry| entry["id"] == given && entry["withdrawn"] == true && entry["act"] == "approved");
     assert!(taken, "what was taken back is still told");
     // Another run finds all of it, and the report has it.
     let told = app.json()["review"]["history"].clone();
     app.run(Command::WriteReport);
-    let page = String::from_utf8(app.world.saved.borrow().last().expect("a report").1.clone()).expect("a text");
-    for part in ["History of the review", "taken back by Grace", "Since the last approval", "Mind the slope."] {
+    let page =
+        String::from_utf8(app.world.saved.borrow().last().expect("a report").1.clone()).expect("a text");
+    for part in ["History of the review", "taken back by Grace", "Since the last approval", "Mind the slope."]
+    {
         assert!(page.contains(part), "{part}");
     }
     let world = Rc::clone(&app.world);
@@ -131,7 +140,7 @@ fn open_json(app: &mut App, text: &str) {
 
 /// What the last message said.
 fn last_toast(app: &App) -> String {
-    app.session.state().toasts.shown().last().map(|toast| toast.text.to_string()).unwrap_or_default()
+    app.session.state().toasts.shown().last().map(|toast| toast.text.clone()).unwrap_or_default()
 }
 
 /// A history of one comment, with its text altered.

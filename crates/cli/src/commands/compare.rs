@@ -93,7 +93,8 @@ impl Args {
         if is_record(&value) {
             let record = Record::from_json(&text).with_context(|| format!("cannot read {name}"))?;
             let approved = record.last_approval();
-            let (_, approved) = approved.with_context(|| format!("nobody has approved in the review {name}"))?;
+            let (_, approved) =
+                approved.with_context(|| format!("nobody has approved in the review {name}"))?;
             return self.worked_out(path, &approved.source, approved.goal.clone(), approved.seed);
         }
         let side = Side::of_json(&name, &value).with_context(|| format!("cannot read {name}"))?;

@@ -79,7 +79,9 @@ impl Args {
     fn answer(&self, record: &Record, standing: &Standing<'_>, content_hash: &str) -> anyhow::Result<()> {
         let blockers = if self.mission.is_some() { standing.blockers() } else { Vec::new() };
         match self.format {
-            Format::Json => print_json(&document("review-check", &[], body(record, standing, content_hash, &blockers))),
+            Format::Json => {
+                print_json(&document("review-check", &[], body(record, standing, content_hash, &blockers)))
+            }
             Format::Text => print_text(&words(record, standing, content_hash, &blockers)),
         }
     }
@@ -116,7 +118,8 @@ fn words(record: &Record, standing: &Standing<'_>, content_hash: &str, blockers:
 /// An entry in one line.
 fn told(record: &Record, entry: &Entry) -> String {
     let role = if entry.role.is_empty() { String::new() } else { format!(" ({})", entry.role) };
-    let number = |of: &str| record.entries().iter().position(|it| it.digest() == of).map_or(0, |index| index + 1);
+    let number =
+        |of: &str| record.entries().iter().position(|it| it.digest() == of).map_or(0, |index| index + 1);
     let of = entry.act.of().map(|of| format!(" entry {}", number(of))).unwrap_or_default();
     let text = match entry.act.text().replace('\n', " ") {
         text if text.is_empty() => text,

@@ -131,8 +131,8 @@ pub struct Standing<'a> {
     pub unacknowledged: Vec<(Section, &'a Line)>,
     /// Lines that have failed.
     pub failed: usize,
-    /// Whether there is a review of the very content, and a plan in it.
-    pub is_reviewed: bool,
+    /// What there is nothing to approve without, if it is missing: a review of the very content, and a plan in it.
+    pub missing: Option<&'static str>,
 }
 
 /// The approvals of a role.
@@ -174,8 +174,12 @@ pub fn standing<'a>(record: &'a Record, present: &Present<'a>) -> Standing<'a> {
     } else {
         PlanStatus::Draft
     };
-    let is_reviewed = present.review.is_some_and(Review::is_planned);
-    Standing { status, seats, lapsed, open_comments, unacknowledged, failed, is_reviewed }
+    let missing = match present.review {
+        None => Some("the present content has not been reviewed"),
+        Some(review) if !review.is_planned() => Some("there is no plan"),
+        Some(_) => None,
+    };
+    Standing { status, seats, lapsed, open_comments, unacknowledged, failed, missing }
 }
 
 /// The approvals of each role; a person counts once in a role.
@@ -199,7 +203,10 @@ fn is_complete(seats: &[Approvals<'_>]) -> bool {
 }
 
 /// The latest approval that completed a board, of something else than the present.
-fn lapsed<'a>(approvals: &[(&'a Entry, &'a Subject)], present: &Present<'_>) -> Option<(&'a Entry, &'static str)> {
+fn lapsed<'a>(
+    approvals: &[(&'a Entry, &'a Subject)],
+    present: &Present<'_>,
+) -> Option<(&'a Entry, &'static str)> {
     approvals.iter().rev().find_map(|(last, subject)| {
         let difference = present.difference(last, subject)?;
         let same = approvals.iter().filter(|(entry, other)| {
@@ -231,9 +238,9 @@ pub fn open_comments(record: &Record) -> Vec<&Entry> {
 /// The lines for attention that nobody has acknowledged.
 fn unacknowledged<'a>(record: &Record, review: &'a Review) -> Vec<(Section, &'a Line)> {
     let acknowledged = record.acknowledgements();
-    let lines = Section::ALL.into_iter().flat_map(|section| {
-        review.lines(section).into_iter().map(move |line| (section, line))
-    });
+    let lines = Section::ALL
+        .into_iter()
+        .flat_map(|section| review.lines(section).into_iter().map(move |line| (section, line)));
     let is_left = |(section, line): &(Section, &Line)| {
         line.status == Status::Attention && !acknowledged.contains_key(&LineKey::new(*section, line))
     };
@@ -259,8 +266,8 @@ impl Standing<'_> {
         let some = |count: usize, one: &str, many: &str| {
             (count > 0).then(|| format!("{count} {}", if count == 1 { one } else { many }))
         };
-        let unreviewed = (!self.is_reviewed).then(|| "there is no review of a plan".to_owned());
-        unreviewed
+        let missing = self.missing.map(str::to_owned);
+        missing
             .into_iter()
             .chain(some(self.failed, "line has failed", "lines have failed"))
             .chain(some(

@@ -114,7 +114,9 @@ impl Act {
     pub fn of(&self) -> Option<&str> {
         match self {
             Self::Resolve { of, .. } | Self::Reopen { of, .. } | Self::Withdraw { of, .. } => Some(of),
-            Self::Comment { .. } | Self::Acknowledge { .. } | Self::Approve { .. } | Self::Rules { .. } => None,
+            Self::Comment { .. } | Self::Acknowledge { .. } | Self::Approve { .. } | Self::Rules { .. } => {
+                None
+            }
         }
     }
 }
@@ -194,7 +196,14 @@ impl Rate {
 
 impl Subject {
     /// What is approved when a review is: `plan` is that of the reviewed content, as JSON.
-    pub fn new(review: &Review, source: &str, goal: Goal, seed: u64, plan: Value, found: Option<&Robustness>) -> Self {
+    pub fn new(
+        review: &Review,
+        source: &str,
+        goal: Goal,
+        seed: u64,
+        plan: Value,
+        found: Option<&Robustness>,
+    ) -> Self {
         Self {
             source: source.to_owned(),
             goal,
@@ -211,7 +220,8 @@ impl Subject {
 /// The lines of a checklist, those of events and their windows excepted.
 pub fn seen_lines(review: &Review) -> Vec<SeenLine> {
     let sections = Section::ALL.into_iter().filter(|&section| section != Section::Events);
-    let lines = sections.flat_map(|section| review.lines(section).into_iter().map(move |line| (section, line)));
+    let lines =
+        sections.flat_map(|section| review.lines(section).into_iter().map(move |line| (section, line)));
     let seen = lines.map(|(section, line)| SeenLine {
         section,
         status: line.status,

@@ -49,7 +49,9 @@ pub fn content_hash(source: &str, map: Option<&MapKey>, goal: &Goal, seed: u64) 
 /// ways are, to the millimetre. Empty without a plan. One content has another plan with another search, and may have one
 /// in another version of this program.
 pub fn plan_hash(snapshot: &Snapshot) -> String {
-    let Some((network, plan)) = snapshot.network.as_deref().zip(snapshot.plan()) else { return String::new() };
+    let Some((network, plan)) = snapshot.network.as_deref().zip(snapshot.plan()) else {
+        return String::new();
+    };
     let mut text = plan_to_json(network, plan).to_string();
     for traverse in snapshot.traverses.iter() {
         text.push_str(&format!("\n{:.3}", traverse.length_m));

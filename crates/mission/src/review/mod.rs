@@ -25,8 +25,8 @@ use serde::{Deserialize, Serialize};
 use tpn::{NodeId, OccurrenceId, Window};
 
 pub use alternatives::{Alternative, Fate};
-pub use demand_lines::ResourceReview;
 pub use board::{PlanStatus, Present, Standing, standing};
+pub use demand_lines::ResourceReview;
 pub use hash::{content_hash, plan_hash};
 pub use lines::review;
 pub use record::Record;

@@ -51,7 +51,9 @@ pub enum RecordError {
         found: String,
     },
     /// A later version of the program wrote it.
-    #[error("this review is of a later version of this program: its format is {found}, and \"{FORMAT}\" is known here")]
+    #[error(
+        "this review is of a later version of this program: its format is {found}, and \"{FORMAT}\" is known here"
+    )]
     Newer {
         /// What it says of itself.
         found: String,
@@ -170,7 +172,8 @@ impl Record {
 
     /// The document, on several lines.
     pub fn to_json(&self) -> String {
-        let entries = self.entries.iter().map(|entry| json!({ "digest": entry.digest(), "said": entry.raw() }));
+        let entries =
+            self.entries.iter().map(|entry| json!({ "digest": entry.digest(), "said": entry.raw() }));
         let subjects: Map<String, Value> =
             self.subjects.iter().map(|(digest, subject)| (digest.clone(), subject.raw().clone())).collect();
         let document = json!({
@@ -276,7 +279,7 @@ impl Record {
 
 /// Entries in order of time, each after those that it was made after: one order, whatever order they come in.
 fn in_order(entries: Vec<Entry>) -> Vec<Entry> {
-    let all: BTreeSet<&str> = entries.iter().map(|entry| entry.digest()).collect();
+    let all: BTreeSet<&str> = entries.iter().map(Sealed::digest).collect();
     let mut waits_for: Vec<usize> = Vec::with_capacity(entries.len());
     let mut after: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     let mut ready = BTreeSet::new();

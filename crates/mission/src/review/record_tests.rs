@@ -47,8 +47,12 @@ fn full() -> Record {
     record.add(who("Chair", "2026-01-01T00:00:00Z"), Act::Rules { rules });
     record.add(who("Ada", "2026-01-02T00:00:00Z"), comment("Why \"this\" path?\nIt is longer."));
     let asked = record.entries()[1].digest().to_owned();
-    record.add(who("Grace", "2026-01-03T00:00:00Z"), Act::Resolve { of: asked.clone(), text: "Shade.".into() });
-    record.add(who("Ada", "2026-01-04T00:00:00Z"), Act::Reopen { of: asked.clone(), text: "Not at noon.".into() });
+    record
+        .add(who("Grace", "2026-01-03T00:00:00Z"), Act::Resolve { of: asked.clone(), text: "Shade.".into() });
+    record.add(
+        who("Ada", "2026-01-04T00:00:00Z"),
+        Act::Reopen { of: asked.clone(), text: "Not at noon.".into() },
+    );
     record.add(who("Ada", "2026-01-05T00:00:00Z"), Act::Resolve { of: asked, text: String::new() });
     record.approve(who("Ada", "2026-01-06T00:00:00Z"), subject(), "Watch the margin.".to_owned());
     let approved = record.entries()[5].digest().to_owned();
@@ -119,7 +123,9 @@ fn other_documents_and_later_versions_are_refused_as_what_they_are() {
         Err(RecordError::Format { found }) if found.contains("enroute-plan/1")
     ));
     assert!(matches!(read("{\"format\":\"enroute-review/3\"}"), Err(RecordError::Newer { .. })));
-    for damaged in ["{", "{\"format\":\"enroute-review/2\"}", "{\"format\":\"enroute-review/1\",\"comments\":[{}]}"] {
+    for damaged in
+        ["{", "{\"format\":\"enroute-review/2\"}", "{\"format\":\"enroute-review/1\",\"comments\":[{}]}"]
+    {
         assert!(matches!(read(damaged), Err(RecordError::Damaged(_))), "{damaged}");
     }
     assert!(matches!(

@@ -153,7 +153,8 @@ fn line_changes(before: &[SeenLine], after: &[SeenLine]) -> Vec<LineChange> {
             Some(index) => {
                 is_left[index] = false;
                 if before[index].status != line.status {
-                    changes.push(LineChange { before: Some(before[index].clone()), after: Some(line.clone()) });
+                    changes
+                        .push(LineChange { before: Some(before[index].clone()), after: Some(line.clone()) });
                 }
             }
             None => others.push(line),
@@ -170,7 +171,8 @@ fn line_changes(before: &[SeenLine], after: &[SeenLine]) -> Vec<LineChange> {
         if let Some(index) = known {
             is_left[index] = false;
         }
-        changes.push(LineChange { before: known.map(|index| before[index].clone()), after: Some(line.clone()) });
+        changes
+            .push(LineChange { before: known.map(|index| before[index].clone()), after: Some(line.clone()) });
     }
     let gone = before.iter().zip(is_left).filter(|(_, is_left)| *is_left);
     changes.extend(gone.map(|(line, _)| LineChange { before: Some(line.clone()), after: None }));

@@ -75,7 +75,7 @@ impl Changes {
                 .lines
                 .iter()
                 .map(|line| {
-                    let section = line.section().map(|section| section.title()).unwrap_or_default();
+                    let section = line.section().map(mission::review::Section::title).unwrap_or_default();
                     format!("{section}: {}", line.sentence())
                 })
                 .collect();
@@ -135,7 +135,8 @@ fn plan(ui: &mut Ui, context: &Context<'_>, since: &Since, commands: &mut Comman
         None => list(ui, context, "Plan", &["the approved plan was not kept".to_owned()]),
         Some(plan) if plan.is_same() => {}
         Some(plan) => {
-            let lines: Vec<String> = plan.differences.iter().map(|it| it.sentence()).collect();
+            let lines: Vec<String> =
+                plan.differences.iter().map(mission::compare::Difference::sentence).collect();
             list(ui, context, &format!("Plan: {}", plan.summary()), &lines);
             if ui.button("Compare the plans").clicked() {
                 commands.send(Command::Compare(CompareCommand::WithApproved));

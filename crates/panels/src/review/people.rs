@@ -89,11 +89,12 @@ impl People {
             ui.add(field).accessible_name("Your name");
             if board.len() > 1 {
                 row::quiet_word(ui, "as");
-                let combo = ComboBox::from_id_salt("role").selected_text(self.role.as_str()).show_ui(ui, |ui| {
-                    for seat in board {
-                        ui.selectable_value(&mut self.role, seat.role.clone(), &seat.role);
-                    }
-                });
+                let combo =
+                    ComboBox::from_id_salt("role").selected_text(self.role.as_str()).show_ui(ui, |ui| {
+                        for seat in board {
+                            ui.selectable_value(&mut self.role, seat.role.clone(), &seat.role);
+                        }
+                    });
                 combo.response.accessible_name("Your role");
             }
         });
@@ -116,26 +117,24 @@ impl People {
         known: Option<&Entry>,
         commands: &mut CommandSender,
     ) {
-        match known {
-            Some(entry) => {
-                let words = format!("Acknowledged by {}: {}", who(entry), entry.act.text());
-                indented(ui, |ui| {
-                    ui.horizontal_wrapped(|ui| {
-                        icon::label(ui, Icon::Check, context.tokens.good);
-                        ui.label(RichText::new(words).small().color(context.tokens.text_muted));
-                        self.ask(ui, &About::Withdrawn(entry.digest().to_owned()), "Take back…", &line.text);
-                    });
-                    self.answer(ui, &About::Withdrawn(entry.digest().to_owned()), commands);
-                });
-            }
-            None => {
-                let about = About::Line(LineKey::new(section, line));
-                indented(ui, |ui| {
-                    self.ask(ui, &about, "Acknowledge…", &line.text);
-                    self.answer(ui, &about, commands);
-                });
-            }
-        }
+        let Some(entry) = known else {
+            let about = About::Line(LineKey::new(section, line));
+            indented(ui, |ui| {
+                self.ask(ui, &about, "Acknowledge…", &line.text);
+                self.answer(ui, &about, commands);
+            });
+            return;
+        };
+        let about = About::Withdrawn(entry.digest().to_owned());
+        let words = format!("Acknowledged by {}: {}", who(entry), entry.act.text());
+        indented(ui, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                icon::label(ui, Icon::Check, context.tokens.good);
+                ui.label(RichText::new(words).small().color(context.tokens.text_muted));
+                self.ask(ui, &about, "Take back…", &line.text);
+            });
+            self.answer(ui, &about, commands);
+        });
     }
 
     /// A button that begins words about something.
@@ -199,7 +198,8 @@ impl People {
         }
         let withdrawn = record.withdrawn();
         let is_open = |entry: &Entry| open.iter().any(|it| it.digest() == entry.digest());
-        let (first, then): (Vec<&Entry>, Vec<&Entry>) = comments.into_iter().partition(|entry| is_open(entry));
+        let (first, then): (Vec<&Entry>, Vec<&Entry>) =
+            comments.into_iter().partition(|entry| is_open(entry));
         for entry in first.iter().chain(&then) {
             let state = match withdrawn.get(entry.digest()) {
                 Some(by) => format!("taken back by {}", who(by)),
@@ -309,7 +309,8 @@ impl People {
         indented(ui, |ui| {
             for seat in &standing.seats {
                 let is_full = seat.given.len() >= seat.wanted;
-                let (sign, color) = if is_full { (Icon::Check, tokens.good) } else { (Icon::Nothing, tokens.text_muted) };
+                let (sign, color) =
+                    if is_full { (Icon::Check, tokens.good) } else { (Icon::Nothing, tokens.text_muted) };
                 ui.horizontal_wrapped(|ui| {
                     icon::label(ui, sign, color);
                     ui.label(strong(format!("{}: {} of {}", seat.role, seat.given.len(), seat.wanted)));
@@ -351,7 +352,9 @@ impl People {
                 }
                 match &refused {
                     Err(_) if !standing.blockers().is_empty() => {}
-                    Err(_) if !self.has_name() => row::quiet_word(ui, "Enter your name at the top to approve."),
+                    Err(_) if !self.has_name() => {
+                        row::quiet_word(ui, "Enter your name at the top to approve.");
+                    }
                     Err(reason) => row::quiet_word(ui, &super::lines::sentence(&format!("{reason}."))),
                     Ok(()) => {}
                 }
@@ -363,9 +366,10 @@ impl People {
 /// How a comment that is not open came to be so.
 fn resolution(context: &Context<'_>, comment: &Entry) -> String {
     let entries = context.state.review.record().entries();
-    let resolved = entries.iter().rev().find(|entry| {
-        matches!(&entry.act, Act::Resolve { of, .. } if of == comment.digest())
-    });
+    let resolved = entries
+        .iter()
+        .rev()
+        .find(|entry| matches!(&entry.act, Act::Resolve { of, .. } if of == comment.digest()));
     match resolved.map(|entry| (who(entry), entry.act.text())) {
         None => "resolved".to_owned(),
         Some((by, "")) => format!("resolved by {by}"),

@@ -193,8 +193,8 @@ impl AppState {
     pub(super) fn apply_to_review(&mut self, command: ReviewCommand) {
         match command {
             ReviewCommand::Run => self.run_review(),
-            ReviewCommand::Approve { by, text } => self.approve(by, text.trim()),
-            ReviewCommand::Say { by, act } => self.say(by, act),
+            ReviewCommand::Approve { by, text } => self.approve(&by, text.trim()),
+            ReviewCommand::Say { by, act } => self.say(&by, act),
             ReviewCommand::SetRules(rules) => self.set_rules(*rules),
             ReviewCommand::SaveRules => self.effects.push(Effect::SaveFile {
                 name: format!("{}.rules.json", self.mission),

@@ -73,7 +73,9 @@ fn a_board_goes_from_draft_to_approval_and_an_edit_lapses_it() -> Result<()> {
     }
     click(&page, "Approve")?;
     page.wait_for("state.review.planStatus === 'approved'")?;
-    page.tab.evaluate("enroute.setSource(enroute.source().replace('PATH1=OK [450,450]', 'PATH1=OK [460,460]'))")?;
+    page.tab.evaluate(
+        "enroute.setSource(enroute.source().replace('PATH1=OK [450,450]', 'PATH1=OK [460,460]'))",
+    )?;
     page.wait_for("state.review.planStatus === 'lapsed'")?;
     click(&page, "Review again")?;
     page.wait_for("!state.review.stale")?;

@@ -132,5 +132,9 @@ pub(super) fn with_approval(state: &AppState) -> Availability {
 }
 
 pub(super) fn with_record(state: &AppState) -> Availability {
-    if state.review.record().is_empty() { Err("nobody has said anything of this mission yet") } else { Ok(()) }
+    if state.review.record().is_empty() {
+        Err("nobody has said anything of this mission yet")
+    } else {
+        Ok(())
+    }
 }

@@ -37,9 +37,14 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         with_plan,
     ),
     when(
-        plain("export.json", "Export the schedule as JSON…", Group::Review, &[], Scope::Everywhere, |state| {
-            ask_epoch(state, ScheduleForm::Json)
-        }),
+        plain(
+            "export.json",
+            "Export the schedule as JSON…",
+            Group::Review,
+            &[],
+            Scope::Everywhere,
+            |state| ask_epoch(state, ScheduleForm::Json),
+        ),
         with_plan,
     ),
     when(
@@ -84,19 +89,21 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         Command::Review(ReviewCommand::OpenRecord)
     }),
     called("review.approve", "Approve", Group::Review, |state, arguments| {
-        let by = state.seated(person(arguments, "name")?);
+        let by = state.seated(&person(arguments, "name")?);
         let standing = state.standing().ok_or("the mission has not been worked out")?;
         standing.may_approve(&by.name, &by.role)?;
         Ok(Command::Review(ReviewCommand::Approve { by, text: words(arguments) }))
     }),
     called("review.acknowledge", "Acknowledge a line", Group::Review, |state, arguments| {
         let review = state.current_review().ok_or("the present text has not been reviewed")?;
-        let mut lines = Section::ALL.iter().flat_map(|&section| {
-            review.lines(section).into_iter().map(move |line| (section, line))
-        });
-        let index = arguments.get("item").and_then(Value::as_u64).and_then(|index| usize::try_from(index).ok());
-        let (section, line) =
-            index.and_then(|index| lines.nth(index)).ok_or("\"item\" is the number of a line of the review")?;
+        let mut lines = Section::ALL
+            .iter()
+            .flat_map(|&section| review.lines(section).into_iter().map(move |line| (section, line)));
+        let index =
+            arguments.get("item").and_then(Value::as_u64).and_then(|index| usize::try_from(index).ok());
+        let (section, line) = index
+            .and_then(|index| lines.nth(index))
+            .ok_or("\"item\" is the number of a line of the review")?;
         said(state, arguments, Act::Acknowledge { line: LineKey::new(section, line), text: words(arguments) })
     }),
     called("review.resolve", "Resolve a comment", Group::Review, |state, arguments| {

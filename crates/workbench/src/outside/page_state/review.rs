@@ -37,7 +37,9 @@ pub struct Review {
     /// How the plan stands with its board.
     #[cfg_attr(
         test,
-        ts(type = "\"draft\" | \"in-review\" | \"approved\" | \"approved-with-comments\" | \"lapsed\" | null")
+        ts(
+            type = "\"draft\" | \"in-review\" | \"approved\" | \"approved-with-comments\" | \"lapsed\" | null"
+        )
     )]
     plan_status: Option<PlanStatus>,
     /// Who has to approve, and who has.

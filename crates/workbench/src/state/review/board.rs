@@ -23,7 +23,7 @@ impl AppState {
     }
 
     /// Somebody with the role that is meant: the only one of the board where none is named.
-    pub(crate) fn seated(&self, by: Person) -> Person {
+    pub(crate) fn seated(&self, by: &Person) -> Person {
         let role = match self.review.record.rules().board.as_slice() {
             [seat] if by.role.trim().is_empty() => seat.role.clone(),
             _ => by.role.trim().to_owned(),
@@ -45,7 +45,7 @@ impl AppState {
         }
     }
 
-    pub(super) fn approve(&mut self, by: Person, text: &str) {
+    pub(super) fn approve(&mut self, by: &Person, text: &str) {
         let by = self.seated(by);
         let refused = match self.standing() {
             Some(standing) => standing.may_approve(&by.name, &by.role).err(),
@@ -68,8 +68,8 @@ impl AppState {
         self.keep_review();
     }
 
-    pub(super) fn say(&mut self, by: Person, act: Act) {
-        let refused = self.may_say(&by, &act).err();
+    pub(super) fn say(&mut self, by: &Person, act: Act) {
+        let refused = self.may_say(by, &act).err();
         if let Some(reason) = refused {
             self.toasts.add(ToastKind::Failed, reason);
             return;
@@ -91,7 +91,9 @@ impl AppState {
         };
         let is_empty = act.text().trim().is_empty();
         match act {
-            _ if by.name.trim().is_empty() => Err("Whoever does something for a review has a name".to_owned()),
+            _ if by.name.trim().is_empty() => {
+                Err("Whoever does something for a review has a name".to_owned())
+            }
             Act::Comment { .. } if is_empty => Err("A comment needs words".to_owned()),
             Act::Acknowledge { .. } if is_empty => {
                 Err("To acknowledge a line it takes a reason why it may be so".to_owned())
@@ -122,7 +124,9 @@ impl AppState {
 
     /// Keeps what the runs of the present content came to, with the mission.
     pub(crate) fn keep_runs(&mut self, content_hash: &str) {
-        let Some(found) = self.chance.of_content(content_hash).filter(|found| found.tally.runs > 0) else { return };
+        let Some(found) = self.chance.of_content(content_hash).filter(|found| found.tally.runs > 0) else {
+            return;
+        };
         if self.review.hash() == Some(content_hash) {
             self.review.record.keep_runs(Runs::new(content_hash, &found));
             self.keep_review();
