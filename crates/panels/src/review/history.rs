@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use egui::{Button, Frame, Margin, RichText, Ui};
-use mission::review::record::{Entry, short};
+use mission::review::record::{Act, Entry, short};
 use theme::icon::{self, Icon};
 use theme::{space, strong};
 use workbench::command::{Command, CommandSender};
@@ -98,8 +98,12 @@ fn show_entry(
                 ui.label(RichText::new(taken_back).small().color(tokens.warning));
             }
         });
-        if !entry.act.text().is_empty() {
-            ui.label(RichText::new(entry.act.text()).color(tokens.text_muted));
+        let words = match &entry.act {
+            Act::Acknowledge { line, text } => format!("{}: {text}", super::lines::sentence(&line.text)),
+            act => act.text().to_owned(),
+        };
+        if !words.is_empty() {
+            ui.label(RichText::new(words).color(tokens.text_muted));
         }
     });
 }
