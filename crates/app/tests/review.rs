@@ -232,6 +232,7 @@ fn a_comment_is_resolved_and_opened_again_by_name() {
     app.harness.state_mut().dispatch("review.comment", &asked).expect("a comment");
     app.settle();
     assert!(has(&app, "Comments, 1 open of 1"));
+    type_into(&mut app, "Your name", "Ada");
     click(&mut app, "Resolve… Why so long?");
     type_into(&mut app, "How is it resolved?", "It waits for light.");
     click_exactly(&mut app, "Resolve");
