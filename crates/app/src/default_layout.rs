@@ -21,10 +21,38 @@ impl SizeClass {
     }
 }
 
+/// The layout of a lesson, whose stop wants these panels beside it: rows of columns of tabs.
+pub fn lesson_layout(rows: &[Vec<Vec<PanelKind>>], size: SizeClass) -> Tree<PanelKind> {
+    let mut tiles = Tiles::default();
+    let root = lesson_tiles(&mut tiles, rows, size);
+    Tree::new(egui::Id::unique(("workspace", Arrangement::Lesson.name())), root, tiles)
+}
+
+fn lesson_tiles(tiles: &mut Tiles<PanelKind>, rows: &[Vec<Vec<PanelKind>>], size: SizeClass) -> TileId {
+    let lesson = tabs(tiles, &[PanelKind::Lesson, PanelKind::Manual]);
+    let rows: Vec<(TileId, f32)> = rows
+        .iter()
+        .enumerate()
+        .map(|(at, columns)| {
+            let columns: Vec<(TileId, f32)> =
+                columns.iter().map(|panels| (tabs(tiles, panels), 1.0)).collect();
+            // What stands above is the figure, what stands below it explains it.
+            (split(tiles, LinearDir::Horizontal, &columns), if at == 0 { 1.3 } else { 1.0 })
+        })
+        .collect();
+    let figures = split(tiles, LinearDir::Vertical, &rows);
+    let share = if size == SizeClass::Wide { 0.33 } else { 0.38 };
+    split(tiles, LinearDir::Horizontal, &[(lesson, share), (figures, 1.0 - share)])
+}
+
 /// Where its panels stand before the user moves them.
 pub fn default_layout(arrangement: Arrangement, size: SizeClass) -> Tree<PanelKind> {
     let mut tiles = Tiles::default();
     let root = match (arrangement, size) {
+        (Arrangement::Lesson, size) => {
+            use PanelKind::{Editor, Network, Timeline};
+            lesson_tiles(&mut tiles, &[vec![vec![Network]], vec![vec![Editor, Timeline]]], size)
+        }
         (Arrangement::Of(workspace), SizeClass::Wide) => wide_layout(workspace, &mut tiles),
         (Arrangement::Of(workspace), SizeClass::Narrow) => narrow_layout(workspace, &mut tiles),
         (Arrangement::Program, SizeClass::Narrow) => {

@@ -60,13 +60,20 @@ impl Layouts {
     pub fn follow(&mut self, state: &mut AppState) {
         let arrangement = state.arrangement();
         let layout = |effect| match effect {
-            PanelEffect::Show(_) | PanelEffect::Close(_) | PanelEffect::ResetLayout => Some(effect),
+            PanelEffect::Show(_)
+            | PanelEffect::Close(_)
+            | PanelEffect::ResetLayout
+            | PanelEffect::Arrange => Some(effect),
             _ => None,
         };
         for effect in state.panel_effects.take(layout) {
             match effect {
                 PanelEffect::Show(panel) => default_layout::show_panel(self.tree_mut(arrangement), panel),
                 PanelEffect::Close(panel) => default_layout::close_panel(self.tree_mut(arrangement), panel),
+                PanelEffect::Arrange => {
+                    let layout = default_layout::lesson_layout(state.lesson.panels(), self.size);
+                    self.trees.insert(Arrangement::Lesson, layout);
+                }
                 _ => {
                     self.trees.insert(arrangement, default_layout(arrangement, self.size));
                 }

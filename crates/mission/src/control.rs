@@ -1,5 +1,6 @@
 //! Reading a control program: with the plant in its own text, with one that is given, or without any.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use executive::model_based::System;
@@ -7,6 +8,7 @@ use hca::{Automaton, Vocabulary};
 use plant::Model;
 use rmpl::control::ControlFile;
 use rmpl::{Diagnostic, Severity};
+use smol_str::SmolStr;
 
 /// What a text in prefix notation comes to.
 #[derive(Clone, Debug)]
@@ -47,7 +49,10 @@ pub fn read_control(text: &str, plant: Option<&str>) -> (Control, Vec<Diagnostic
             if let Some(system) = system.filter(|system| speaks_of_plant(system)) {
                 return (Control::Bound(system), parsed.diagnostics);
             }
-            let compiled = hca::compile_text(text, &Vocabulary::default());
+            // By SPEC 8.2 this one name is the program's own, whatever is known of the others.
+            let program_variables = BTreeSet::from([SmolStr::new_static("exit")]);
+            let vocabulary = Vocabulary { program_variables, ..Vocabulary::default() };
+            let compiled = hca::compile_text(text, &vocabulary);
             let is_wrong = compiled.diagnostics.iter().any(|found| found.severity == Severity::Error);
             let automaton = compiled.automaton.filter(|_| !is_wrong);
             let control = automaton.map_or(Control::Nothing, Control::Unbound);
@@ -140,6 +145,15 @@ mod tests {
     fn a_program_that_does_not_speak_of_the_given_plant_stands_alone() {
         let own = "Main ():: (WHEN-DONEXT (ready = yes) (ready = no))";
         assert!(matches!(read_control(own, Some(PLANT)).0, Control::Unbound(_)));
+    }
+
+    #[test]
+    fn a_trap_of_a_program_that_stands_alone_is_left_by_its_exit() {
+        let trap = "(SEQUENCE (DO-WATCHING (exit = true) (PARALLEL (ALWAYS (y = b)) (exit = true))) (z = c))";
+        let (Control::Unbound(automaton), _) = read_control(trap, None) else { panic!("a program alone") };
+        let mut stepper = hca::Stepper::new(&automaton);
+        stepper.step(&hca::Estimate::unknown(automaton.variables.len()));
+        assert_eq!(hca::TraceStep::at(&stepper, 2).labels, ["assert z=c"]);
     }
 
     #[test]

@@ -6,6 +6,8 @@ mod distances;
 mod empty;
 mod execution;
 pub mod keyboard_navigation;
+mod lesson;
+mod manual;
 mod mission_text;
 mod network;
 mod outline;

@@ -56,6 +56,8 @@ fn create(kind: PanelKind) -> Box<dyn Panel> {
         PanelKind::Robustness => Box::new(crate::robustness::RobustnessPanel),
         PanelKind::Editor => Box::new(crate::mission_text::EditorPanel::default()),
         PanelKind::Plan => Box::new(crate::plan::PlanPanel::default()),
+        PanelKind::Lesson => Box::new(crate::lesson::LessonPanel::default()),
+        PanelKind::Manual => Box::new(crate::manual::ManualPanel::default()),
         PanelKind::Timeline => Box::new(crate::timeline::TimelinePanel::default()),
     }
 }

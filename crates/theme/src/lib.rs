@@ -4,11 +4,13 @@
 //! Everything that draws takes its looks from here; this knows nothing of missions.
 
 pub mod icon;
-mod markdown;
+mod prose;
+mod short;
 mod style;
 mod tokens;
 
-pub use markdown::show_markdown;
+pub use prose::{Prose, no_hover};
+pub use short::show_markdown;
 #[cfg(not(target_arch = "wasm32"))]
 pub use style::FONTS;
 pub use style::{apply, install_fonts, strong, strong_family};

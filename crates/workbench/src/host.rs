@@ -182,6 +182,8 @@ pub enum FileKind {
     Map,
     /// What reviewers said and signed, or another JSON document.
     Json,
+    /// A lesson.
+    Lesson,
     /// A mission, a saved plan or a signed review, to compare the open mission with.
     Comparison,
 }
@@ -191,7 +193,7 @@ impl FileKind {
     pub fn of_name(name: &str) -> Self {
         let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
         let is_one = |kind: &Self| kind.extensions().contains(&extension.as_str());
-        [Self::Map, Self::Json].into_iter().find(is_one).unwrap_or(Self::Mission)
+        [Self::Map, Self::Json, Self::Lesson].into_iter().find(is_one).unwrap_or(Self::Mission)
     }
 
     /// What the file dialog calls it.
@@ -200,6 +202,7 @@ impl FileKind {
             Self::Mission => "RMPL missions",
             Self::Map => "Maps",
             Self::Json => "JSON documents",
+            Self::Lesson => "Lessons",
             Self::Comparison => "Missions, plans and reviews",
         }
     }
@@ -210,6 +213,7 @@ impl FileKind {
             Self::Mission => &["rmpl", "enroute", "txt", "lisp"],
             Self::Map => &["pgm", "png", "map", "tif", "tiff", "asc", "dem", "img", "lbl"],
             Self::Json => &["json", "edn"],
+            Self::Lesson => &["md", "markdown"],
             Self::Comparison => &["rmpl", "txt", "json"],
         }
     }

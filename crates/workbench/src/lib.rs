@@ -7,7 +7,9 @@
 pub mod command;
 mod dialog;
 pub mod host;
+pub mod lesson;
 pub mod library;
+pub mod manual;
 pub mod mission_file;
 pub mod outside;
 mod panel_effect;

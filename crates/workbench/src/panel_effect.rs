@@ -13,6 +13,8 @@ pub enum PanelEffect {
     Close(PanelKind),
     /// The layout of the present workspace goes back to its default.
     ResetLayout,
+    /// The layout of lessons becomes what the stop wants.
+    Arrange,
     /// A panel moves its view.
     View(PanelKind, ViewAction),
     /// The network's drawing is saved.
@@ -59,10 +61,11 @@ impl PanelEffects {
 
 /// Whether `newer` makes `earlier` pointless.
 fn replaces(newer: PanelEffect, earlier: PanelEffect) -> bool {
-    use PanelEffect::{FocusEditor, LeaveFocus, ResetLayout, Reveal, View};
+    use PanelEffect::{Arrange, FocusEditor, LeaveFocus, ResetLayout, Reveal, View};
     match (newer, earlier) {
         (Reveal(_), Reveal(_))
         | (ResetLayout, ResetLayout)
+        | (Arrange, Arrange)
         | (FocusEditor | LeaveFocus, FocusEditor | LeaveFocus) => true,
         (View(newer, _), View(earlier, _)) => newer == earlier,
         _ => false,

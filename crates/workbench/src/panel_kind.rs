@@ -36,11 +36,15 @@ pub enum PanelKind {
     Execution,
     /// Many runs of it with chance.
     Robustness,
+    /// A lesson beside what it is about.
+    Lesson,
+    /// The manual.
+    Manual,
 }
 
 impl PanelKind {
     /// All of them, as the menu lists them.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 17] = [
         Self::Editor,
         Self::Outline,
         Self::Problems,
@@ -56,6 +60,8 @@ impl PanelKind {
         Self::Compare,
         Self::Execution,
         Self::Robustness,
+        Self::Lesson,
+        Self::Manual,
     ];
 
     /// Its name on screen.
@@ -76,6 +82,8 @@ impl PanelKind {
             Self::Compare => "Compare",
             Self::Execution => "Execution",
             Self::Robustness => "Robustness",
+            Self::Lesson => "Lesson",
+            Self::Manual => "Manual",
         }
     }
 
@@ -97,6 +105,8 @@ impl PanelKind {
             Self::Compare => "compare",
             Self::Execution => "execution",
             Self::Robustness => "robustness",
+            Self::Lesson => "lesson",
+            Self::Manual => "manual",
         }
     }
 

@@ -168,8 +168,9 @@ impl Session {
 
     /// Keeps the settings if they have changed.
     pub fn remember(&mut self) {
-        if self.stored != self.state.settings {
-            self.stored = self.state.settings.clone();
+        let settings = self.state.settings_to_keep();
+        if self.stored != settings {
+            self.stored = settings;
             outside::remember_settings(self.host.as_mut(), &self.stored);
         }
     }

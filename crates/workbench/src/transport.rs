@@ -203,6 +203,9 @@ impl AppState {
             self.follow_run();
             advanced.also(true, 0.0);
         }
+        if advanced.is_changed {
+            self.follow_lesson();
+        }
         advanced
     }
 }

@@ -24,16 +24,19 @@ pub enum Arrangement {
     Of(Workspace),
     /// A control program as it runs: there is nothing to show over time or on the ground.
     Program,
+    /// A lesson: its panel stands beside what the stop wants to be seen.
+    Lesson,
 }
 
 impl Arrangement {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Of(Workspace::Author),
         Self::Of(Workspace::Teach),
         Self::Of(Workspace::Review),
         Self::Of(Workspace::Execute),
         Self::Program,
+        Self::Lesson,
     ];
 
     /// That of a workspace with a mission or a control program in it.
@@ -49,6 +52,7 @@ impl Arrangement {
         match self {
             Self::Of(workspace) => workspace.name(),
             Self::Program => "program",
+            Self::Lesson => "lesson",
         }
     }
 }

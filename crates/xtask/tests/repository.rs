@@ -32,8 +32,9 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("layout", &["display", "tpn", "hca"]),
     ("report", &["mission", "layout"]),
     ("text_editing", &["rmpl"]),
-    ("workbench", &["mission", "layout", "report", "text_editing"]),
-    ("theme", &["display"]),
+    ("markdown", &[]),
+    ("workbench", &["mission", "layout", "report", "text_editing", "markdown"]),
+    ("theme", &["display", "markdown"]),
     ("editor", &["text_editing", "theme"]),
     ("terrain_view", &["workbench", "theme"]),
     ("panels", &["workbench", "terrain_view", "editor"]),
@@ -64,6 +65,7 @@ const PURE: &[&str] = &[
     "layout",
     "report",
     "text_editing",
+    "markdown",
     "workbench",
 ];
 

@@ -8,6 +8,7 @@ use workbench::Dialog;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, CommandSpec, Group, all_commands};
 use workbench::state::Status;
+use workbench::state::lesson::LessonCommand;
 use workbench::state::settings::ThemeChoice;
 use workbench::workspace::Workspace;
 
@@ -104,7 +105,7 @@ fn workspaces(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) 
     let tokens = context.tokens;
     ui.spacing_mut().item_spacing.x = space::XS;
     for workspace in Workspace::ALL {
-        let is_open = context.state.workspace == workspace;
+        let is_open = context.state.workspace == workspace && !context.state.lesson.is_beside();
         let color = if is_open { tokens.text } else { tokens.text_muted };
         let fill = if is_open { tokens.pressed } else { tokens.background };
         let button = Button::new(RichText::new(workspace.title()).color(color))
@@ -114,6 +115,14 @@ fn workspaces(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) 
         if ui.add(button).clicked() {
             commands.send(Command::ShowWorkspace(workspace));
         }
+    }
+    let is_open = context.state.lesson.is_beside();
+    let color = if is_open { tokens.text } else { tokens.text_muted };
+    let fill = if is_open { tokens.pressed } else { tokens.background };
+    let lessons =
+        Button::new(RichText::new("Lessons").color(color)).fill(fill).stroke(Stroke::NONE).selected(is_open);
+    if ui.add(lessons).on_hover_text("A course beside live drawings (L)").clicked() {
+        commands.send(Command::Lesson(LessonCommand::Show));
     }
     ui.spacing_mut().item_spacing.x = space::M;
 }

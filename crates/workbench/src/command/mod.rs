@@ -17,6 +17,8 @@ use crate::state::chance::ChanceCommand;
 use crate::state::compare::CompareCommand;
 use crate::state::documents::ScheduleForm;
 use crate::state::execution::ExecutionCommand;
+use crate::state::lesson::LessonCommand;
+use crate::state::manual::ManualCommand;
 use crate::state::missions::LibraryCommand;
 use crate::state::program_chance::ProgramChanceCommand;
 use crate::state::review::ReviewCommand;
@@ -115,6 +117,11 @@ pub enum Command {
         /// When the mission starts, where the format needs it.
         epoch: String,
     },
+
+    /// Something that concerns the lessons.
+    Lesson(LessonCommand),
+    /// Something that concerns the manual.
+    Manual(ManualCommand),
 
     /// What to plan.
     SetGoal(Goal),

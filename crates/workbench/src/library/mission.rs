@@ -25,6 +25,8 @@ pub enum MissionKind {
     Own,
     /// An edited copy of an example.
     Example,
+    /// An edited copy of a lesson's mission.
+    Lesson,
     /// An edited copy of what a link held.
     Shared,
     /// From a file.
@@ -37,6 +39,7 @@ impl MissionKind {
         match self {
             Self::Own => "",
             Self::Example => "from an example",
+            Self::Lesson => "from a lesson",
             Self::Shared => "from a link",
             Self::File => "from a file",
         }

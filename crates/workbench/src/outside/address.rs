@@ -1,4 +1,5 @@
-//! What stands after `#` in the page's address (DESIGN 4.3): `mission=`, `source=`, `workspace=`, `step=`, `t=`.
+//! What stands after `#` in the page's address (DESIGN 4.3): `mission=`, `source=`, `open=`, `lesson=`, `stop=`,
+//! `workspace=`, `step=`, `t=`.
 //!
 //! A shared text is compressed (deflate) and written in the alphabet of base64 for addresses.
 
@@ -6,12 +7,16 @@ use crate::command::Command;
 use crate::host::Host;
 use crate::library::{MissionId, MissionKind, Open};
 use crate::mission_file;
+use crate::state::lesson::LessonCommand;
 use crate::state::missions::LibraryCommand;
 use crate::state::{AppState, ToastKind};
 use crate::workspace::Workspace;
 
-/// The fragment that brings back the open mission, the workspace, the step of the search and the time.
+/// The fragment that brings back the open lesson at its stop, or the open mission, the workspace, the step of the search and the time.
 pub fn fragment(state: &AppState) -> String {
+    if let Some(lesson) = lesson(state).filter(|_| state.lesson.text() == Some(state.document.text())) {
+        return lesson;
+    }
     let example = mission_file::example(&state.mission);
     let is_example = example.is_some_and(|example| example.source == state.document.text());
     let mission = if is_example {
@@ -28,22 +33,36 @@ pub fn fragment(state: &AppState) -> String {
 /// Lets the address name the mission that is open, unless it does already: what was edited is never brought back as it
 /// came, by loading the page again.
 pub fn show_address(state: &AppState, host: &mut dyn Host) {
-    let wanted = match state.library.open() {
-        Open::Mission(id) => format!("open={}", id.0),
-        Open::Original { kind: MissionKind::Example, .. } => format!("mission={}", state.mission),
+    let lesson = lesson(state);
+    let wanted = match (state.library.open(), &lesson) {
+        (Open::Original { .. }, Some(lesson)) => lesson.clone(),
+        (Open::Mission(id), Some(lesson)) => format!("open={}&{lesson}", id.0),
+        (Open::Mission(id), None) => format!("open={}", id.0),
+        (Open::Original { kind: MissionKind::Example, .. }, None) => format!("mission={}", state.mission),
         // What a link holds is in the address already.
-        Open::Original { .. } => return,
+        (Open::Original { .. }, None) => return,
     };
     let shown = host.fragment();
-    if shown.split('&').any(|part| part == wanted) || shown.is_empty() && is_first_example(state) {
+    let shows = |wanted: &str| shown.split('&').any(|part| part == wanted);
+    let names_lesson = shown.split('&').any(|part| part.starts_with("lesson="));
+    if wanted.split('&').all(shows) && names_lesson == lesson.is_some()
+        || shown.is_empty() && lesson.is_none() && is_first_example(state)
+    {
         return;
     }
     // What else the address says goes on.
-    let named =
-        |part: &str| ["mission=", "source=", "open=", "step=", "t="].iter().any(|key| part.starts_with(key));
+    let keys = ["mission=", "source=", "open=", "step=", "t=", "lesson=", "stop="];
+    let named = |part: &str| keys.iter().any(|key| part.starts_with(key));
     let rest = shown.split('&').filter(|part| !part.is_empty() && !named(part));
     let parts: Vec<&str> = std::iter::once(wanted.as_str()).chain(rest).collect();
     host.set_fragment(&parts.join("&"));
+}
+
+/// The lesson of the course that is open, and its stop.
+fn lesson(state: &AppState) -> Option<String> {
+    let lesson = state.lesson.open()?;
+    crate::lesson::course_lesson(&lesson.name)?;
+    Some(format!("lesson={}&stop={}", lesson.name, state.lesson.at() + 1))
 }
 
 fn is_first_example(state: &AppState) -> bool {
@@ -52,12 +71,15 @@ fn is_first_example(state: &AppState) -> bool {
 
 /// Opens what a fragment names; parts that it does not name stay as they are. Returns whether it names a mission.
 pub fn open_fragment(state: &mut AppState, fragment: &str) -> bool {
-    let mut is_named = false;
+    let (mut is_named, mut is_edited) = (false, false);
     let parts = || fragment.trim_start_matches('#').split('&').filter_map(|part| part.split_once('='));
     for (key, value) in parts() {
-        is_named |= matches!(key, "mission" | "source" | "open");
+        is_named |= matches!(key, "mission" | "source" | "open" | "lesson");
         match key {
-            "open" => state.apply(Command::Library(LibraryCommand::Open(MissionId(value.into())))),
+            "open" => {
+                is_edited = true;
+                state.apply(Command::Library(LibraryCommand::Open(MissionId(value.into()))));
+            }
             "mission" => match mission_file::example(value) {
                 Some(example) => state.apply(Command::OpenExample(example.name.into())),
                 None => state.toasts.add(ToastKind::Failed, format!("There is no mission \"{value}\"")),
@@ -74,6 +96,15 @@ pub fn open_fragment(state: &mut AppState, fragment: &str) -> bool {
                 }
             }
             _ => {}
+        }
+    }
+    let value_of = |wanted: &str| parts().find(|(key, _)| *key == wanted).map(|(_, value)| value);
+    if let Some(name) = value_of("lesson") {
+        let stop = value_of("stop").and_then(|stop| stop.parse::<usize>().ok()).unwrap_or(1).max(1) - 1;
+        if is_edited {
+            state.resume_lesson(name, stop);
+        } else {
+            state.apply(Command::Lesson(LessonCommand::Open(name.into(), stop)));
         }
     }
     // These are about the mission that the others open, wherever they stand.

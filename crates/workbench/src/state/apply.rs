@@ -77,12 +77,13 @@ impl AppState {
         self.language.follow(&self.document);
         self.editor.folding.follow(&mut self.document, self.language.parse());
         self.automaton.follow(&self.document, self.language.is_control());
+        self.follow_lesson();
         self.ask_the_core();
         self.follow_review();
         self.follow_run();
     }
 
-    fn do_command(&mut self, command: Command) {
+    pub(super) fn do_command(&mut self, command: Command) {
         match command {
             Command::OpenExample(name) => self.open_example(&name),
             Command::OpenSource { name, source } => {
@@ -139,6 +140,8 @@ impl AppState {
                 self.dialog = None;
                 self.write_schedule(form, &epoch);
             }
+            Command::Lesson(command) => self.apply_to_lesson(command),
+            Command::Manual(command) => self.apply_to_manual(command),
             Command::Pins(command) => self.apply_to_pins(command),
             Command::ShowReason(index) => self.reason = index,
             Command::SelectTimes(range) => {
@@ -161,6 +164,7 @@ impl AppState {
                     self.search.close();
                 }
                 self.workspace = workspace;
+                self.lesson.put_away();
                 // A lecturer steps through the search; it must have been recorded.
                 self.settings.plan.trace |= workspace == Workspace::Teach;
                 match workspace {
@@ -218,6 +222,7 @@ impl AppState {
     /// Takes in something that happened outside.
     pub fn receive(&mut self, event: HostEvent) {
         self.take(event);
+        self.follow_lesson();
         self.ask_the_core();
     }
 
@@ -418,6 +423,7 @@ impl AppState {
         self.editor.popup = None;
         self.editor.folding.unfold_all();
         self.mission = name;
+        self.leave_lesson_behind();
         self.leave_review();
         self.snapshots.clear();
         self.automaton.forget();
@@ -455,6 +461,7 @@ impl AppState {
         match kind {
             FileKind::Mission => self.open_mission_file(name, bytes),
             FileKind::Map => self.open_map_file(name, bytes),
+            FileKind::Lesson => self.open_lesson_file(name, bytes),
             FileKind::Json => match String::from_utf8(bytes) {
                 Ok(text) => {
                     let document: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();

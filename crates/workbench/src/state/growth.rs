@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use mission::request::Update;
 use mission::{ContentKey, GrowthStanding, PathGrowth, Snapshot};
-use motion::{GrowthTrace, PlannerKind};
+use motion::{GrowthStep, GrowthTrace, PlannerKind};
 use nalgebra::Point2;
 use rmpl::program::World;
 use smol_str::SmolStr;
@@ -338,6 +338,16 @@ impl Shown {
             }
             Walk::Refused(_) => 0,
         }
+    }
+
+    /// What the last sample did.
+    pub fn last(&self) -> Option<&GrowthStep> {
+        let (trace, samples) = match &self.walk {
+            Walk::Recorded(trace, samples) => (trace.as_ref(), *samples),
+            Walk::Running(running) => (&running.trace, running.samples),
+            Walk::Refused(_) => return None,
+        };
+        trace.steps.get((samples as usize).checked_sub(1)?)
     }
 
     /// The length of the best path so far in metres.

@@ -11,6 +11,8 @@ pub mod execution;
 pub mod folding;
 pub mod growth;
 pub mod language;
+pub mod lesson;
+pub mod manual;
 pub mod missions;
 pub mod no_plan;
 pub mod pins;
@@ -77,6 +79,10 @@ pub struct AppState {
     pub search: search::SearchState,
     /// The control program, if the text is one, and its run.
     pub automaton: automaton::AutomatonState,
+    /// The lesson that is open.
+    pub lesson: lesson::LessonState,
+    /// The manual as it is looked at.
+    pub manual: manual::ManualState,
     /// The review of the mission, with what was said and signed.
     pub review: review::ReviewState,
     /// What the mission is compared with.
@@ -171,6 +177,8 @@ impl AppState {
             hovered: Selection::None,
             search: search::SearchState::default(),
             automaton: automaton::AutomatonState::default(),
+            lesson: lesson::LessonState::default(),
+            manual: manual::ManualState::default(),
             review: review::ReviewState::default(),
             compare: compare::CompareState::default(),
             terrain: terrain::TerrainState::default(),
@@ -195,6 +203,9 @@ impl AppState {
 
     /// Which layout the panels have.
     pub const fn arrangement(&self) -> Arrangement {
+        if self.lesson.is_beside() {
+            return Arrangement::Lesson;
+        }
         Arrangement::new(self.workspace, self.language.is_control())
     }
 

@@ -4,6 +4,8 @@ use layout::timeline::{ChartOptions, Grouping};
 use mission::{Goal, SearchKind};
 use serde::{Deserialize, Serialize};
 
+use crate::state::lesson::Learned;
+
 /// The user's settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -22,6 +24,8 @@ pub struct Settings {
     pub reviewer_role: String,
     /// When missions start, as it was last given for a schedule with dates.
     pub epoch: String,
+    /// The stops of lessons whose questions were answered rightly: `negative-cycle/2`.
+    pub learned: Learned,
 }
 
 impl Default for Settings {
@@ -34,6 +38,7 @@ impl Default for Settings {
             reviewer: String::new(),
             reviewer_role: String::new(),
             epoch: String::new(),
+            learned: Learned::default(),
         }
     }
 }

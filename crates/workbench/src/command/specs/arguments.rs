@@ -1,5 +1,6 @@
 //! The arguments of commands that host pages give.
 
+use hca::VariableId;
 use serde_json::Value;
 
 use crate::PanelKind;
@@ -19,6 +20,22 @@ pub(super) fn injection(state: &AppState, arguments: &Value) -> Result<Command, 
         (id, Some(mode))
     };
     Ok(Command::Automaton(AutomatonCommand::Inject(id, mode)))
+}
+
+/// What is known of a variable of a program without a plant; without a value, nothing is.
+pub(super) fn knowledge(state: &AppState, arguments: &Value) -> Result<Command, String> {
+    let automaton = state.automaton.program().and_then(Program::automaton).ok_or("there is no program")?;
+    let name = text_argument(arguments, "variable")?;
+    let found = automaton.variables.iter().position(|it| it.name == name);
+    let at = found.ok_or_else(|| format!("the program has no variable `{name}`"))?;
+    let value = match arguments.get("value").and_then(Value::as_str) {
+        None => None,
+        Some(value) => {
+            let found = automaton.variables[at].values.iter().position(|it| it == value);
+            Some(found.ok_or_else(|| format!("`{name}` has no value `{value}`"))? as u32)
+        }
+    };
+    Ok(Command::Automaton(AutomatonCommand::Know(VariableId(at as u32), value)))
 }
 
 pub(super) fn text_argument<'a>(arguments: &'a Value, name: &str) -> Result<&'a str, String> {

@@ -59,6 +59,21 @@ pub(super) fn with_comparison(state: &AppState) -> Availability {
     if is_compared { Ok(()) } else { Err("no searches are compared") }
 }
 
+pub(super) fn with_lesson(state: &AppState) -> Availability {
+    if state.lesson.open().is_some() { Ok(()) } else { Err("no lesson is open") }
+}
+
+pub(super) fn with_question(state: &AppState) -> Availability {
+    let asks = state.lesson.stop().is_some_and(|stop| stop.ask.is_some());
+    if asks { Ok(()) } else { Err("this stop asks nothing") }
+}
+
+/// Whether the stop has a task that can be shown.
+pub(super) fn with_solution(state: &AppState) -> Availability {
+    let ask = state.lesson.stop().and_then(|stop| stop.ask.as_ref());
+    if ask.is_some_and(|ask| !ask.solution.is_empty()) { Ok(()) } else { Err("this stop has no task") }
+}
+
 pub(super) fn with_run(state: &AppState) -> Availability {
     if state.is_executing() { Ok(()) } else { Err("no mission is executed") }
 }

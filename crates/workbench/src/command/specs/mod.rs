@@ -6,6 +6,7 @@ mod edit;
 mod file;
 mod go;
 mod help;
+mod learn;
 mod plan;
 mod play;
 mod review;
@@ -34,6 +35,7 @@ pub fn all_commands() -> impl Iterator<Item = &'static CommandSpec> {
         play::COMMANDS,
         search::COMMANDS,
         run::COMMANDS,
+        learn::COMMANDS,
         help::COMMANDS,
     ];
     areas.into_iter().flatten()

@@ -1,6 +1,6 @@
 //! The run of a mission, and of a control program.
 
-use super::arguments::{injection, text_argument};
+use super::arguments::{injection, knowledge, number_argument, text_argument};
 use super::available::{with_chance, with_program, with_run};
 use super::{called, plain, when};
 use crate::command::Command;
@@ -42,6 +42,17 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     ),
     when(
         called("program.inject", "Bring a component into a mode in this step", Group::Play, injection),
+        with_program,
+    ),
+    when(
+        called("program.know", "Say what is known of a variable in this step", Group::Play, knowledge),
+        with_program,
+    ),
+    when(
+        called("program.goTo", "Go to the moment after so many steps", Group::Play, |_, arguments| {
+            let moment = number_argument(arguments, "moment")?.max(0.0) as usize;
+            Ok(Command::Automaton(AutomatonCommand::GoTo(moment)))
+        }),
         with_program,
     ),
     when(

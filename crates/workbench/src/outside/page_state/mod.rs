@@ -4,6 +4,7 @@
 //! made from them by the test in `typescript.rs`. Their documentation is the interface's.
 
 mod execution;
+mod lesson;
 mod library;
 mod program;
 mod review;
@@ -28,6 +29,7 @@ use crate::state::settings::ThemeChoice;
 use crate::state::{AppState, Status};
 
 pub use self::execution::{Execution, Pinned, Robustness};
+pub use self::lesson::{Lessons, Manual};
 pub use self::library::Library;
 pub use self::program::ProgramRun;
 pub use self::review::Review;
@@ -80,6 +82,9 @@ pub struct PageState {
     verdict: Option<Verdict>,
     /// Why there is no plan.
     failure: Option<Failure>,
+    /// The lessons.
+    lesson: Lessons,
+    manual: Manual,
     review: Review,
     /// What the mission is compared with.
     compare: Option<Comparison>,
@@ -241,6 +246,8 @@ impl PageState {
             bound: planning.and_then(|planning| planning.outcome.bound).map(|bound| json!(bound)),
             verdict: planning.and_then(|planning| planning.verdict.as_ref()).map(verdict),
             failure: network.zip(failure).map(|(network, failure)| failure_of(network, failure)),
+            lesson: lesson::lessons(state),
+            manual: lesson::manual(state),
             review: review::review(state),
             compare: state
                 .compare

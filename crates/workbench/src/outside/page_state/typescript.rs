@@ -7,7 +7,7 @@ use std::path::Path;
 
 use ts_rs::{Config, TS};
 
-use super::{execution, library, program, review, search, terrain};
+use super::{execution, lesson, library, program, review, search, terrain};
 use crate::host::RefusalCode;
 
 /// What has no type of its own below: the times, and documents that the command line writes too.
@@ -204,6 +204,11 @@ fn interface() -> String {
     declare::<execution::Waiting>(&mut out);
     declare::<library::Library>(&mut out);
     declare::<library::KeptMission>(&mut out);
+    declare::<lesson::Lessons>(&mut out);
+    declare::<lesson::OpenLesson>(&mut out);
+    declare::<lesson::Question>(&mut out);
+    declare::<lesson::LessonMistake>(&mut out);
+    declare::<lesson::Manual>(&mut out);
     declare::<review::Review>(&mut out);
     declare::<review::ReviewCounts>(&mut out);
     declare::<review::ReviewItem>(&mut out);

@@ -1,0 +1,28 @@
+//! Words that look alike.
+
+/// Words that look alike and lead to the same place.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Run {
+    /// The words.
+    pub text: String,
+    /// How they look.
+    pub style: Style,
+    /// Where a click on them leads.
+    pub link: Option<String>,
+}
+
+/// How words look.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Style {
+    /// With weight.
+    pub strong: bool,
+    /// Slanted, or set apart in another way.
+    pub emphasis: bool,
+    /// As code.
+    pub code: bool,
+}
+
+/// The words without their looks.
+pub fn plain(runs: &[Run]) -> String {
+    runs.iter().map(|run| run.text.as_str()).collect()
+}

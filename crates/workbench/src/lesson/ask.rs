@@ -1,0 +1,199 @@
+//! What a stop asks, and how an answer is judged: the `ask` block of a lesson.
+//!
+//! No answer stands in a lesson where it can be computed: a number and a word are expressions, a choice can be right
+//! when an expression holds, and a task is done when one holds.
+
+use exact::Rational;
+use serde_json::Value as Json;
+
+use super::expression::{Expression, Value};
+use super::show::command_of;
+use super::{LessonError, entries};
+use crate::state::AppState;
+
+/// A question, or a task.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ask {
+    /// The line of its fence, from 1.
+    pub line: u32,
+    /// What is asked, in Markdown of one paragraph.
+    pub text: String,
+    /// What is right.
+    pub answer: Answer,
+    /// Helps.
+    pub hint: String,
+    /// Says, once it is answered, why that is right.
+    pub because: String,
+    /// What does the task, if it is one that can be shown.
+    pub solution: Vec<Action>,
+}
+
+/// What is right.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Answer {
+    /// One of several.
+    Choice(Vec<Choice>),
+    /// A number; what differs from it by no more than the second one counts too.
+    Number(Expression, Rational),
+    /// A name or a word; capitals make no difference.
+    Word(Expression),
+    /// Something to do; it is done when this holds.
+    Task(Expression),
+}
+
+/// One of several answers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// Its words.
+    pub text: String,
+    /// Whether it is right: always, never, or when this holds.
+    pub is_right: Expression,
+}
+
+/// What does a task.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    /// In the mission text, the first of these words become the second.
+    Replace(String, String),
+    /// A command with its arguments.
+    Command(String, Json),
+}
+
+impl Answer {
+    /// Whether what was answered is right, and nothing while that is not known: the number of a choice from 0, a number
+    /// or a word; a task is judged by the state alone.
+    pub fn is_right(&self, given: &str, state: &AppState) -> Option<bool> {
+        match self {
+            Self::Choice(choices) => choices.get(given.parse::<usize>().ok()?)?.is_right.holds(state),
+            Self::Number(expression, within) => {
+                let right = expression.number(state)?;
+                let Ok(given) = given.trim().replace(',', ".").parse::<Rational>() else {
+                    return Some(false);
+                };
+                let off = given.checked_sub(right)?;
+                let off = if off.is_negative() { off.checked_neg()? } else { off };
+                Some(off <= *within)
+            }
+            Self::Word(expression) => {
+                let right = expression.value(state)?.to_string();
+                Some(right.eq_ignore_ascii_case(given.trim()))
+            }
+            Self::Task(expression) => expression.holds(state),
+        }
+    }
+
+    /// What would be right now, as somebody would give it; nothing while that is not known, and for a task.
+    pub fn right_now(&self, state: &AppState) -> Option<String> {
+        match self {
+            Self::Choice(choices) => {
+                let right = choices.iter().position(|choice| choice.is_right.holds(state) == Some(true))?;
+                Some(right.to_string())
+            }
+            Self::Number(expression, _) => expression.number(state).map(|number| number.to_string()),
+            Self::Word(expression) => expression.value(state).map(|value| value.to_string()),
+            Self::Task(_) => None,
+        }
+    }
+}
+
+/// Reads an `ask` block whose fence is in line `fence`; nothing if it cannot be judged.
+pub(super) fn read(text: &str, fence: u32, errors: &mut Vec<LessonError>) -> Option<Ask> {
+    let mut question = String::new();
+    let mut choices = Vec::new();
+    let before = errors.len();
+    let mut wrong = Vec::new();
+    let entries = entries(text, fence, |line, text| match text.strip_prefix("- ") {
+        Some(written) => match choice(written) {
+            Ok(choice) => choices.push(choice),
+            Err(message) => wrong.push(LessonError::new(line, message)),
+        },
+        None => {
+            question.push_str(if question.is_empty() { "" } else { " " });
+            question.push_str(text.trim());
+        }
+    });
+    errors.append(&mut wrong);
+    let (mut answer, mut hint, mut because, mut solution) = (None, String::new(), String::new(), Vec::new());
+    let mut within = Rational::ZERO;
+    for (line, key, value) in entries {
+        let expression = || {
+            Expression::read(&value)
+                .map_err(|message| LessonError::new(line, format!("in `{value}`: {message}")))
+        };
+        let mut note = |outcome: Result<Answer, LessonError>| match outcome {
+            Ok(found) if answer.is_none() => answer = Some(found),
+            Ok(_) => errors.push(LessonError::new(line, "a question has one answer")),
+            Err(error) => errors.push(error),
+        };
+        match key {
+            "number" => note(expression().map(|it| Answer::Number(it, Rational::ZERO))),
+            "word" => note(expression().map(Answer::Word)),
+            "task" => note(expression().map(Answer::Task)),
+            "within" => match value.parse() {
+                Ok(number) => within = number,
+                Err(_) => errors.push(LessonError::new(line, format!("`{value}` is no number"))),
+            },
+            "hint" => hint = value,
+            "because" => because = value,
+            "solution" => match action(&value) {
+                Ok(action) => solution.push(action),
+                Err(message) => errors.push(LessonError::new(line, message)),
+            },
+            other => {
+                let message = format!(
+                    "`ask` knows no `{other}`; it has number, within, word, task, hint, because and solution, and \
+                     choices that begin with `- [ ]`, `- [x]` or `- [if …]`"
+                );
+                errors.push(LessonError::new(line, message));
+            }
+        }
+    }
+    if let Some(Answer::Number(_, allowed)) = &mut answer {
+        *allowed = within;
+    }
+    if !choices.is_empty() && answer.is_none() {
+        if choices.len() < 2 {
+            errors.push(LessonError::new(fence, "there are at least two choices"));
+        }
+        answer = Some(Answer::Choice(choices));
+    }
+    if question.is_empty() {
+        errors.push(LessonError::new(fence, "the question is missing: it comes first, in words"));
+    }
+    if answer.is_none() && errors.len() == before {
+        errors.push(LessonError::new(
+            fence,
+            "what is right is missing: `number:`, `word:`, `task:` or choices",
+        ));
+    }
+    Some(Ask { line: fence, text: question, answer: answer?, hint, because, solution })
+}
+
+/// `[x] words`, `[ ] words` or `[if expression] words`.
+fn choice(written: &str) -> Result<Choice, String> {
+    let form = || format!("a choice begins with `- [ ]`, `- [x]` or `- [if …]`, not with `- {written}`");
+    let (mark, text) = written.strip_prefix('[').and_then(|rest| rest.split_once(']')).ok_or_else(form)?;
+    let is_right = match mark.trim() {
+        "" => Expression::Constant(Value::Truth(false)),
+        "x" => Expression::Constant(Value::Truth(true)),
+        other => {
+            let condition = other.strip_prefix("if ").ok_or_else(form)?;
+            Expression::read(condition).map_err(|message| format!("in `{condition}`: {message}"))?
+        }
+    };
+    Ok(Choice { text: text.trim().to_owned(), is_right })
+}
+
+/// `"10,20" becomes "10,35"`, or a command with its arguments.
+fn action(value: &str) -> Result<Action, String> {
+    if !value.starts_with('"') {
+        return command_of(value).map(|(id, arguments)| Action::Command(id, arguments));
+    }
+    let quoted = value.trim().strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
+    match quoted.and_then(|inside| inside.split_once("\" becomes \"")) {
+        Some((before, after)) => Ok(Action::Replace(before.to_owned(), after.to_owned())),
+        None => Err(format!(
+            "a solution is `\"these words\" becomes \"those words\"` or a command, not `{value}`"
+        )),
+    }
+}

@@ -1,0 +1,66 @@
+//! The course that comes with the app, in order.
+
+/// Lessons that belong together.
+#[derive(Clone, Copy, Debug)]
+pub struct Chapter {
+    /// What they are about.
+    pub title: &'static str,
+    /// The lessons, in order.
+    pub lessons: &'static [CourseLesson],
+}
+
+/// A lesson that comes with the app.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CourseLesson {
+    /// Its name in addresses and commands.
+    pub name: &'static str,
+    /// Its file.
+    pub text: &'static str,
+}
+
+macro_rules! lessons {
+    ($($number:literal $name:literal),* $(,)?) => {
+        &[$(CourseLesson {
+            name: $name,
+            text: include_str!(concat!("../../../../assets/lessons/", $number, "-", $name, ".md")),
+        }),*]
+    };
+}
+
+/// All chapters.
+pub const COURSE: &[Chapter] = &[
+    Chapter {
+        title: "The language",
+        lessons: lessons!["01" "first-line", "02" "sequence-and-parallel", "03" "bounds"],
+    },
+    Chapter {
+        title: "Planning",
+        lessons: lessons![
+            "04" "negative-cycle",
+            "05" "choices",
+            "06" "causal-links",
+            "07" "threats",
+            "08" "learning",
+        ],
+    },
+    Chapter {
+        title: "Time and means",
+        lessons: lessons!["09" "dispatching", "10" "states", "11" "resources", "12" "controllability"],
+    },
+    Chapter { title: "Paths", lessons: lessons!["13" "rrt"] },
+    Chapter {
+        title: "Control",
+        lessons: lessons![
+            "14" "automata",
+            "15" "esterel-pause",
+            "16" "esterel-preempt",
+            "17" "estimation",
+        ],
+    },
+    Chapter { title: "All together", lessons: lessons!["18" "whole-mission"] },
+];
+
+/// The lesson of this name.
+pub fn course_lesson(name: &str) -> Option<&'static CourseLesson> {
+    COURSE.iter().flat_map(|chapter| chapter.lessons).find(|lesson| lesson.name == name)
+}

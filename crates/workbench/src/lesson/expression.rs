@@ -1,0 +1,300 @@
+//! What a lesson computes from the live state: facts by name, numbers and words, compared and counted together.
+//!
+//! ```text
+//! condition  = conjunct { "or" conjunct }          conjunct = negation { "and" negation }
+//! negation   = [ "not" ] comparison                comparison = sum [ ("=" | "!=" | "<" | "<=" | ">" | ">=") sum ]
+//! sum        = product { ("+" | "-") product }     product = term { ("*" | "/") term }
+//! term       = number | "text" | fact | fact(argument) | "-" term | "(" condition ")"
+//! ```
+
+use std::fmt;
+
+use exact::Rational;
+
+use super::facts::{self, Fact};
+use crate::state::AppState;
+
+/// What comes of an expression.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A number, in mission units where it is a time.
+    Number(Rational),
+    /// Words.
+    Text(String),
+    /// Yes or no.
+    Truth(bool),
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => out.write_str(&number.readable()),
+            Self::Text(text) => out.write_str(text),
+            Self::Truth(truth) => out.write_str(if *truth { "yes" } else { "no" }),
+        }
+    }
+}
+
+/// Something that is computed from the state.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Expression {
+    /// Always the same.
+    Constant(Value),
+    /// What is known of the state, of something in it.
+    Fact(&'static Fact, String),
+    /// The other truth.
+    Not(Box<Self>),
+    /// Of two.
+    Both(Box<Self>, Operator, Box<Self>),
+}
+
+/// How two values make one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum Operator {
+    Or,
+    And,
+    Equal,
+    NotEqual,
+    Less,
+    LessOrEqual,
+    Greater,
+    GreaterOrEqual,
+    Plus,
+    Minus,
+    Times,
+    Over,
+}
+
+impl Expression {
+    /// Reads an expression; `Err` says what is wrong with it.
+    pub fn read(text: &str) -> Result<Self, String> {
+        let mut reader = Reader { rest: text };
+        let expression = reader.condition()?;
+        match reader.rest.trim() {
+            "" => Ok(expression),
+            rest => Err(format!("`{rest}` does not belong here")),
+        }
+    }
+
+    /// What it comes to now; nothing while something in it is not known, or does not exist.
+    pub fn value(&self, state: &AppState) -> Option<Value> {
+        match self {
+            Self::Constant(value) => Some(value.clone()),
+            Self::Fact(fact, argument) => (fact.value)(state, argument),
+            Self::Not(expression) => Some(Value::Truth(!expression.holds(state)?)),
+            Self::Both(left, Operator::And, right) => {
+                Some(Value::Truth(left.holds(state)? && right.holds(state)?))
+            }
+            Self::Both(left, Operator::Or, right) => {
+                Some(Value::Truth(left.holds(state)? || right.holds(state)?))
+            }
+            Self::Both(left, operator, right) => {
+                combined(&left.value(state)?, *operator, &right.value(state)?)
+            }
+        }
+    }
+
+    /// Whether it is true now; nothing if that is not known.
+    pub fn holds(&self, state: &AppState) -> Option<bool> {
+        match self.value(state)? {
+            Value::Truth(truth) => Some(truth),
+            Value::Number(_) | Value::Text(_) => None,
+        }
+    }
+
+    /// The number that it comes to now.
+    pub fn number(&self, state: &AppState) -> Option<Rational> {
+        match self.value(state)? {
+            Value::Number(number) => Some(number),
+            Value::Truth(_) | Value::Text(_) => None,
+        }
+    }
+}
+
+/// What `left operator right` comes to; words are equal whatever their case.
+fn combined(left: &Value, operator: Operator, right: &Value) -> Option<Value> {
+    use Operator::{Equal, Greater, GreaterOrEqual, Less, LessOrEqual, Minus, NotEqual, Over, Plus, Times};
+    let truth = |truth: bool| Some(Value::Truth(truth));
+    match (left, right) {
+        (Value::Number(left), Value::Number(right)) => match operator {
+            Equal => truth(left == right),
+            NotEqual => truth(left != right),
+            Less => truth(left < right),
+            LessOrEqual => truth(left <= right),
+            Greater => truth(left > right),
+            GreaterOrEqual => truth(left >= right),
+            Plus => left.checked_add(*right).map(Value::Number),
+            Minus => left.checked_sub(*right).map(Value::Number),
+            Times => left.checked_mul(*right).map(Value::Number),
+            Over => left.checked_div(*right).map(Value::Number),
+            Operator::And | Operator::Or => None,
+        },
+        (Value::Text(left), Value::Text(right)) => match operator {
+            Equal => truth(left.eq_ignore_ascii_case(right)),
+            NotEqual => truth(!left.eq_ignore_ascii_case(right)),
+            _ => None,
+        },
+        (Value::Truth(left), Value::Truth(right)) => match operator {
+            Equal => truth(left == right),
+            NotEqual => truth(left != right),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+struct Reader<'a> {
+    rest: &'a str,
+}
+
+const SUMS: &[(&str, Operator)] = &[("+", Operator::Plus), ("-", Operator::Minus)];
+const PRODUCTS: &[(&str, Operator)] = &[("*", Operator::Times), ("/", Operator::Over)];
+const COMPARISONS: &[(&str, Operator)] = &[
+    ("!=", Operator::NotEqual),
+    ("<=", Operator::LessOrEqual),
+    (">=", Operator::GreaterOrEqual),
+    ("=", Operator::Equal),
+    ("<", Operator::Less),
+    (">", Operator::Greater),
+];
+
+impl<'a> Reader<'a> {
+    fn condition(&mut self) -> Result<Expression, String> {
+        let mut left = self.conjunct()?;
+        while self.takes_word("or") {
+            left = both(left, Operator::Or, self.conjunct()?);
+        }
+        Ok(left)
+    }
+
+    fn conjunct(&mut self) -> Result<Expression, String> {
+        let mut left = self.negation()?;
+        while self.takes_word("and") {
+            left = both(left, Operator::And, self.negation()?);
+        }
+        Ok(left)
+    }
+
+    fn negation(&mut self) -> Result<Expression, String> {
+        if self.takes_word("not") {
+            return Ok(Expression::Not(Box::new(self.negation()?)));
+        }
+        let left = self.sum()?;
+        match self.takes_sign(COMPARISONS) {
+            Some(operator) => Ok(both(left, operator, self.sum()?)),
+            None => Ok(left),
+        }
+    }
+
+    fn sum(&mut self) -> Result<Expression, String> {
+        let mut left = self.product()?;
+        while let Some(operator) = self.takes_sign(SUMS) {
+            left = both(left, operator, self.product()?);
+        }
+        Ok(left)
+    }
+
+    fn product(&mut self) -> Result<Expression, String> {
+        let mut left = self.term()?;
+        while let Some(operator) = self.takes_sign(PRODUCTS) {
+            left = both(left, operator, self.term()?);
+        }
+        Ok(left)
+    }
+
+    fn term(&mut self) -> Result<Expression, String> {
+        self.rest = self.rest.trim_start();
+        let Some(first) = self.rest.chars().next() else {
+            return Err("something is missing at its end".to_owned());
+        };
+        match first {
+            '(' => {
+                self.rest = &self.rest[1..];
+                let inside = self.condition()?;
+                self.rest = self.rest.trim_start();
+                self.rest = self.rest.strip_prefix(')').ok_or("a `)` is missing")?;
+                Ok(inside)
+            }
+            '-' => {
+                self.rest = &self.rest[1..];
+                let nought = Expression::Constant(Value::Number(Rational::ZERO));
+                Ok(both(nought, Operator::Minus, self.term()?))
+            }
+            '"' => {
+                let (text, rest) = self.rest[1..].split_once('"').ok_or("a `\"` is missing")?;
+                self.rest = rest;
+                Ok(Expression::Constant(Value::Text(text.to_owned())))
+            }
+            '0'..='9' => {
+                let digits = self.taken(|letter| letter.is_ascii_digit() || letter == '.');
+                let number = digits.parse().map_err(|_| format!("`{digits}` is no number"))?;
+                Ok(Expression::Constant(Value::Number(number)))
+            }
+            'a'..='z' => self.fact(),
+            other => Err(format!("`{other}` is not understood")),
+        }
+    }
+
+    fn fact(&mut self) -> Result<Expression, String> {
+        let name = self.taken(|letter| letter.is_ascii_lowercase() || letter == '-').trim_end_matches('-');
+        let fact = facts::by_name(name).ok_or_else(|| {
+            let known: Vec<&str> = facts::all().map(|fact| fact.name).collect();
+            format!("nothing is known by the name `{name}`; known are {}", known.join(", "))
+        })?;
+        let argument = if self.rest.starts_with('(') { self.argument()? } else { "" };
+        match (fact.of, argument) {
+            (facts::Of::Nothing, "") | (facts::Of::Maybe(_), _) => {}
+            (facts::Of::Nothing, _) => return Err(format!("`{name}` is of nothing: write it without `(…)`")),
+            (facts::Of::Something(what), "") => {
+                return Err(format!("`{name}` is of something: `{name}({what})`"));
+            }
+            (facts::Of::Something(_), _) => {}
+        }
+        Ok(Expression::Fact(fact, argument.to_owned()))
+    }
+
+    /// What stands in parentheses, which may hold others: names have them.
+    fn argument(&mut self) -> Result<&'a str, String> {
+        let mut depth = 0_u32;
+        for (at, letter) in self.rest.char_indices() {
+            match letter {
+                '(' => depth += 1,
+                ')' if depth == 1 => {
+                    let inside = &self.rest[1..at];
+                    self.rest = &self.rest[at + 1..];
+                    return Ok(inside.trim());
+                }
+                ')' => depth -= 1,
+                _ => {}
+            }
+        }
+        Err("a `)` is missing".to_owned())
+    }
+
+    fn taken(&mut self, belongs: impl Fn(char) -> bool) -> &'a str {
+        let end = self.rest.find(|letter| !belongs(letter)).unwrap_or(self.rest.len());
+        let (taken, rest) = self.rest.split_at(end);
+        self.rest = rest;
+        taken
+    }
+
+    fn takes_word(&mut self, word: &str) -> bool {
+        let after = self.rest.trim_start().strip_prefix(word);
+        let after =
+            after.filter(|after| !after.starts_with(|next: char| next.is_alphanumeric() || next == '-'));
+        self.rest = after.unwrap_or(self.rest);
+        after.is_some()
+    }
+
+    fn takes_sign(&mut self, signs: &[(&str, Operator)]) -> Option<Operator> {
+        let rest = self.rest.trim_start();
+        let (sign, operator) = signs.iter().find(|(sign, _)| rest.starts_with(sign))?;
+        self.rest = &rest[sign.len()..];
+        Some(*operator)
+    }
+}
+
+fn both(left: Expression, operator: Operator, right: Expression) -> Expression {
+    Expression::Both(Box::new(left), operator, Box::new(right))
+}

@@ -1,0 +1,70 @@
+//! The head of a lesson: what its mission is, and how it is planned.
+
+use markdown::Head;
+use mission::SearchKind;
+
+use super::{Expectation, Lesson, LessonError, LessonMission, LessonSearch, entries};
+use crate::mission_file;
+
+/// Reads the head into the lesson. Returns whether it names a mission.
+pub(super) fn read(lesson: &mut Lesson, head: Option<&Head>, errors: &mut Vec<LessonError>) -> bool {
+    let Some(head) = head else { return false };
+    let mut has_mission = false;
+    let mut others = Vec::new();
+    let entries = entries(&head.text, head.line, |line, text| others.push((line, text)));
+    for (line, text) in others {
+        errors.push(LessonError::new(line, format!("`{text}` is no line of the form `key: value`")));
+    }
+    for (line, key, value) in entries {
+        match key {
+            "about" => lesson.about = value,
+            "mission" => {
+                has_mission = true;
+                match mission_file::example(&value) {
+                    Some(example) => lesson.mission = LessonMission::Example(example.name),
+                    None => errors.push(LessonError::new(line, format!("there is no example `{value}`"))),
+                }
+            }
+            "search" => match search(&value) {
+                Some(search) => lesson.search = search,
+                None => {
+                    let message = "`search` is `chronological`, `conflict-directed` or `both`";
+                    errors.push(LessonError::new(line, message));
+                }
+            },
+            "expects" => match expectation(&value) {
+                Some(expects) => lesson.expects = expects,
+                None => {
+                    let message = "`expects` is `plan`, `no plan`, `errors` or `program`";
+                    errors.push(LessonError::new(line, message));
+                }
+            },
+            other => {
+                let message = format!(
+                    "the head of a lesson knows no `{other}`; it has `about`, `mission`, `search` and `expects`"
+                );
+                errors.push(LessonError::new(line, message));
+            }
+        }
+    }
+    has_mission
+}
+
+fn search(value: &str) -> Option<LessonSearch> {
+    match value {
+        "chronological" => Some(LessonSearch::One(SearchKind::Chronological)),
+        "conflict-directed" => Some(LessonSearch::One(SearchKind::ConflictDirected)),
+        "both" => Some(LessonSearch::Both),
+        _ => None,
+    }
+}
+
+fn expectation(value: &str) -> Option<Expectation> {
+    match value {
+        "plan" => Some(Expectation::Plan),
+        "no plan" => Some(Expectation::NoPlan),
+        "errors" => Some(Expectation::Errors),
+        "program" => Some(Expectation::Program),
+        _ => None,
+    }
+}

@@ -1,0 +1,276 @@
+//! The manual that comes with the app: its pages, what is found in them, and which page tells about what.
+
+use std::sync::LazyLock;
+
+use markdown::{Block, Content, Document, anchor, plain};
+
+use crate::PanelKind;
+use crate::lesson::Glossary;
+
+/// A page of the manual.
+#[derive(Debug)]
+pub struct Page {
+    /// Its name in addresses, commands and links, without `.md`.
+    pub name: &'static str,
+    /// Its title.
+    pub title: String,
+    /// What it says.
+    pub document: Document,
+}
+
+/// A place that was found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Found {
+    /// The page.
+    pub page: &'static str,
+    /// The heading over it, as links have it; empty above the first heading but the title.
+    pub section: String,
+    /// Title of the page and the heading.
+    pub title: String,
+    /// The words around what was found.
+    pub excerpt: String,
+}
+
+const FILES: &[(&str, &str)] = &[
+    ("language", include_str!("../../../docs/language.md")),
+    ("missions", include_str!("../../../docs/missions.md")),
+    ("timeline", include_str!("../../../docs/timeline.md")),
+    ("terrain", include_str!("../../../docs/terrain.md")),
+    ("simulation", include_str!("../../../docs/simulation.md")),
+    ("execution", include_str!("../../../docs/execution.md")),
+    ("robustness", include_str!("../../../docs/robustness.md")),
+    ("controllability", include_str!("../../../docs/controllability.md")),
+    ("control-programs", include_str!("../../../docs/control-programs.md")),
+    ("esterel", include_str!("../../../docs/esterel.md")),
+    ("lessons", include_str!("../../../docs/lessons.md")),
+    ("glossary", include_str!("../../../assets/glossary.md")),
+    ("specification", include_str!("../../../docs/specification.md")),
+];
+
+/// Places that a search answers with at most.
+const MAX_FOUND: usize = 60;
+/// Letters of an excerpt before and after what was found.
+const AROUND: usize = 48;
+
+static PAGES: LazyLock<Vec<Page>> = LazyLock::new(|| {
+    let files = FILES.iter().map(|&(name, text)| page(name, text));
+    files.chain([page("diagnostics", &diagnostics())]).collect()
+});
+
+fn page(name: &'static str, text: &str) -> Page {
+    let document = Document::parse(text);
+    let title = document.blocks.iter().find_map(|block| match &block.content {
+        Content::Heading { level: 1, text } => Some(plain(text)),
+        _ => None,
+    });
+    Page { name, title: title.unwrap_or_else(|| name.to_owned()), document }
+}
+
+/// What every kind of problem means, one section each.
+fn diagnostics() -> String {
+    let mut text =
+        "# Diagnostics\n\nWhat each kind of problem means, with an example and the same, mended.\n"
+            .to_owned();
+    for explanation in rmpl::diagnostics::EXPLANATIONS {
+        let page = explanation.markdown();
+        let page = page
+            .replacen("# ", "## ", 1)
+            .replace("\n## Example", "\nFor example:")
+            .replace("\n## What to do\n", "");
+        text.push_str(&format!("\n{page}"));
+    }
+    text
+}
+
+/// All pages, in the order of the contents.
+pub fn pages() -> &'static [Page] {
+    &PAGES
+}
+
+/// The page of this name.
+pub fn page_named(name: &str) -> Option<&'static Page> {
+    PAGES.iter().find(|page| page.name == name)
+}
+
+/// Where a link leads inside the manual: a page and a section, which may be empty. `language.md#bounds`, and `#bounds`
+/// on the page `here`; nothing for what leads elsewhere.
+pub fn target(link: &str, here: &str) -> Option<(&'static str, String)> {
+    let (file, section) = link.split_once('#').unwrap_or((link, ""));
+    let name = file.rsplit('/').next().unwrap_or(file);
+    let name = if file.is_empty() { here } else { name.strip_suffix(".md")? };
+    page_named(name).map(|page| (page.name, section.to_owned()))
+}
+
+/// The section about a kind of problem.
+pub fn section_of_code(code: &str) -> Option<String> {
+    let explanation = rmpl::explain(code)?;
+    Some(anchor(&format!("{}: {}", explanation.code, explanation.title)))
+}
+
+/// The page and the section that tell about a panel.
+pub const fn about_panel(panel: PanelKind) -> (&'static str, &'static str) {
+    match panel {
+        PanelKind::Editor | PanelKind::Outline => ("language", ""),
+        PanelKind::Problems => ("diagnostics", ""),
+        PanelKind::Network => ("specification", "3-the-temporal-plan-network"),
+        PanelKind::Plan => ("specification", "5-planning"),
+        PanelKind::Timeline => ("timeline", ""),
+        PanelKind::Terrain => ("terrain", ""),
+        PanelKind::Search => ("specification", "54-the-order-of-the-search-and-completeness"),
+        PanelKind::Distances => ("specification", "61-the-dispatchable-form"),
+        PanelKind::Strategy => ("controllability", "on-screen"),
+        PanelKind::Automaton => ("control-programs", "on-screen"),
+        PanelKind::Review | PanelKind::Compare => ("specification", "16-reviews-and-flight-rules"),
+        PanelKind::Execution => ("simulation", ""),
+        PanelKind::Robustness => ("robustness", ""),
+        PanelKind::Lesson => ("lessons", ""),
+        PanelKind::Manual => ("glossary", ""),
+    }
+}
+
+/// The places where all words of `query` stand in one block, whatever their case: headings first, then glossary entries,
+/// then the rest, in the order of the pages. Linear in the manual.
+pub fn search(query: &str) -> Vec<Found> {
+    let words: Vec<String> = query.split_whitespace().map(str::to_lowercase).collect();
+    if words.is_empty() {
+        return Vec::new();
+    }
+    let mut found: Vec<(u8, Found)> = Vec::new();
+    for page in pages() {
+        let mut heading = String::new();
+        for block in &page.document.blocks {
+            let is_heading = matches!(block.content, Content::Heading { .. });
+            let text = block.plain();
+            if is_heading {
+                heading.clone_from(&text);
+            }
+            let lower = text.to_lowercase();
+            if !words.iter().all(|word| lower.contains(word.as_str())) {
+                continue;
+            }
+            let section = if heading == page.title { String::new() } else { anchor(&heading) };
+            let title =
+                if section.is_empty() { page.title.clone() } else { format!("{} · {heading}", page.title) };
+            // Several blocks of one section are one place.
+            if found.last().is_some_and(|(_, last)| last.page == page.name && last.section == section) {
+                continue;
+            }
+            let rank = match (is_heading, page.name) {
+                (true, _) => 0,
+                (false, "glossary") => 1,
+                (false, _) => 2,
+            };
+            let excerpt = if is_heading { below(page, block) } else { excerpt(&text, &words[0]) };
+            found.push((rank, Found { page: page.name, section, title, excerpt }));
+        }
+    }
+    found.sort_by_key(|(rank, _)| *rank);
+    found.truncate(MAX_FOUND);
+    found.into_iter().map(|(_, found)| found).collect()
+}
+
+/// The first words below a heading.
+fn below(page: &Page, heading: &Block) -> String {
+    let after = page.document.blocks.iter().skip_while(|block| !std::ptr::eq(*block, heading)).nth(1);
+    after.map(|block| block.plain().chars().take(2 * AROUND).collect()).unwrap_or_default()
+}
+
+/// The words around the first `word` of a text, on one line.
+fn excerpt(text: &str, word: &str) -> String {
+    let letters: Vec<char> = text.split_whitespace().collect::<Vec<_>>().join(" ").chars().collect();
+    let lower: String = letters.iter().flat_map(|letter| letter.to_lowercase()).collect();
+    let at = lower.find(word).map_or(0, |at| lower[..at].chars().count());
+    let (from, to) = (at.saturating_sub(AROUND), (at + word.chars().count() + AROUND).min(letters.len()));
+    let mut out: String = letters.get(from..to).unwrap_or_default().iter().collect();
+    if from > 0 {
+        out.insert(0, '…');
+    }
+    if to < letters.len() {
+        out.push('…');
+    }
+    out
+}
+
+/// The links of these blocks that lead nowhere: neither out of the app, nor to a section or a term.
+pub fn broken_links(blocks: &[Block], here: &str) -> Vec<String> {
+    let mut broken = Vec::new();
+    visit_links(blocks, &mut |link| {
+        let is_outside = link.contains("://") || link.starts_with("mailto:");
+        let is_there = target(link, here).is_some_and(|(page, section)| {
+            section.is_empty()
+                || page_named(page).is_some_and(|page| page.document.heading(&section).is_some())
+        });
+        let is_term = Glossary::get().linked(link).is_some();
+        if !is_outside && !is_there && !is_term {
+            broken.push(link.to_owned());
+        }
+    });
+    broken
+}
+
+fn visit_links(blocks: &[Block], visit: &mut dyn FnMut(&str)) {
+    for block in blocks {
+        let runs: Vec<&[markdown::Run]> = match &block.content {
+            Content::Heading { text, .. } | Content::Paragraph(text) => vec![text],
+            Content::Table { head, rows } => {
+                head.iter().chain(rows.iter().flatten()).map(Vec::as_slice).collect()
+            }
+            Content::List { items, .. } => {
+                items.iter().for_each(|item| visit_links(item, visit));
+                Vec::new()
+            }
+            Content::Quote(blocks) => {
+                visit_links(blocks, visit);
+                Vec::new()
+            }
+            Content::Code { .. } | Content::Rule => Vec::new(),
+        };
+        runs.into_iter().flatten().filter_map(|run| run.link.as_deref()).for_each(&mut *visit);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_page_of_a_panel_and_every_code_has_its_section() {
+        for panel in PanelKind::ALL {
+            let (name, section) = about_panel(panel);
+            let page = page_named(name).unwrap_or_else(|| panic!("no page {name} for {panel:?}"));
+            assert!(
+                section.is_empty() || page.document.heading(section).is_some(),
+                "{panel:?}: {name}#{section}"
+            );
+        }
+        let page = page_named("diagnostics").expect("a page of diagnostics");
+        for explanation in rmpl::diagnostics::EXPLANATIONS {
+            let section = section_of_code(explanation.code.0).expect("a section");
+            assert!(page.document.heading(&section).is_some(), "{section}");
+        }
+    }
+
+    #[test]
+    fn links_of_the_glossary_lead_somewhere() {
+        for term in &Glossary::get().terms {
+            assert_eq!(broken_links(&term.meaning, "glossary"), Vec::<String>::new(), "{:?}", term.names);
+        }
+        assert_eq!(target("../docs/language.md#bounds", "glossary"), Some(("language", "bounds".to_owned())));
+        assert_eq!(target("#bounds", "language"), Some(("language", "bounds".to_owned())));
+        assert_eq!(target("https://example.org/a.html", "language"), None);
+    }
+
+    #[test]
+    fn a_search_finds_headings_first_and_all_of_its_words() {
+        let found = search("objectives");
+        assert_eq!(found.first().map(|it| it.section.as_str()), Some("objectives"), "{found:?}");
+        for place in search("Unary RESOURCE") {
+            let page = page_named(place.page).expect("a page");
+            let text: String =
+                page.document.blocks.iter().map(Block::plain).collect::<Vec<_>>().join(" ").to_lowercase();
+            assert!(text.contains("unary") && text.contains("resource"), "{place:?}");
+        }
+        assert_eq!(search("  "), []);
+        assert_eq!(search("xyzzyplugh"), []);
+    }
+}

@@ -1,0 +1,95 @@
+//! The manual as it is looked at: which page, where on it, and what is looked for.
+
+use crate::PanelKind;
+use crate::manual::{self, Found};
+use crate::state::AppState;
+
+/// The manual as it is looked at.
+#[derive(Debug, Default)]
+pub struct ManualState {
+    place: Option<(&'static str, String)>,
+    before: Vec<(&'static str, String)>,
+    query: String,
+    found: Vec<Found>,
+    /// Counts the places that were opened, so that the panel scrolls to each once.
+    opened: u64,
+}
+
+/// What can be asked of the manual.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ManualCommand {
+    /// Opens a page at a section; an empty section is its beginning.
+    Open(&'static str, String),
+    /// Opens what tells about a panel.
+    About(PanelKind),
+    /// Looks for words; nothing shows the page again.
+    Search(String),
+    /// Back to the place before.
+    Back,
+    /// Shows the contents.
+    Contents,
+}
+
+impl ManualState {
+    /// The page and the section that are shown; nothing while the contents are.
+    pub fn place(&self) -> Option<(&'static str, &str)> {
+        self.place.as_ref().map(|(page, section)| (*page, section.as_str()))
+    }
+
+    /// What is looked for.
+    pub fn query(&self) -> &str {
+        &self.query
+    }
+
+    /// Where it stands.
+    pub fn found(&self) -> &[Found] {
+        &self.found
+    }
+
+    /// Counts the places that were opened.
+    pub const fn opened(&self) -> u64 {
+        self.opened
+    }
+
+    /// Whether there is a place to go back to.
+    pub fn can_go_back(&self) -> bool {
+        !self.before.is_empty()
+    }
+
+    fn go(&mut self, place: Option<(&'static str, String)>) {
+        self.query.clear();
+        self.found.clear();
+        self.place = place;
+        self.opened += 1;
+    }
+}
+
+impl AppState {
+    pub(super) fn apply_to_manual(&mut self, command: ManualCommand) {
+        let manual = &mut self.manual;
+        match command {
+            ManualCommand::Open(page, section) => {
+                manual.before.extend(manual.place.take());
+                manual.go(Some((page, section)));
+            }
+            ManualCommand::About(panel) => {
+                let (page, section) = manual::about_panel(panel);
+                return self.apply_to_manual(ManualCommand::Open(page, section.to_owned()));
+            }
+            ManualCommand::Search(query) => {
+                manual.found = manual::search(&query);
+                manual.query = query;
+            }
+            ManualCommand::Back => {
+                let before = manual.before.pop();
+                manual.go(before);
+            }
+            ManualCommand::Contents => {
+                manual.before.extend(manual.place.take());
+                manual.go(None);
+            }
+        }
+        self.show_panel(PanelKind::Manual);
+        self.active_panel = PanelKind::Manual;
+    }
+}
