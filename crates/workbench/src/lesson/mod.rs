@@ -186,6 +186,7 @@ impl Lesson {
         match &block.content {
             Content::Code { info, text } if first_word(info) == "show" => {
                 stop.show = show::read(text, block.line, errors);
+                stop.mission = stop.show.mission.map(LessonMission::Example).or(stop.mission.take());
             }
             Content::Code { info, text } if first_word(info) == "ask" => {
                 if stop.ask.is_some() {

@@ -4,9 +4,10 @@ use serde_json::Value;
 
 use super::{LessonError, entries};
 use crate::PanelKind;
-use crate::command;
 use crate::workspace::Workspace;
+use crate::{command, mission_file};
 use kirk::Event;
+use motion::PlannerKind;
 
 /// What a stop shows. What it does not name is as it is at first: no step, nothing selected, everything in view.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -29,6 +30,10 @@ pub struct Show {
     pub moments: Option<usize>,
     /// How many samples of the path's search are drawn.
     pub samples: Option<u32>,
+    /// The planner whose search for a path is shown; without it, the one that planned.
+    pub planner: Option<PlannerKind>,
+    /// The mission from this stop on.
+    pub mission: Option<&'static str>,
     /// Commands that are run after all that, by name and with arguments.
     pub commands: Vec<(u32, String, Value)>,
 }
@@ -173,13 +178,29 @@ fn take(show: &mut Show, line: u32, key: &str, value: &str) -> Result<(), String
         }
         "moments" => show.moments = Some(count(value)?),
         "samples" => show.samples = Some(count(value)? as u32),
+        "planner" => {
+            show.planner = match value {
+                "as-planned" => None,
+                "rrt" => Some(PlannerKind::Rrt),
+                "rrt-connect" => Some(PlannerKind::RrtConnect),
+                "rrt-star" => Some(PlannerKind::RrtStar),
+                "kinodynamic" => Some(PlannerKind::Kinodynamic),
+                other => return Err(format!("there is no path planner `{other}`")),
+            };
+        }
+        "mission" => {
+            let example =
+                mission_file::example(value).ok_or_else(|| format!("there is no example `{value}`"))?;
+            show.mission = Some(example.name);
+        }
         "do" => {
             let (id, arguments) = command_of(value)?;
             show.commands.push((line, id, arguments));
         }
         other => {
             return Err(format!(
-                "`show` knows no `{other}`; it has panels, workspace, search, step, select, near, time, moments, samples and do"
+                "`show` knows no `{other}`; it has panels, workspace, mission, search, step, select, near, time, moments, \
+                 samples, planner and do"
             ));
         }
     }

@@ -311,7 +311,7 @@ impl Shown {
     }
 
     /// Whether all samples of the search are known.
-    fn is_complete(&self) -> bool {
+    pub fn is_complete(&self) -> bool {
         match &self.walk {
             Walk::Running(running) => running.is_complete,
             Walk::Recorded(..) | Walk::Refused(_) => true,

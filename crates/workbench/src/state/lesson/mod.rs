@@ -55,6 +55,8 @@ pub struct LessonState {
     opened: Option<LessonMission>,
     /// Whether what the stop shows is still to be shown.
     is_due: bool,
+    /// Samples that are to be drawn as soon as the core has found them.
+    samples_due: Option<u32>,
     /// Whether the panels stand as the lesson wants them.
     is_beside: bool,
     /// The panels beside the lesson: rows of columns of tabs.

@@ -43,7 +43,19 @@ impl AppState {
             self.show(&show);
             return;
         }
+        self.draw_samples();
         self.judge_task();
+    }
+
+    /// Draws the samples that the stop shows, once the core has found them.
+    fn draw_samples(&mut self) {
+        let Some(samples) = self.lesson.samples_due else { return };
+        let is_found =
+            self.terrain.growth.shown().is_some_and(|shown| shown.total >= samples || shown.is_complete());
+        if is_found {
+            self.lesson.samples_due = None;
+            self.apply_to_terrain(TerrainCommand::Growth(GrowthCommand::GoTo(samples)));
+        }
     }
 
     /// Whether everything that a stop can show has been worked out.
@@ -79,9 +91,11 @@ impl AppState {
                 None => self.tell_lecturer(*line, &format!("the mission has nothing named \"{name}\"")),
             }
         }
-        if let Some(samples) = show.samples {
+        if show.samples.is_some() || show.planner.is_some() {
             self.apply_to_terrain(TerrainCommand::Growth(GrowthCommand::Toggle));
-            self.apply_to_terrain(TerrainCommand::Growth(GrowthCommand::GoTo(samples)));
+            self.apply_to_terrain(TerrainCommand::Growth(GrowthCommand::ChoosePlanner(show.planner)));
+            self.lesson.samples_due = show.samples;
+            self.draw_samples();
         }
         for (line, id, arguments) in &show.commands {
             match crate::command::from_json(self, id, arguments) {
@@ -106,6 +120,7 @@ impl AppState {
         self.search.close();
         self.selection = Selection::None;
         self.pins = Pins::default();
+        self.lesson.samples_due = None;
         self.reason = 0;
         self.time_range = None;
         self.playback.is_playing = false;
