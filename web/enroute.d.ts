@@ -83,6 +83,9 @@ export type State = {
   verdict: Verdict | null;
   /** Why there is no plan. */
   failure: Failure | null;
+  /** The lessons. */
+  lesson: Lessons;
+  manual: Manual;
   review: Review;
   /** What the mission is compared with. */
   compare: Comparison | null;
@@ -369,6 +372,62 @@ export type KeptMission = {
   maps: Array<string>;
   /** The names of its versions, the oldest first. */
   versions: Array<string>;
+};
+
+/** The lessons; `open` is `null` while the contents of the course are shown. */
+export type Lessons = {
+  /** The names of the course's lessons, in order. */
+  course: Array<string>;
+  /** Stops whose questions were answered rightly: `negative-cycle/2`. */
+  learned: Array<string>;
+  /** Whether the panels stand as the lesson wants them. */
+  beside: boolean;
+  open: OpenLesson | null;
+};
+
+/** The lesson that is open, at its stop. */
+export type OpenLesson = {
+  name: string;
+  title: string;
+  /** From 1. */
+  stop: number;
+  stops: number;
+  stopTitle: string;
+  /** Whether what the stop shows is still worked out. */
+  isDue: boolean;
+  /** What the stop says, without its looks. */
+  prose: string;
+  question: Question | null;
+  /** What is wrong in the lesson's file, by line. */
+  errors: Array<LessonMistake>;
+};
+
+/** What a stop asks. */
+export type Question = {
+  kind: "choice" | "number" | "word" | "task";
+  text: string;
+  choices: Array<string>;
+  /** What was answered last. */
+  given: string | null;
+  /** Whether that was right; of a task, whether it is done. */
+  isRight: boolean | null;
+};
+
+/** Something wrong in a lesson. */
+export type LessonMistake = {
+  /** From 1. */
+  line: number;
+  message: string;
+};
+
+/** The manual as it is looked at. */
+export type Manual = {
+  /** `null` while its contents are shown. */
+  page: string | null;
+  section: string;
+  query: string;
+  /** Where what is looked for stands: `page#section`. */
+  found: Array<string>;
 };
 
 /** The review of the mission. */

@@ -7,10 +7,12 @@ use egui::{CentralPanel, Frame, Ui};
 use egui_tiles::{Behavior, TileId, Tiles, UiResponse};
 use panels::{Context, Panels};
 use serde_json::Value;
+use theme::icon::{self, Icon};
 use workbench::command::{Command, CommandSender};
 use workbench::host::{Host, Remote, RemoteError};
 use workbench::outside::PageState;
 use workbench::state::AppState;
+use workbench::state::manual::ManualCommand;
 use workbench::{PanelEffect, PanelKind, Session, WindowEffect};
 
 use crate::bar;
@@ -281,6 +283,22 @@ impl Behavior<PanelKind> for PanelTiles<'_> {
             self.commands.send(Command::ClosePanel(kind));
         }
         tab.response
+    }
+
+    fn top_bar_right_ui(
+        &mut self,
+        tiles: &Tiles<PanelKind>,
+        ui: &mut Ui,
+        _tile: TileId,
+        tabs: &egui_tiles::Tabs,
+        _scroll_offset: &mut f32,
+    ) {
+        let panel = tabs.active.and_then(|tile| tiles.get_pane(&tile)).copied();
+        let Some(panel) = panel.filter(|panel| *panel != PanelKind::Manual) else { return };
+        let name = format!("The manual about {}", panel.title());
+        if icon::button(ui, self.context.tokens, Icon::Help, &name).clicked() {
+            self.commands.send(Command::Manual(ManualCommand::About(panel)));
+        }
     }
 
     fn is_tab_closable(&self, _tiles: &Tiles<PanelKind>, _tile: TileId) -> bool {

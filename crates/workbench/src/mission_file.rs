@@ -93,11 +93,6 @@ pub const EXAMPLES: &[Example] = &[
         title: "Orbit insertion",
         source: include_str!("../../../assets/programs/orbit-insertion.rmpl"),
     },
-    Example {
-        name: "esterel-idioms",
-        title: "Esterel's idioms",
-        source: include_str!("../../../assets/programs/esterel-idioms.rmpl"),
-    },
 ];
 
 /// The plant that a control program without one runs on, if its names fit.

@@ -5,6 +5,8 @@ use panels::Context;
 use theme::show_markdown;
 use theme::space;
 use workbench::command::{Command, CommandSender};
+use workbench::manual;
+use workbench::state::manual::ManualCommand;
 
 /// Shows the manual page of `code`.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, code: &str, commands: &mut CommandSender) {
@@ -39,7 +41,15 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, code: &str, commands: &mu
         }
     });
     ui.add_space(space::M);
-    close(ui, commands);
+    ui.horizontal(|ui| {
+        close(ui, commands);
+        if ui.button("In the manual").clicked()
+            && let Some(section) = manual::section_of_code(code)
+        {
+            commands.send(Command::CloseDialog);
+            commands.send(Command::Manual(ManualCommand::Open("diagnostics", section)));
+        }
+    });
 }
 
 fn close(ui: &mut Ui, commands: &mut CommandSender) {

@@ -9,7 +9,10 @@ use egui::{Align2, Color32, FontFamily, FontId, Galley, Rect, Stroke, pos2, vec2
 use super::DisplayPainter;
 
 /// Names that would be smaller than this in points keep this size instead, and are cut to the room there is.
-const LEGIBLE: f64 = 9.5;
+const LEGIBLE: f64 = 11.0;
+/// Other texts that would be smaller than that keep it too, where they would be no smaller than this: there is room for
+/// so much more around them.
+const RAISED_FROM: f64 = 7.9;
 /// A name with less room than this on the screen is left out.
 const LEAST_NAME: f32 = 30.0;
 /// From the ends of a line to the name over it, together, in points.
@@ -47,6 +50,7 @@ impl DisplayPainter<'_> {
         }
         let strength = ((size - least) / FADE.0).clamp(FADE.1, 1.0) as f32;
         let color = self.color(text.color).gamma_multiply(strength);
+        let size = if size >= RAISED_FROM { size.max(LEGIBLE) } else { size };
         let (galley, font) = self.fitted(text, size, place, color);
         let left = match text.anchor {
             Anchor::Start => place.left(),

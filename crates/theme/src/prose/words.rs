@@ -65,10 +65,6 @@ pub(super) fn layout(ui: &Ui, prose: &Prose<'_>, runs: &[Run], look: Look, width
         format.line_height = Some((look.size * LINE_HEIGHT).round());
         format.valign = egui::Align::Center;
         format.italics = run.style.emphasis;
-        if run.link.is_some() {
-            let line = if is_term { tokens.line_strong } else { tokens.accent };
-            format.underline = Stroke::new(1.0, line);
-        }
         job.append(&run.text, 0.0, format);
     }
     ui.painter().layout_job(job)
@@ -90,7 +86,16 @@ pub(super) fn place(
     for (number, run) in runs.iter().enumerate() {
         let to = from + run.text.chars().count();
         if let Some(link) = &run.link {
-            let rect = rect_of(galley, from, to).translate(at.to_vec2());
+            let rects = rects_of(galley, from, to);
+            let is_term = (prose.hover)(link).is_some();
+            let color = if is_term { prose.tokens.text_faint } else { prose.tokens.accent };
+            for rect in &rects {
+                // Close below the letters, which stand in the middle of their line.
+                let y = (at.y + rect.center().y + rect.height() / LINE_HEIGHT * 0.5).round() + 0.5;
+                ui.painter().hline((at.x + rect.left())..=(at.x + rect.right()), y, Stroke::new(1.0, color));
+            }
+            let longest = rects.into_iter().max_by(|one, other| one.width().total_cmp(&other.width()));
+            let rect = longest.unwrap_or(Rect::NOTHING).translate(at.to_vec2());
             let id = ui.scope_id().with(("link", at.x as i32, at.y as i32, number));
             let response = ui.interact(rect, id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);
             response.widget_info(|| WidgetInfo::labeled(Role::Link, true, &run.text));
@@ -107,15 +112,18 @@ pub(super) fn place(
     clicked
 }
 
-/// Around the letters from one to another; of words that go on in the next line, the longer part.
-fn rect_of(galley: &Galley, from: usize, to: usize) -> Rect {
-    let cursor = |index: usize| CCursor { index: index.into(), prefer_next_row: true };
-    let begin = galley.pos_from_cursor(cursor(from));
-    let end = galley.pos_from_cursor(CCursor { index: to.into(), prefer_next_row: false });
+/// Around the letters from one to another, line by line.
+fn rects_of(galley: &Galley, from: usize, to: usize) -> Vec<Rect> {
+    let cursor = |index: usize, prefer_next_row| CCursor { index: index.into(), prefer_next_row };
+    let begin = galley.pos_from_cursor(cursor(from, true));
+    let end = galley.pos_from_cursor(cursor(to, false));
     if (begin.min.y - end.min.y).abs() < 1.0 {
-        return begin.union(end);
+        return vec![begin.union(end)];
     }
     let first = Rect::from_min_max(begin.min, egui::pos2(galley.size().x, begin.max.y));
     let last = Rect::from_min_max(egui::pos2(0.0, end.min.y), end.max);
-    if first.width() >= last.width() { first } else { last }
+    let between = Rect::from_min_max(first.left_bottom(), last.right_top());
+    let middle = Rect::from_min_max(egui::pos2(0.0, between.top()), egui::pos2(galley.size().x, between.bottom()));
+    let has_middle = middle.height() > 1.0;
+    std::iter::once(first).chain(has_middle.then_some(middle)).chain([last]).collect()
 }

@@ -15,6 +15,7 @@ mod execution;
 mod failure;
 mod keeping;
 mod language;
+mod lesson;
 mod offline;
 mod report;
 mod same;

@@ -75,11 +75,6 @@ pub(super) const FACTS: &[Fact] = &[
             count(cycle.len())
         },
     ),
-    fact("goes-to", Of::Nothing, "the choice to which the step that is looked at goes back", |state, _| {
-        let (recording, event) = looked_at(state)?;
-        let (Event::Backtrack { to } | Event::Backjump { to, .. }) = event else { return None };
-        words(recording.trace().label(recording.network(), *to))
-    }),
     fact("compared", Of::Nothing, "whether both searches are shown side by side", |state, _| {
         truth(state.search.recordings(state.shown()).len() == 2)
     }),
