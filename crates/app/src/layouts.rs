@@ -15,6 +15,8 @@ pub struct Layouts {
     trees: BTreeMap<Arrangement, Tree<PanelKind>>,
     stored: BTreeMap<Arrangement, String>,
     size: SizeClass,
+    /// The panels that the last stop of a lesson wanted beside it: rows of columns of tabs.
+    lesson_rows: Vec<Vec<Vec<PanelKind>>>,
 }
 
 fn key(arrangement: Arrangement) -> String {
@@ -33,13 +35,19 @@ impl Layouts {
             stored.insert(arrangement, default_layout::to_text(&tree).unwrap_or_default());
             trees.insert(arrangement, tree);
         }
-        Self { trees, stored, size: SizeClass::default() }
+        Self { trees, stored, size: SizeClass::default(), lesson_rows: Vec::new() }
     }
 
     /// Adapts to the window's size class: layouts that the user has not changed become those that fit it.
     pub fn fit(&mut self, size: SizeClass) {
         if self.size == size {
             return;
+        }
+        let of_lesson = |size| default_layout::lesson_layout(&self.lesson_rows, size);
+        if let Some(tree) = self.trees.get_mut(&Arrangement::Lesson)
+            && *tree == of_lesson(self.size)
+        {
+            *tree = of_lesson(size);
         }
         for (&arrangement, tree) in &mut self.trees {
             if *tree == default_layout(arrangement, self.size) {
@@ -71,7 +79,8 @@ impl Layouts {
                 PanelEffect::Show(panel) => default_layout::show_panel(self.tree_mut(arrangement), panel),
                 PanelEffect::Close(panel) => default_layout::close_panel(self.tree_mut(arrangement), panel),
                 PanelEffect::Arrange => {
-                    let layout = default_layout::lesson_layout(state.lesson.panels(), self.size);
+                    self.lesson_rows = state.lesson.panels().to_vec();
+                    let layout = default_layout::lesson_layout(&self.lesson_rows, self.size);
                     self.trees.insert(Arrangement::Lesson, layout);
                 }
                 _ => {

@@ -7,7 +7,7 @@ use super::words::{Look, layout, place};
 use super::{Prose, TEXT};
 use crate::space;
 
-/// No column is narrower, unless what stands in it is.
+/// A column that wants no more than this gets it.
 const LEAST: f32 = 72.0;
 
 /// Shows a table over the width there is. Returns the link that was clicked.
@@ -55,15 +55,12 @@ fn shared(wanted: &[f32], room: f32) -> Vec<f32> {
         return wanted.to_vec();
     }
     let fair = room / wanted.len() as f32;
-    let kept: f32 = wanted.iter().filter(|&&width| width <= fair.max(LEAST)).sum();
-    let others: f32 = wanted.iter().filter(|&&width| width > fair.max(LEAST)).sum();
-    let rest = (room - kept).max(LEAST);
-    let is_kept = |width: f32| width <= fair.max(LEAST);
-    // Wide columns differ less than what stands in them.
-    wanted
-        .iter()
-        .map(|&width| if is_kept(width) { width } else { (width / others * rest).max(LEAST) })
-        .collect()
+    let is_kept = |width: f32| width <= fair.min(LEAST);
+    let kept: f32 = wanted.iter().copied().filter(|&width| is_kept(width)).sum();
+    // Roots: wide columns differ less than what stands in them.
+    let others: f32 = wanted.iter().copied().filter(|&width| !is_kept(width)).map(f32::sqrt).sum();
+    let rest = (room - kept).max(0.0);
+    wanted.iter().map(|&width| if is_kept(width) { width } else { width.sqrt() / others * rest }).collect()
 }
 
 #[cfg(test)]
@@ -76,5 +73,9 @@ mod tests {
         let widths = shared(&[40.0, 900.0, 300.0], 400.0);
         assert_eq!(widths[0], 40.0);
         assert!((widths.iter().sum::<f32>() - 400.0).abs() < 0.01, "{widths:?}");
+        for room in [120.0, 300.0, 700.0] {
+            let widths = shared(&[100.0, 900.0, 300.0, 20.0], room);
+            assert!(widths.iter().sum::<f32>() < room + 0.01, "{widths:?} in {room}");
+        }
     }
 }

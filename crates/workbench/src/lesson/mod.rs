@@ -146,11 +146,13 @@ impl Lesson {
                 Content::Code { info, text } if is_mission(info) && !has_mission => {
                     has_mission = true;
                     lesson.mission = LessonMission::Text(text.as_str().into());
+                    lesson.take_shown(block);
                 }
-                Content::Code { info, text } if is_mission(info) && info.ends_with(" mission") => {
+                Content::Code { info, text } if is_mission(info) && has_word(info, "mission") => {
                     if let Some(stop) = lesson.stops.last_mut() {
                         stop.mission = Some(LessonMission::Text(text.as_str().into()));
                     }
+                    lesson.take_shown(block);
                 }
                 _ => lesson.take(block, &mut errors),
             }
@@ -173,6 +175,15 @@ impl Lesson {
     pub fn mission_at(&self, stop: usize) -> &LessonMission {
         let before = self.stops.iter().take(stop.saturating_add(1)).rev();
         before.into_iter().find_map(|stop| stop.mission.as_ref()).unwrap_or(&self.mission)
+    }
+
+    /// The text of a mission stands in the prose too where its fence says `shown`.
+    fn take_shown(&mut self, block: Block) {
+        if let (Content::Code { info, .. }, Some(stop)) = (&block.content, self.stops.last_mut())
+            && has_word(info, "shown")
+        {
+            stop.prose.push(block);
+        }
     }
 
     /// Takes a block of the stop that was begun last.
@@ -208,6 +219,10 @@ impl Lesson {
 /// Whether a fence holds a mission or a control program.
 fn is_mission(info: &str) -> bool {
     first_word(info) == "rmpl"
+}
+
+fn has_word(info: &str, word: &str) -> bool {
+    info.split_whitespace().any(|it| it == word)
 }
 
 fn first_word(info: &str) -> &str {

@@ -4,13 +4,13 @@ use mission::SearchKind;
 
 use crate::PanelKind;
 use crate::command::ViewAction;
-use crate::lesson::{LessonSearch, Show, StepTarget, Which};
+use crate::lesson::{Expectation, LessonSearch, Show, StepTarget, Which};
 use crate::state::automaton::AutomatonCommand;
 use crate::state::growth::GrowthCommand;
 use crate::state::search::wording::event;
 use crate::state::search::{Recording, SearchCommand};
 use crate::state::terrain::TerrainCommand;
-use crate::state::{AppState, Pins, Selection, ToastKind};
+use crate::state::{AppState, Pins, Selection, Status, ToastKind};
 use crate::workspace::Workspace;
 
 /// The panels whose view begins anew at each stop. The search tree follows its step by itself.
@@ -41,6 +41,7 @@ impl AppState {
             self.lesson.is_due = false;
             let show = self.lesson.stop().map(|stop| stop.show.clone()).unwrap_or_default();
             self.show(&show);
+            self.check_expectation();
             return;
         }
         self.draw_samples();
@@ -151,6 +152,22 @@ impl AppState {
                 };
                 found.map(|(step, _)| step)
             }
+        }
+    }
+
+    /// Tells the lecturer if the lesson's mission, as it is, does not come to what the lesson says of it.
+    fn check_expectation(&mut self) {
+        let Some(lesson) = &self.lesson.open else { return };
+        let is_its_mission = self.lesson.opened.as_ref() == Some(&lesson.mission);
+        let (status, words) = match lesson.expects {
+            Expectation::Plan => (Status::Plan, "has a plan"),
+            Expectation::NoPlan => (Status::NoPlan, "has no plan"),
+            Expectation::Errors => (Status::Broken, "has errors"),
+            Expectation::Program => (Status::Program, "is a control program"),
+        };
+        if is_its_mission && self.lesson.text() == Some(self.document.text()) && self.status() != status {
+            let text = format!("The head of the lesson says that its mission {words} (`expects`); that is not so");
+            self.toasts.add(ToastKind::Failed, text);
         }
     }
 
