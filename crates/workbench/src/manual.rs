@@ -58,12 +58,34 @@ static PAGES: LazyLock<Vec<Page>> = LazyLock::new(|| {
 });
 
 fn page(name: &'static str, text: &str) -> Page {
-    let document = Document::parse(text);
+    let document = Document::parse(&with_known_signs(text));
     let title = document.blocks.iter().find_map(|block| match &block.content {
         Content::Heading { level: 1, text } => Some(plain(text)),
         _ => None,
     });
     Page { name, title: title.unwrap_or_else(|| name.to_owned()), document }
+}
+
+/// Signs that the page's fonts lack, with what stands for them on screen.
+const SIGNS: [(&str, &str); 13] = [
+    ("θ̇", "θ'"),
+    ("v̇", "v'"),
+    ("ẋ", "x'"),
+    ("ẏ", "y'"),
+    ("ᵢ", "_i"),
+    ("₊", "+"),
+    ("₁", "1"),
+    ("₂", "2"),
+    ("⁻", "-"),
+    ("ℓ", "l"),
+    ("∅", "{}"),
+    ("∝", "~"),
+    ("⊨", "|= "),
+];
+
+fn with_known_signs(text: &str) -> String {
+    let text = text.replace('⊭', "|≠ ");
+    SIGNS.iter().fold(text, |text, (sign, shown)| text.replace(sign, shown))
 }
 
 /// What every kind of problem means, one section each.

@@ -35,7 +35,11 @@ fn walk(app: &mut App, name: &str, lesson: &Lesson) -> Vec<String> {
         let place = format!("{name}, stop {} ({})", number + 1, stop.title);
         let state = app.json();
         let complaints = state["toasts"].as_array().into_iter().flatten().filter_map(Value::as_str);
-        wrong.extend(complaints.filter(|it| it.contains("of the lesson") || it.contains("`expects`")).map(|it| format!("{place}: {it}")));
+        wrong.extend(
+            complaints
+                .filter(|it| it.contains("of the lesson") || it.contains("`expects`"))
+                .map(|it| format!("{place}: {it}")),
+        );
         let prose = at(app)["prose"].as_str().unwrap_or_default().to_owned();
         if prose.contains('…') && !stop.prose.iter().any(|block| block.plain().contains('…')) {
             wrong.push(format!("{place}: a value is not known: {prose}"));

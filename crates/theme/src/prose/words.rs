@@ -123,7 +123,8 @@ fn rects_of(galley: &Galley, from: usize, to: usize) -> Vec<Rect> {
     let first = Rect::from_min_max(begin.min, egui::pos2(galley.size().x, begin.max.y));
     let last = Rect::from_min_max(egui::pos2(0.0, end.min.y), end.max);
     let between = Rect::from_min_max(first.left_bottom(), last.right_top());
-    let middle = Rect::from_min_max(egui::pos2(0.0, between.top()), egui::pos2(galley.size().x, between.bottom()));
+    let middle =
+        Rect::from_min_max(egui::pos2(0.0, between.top()), egui::pos2(galley.size().x, between.bottom()));
     let has_middle = middle.height() > 1.0;
     std::iter::once(first).chain(has_middle.then_some(middle)).chain([last]).collect()
 }

@@ -17,7 +17,10 @@ fn keys_go_from_stop_to_stop_and_the_drawings_follow() -> Result<()> {
     page.wait_for("state.lesson.open.stop === 3 && state.search.known?.event === 'inconsistent'")?;
     assert!(page.look()?.difference(&decided) > 0.01, "the drawings show the cycle");
     let state = page.state()?;
-    assert!(state["lesson"]["open"]["prose"].as_str().is_some_and(|prose| prose.contains("15 minutes")), "{state}");
+    assert!(
+        state["lesson"]["open"]["prose"].as_str().is_some_and(|prose| prose.contains("15 minutes")),
+        "{state}"
+    );
     page.tab.press(Key::Character('n'), Modifiers::SHIFT)?;
     page.wait_for("state.lesson.open.stop === 2")?;
     assert_eq!(page.state()?["panels"], json!(["lesson", "network", "search"]));

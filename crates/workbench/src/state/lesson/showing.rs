@@ -166,7 +166,8 @@ impl AppState {
             Expectation::Program => (Status::Program, "is a control program"),
         };
         if is_its_mission && self.lesson.text() == Some(self.document.text()) && self.status() != status {
-            let text = format!("The head of the lesson says that its mission {words} (`expects`); that is not so");
+            let text =
+                format!("The head of the lesson says that its mission {words} (`expects`); that is not so");
             self.toasts.add(ToastKind::Failed, text);
         }
     }
