@@ -1,6 +1,6 @@
 //! Markdown as a tree of blocks with their lines: what lessons, the glossary and the manual are written in.
 //!
-//! [`Document::parse`] reads CommonMark with tables and a head of `---` lines. It cannot fail: any text is some
+//! [`Document::parse`] reads `CommonMark` with tables and a head of `---` lines. It cannot fail: any text is some
 //! document. Raw HTML and pictures are left out, with the words of a picture in its place. This draws nothing and
 //! follows no links; `theme` shows the blocks.
 

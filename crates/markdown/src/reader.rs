@@ -111,7 +111,7 @@ impl Reader<'_> {
     /// The text up to the end of what holds it, whatever is in it.
     fn verbatim(&mut self) -> String {
         let (mut text, mut depth) = (String::new(), 0_u32);
-        while let Some((event, _)) = self.events.next() {
+        for (event, _) in self.events.by_ref() {
             match event {
                 Event::Text(more) => text.push_str(&more),
                 Event::Start(_) => depth += 1,
@@ -126,7 +126,7 @@ impl Reader<'_> {
     /// The words up to the end of what holds them, which is taken too.
     fn runs(&mut self) -> Vec<Run> {
         let mut words = Words::default();
-        while let Some((event, _)) = self.events.next() {
+        for (event, _) in self.events.by_ref() {
             if matches!(event, Event::End(_)) && words.is_outside() {
                 break;
             }

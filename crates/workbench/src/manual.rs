@@ -238,7 +238,9 @@ fn visit_links(blocks: &[Block], visit: &mut dyn FnMut(&str)) {
                 head.iter().chain(rows.iter().flatten()).map(Vec::as_slice).collect()
             }
             Content::List { items, .. } => {
-                items.iter().for_each(|item| visit_links(item, visit));
+                for item in items {
+                    visit_links(item, visit);
+                }
                 Vec::new()
             }
             Content::Quote(blocks) => {

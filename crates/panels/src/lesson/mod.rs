@@ -59,7 +59,7 @@ impl Panel for LessonPanel {
             });
         });
         ui.scope_builder(egui::UiBuilder::new().max_rect(lower), |ui| {
-            buttons(ui, context, lesson, at, commands)
+            buttons(ui, context, lesson, at, commands);
         });
         ui.advance_cursor_after_rect(room);
     }

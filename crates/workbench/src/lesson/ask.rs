@@ -102,12 +102,13 @@ pub(super) fn read(text: &str, fence: u32, errors: &mut Vec<LessonError>) -> Opt
     let mut choices = Vec::new();
     let before = errors.len();
     let mut wrong = Vec::new();
-    let entries = entries(text, fence, |line, text| match text.strip_prefix("- ") {
-        Some(written) => match choice(written) {
-            Ok(choice) => choices.push(choice),
-            Err(message) => wrong.push(LessonError::new(line, message)),
-        },
-        None => {
+    let entries = entries(text, fence, |line, text| {
+        if let Some(written) = text.strip_prefix("- ") {
+            match choice(written) {
+                Ok(choice) => choices.push(choice),
+                Err(message) => wrong.push(LessonError::new(line, message)),
+            }
+        } else {
             question.push_str(if question.is_empty() { "" } else { " " });
             question.push_str(text.trim());
         }

@@ -25,20 +25,22 @@ pub(super) fn read(lesson: &mut Lesson, head: Option<&Head>, errors: &mut Vec<Le
                     None => errors.push(LessonError::new(line, format!("there is no example `{value}`"))),
                 }
             }
-            "search" => match search(&value) {
-                Some(search) => lesson.search = search,
-                None => {
+            "search" => {
+                if let Some(search) = search(&value) {
+                    lesson.search = search;
+                } else {
                     let message = "`search` is `chronological`, `conflict-directed` or `both`";
                     errors.push(LessonError::new(line, message));
                 }
-            },
-            "expects" => match expectation(&value) {
-                Some(expects) => lesson.expects = expects,
-                None => {
+            }
+            "expects" => {
+                if let Some(expects) = expectation(&value) {
+                    lesson.expects = expects;
+                } else {
                     let message = "`expects` is `plan`, `no plan`, `errors` or `program`";
                     errors.push(LessonError::new(line, message));
                 }
-            },
+            }
             other => {
                 let message = format!(
                     "the head of a lesson knows no `{other}`; it has `about`, `mission`, `search` and `expects`"

@@ -70,6 +70,7 @@ fn count(count: usize) -> Option<Value> {
     Some(Value::Number(Rational::from_integer(i64::try_from(count).ok()?)))
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "it ends a fact, which may not be known")]
 fn time(time: Time) -> Option<Value> {
     Some(Value::Number(time.units()))
 }
@@ -79,10 +80,12 @@ fn measured(number: f64) -> Option<Value> {
     Rational::from_f64_nearest(number, 10).map(Value::Number)
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "it ends a fact, which may not be known")]
 fn truth(truth: bool) -> Option<Value> {
     Some(Value::Truth(truth))
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "it ends a fact, which may not be known")]
 fn words(words: impl Into<String>) -> Option<Value> {
     Some(Value::Text(words.into()))
 }
