@@ -327,10 +327,10 @@ impl Tab {
     /// Drops a file on the page, as a user would from a folder.
     pub fn drop_file(&self, name: &str, bytes: &[u8]) -> Result<()> {
         self.evaluate(&format!(
-            "(async () => {{
-                const answer = await fetch('data:application/octet-stream;base64,{}');
+            "(() => {{
+                const bytes = Uint8Array.from(atob('{}'), (letter) => letter.charCodeAt(0));
                 const transfer = new DataTransfer();
-                transfer.items.add(new File([await answer.blob()], {}));
+                transfer.items.add(new File([bytes], {}));
                 const options = {{ bubbles: true, cancelable: true, dataTransfer: transfer }};
                 document.getElementById('canvas').dispatchEvent(new DragEvent('drop', options));
             }})()",
