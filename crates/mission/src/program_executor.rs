@@ -14,12 +14,11 @@ use std::sync::Arc;
 
 use exact::{Bound, Overflow, Time};
 use executive::model_based::{
-    ClosedLoop, Estimation, Estimator, Knowledge, LoopStep, Program as ProgramUnderWay, StepInput, System,
+    ClosedLoop, Estimation, Estimator, Knowledge, LoopStep, ProgramExecution, StepInput, System,
 };
 use executive::{
     ActivityExecution, ActivityExecutor, Disturbance, Ends, Entry, Happening, PlantReading, Revision,
 };
-use hca::Stepper;
 use plant::{ComponentId, Model, Random};
 use smol_str::SmolStr;
 use tpn::{Network, OccurrenceId};
@@ -59,31 +58,11 @@ struct Moment {
 struct Active {
     occurrence: OccurrenceId,
     name: SmolStr,
-    system: Arc<System>,
+    program: ProgramExecution,
     commanded: Arc<BTreeSet<ComponentId>>,
-    stepper: Stepper,
-    steps: u32,
     started: Time,
     /// When it is known not to end in time.
     given_up: Time,
-}
-
-impl ProgramUnderWay for Active {
-    fn system(&self) -> &Arc<System> {
-        &self.system
-    }
-
-    fn stepper(&self) -> &Stepper {
-        &self.stepper
-    }
-
-    fn stepper_mut(&mut self) -> &mut Stepper {
-        &mut self.stepper
-    }
-
-    fn steps(&self) -> u32 {
-        self.steps
-    }
 }
 
 impl Moment {
@@ -183,10 +162,8 @@ impl<'run> ProgramExecutor<'run> {
         Ok(Active {
             occurrence: id,
             name: occurrence.name.clone(),
-            system: Arc::clone(system),
+            program: ProgramExecution::new(system),
             commanded: Arc::new(system.commanded()),
-            stepper: Stepper::new(&system.automaton),
-            steps: 0,
             started: start,
             given_up: start.checked_add(most).ok_or(Overflow)?,
         })
@@ -238,15 +215,17 @@ impl<'run> ProgramExecutor<'run> {
         let time = moment.time.checked_add(self.programs.step()).ok_or(Overflow)?;
         if let Some(active) = moment.running.first() {
             let estimator = self.estimator.get_or_insert_with(|| {
-                let system = active.system();
+                let system = &active.program.system;
                 Estimator::new(Arc::clone(&system.planner), Estimation::for_model(&system.model))
             });
             let input = faults(self.disturbances, &moment.running);
-            let step = match moment.closed.step(&mut moment.running, estimator, &input) {
+            let mut programs: Vec<&mut ProgramExecution> =
+                moment.running.iter_mut().map(|active| &mut active.program).collect();
+            let step = match moment.closed.step(&mut programs, estimator, &input) {
                 Ok(step) => step,
                 Err(error) => {
                     for active in &moment.running {
-                        let number = active.steps + 1;
+                        let number = active.program.steps + 1;
                         let reason = format!("step {number} of the program cannot be taken: {error}");
                         self.told.entry(active.occurrence).or_default().ends = Ends::Never(reason);
                     }
@@ -255,8 +234,7 @@ impl<'run> ProgramExecutor<'run> {
                     return Ok(false);
                 }
             };
-            for active in &mut moment.running {
-                active.steps += 1;
+            for active in &moment.running {
                 let text = text(active, &step, &input);
                 let happening = Happening::Progress { name: active.name.clone(), text };
                 self.told.entry(active.occurrence).or_default().entries.push(Entry { time, happening });
@@ -270,11 +248,11 @@ impl<'run> ProgramExecutor<'run> {
     }
 
     fn end_what_is_done(&mut self, moment: &mut Moment) -> Result<(), Overflow> {
-        for active in moment.running.iter().filter(|active| active.stepper.is_done()) {
+        for active in moment.running.iter().filter(|active| active.program.stepper.is_done()) {
             let lasted = moment.time.checked_sub(active.started).ok_or(Overflow)?;
             self.told.entry(active.occurrence).or_default().ends = Ends::After(lasted);
         }
-        moment.running.retain(|active| !active.stepper.is_done());
+        moment.running.retain(|active| !active.program.stepper.is_done());
         moment.let_begin();
         Ok(())
     }
@@ -286,10 +264,10 @@ impl<'run> ProgramExecutor<'run> {
             if told.ends != Ends::AsPlanned {
                 continue;
             }
-            let holder = moment.holder(active).filter(|_| active.steps == 0);
+            let holder = moment.holder(active).filter(|_| active.program.steps == 0);
             told.ends = Ends::Never(match holder {
                 Some(holder) => format!("its program waits for that of {}, which has not ended", holder.name),
-                None => format!("its program did not reach its end in {} steps", active.steps),
+                None => format!("its program did not reach its end in {} steps", active.program.steps),
             });
         }
     }
@@ -305,7 +283,7 @@ impl<'run> ProgramExecutor<'run> {
         for pair in moments.windows(2) {
             let [before, after] = pair else { continue };
             let Some(active) = before.active().next().filter(|_| after.time > now) else { continue };
-            let model = &active.system.model;
+            let model = &active.program.system.model;
             for &(variable, component) in &read {
                 let Some(id) = model.component_named(component) else { continue };
                 let mode = |moment: &Moment| moment.closed.belief().most_likely().mode(id);
@@ -381,9 +359,9 @@ fn faults(disturbances: &[Disturbance], running: &[Active]) -> StepInput {
     let mut input = StepInput::default();
     for disturbance in disturbances {
         let Disturbance::Fault { activity, step, component, mode } = disturbance else { continue };
-        let fits = |active: &&Active| active.name == *activity && *step == active.steps + 1;
+        let fits = |active: &&Active| active.name == *activity && *step == active.program.steps + 1;
         if let Some(active) = running.iter().find(fits)
-            && let Some((component, mode)) = named(&active.system.model, component, mode)
+            && let Some((component, mode)) = named(&active.program.system.model, component, mode)
         {
             input.injected.insert(component, mode);
         }
@@ -393,7 +371,7 @@ fn faults(disturbances: &[Disturbance], running: &[Active]) -> StepInput {
 
 /// What a step of a program did, in words: its commands, then what is found out.
 fn text(active: &Active, step: &LoopStep, input: &StepInput) -> String {
-    let model: &Model = &active.system.model;
+    let model: &Model = &active.program.system.model;
     let mut own = step.commands.clone();
     for (value, variable) in own.0.iter_mut().zip(&model.command_variables) {
         if !active.commanded.contains(&variable.component) {
@@ -403,7 +381,7 @@ fn text(active: &Active, step: &LoopStep, input: &StepInput) -> String {
     let commands = model.command_names(&own);
     let commands: Vec<String> = commands.iter().map(|(name, value)| format!("{name}.{value}")).collect();
     let commands = if commands.is_empty() { "no command".to_owned() } else { commands.join(", ") };
-    let mut text = format!("step {}: {commands}", active.steps);
+    let mut text = format!("step {}: {commands}", active.program.steps);
     for (&component, &mode) in &input.injected {
         let name = model.component(component).map_or("?", |component| component.name.as_str());
         let _ = write!(text, "; {name} comes into {}", model.mode_name(component, mode));

@@ -17,18 +17,26 @@ use super::run::{Knowledge, StepInput};
 use super::system::System;
 
 /// A program under way.
-pub trait Program {
+#[derive(Clone, Debug)]
+pub struct ProgramExecution {
     /// The program with its plant.
-    fn system(&self) -> &Arc<System>;
-
+    pub system: Arc<System>,
     /// Where it stands.
-    fn stepper(&self) -> &Stepper;
-
-    /// The same, to move it on.
-    fn stepper_mut(&mut self) -> &mut Stepper;
-
+    pub stepper: Stepper,
     /// How many steps it has taken.
-    fn steps(&self) -> u32;
+    pub steps: u32,
+}
+
+impl ProgramExecution {
+    /// Starts a program.
+    pub fn new(system: &Arc<System>) -> Self {
+        Self { system: Arc::clone(system), stepper: Stepper::new(&system.automaton), steps: 0 }
+    }
+
+    /// The marked locations, goals and labels of the next step.
+    pub fn upcoming(&self) -> TraceStep {
+        TraceStep::at(&self.stepper, self.steps + 1)
+    }
 }
 
 /// A plant under control, with what is believed of it.
@@ -82,14 +90,14 @@ impl ClosedLoop {
 
     /// One step of all `programs`, of which there is at least one, with what comes from outside. After an error the plant
     /// and the programs stand where they stood.
-    pub fn step<P: Program>(
+    pub fn step(
         &mut self,
-        programs: &mut [P],
+        programs: &mut [&mut ProgramExecution],
         estimator: &mut Estimator,
         input: &StepInput,
     ) -> Result<LoopStep, EstimateError> {
         let before = (self.plant.state().clone(), self.random.clone());
-        let Some(system) = programs.first().map(|program| Arc::clone(program.system())) else {
+        let Some(system) = programs.first().map(|program| Arc::clone(&program.system)) else {
             return Err(EstimateError::Unexplained);
         };
         let stepped = self.advance(&system, programs, estimator, input);
@@ -100,15 +108,14 @@ impl ClosedLoop {
         stepped
     }
 
-    fn advance<P: Program>(
+    fn advance(
         &mut self,
         system: &System,
-        programs: &mut [P],
+        programs: &mut [&mut ProgramExecution],
         estimator: &mut Estimator,
         input: &StepInput,
     ) -> Result<LoopStep, EstimateError> {
-        let upcoming = |program: &P| TraceStep::at(program.stepper(), program.steps() + 1);
-        let mut traces: Vec<TraceStep> = programs.iter().map(upcoming).collect();
+        let mut traces: Vec<TraceStep> = programs.iter().map(|program| program.upcoming()).collect();
         let (commands, unachievable) = self.command(programs, estimator);
         let mut failed = Vec::new();
         match &mut self.random {
@@ -136,8 +143,9 @@ impl ClosedLoop {
         for (program, trace) in programs.iter_mut().zip(&mut traces) {
             let likely = self.belief.states().take(most);
             let estimates: Vec<hca::Estimate> =
-                likely.map(|(state, _)| program.system().estimate(state, &shown)).collect();
-            program.stepper_mut().step_observed(&estimates, trace);
+                likely.map(|(state, _)| program.system.estimate(state, &shown)).collect();
+            program.stepper.step_observed(&estimates, trace);
+            program.steps += 1;
         }
         Ok(LoopStep {
             traces,
@@ -151,17 +159,17 @@ impl ClosedLoop {
     }
 
     /// The commands towards the goals of the marked locations, from the most likely state.
-    fn command<P: Program>(
+    fn command(
         &self,
-        programs: &[P],
+        programs: &[&mut ProgramExecution],
         estimator: &mut Estimator,
     ) -> (Commands, Vec<(SmolStr, String)>) {
         let state = self.belief.most_likely();
         let mut goals: Vec<Goal> = Vec::new();
         let mut unachievable: Vec<(SmolStr, String)> = Vec::new();
         for program in programs {
-            let system = program.system();
-            for location in program.stepper().marking().iter() {
+            let system = &program.system;
+            for location in program.stepper.marking().iter() {
                 let Some(configurations) = system.goal_configurations(location) else { continue };
                 if let Some(found) = configurations.goals(estimator.planner(), state) {
                     goals.extend(found);

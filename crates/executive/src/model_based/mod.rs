@@ -10,7 +10,7 @@ mod monte_carlo;
 mod run;
 mod system;
 
-pub use closed_loop::{ClosedLoop, LoopStep, Program};
+pub use closed_loop::{ClosedLoop, LoopStep, ProgramExecution};
 pub use estimator::{Estimation, Estimator};
 pub use monte_carlo::{FaultTally, ProgramTally, Trials, run_seed, sample, wilson_interval};
 pub use run::{Knowledge, Options, Run, StepInput, StepRecord};

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use hca::{Marking, Stepper, TraceStep};
+use hca::{Marking, TraceStep};
 use plant::{Belief, Commands, ComponentId, Conflict, EstimateError, Observation, Random, State, VariableId};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
-use super::closed_loop::{ClosedLoop, Program};
+use super::closed_loop::{ClosedLoop, ProgramExecution};
 use super::estimator::{Estimation, Estimator};
 use super::system::System;
 
@@ -74,36 +74,10 @@ struct Standing {
     closed: ClosedLoop,
 }
 
-/// The one program of a run.
-#[derive(Clone, Debug)]
-struct Single {
-    system: Arc<System>,
-    stepper: Stepper,
-    steps: u32,
-}
-
-impl Program for Single {
-    fn system(&self) -> &Arc<System> {
-        &self.system
-    }
-
-    fn stepper(&self) -> &Stepper {
-        &self.stepper
-    }
-
-    fn stepper_mut(&mut self) -> &mut Stepper {
-        &mut self.stepper
-    }
-
-    fn steps(&self) -> u32 {
-        self.steps
-    }
-}
-
 /// A run. It owns what it runs, so that it can be kept and stepped on.
 #[derive(Clone, Debug)]
 pub struct Run {
-    program: Single,
+    program: ProgramExecution,
     estimator: Estimator,
     closed: ClosedLoop,
     records: Vec<StepRecord>,
@@ -120,11 +94,10 @@ impl Run {
 
     /// The same with an estimator that remembers what earlier runs asked.
     pub fn with_estimator(system: &Arc<System>, options: Options, estimator: Estimator) -> Self {
-        let stepper = Stepper::new(&system.automaton);
         Self {
             estimator,
             closed: ClosedLoop::new(system, options.knowledge, options.seed.map(Random::new)),
-            program: Single { system: Arc::clone(system), stepper, steps: 0 },
+            program: ProgramExecution::new(system),
             records: Vec::new(),
             before: Vec::new(),
         }
@@ -171,7 +144,7 @@ impl Run {
 
     /// The marked locations, goals and labels of the next step.
     pub fn upcoming(&self) -> TraceStep {
-        TraceStep::at(&self.program.stepper, self.records.len() as u32 + 1)
+        self.program.upcoming()
     }
 
     /// Takes back the last step; false if there is none.
@@ -197,9 +170,7 @@ impl Run {
     pub fn step(&mut self, input: &StepInput) -> Result<&StepRecord, EstimateError> {
         let standing =
             Standing { marking: self.program.stepper.marking().clone(), closed: self.closed.clone() };
-        let programs = std::slice::from_mut(&mut self.program);
-        let step = self.closed.step(programs, &mut self.estimator, input)?;
-        self.program.steps += 1;
+        let step = self.closed.step(&mut [&mut self.program], &mut self.estimator, input)?;
         self.before.push(standing);
         // There is one trace for the one program.
         let trace = step.traces.into_iter().next().unwrap_or_else(|| self.upcoming());

@@ -176,7 +176,9 @@ fn schedules_are_saved_for_other_tools() -> Result<()> {
     let table = saved_text(&page)?;
     // SPEC 3.6.
     assert!(
-        table.contains("Group-Wait#1,primitive,Group-Wait,TAI_HOLD1 TAI_HOLD2,415,460,415,514,45,99,min,,,,draft,"),
+        table.contains(
+            "Group-Wait#1,primitive,Group-Wait,TAI_HOLD1 TAI_HOLD2,415,460,415,514,45,99,min,,,,draft,"
+        ),
         "{table}"
     );
     let epoch = "2004-01-25T05:05:00Z";
