@@ -274,10 +274,9 @@ impl<'run> ProgramExecutor<'run> {
 
     /// How the modes that the mission reads are estimated to change after `now`, by moments from `first` on.
     fn readings(&self, network: &Network, first: usize, now: Time) -> Vec<PlantReading> {
-        let variables = network.variables.iter().filter(|variable| variable.is_lasting);
-        let read: Vec<(&SmolStr, &str)> = variables
-            .filter_map(|variable| Some((&variable.name, variable.name.strip_suffix(".mode")?)))
-            .collect();
+        let variables = network.variables.iter();
+        let read: Vec<(&SmolStr, &str)> =
+            variables.filter_map(|variable| Some((&variable.name, variable.component()?))).collect();
         let mut readings = Vec::new();
         let moments = self.moments.get(first..).unwrap_or_default();
         for pair in moments.windows(2) {

@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use exact::Time;
 use executive::Disturbance;
-use executive::model_based::System;
+use executive::model_based::{ControlledPlant, System};
 use plant::{ComponentId, Model};
 use rmpl::control::Name as ControlName;
 use rmpl::program::{Name, PrimitiveDecl, Program, Runs};
-use rmpl::{Code, Diagnostic, Span};
+use rmpl::{Code, Diagnostic, Severity, Span};
 use smol_str::SmolStr;
 use tpn::{Network, NodeId, Occurrence, OccurrenceKind, Plan};
 
@@ -54,6 +54,9 @@ impl Programs {
             return (programs, found);
         }
         let offset = block.map_or(0, |block| block.text_span.start);
+        let (plant, mut of_plant) = plant::compile(&parsed.file);
+        let plant = plant.filter(|_| of_plant.iter().all(|found| found.severity != Severity::Error));
+        let plant = plant.map(ControlledPlant::new);
         for (primitive, runs) in runners {
             let name = &runs.program;
             let Some(definition) = parsed.file.definitions.iter().find(|it| it.name.text == name.text) else {
@@ -69,12 +72,17 @@ impl Programs {
                 found.push(no_plant(name));
                 continue;
             }
+            let Some(plant) = &plant else {
+                found.extend(of_plant.drain(..).map(|diagnostic| moved(diagnostic, offset, name.span)));
+                continue;
+            };
             for (runner, arguments, span) in calls(primitive, runs, network) {
                 if programs.systems.contains_key(&runner) {
                     continue;
                 }
                 let main = ControlName { text: name.text.clone(), span: ELSEWHERE };
-                let (system, diagnostics) = System::compile_definition(&parsed.file, &main, &arguments);
+                let (system, diagnostics) =
+                    System::compile_definition(&parsed.file, plant, &main, &arguments);
                 for diagnostic in diagnostics {
                     let diagnostic = moved(diagnostic, offset, span);
                     if !found.contains(&diagnostic) {
@@ -99,10 +107,8 @@ impl Programs {
     /// Whether some program is handed what its activity is called with.
     pub fn depend_on_calls(program: &Program) -> bool {
         program.primitives.iter().any(|primitive| {
-            let handed = primitive.runs.iter().flat_map(|runs| &runs.arguments);
-            handed
-                .into_iter()
-                .any(|argument| primitive.formals.iter().any(|formal| formal.text == argument.text))
+            let mut handed = primitive.runs.iter().flat_map(|runs| &runs.arguments);
+            handed.any(|argument| formal(primitive, argument).is_some())
         })
     }
 
@@ -145,6 +151,11 @@ impl Programs {
     }
 }
 
+/// The parameter of a primitive that something handed to its program is, by its place.
+fn formal(primitive: &PrimitiveDecl, argument: &Name) -> Option<usize> {
+    primitive.formals.iter().position(|formal| formal.text == argument.text)
+}
+
 /// The ways in which a primitive is called as far as its control program can tell, each with what that is handed and where
 /// the call is written. One that hands over nothing of its own is called in one way.
 fn calls(
@@ -152,9 +163,8 @@ fn calls(
     runs: &Runs,
     network: Option<&Network>,
 ) -> Vec<(Runner, Vec<ControlName>, Span)> {
-    let formal = |argument: &Name| primitive.formals.iter().position(|formal| formal.text == argument.text);
     let name = |text: &SmolStr| ControlName { text: text.clone(), span: ELSEWHERE };
-    if runs.arguments.iter().all(|argument| formal(argument).is_none()) {
+    if runs.arguments.iter().all(|argument| formal(primitive, argument).is_none()) {
         let arguments = runs.arguments.iter().map(|argument| name(&argument.text)).collect();
         return vec![((primitive.name.text.clone(), Vec::new()), arguments, runs.program.span)];
     }
@@ -163,7 +173,7 @@ fn calls(
     };
     let occurrences = network.into_iter().flat_map(|network| &network.occurrences).filter(is_call);
     let call = |occurrence: &Occurrence| {
-        let handed = |argument: &Name| match formal(argument) {
+        let handed = |argument: &Name| match formal(primitive, argument) {
             Some(place) => occurrence.arguments.get(place).map(name),
             None => Some(name(&argument.text)),
         };
@@ -186,38 +196,31 @@ pub fn overlaps(programs: &Programs, network: &Network, plan: &Plan) -> Vec<Diag
         .filter(|it| is_selected(it))
         .filter_map(|it| programs.system(it).map(|system| (it, system.commanded(), &*system.model)))
         .collect();
-    let pairs: Vec<[&Occurrence; 2]> = (running.iter().enumerate())
-        .flat_map(|(index, second)| {
-            let share =
-                move |first: &&(&Occurrence, BTreeSet<ComponentId>, &Model)| !first.1.is_disjoint(&second.1);
-            running[..index].iter().filter(share).map(move |first| [first.0, second.0])
-        })
-        .collect();
+    let mut pairs: Vec<([&Occurrence; 2], &SmolStr)> = Vec::new();
+    for (index, (second, commanded, model)) in running.iter().enumerate() {
+        for (first, others, _) in &running[..index] {
+            let shared = commanded.intersection(others).next();
+            if let Some(component) = shared.and_then(|&shared| model.component(shared)) {
+                pairs.push(([first, second], &component.name));
+            }
+        }
+    }
     if pairs.is_empty() {
         return Vec::new();
     }
-    let shared = |pair: &[&Occurrence; 2]| {
-        let of = |one: &Occurrence| running.iter().find(|(other, ..)| std::ptr::eq(*other, one));
-        let (first, second) = (of(pair[0])?, of(pair[1])?);
-        let both = first.1.intersection(&second.1).next()?;
-        Some(first.2.component(*both)?.name.clone())
-    };
     let Some(mut distances) = Distances::new(network, plan) else { return Vec::new() };
     let gaps: Vec<(NodeId, NodeId)> =
-        pairs.iter().flat_map(|[a, b]| [(a.end, b.start), (b.end, a.start)]).collect();
+        pairs.iter().flat_map(|([a, b], _)| [(a.end, b.start), (b.end, a.start)]).collect();
     let gaps = distances.between(&gaps);
     let may_overlap =
         |gaps: &[Option<TimeRange>]| gaps.iter().all(|gap| gap.is_none_or(|gap| gap.least.is_negative()));
     (pairs.iter().zip(gaps.chunks(2)))
         .filter(|(_, gaps)| may_overlap(gaps))
-        .filter_map(|(pair, _)| {
-            let [first, second] = pair;
+        .filter_map(|(([first, second], component), _)| {
             let message = format!(
-                "{} and {} may run at the same time, and the programs of both command {}: the one that starts second \
-                 waits until the other has ended",
-                first.name,
-                second.name,
-                shared(pair)?
+                "{} and {} may run at the same time, and the programs of both command {component}: the one that starts \
+                 second waits until the other has ended",
+                first.name, second.name
             );
             let hint = "put one after the other, or see that the bounds leave time to wait";
             Some(Diagnostic::warning(BUSY, second.span?, message).with_hint(hint))

@@ -18,7 +18,7 @@ use crate::diagnostics::{syntax, undefined};
 use crate::files::{self, MARK};
 use crate::lower::{Item, Lowering, OptionValue};
 use crate::parser::{Scratch, parse_declaration};
-use crate::program::{Controllability, ImportDecl, Name, Program, TimeUnit};
+use crate::program::{Controllability, ImportDecl, Name, Program, TimeUnit, state_of_component};
 use crate::span::Span;
 use crate::syntax::{DeclarationTree, SyntaxNode};
 
@@ -347,18 +347,13 @@ fn fill_states_of_plant(program: &mut Program) {
     let Some(block) = control.first().filter(|_| states.peek().is_some()) else { return };
     let components = component_modes(&crate::control::parse(&block.text).file);
     for state in states {
-        let of = |component: &&ComponentModes| state_of_plant(&component.name) == state.name.text;
+        let of = |component: &&ComponentModes| state_of_component(&component.name) == state.name.text;
         if let Some(component) = components.iter().find(of) {
             let named = |text: &SmolStr| Name { text: text.clone(), span: state.name.span };
             state.values = component.modes.iter().map(named).collect();
             state.initial = Some(named(&component.initial));
         }
     }
-}
-
-/// The name of the state that a component's mode is.
-pub(crate) fn state_of_plant(component: &str) -> SmolStr {
-    smol_str::format_smolstr!("{component}.mode")
 }
 
 fn add(program: &mut Program, item: Item) {

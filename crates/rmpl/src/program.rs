@@ -85,6 +85,16 @@ pub struct VariableDecl {
     pub span: Span,
 }
 
+/// The name of the state that a component's mode is: `EngineA.mode`.
+pub fn state_of_component(component: &str) -> SmolStr {
+    smol_str::format_smolstr!("{component}.mode")
+}
+
+/// The component whose mode a variable of this name is, if it is one's.
+pub fn component_of_state(variable: &str) -> Option<&str> {
+    variable.strip_suffix(".mode")
+}
+
 /// `resource NAME …;`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ResourceDecl {

@@ -5,7 +5,7 @@
 
 use exact::{Bound, Rational, Time};
 use rmpl::Span;
-use rmpl::program::{Change, Controllability, LabelMode, Measure};
+use rmpl::program::{Change, Controllability, LabelMode, Measure, component_of_state};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
@@ -275,9 +275,9 @@ pub struct Variable {
 }
 
 impl Variable {
-    /// Whether its value is read from the plant: `C.mode` (SPEC 15).
-    pub fn is_read(&self) -> bool {
-        self.is_lasting && self.name.strip_suffix(".mode").is_some()
+    /// The component whose mode it is, if it is read from the plant (SPEC 15).
+    pub fn component(&self) -> Option<&str> {
+        component_of_state(&self.name).filter(|_| self.is_lasting)
     }
 }
 

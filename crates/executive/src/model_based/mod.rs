@@ -14,4 +14,4 @@ pub use closed_loop::{ClosedLoop, LoopStep, ProgramExecution};
 pub use estimator::{Estimation, Estimator};
 pub use monte_carlo::{FaultTally, ProgramTally, Trials, run_seed, sample, wilson_interval};
 pub use run::{Knowledge, Options, Run, StepInput, StepRecord};
-pub use system::{System, SystemCompilation};
+pub use system::{ControlledPlant, System, SystemCompilation};

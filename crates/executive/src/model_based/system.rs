@@ -39,6 +39,26 @@ pub struct System {
     goal_configurations: Vec<Option<GoalConfigurations>>,
 }
 
+/// A plant with its reactive planner, for all programs that control it.
+#[derive(Clone, Debug)]
+pub struct ControlledPlant {
+    model: Arc<Model>,
+    planner: Arc<Planner>,
+}
+
+impl ControlledPlant {
+    /// Compiles the planner's policies.
+    pub fn new(model: Model) -> Self {
+        let model = Arc::new(model);
+        Self { planner: Arc::new(Planner::new(&model)), model }
+    }
+
+    /// The plant.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+}
+
 /// What compiling a program and its plant gives.
 #[derive(Clone, Debug)]
 pub struct SystemCompilation {
@@ -94,7 +114,7 @@ impl System {
                     }
                 }
                 Some(plant) => {
-                    let (bound, found) = bind(&parsed.file, plant);
+                    let (bound, found) = bind(&parsed.file, &ControlledPlant::new(plant));
                     program_diagnostics.extend(found);
                     system = bound;
                 }
@@ -104,10 +124,11 @@ impl System {
         SystemCompilation { system, program_diagnostics, model_diagnostics }
     }
 
-    /// Compiles the definition called `main` of a file that holds its plant, too, with what its parameters stand for. Spans
-    /// are those of the file, and of what is wrong with a name that is handed over, that name's own.
+    /// Compiles the definition called `main` of a file to control `plant`, with what its parameters stand for. Spans are
+    /// those of the file, and of what is wrong with a name that is handed over, that name's own.
     pub fn compile_definition(
         file: &ControlFile,
+        plant: &ControlledPlant,
         main: &Name,
         arguments: &[Name],
     ) -> (Option<Arc<Self>>, Vec<Diagnostic>) {
@@ -123,11 +144,7 @@ impl System {
         } else {
             file.definitions.push(call(main, arguments));
         }
-        let (plant, found) = plant::compile(&file);
-        match plant {
-            Some(plant) if found.iter().all(|found| found.severity != Severity::Error) => bind(&file, plant),
-            _ => (None, found),
-        }
+        bind(&file, plant)
     }
 
     /// What the program knows when the plant is in `state` and shows `observation`.
@@ -172,7 +189,8 @@ fn call(main: &Name, arguments: &[Name]) -> Definition {
     Definition { name, parameters: Vec::new(), body: Expression { kind, span: main.span }, span: main.span }
 }
 
-fn bind(file: &rmpl::control::ControlFile, model: Model) -> (Option<Arc<System>>, Vec<Diagnostic>) {
+fn bind(file: &ControlFile, plant: &ControlledPlant) -> (Option<Arc<System>>, Vec<Diagnostic>) {
+    let ControlledPlant { model, planner } = plant;
     let (expanded, diagnostics) = expand_main(file);
     let Some(program) = expanded else { return (None, diagnostics) };
     let mut uses = Uses::default();
@@ -206,16 +224,15 @@ fn bind(file: &rmpl::control::ControlFile, model: Model) -> (Option<Arc<System>>
         mode.or_else(|| model.variable_named(name).map(Binding::Plant)).unwrap_or(Binding::Program)
     };
     let bindings = automaton.variables.iter().map(|variable| binding(&variable.name)).collect();
-    let model = Arc::new(model);
-    let planner = Arc::new(Planner::new(&model));
     let goal_configurations = automaton
         .locations
         .iter()
         .map(|location| {
             let assertion = location.assertion.as_ref()?;
-            Some(goal_configurations(&planner, &automaton.guard(assertion.test)?.constraint))
+            Some(goal_configurations(planner, &automaton.guard(assertion.test)?.constraint))
         })
         .collect();
+    let (model, planner) = (Arc::clone(model), Arc::clone(planner));
     (Some(Arc::new(System { automaton, model, planner, bindings, goal_configurations })), diagnostics)
 }
 

@@ -93,9 +93,7 @@ impl Run<'_> {
         let of = &network.labels[label.index()];
         let variable = of.literal.variable;
         let described = &network.variables[variable.index()];
-        if !described.is_read() {
-            return None;
-        }
+        described.component()?;
         let initial = || {
             let first = network
                 .labels

@@ -12,10 +12,9 @@ use super::names::{Names, Symbol};
 use super::summary::{Call, ComponentState, Definition, Literal, Origin, Summary, Use, UseKind, Vehicle};
 use crate::control::component_modes;
 use crate::lower::{Item, OptionValue};
-use crate::parse::state_of_plant;
 use crate::program::{
     Argument, ArgumentValue, Bounds, Change, Condition, ControlDecl, Expr, ExprKind, HeaderBound,
-    HeaderBounds, LabelMode, Name, PrimitiveDecl, Statement, StatementKind, Supply,
+    HeaderBounds, LabelMode, Name, PrimitiveDecl, Statement, StatementKind, Supply, state_of_component,
 };
 use crate::span::Span;
 
@@ -152,7 +151,7 @@ impl Collector<'_> {
     fn components(&mut self, decl: &ControlDecl) {
         let components = component_modes(&crate::control::parse(&decl.text).file);
         let states = components.into_iter().map(|component| ComponentState {
-            name: self.names.intern(&state_of_plant(&component.name)),
+            name: self.names.intern(&state_of_component(&component.name)),
             modes: component.modes.iter().map(|mode| self.names.intern(mode)).collect(),
             initial: self.names.intern(&component.initial),
         });

@@ -5,7 +5,7 @@ use super::index::{MAX_COMPARED, Namespace, Told};
 use super::names::Symbol;
 use super::summary::{Literal, Origin, Vehicle};
 use crate::diagnostics::{similar, support, undefined, value};
-use crate::program::LabelMode;
+use crate::program::{LabelMode, component_of_state};
 
 impl Checker<'_> {
     pub(super) fn literal(&mut self, literal: &Literal) {
@@ -22,7 +22,7 @@ impl Checker<'_> {
         if self.meaning().is_unknown_component(variable) {
             return;
         }
-        let is_of_component = self.text(variable).strip_suffix(".mode").is_some();
+        let is_of_component = component_of_state(self.text(variable)).is_some();
         if (literal.origin == Origin::Effect || is_of_component) && !self.meaning().is_state(variable) {
             self.no_state(literal);
             return;

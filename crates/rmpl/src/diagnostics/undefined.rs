@@ -4,7 +4,7 @@ use crate::analysis::Call;
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;
 use crate::parser::{insertion, replacement};
-use crate::program::Change;
+use crate::program::{Change, component_of_state};
 use crate::span::Span;
 
 /// The code under `option strict = 1;`.
@@ -105,7 +105,7 @@ pub(crate) fn state(
 ) -> Diagnostic {
     let diagnostic = Diagnostic::error(CODE, span, format!("no state variable `{name}` is declared"));
     change_to(diagnostic, nearest, span).unwrap_or_else(|diagnostic| {
-        if name.strip_suffix(".mode").is_some() {
+        if component_of_state(name).is_some() {
             return diagnostic
                 .with_hint("the mode of a component is a state that is read from the plant")
                 .with_fix(insertion(
@@ -125,7 +125,7 @@ pub(crate) fn state(
 
 /// The state of a component that the plant does not have.
 pub(crate) fn component(name: &str, span: Span, nearest: Option<&str>) -> Diagnostic {
-    let component = name.strip_suffix(".mode").unwrap_or(name);
+    let component = component_of_state(name).unwrap_or(name);
     let diagnostic = Diagnostic::error(CODE, span, format!("the plant has no component `{component}`"));
     change_to(diagnostic, nearest, span).unwrap_or_else(|diagnostic| {
         diagnostic.with_hint("a control block models the plant: `control { (DEFCLASS …) (DEFINSTANCE …) }`")
