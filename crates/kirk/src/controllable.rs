@@ -42,3 +42,41 @@ fn withstands_nature(network: &Network, plan: &Plan, termination: &mut dyn Termi
     let refutation = faced.refute(network.controllability, &mut stop).ok()?;
     Some(refutation.is_none())
 }
+
+#[cfg(test)]
+mod tests {
+    use tpn::compile::{Top, compile};
+    use tpn::families::nested;
+
+    use crate::options::{Options, Status, Unlimited};
+
+    /// A record is made by the solver alone: its plan has the same choices, and there is none where there is none.
+    #[test]
+    fn the_first_plan_in_textual_order_is_the_solvers() {
+        let (mut plans, mut none) = (0, 0);
+        for seed in 0..120 {
+            let text = nested(12 + seed as usize % 30, -10 + 25 * (seed as i64 % 5), seed);
+            // Nature chooses every second activity's duration.
+            let mut parts = text.split("Work()[").enumerate();
+            let first = parts.next().map_or("", |(_, first)| first).to_owned();
+            let text = parts.fold(first, |text, (count, part)| {
+                text + if count % 2 == 0 { "Work() contingent [" } else { "Work()[" } + part
+            });
+            let (network, _) = compile(&rmpl::parse(&text).program(), &Top::Scenario(None));
+            let Some(network) = network else { continue };
+            let quick = Options { explain: false, relax: false, ..Options::default() };
+            let recorded = Options { trace_events: Some(100_000), ..quick };
+            let [found, expected] =
+                [quick, recorded].map(|options| crate::plan(&network, &options, &mut Unlimited));
+            assert_eq!(found.status, expected.status, "{text}");
+            let choices = |outcome: &crate::Outcome| outcome.plans.first().map(|plan| plan.choices.clone());
+            assert_eq!(choices(&found), choices(&expected), "{text}");
+            for plan in &found.plans {
+                let verdict = verify::check_plan(&network, plan);
+                assert!(verdict.violations.is_empty(), "{verdict:?}\n{text}");
+            }
+            *if found.status == Status::Plan { &mut plans } else { &mut none } += 1;
+        }
+        assert!(plans > 20 && none > 5, "{plans} have a plan and {none} have none");
+    }
+}
