@@ -119,7 +119,19 @@ impl Grounds {
 
     /// The free space of vehicles of `model` among the mission's obstacles.
     pub fn space(&mut self, key: &MapKey, map: &Terrain, world: &World, model: &VehicleModel) -> FreeSpace {
-        let obstacles: Vec<ObstacleShape> = world.obstacles.iter().map(|it| it.shape.clone()).collect();
+        self.space_around(key, map, world, model, &[])
+    }
+
+    /// The free space of vehicles of `model` among the mission's obstacles and outside `keep_outs`.
+    pub fn space_around(
+        &mut self,
+        key: &MapKey,
+        map: &Terrain,
+        world: &World,
+        model: &VehicleModel,
+        keep_outs: &[ObstacleShape],
+    ) -> FreeSpace {
+        let obstacles = world.obstacles.iter().map(|it| &it.shape).chain(keep_outs).cloned().collect();
         let wanted = SpaceKey { map: key.clone(), model: SmolStr::new(model.name), obstacles };
         if let Some(at) = self.spaces.iter().position(|(known, _)| *known == wanted) {
             let found = self.spaces.remove(at);

@@ -1,22 +1,36 @@
-//! Vehicles that would meet are kept apart in time (SPEC 10.3): where two traverses come too near each other, one is put
-//! before the other, and the mission is planned again.
+//! Vehicles that would meet are kept apart (SPEC 10.3): where two traverses come too near each other, one is put before the
+//! other, or led around where the other is then, and the mission is planned again.
 //!
-//! What is in order already, or has no time to wait, stays as it is, with its warning.
+//! What has time for neither stays as it is, with its warning.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use exact::Rational;
 use kirk::Options;
-use rmpl::program::Change;
+use rmpl::program::{Change, ObstacleShape};
 use smol_str::format_smolstr;
-use tpn::{Network, NodeId, OccurrenceId, Resource, ResourceId, Supply, Use};
+use tpn::{Network, NodeId, OccurrenceId, Plan, Resource, ResourceId, Supply, Use};
 
 use crate::planning::{self, Planned, Problem};
-use crate::snapshot::SeparationViolation;
+use crate::separation;
+use crate::snapshot::{SeparationViolation, VehicleMotion};
+use crate::worth;
 
 /// Orders that are tried for one mission, at most.
 const MAX_TRIES: usize = 12;
+/// Ways around that are looked for in one mission, at most.
+const MAX_WAYS: usize = 12;
+/// Ways around one another of the same two traverses: the way around takes longer, so that they meet elsewhere.
+const MAX_WAYS_OF_PAIR: usize = 4;
+/// Metres that a way around keeps beyond what is needed.
+const SPARE_M: f64 = 0.3;
+/// Metres between the places that a way around keeps out of.
+const PLACE_STEP_M: f64 = 0.25;
+
+/// Where the paths of traverses may not go, because other vehicles are there then.
+pub type KeepOuts = BTreeMap<OccurrenceId, Vec<ObstacleShape>>;
+
 /// What the order of two traverses that would meet is called, as a resource that the mission does not have.
 const WAY: &str = "way#";
 
@@ -31,6 +45,7 @@ pub(crate) fn kept_apart(
     mut planned: Planned,
     plan_again: &mut dyn FnMut(&Problem<'_>) -> Planned,
 ) -> Planned {
+    let best = planned.planning.outcome.plans.first().cloned();
     let mut network = Arc::clone(problem.network);
     let mut tried: BTreeSet<(OccurrenceId, OccurrenceId)> = BTreeSet::new();
     let options = Options { explain: false, relax: false, ..problem.options };
@@ -46,7 +61,118 @@ pub(crate) fn kept_apart(
             (network, planned) = (ordered, other);
         }
     }
+    let mut planned = led_around(&Problem { network: &network, options, ..*problem }, planned, plan_again);
+    if let Some(best) = best {
+        admit_worse(problem.network, &best, &mut planned);
+    }
     planned
+}
+
+/// Where keeping apart made an optimal plan worse, nothing is proven but that none is better than it was without.
+fn admit_worse(network: &Network, best: &Plan, planned: &mut Planned) {
+    let planning = Arc::make_mut(&mut planned.planning);
+    let Some(plan) = planning.outcome.plans.first_mut() else { return };
+    let values = |plan: &Plan| worth::goal_values(network, plan);
+    let (Some(before), Some(after)) = (values(best), values(plan)) else { return };
+    if let Some((bound, _)) = before.iter().zip(&after).find(|(before, after)| before != after) {
+        plan.quality.is_optimal = Some(false);
+        planning.outcome.bound = Some(*bound);
+    }
+}
+
+/// `planned`, or a plan of the same mission in which fewer vehicles come too near each other, because the paths of some go
+/// around where the others are then.
+fn led_around(
+    problem: &Problem<'_>,
+    mut planned: Planned,
+    plan_again: &mut dyn FnMut(&Problem<'_>) -> Planned,
+) -> Planned {
+    let mut keep_outs = KeepOuts::new();
+    let mut tried: BTreeSet<(OccurrenceId, u32)> = BTreeSet::new();
+    let mut ways = 0;
+    while ways < MAX_WAYS {
+        let untried = planned.separation_violations.iter().flat_map(goes_around).find_map(|(goes, stays)| {
+            let occurrence = movement_at(&planned, goes)?.occurrence;
+            (!tried.contains(&(occurrence, stays.vehicle))).then_some((occurrence, goes, stays))
+        });
+        let Some((occurrence, goes, stays)) = untried else { break };
+        tried.insert((occurrence, stays.vehicle));
+        let pair = [goes.vehicle, stays.vehicle];
+        let mut wider = keep_outs.clone();
+        let mut places = places(problem, &planned.motions, goes, stays);
+        for _ in 0..MAX_WAYS_OF_PAIR {
+            wider.entry(occurrence).or_default().append(&mut places);
+            ways += 1;
+            let other = plan_again(&Problem { keep_outs: Some(&wider), ..*problem });
+            let is_valid = other.planning.verdict.as_ref().is_some_and(|verdict| verdict.valid);
+            if !is_valid || !planning::has_plan(&other.planning.outcome) {
+                break;
+            }
+            if other.separation_violations.len() < planned.separation_violations.len() {
+                (keep_outs, planned) = (wider, other);
+                break;
+            }
+            let again = other.separation_violations.iter().flat_map(goes_around).find(|(goes, stays)| {
+                [goes.vehicle, stays.vehicle] == pair
+                    && movement_at(&other, *goes).is_some_and(|movement| movement.occurrence == occurrence)
+            });
+            let Some((goes, stays)) = again else { break };
+            places = self::places(problem, &other.motions, goes, stays);
+        }
+    }
+    planned
+}
+
+/// A vehicle at the time of a violation.
+#[derive(Clone, Copy)]
+struct Party<'planned> {
+    vehicle: u32,
+    violation: &'planned SeparationViolation,
+}
+
+/// Who may go around whom.
+fn goes_around(violation: &SeparationViolation) -> [(Party<'_>, Party<'_>); 2] {
+    let [one, other] = violation.vehicles.map(|vehicle| Party { vehicle, violation });
+    [(one, other), (other, one)]
+}
+
+/// What a vehicle is driving when it comes too near another one.
+fn movement_at(planned: &Planned, party: Party<'_>) -> Option<Movement> {
+    under_way(&movements(planned, party.vehicle), party.violation)
+}
+
+/// Where `stays` is while the two are too near each other, with the room that it needs.
+fn places(
+    problem: &Problem<'_>,
+    motions: &[VehicleMotion],
+    goes: Party<'_>,
+    stays: Party<'_>,
+) -> Vec<ObstacleShape> {
+    let world = &problem.program.world;
+    let of = |party: Party<'_>| motions.iter().find(|motion| motion.vehicle == party.vehicle);
+    let (Some(goes_m), Some(stays_m)) = (of(goes), of(stays)) else { return Vec::new() };
+    let radius_m = separation::radius_m(world, stays.vehicle) + separation::GAP_M + SPARE_M;
+    let safety_m = radius_m + separation::radius_m(world, goes.vehicle);
+    let violation = stays.violation;
+    let end = |motion: &VehicleMotion| motion.keyframes.last().map_or(0.0, |frame| frame.time.to_f64());
+    let last = end(goes_m).max(end(stays_m));
+    let step = ((violation.time - violation.since) / 16.0).max(last / 4000.0);
+    // While they are near each other, both ways in time from when they are nearest.
+    let while_near = |direction: f64| {
+        (0..4000)
+            .map(move |count| violation.time + direction * step * f64::from(count))
+            .take_while(move |time| (0.0..=last).contains(time))
+            .map_while(|time| Some((goes_m.at(time)?.0, stays_m.at(time)?.0)))
+            .take_while(|(one, other)| nalgebra::distance(one, other) < safety_m)
+            .map(|(_, place)| place)
+    };
+    let mut places: Vec<nalgebra::Point2<f64>> = Vec::new();
+    for place in while_near(1.0).chain(while_near(-1.0)) {
+        if places.iter().all(|known| nalgebra::distance(known, &place) >= PLACE_STEP_M) {
+            places.push(place);
+        }
+    }
+    places.into_iter().map(|place| ObstacleShape::Circle { center_m: place.into(), radius_m }).collect()
 }
 
 /// The orders of two traverses that may keep vehicles apart, the likeliest first: who is nearer to being out of the way goes

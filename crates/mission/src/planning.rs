@@ -22,13 +22,14 @@ use crate::departures::{self, Departures, rounded_up};
 use crate::driving::{self, Drive};
 use crate::ground::{FreeSpace, Grounds};
 use crate::listing::{self, Listed};
-use crate::meetings;
+use crate::meetings::{self, KeepOuts};
 use crate::programs::{self, Programs};
 use crate::separation;
 use crate::simulation::nearest_free;
 use crate::snapshot::{
-    Leg, MapKey, PathFigures, Planning, SeparationViolation, Traverse, Undrivable, VehicleMotion,
+    Keyframe, Leg, MapKey, PathFigures, Planning, SeparationViolation, Traverse, Undrivable, VehicleMotion,
 };
+use crate::standing;
 use crate::traverse::{self, Paths, Preference, Route, Waypoint};
 
 /// What to plan and how.
@@ -48,6 +49,8 @@ pub struct Problem<'input> {
     pub facts: Option<&'input Facts>,
     /// The control programs that its activities run; compiled where they are needed if they are not given.
     pub programs: Option<&'input Programs>,
+    /// Places that its traverses are led around, because other vehicles are there then.
+    pub keep_outs: Option<&'input KeepOuts>,
 }
 
 impl<'input> Problem<'input> {
@@ -320,7 +323,9 @@ fn found_legs(
     paths: &mut Paths,
     route: &Route,
 ) -> Result<Vec<Leg>, Undrivable> {
-    let space = grounds.space(key, map, &problem.program.world, route.model);
+    let keep_outs = problem.keep_outs.and_then(|keep_outs| keep_outs.get(&route.occurrence));
+    let keep_outs = keep_outs.map_or(&[][..], Vec::as_slice);
+    let space = grounds.space_around(key, map, &problem.program.world, route.model, keep_outs);
     let route = &on_free_ground(route, &space);
     let mut legs = paths.legs(route, &space, problem.seed, Preference::Roomy);
     let does_not_fit = |legs: &Vec<Leg>| out_of_bounds(problem, route, legs, map).is_some();
@@ -568,7 +573,7 @@ fn conclude(
         plan.quality.length_m = traverses.iter().map(|traverse| traverse.length_m).sum();
     }
     let verdict = outcome.plans.first().map(|plan| verify::check_plan(&network, plan));
-    let motions = driving::motions(&drives);
+    let motions = with_parked(driving::motions(&drives), problem);
     let separation_violations = separation::violations(&drives, &motions, world);
     warnings.extend(separation::warnings(&separation_violations, &drives, &network, world));
     if let Some(plan) = outcome.plans.first() {
@@ -585,6 +590,32 @@ fn conclude(
     let planning = Arc::new(Planning { outcome, verdict, undrivable, left_out: Vec::new() });
     let others = Vec::new();
     Planned { network, planning, others, traverses, spaces, motions, separation_violations, warnings }
+}
+
+/// Where the vehicles are that move, and where those stay that do not: others have to keep apart from these as well.
+fn with_parked(mut motions: Vec<VehicleMotion>, problem: &Problem<'_>) -> Vec<VehicleMotion> {
+    let Problem { program, .. } = problem;
+    let vehicles = &program.world.vehicles;
+    if motions.is_empty() {
+        return motions;
+    }
+    let slots = standing::start_slots(program);
+    let place = |vehicle: usize| (&vehicles[vehicle].start.text, slots[vehicle]);
+    for vehicle in 0..vehicles.len() {
+        let is_moved = |motion: &VehicleMotion| motion.vehicle as usize == vehicle;
+        let has_stopped = places(problem).iter().any(|stopped| stopped.vehicle as usize == vehicle);
+        // One that starts in a formation with another has no place of its own.
+        let is_alone = (0..vehicles.len()).all(|other| other == vehicle || place(other) != place(vehicle));
+        if has_stopped || !is_alone || motions.iter().any(is_moved) {
+            continue;
+        }
+        if let Some(position_m) = standing::start_m(program, vehicle) {
+            let frame = Keyframe { time: Time::ZERO, position_m, heading_rad: 0.0 };
+            motions.push(VehicleMotion { vehicle: vehicle as u32, keyframes: vec![frame] });
+        }
+    }
+    motions.sort_by_key(|motion| motion.vehicle);
+    motions
 }
 
 /// Where the vehicles are over time when `plan` is driven along the traverses of `planned`.

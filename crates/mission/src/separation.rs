@@ -72,9 +72,10 @@ pub fn warnings(
             let under_way = |drive: &&Drive| {
                 drive.vehicles.contains(&second) && drive.start.to_f64() <= violation.time
             };
-            let drive = drives.iter().rev().find(under_way).or_else(|| {
-                drives.iter().find(|drive| drive.vehicles.contains(&second))
-            })?;
+            let own = |drive: &&Drive| drive.vehicles.contains(&second);
+            let others = |drive: &&Drive| drive.vehicles.contains(&first);
+            let drive = drives.iter().rev().find(under_way);
+            let drive = drive.or_else(|| drives.iter().find(own)).or_else(|| drives.iter().find(others))?;
             let span = network.occurrences.get(drive.occurrence.index())?.span?;
             let place = violation.position_m;
             let message = format!(
@@ -88,7 +89,7 @@ pub fn warnings(
                 violation.time
             );
             Some(Diagnostic::warning(CODE, span, message).with_hint(
-                "order the traverses, or lead one of them by another way; vehicles of one traverse keep formation",
+                "give one of them time to wait or to go around the other; vehicles of one traverse keep formation",
             ))
         })
         .collect()

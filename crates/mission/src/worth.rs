@@ -1,7 +1,10 @@
 //! What a plan is worth, in the words of people (SPEC 12): its cost, its reward and what its mission's objective counts.
 
+use exact::Rational;
 use rmpl::program::Measure;
 use tpn::{Network, Plan};
+
+use crate::departures::rounded_up;
 
 /// What matters of the plans of a network: what the objective counts, and costs and rewards that some activity has.
 pub fn measures(network: &Network) -> Vec<Measure> {
@@ -34,6 +37,22 @@ pub fn figure(plan: &Plan, measure: Measure) -> String {
 pub fn words(network: &Network, plan: &Plan) -> Option<String> {
     let figures: Vec<String> = measures(network).into_iter().map(|it| figure(plan, it)).collect();
     (!figures.is_empty()).then(|| figures.join(", "))
+}
+
+/// What a plan comes to in each goal of its mission's objective, metres rounded up to the millimetre; `None` where a number
+/// does not fit.
+pub fn goal_values(network: &Network, plan: &Plan) -> Option<Vec<Rational>> {
+    let quality = &plan.quality;
+    let value = |measure: Measure| match measure {
+        Measure::Cost => Some(quality.cost),
+        Measure::Reward => Some(quality.reward),
+        Measure::End => Some(quality.end.units()),
+        Measure::Length => rounded_up(quality.length_m),
+    };
+    let add = |sum: Rational, &(factor, measure): &(Rational, Measure)| {
+        sum.checked_add(factor.checked_mul(value(measure)?)?)
+    };
+    network.objective.iter().map(|goal| goal.terms.iter().try_fold(Rational::ZERO, add)).collect()
 }
 
 /// Whether a plan is known to be the best, in words; `None` without an objective.

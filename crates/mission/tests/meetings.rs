@@ -81,3 +81,45 @@ fn nothing_is_ordered_where_nobody_meets() {
     assert!(planned.planning.outcome.plans[0].uses_ordered.is_empty());
     assert_eq!((times(&planned, "Drive2#1")[0], times(&planned, "Drive3#1")[0]), (0.0, 0.0));
 }
+
+#[test]
+fn a_vehicle_that_never_moves_is_gone_around() {
+    let planned = plan(&format!("{ROVER3} scenario S[0,400] = {{ Drive1(EAST)[120,200] }}"));
+    assert!(planned.separation_violations.is_empty(), "{:?}", planned.separation_violations);
+    let length_m = planned.traverses[0].length_m;
+    assert!((60.05..63.0).contains(&length_m), "{length_m}");
+    let no_time = plan(&format!("{ROVER3} scenario S[0,400] = {{ Drive1(EAST)[120,120] }}"));
+    assert_eq!((no_time.separation_violations.len(), warnings(&no_time)), (1, 1));
+}
+
+#[test]
+fn vehicles_that_come_towards_each_other_with_no_time_to_wait_go_around_each_other() {
+    let planned = plan(
+        "vehicle Rover4 : ATRV at EAST; primitive Drive4(to) moves Rover4 speed (0.1, 0.5);
+        scenario S[0,200] = { Drive1(EAST)[120,160], Drive4(WEST)[120,160] }",
+    );
+    assert!(planned.separation_violations.is_empty(), "{:?}", planned.separation_violations);
+    let longest = planned.traverses.iter().map(|traverse| traverse.length_m).fold(0.0, f64::max);
+    assert!((60.05..64.0).contains(&longest), "{longest}");
+}
+
+#[test]
+fn three_vehicles_that_meet_at_one_place_go_around_each_other() {
+    let planned = plan(
+        "vehicle Rover4 : ATRV at EAST; primitive Drive4(to) moves Rover4 speed (0.1, 0.5);
+        scenario S[0,140] = { Drive1(EAST)[120,140], Drive4(WEST)[120,140], Drive2(NORTH)[120,140] }",
+    );
+    assert!(planned.separation_violations.is_empty(), "{:?}", planned.separation_violations);
+}
+
+#[test]
+fn what_keeping_apart_costs_is_not_called_optimal() {
+    let crossing = "objective minimize end; scenario S[0,400] = { { delay; Drive2(NORTH)[120,150] }, { delay; Drive1(EAST)[120,120] } }";
+    let planned = plan(crossing);
+    assert!(planned.separation_violations.is_empty(), "{:?}", planned.separation_violations);
+    let outcome = &planned.planning.outcome;
+    let quality = &outcome.plans[0].quality;
+    assert!(quality.end.to_f64() > 120.0, "{quality:?}");
+    assert_eq!(quality.is_optimal, Some(false));
+    assert_eq!(outcome.bound, Some(exact::Rational::from(120)));
+}

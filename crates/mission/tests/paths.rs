@@ -46,6 +46,7 @@ impl Planner {
             seed,
             facts: None,
             programs: None,
+            keep_outs: None,
         };
         let planned = planning::plan(&problem, &mut self.grounds, &mut self.paths, &mut || false);
         Answer { map: ground.map(|(_, map)| map), planned, program }

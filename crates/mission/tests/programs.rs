@@ -31,6 +31,7 @@ fn execute(source: &str, disturbances: &[Disturbance]) -> (Arc<Network>, Ran) {
         seed: 0,
         facts: None,
         programs: None,
+        keep_outs: None,
     };
     let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
@@ -198,6 +199,7 @@ fn plan_warnings(source: &str) -> Vec<String> {
         seed: 0,
         facts: None,
         programs: None,
+        keep_outs: None,
     };
     let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);

@@ -33,6 +33,7 @@ impl Mission {
             seed: 0,
             facts: None,
             programs: None,
+            keep_outs: None,
         }
     }
 

@@ -89,6 +89,7 @@ fn check(file: &Path, source: &str, deadline: Deadline) -> anyhow::Result<Vec<Pr
                 seed: 0,
                 facts: None,
                 programs: None,
+                keep_outs: None,
             };
             let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || deadline.is_over());
             deadline.check(&planned.planning.outcome)?;

@@ -168,6 +168,7 @@ impl Args {
             seed: self.seed,
             facts: None,
             programs: None,
+            keep_outs: None,
         };
         let mut stop = || deadline.is_over();
         Ok(planning::plan(&problem, &mut grounds, &mut Paths::default(), &mut stop))

@@ -167,6 +167,7 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
         seed: args.path_seed,
         facts: None,
         programs: None,
+        keep_outs: None,
     };
     let deadline = args.time_limit.start();
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || deadline.is_over());

@@ -172,6 +172,7 @@ fn with_paths(
         seed: args.seed,
         facts: None,
         programs: None,
+        keep_outs: None,
     };
     let mut paths = Paths::default();
     let deadline = args.time_limit.start();

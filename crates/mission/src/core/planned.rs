@@ -134,6 +134,7 @@ impl Core {
             seed: update.seed,
             facts: None,
             programs: Some(&programs),
+            keep_outs: None,
         };
         let mut stop = || host.is_superseded();
         let planned = planning::plan(&problem, &mut self.grounds, &mut self.paths, &mut stop);

@@ -46,6 +46,7 @@ impl Evaluated {
             seed: update.seed,
             facts: None,
             programs: Some(&self.programs),
+            keep_outs: None,
         }
     }
 }

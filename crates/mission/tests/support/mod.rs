@@ -40,6 +40,7 @@ impl Mission {
             seed,
             facts: None,
             programs: None,
+            keep_outs: None,
         };
         let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
         work(&problem, planned, &mut grounds, &mut paths)
