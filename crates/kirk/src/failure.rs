@@ -118,12 +118,6 @@ pub struct Relaxation {
 pub const GAP_LABEL: &str = "let conflicting conditions touch: option threat_gap = 0;";
 
 impl Failure {
-    /// The changes that give a plan, in the author's terms.
-    pub fn labels(&self) -> Vec<&str> {
-        let gap = self.is_of_gap.then_some(GAP_LABEL);
-        gap.into_iter().chain(self.relaxations.iter().map(|change| change.label.as_str())).collect()
-    }
-
     /// The option that takes the gap away, as an edit of the text, if that gives a plan.
     pub fn gap_fix(&self, source: &str) -> Option<Fix> {
         let edit = || rmpl::editor::set_option(&rmpl::parse(source), "threat_gap", "0");

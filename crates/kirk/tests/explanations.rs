@@ -158,7 +158,6 @@ fn a_plan_that_only_the_gap_prevents_is_offered() {
     let failure = kirk::plan(&network(&idiom), &Options::default(), &mut Unlimited).failure;
     let failure = failure.expect("the wait is over a gap before GO, and the guard is asked within it");
     assert!(failure.is_of_gap, "{failure:?}");
-    assert_eq!(failure.labels()[0], kirk::GAP_LABEL);
     let fix = failure.gap_fix(&idiom).expect("it is offered");
     let edit = &fix.edits[0];
     let mut mended = idiom.clone();

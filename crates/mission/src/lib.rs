@@ -28,6 +28,7 @@ pub mod program_chance;
 pub mod program_executor;
 pub mod programs;
 mod reading;
+pub mod repairs;
 pub mod request;
 pub mod review;
 pub mod robustness;

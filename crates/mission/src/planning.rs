@@ -279,7 +279,13 @@ pub(crate) fn least_duration(problem: &Problem<'_>, route: &Route, legs: &[Leg])
 /// A network that was planned as it is, such as one that came without a program.
 pub fn without_paths(network: &Arc<Network>, outcome: Outcome) -> Planned {
     let verdict = outcome.plans.first().map(|plan| verify::check_plan(network, plan));
-    let planning = Arc::new(Planning { outcome, verdict, undrivable: Vec::new(), left_out: Vec::new() });
+    let planning = Arc::new(Planning {
+        outcome,
+        verdict,
+        undrivable: Vec::new(),
+        left_out: Vec::new(),
+        repairs: Vec::new(),
+    });
     Planned {
         network: Arc::clone(network),
         planning,
@@ -587,7 +593,8 @@ fn conclude(
         })
         .collect();
     name_blocked(&mut outcome, &network, &undrivable);
-    let planning = Arc::new(Planning { outcome, verdict, undrivable, left_out: Vec::new() });
+    let planning =
+        Arc::new(Planning { outcome, verdict, undrivable, left_out: Vec::new(), repairs: Vec::new() });
     let others = Vec::new();
     Planned { network, planning, others, traverses, spaces, motions, separation_violations, warnings }
 }

@@ -68,6 +68,8 @@ pub struct Planning {
     pub undrivable: Vec<Undrivable>,
     /// Plans that would be listed where several are asked for, but cannot be driven.
     pub left_out: Vec<LeftOut>,
+    /// Without a plan: changes of the text that give one, other than of bounds. Each has been planned.
+    pub repairs: Vec<rmpl::Fix>,
 }
 
 /// A traverse that could not be driven.
@@ -190,6 +192,15 @@ pub struct Timings {
 }
 
 impl Planning {
+    /// The changes that would give a plan, in the author's terms: of the text, then of single bounds.
+    pub fn ways_out(&self) -> Vec<&str> {
+        let Some(failure) = &self.outcome.failure else { return Vec::new() };
+        let gap = failure.is_of_gap.then_some(kirk::GAP_LABEL);
+        let repairs = self.repairs.iter().map(|repair| repair.label.as_str());
+        let bounds = failure.relaxations.iter().map(|change| change.label.as_str());
+        gap.into_iter().chain(repairs).chain(bounds).collect()
+    }
+
     /// Whether anything in it refers to places in the text.
     pub(crate) fn refers_to_places(&self) -> bool {
         self.outcome.failure.is_some()
@@ -204,6 +215,9 @@ impl Spans for Planning {
         }
         for relaxation in &mut failure.relaxations {
             relaxation.span.visit_spans(visit);
+        }
+        for edit in self.repairs.iter_mut().flat_map(|repair| &mut repair.edits) {
+            edit.span.visit_spans(visit);
         }
     }
 }

@@ -11,7 +11,7 @@ use exact::{Bound, Time};
 use kirk::{Failure, Options, Outcome, Search, Stats, Status};
 use mission::paths_json::{separation_violations_json, traverses_json};
 use mission::planning::{self, Planned};
-use mission::{Paths, Problem};
+use mission::{Paths, Planning, Problem, repairs};
 use rmpl::LineIndex;
 use rmpl::files::Files;
 use rmpl::program::Program;
@@ -88,7 +88,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let begun = Instant::now();
     let network = Arc::new(network);
     let planned = match (&loaded.program, args.no_paths) {
-        (Some(program), false) => args.plan_with_paths(&network, program, options)?,
+        (Some(program), false) => args.plan_with_paths(&network, program, &loaded.source, options)?,
         _ => args.plan_network(&network, options),
     };
     let plan_millis = millis_since(begun);
@@ -156,6 +156,7 @@ impl Args {
         &self,
         network: &Arc<Network>,
         program: &Program,
+        source: &str,
         options: Options,
     ) -> anyhow::Result<Planned> {
         let deadline = self.time_limit.start();
@@ -171,7 +172,11 @@ impl Args {
             keep_outs: None,
         };
         let mut stop = || deadline.is_over();
-        Ok(planning::plan(&problem, &mut grounds, &mut Paths::default(), &mut stop))
+        let mut paths = Paths::default();
+        let mut planned = planning::plan(&problem, &mut grounds, &mut paths, &mut stop);
+        let text = (source, &self.target.goal()?);
+        repairs::add(&mut planned, text, &problem, (&mut grounds, &mut paths), &mut stop);
+        Ok(planned)
     }
 }
 
@@ -210,7 +215,7 @@ fn outcome_json(planned: &Planned, loaded: &Loaded, [compile_millis, plan_millis
         "status": status_name(outcome.status),
         "plans": plans,
         "verdict": planned.planning.verdict,
-        "failure": outcome.failure.as_ref().map(|failure| failure_json(failure, loaded, &planned.network)),
+        "failure": outcome.failure.as_ref().map(|failure| failure_json(failure, &planned.planning, loaded, &planned.network)),
         "undrivable": planned.planning.undrivable.iter().map(|undrivable| json!({
             "activity": planned.network.occurrences[undrivable.occurrence.index()].name,
             "leg": undrivable.leg,
@@ -248,7 +253,7 @@ fn all_plans(planned: &Planned) -> impl Iterator<Item = (&Network, &tpn::Plan)> 
     own.chain(planned.others.iter().map(|listed| (listed.network.as_ref(), &listed.plan)))
 }
 
-fn failure_json(failure: &Failure, loaded: &Loaded, network: &Network) -> Value {
+fn failure_json(failure: &Failure, planning: &Planning, loaded: &Loaded, network: &Network) -> Value {
     let (lines, files) = (LineIndex::new(&loaded.source), Files::of(&loaded.source));
     let span_json = |span: &rmpl::Span| {
         let place = files.line_column(&loaded.source, &lines, span.start);
@@ -260,6 +265,14 @@ fn failure_json(failure: &Failure, loaded: &Loaded, network: &Network) -> Value 
         }
         told
     };
+    let repairs: Vec<Value> = planning
+        .repairs
+        .iter()
+        .map(|repair| {
+            let edit = |edit: &rmpl::Edit| json!({ "span": span_json(&edit.span), "text": edit.text });
+            json!({ "label": repair.label, "edits": repair.edits.iter().map(edit).collect::<Vec<_>>() })
+        })
+        .collect();
     let kinds: Vec<&str> = failure.kinds().iter().map(|kind| kind.name()).collect();
     let reasons: Vec<Value> = failure
         .reasons
@@ -291,6 +304,7 @@ fn failure_json(failure: &Failure, loaded: &Loaded, network: &Network) -> Value 
         "reasons": reasons,
         "complete": failure.is_complete,
         "relaxations": relaxations,
+        "repairs": repairs,
         "gap": failure.is_of_gap,
     })
 }
@@ -331,6 +345,9 @@ fn outcome_text(planned: &Planned, loaded: &Loaded) -> String {
     }
     if let Some(failure) = &outcome.failure {
         text.push_str(&failure_text(failure, loaded, &planned.network));
+        for label in planned.planning.ways_out() {
+            text.push_str(&format!("it would have a plan: {label}\n"));
+        }
     }
     for undrivable in &planned.planning.undrivable {
         let name = &planned.network.occurrences[undrivable.occurrence.index()].name;
@@ -435,9 +452,6 @@ fn failure_text(failure: &Failure, loaded: &Loaded, network: &Network) -> String
     }
     if !failure.is_complete {
         text.push_str("there are more reasons than are listed\n");
-    }
-    for label in failure.labels() {
-        text.push_str(&format!("it would have a plan: {label}\n"));
     }
     text
 }

@@ -12,6 +12,7 @@ use tpn::Network;
 use super::executions::Executions;
 use super::{ContentKey, Core, CoreHost, Keyed, Keys, Reading, TRACE_EVENTS};
 use crate::planning::{self, Planned};
+use crate::repairs;
 use crate::request::Update;
 use crate::snapshot::{MapKey, Planning, SeparationViolation, Snapshot, Traverse, VehicleMotion};
 
@@ -137,7 +138,9 @@ impl Core {
             keep_outs: None,
         };
         let mut stop = || host.is_superseded();
-        let planned = planning::plan(&problem, &mut self.grounds, &mut self.paths, &mut stop);
+        let mut planned = planning::plan(&problem, &mut self.grounds, &mut self.paths, &mut stop);
+        let text = (&*update.source, &update.goal);
+        repairs::add(&mut planned, text, &problem, (&mut self.grounds, &mut self.paths), &mut stop);
         if host.is_superseded() {
             return None;
         }

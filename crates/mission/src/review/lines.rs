@@ -212,6 +212,11 @@ fn failure(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<L
             let text = format!("it would have a plan: {}", kirk::GAP_LABEL);
             lines.push(places.line(Status::Attention, text, None, Vec::new(), Vec::new()));
         }
+        lines.extend(planning.repairs.iter().map(|repair| {
+            let text = format!("it would have a plan: {}", repair.label);
+            let span = repair.edits.first().map(|edit| edit.span);
+            places.line(Status::Attention, text, span, Vec::new(), Vec::new())
+        }));
         lines.extend(failure.relaxations.iter().map(|change| {
             let text = format!("it would have a plan: {}", change.label);
             places.line(Status::Attention, text, change.span, Vec::new(), Vec::new())

@@ -42,10 +42,10 @@ pub(crate) fn show(
         let note = "There are more combinations of choices than can be listed; all of them fail.";
         ui.label(RichText::new(note).color(tokens.text_muted));
     }
-    if failure.labels().is_empty() {
+    if planning.ways_out().is_empty() {
         return;
     }
-    section(ui, context, "What would give a plan", "each change alone, the smallest first");
+    section(ui, context, "What would give a plan", "each change alone; every one has been planned");
     let source = context.snapshot.map(|snapshot| snapshot.source.as_ref()).unwrap_or_default();
     if failure.is_of_gap {
         ui.horizontal(|ui| {
@@ -56,6 +56,21 @@ pub(crate) fn show(
                 && let Some(fix) = failure.gap_fix(source)
             {
                 commands.send(Command::Edit { edits: fix.edits, kind: EditKind::Single });
+            }
+        });
+    }
+    for repair in &planning.repairs {
+        ui.horizontal(|ui| {
+            icon::label(ui, Icon::Fix, tokens.accent);
+            let button = ui.add_enabled(!context.is_stale, egui::Button::new(&repair.label).wrap());
+            if button.accessible_name(format!("Fix: {}", repair.label)).clicked() {
+                commands.send(Command::Edit { edits: repair.edits.clone(), kind: EditKind::Single });
+            }
+            if let Some(edit) = repair.edits.first()
+                && ui.add(egui::Button::new("Show").frame_when_inactive(false)).clicked()
+            {
+                commands.send(Command::Reveal(edit.span));
+                commands.send(Command::Editor(EditorCommand::Focus));
             }
         });
     }

@@ -21,12 +21,14 @@ pub fn fixes_at(parse: &Parse, range: Span) -> Vec<(Diagnostic, Fix)> {
 pub fn set_option(parse: &Parse, name: &str, value: &str) -> Edit {
     let declarations = outline(parse);
     let text = format!("option {name} = {value};");
-    let set = declarations.iter().find(|item| item.kind == OutlineKind::Option && item.name == name);
-    match (set, declarations.first()) {
-        (Some(set), _) => Edit { span: set.span, text },
-        (None, first) => {
-            let start = first.map_or(0, |first| first.span.start);
-            Edit { span: Span::new(start, start), text: format!("{text}\n") }
-        }
+    match declarations.iter().find(|item| item.kind == OutlineKind::Option && item.name == name) {
+        Some(set) => Edit { span: set.span, text },
+        None => add_declaration(parse, &text),
     }
+}
+
+/// Adds a declaration, in a line of its own before the first one.
+pub fn add_declaration(parse: &Parse, text: &str) -> Edit {
+    let start = outline(parse).first().map_or(0, |first| first.span.start);
+    Edit { span: Span::new(start, start), text: format!("{text}\n") }
 }

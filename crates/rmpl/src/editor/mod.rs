@@ -27,7 +27,7 @@ pub use brackets::matching_bracket;
 pub use comment::toggle_comment;
 pub use completion::{Completion, CompletionItem, CompletionKind, complete};
 pub use definition::{Reference, definition, references};
-pub use fixes::{fixes_at, set_option};
+pub use fixes::{add_declaration, fixes_at, set_option};
 pub use folding::{Fold, FoldKind, folds};
 pub use highlight::{Highlight, HighlightKind, highlight};
 pub use hover::{Evaluation, EventWindow, Hover, Invocation, hover};

@@ -46,6 +46,7 @@ pub(super) fn problems(snapshot: &Snapshot) -> Vec<Problem> {
     let fixes: Vec<TextFix> = failure
         .gap_fix(source)
         .into_iter()
+        .chain(planning.repairs.iter().cloned())
         .chain(failure.relaxations.iter().filter_map(|relaxation| relaxation.fix(source)))
         .map(|fix| TextFix { label: fix.label, edits: fix.edits })
         .collect();

@@ -177,7 +177,7 @@ pub(super) const FACTS: &[Fact] = &[
         count(failure(state)?.reasons.len())
     }),
     fact("ways-out", Of::Nothing, "how many changes are known that would give a plan", |state, _| {
-        count(failure(state)?.labels().len())
+        count(fresh(state)?.planning.as_ref()?.ways_out().len())
     }),
     fact("natures-choice", Of::Nothing, "whether nature chooses durations of the plan", |state, _| {
         let (network, plan) = plan(state)?;

@@ -245,7 +245,10 @@ impl PageState {
             plan: plan.map(|(network, plan)| plan_to_json(network, plan)),
             bound: planning.and_then(|planning| planning.outcome.bound).map(|bound| json!(bound)),
             verdict: planning.and_then(|planning| planning.verdict.as_ref()).map(verdict),
-            failure: network.zip(failure).map(|(network, failure)| failure_of(network, failure)),
+            failure: network.zip(failure).map(|(network, failure)| {
+                let ways_out = planning.map(mission::Planning::ways_out).unwrap_or_default();
+                failure_of(network, failure, ways_out)
+            }),
             lesson: lesson::lessons(state),
             manual: lesson::manual(state),
             review: review::review(state),
@@ -311,7 +314,7 @@ fn diagnostic(problem: &Problem) -> Diagnostic {
     }
 }
 
-fn failure_of(network: &Network, failure: &kirk::Failure) -> Failure {
+fn failure_of(network: &Network, failure: &kirk::Failure, ways_out: Vec<&str>) -> Failure {
     let reasons = failure.reasons.iter().map(|reason| Reason {
         choices: reason
             .choices
@@ -330,7 +333,7 @@ fn failure_of(network: &Network, failure: &kirk::Failure) -> Failure {
     Failure {
         reasons: reasons.collect(),
         conditions: conditions.collect(),
-        relaxations: failure.labels().into_iter().map(str::to_owned).collect(),
+        relaxations: ways_out.into_iter().map(str::to_owned).collect(),
     }
 }
 

@@ -51,7 +51,13 @@ pub(super) fn at(base: &Snapshot, executed: &Executed, time: f64) -> (Snapshot, 
         trace: None,
         overflow: None,
     };
-    let planning = Planning { outcome, verdict: None, undrivable: Vec::new(), left_out: Vec::new() };
+    let planning = Planning {
+        outcome,
+        verdict: None,
+        undrivable: Vec::new(),
+        left_out: Vec::new(),
+        repairs: Vec::new(),
+    };
     let snapshot = Snapshot {
         revision: base.revision,
         stage: base.stage,
