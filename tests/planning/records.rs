@@ -230,6 +230,13 @@ fn contains(network: &Network, plan: &Plan, choices: &[TreeChoice], round: &Sear
             let Precedence { earlier, later, .. } = order.precedence(network);
             is_there(order.first) && is_there(order.then) && keeps(&mut stn, earlier, later, all)
         }
+        TreeChoice::Start { used, by } => {
+            let used = &network.uses[used.index()];
+            let most = Bound::Finite(*by);
+            assert!(!all, "nature chooses nothing where starts are decided");
+            plan.selected_arcs[used.arc.index()]
+                && insert(&mut stn, network.start, used.start, most).is_some()
+        }
         TreeChoice::NoLink { .. } | TreeChoice::Departure(_) => false,
     })
 }
@@ -267,6 +274,9 @@ fn in_force(network: &Network, step: &ReplayStep) -> Option<Stn> {
     let uses = step.uses.iter().map(|order: &UseOrdering| order.precedence(network));
     for Precedence { earlier, later, least } in links.chain(uses) {
         insert_least(&mut stn, earlier, later, least)?;
+    }
+    for &(used, by) in &step.starts {
+        insert(&mut stn, network.start, network.uses[used.index()].start, Bound::Finite(by))?;
     }
     for order in &step.orders {
         let (earlier, later) = (network.interval(order.first).1, network.interval(order.then).0);

@@ -46,6 +46,8 @@ ids! {
     LinearId;
     /// A set of intervals of the solver that exclude each other.
     ExclusionId;
+    /// A resource of the solver that several tasks share at a time.
+    CumulativeId;
     /// A tightening of a bound on the solver's trail.
     EventId;
     /// A reason that was noted on the solver's trail.

@@ -6,6 +6,7 @@
 
 mod answer;
 mod antichain;
+mod before;
 mod conditions;
 mod controllable;
 mod demanding;

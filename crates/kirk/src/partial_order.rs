@@ -14,6 +14,7 @@ use tpn::{
 use typed_index_collections::TiVec;
 
 use crate::antichain::heaviest_antichain;
+use crate::before::Before;
 use crate::demands::{ModelSupply, ModelUse, ResourceDemand};
 use crate::model::{Alternatives, INFINITE, Model};
 use crate::overflow::TimeOverflow;
@@ -234,17 +235,16 @@ impl Making<'_> {
     fn order_kept(&mut self, added: &mut Vec<Ordering>) -> Result<Vec<Ordering>, TimeOverflow> {
         let network = self.network;
         let mut order = Vec::new();
-        let mut is_before: BTreeSet<(LabelId, LabelId)> = BTreeSet::new();
+        let before = Before::new(&self.solution.kept.sides);
         // What follows closely first: the rest follows from that.
         let mut sides = self.solution.kept.sides.clone();
         sides.sort_by_key(|&(first, then)| (self.room(first, then), first, then));
+        order.extend(sides.iter().map(|&(first, then)| Ordering { first, then }));
+        sides.retain(|&(first, then)| !before.is_implied(first, then));
         for (first, then) in sides {
-            is_before.insert((first, then));
-            let ordering = Ordering { first, then };
             if self.ensure(network.interval(first).1, network.interval(then).0)? {
-                added.push(ordering);
+                added.push(Ordering { first, then });
             }
-            order.push(ordering);
         }
         let links: BTreeMap<LabelId, LabelId> = self.solution.kept.links.iter().copied().collect();
         for variable in &self.model.demands.variables {
@@ -262,18 +262,23 @@ impl Making<'_> {
             }
             for &ask in &asks {
                 let Some(&carrier) = links.get(&ask) else { continue };
-                for &change in changes.iter().filter(|&&change| change != carrier && conflicting(ask, change))
-                {
-                    let comes_first = is_before.contains(&(change, carrier));
-                    if comes_first {
-                        order.push(Ordering { first: change, then: ask });
+                let breaking =
+                    changes.iter().copied().filter(|&change| change != carrier && conflicting(ask, change));
+                let (earlier, mut later): (Vec<LabelId>, Vec<LabelId>) =
+                    breaking.partition(|&change| before.holds(change, carrier));
+                order.extend(earlier.into_iter().map(|change| Ordering { first: change, then: ask }));
+                order.extend(later.iter().map(|&change| Ordering { first: ask, then: change }));
+                // Before the first of those that follow each other it is before all.
+                later.sort_by_key(|&change| (before.rank(change), change));
+                let mut firsts: Vec<LabelId> = Vec::new();
+                for change in later {
+                    if firsts.iter().any(|&first| before.holds(first, change)) {
                         continue;
                     }
-                    let ordering = Ordering { first: ask, then: change };
+                    firsts.push(change);
                     if self.ensure(network.interval(ask).1, network.interval(change).0)? {
-                        added.push(ordering);
+                        added.push(Ordering { first: ask, then: change });
                     }
-                    order.push(ordering);
                 }
             }
         }

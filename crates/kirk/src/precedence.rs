@@ -1,7 +1,7 @@
 //! What links, orders and departures say about times, as edges of a simple temporal network.
 
 use stn::PointId;
-use tpn::UseOrdering;
+use tpn::{UseId, UseOrdering};
 
 use crate::demands::{ModelSupply, ModelUse};
 use crate::model::{Model, point};
@@ -34,6 +34,14 @@ pub(crate) fn edges(model: &Model, choice: TreeChoice, may_touch: bool) -> Vec<S
             vec![(model.interval(order.then).0, model.interval(order.first).1, -gap)]
         }
         TreeChoice::UseOrder(order) => use_order(model, order).into_iter().collect(),
+        TreeChoice::Start { used, by } => {
+            let start = find_use(model, used).map(|(_, used)| point(used.start));
+            start
+                .zip(model.units(by).ok())
+                .map(|(start, by)| (point(model.start), start, by))
+                .into_iter()
+                .collect()
+        }
         TreeChoice::Departure(Departing { movement, before }) => {
             let departures = model.demands.departures.get(&movement);
             let departure = departures.and_then(|departures| {
@@ -47,13 +55,17 @@ pub(crate) fn edges(model: &Model, choice: TreeChoice, may_touch: bool) -> Vec<S
 }
 
 fn use_order(model: &Model, order: UseOrdering) -> Option<StnEdge> {
+    let ((supply, first), (_, then)) = (find_use(model, order.first)?, find_use(model, order.then)?);
+    let (earlier, later) = match supply {
+        ModelSupply::Reusable { .. } => (first.end, then.start),
+        ModelSupply::Reservoir { .. } => (first.moment(), then.moment()),
+    };
+    Some((point(later), point(earlier), 0))
+}
+
+fn find_use(model: &Model, id: UseId) -> Option<(ModelSupply, &ModelUse)> {
     model.demands.resources.iter().find_map(|resource| {
-        let find = |id| resource.uses.iter().find(|used: &&ModelUse| used.id == id);
-        let (first, then) = (find(order.first)?, find(order.then)?);
-        let (earlier, later) = match resource.supply {
-            ModelSupply::Reusable { .. } => (first.end, then.start),
-            ModelSupply::Reservoir { .. } => (first.moment(), then.moment()),
-        };
-        Some((point(later), point(earlier), 0))
+        let used = resource.uses.iter().find(|used| used.id == id)?;
+        Some((resource.supply, used))
     })
 }

@@ -11,7 +11,9 @@ use std::ops::RangeInclusive;
 use exact::{Bound, Time};
 use serde::{Deserialize, Serialize};
 use stn::{Overflow, Stn};
-use tpn::{ArcId, CausalLink, Choice, DecisionId, LabelId, Network, NodeId, Ordering, UseOrdering, Window};
+use tpn::{
+    ArcId, CausalLink, Choice, DecisionId, LabelId, Network, NodeId, Ordering, UseId, UseOrdering, Window,
+};
 use typed_index_collections::TiVec;
 
 use crate::model::{Context, INFINITE, Model, point};
@@ -49,6 +51,8 @@ pub struct ReplayStep {
     pub orders: Vec<Ordering>,
     /// Orders of resource uses in force.
     pub uses: Vec<UseOrdering>,
+    /// Latest starts of uses in force.
+    pub starts: Vec<(UseId, Time)>,
     /// From where movements set out, as far as that is known.
     pub departures: Vec<Departing>,
     /// The decision being made, if one is.
@@ -157,6 +161,9 @@ impl Replay {
                 Some(Event::TryLink { link }) => frame.choices.push(TreeChoice::Link(*link)),
                 Some(Event::TryOrder { order }) => frame.choices.push(TreeChoice::Order(*order)),
                 Some(Event::TryUseOrder { order }) => frame.choices.push(TreeChoice::UseOrder(*order)),
+                Some(Event::TryStart { used, by }) => {
+                    frame.choices.push(TreeChoice::Start { used: *used, by: *by });
+                }
                 Some(Event::Imply { choice, holds: true, .. }) => frame.choices.push(*choice),
                 Some(Event::Keep { orders, uses }) => frame.kept = Some((orders.clone(), uses.clone())),
                 _ => {}
@@ -175,6 +182,7 @@ impl Replay {
                 TreeChoice::Link(link) => result.links.push(link),
                 TreeChoice::Order(order) => result.orders.push(order),
                 TreeChoice::UseOrder(order) => result.uses.push(order),
+                TreeChoice::Start { used, by } => result.starts.push((used, by)),
                 TreeChoice::Departure(departing) => result.departures.push(departing),
                 TreeChoice::NoLink { .. } => {}
             }
@@ -268,6 +276,11 @@ impl Replay {
                 let _ = stn.insert(from, to, weight, 0);
             }
         }
+        for &(used, by) in &step.starts {
+            for (from, to, weight) in precedence::edges(model, TreeChoice::Start { used, by }, may_touch) {
+                let _ = stn.insert(from, to, weight, 0);
+            }
+        }
         let all = stn.windows(point(model.start))?;
         let mut windows = vec![None; model.num_nodes];
         for node in &step.nodes {
@@ -317,6 +330,7 @@ fn look_at(trace: &Trace, step: usize, result: &mut ReplayStep) {
             | Event::Begin(_)
             | Event::Keep { .. }
             | Event::TryUseOrder { .. }
+            | Event::TryStart { .. }
             | Event::Solution { .. }
             | Event::Exhausted => (None, None, None),
             _ => continue,

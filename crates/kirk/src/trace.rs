@@ -122,6 +122,13 @@ pub enum Event {
         /// The order.
         order: UseOrdering,
     },
+    /// A use of a resource starts as early as it can; others wait for it.
+    TryStart {
+        /// The use.
+        used: UseId,
+        /// When it starts, at the latest.
+        by: Time,
+    },
     /// What follows from choices made before.
     Imply {
         /// What.
@@ -280,6 +287,13 @@ pub enum TreeChoice {
     },
     /// An order of two uses of a resource.
     UseOrder(UseOrdering),
+    /// A latest start of a use of a resource.
+    Start {
+        /// The use.
+        used: UseId,
+        /// When it starts, at the latest.
+        by: Time,
+    },
     /// Where a movement sets out. This is never chosen; it follows from the order of movements.
     Departure(Departing),
 }
@@ -335,6 +349,7 @@ impl Trace {
             Some(TreeChoice::UseOrder(order)) => {
                 format!("{} < {}", network.use_name(order.first), network.use_name(order.then))
             }
+            Some(TreeChoice::Start { used, by }) => format!("{} by {by}", network.use_name(used)),
             Some(TreeChoice::Departure(Departing { movement, before })) => {
                 format!("{} from {}", network.label_name(movement), network.label_name(before))
             }

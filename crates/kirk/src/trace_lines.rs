@@ -104,6 +104,9 @@ fn conflict_driven_json(network: &Network, event: &Event) -> Value {
             "first": network.use_name(order.first),
             "then": network.use_name(order.then),
         }),
+        Event::TryStart { used, by } => {
+            json!({ "event": "try-start", "use": network.use_name(*used), "by": by })
+        }
         Event::Imply { choice, holds, because } => json!({
             "event": "imply",
             "choice": choice_json(network, *choice),
@@ -137,8 +140,8 @@ fn conflict_driven_json(network: &Network, event: &Event) -> Value {
     }
 }
 
-/// A choice: `{"decision","alternative"}`, `{"ask","tell"}`, `{"first","then"}` of conditions or of uses, and
-/// `{"movement","before"}`.
+/// A choice: `{"decision","alternative"}`, `{"ask","tell"}`, `{"first","then"}` of conditions or of uses,
+/// `{"use","by"}`, and `{"movement","before"}`.
 fn choice_json(network: &Network, choice: TreeChoice) -> Value {
     let label = |id| network.label_name(id);
     match choice {
@@ -151,6 +154,7 @@ fn choice_json(network: &Network, choice: TreeChoice) -> Value {
         TreeChoice::UseOrder(order) => {
             json!({ "first": network.use_name(order.first), "then": network.use_name(order.then) })
         }
+        TreeChoice::Start { used, by } => json!({ "use": network.use_name(used), "by": by }),
         TreeChoice::Departure(Departing { movement, before }) => {
             json!({ "movement": label(movement), "before": label(before) })
         }

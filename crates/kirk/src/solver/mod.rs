@@ -21,6 +21,7 @@ mod alternatives;
 mod analysis;
 mod clauses;
 mod control;
+mod cumulative;
 mod difference;
 mod disjunctive;
 mod encode;
@@ -44,11 +45,13 @@ use activity::Activity;
 use alternatives::Alternatives;
 use analysis::Analysis;
 use clauses::Clauses;
+use cumulative::Cumulatives;
 use difference::{Difference, Differences};
 use disjunctive::Disjunctives;
 use linear::Linears;
 use literal::{Literal, Side, Variable};
 use record::Origin;
+use resources::Sharing;
 use trail::{Conflict, Trail};
 
 pub(crate) use encode::{Part, Problem, TooLarge};
@@ -97,6 +100,7 @@ pub(crate) struct Solver {
     differences: Differences,
     alternatives: Alternatives,
     disjunctives: Disjunctives,
+    cumulatives: Cumulatives,
     linears: Linears,
     /// By side of a Boolean: sides that follow.
     implied: TiVec<Side, Vec<Side>>,
@@ -136,6 +140,7 @@ impl Solver {
             differences: Differences::default(),
             alternatives: Alternatives::default(),
             disjunctives: Disjunctives::default(),
+            cumulatives: Cumulatives::default(),
             linears: Linears::default(),
             implied: TiVec::new(),
             exclusive: TiVec::new(),
@@ -173,6 +178,7 @@ impl Solver {
         self.differences.resize(count);
         self.alternatives.queue.resize(count);
         self.disjunctives.queue.resize(count);
+        self.cumulatives.queue.resize(count);
         self.implied.resize(count * 2, Vec::new());
         self.reached.resize(count * 2, Vec::new());
         self.exclusive.resize(count, None);
@@ -295,11 +301,11 @@ impl Solver {
                     self.stats.expanded += 1;
                 } else {
                     self.stats.leaves += 1;
-                    let is_broken =
-                        self.add_pairs(problem) || problem.break_circles(self) || problem.share(self);
-                    if is_broken {
+                    let is_broken = self.add_pairs(problem) || problem.break_circles(self);
+                    let sharing = if is_broken { Sharing::Restarted } else { problem.share(self) };
+                    if sharing == Sharing::Restarted {
                         self.record_restart(problem);
-                    } else {
+                    } else if sharing == Sharing::Fits {
                         debug_assert!(self.is_solution(problem), "the least times fit");
                         let stats = self.stats;
                         match problem.withstand(self, &mut || stop(&stats)) {
@@ -340,6 +346,7 @@ impl Solver {
                 self.differences.moved(&mut self.trail, event)?;
                 self.alternatives.queue.moved(side);
                 self.disjunctives.queue.moved(side);
+                self.cumulatives.queue.moved(side);
                 self.linears.queue.moved(side);
             }
             if self.differences.propagate(&mut self.trail)? {
@@ -356,7 +363,9 @@ impl Solver {
             if self.head < self.trail.events.len() {
                 continue;
             }
-            if !self.disjunctives.propagate(&mut self.trail)? {
+            let has_looked = self.disjunctives.propagate(&mut self.trail)?
+                || self.cumulatives.propagate(&mut self.trail)?;
+            if !has_looked {
                 return Ok(());
             }
         }
@@ -455,6 +464,7 @@ impl Solver {
         }
         self.alternatives.queue.forget();
         self.disjunctives.queue.forget();
+        self.cumulatives.queue.forget();
         self.linears.queue.forget();
     }
 

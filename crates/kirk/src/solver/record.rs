@@ -8,7 +8,7 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
-use exact::Rational;
+use exact::{Rational, Time};
 use stn::{Inconsistency, Stn};
 use tpn::UseId;
 
@@ -32,6 +32,8 @@ pub(crate) struct Record {
     path: Vec<TreeNodeId>,
     /// What a Boolean says, by the side that is decided when it holds.
     names: BTreeMap<Side, Vec<TreeChoice>>,
+    /// What decided bounds of times say.
+    starts: BTreeMap<Literal, TreeChoice>,
     /// How many events of the trail have been told.
     seen: usize,
     /// Whether conflicting intervals may touch.
@@ -57,6 +59,7 @@ impl Record {
             recorder: Recorder::new(limit),
             path: vec![0],
             names: BTreeMap::new(),
+            starts: BTreeMap::new(),
             seen: 0,
             may_touch: false,
             solution: 0,
@@ -116,7 +119,8 @@ impl Record {
 
     /// What a literal says, if it is a choice that is made.
     fn name(&self, literal: Literal) -> Option<TreeChoice> {
-        self.names.get(&literal.side).and_then(|names| names.first()).copied()
+        let named = self.names.get(&literal.side).and_then(|names| names.first());
+        named.or_else(|| self.starts.get(&literal)).copied()
     }
 }
 
@@ -201,9 +205,18 @@ impl Solver {
             Some(TreeChoice::Order(order)) => Event::TryOrder { order },
             Some(TreeChoice::UseOrder(order)) => Event::TryUseOrder { order },
             // All that is decided is one of these.
+            Some(TreeChoice::Start { used, by }) => Event::TryStart { used, by },
             Some(TreeChoice::NoLink { .. } | TreeChoice::Departure(_)) | None => return,
         };
         record.tell(event);
+    }
+
+    /// Tells the decision just made, that a use starts by a time.
+    pub(super) fn record_start(&mut self, option: Literal, (used, by): (UseId, Time)) {
+        if let Some(record) = self.recording() {
+            record.starts.insert(option, TreeChoice::Start { used, by });
+        }
+        self.record_decision(option);
     }
 
     /// Tells what has followed since the last time.
@@ -370,7 +383,12 @@ impl Solver {
                 next.is_none_or(|next| Some(next) != level)
             };
             let is_stop = Some(event.level) != level || is_last_of_level();
-            if event.cause == Cause::Decision || (is_stop && record.name(literal).is_some()) {
+            if event.cause == Cause::Decision {
+                // As it was decided, even where less would do.
+                found.push(Literal::new(event.side, event.most));
+                continue;
+            }
+            if is_stop && record.name(literal).is_some() {
                 found.push(literal);
                 continue;
             }
@@ -484,7 +502,7 @@ fn told(model: &Model, constraints: &[Constraint], edge: &stn::CycleEdge) -> Opt
 /// What a choice adds to the network.
 const fn constraint(choice: TreeChoice) -> Option<Constraint> {
     match choice {
-        TreeChoice::Decision { .. } | TreeChoice::NoLink { .. } => None,
+        TreeChoice::Decision { .. } | TreeChoice::NoLink { .. } | TreeChoice::Start { .. } => None,
         TreeChoice::Link(link) => Some(Constraint::Link(link)),
         TreeChoice::Order(order) => Some(Constraint::Order(order)),
         TreeChoice::UseOrder(order) => Some(Constraint::UseOrder(order)),

@@ -11,6 +11,7 @@ use tpn::{UseId, UseOrdering};
 
 use super::encode::{Interval, Part, Problem};
 use super::literal::{Literal, Variable};
+use super::trail::Cause;
 use super::{ChoicePoint, ChoicePointKind, Solver};
 use crate::demands::ModelSupply;
 use crate::trace::{Event, TreeChoice};
@@ -95,8 +96,9 @@ impl Problem<'_> {
         }
     }
 
-    /// Adds choice points where the present solution takes more of a resource than there is. `false` if it does not.
-    pub(super) fn share(&mut self, solver: &mut Solver) -> bool {
+    /// Where the present solution takes more of a resource than there is: decides when one of those starts that are too much
+    /// together, or adds choice points.
+    pub(super) fn share(&mut self, solver: &mut Solver) -> Sharing {
         let mut found: Vec<Critical> = Vec::new();
         let mut excluding: Vec<usize> = Vec::new();
         for (index, shared) in self.shares.all.iter().enumerate() {
@@ -107,11 +109,11 @@ impl Problem<'_> {
             match shared.supply {
                 ModelSupply::Reusable { capacity } => {
                     let active: Vec<Task> = present.into_iter().filter(|task| task.is_active).collect();
-                    let critical = overload(solver, &active, capacity);
-                    if critical.is_some() && !shared.has_exclusion {
+                    let critical = overloads(solver, &active, capacity);
+                    if !critical.is_empty() && !shared.has_exclusion {
                         excluding.push(index);
                     }
-                    found.extend(critical.map(Critical::Overload));
+                    found.extend(critical.into_iter().map(Critical::Overload));
                 }
                 ModelSupply::Reservoir { least, greatest, level } => {
                     found.extend(out_of_range(solver, &shared.tasks, (least, greatest), level));
@@ -119,7 +121,15 @@ impl Problem<'_> {
             }
         }
         if found.is_empty() {
-            return false;
+            return Sharing::Fits;
+        }
+        // Times that suit nobody but the executive say nothing where nature chooses.
+        if !self.faces_nature
+            && excluding.is_empty()
+            && let Some(first) = found.iter().find_map(|critical| first_to_start(solver, critical))
+        {
+            self.decide_start(solver, &first);
+            return Sharing::Decided;
         }
         for critical in &found {
             solver.tell(|| critical.event());
@@ -134,7 +144,18 @@ impl Problem<'_> {
                 Critical::Late { early, late } => self.resolve_late(solver, &early, &late),
             }
         }
-        true
+        Sharing::Restarted
+    }
+
+    /// A task starts as early as it can, which makes others wait.
+    fn decide_start(&self, solver: &mut Solver, task: &Task) {
+        let start = task.interval.start;
+        let least = solver.trail.least(start);
+        let option = Literal::new(start.upper(), least);
+        solver.trail.open_level();
+        // An open bound can be decided.
+        let _ = solver.trail.set(option, Cause::Decision);
+        solver.record_start(option, (task.id, self.model.time(least)));
     }
 
     /// Which uses the solution orders.
@@ -150,6 +171,8 @@ impl Problem<'_> {
         else {
             return;
         };
+        let shared = tasks.iter().filter(|task| task.is_active && task.interval.duration > 0);
+        solver.cumulatives.add(capacity, shared.map(|task| (task.interval, task.amount)).collect());
         // More than half each.
         let large: Vec<Task> =
             tasks.into_iter().filter(|task| task.is_active && task.amount > capacity - task.amount).collect();
@@ -256,6 +279,30 @@ fn add_resolvers(solver: &mut Solver, options: Vec<Literal>, present: &[Task]) {
     }
 }
 
+/// Whether a solution takes no more of any resource than there is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sharing {
+    Fits,
+    /// No, and now one task starts as early as it can.
+    Decided,
+    /// No, and there are new choice points; everything was taken back.
+    Restarted,
+}
+
+/// The task that can start first of those that are too much together, if starts are to be decided: not of two that exclude
+/// each other, nor of what has no time-table. Every other time between restarts orders are chosen instead: starts soon give
+/// a plan where there is room, orders prove where there is none.
+fn first_to_start(solver: &Solver, critical: &Critical) -> Option<Task> {
+    let Critical::Overload(tasks) = critical else { return None };
+    if tasks.len() < 3 || solver.restarts % 2 == 1 {
+        return None;
+    }
+    let times =
+        |task: &Task| (solver.trail.least(task.interval.start), solver.trail.most(task.interval.start));
+    let is_open = |task: &&Task| task.interval.duration > 0 && times(task).0 < times(task).1;
+    tasks.iter().filter(is_open).min_by_key(|task| (times(task), task.id)).copied()
+}
+
 /// What is wrong with a solution.
 enum Critical {
     /// These uses are too much together.
@@ -278,14 +325,18 @@ pub(super) fn ids(tasks: &[Task]) -> Vec<UseId> {
     tasks.iter().map(|task| task.id).collect()
 }
 
-/// A minimal set of uses that overlap in the least times and are too much together, if there is one: of the first
-/// instant at which that is so.
-fn overload(solver: &Solver, present: &[Task], capacity: i64) -> Option<Vec<Task>> {
+/// Sets of uses that are looked for in one solution, at most.
+const MAX_OVERLOADS: usize = 32;
+
+/// Minimal sets of uses that overlap in the least times and are too much together, in order of time; once a set is found,
+/// the last of it to start counts no more.
+fn overloads(solver: &Solver, present: &[Task], capacity: i64) -> Vec<Vec<Task>> {
     let times =
         |task: &Task| (solver.trail.least(task.interval.start), solver.trail.least(task.interval.end));
     let mut by_start: Vec<&Task> = present.iter().collect();
     by_start.sort_by_key(|task| (times(task), task.id));
     let mut running: Vec<&Task> = Vec::new();
+    let mut found = Vec::new();
     for &task in &by_start {
         let (start, end) = times(task);
         // What has no length counts inside another, not where that begins.
@@ -298,10 +349,14 @@ fn overload(solver: &Solver, present: &[Task], capacity: i64) -> Option<Vec<Task
         };
         let sum: i64 = together.iter().map(|task| task.amount).sum();
         if sum > capacity {
-            return Some(minimal(together, sum - capacity));
+            found.push(minimal(together, sum - capacity));
+            running.retain(|other| other.id != task.id);
+            if found.len() == MAX_OVERLOADS {
+                break;
+            }
         }
     }
-    None
+    found
 }
 
 /// Leaves out what is not needed for an excess, the smallest first.

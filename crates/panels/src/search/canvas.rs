@@ -460,6 +460,11 @@ pub fn short_label(network: &Network, choice: Option<TreeChoice>) -> String {
             };
             format!("{} ≺ {}", user(order.first), user(order.then))
         }
+        Some(TreeChoice::Start { used, by }) => {
+            let used = network.uses.get(used.index());
+            let owner = used.and_then(|used| network.occurrences.get(used.owner?.index()));
+            format!("{} by {by}", owner.map_or("?", |owner| owner.name.as_str()))
+        }
         Some(TreeChoice::Departure(it)) => format!("{} → {}", owner(it.before), owner(it.movement)),
     }
 }

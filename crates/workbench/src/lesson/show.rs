@@ -117,7 +117,9 @@ impl StepKind {
             Self::Threat => {
                 matches!(event, Event::Threat { .. } | Event::Overload { .. } | Event::OutOfRange { .. })
             }
-            Self::Order => matches!(event, Event::TryOrder { .. } | Event::TryUseOrder { .. }),
+            Self::Order => {
+                matches!(event, Event::TryOrder { .. } | Event::TryUseOrder { .. } | Event::TryStart { .. })
+            }
             Self::Backtrack => {
                 matches!(event, Event::Backtrack { .. } | Event::Backjump { .. } | Event::Restart)
             }

@@ -137,6 +137,7 @@ fn event_name(event: &kirk::Event) -> &'static str {
         Event::Exhausted => "exhausted",
         Event::Begin(_) => "begin",
         Event::TryUseOrder { .. } => "try-use-order",
+        Event::TryStart { .. } => "try-start",
         Event::Imply { .. } => "imply",
         Event::NoAlternative { .. } => "no-alternative",
         Event::Unsharable { .. } => "unsharable",

@@ -3,7 +3,7 @@
 
 use kirk::{Constraint, Departing, Event, Member, Reason, ReplayStep, Trace, TreeChoice};
 use rmpl::Span;
-use tpn::{ArcId, DecisionId, LabelId, Network, NodeId, UseId};
+use tpn::{ArcId, DecisionId, LabelId, Network, NodeId, UseId, UseOrdering};
 
 use crate::state::Selection;
 
@@ -76,6 +76,7 @@ impl Focus {
                 focus.add_choices(network, choice);
             }
             Event::TryUseOrder { order } => focus.add_uses(network, &[order.first, order.then]),
+            Event::TryStart { used, .. } => focus.add_uses(network, &[*used]),
             Event::Imply { choice, .. } => focus.add_choices(network, [*choice]),
             Event::NoAlternative { decision } => {
                 let node = network.decisions.get(decision.index()).map(|decision| decision.node);
@@ -150,6 +151,7 @@ impl Focus {
                 TreeChoice::Order(order) => self.add_labels(network, [order.first, order.then]),
                 TreeChoice::NoLink { ask } => self.add_label(network, ask),
                 TreeChoice::UseOrder(order) => self.add_uses(network, &[order.first, order.then]),
+                TreeChoice::Start { used, .. } => self.add_uses(network, &[used]),
                 TreeChoice::Departure(Departing { movement, before }) => {
                     self.add_labels(network, [before, movement]);
                 }
@@ -211,8 +213,8 @@ pub fn selection_of(network: &Network, choice: Option<TreeChoice>) -> Selection 
         Some(TreeChoice::Link(link)) => Selection::Link(link),
         Some(TreeChoice::Order(order)) => Selection::Ordering(order),
         Some(TreeChoice::NoLink { ask }) => Selection::Label(ask),
-        Some(TreeChoice::UseOrder(order)) => {
-            let owner = network.uses.get(order.then.index()).and_then(|used| used.owner);
+        Some(TreeChoice::UseOrder(UseOrdering { then: used, .. }) | TreeChoice::Start { used, .. }) => {
+            let owner = network.uses.get(used.index()).and_then(|used| used.owner);
             owner.map_or(Selection::None, Selection::Occurrence)
         }
         Some(TreeChoice::Departure(departing)) => Selection::Label(departing.movement),

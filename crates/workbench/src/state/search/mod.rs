@@ -389,7 +389,10 @@ fn stops_at(trace: &Trace, step: usize, breakpoints: Breakpoints) -> bool {
     let Some(entry) = trace.events.get(step) else { return false };
     match entry.event {
         Event::Decide { .. } => breakpoints.decision,
-        Event::TryLink { .. } | Event::TryOrder { .. } | Event::TryUseOrder { .. }
+        Event::TryLink { .. }
+        | Event::TryOrder { .. }
+        | Event::TryUseOrder { .. }
+        | Event::TryStart { .. }
             if trace.is_conflict_driven() =>
         {
             breakpoints.decision

@@ -21,7 +21,7 @@ pub fn choice(network: &Network, choice: Option<TreeChoice>) -> String {
         Some(TreeChoice::Link(link)) => format!("{} carries {}", label(link.tell), label(link.ask)),
         Some(TreeChoice::Order(order)) => format!("{} before {}", label(order.first), label(order.then)),
         Some(TreeChoice::NoLink { ask }) => format!("Nothing carries {}", label(ask)),
-        Some(choice @ (TreeChoice::UseOrder(_) | TreeChoice::Departure(_))) => {
+        Some(choice @ (TreeChoice::UseOrder(_) | TreeChoice::Start { .. } | TreeChoice::Departure(_))) => {
             conflict_driven::fact(network, choice)
         }
     }

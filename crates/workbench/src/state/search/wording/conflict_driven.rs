@@ -29,6 +29,12 @@ pub(super) fn event(network: &Network, trace: &Trace, event: &Event) -> Option<S
             format!("{} comes before {}: {why}.", owner(network, order.first), owner(network, order.then))
         }
         Event::TryUseOrder { order } => use_order(network, *order),
+        Event::TryStart { used, by } => {
+            let (user, resource) = (user(network, *used), resource(network, *used));
+            format!(
+                "{user} starts as early as it can, by {by}: whatever needs too much of {resource} waits for it."
+            )
+        }
         Event::Imply { choice, holds: true, because } if because.is_empty() => {
             format!("Whatever is chosen: {}.", fact(network, *choice))
         }
@@ -142,6 +148,9 @@ pub fn fact(network: &Network, choice: TreeChoice) -> String {
         TreeChoice::UseOrder(UseOrdering { first, then }) => {
             let resource = resource(network, first);
             format!("{} before {} ({resource})", user(network, first), user(network, then))
+        }
+        TreeChoice::Start { used, by } => {
+            format!("{} by {by} ({})", user(network, used), resource(network, used))
         }
         TreeChoice::Departure(Departing { movement, before }) => {
             let (movement, label) = (owner(network, movement), &network.labels[before.index()]);
