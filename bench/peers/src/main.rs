@@ -27,6 +27,8 @@ enum Subject {
     Planner,
     /// First plans of missions by families: aries.
     Families,
+    /// Shortest schedules of activities that share resources, proven: aries, CP-SAT.
+    Resources,
     /// Simple temporal networks, arc by arc: aries.
     Stn,
     /// Drawings of networks: Graphviz, ELK, dagre, rust-sugiyama.
@@ -62,6 +64,7 @@ fn main() -> Result<()> {
     let all = [
         Subject::Planner,
         Subject::Families,
+        Subject::Resources,
         Subject::Stn,
         Subject::Layout,
         Subject::Paths,
@@ -75,6 +78,7 @@ fn main() -> Result<()> {
         match subject {
             Subject::Planner => planner::compare(&mut tools, options.quick)?,
             Subject::Families => planner::families::compare(&options.family, options.quick),
+            Subject::Resources => planner::resources::compare(&mut tools, options.quick)?,
             Subject::Stn => network::compare(options.quick),
             Subject::Layout => layouts::compare(&mut tools, options.quick)?,
             Subject::Paths => paths::compare(&mut tools, options.quick)?,

@@ -147,14 +147,19 @@ const JOB_SHOP_HORIZONS: [(&str, Horizon); 3] = [
 ];
 
 impl JobShop {
-    /// The shop as a mission that must be over by `horizon`.
-    pub fn mission(&self, horizon: i64) -> String {
+    /// The jobs, each with its operations in order: a machine, and how long it takes.
+    pub fn jobs(&self) -> Vec<Vec<(i64, i64)>> {
         let jobs = self.operations.lines().map(|line| {
             let numbers: Vec<i64> =
                 line.split_ascii_whitespace().filter_map(|number| number.parse().ok()).collect();
             numbers.chunks_exact(2).map(|operation| (operation[0], operation[1])).collect()
         });
-        let jobs: Vec<Vec<(i64, i64)>> = jobs.collect();
+        jobs.collect()
+    }
+
+    /// The shop as a mission that must be over by `horizon`.
+    pub fn mission(&self, horizon: i64) -> String {
+        let jobs = self.jobs();
         let branches = (0..).zip(&jobs).map(|(job, operations)| {
             let operation = |&(machine, duration): &(i64, i64)| {
                 format!("delay[0,inf]; {}", use_of(machine, job, duration))

@@ -3,6 +3,7 @@
 mod aries;
 pub(crate) mod families;
 mod instance;
+pub(crate) mod resources;
 
 use std::fs;
 use std::process::Command;
