@@ -4,7 +4,8 @@
 
 pub mod activity_execution;
 mod adversary;
-pub mod dispatch;
+mod certain_dispatch;
+mod dispatch;
 pub mod facts;
 pub mod log;
 pub mod model_based;
@@ -12,7 +13,6 @@ pub mod pinned;
 pub mod plan_network;
 pub mod progress;
 pub mod run;
-mod sparse_dispatch;
 pub mod stage;
 pub mod strategy;
 pub mod uncertain_dispatch;
@@ -21,7 +21,6 @@ pub mod world;
 mod world_state;
 
 pub use activity_execution::{ActivityExecution, ActivityExecutor, AsPlanned, Ends, PlantReading, Revision};
-pub use dispatch::Dispatcher;
 pub use facts::Facts;
 pub use log::{Ending, Entry, Happening};
 pub use pinned::PinnedPlan;

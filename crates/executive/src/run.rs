@@ -94,7 +94,7 @@ pub fn run_stage(
         log: Vec::new(),
         coming: VecDeque::new(),
         executions: BTreeMap::new(),
-        passes: Vec::new(),
+        passes: BTreeMap::new(),
         odometers: VecDeque::new(),
         extra_m: BTreeMap::new(),
         num_changes: 0,
@@ -123,7 +123,7 @@ struct Run<'a> {
     /// When the activities that were started will be over.
     executions: BTreeMap<OccurrenceId, Ends>,
     /// After how long from their traverse's start path vertices are passed.
-    passes: Vec<(EventRef, Time)>,
+    passes: BTreeMap<OccurrenceId, Vec<(EventRef, Time)>>,
     /// What is so in the world.
     state: WorldState,
     /// How far the traverses under way will have driven, in order of time.
@@ -447,7 +447,7 @@ impl Run<'_> {
         let Some(guide) = self.stage.guides.get(&node) else { return Ok(None) };
         let occurrence = &self.stage.network.occurrences[guide.traverse.index()];
         let Some(started) = self.stage.times[occurrence.start.index()] else { return Ok(None) };
-        let is_reported = self.passes.iter().any(|(event, _)| event.occurrence == guide.traverse);
+        let is_reported = self.passes.contains_key(&guide.traverse);
         let given = self.world.duration(&self.stage.network, occurrence)?;
         let duration = match (given, self.executions.get(&guide.traverse)) {
             _ if is_reported => return Ok(None),
@@ -523,7 +523,8 @@ impl Run<'_> {
         let started = self.stage.times[occurrence.start.index()];
         let decided = match (occurrence.kind, event.end) {
             (OccurrenceKind::Primitive, EventEnd::PathVertex { .. }) => {
-                let Some(&(_, after)) = self.passes.iter().find(|(vertex, _)| *vertex == event) else {
+                let mut passes = self.passes.get(&event.occurrence).into_iter().flatten();
+                let Some(&(_, after)) = passes.find(|(vertex, _)| *vertex == event) else {
                     return Ok(Some(ByWorld::Free));
                 };
                 let Some(started) = started else { return Ok(None) };
@@ -592,6 +593,13 @@ impl Run<'_> {
         let ticks = self.stage.made.scale().ticks(self.now).map_err(|_| self.too_large(node))?;
         match self.stage.dispatch.settle(point, ticks) {
             Ok(()) => {}
+            // What nature does waits for nobody.
+            Err(SettleError::NotYet(other)) if self.adversary.is_some() && self.is_natures(node) => {
+                let (name, other) = (self.stage.name(node), self.stage.name(self.stage.made.node(other)));
+                let reason = format!("{name} came at {}, and {other} had to come before", shown(self.now));
+                let (name, news, is_final) = (name.into(), News::None, false);
+                return Ok(Some(Violation { name, reason, news, is_final }));
+            }
             Err(SettleError::NotYet(other)) => {
                 self.wait_for(point, other);
                 return Ok(None);
@@ -639,7 +647,9 @@ impl Run<'_> {
     /// Takes in how an activity will go.
     fn expect(&mut self, occurrence: OccurrenceId, execution: ActivityExecution) {
         self.executions.insert(occurrence, execution.ends);
-        self.passes.extend(execution.passes);
+        for (event, after) in execution.passes {
+            self.passes.entry(event.occurrence).or_default().push((event, after));
+        }
         for entry in execution.entries {
             let at = self.coming.partition_point(|(_, before)| before.time <= entry.time);
             self.coming.insert(at, (occurrence, entry));
@@ -703,7 +713,7 @@ impl Run<'_> {
         let kept = stage.enter_past(past);
         self.off_plan.clear();
         let times = &stage.times;
-        self.state.follow(&stage.network, &stage.plan, |node| times[node.index()].is_some());
+        self.state.follow(&stage.network, &stage.plan, &stage.effects, |node| times[node.index()].is_some());
         self.adversary = Adversary::of(self.world, &stage)?;
         let before = std::mem::replace(&mut self.stage, stage);
         self.plans.push(before.close());

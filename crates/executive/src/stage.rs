@@ -7,15 +7,13 @@ use exact::{Bound, Time};
 use stn::PointId;
 use tpn::{ArcId, ArcKind, EventRef, Network, NodeId, Occurrence, OccurrenceId, Plan, Precedence};
 
-use crate::dispatch::{Dispatcher, MAX_EVENTS, NEVER, SettleError};
+use crate::certain_dispatch::CertainDispatch;
+use crate::dispatch::{NEVER, SettleError};
 use crate::plan_network::{PlanError, PlanNetwork};
-use crate::sparse_dispatch::SparseDispatch;
 use crate::uncertain_dispatch::UncertainDispatch;
 use crate::world_state::Effects;
 
-/// A plan made ready for dispatch: the dispatchable form, in ticks fine enough for all times that the world brings.
-///
-/// Making it takes time cubic in the number of events; many runs of one plan share it.
+/// A plan made ready for dispatch, in ticks fine enough for all times that the world brings. Many runs of one plan share it.
 #[derive(Clone, Debug)]
 pub struct Stage {
     pub(crate) network: Arc<Network>,
@@ -147,9 +145,7 @@ impl Stage {
 #[derive(Clone, Debug)]
 pub(crate) enum Dispatch {
     /// All durations are the executive's to choose, or the plan does not withstand nature.
-    Certain(Dispatcher),
-    /// The same of many events.
-    Sparse(SparseDispatch),
+    Certain(CertainDispatch),
     /// Nature chooses some, and the plan withstands that.
     Uncertain(UncertainDispatch),
 }
@@ -161,17 +157,13 @@ impl Dispatch {
         {
             return Ok(Self::Uncertain(dispatch));
         }
-        if made.all_points().count() > MAX_EVENTS {
-            return Ok(Self::Sparse(SparseDispatch::new(made)?));
-        }
-        Ok(Self::Certain(Dispatcher::new(made)?))
+        Ok(Self::Certain(CertainDispatch::new(made)?))
     }
 
     /// When a point may happen: its earliest and latest tick, [`NEVER`] if there is no latest.
     pub(crate) fn window(&self, point: PointId) -> (i64, i64) {
         match self {
             Self::Certain(dispatch) => dispatch.window(point),
-            Self::Sparse(dispatch) => dispatch.window(point),
             Self::Uncertain(dispatch) => dispatch.window(point),
         }
     }
@@ -179,8 +171,7 @@ impl Dispatch {
     /// What a point happens together with, and how many ticks after the first of that.
     pub(crate) fn component(&self, point: PointId) -> (usize, i64) {
         match self {
-            Self::Certain(dispatch) => dispatch.component(point),
-            Self::Sparse(_) => (point.index(), 0),
+            Self::Certain(_) => (point.index(), 0),
             Self::Uncertain(dispatch) => (dispatch.component(point), 0),
         }
     }
@@ -188,7 +179,6 @@ impl Dispatch {
     pub(crate) fn is_settled(&self, point: PointId) -> bool {
         match self {
             Self::Certain(dispatch) => dispatch.is_settled(point),
-            Self::Sparse(dispatch) => dispatch.is_settled(point),
             Self::Uncertain(dispatch) => dispatch.is_settled(point),
         }
     }
@@ -196,7 +186,6 @@ impl Dispatch {
     pub(crate) fn is_enabled(&self, point: PointId) -> bool {
         match self {
             Self::Certain(dispatch) => dispatch.is_enabled(point),
-            Self::Sparse(dispatch) => dispatch.is_enabled(point),
             Self::Uncertain(dispatch) => dispatch.is_enabled(point),
         }
     }
@@ -204,7 +193,6 @@ impl Dispatch {
     pub(crate) fn settle(&mut self, point: PointId, ticks: i64) -> Result<(), SettleError> {
         match self {
             Self::Certain(dispatch) => dispatch.settle(point, ticks),
-            Self::Sparse(dispatch) => dispatch.settle(point, ticks),
             Self::Uncertain(dispatch) => dispatch.settle(point, ticks),
         }
     }

@@ -124,18 +124,24 @@ impl Disturbance {
             Self::VehicleSlow { from, until, .. } if from > until => {
                 Some("it is over before it begins: `until` is less than `from`")
             }
+            _ if self.since().is_some_and(Time::is_negative) => {
+                Some("nothing happens before the mission starts, at 0")
+            }
+            Self::Obstacle { radius, .. } if *radius <= 0.0 => Some("an obstacle has a radius above 0"),
+            _ => None,
+        }
+    }
+
+    /// From when on it counts, if it is not about all of an occurrence.
+    pub const fn since(&self) -> Option<Time> {
+        match self {
             Self::Withdrawn { at, .. }
             | Self::Late { at, .. }
             | Self::State { at, .. }
             | Self::Level { at, .. }
             | Self::Obstacle { at, .. }
-            | Self::VehicleSlow { from: at, .. }
-                if at.is_negative() =>
-            {
-                Some("nothing happens before the mission starts, at 0")
-            }
-            Self::Obstacle { radius, .. } if *radius <= 0.0 => Some("an obstacle has a radius above 0"),
-            _ => None,
+            | Self::VehicleSlow { from: at, .. } => Some(*at),
+            Self::Duration { .. } | Self::Slow { .. } | Self::Fault { .. } => None,
         }
     }
 

@@ -5,7 +5,7 @@
 //! what there is. As SPEC 10.2 and 11 say, the order of what happens at one instant is for nobody to see: values and levels
 //! are looked at between instants.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use exact::Rational;
 use rmpl::program::{Change, LabelMode};
@@ -23,8 +23,11 @@ pub(crate) struct Effects {
     by_node: BTreeMap<NodeId, Vec<Effect>>,
     /// What the plan requires of variables that last.
     pub(crate) requirements: Vec<LabelId>,
-    /// The same by the events where they end.
+    /// The same by the events where they start, and by those where they end.
+    beginnings: BTreeMap<NodeId, Vec<LabelId>>,
     endings: BTreeMap<NodeId, Vec<LabelId>>,
+    /// Of two changes of a variable, which the plan puts first.
+    orders: BTreeSet<(LabelId, LabelId)>,
     /// The producer of each requirement, as the plan has it.
     pub(crate) carriers: BTreeMap<LabelId, LabelId>,
     /// What the plan takes of reservoirs and gives to them.
@@ -49,6 +52,7 @@ impl Effects {
     pub(crate) fn new(network: &Network, plan: &Plan) -> Self {
         let mut effects = Self {
             carriers: plan.causal_links.iter().map(|link| (link.ask, link.tell)).collect(),
+            orders: plan.conflict_order.iter().map(|order| (order.first, order.then)).collect(),
             ..Self::default()
         };
         let mut add = |node: NodeId, effect: Effect| effects.by_node.entry(node).or_default().push(effect);
@@ -59,8 +63,10 @@ impl Effects {
             }
             match (label.mode, label.extent) {
                 (LabelMode::Ask, _) => {
+                    let (start, end) = network.interval(id);
                     effects.requirements.push(id);
-                    effects.endings.entry(network.interval(id).1).or_default().push(id);
+                    effects.beginnings.entry(start).or_default().push(id);
+                    effects.endings.entry(end).or_default().push(id);
                 }
                 (LabelMode::Tell, Extent::Initial) => {}
                 (LabelMode::Tell, _) => {
@@ -99,6 +105,11 @@ impl Effects {
         self.by_node.get(&node).into_iter().flatten().filter_map(given).collect()
     }
 
+    /// The requirements that start at an event.
+    pub(crate) fn beginning_at(&self, node: NodeId) -> &[LabelId] {
+        self.beginnings.get(&node).map_or(&[], Vec::as_slice)
+    }
+
     /// The requirements that end at an event.
     pub(crate) fn ending_at(&self, node: NodeId) -> &[LabelId] {
         self.endings.get(&node).map_or(&[], Vec::as_slice)
@@ -126,6 +137,11 @@ pub(crate) struct WorldState {
     levels: Vec<Rational>,
     /// Requirements that lasted no time and are of the present instant.
     momentary: Vec<LabelId>,
+    /// By variable: the requirements that go on.
+    under_way: Vec<BTreeSet<LabelId>>,
+    /// What may be otherwise, or be needed, since the present instant.
+    touched: BTreeSet<VariableId>,
+    moved: BTreeSet<ResourceId>,
 }
 
 /// Something that is not as an activity needs it.
@@ -151,12 +167,33 @@ impl WorldState {
             Supply::Reusable { .. } => Rational::ZERO,
         };
         let levels = network.resources.iter().map(|resource| level(&resource.supply)).collect();
-        Self { held, levels, momentary: Vec::new() }
+        Self {
+            under_way: vec![BTreeSet::new(); held.len()],
+            touched: (0..held.len()).map(VariableId::from_index).collect(),
+            moved: (0..network.resources.len()).map(ResourceId::from_index).collect(),
+            held,
+            levels,
+            momentary: Vec::new(),
+        }
     }
 
-    /// Another plan is followed from now on: orders that are no resources of the mission are its own.
-    pub(crate) fn follow(&mut self, network: &Network, plan: &Plan, has_happened: impl Fn(NodeId) -> bool) {
-        let start = Self::new(network).levels;
+    /// Another plan is followed from now on: orders that are no resources of the mission are its own, and it has its own
+    /// requirements.
+    pub(crate) fn follow(
+        &mut self,
+        network: &Network,
+        plan: &Plan,
+        effects: &Effects,
+        has_happened: impl Fn(NodeId) -> bool,
+    ) {
+        let Self { levels: start, under_way, touched, moved, .. } = Self::new(network);
+        (self.under_way, self.touched, self.moved) = (under_way, touched, moved);
+        for &requirement in &effects.requirements {
+            let (from, until) = network.interval(requirement);
+            if has_happened(from) && !has_happened(until) {
+                self.require(network, requirement);
+            }
+        }
         self.levels.resize(start.len(), Rational::ZERO);
         for (index, _) in network.resources.iter().enumerate().filter(|(_, it)| is_unnamed(it)) {
             let own = network.uses.iter().filter(|used| used.resource.index() == index);
@@ -193,31 +230,41 @@ impl WorldState {
     /// Time goes on: what held between two values at the last instant is forgotten.
     pub(crate) fn advance(&mut self) {
         self.momentary.clear();
-        for held in &mut self.held {
+        self.moved.clear();
+        for variable in std::mem::take(&mut self.touched) {
+            let held = &mut self.held[variable.index()];
             held.seen.clear();
             held.seen.extend(held.value.filter(|_| held.changing.is_empty()));
         }
     }
 
+    /// A requirement begins.
+    pub(crate) fn require(&mut self, network: &Network, requirement: LabelId) {
+        let variable = network.labels[requirement.index()].literal.variable;
+        self.under_way[variable.index()].insert(requirement);
+        self.touched.insert(variable);
+    }
+
+    /// A requirement is over.
+    pub(crate) fn release(&mut self, network: &Network, requirement: LabelId) {
+        let variable = network.labels[requirement.index()].literal.variable;
+        self.under_way[variable.index()].remove(&requirement);
+    }
+
     /// An event happens. Returns what changes.
-    pub(crate) fn happen(
-        &mut self,
-        network: &Network,
-        plan: &Plan,
-        effects: &Effects,
-        node: NodeId,
-    ) -> Vec<Happening> {
+    pub(crate) fn happen(&mut self, network: &Network, effects: &Effects, node: NodeId) -> Vec<Happening> {
         let mut happenings = Vec::new();
         for &effect in effects.by_node.get(&node).into_iter().flatten() {
             match effect {
                 Effect::Changes(label) => {
                     let of = &network.labels[label.index()];
                     self.held[of.literal.variable.index()].changing.push(label);
+                    self.touched.insert(of.literal.variable);
                     happenings.push(self.value_shown(network, of.literal.variable, of.owner));
                 }
                 Effect::Gives(label) => {
                     let of = &network.labels[label.index()];
-                    self.give(plan, label, of.literal.variable, value_of(&of.literal.values));
+                    self.give(effects, label, of.literal.variable, value_of(&of.literal.values));
                     happenings.push(self.value_shown(network, of.literal.variable, of.owner));
                 }
                 Effect::Takes(id) | Effect::Frees(id) | Effect::Moves(id) => {
@@ -241,13 +288,12 @@ impl WorldState {
     }
 
     /// A label gives its value. Of two without length at one instant the plan says which is the later one.
-    fn give(&mut self, plan: &Plan, label: LabelId, variable: VariableId, value: Option<ValueId>) {
+    fn give(&mut self, effects: &Effects, label: LabelId, variable: VariableId, value: Option<ValueId>) {
+        self.touched.insert(variable);
         let held = &mut self.held[variable.index()];
         held.changing.retain(|&changing| changing != label);
         held.seen.extend(value);
-        let is_before = |later: LabelId| {
-            plan.conflict_order.iter().any(|order| order.first == label && order.then == later)
-        };
+        let is_before = |later: LabelId| effects.orders.contains(&(label, later));
         if !held.by.is_some_and(is_before) {
             (held.value, held.by) = (value, Some(label));
         }
@@ -264,6 +310,7 @@ impl WorldState {
         let held = self.held.get_mut(variable.index()).filter(|held| held.changing.is_empty())?;
         (held.value, held.by) = (Some(value), None);
         held.seen.push(value);
+        self.touched.insert(variable);
         Some(self.value_shown(network, variable, None))
     }
 
@@ -277,6 +324,7 @@ impl WorldState {
         owner: Option<OccurrenceId>,
     ) -> Option<Happening> {
         let level = self.levels.get_mut(resource.index())?;
+        self.moved.insert(resource);
         *level = level.checked_add(by).unwrap_or(*level);
         let of = &network.resources[resource.index()];
         (!by.is_zero() && !is_unnamed(of)).then(|| Happening::Level {
@@ -302,6 +350,7 @@ impl WorldState {
                 continue;
             }
             held.changing.retain(|changing| changing != label);
+            self.touched.insert(of.literal.variable);
             if network.variables[of.literal.variable.index()].name.ends_with(".at") {
                 (held.value, held.by) = (None, None);
             } else {
@@ -330,13 +379,8 @@ impl WorldState {
         self.momentary.push(requirement);
     }
 
-    /// What is not as it must be when the present instant is over. `is_under_way` tells which requirements go on.
-    pub(crate) fn lack(
-        &self,
-        network: &Network,
-        effects: &Effects,
-        is_under_way: impl Fn(LabelId) -> bool,
-    ) -> Option<Lack> {
+    /// What is not as it must be when the present instant is over: only what has changed in it can have become so.
+    pub(crate) fn lack(&self, network: &Network) -> Option<Lack> {
         let holds = |label: &LabelId| {
             let literal = &network.labels[label.index()].literal;
             self.value(literal.variable).is_some_and(|value| literal.values.contains(value))
@@ -346,17 +390,21 @@ impl WorldState {
             self.held[literal.variable.index()].seen.iter().any(|&value| literal.values.contains(value))
         };
         let momentary = self.momentary.iter().find(|label| !held(label));
-        let lasting = || effects.requirements.iter().find(|label| is_under_way(**label) && !holds(label));
+        let lasting = || {
+            let needed = self.touched.iter().flat_map(|variable| &self.under_way[variable.index()]);
+            needed.filter(|label| !holds(label)).min()
+        };
         if let Some(&label) = momentary.or_else(lasting) {
             return Some(Lack::Value(label));
         }
-        let is_kept = |(supply, &level): (&Supply, &Rational)| match *supply {
-            Supply::Reusable { capacity } => level <= capacity,
-            Supply::Reservoir { least, greatest, .. } => (least..=greatest).contains(&level),
+        let is_kept = |resource: &ResourceId| {
+            let level = self.level(*resource);
+            match network.resources[resource.index()].supply {
+                Supply::Reusable { capacity } => level <= capacity,
+                Supply::Reservoir { least, greatest, .. } => (least..=greatest).contains(&level),
+            }
         };
-        let supplies = network.resources.iter().map(|resource| &resource.supply);
-        let lacking = supplies.zip(&self.levels).position(|one| !is_kept(one))?;
-        Some(Lack::Level(ResourceId::from_index(lacking)))
+        self.moved.iter().find(|resource| !is_kept(resource)).map(|&resource| Lack::Level(resource))
     }
 
     /// What a variable is, for people: `IN`, `changing`.

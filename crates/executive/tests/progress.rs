@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use exact::{Bound, Time};
-use executive::{Dispatcher, Observations, PlanNetwork, Progress, progress};
+use executive::{Observations, PlanNetwork, Progress, progress};
 use kirk::{Options, Unlimited};
 use serde_json::Value;
 use tpn::compile::{Top, compile};
@@ -29,9 +29,10 @@ fn node(network: &Network, name: &str) -> NodeId {
 fn the_papers_scenario_has_eight_components_and_nineteen_of_fifty_six_edges() {
     let case: Value = serde_json::from_str(&suite("x01_execution_windows.json")).expect("JSON");
     let (network, plan) = planned(&suite("t01_enroute_scenario.rmpl"));
-    let dispatcher = PlanNetwork::new(&network, &plan).and_then(|mut plan| Dispatcher::new(&mut plan));
-    let dispatcher = dispatcher.expect("small numbers");
-    let (form, expected) = (dispatcher.form(), &case["dispatch"]);
+    let mut made = PlanNetwork::new(&network, &plan).expect("a plan");
+    let points: Vec<stn::PointId> = made.all_points().collect();
+    let form = stn::dispatchable(&made.stn.all_pairs().expect("small numbers"), &points);
+    let expected = &case["dispatch"];
     assert_eq!(Some(form.components.len() as u64), expected["rigid_components"].as_u64());
     assert_eq!(Some(form.num_edges_before_pruning as u64), expected["apsp_edges"].as_u64());
     assert_eq!(Some(form.edges.len() as u64), expected["minimal_dispatchable_edges"].as_u64());

@@ -244,7 +244,7 @@ fn what_cannot_be_aborted_stops_with_what_it_needed_and_when() {
     };
     assert_eq!(
         reason,
-        "Walk#1 needs PATH1=OK until 20, and it holds until 10: no plan; Walk#1 is under way and cannot be ended early"
+        "Walk#1 needs PATH1=OK until 20, and it holds until 10: Walk#1 is under way and cannot be ended early"
     );
 }
 

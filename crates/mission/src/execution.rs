@@ -142,13 +142,16 @@ pub(crate) fn execute_stage(
     Ok(Ran { outcome, replanned: replanner.replanned, drives: Vec::new() })
 }
 
-/// Whether disturbances are about what the mission has; if not, what is wrong with them.
+/// Whether disturbances mean something and are about what the mission has; if not, what is wrong with them.
 pub fn check_disturbances(
     network: &Network,
     program: &Program,
     programs: &Programs,
     disturbances: &[Disturbance],
 ) -> Result<(), String> {
+    if let Some(problem) = disturbances.iter().find_map(Disturbance::problem) {
+        return Err(problem.to_owned());
+    }
     let is_unknown = |name: &&SmolStr| !program.world.vehicles.iter().any(|it| it.name.text == **name);
     let vehicles = disturbances.iter().filter_map(Disturbance::vehicle).filter(is_unknown).cloned();
     let unknown: Vec<SmolStr> = World::unknown(network, disturbances).into_iter().chain(vehicles).collect();

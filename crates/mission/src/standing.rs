@@ -1,7 +1,8 @@
 //! Where vehicles stand that are at one location at the same time (SPEC 10.3): the first at the location itself, others
 //! around it, so that none stands inside another.
 //!
-//! Vehicles that start together and are moved together by one traverse keep formation and count as one here.
+//! Vehicles that start together and are moved together by one traverse keep formation and count as one here. Those that fly
+//! are above those that drive, and neither makes the other go aside.
 
 use nalgebra::{Point2, Vector2};
 use rmpl::program::Program;
@@ -25,7 +26,11 @@ pub fn start_slots(program: &Program) -> Vec<usize> {
     };
     let mut slots: Vec<usize> = Vec::with_capacity(vehicles.len());
     for (vehicle, declared) in vehicles.iter().enumerate() {
-        let before = || (0..vehicle).filter(|&other| vehicles[other].start.text == declared.start.text);
+        let flies = |vehicle: usize| separation::flies(&program.world, vehicle as u32);
+        let before = || {
+            let starts_here = |other: &usize| vehicles[*other].start.text == declared.start.text;
+            (0..vehicle).filter(starts_here).filter(move |&other| flies(other) == flies(vehicle))
+        };
         let group = before().find(|&other| drive_together(other, vehicle));
         let free = before().map(|other| slots[other] + 1).max().unwrap_or(0);
         slots.push(group.map_or(free, |group| slots[group]));
@@ -33,12 +38,12 @@ pub fn start_slots(program: &Program) -> Vec<usize> {
     slots
 }
 
-/// Metres between places at one location: twice the room that any two vehicles need, so that one can drive between two
-/// others, and room for what follows them in formation.
-pub fn spacing_m(program: &Program) -> f64 {
-    let count = program.world.vehicles.len();
-    let mut widest: Vec<f64> =
-        (0..count).map(|vehicle| separation::radius_m(&program.world, vehicle as u32)).collect();
+/// Metres between places at one location, of the vehicles that fly or of those that do not: twice the room that any two of
+/// them need, so that one can drive between two others, and room for what follows them in formation.
+pub fn spacing_m(program: &Program, fly: bool) -> f64 {
+    let world = &program.world;
+    let all = (0..world.vehicles.len() as u32).filter(|&vehicle| separation::flies(world, vehicle) == fly);
+    let mut widest: Vec<f64> = all.map(|vehicle| separation::radius_m(world, vehicle)).collect();
     widest.sort_by(f64::total_cmp);
     let two: f64 = widest.iter().rev().take(2).sum();
     let moves = program.primitives.iter().filter_map(|primitive| primitive.moves.as_ref());
@@ -70,7 +75,8 @@ pub fn start_m(program: &Program, vehicle: usize) -> Option<Point2<f64>> {
     let start = &program.world.vehicles.get(vehicle)?.start.text;
     let location = program.world.locations.iter().find(|location| location.name.text == *start)?;
     let slot = start_slots(program).get(vehicle).copied().unwrap_or(0);
-    Some(place_m(location.position_m.into(), slot, spacing_m(program)))
+    let spacing_m = spacing_m(program, separation::flies(&program.world, vehicle as u32));
+    Some(place_m(location.position_m.into(), slot, spacing_m))
 }
 
 #[cfg(test)]

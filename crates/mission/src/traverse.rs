@@ -15,6 +15,7 @@ use terrain::{ConfigurationSpace, Terrain};
 use tpn::{Network, Occurrence, OccurrenceId, OccurrenceKind, Plan};
 
 use crate::ground::FreeSpace;
+use crate::separation;
 use crate::snapshot::Leg;
 use crate::standing;
 
@@ -53,10 +54,14 @@ const ON_THE_WAY: usize = usize::MAX;
 /// previous movement left it, or from its own start (SPEC 1.8); one of `places`, from where it has stopped.
 pub fn routes(network: &Network, program: &Program, plan: &Plan, places: &[StandingPlace]) -> Vec<Route> {
     let world = &program.world;
-    let spacing_m = standing::spacing_m(program);
-    let starts = world.vehicles.iter().zip(standing::start_slots(program));
+    let spacings_m = [false, true].map(|fly| standing::spacing_m(program, fly));
+    let flies = |vehicle: usize| separation::flies(world, vehicle as u32);
+    let spacing_m = |vehicle: usize| spacings_m[usize::from(flies(vehicle))];
+    let starts = world.vehicles.iter().zip(standing::start_slots(program)).enumerate();
     let mut positions: Vec<Option<Waypoint>> = starts
-        .map(|(vehicle, slot)| Some(waypoint(world, &vehicle.start.text)?.at_slot(slot, spacing_m)))
+        .map(|(index, (vehicle, slot))| {
+            Some(waypoint(world, &vehicle.start.text)?.at_slot(slot, spacing_m(index)))
+        })
         .collect();
     let mut moving: Vec<(OccurrenceId, Moving<'_>)> = network
         .occurrences
@@ -92,16 +97,17 @@ pub fn routes(network: &Network, program: &Program, plan: &Plan, places: &[Stand
             false
         });
         let Some(mut route) = route(network, world, id, &moving, &positions) else { continue };
-        if let Some(last) = route.waypoints.last_mut() {
-            // What stands there already stays where it is.
-            let others =
-                positions.iter().enumerate().filter(|(vehicle, _)| !route.vehicles.contains(vehicle));
+        if let (Some(last), Some(&leader)) = (route.waypoints.last_mut(), route.vehicles.first()) {
+            // What stands there already stays where it is; what flies is above what drives.
+            let others = (positions.iter().enumerate()).filter(|&(vehicle, _)| {
+                !route.vehicles.contains(&vehicle) && flies(vehicle) == flies(leader)
+            });
             let taken: Vec<usize> = (others.filter_map(|(_, place)| place.as_ref()))
                 .filter(|place| place.name == last.name)
                 .map(|place| place.slot)
                 .collect();
             let free = (0..taken.len()).find(|slot| !taken.contains(slot)).unwrap_or(taken.len());
-            *last = last.at_slot(free, spacing_m);
+            *last = last.at_slot(free, spacing_m(leader));
             for &vehicle in &route.vehicles {
                 positions[vehicle] = Some(last.clone());
             }

@@ -402,3 +402,45 @@ fn states_of_components_are_checked_against_the_plant() {
     assert_eq!(variable.initial.as_ref().map(|name| name.text.as_str()), Some("Warm"));
     assert_eq!(variable.values.len(), 4);
 }
+
+const FLYBY: &str = include_str!("../../../assets/missions/flyby.rmpl");
+
+#[test]
+fn a_mission_that_reads_its_plant_takes_the_camera_that_comes_up() {
+    assert_eq!(diagnostics(FLYBY), Vec::<String>::new());
+    assert_eq!(plan_warnings(FLYBY), Vec::<String>::new());
+    let (_, ran) = execute(FLYBY, &[]);
+    assert_eq!(ran.outcome.ending, Ending::Finished, "{:?}", ran.outcome.log);
+    assert!(violations(&ran).is_empty() && time(&ran, "Look#1.end").is_some(), "{:?}", ran.outcome.log);
+    let (_, ran) = execute(FLYBY, &[fails("Start-Up#1", 2, "CameraA")]);
+    assert_eq!(ran.outcome.ending, Ending::Finished, "{:?}", ran.outcome.log);
+    let found = violations(&ran);
+    let word = "Calibrate#1 needs CameraA.mode=Ready at 5, and CameraA.mode became Failed at 4";
+    assert_eq!(found, [word]);
+    assert!(
+        time(&ran, "Look#1.start").is_none() && time(&ran, "Look#2.end").is_some(),
+        "{:?}",
+        ran.outcome.log
+    );
+    // With both failed nothing can look, and the run says what it lacks.
+    let (_, ran) = execute(FLYBY, &[fails("Start-Up#1", 2, "CameraA"), fails("Start-Up#2", 1, "CameraB")]);
+    assert_eq!(ran.outcome.ending, Ending::Stopped);
+    assert!(violations(&ran).iter().any(|text| text.contains("CameraB.mode=Ready")), "{:?}", ran.outcome.log);
+}
+
+#[test]
+fn the_component_of_a_mode_may_be_a_parameter_and_is_looked_up_at_the_call() {
+    let text = engines(
+        "state EngineA.mode from plant;
+         primitive Start(e)[1,9] runs Fire(e) sets e.mode=Firing;
+         primitive Burn(e)[5,5] requires e.mode=Firing;
+         scenario S[0,40] = { Start(EngineA); Burn(EngineA) }",
+    );
+    assert_eq!(diagnostics(&text), Vec::<String>::new());
+    let (_, ran) = execute(&text, &[]);
+    assert_eq!(time(&ran, "Burn#1.end"), Some(7.into()), "{:?}", ran.outcome.log);
+    let undeclared = text.replace("Burn(EngineA) }", "Burn(EngineB) }");
+    assert_eq!(diagnostics(&undeclared), ["E-UNDEF no state variable `EngineB.mode` is declared"]);
+    let wrong = text.replace("requires e.mode=Firing", "requires e.mode=Blazing");
+    assert_eq!(diagnostics(&wrong), ["E-VALUE `Blazing` is not a value of `EngineA.mode`"]);
+}

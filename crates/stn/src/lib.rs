@@ -8,12 +8,15 @@
 mod bulk;
 mod dispatch;
 mod distance;
+mod elimination;
 mod execution;
 mod heap;
 mod network;
 mod propagation;
+mod unfolding;
 
 pub use dispatch::{DispatchEdge, Dispatchable, RigidComponent, dispatchable, rigid_components};
 pub use distance::{DistanceMatrix, INFINITE};
 pub use execution::{Execution, ExecutionWindows, execution_windows};
 pub use network::{Checkpoint, CycleEdge, Inconsistency, Overflow, PointId, Stn, Tag, Window};
+pub use unfolding::{Refusal, Unfolding};

@@ -84,9 +84,19 @@ pub const EXAMPLES: &[Example] = &[
         source: include_str!("../../../assets/missions/fleet.rmpl"),
     },
     Example {
+        name: "exploration",
+        title: "Cooperative exploration",
+        source: include_str!("../../../assets/missions/exploration.rmpl"),
+    },
+    Example {
         name: "orbit",
         title: "Into orbit",
         source: include_str!("../../../assets/missions/orbit.rmpl"),
+    },
+    Example {
+        name: "flyby",
+        title: "A camera that may fail",
+        source: include_str!("../../../assets/missions/flyby.rmpl"),
     },
     Example {
         name: "orbit-insertion",

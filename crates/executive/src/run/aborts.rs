@@ -247,13 +247,12 @@ impl Run<'_> {
     }
 }
 
-/// Why a run is stopped, in one sentence: what was needed, why there is no plan, and what cannot be given up.
+/// Why a run is stopped, in one sentence: what was needed, and what cannot be given up, or why there is no plan.
 pub(super) fn stopped_for(need: Option<&str>, no_plan: &str, hindrance: Option<&str>) -> String {
-    let mut reason = need.map_or_else(String::new, |need| format!("{need}: "));
-    reason.push_str(no_plan);
-    if let Some(hindrance) = hindrance {
-        reason.push_str("; ");
-        reason.push_str(hindrance);
+    match (need, hindrance) {
+        (Some(need), Some(hindrance)) => format!("{need}: {hindrance}"),
+        (Some(need), None) => format!("{need}: {no_plan}"),
+        (None, Some(hindrance)) => format!("{no_plan}; {hindrance}"),
+        (None, None) => no_plan.to_owned(),
     }
-    reason
 }

@@ -1,4 +1,4 @@
-//! What may happen next in a plan with many events: those that everything they follow has happened of, and those that the
+//! What may happen next in a plan whose durations the executive chooses: those events that everything they follow has happened of, and those that the
 //! world decides, in order of time. An event is looked at when something that matters for it has changed.
 
 use std::cmp::Reverse;
@@ -21,28 +21,25 @@ pub(super) struct Frontier {
     /// How many nodes that each node follows have not happened.
     missing: Vec<u32>,
     followers: Arc<[Vec<NodeId>]>,
-    is_listed: Vec<bool>,
     /// Events that others must come before, by those.
     waiting: BTreeMap<PointId, Vec<PointId>>,
 }
 
 impl Frontier {
-    /// Of a plan that is dispatched by propagation.
     fn of(stage: &Stage) -> Self {
         Self {
             heap: BinaryHeap::new(),
             missing: stage.missing(),
             followers: stage.followers(),
-            is_listed: vec![false; stage.network.nodes.len()],
             waiting: BTreeMap::new(),
         }
     }
 }
 
 impl Run<'_> {
-    /// Begins the frontier of the present plan anew, if it is one that needs one.
+    /// Begins the frontier of the present plan anew, if it has one.
     pub(super) fn restart_frontier(&mut self) -> Result<(), PlanError> {
-        if !matches!(self.stage.dispatch, Dispatch::Sparse(_)) {
+        if !matches!(self.stage.dispatch, Dispatch::Certain(_)) {
             self.frontier = None;
             return Ok(());
         }
@@ -65,7 +62,9 @@ impl Run<'_> {
             }
             let Some(frontier) = &mut self.frontier else { return Ok(None) };
             frontier.heap.pop();
-            frontier.heap.extend(key.map(Reverse));
+            if key.is_some() {
+                self.look_at(PointId(point))?;
+            }
         }
     }
 
@@ -87,11 +86,28 @@ impl Run<'_> {
         self.candidate(point, node)
     }
 
+    /// Lists an event if it may happen. It is looked at again when it may come later by the time that it is next, and when
+    /// it has to come earlier at once.
     fn look_at(&mut self, point: PointId) -> Result<(), PlanError> {
-        let key = self.waiting_point(point)?.map(|next| self.key(&next));
-        if let (Some(key), Some(frontier)) = (key, &mut self.frontier) {
-            frontier.is_listed[self.stage.made.node(point).index()] = true;
+        let Some(next) = self.waiting_point(point)? else {
+            // Only the adversary knows when, and nobody goes on before.
+            if self.is_natures(self.stage.made.node(point))
+                && self.is_driven(point)?
+                && let Dispatch::Certain(dispatch) = &mut self.stage.dispatch
+            {
+                dispatch.expect(point, i64::MAX);
+            }
+            return Ok(());
+        };
+        let key = self.key(&next);
+        if let Some(frontier) = &mut self.frontier {
             frontier.heap.push(Reverse(key));
+        }
+        if next.time > self.stage.window(point).0.max(self.now)
+            && let Dispatch::Certain(dispatch) = &mut self.stage.dispatch
+        {
+            let ticks = self.stage.made.scale().ticks(next.time);
+            dispatch.expect(point, ticks.unwrap_or(i64::MAX));
         }
         Ok(())
     }
@@ -99,7 +115,10 @@ impl Run<'_> {
     /// Another event must come before `point`, which is looked at again then.
     pub(super) fn wait_for(&mut self, point: PointId, other: PointId) {
         if let Some(frontier) = &mut self.frontier {
-            frontier.heap.pop();
+            // What an adversary lets happen is not listed.
+            if frontier.heap.peek().is_some_and(|Reverse((.., first))| *first == point.0) {
+                frontier.heap.pop();
+            }
             frontier.waiting.entry(other).or_default().push(point);
         }
     }
@@ -114,8 +133,8 @@ impl Run<'_> {
             let missing = &mut frontier.missing[follower.index()];
             *missing = missing.saturating_sub(1);
         }
-        let changed = match &mut self.stage.dispatch {
-            Dispatch::Sparse(dispatch) => dispatch.take_changed(),
+        let late = match &mut self.stage.dispatch {
+            Dispatch::Certain(dispatch) => dispatch.take_late(),
             _ => Vec::new(),
         };
         for &follower in &followers[node.index()] {
@@ -123,14 +142,8 @@ impl Run<'_> {
                 self.look_at(point)?;
             }
         }
-        for point in waiting {
+        for point in waiting.into_iter().chain(late) {
             self.look_at(point)?;
-        }
-        for point in changed {
-            let node = self.stage.made.node(point);
-            if self.frontier.as_ref().is_some_and(|frontier| frontier.is_listed[node.index()]) {
-                self.look_at(point)?;
-            }
         }
         Ok(())
     }

@@ -72,8 +72,14 @@ impl Run<'_> {
     /// on what is read from the plant is what the plant is estimated to be (SPEC 15).
     pub(super) fn change_states(&mut self, node: NodeId) -> Option<Violation> {
         let stage = &self.stage;
-        let happenings = self.state.happen(&stage.network, &stage.plan, &stage.effects, node);
+        let happenings = self.state.happen(&stage.network, &stage.effects, node);
+        for &requirement in stage.effects.beginning_at(node) {
+            if stage.times[stage.network.interval(requirement).1.index()].is_none() {
+                self.state.require(&stage.network, requirement);
+            }
+        }
         for &requirement in stage.effects.ending_at(node) {
+            self.state.release(&stage.network, requirement);
             let (start, _) = stage.network.interval(requirement);
             if stage.times[start.index()] == Some(self.now) {
                 self.state.need_now(requirement);
@@ -152,13 +158,9 @@ impl Run<'_> {
     /// What is not as it must be when the present instant is over.
     fn lack(&self) -> Option<Violation> {
         let network = &self.stage.network;
-        let has_come = |node: NodeId| self.stage.times[node.index()].is_some();
-        let is_under_way = |label| {
-            let (start, end) = network.interval(label);
-            has_come(start) && !has_come(end)
-        };
+        let lack = self.state.lack(network)?;
         let now = shown(self.now);
-        let (node, reason) = match self.state.lack(network, &self.stage.effects, is_under_way)? {
+        let (node, reason) = match lack {
             Lack::Value(label) => {
                 let of = &network.labels[label.index()];
                 let variable = of.literal.variable;

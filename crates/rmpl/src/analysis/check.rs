@@ -184,6 +184,10 @@ impl<'a> Checker<'a> {
             return;
         }
         let facts = self.index.facts(definition.name);
+        // A parameter may stand for its component.
+        if definition.is_from_plant && self.index.literals_of_formals > 0 {
+            return;
+        }
         if self.index.scenarios > 0 && is_unused(definition.namespace, facts) {
             let what = match definition.namespace {
                 Namespace::Callable if definition.is_activity => "activity",

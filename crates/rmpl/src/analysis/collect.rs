@@ -14,7 +14,8 @@ use crate::control::component_modes;
 use crate::lower::{Item, OptionValue};
 use crate::program::{
     Argument, ArgumentValue, Bounds, Change, Condition, ControlDecl, Expr, ExprKind, HeaderBound,
-    HeaderBounds, LabelMode, Name, PrimitiveDecl, Statement, StatementKind, Supply, state_of_component,
+    HeaderBounds, LabelMode, Name, PrimitiveDecl, Statement, StatementKind, Supply, component_of_state,
+    state_of_component,
 };
 use crate::span::Span;
 
@@ -395,7 +396,8 @@ impl Collector<'_> {
             }),
             negated: condition.negated,
             span: condition.span,
-            variable_is_formal: self.formals.contains(text),
+            variable_is_formal: self.formals.contains(text)
+                || component_of_state(text).is_some_and(|owner| self.formals.contains(&SmolStr::new(owner))),
             value_is_formal: condition.values.iter().any(|value| self.formals.contains(&value.text)),
             is_bare,
             origin,

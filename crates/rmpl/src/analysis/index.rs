@@ -133,6 +133,8 @@ pub(crate) struct Index {
     strict: u32,
     /// Assertions whose variable is a parameter: they may be about anything.
     pub(crate) told_of_formals: u32,
+    /// How many literals are about what a parameter stands for.
+    pub(crate) literals_of_formals: u32,
     /// Movements of vehicles that parameters stand for: they may take any vehicle anywhere.
     pub(crate) moves_of_formals: u32,
     /// Declarations in which nature chooses some duration.
@@ -351,11 +353,12 @@ impl Index {
     }
 
     /// What every check can see.
-    const fn globals(&self) -> [bool; 5] {
+    const fn globals(&self) -> [bool; 6] {
         [
             self.scenarios > 0,
             self.strict > 0,
             self.told_of_formals > 0,
+            self.literals_of_formals > 0,
             self.moves_of_formals > 0,
             self.contingents > 0,
         ]
@@ -456,6 +459,7 @@ impl Index {
             *count = if is_added { *count + 1 } else { count.saturating_sub(1) };
         };
         if literal.variable_is_formal {
+            step(&mut self.literals_of_formals);
             if literal.mode == LabelMode::Tell {
                 step(&mut self.told_of_formals);
             }

@@ -93,7 +93,7 @@ pub(crate) struct Literal {
     pub(crate) split: Option<(Symbol, Symbol)>,
     pub(crate) negated: bool,
     pub(crate) span: Span,
-    /// A parameter stands for the variable.
+    /// A parameter stands for the variable, or for the component whose mode it is.
     pub(crate) variable_is_formal: bool,
     /// A parameter stands for the value.
     pub(crate) value_is_formal: bool,

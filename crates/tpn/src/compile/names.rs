@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use rmpl::program::{ArgumentValue, Condition, Program, Statement, StatementKind, VariableDecl};
+use rmpl::program::{ArgumentValue, Condition, Program, Statement, StatementKind};
 use rmpl::{Code, Diagnostic, Span};
 use smol_str::{SmolStr, format_smolstr};
 
@@ -71,6 +71,8 @@ pub(super) fn substituted(name: &SmolStr, substitute: &dyn Fn(&str) -> Option<Ar
 /// What a file says of variables.
 pub(super) struct Vocabulary<'program> {
     domains: BTreeMap<&'program str, Vec<&'program str>>,
+    /// Modes of components that the plant lacks, which the language has said.
+    without_component: BTreeSet<&'program str>,
     /// Undeclared variables that some literal `X=…` of the file speaks of.
     compared: BTreeSet<&'program str>,
     /// What the variables that keep their values are at first, in textual order: declared states, then where vehicles
@@ -84,9 +86,12 @@ impl<'program> Vocabulary<'program> {
     /// Reads declarations and literals in one pass.
     pub(super) fn new(program: &'program Program) -> Self {
         let mut domains = BTreeMap::new();
-        // That the plant lacks a component is said once, and not of each of its values.
-        let is_known = |declared: &&VariableDecl| !declared.is_from_plant || !declared.values.is_empty();
-        for declared in program.variables.iter().filter(is_known) {
+        let mut without_component = BTreeSet::new();
+        for declared in &program.variables {
+            if declared.is_from_plant && declared.values.is_empty() {
+                without_component.insert(declared.name.text.as_str());
+                continue;
+            }
             let values = declared.values.iter().map(|value| value.text.as_str()).collect();
             domains.entry(declared.name.text.as_str()).or_insert(values);
         }
@@ -121,7 +126,7 @@ impl<'program> Vocabulary<'program> {
                 }
             });
         }
-        Self { domains, compared, initial, places }
+        Self { domains, without_component, compared, initial, places }
     }
 
     /// Whether a variable keeps its value until something changes it (SPEC 10).
@@ -186,8 +191,15 @@ impl<'program> Vocabulary<'program> {
     fn check(&self, fact: &Fact, condition: &Condition) -> Result<(), Diagnostic> {
         let Some(domain) = self.domain(fact.variable.as_str()) else {
             return match fact.variable.split_once('.') {
-                // The language has said of a component that the plant lacks it.
-                None | Some((_, "mode")) => Ok(()),
+                None => Ok(()),
+                Some((_, "mode")) if self.without_component.contains(fact.variable.as_str()) => Ok(()),
+                // What is written is looked up by the language, what a parameter stands for is known here.
+                Some((_, "mode")) if fact.variable == condition.variable.text => Ok(()),
+                Some((_, "mode")) => {
+                    let message = format!("no state variable `{}` is declared", fact.variable);
+                    let hint = format!("declare it: `state {} from plant;`", fact.variable);
+                    Err(Diagnostic::error(E_UNDEF, condition.variable.span, message).with_hint(hint))
+                }
                 Some((owner, _)) => {
                     let message =
                         format!("there is no vehicle `{owner}`, so nothing is known of where it is");

@@ -90,3 +90,40 @@ fn a_vehicle_stops_and_an_obstacle_appears_by_hand_and_both_are_taken_back() -> 
     page.tab.evaluate("enroute.dispatch('execute.reset')")?;
     page.wait_for("state.execution.disturbances.length === 0")
 }
+
+/// The camera that the mission starts fails while it comes up: what was to be set has not come, and the other camera looks.
+#[test]
+fn a_component_that_fails_by_hand_sends_the_mission_to_the_other_one() -> Result<()> {
+    let page = Opened::with_fragment("mission=flyby&workspace=execute")?;
+    page.tab.resize(1280, 1500)?;
+    page.wait_for("state.execution?.status === 'finished' || !state.execution?.isWorking")?;
+    assert_eq!(page.state()?["plan"]["choices"], json!({ "D1": 0 }));
+    page.tab.evaluate("enroute.dispatch('play.seek', { time: 1 })")?;
+    page.wait_for("state.execution.underWay.includes('Start-Up#1')")?;
+    page.tab.next_frame()?;
+    // The component and the mode that it can come into by a fault stand first in the lists, and the next step is offered.
+    page.tab.click_widget("button", "Let it happen")?;
+    page.wait_for("state.execution.disturbances.length === 1 && !state.execution.isWorking")?;
+    let fault = page.state()?["execution"]["disturbances"][0].clone();
+    assert_eq!(
+        fault,
+        json!({ "kind": "fault", "activity": "Start-Up#1", "step": 1, "component": "CameraA", "mode": "Failed" })
+    );
+    page.tab.evaluate("enroute.dispatch('play.end')")?;
+    page.wait_for("state.execution.status === 'finished'")?;
+    assert_eq!(page.state()?["plan"]["choices"], json!({ "D1": 1 }));
+    let log = page.state()?["execution"]["log"].clone();
+    let log = log.as_array().context("a log")?;
+    let happens = |name: &str| log.iter().any(|entry| entry["name"] == name);
+    assert!(happens("Look#2.end") && !happens("Look#1.start"), "{log:?}");
+    let says =
+        |part: &str| log.iter().any(|entry| entry["reason"].as_str().is_some_and(|it| it.contains(part)));
+    assert!(says("Calibrate#1 needs CameraA.mode=Ready"), "{log:?}");
+
+    // Nothing goes otherwise that means nothing, or before now.
+    let wrong = "enroute.dispatch('execute.disturb', { kind: 'duration', activity: 'Turn#1', duration: -5 })";
+    page.tab.evaluate(&format!("(() => {{ try {{ {wrong} }} catch (error) {{ }} }})()"))?;
+    page.tab.next_frame()?;
+    assert_eq!(page.state()?["execution"]["disturbances"].as_array().map(Vec::len), Some(1));
+    Ok(())
+}

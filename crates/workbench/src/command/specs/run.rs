@@ -1,5 +1,7 @@
 //! The run of a mission, and of a control program.
 
+use executive::Disturbance;
+
 use super::arguments::{injection, knowledge, number_argument, text_argument};
 use super::available::{with_chance, with_program, with_run};
 use super::{called, plain, when};
@@ -35,7 +37,9 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     ),
     when(
         called("execute.disturb", "Disturb the run", Group::Play, |_, arguments| {
-            let disturbance = serde_json::from_value(arguments.clone()).map_err(|error| error.to_string())?;
+            let disturbance: Disturbance =
+                serde_json::from_value(arguments.clone()).map_err(|error| error.to_string())?;
+            disturbance.problem().map_or(Ok(()), |problem| Err(problem.to_owned()))?;
             Ok(Command::Execution(ExecutionCommand::Disturb(disturbance)))
         }),
         with_run,

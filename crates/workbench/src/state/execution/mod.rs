@@ -268,7 +268,12 @@ impl AppState {
     pub(super) fn apply_to_run(&mut self, command: ExecutionCommand) {
         match command {
             ExecutionCommand::Disturb(disturbance) => {
-                self.settle_time();
+                let now = self.settle_time();
+                if disturbance.since().is_some_and(|since| since < now) {
+                    self.toasts
+                        .add(ToastKind::Failed, "What has happened stays: nothing goes otherwise before now");
+                    return;
+                }
                 self.disturb(disturbance);
             }
             ExecutionCommand::Withdraw(condition) => {
