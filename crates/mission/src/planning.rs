@@ -404,8 +404,10 @@ fn count_metres(network: &mut Network, occurrence: OccurrenceId, length_m: f64) 
 }
 
 fn traverse_path(route: &Route, legs: &[Leg], map: &Terrain) -> Option<TraversePath> {
+    let mut heading = None;
     let legs = legs.iter().map(|leg| {
-        let timings = timings(route, leg, map);
+        let timings = timings(route, leg, map, heading);
+        heading = leg.heading_rad().or(heading);
         PathLeg {
             segment_lengths_m: timings.iter().map(|timing| timing.ground_length_m).collect(),
             slope_speeds_mps: timings.iter().map(|timing| timing.slope_speed_mps).collect(),
@@ -420,10 +422,15 @@ fn traverse_path(route: &Route, legs: &[Leg], map: &Terrain) -> Option<TraverseP
     (!path.legs.is_empty()).then_some(path)
 }
 
-fn timings(route: &Route, leg: &Leg, map: &Terrain) -> Vec<SegmentTiming> {
+/// What the segments of a leg take; `heading` is how the leader faces before it.
+fn timings(route: &Route, leg: &Leg, map: &Terrain, heading: Option<f64>) -> Vec<SegmentTiming> {
     let [least_mps, greatest_mps] = [route.speed_mps.0, route.speed_mps.1].map(Rational::to_f64);
     let path = motion::Path::new(leg.points_m.clone());
-    motion::time_path(&path, map, route.model, SpeedLimits { least_mps, greatest_mps })
+    let speeds = SpeedLimits { least_mps, greatest_mps };
+    match &route.limits {
+        Some(limits) => motion::time_path_within(&path, map, route.model, speeds, (limits, heading)),
+        None => motion::time_path(&path, map, route.model, speeds),
+    }
 }
 
 /// Why a traverse can't be driven within its own bounds (SPEC 7.3), if so.

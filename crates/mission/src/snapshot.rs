@@ -145,6 +145,15 @@ pub struct Leg {
     pub samples: u32,
 }
 
+impl Leg {
+    /// How a vehicle faces at its end, in radians counter-clockwise from east; `None` of a leg without length.
+    pub fn heading_rad(&self) -> Option<f64> {
+        let ahead =
+            self.points_m.windows(2).rev().map(|pair| pair[1] - pair[0]).find(|ahead| ahead.norm() > 0.0)?;
+        Some(libm::atan2(ahead.y, ahead.x))
+    }
+}
+
 /// Where a vehicle is over time: still between keyframes with equal positions, otherwise at constant speed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VehicleMotion {

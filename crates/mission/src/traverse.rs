@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use exact::Rational;
 use executive::facts::StandingPlace;
-use motion::{Path, PlannerKind, Query, SearchResult, ShortcutSettings, VehicleModel};
+use motion::{DriveLimits, Path, PlannerKind, Query, SearchResult, ShortcutSettings, VehicleModel};
 use nalgebra::{Point2, distance};
 use rmpl::Span;
 use rmpl::program::{Moves, Name, Per, Program, World};
@@ -30,6 +30,8 @@ pub struct Route {
     pub model: &'static VehicleModel,
     /// Least and greatest speed in metres per second. At a least speed of 0 the vehicle may stop on its way.
     pub speed_mps: (Rational, Rational),
+    /// What the vehicles can do, all of them together, where that bounds how long the way takes.
+    pub limits: Option<DriveLimits>,
     /// The location where the leader is before, if it is at one.
     pub from: Option<SmolStr>,
     /// The places, in order: where the leader is before, then those that the call names.
@@ -182,7 +184,9 @@ fn route(
     let own_speed_mps = Rational::from_f64_nearest(own_mps, 1000)?;
     let speed_mps = moving.moves.speed_mps.unwrap_or((Rational::ZERO, own_speed_mps));
     let from = positions[leader].as_ref().map(|before| before.name.clone());
-    Some(Route { occurrence: id, vehicles, model, speed_mps, from, waypoints })
+    let limits =
+        models().map(DriveLimits::of).reduce(DriveLimits::of_both).filter(|_| moving.moves.is_kinodynamic);
+    Some(Route { occurrence: id, vehicles, model, speed_mps, limits, from, waypoints })
 }
 
 /// The route of a traverse whose leader is at `place` before; `None` if it is no traverse, or no such place is known.

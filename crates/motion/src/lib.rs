@@ -50,7 +50,7 @@ pub use search::{
 pub use separation::{Approach, Separation, TimedPoint, closest_approach};
 pub use shortcut::{ShortcutSettings, shorten};
 pub use simplification::simplify;
-pub use timing::{SegmentTiming, SpeedLimits, duration_millis, time_path};
+pub use timing::{SegmentTiming, SpeedLimits, duration_millis, time_path, time_path_within};
 pub use trace::{GrownVertex, GrowthStep, GrowthTrace, TracedSearch, trace};
 pub use trajectory::{DriveLimits, MotionState, TimedState, Trajectory, drive_path, heading_difference};
 pub use tree::{Root, Tree, Vertex};

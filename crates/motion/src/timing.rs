@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use terrain::Terrain;
 
 use crate::path::Path;
+use crate::trajectory::{DriveLimits, heading_difference};
 use crate::vehicle::{Drive, VehicleModel};
 
 /// The least and the greatest speed of a traverse in metres per second.
@@ -25,8 +26,8 @@ pub struct SegmentTiming {
     pub ground_length_m: f64,
     /// Metres up for each metre forward from the segment's start to its end.
     pub grade: f64,
-    /// The mean speed in metres per second at which the vehicle is there soonest, where slopes keep it below the
-    /// greatest speed; none where they do not.
+    /// The mean speed in metres per second at which the vehicle is there soonest, where slopes or its own limits keep it
+    /// below the greatest speed; none where they do not.
     pub slope_speed_mps: Option<f64>,
     /// Least duration in milliseconds, rounded up.
     pub least_millis: u64,
@@ -51,6 +52,37 @@ pub fn time_path(
     speeds: SpeedLimits,
 ) -> Vec<SegmentTiming> {
     path.segments().map(|(from, to)| time_segment(from, to, terrain, model, speeds)).collect()
+}
+
+/// What the segments of a path take where the vehicle holds its limits: it turns to face each on the spot and drives it from
+/// rest to rest, as [`drive_path`](crate::drive_path) does, so that turning, speeding up and slowing down count. `before` is
+/// how it faces at first, in radians; where that is not known, it may be the wrong way.
+pub fn time_path_within(
+    path: &Path,
+    terrain: &Terrain,
+    model: &VehicleModel,
+    speeds: SpeedLimits,
+    (limits, before): (&DriveLimits, Option<f64>),
+) -> Vec<SegmentTiming> {
+    let mut heading = before;
+    let segments = path.segments().zip(time_path(path, terrain, model, speeds));
+    segments
+        .map(|((from, to), timing)| {
+            let ahead = to - from;
+            let next = libm::atan2(ahead.y, ahead.x);
+            let turn = heading.map_or(std::f64::consts::PI, |heading| heading_difference(heading, next));
+            heading = Some(next);
+            let fastest = timing.slope_speed_mps.unwrap_or(speeds.greatest_mps);
+            let seconds = limits.turn_s(turn) + limits.straight_s(timing.ground_length_m, fastest);
+            if seconds <= 0.0 {
+                return timing;
+            }
+            let mean_mps = timing.ground_length_m / seconds;
+            let least_millis = duration_millis(timing.ground_length_m, mean_mps).unwrap_or(u64::MAX);
+            let greatest_millis = timing.greatest_millis.map(|greatest| greatest.max(least_millis));
+            SegmentTiming { slope_speed_mps: Some(mean_mps), least_millis, greatest_millis, ..timing }
+        })
+        .collect()
 }
 
 fn time_segment(

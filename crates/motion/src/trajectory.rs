@@ -37,6 +37,28 @@ impl DriveLimits {
         }
     }
 
+    /// What two vehicles can do that keep together.
+    #[must_use]
+    pub const fn of_both(self, other: Self) -> Self {
+        Self {
+            speed_mps: self.speed_mps.min(other.speed_mps),
+            turn_rate_rps: self.turn_rate_rps.min(other.turn_rate_rps),
+            acceleration_mps2: self.acceleration_mps2.min(other.acceleration_mps2),
+            turn_acceleration_rps2: self.turn_acceleration_rps2.min(other.turn_acceleration_rps2),
+            half_track_m: self.half_track_m.max(other.half_track_m),
+        }
+    }
+
+    /// How long turning on the spot takes, from rest to rest, in seconds.
+    pub fn turn_s(&self, angle_rad: f64) -> f64 {
+        rest_to_rest_s(angle_rad.abs(), self.turn_rate_in_place_rps(), self.turn_acceleration_rps2)
+    }
+
+    /// How long driving straight on takes, from rest to rest, at most at a speed, in seconds.
+    pub fn straight_s(&self, length_m: f64, speed_mps: f64) -> f64 {
+        rest_to_rest_s(length_m, speed_mps.min(self.speed_mps), self.acceleration_mps2)
+    }
+
     /// The greatest turning rate that the wheels allow in place.
     pub fn turn_rate_in_place_rps(&self) -> f64 {
         if self.half_track_m > 0.0 {
@@ -231,6 +253,15 @@ pub fn drive_path(path: &Path, heading_rad: f64, limits: &DriveLimits) -> Trajec
     trajectory
 }
 
+/// The duration of the fastest motion over a way from rest to rest.
+fn rest_to_rest_s(way: f64, greatest_rate: f64, acceleration: f64) -> f64 {
+    if way <= 0.0 {
+        return 0.0;
+    }
+    let peak = greatest_rate.min((way * acceleration).sqrt());
+    peak / acceleration + way / peak
+}
+
 struct ProfileStep {
     /// Since the step before.
     seconds: f64,
@@ -246,7 +277,7 @@ fn rest_to_rest(way: f64, greatest_rate: f64, acceleration: f64) -> Vec<ProfileS
     }
     let peak = greatest_rate.min((way * acceleration).sqrt());
     let ramp_s = peak / acceleration;
-    let total_s = ramp_s + way / peak;
+    let total_s = rest_to_rest_s(way, greatest_rate, acceleration);
     let count = (total_s / Trajectory::STEP_S).ceil().max(1.0);
     let seconds = total_s / count;
     (1..=count as u64)

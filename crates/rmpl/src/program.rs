@@ -299,13 +299,15 @@ impl Per {
     }
 }
 
-/// `moves V1, V2 speed (least, greatest)`
+/// `moves V1, V2 speed (least, greatest) kinodynamic`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Moves {
     /// The vehicles that move; the first leads.
     pub vehicles: Vec<Name>,
     /// Least and greatest speed in metres per second; the vehicle's own when absent.
     pub speed_mps: Option<(Rational, Rational)>,
+    /// Whether what the vehicles can do with their wheels bounds how long their ways take (SPEC 7.2).
+    pub is_kinodynamic: bool,
     /// The clause.
     pub span: Span,
 }

@@ -1,6 +1,7 @@
 //! The lines about a plan: its choices, links, conflicts, events and traverses.
 
 use exact::{Bound, Time};
+use motion::DriveLimits;
 use rmpl::Span;
 use rmpl::program::{Change, LabelMode};
 use tpn::{EventEnd, Extent, LabelId, Network, NodeId, OccurrenceKind, Plan};
@@ -15,6 +16,7 @@ use super::{
 };
 use crate::meetings;
 use crate::snapshot::{Planning, Snapshot};
+use crate::traverse;
 
 /// What the lines about a plan are made from.
 pub(super) struct PlanLines<'input> {
@@ -325,8 +327,13 @@ impl<'input> PlanLines<'input> {
             .map(|vehicle| vehicle.name.text.to_string())
             .collect();
         let clearance_m = traverse.clearance_m.is_finite().then_some(traverse.clearance_m);
+        let needed_s = self.needed_s(traverse);
+        let unit_s = self.snapshot.program.options.time_unit.seconds() as f64;
+        let is_too_short =
+            needed_s.is_some_and(|needed_s| duration.least.to_f64() * unit_s < needed_s - 1e-3);
         let status = match clearance_m {
             Some(clearance_m) if clearance_m < 0.0 => Status::Failed,
+            _ if is_too_short => Status::Failed,
             _ => Status::Passed,
         };
         let slope_limit_rad = self.slope_limit_rad(traverse);
@@ -334,8 +341,15 @@ impl<'input> PlanLines<'input> {
             Some(clearance_m) => format!("{clearance_m:.2} m clear of obstacles"),
             None => "no obstacle near".to_owned(),
         };
+        let limits = match needed_s {
+            Some(needed_s) if is_too_short => {
+                format!(", too short for the limits of its vehicles, which need {needed_s:.1} s")
+            }
+            Some(_) => ", within the limits of its vehicles".to_owned(),
+            None => String::new(),
+        };
         let text = format!(
-            "{name}: {:.1} m in {}, {clearance}, slope up to {:.1}°",
+            "{name}: {:.1} m in {}{limits}, {clearance}, slope up to {:.1}°",
             traverse.length_m,
             self.range_text(duration),
             traverse.slope_max_rad.to_degrees()
@@ -355,6 +369,27 @@ impl<'input> PlanLines<'input> {
             slope_max_rad: traverse.slope_max_rad,
             slope_limit_rad,
         }
+    }
+
+    /// How long the vehicles of a kinodynamic traverse take at least for its way on flat ground, in seconds: driven state by
+    /// state within their limits, which shares nothing with how its durations were planned.
+    fn needed_s(&self, traverse: &crate::Traverse) -> Option<f64> {
+        let program = &self.snapshot.program;
+        let occurrence = &self.network.occurrences[traverse.occurrence.index()];
+        let moving = traverse::moving(program, occurrence).filter(|moving| moving.moves.is_kinodynamic)?;
+        let vehicles =
+            traverse.vehicles.iter().filter_map(|&vehicle| program.world.vehicles.get(vehicle as usize));
+        let models = vehicles.filter_map(|vehicle| motion::vehicle_model(&vehicle.model.text));
+        let mut limits = models.map(DriveLimits::of).reduce(DriveLimits::of_both)?;
+        // How fast a traverse may be is no limit of its wheels in a turn.
+        (limits.turn_rate_rps, limits.half_track_m) = (limits.turn_rate_in_place_rps(), 0.0);
+        if let Some((_, greatest)) = moving.moves.speed_mps {
+            limits.speed_mps = limits.speed_mps.min(greatest.to_f64());
+        }
+        let path = traverse::joined(&traverse.legs);
+        let (from, to) = path.segments().find(|(from, to)| from != to)?;
+        let heading_rad = libm::atan2(to.y - from.y, to.x - from.x);
+        Some(motion::drive_path(&path, heading_rad, &limits).duration_s())
     }
 
     /// What all vehicles of a traverse can climb.

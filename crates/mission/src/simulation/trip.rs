@@ -488,12 +488,17 @@ fn way_between<const COUNT: usize>(
             ..motion::Settings::of(PlannerKind::RrtConnect)
         };
         let start_m = nearest_free(&space, here)?;
-        let query = Query { start_m, goal_m };
+        // What was seen near the goal fills whole cells as well.
+        let end_m = nearest_free(&space, goal_m)?;
+        let query = Query { start_m, goal_m: end_m };
         let shortcut = ShortcutSettings::default();
         let found = motion::find_shortest_path(&space, query, &settings, &shortcut, 3, &mut |_| false);
         let mut way = found.path.ok()?;
         if start_m != here {
             way.points_m.insert(0, here);
+        }
+        if end_m != goal_m {
+            way.points_m.push(goal_m);
         }
         Some(way)
     })

@@ -411,6 +411,10 @@ fn word_in_its_place(word: &str) -> Option<&'static str> {
         "import" => "`import \"file\";`: the declarations of another file of the mission count here, too.",
         "moves" => "`moves V1, V2`: the activity is a traverse; the first vehicle leads.",
         "speed" => "`speed (least, greatest)` in metres per second.",
+        "kinodynamic" => {
+            "`moves V kinodynamic`: the way of V takes as long as it needs to turn, speed up and slow down within the limits of its \
+             model."
+        }
         "runs" => {
             "`runs P`: executing the activity runs the control program P; `runs P(C)` hands it the component C, or a parameter \
              of the activity that stands for one."

@@ -101,7 +101,8 @@ pub(super) fn moves(node: SyntaxNode<'_>) -> Option<Moves> {
         [least, greatest] => signed(least).zip(signed(greatest)),
         _ => None,
     };
-    (!vehicles.is_empty()).then_some(Moves { vehicles, speed_mps, span: node.span() })
+    let is_kinodynamic = node.child(SyntaxKind::Kinodynamic).is_some();
+    (!vehicles.is_empty()).then_some(Moves { vehicles, speed_mps, is_kinodynamic, span: node.span() })
 }
 
 pub(super) fn option(node: SyntaxNode<'_>) -> Option<OptionDecl> {

@@ -79,7 +79,7 @@ impl Parser<'_> {
         SyntaxKind::VehicleDecl
     }
 
-    /// `moves V1, V2 speed (least, greatest)`
+    /// `moves V1, V2 speed (least, greatest) kinodynamic`
     pub(super) fn moves(&mut self) {
         let node = self.open();
         self.bump();
@@ -94,6 +94,11 @@ impl Parser<'_> {
                 count == 2
             });
             self.close(speed, SyntaxKind::Speed);
+        }
+        if self.at_word("kinodynamic") {
+            let limited = self.open();
+            self.bump();
+            self.close(limited, SyntaxKind::Kinodynamic);
         }
         self.close(node, SyntaxKind::Moves);
     }

@@ -132,8 +132,10 @@ pub enum SyntaxKind {
     Formals,
     /// `{V1, V2}` of a variable.
     Domain,
-    /// `moves … speed(…)`
+    /// `moves … speed(…) kinodynamic`
     Moves,
+    /// `kinodynamic`
+    Kinodynamic,
     /// `speed (a, b)`
     Speed,
     /// `runs Name`, perhaps with arguments.

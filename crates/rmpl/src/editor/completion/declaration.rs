@@ -166,8 +166,9 @@ fn in_moves(clause: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
         SyntaxKind::Comma => Place::Vehicle,
         _ if clause.len() == 1 => Place::Vehicle,
         SyntaxKind::Name if last.text == "speed" => Place::Nothing,
-        SyntaxKind::Name => Place::Words([&["speed"], CLAUSE_WORDS.as_slice()].concat()),
-        _ => Place::Words(CLAUSE_WORDS.to_vec()),
+        SyntaxKind::Name if last.text == "kinodynamic" => Place::Words(CLAUSE_WORDS.to_vec()),
+        SyntaxKind::Name => Place::Words([&["speed", "kinodynamic"], CLAUSE_WORDS.as_slice()].concat()),
+        _ => Place::Words([&["kinodynamic"], CLAUSE_WORDS.as_slice()].concat()),
     }
 }
 
