@@ -82,6 +82,9 @@ pub enum Disturbance {
         y: f64,
         /// Metres.
         radius: f64,
+        /// Whether it lies below the plane of range finders, so that only sonars hear it.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        low: bool,
     },
     /// A vehicle drives at most at a share of its traverse's greatest speed for a time; at a share of 0 it stands.
     VehicleSlow {

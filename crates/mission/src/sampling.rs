@@ -470,7 +470,7 @@ impl Rocks {
             let (east, north) = (to[0] - from[0], to[1] - from[1]);
             let length = (east * east + north * north).sqrt().max(1e-9);
             let (x, y) = (place[0] - north / length * aside_m, place[1] + east / length * aside_m);
-            rocks.push(Disturbance::Obstacle { at: Time::ZERO, x, y, radius });
+            rocks.push(Disturbance::Obstacle { at: Time::ZERO, x, y, radius, low: false });
         }
         rocks
     }

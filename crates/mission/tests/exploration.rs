@@ -109,7 +109,8 @@ fn what_one_rover_has_met_another_one_drives_around() {
         primitive Drive(rover, to)[100,2000] moves rover speed (0.02, 0.4);
         primitive Tell-What-Was-Seen()[1,2];
         scenario S[0,4000] = { Drive(First, EAST); Tell-What-Was-Seen(); Drive(Second, WEST); Drive(Second, EAST) }";
-    let wall = |north: f64| Disturbance::Obstacle { at: 0.into(), x: 55.0, y: north, radius: 4.0 };
+    let wall =
+        |north: f64| Disturbance::Obstacle { at: 0.into(), x: 55.0, y: north, radius: 4.0, low: false };
     let ran = run(source, &[wall(36.0), wall(40.0), wall(44.0)]);
     assert_eq!(ran.ending, Ending::Finished, "{:?}", ran.log.last());
     let around = told(&ran, "Drive#3");
@@ -135,4 +136,36 @@ fn what_one_rover_has_met_another_one_drives_around() {
         nearest_m(0),
         nearest_m(2)
     );
+}
+
+/// What lies below the plane of range finders only sonars hear: it is driven around, and goes on the shared map.
+#[test]
+fn what_only_sonars_hear_is_driven_around_and_shared() {
+    let source = "option time_unit = second;
+        terrain \"tai-plain\" cell 0.6 origin (0, 0);
+        location WEST (20, 40); location NORTH (20, 52); location EAST (90, 40);
+        vehicle First : ATRV-Jr at WEST; vehicle Second : ATRV-Jr at NORTH;
+        primitive Drive(rover, to)[100,2000] moves rover speed (0.02, 0.4);
+        scenario S[0,4000] = { Drive(First, EAST); Drive(Second, WEST); Drive(Second, EAST) }";
+    let place = nalgebra::Point2::new(55.0, 40.0);
+    let slab = |low: bool| Disturbance::Obstacle { at: 0.into(), x: place.x, y: place.y, radius: 1.5, low };
+    let ran = run(source, &[slab(true)]);
+    assert_eq!(ran.ending, Ending::Finished, "{:?}", ran.log.last());
+    for drive in &ran.drives {
+        assert!(
+            drive.least_clearance_m > 0.0,
+            "{} touches it: {} m",
+            drive.occurrence.index(),
+            drive.least_clearance_m
+        );
+    }
+    let rays = ran.drives[0].vehicles[0].frames.iter().flat_map(|frame| &frame.rays_m);
+    let on_slab = |ray: &&nalgebra::Point2<f32>| nalgebra::distance(&ray.cast::<f64>(), &place) < 1.7;
+    assert_eq!(rays.filter(on_slab).count(), 0, "no range finder has seen it");
+    let around = told(&ran, "Drive#3");
+    assert!(around.iter().any(|text| text.contains("around what was seen before")), "{around:?}");
+    // One that stands higher is seen.
+    let ran = run(source, &[slab(false)]);
+    let rays = ran.drives[0].vehicles[0].frames.iter().flat_map(|frame| &frame.rays_m);
+    assert!(rays.filter(on_slab).count() > 0);
 }

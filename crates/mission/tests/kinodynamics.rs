@@ -55,7 +55,7 @@ fn a_kinodynamic_way_takes_as_long_as_turning_and_stopping_within_the_limits() {
 
 #[test]
 fn a_way_that_has_no_time_for_its_turns_cannot_be_driven() {
-    let between = (least_s(&plan("", "")) + least_s(&plan("kinodynamic", ""))) / 2.0;
+    let between = f64::midpoint(least_s(&plan("", "")), least_s(&plan("kinodynamic", "")));
     let bounds = format!("[0,{}]", between.round());
     assert_eq!(plan("", &bounds).planning.outcome.plans.len(), 1);
     let none = plan("kinodynamic", &bounds);

@@ -74,7 +74,7 @@ const ROVER: &str = "terrain \"tai-plain\" cell 0.6 origin (0, 0);
     scenario Day[0,100] = { Drive(A); choose { Nap(), Charge() }; Drive(B) }";
 
 fn boulder() -> Disturbance {
-    Disturbance::Obstacle { at: Time::ZERO, x: 35.0, y: 25.0, radius: 5.0 }
+    Disturbance::Obstacle { at: Time::ZERO, x: 35.0, y: 25.0, radius: 5.0, low: false }
 }
 
 #[test]

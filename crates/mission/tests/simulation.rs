@@ -33,7 +33,7 @@ fn duration(drive: &SimulatedDrive) -> f64 {
 }
 
 fn obstacle(at: i64, place: Point2<f64>, radius: f64) -> Disturbance {
-    Disturbance::Obstacle { at: at.into(), x: place.x, y: place.y, radius }
+    Disturbance::Obstacle { at: at.into(), x: place.x, y: place.y, radius, low: false }
 }
 
 fn stand(vehicle: &str, from: i64, until: i64) -> Disturbance {

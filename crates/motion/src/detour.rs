@@ -11,6 +11,7 @@ use crate::path::Path;
 use crate::range_sensor::RangeScan;
 use crate::search::{PlannerKind, Query, Settings, find_path};
 use crate::shortcut::ShortcutSettings;
+use crate::sonar::{Echo, Echoes, SonarArray};
 
 /// Seen points farther away than this are forgotten, in metres.
 const MEMORY_RADIUS_M: f64 = 6.0;
@@ -40,6 +41,8 @@ impl Seen {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SeenPoints {
     points: BTreeMap<(i64, i64), Seen>,
+    /// What sonars have heard besides.
+    echoes: Echoes,
 }
 
 impl SeenPoints {
@@ -53,8 +56,18 @@ impl SeenPoints {
         }
     }
 
+    /// Adds what sonars hear at the place of a sweep.
+    pub(crate) fn hear(&mut self, array: &SonarArray, echoes: &[Echo], scan: &RangeScan) {
+        self.echoes.add(array, echoes, scan, MEMORY_RADIUS_M);
+    }
+
     pub(crate) fn points_m(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
-        self.points.values().map(|seen| seen.mean_m)
+        self.points.values().map(|seen| seen.mean_m).chain(self.echoes.points_m())
+    }
+
+    /// What sonars have heard that the range finder cannot see.
+    pub(crate) fn heard_m(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
+        self.echoes.points_m()
     }
 
     /// Whether a disc can go straight from one place to another without coming nearer than `reach` to a seen point that
@@ -190,7 +203,7 @@ mod tests {
             let points =
                 seen.into_iter().enumerate().map(|(index, seen)| ((index as i64, 0), seen)).collect();
             let reach = 0.6;
-            let found = SeenPoints { points }.is_open(from, to, reach);
+            let found = SeenPoints { points, ..SeenPoints::default() }.is_open(from, to, reach);
             // Points beside or behind the start don't count; of the others, dense samples of the way tell.
             let is_ahead = |point: &Point2<f64>| {
                 (point.x - from.x) * (to.x - from.x) + (point.y - from.y) * (to.y - from.y) > 0.0

@@ -13,6 +13,7 @@ use crate::detour::{SeenPoints, find_detour, nearest_along};
 use crate::fine_world::FineWorld;
 use crate::path::{Path, between};
 use crate::range_sensor::{RangeScan, RangeSensor};
+use crate::sonar::SonarArray;
 use crate::trajectory::{DriveLimits, MotionState, Trajectory, heading_difference};
 
 /// How a vehicle drives by itself.
@@ -38,6 +39,8 @@ pub struct DriverSettings {
     pub step_s: f64,
     /// Its range finder.
     pub sensor: RangeSensor,
+    /// Its sonars.
+    pub sonars: SonarArray,
 }
 
 impl DriverSettings {
@@ -54,6 +57,7 @@ impl DriverSettings {
             arrival_m: 0.2,
             step_s: STEP_S,
             sensor: RangeSensor::SICK,
+            sonars: SonarArray::POLAROID,
         }
     }
 
@@ -103,6 +107,8 @@ pub struct Driver {
     /// When a detour is looked for again after none was found.
     no_detour_until_s: f64,
     random: Random,
+    /// Sonars have noise of their own.
+    sonar_random: Random,
 }
 
 const STEP_S: f64 = Trajectory::STEP_S;
@@ -133,6 +139,7 @@ impl Driver {
             detour: None,
             no_detour_until_s: 0.0,
             random: Random::from_seed(seed),
+            sonar_random: Random::from_seed(!seed),
         }
     }
 
@@ -169,6 +176,11 @@ impl Driver {
     /// What it has seen around it and still remembers, in metres.
     pub fn seen_m(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
         self.seen.points_m()
+    }
+
+    /// What its sonars have heard that its range finder cannot see, in metres.
+    pub fn heard_m(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
+        self.seen.heard_m()
     }
 
     /// Where it means to drive next, in metres: along a detour while something stands in the way, otherwise along its
@@ -220,6 +232,12 @@ impl Driver {
         let scan =
             self.settings.sensor.scan(world, self.state.position_m, self.state.heading_rad, &mut self.random);
         self.seen.add(&scan);
+        // Where nothing is low, sonars hear nothing that the range finder does not see.
+        if world.has_low() || self.seen.heard_m().next().is_some() {
+            let (place, heading) = (self.state.position_m, self.state.heading_rad);
+            let echoes = self.settings.sonars.sweep(world, place, heading, &mut self.sonar_random);
+            self.seen.hear(&self.settings.sonars, &echoes, &scan);
+        }
         let remaining = (self.length_m - self.progress_m).max(0.0);
         let target = self.aim(map);
         let (speed, rate) = self.choose(target, remaining, map);

@@ -12,6 +12,8 @@ use terrain::{Obstacle, Terrain};
 pub struct FineWorld {
     discs: Vec<Disc>,
     faces: Vec<Segment>,
+    /// What lies below the plane of range finders: vehicles touch it, and sonars hear it.
+    low: Vec<Disc>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,9 +48,24 @@ impl FineWorld {
         }
     }
 
+    /// Puts a round thing into the world that lies below the plane of range finders; a polygon stands as high as any.
+    pub fn add_low(&mut self, obstacle: &Obstacle) {
+        match obstacle {
+            Obstacle::Circle { center_m, radius_m } => {
+                self.low.push(Disc { center_m: *center_m, shape: Ball::new(*radius_m) });
+            }
+            Obstacle::Polygon { .. } => self.add(obstacle),
+        }
+    }
+
+    /// Whether something lies below the plane of range finders.
+    pub(crate) const fn has_low(&self) -> bool {
+        !self.low.is_empty()
+    }
+
     /// Metres from a point to the nearest surface, 0 inside a disc; infinite in an empty world.
     pub fn distance_m(&self, point_m: Point2<f64>) -> f64 {
-        let discs = self.discs.iter().map(|disc| disc.distance_m(point_m));
+        let discs = self.discs.iter().chain(&self.low).map(|disc| disc.distance_m(point_m));
         let faces = self.faces.iter().map(|face| face.distance_to_local_point(&point_m, true));
         discs.chain(faces).fold(f64::INFINITY, f64::min)
     }
@@ -61,6 +78,7 @@ impl FineWorld {
         Self {
             discs: self.discs.iter().filter(is_near).copied().collect(),
             faces: self.faces.iter().filter(is_in_reach).copied().collect(),
+            low: self.low.iter().filter(is_near).copied().collect(),
         }
     }
 
@@ -69,6 +87,12 @@ impl FineWorld {
         let discs = self.discs.iter().filter_map(|disc| disc.cast(ray));
         let faces = self.faces.iter().filter_map(|face| face.cast_local_ray(ray, range_m, true));
         discs.chain(faces).filter(|&range| range <= range_m).min_by(f64::total_cmp)
+    }
+
+    /// The same of a ray along the ground, which meets what is low as well.
+    pub(crate) fn cast_low(&self, ray: &Ray, range_m: f64) -> Option<f64> {
+        let low = self.low.iter().filter_map(|disc| disc.cast(ray)).filter(|&range| range <= range_m);
+        low.chain(self.cast(ray, range_m)).min_by(f64::total_cmp)
     }
 }
 

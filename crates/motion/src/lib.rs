@@ -28,6 +28,7 @@ mod search;
 mod separation;
 mod shortcut;
 mod simplification;
+mod sonar;
 mod timing;
 mod trace;
 mod trajectory;
@@ -50,6 +51,7 @@ pub use search::{
 pub use separation::{Approach, Separation, TimedPoint, closest_approach};
 pub use shortcut::{ShortcutSettings, shorten};
 pub use simplification::simplify;
+pub use sonar::{Echo, SonarArray};
 pub use timing::{SegmentTiming, SpeedLimits, duration_millis, time_path, time_path_within};
 pub use trace::{GrownVertex, GrowthStep, GrowthTrace, TracedSearch, trace};
 pub use trajectory::{DriveLimits, MotionState, TimedState, Trajectory, drive_path, heading_difference};

@@ -135,7 +135,7 @@ impl Run<'_> {
         }
         let late = match &mut self.stage.dispatch {
             Dispatch::Certain(dispatch) => dispatch.take_late(),
-            _ => Vec::new(),
+            Dispatch::Uncertain(_) => Vec::new(),
         };
         for &follower in &followers[node.index()] {
             if let Some(point) = self.stage.made.point(follower) {

@@ -33,6 +33,8 @@ const MAX_TIMES: f64 = 4.0;
 const MAX_STEPS: u32 = 500_000;
 /// What is seen this near to what the map shows, in metres, is taken for that.
 const KNOWN_M: f64 = 0.9;
+/// What sonars hear goes on the map from this near on, in metres.
+const HEARD_M: f64 = 1.5;
 /// Metres beyond the path are counted by so many.
 const COUNTED_M: f64 = 5.0;
 
@@ -45,8 +47,9 @@ pub(super) struct Trip<'a> {
     maps: Vec<ConfigurationSpace>,
     pub(super) convoy: Convoy,
     world: FineWorld,
-    /// What is still to happen to the world, with seconds from the start of the traverse; the earliest last.
-    coming: Vec<(f64, Obstacle)>,
+    /// What is still to happen to the world, with seconds from the start of the traverse, and whether only
+    /// sonars hear it; the earliest last.
+    coming: Vec<(f64, Obstacle, bool)>,
     /// Slow spells: the vehicle, the share of its speed, and from when to when in seconds.
     slow: Vec<(usize, f64, [f64; 2])>,
     /// Other vehicles under way: where they are over time, in mission units, and their radii.
@@ -119,14 +122,15 @@ impl<'a> Trip<'a> {
         // What stands on the ground is below those that fly, and who flies is above those that drive.
         let flies = |vehicle: u32| separation::flies(world, vehicle);
         let is_flight = drive.vehicles.iter().all(|&vehicle| flies(vehicle));
-        let mut coming: Vec<(f64, Obstacle)> = Vec::new();
+        let mut coming: Vec<(f64, Obstacle, bool)> = Vec::new();
         let mut slow = Vec::new();
         for disturbance in driving.disturbances {
             match disturbance {
-                Disturbance::Obstacle { at, x, y, radius } if !is_flight => {
+                Disturbance::Obstacle { at, x, y, radius, low } if !is_flight => {
                     coming.push((
                         seconds(*at),
                         Obstacle::Circle { center_m: Point2::new(*x, *y), radius_m: *radius },
+                        *low,
                     ));
                 }
                 Disturbance::VehicleSlow { vehicle, factor, from, until } => {
@@ -225,8 +229,12 @@ impl<'a> Trip<'a> {
                 return Err(format!("{} after {:.0} times the time planned", self.stuck(0), MAX_TIMES));
             }
             let mut has_changed = false;
-            while let Some((_, obstacle)) = self.coming.pop_if(|(at_s, _)| *at_s <= time_s) {
-                self.world.add(&obstacle);
+            while let Some((_, obstacle, low)) = self.coming.pop_if(|(at_s, ..)| *at_s <= time_s) {
+                if low {
+                    self.world.add_low(&obstacle);
+                } else {
+                    self.world.add(&obstacle);
+                }
                 has_changed = true;
             }
             let now = self.start + time_s / self.unit_s;
@@ -396,7 +404,7 @@ impl<'a> Trip<'a> {
         self.send(0, way);
     }
 
-    /// What range finders see that the map does not show goes on the map that all share.
+    /// What range finders see and sonars hear that the map does not show goes on the map that all share.
     fn put_on_map(&mut self, steps: &[(DriveEvent, RangeScan)], now: f64) {
         let space = &self.course.drive.space;
         for (_, scan) in steps {
@@ -409,6 +417,14 @@ impl<'a> Trip<'a> {
                 if away_m.is_some_and(|away_m| away_m > KNOWN_M) && !is_vehicle {
                     self.seen.add(point, now);
                 }
+            }
+        }
+        for vehicle in 0..self.models.len() {
+            let Some(driver) = self.convoy.driver(vehicle) else { continue };
+            let here = driver.state().position_m;
+            // From afar an arc is much wider than what is heard.
+            for point in driver.heard_m().filter(|point| distance(point, &here) <= HEARD_M) {
+                self.seen.add(point, now);
             }
         }
     }

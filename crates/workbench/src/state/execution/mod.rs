@@ -105,7 +105,7 @@ impl ExecutionState {
     /// The obstacles that have appeared by `time`, with centres and radii in metres.
     pub fn appeared(&self, time: f64) -> impl Iterator<Item = (Point2<f64>, f64)> + '_ {
         self.disturbances().iter().filter_map(move |disturbance| match *disturbance {
-            Disturbance::Obstacle { at, x, y, radius } if has_come(at, time) => {
+            Disturbance::Obstacle { at, x, y, radius, .. } if has_come(at, time) => {
                 Some((Point2::new(x, y), radius))
             }
             _ => None,
@@ -292,7 +292,7 @@ impl AppState {
                 let to_tenth = |metres: f64| (metres * 10.0).round() / 10.0;
                 let (x, y) = (to_tenth(center_m.x), to_tenth(center_m.y));
                 let radius = to_tenth(radius_m).max(0.1);
-                self.disturb(Disturbance::Obstacle { at, x, y, radius });
+                self.disturb(Disturbance::Obstacle { at, x, y, radius, low: false });
             }
             ExecutionCommand::SlowDown { vehicle, factor, duration } => {
                 let from = self.settle_time();
@@ -394,9 +394,10 @@ pub fn disturbance_text(disturbance: &Disturbance) -> String {
         Disturbance::Fault { activity, step, component, mode } => {
             format!("{component} comes into {mode} in step {step} of {activity}")
         }
-        Disturbance::Obstacle { at, x, y, radius } => {
+        Disturbance::Obstacle { at, x, y, radius, low } => {
             format!(
-                "an obstacle with a radius of {radius:.1} m stands at ({x:.1}, {y:.1}) from {}",
+                "an obstacle{} with a radius of {radius:.1} m stands at ({x:.1}, {y:.1}) from {}",
+                if *low { " near the ground" } else { "" },
                 time(*at)
             )
         }
