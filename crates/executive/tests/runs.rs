@@ -270,3 +270,34 @@ fn plans_of_thousands_of_events_are_executed() {
         assert!(verdict.valid, "{:?}", verdict.violations);
     }
 }
+
+/// SPEC 15: any number of events executes. One thread and many, where each activity takes any time between its bounds.
+#[test]
+fn ten_thousand_activities_of_any_duration_are_executed_to_the_end() {
+    for (threads, each) in [(1, 10_000), (1000, 10)] {
+        let thread = format!("repeat {each} {{ A() }}");
+        let all = vec![thread; threads].join(", ");
+        let network = compiled(&format!("primitive A()[1,3];\nscenario S[0,40000] = {{ {all} }}"));
+        let mut rng = Rng::new(3);
+        let activities = network.occurrences.iter().filter(|it| it.kind == OccurrenceKind::Primitive);
+        let disturbances: Vec<Disturbance> = activities
+            .map(|it| {
+                let duration = Time::from(rng.between(100, 300)).checked_div(100).expect("a small time");
+                Disturbance::Duration { activity: it.name.clone(), duration }
+            })
+            .collect();
+        assert_eq!(disturbances.len(), 10_000);
+        let (outcome, facts) = execute(&network, &disturbances);
+        assert_eq!(outcome.ending, Ending::Finished, "{:?}", outcome.log.last());
+        assert!(facts.is_empty(), "no duration is outside of its bounds");
+        let verdict = verify::check_schedule(&network, &outcome.last().plan, &outcome.last().times);
+        assert!(verdict.valid, "{:?}", verdict.violations.first());
+        let lasts = |it: &Disturbance| {
+            let Disturbance::Duration { activity, duration } = it else { panic!("{it:?}") };
+            let of = network.occurrences.iter().find(|of| of.name == *activity).expect("it is known");
+            let time = |node: tpn::NodeId| outcome.last().times[node.index()].expect("it has come");
+            time(of.end).checked_sub(time(of.start)) == Some(*duration)
+        };
+        assert!(disturbances.iter().step_by(97).all(lasts), "each takes as long as it takes");
+    }
+}
