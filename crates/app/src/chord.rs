@@ -26,6 +26,7 @@ const fn key(key: chord::Key) -> Key {
         chord::Key::Comma => Key::Comma,
         chord::Key::D => Key::D,
         chord::Key::End => Key::End,
+        chord::Key::Enter => Key::Enter,
         chord::Key::Equals => Key::Equals,
         chord::Key::Escape => Key::Escape,
         chord::Key::F => Key::F,

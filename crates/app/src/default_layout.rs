@@ -84,7 +84,7 @@ fn wide_layout(workspace: Workspace, tiles: &mut Tiles<PanelKind>) -> TileId {
             let terrain = tabs(tiles, &[Terrain]);
             let lower = split(tiles, Horizontal, &[(plan, 0.5), (terrain, 0.5)]);
             let timeline = tabs(tiles, &[Timeline]);
-            let right = split(tiles, Vertical, &[(network, 0.40), (lower, 0.32), (timeline, 0.28)]);
+            let right = split(tiles, Vertical, &[(network, 0.44), (lower, 0.30), (timeline, 0.26)]);
             split(tiles, Horizontal, &[(left, 0.36), (right, 0.64)])
         }
         Workspace::Teach => {

@@ -137,7 +137,10 @@ impl Enroute {
         CentralPanel::default().frame(Frame::new().fill(context.tokens.background)).show(ui, |ui| {
             let mut tiles =
                 PanelTiles { panels: &mut self.panels, context: &context, commands, shown: Vec::new() };
-            tree.ui(&mut tiles, ui);
+            match state.maximized {
+                Some(panel) => tiles.show_alone(ui, panel),
+                None => tree.ui(&mut tiles, ui),
+            }
             panels::keyboard_navigation::follow(ui, tiles.context, tiles.commands);
             shown = tiles.shown;
         });
@@ -248,18 +251,57 @@ struct PanelTiles<'a> {
     shown: Vec<PanelKind>,
 }
 
-impl Behavior<PanelKind> for PanelTiles<'_> {
-    fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, kind: &mut PanelKind) -> UiResponse {
-        self.shown.push(*kind);
+/// Height of the bar with the tabs.
+const TAB_BAR: f32 = 28.0;
+
+impl PanelTiles<'_> {
+    /// Shows a panel under its tab and nothing else.
+    fn show_alone(&mut self, ui: &mut Ui, panel: PanelKind) {
+        let tokens = self.context.tokens;
+        let (bar, _) =
+            ui.allocate_exact_size(egui::vec2(ui.available_width(), TAB_BAR), egui::Sense::hover());
+        let mut bar_ui = ui.new_child(
+            egui::UiBuilder::new().max_rect(bar).layout(egui::Layout::left_to_right(egui::Align::Center)),
+        );
+        let state = egui_tiles::TabState { active: true, is_being_dragged: false, closable: true };
+        let id = ui.scope_id().with(("maximized", panel.name()));
+        let tab = bar::tab::show(&mut bar_ui, self.context, Some(panel), id, &state);
+        self.follow_tab(&tab, panel);
+        bar_ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if icon::button(ui, tokens, Icon::Restore, "Put the panels back").clicked() {
+                self.commands.send(Command::Maximize(None));
+            }
+        });
+        let place = egui::UiBuilder::new().max_rect(ui.available_rect_before_wrap());
+        let mut pane = ui.new_child(place);
+        self.show_panel(&mut pane, panel);
+    }
+
+    fn follow_tab(&mut self, tab: &bar::tab::Tab, panel: PanelKind) {
+        if tab.is_closed {
+            self.commands.send(Command::ClosePanel(panel));
+        } else if tab.response.double_clicked() {
+            self.commands.send(Command::Maximize(Some(panel)));
+        }
+    }
+
+    fn show_panel(&mut self, ui: &mut Ui, kind: PanelKind) {
+        self.shown.push(kind);
         let rect = ui.max_rect();
         ui.painter().rect_filled(rect, 0.0, self.context.tokens.surface);
         let pressed = ui.input(|input| {
             input.pointer.any_pressed() && input.pointer.interact_pos().is_some_and(|at| rect.contains(at))
         });
-        if pressed && self.context.state.active_panel != *kind && self.context.state.dialog.is_none() {
-            self.commands.send(Command::Activate(*kind));
+        if pressed && self.context.state.active_panel != kind && self.context.state.dialog.is_none() {
+            self.commands.send(Command::Activate(kind));
         }
-        ui.push_id(kind.name(), |ui| self.panels.show(*kind, ui, self.context, self.commands));
+        ui.push_id(kind.name(), |ui| self.panels.show(kind, ui, self.context, self.commands));
+    }
+}
+
+impl Behavior<PanelKind> for PanelTiles<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, kind: &mut PanelKind) -> UiResponse {
+        self.show_panel(ui, *kind);
         UiResponse::None
     }
 
@@ -277,10 +319,8 @@ impl Behavior<PanelKind> for PanelTiles<'_> {
     ) -> egui::Response {
         let kind = tiles.get_pane(&tile).copied();
         let tab = bar::tab::show(ui, self.context, kind, id, state);
-        if tab.is_closed
-            && let Some(kind) = kind
-        {
-            self.commands.send(Command::ClosePanel(kind));
+        if let Some(kind) = kind {
+            self.follow_tab(&tab, kind);
         }
         tab.response
     }
@@ -294,7 +334,14 @@ impl Behavior<PanelKind> for PanelTiles<'_> {
         _scroll_offset: &mut f32,
     ) {
         let panel = tabs.active.and_then(|tile| tiles.get_pane(&tile)).copied();
-        let Some(panel) = panel.filter(|panel| *panel != PanelKind::Manual) else { return };
+        let Some(panel) = panel else { return };
+        let name = format!("Give {} the whole window", panel.title());
+        if icon::button(ui, self.context.tokens, Icon::Maximize, &name).clicked() {
+            self.commands.send(Command::Maximize(Some(panel)));
+        }
+        if panel == PanelKind::Manual {
+            return;
+        }
         let name = format!("The manual about {}", panel.title());
         if icon::button(ui, self.context.tokens, Icon::Help, &name).clicked() {
             self.commands.send(Command::Manual(ManualCommand::About(panel)));
@@ -306,7 +353,7 @@ impl Behavior<PanelKind> for PanelTiles<'_> {
     }
 
     fn tab_bar_height(&self, _style: &egui::Style) -> f32 {
-        28.0
+        TAB_BAR
     }
 
     fn tab_bar_color(&self, _visuals: &egui::Visuals) -> egui::Color32 {

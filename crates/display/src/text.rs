@@ -26,8 +26,6 @@ pub struct Text {
     pub plate: Option<Color>,
     /// From this byte on there is a bar over it.
     pub overbar: Option<u32>,
-    /// Below this size on the screen it is left out, in points.
-    pub least_size: f32,
     /// Present for a name that keeps a legible size where the drawing is small: the room that it may then take, in
     /// drawing units. It is left out where others are in its way.
     pub legible: Option<f64>,
@@ -91,7 +89,6 @@ impl Text {
             color: ColorRole::Text.into(),
             plate: None,
             overbar: None,
-            least_size: 6.0,
             legible: None,
             slide: None,
             heading: None,
@@ -168,15 +165,15 @@ pub fn cut_to_width(text: &str, longest: f64, width_of: impl Fn(&str) -> f64) ->
 }
 
 /// Advance widths of the characters from space to tilde in thousandths of the text size, in the page's own face
-/// (Ubuntu Light).
+/// (Inter).
 #[rustfmt::skip]
 const CHARACTER_WIDTHS: [u16; 95] = [
-    228, 274, 392, 653, 564, 831, 648, 240, 310, 310, 472, 564, 246, 282, 246, 359,
-    564, 564, 564, 564, 564, 564, 564, 564, 564, 564, 246, 246, 564, 564, 564, 380,
-    940, 641, 630, 609, 702, 555, 520, 658, 692, 248, 487, 599, 502, 865, 709, 774,
-    592, 774, 618, 517, 548, 680, 624, 921, 608, 569, 560, 310, 359, 310, 564, 490,
-    376, 509, 583, 460, 583, 548, 376, 573, 569, 237, 237, 495, 255, 863, 569, 582,
-    583, 583, 374, 428, 387, 569, 480, 775, 499, 474, 455, 319, 262, 319, 564,
+    281, 278, 403, 631, 638, 812, 639, 222, 362, 362, 500, 659, 280, 460, 276, 357,
+    625, 464, 605, 636, 642, 608, 624, 571, 616, 624, 276, 280, 659, 659, 659, 507,
+    936, 676, 651, 727, 719, 598, 587, 743, 740, 264, 543, 652, 562, 889, 753, 761,
+    635, 761, 639, 638, 642, 741, 676, 949, 642, 665, 625, 362, 357, 362, 469, 452,
+    497, 564, 621, 558, 621, 582, 361, 609, 591, 237, 237, 544, 237, 869, 585, 597,
+    609, 609, 372, 523, 364, 581, 557, 812, 540, 557, 541, 362, 327, 362, 659,
 ];
 
 /// The width of `text` at [`TEXT_SIZE`] in the page's face, with some room for faces that are a little wider.
@@ -184,15 +181,16 @@ const CHARACTER_WIDTHS: [u16; 95] = [
 /// It needs no fonts and is the same everywhere, so pictures are too.
 pub fn approximate_text_width(text: &str) -> f32 {
     let thousandths: u32 = text.chars().map(|character| u32::from(character_width(character))).sum();
-    thousandths as f32 / 1000.0 * 1.04 * TEXT_SIZE as f32
+    thousandths as f32 / 1000.0 * 1.02 * TEXT_SIZE as f32
 }
 
 fn character_width(character: char) -> u16 {
     let ascii = (character as u32).checked_sub(u32::from(b' ')).map(|at| at as usize);
     match ascii.and_then(|at| CHARACTER_WIDTHS.get(at)) {
         Some(&width) => width,
-        None if character == '·' => 246,
-        None if matches!(character, '∞' | '¬' | '≥' | '≤') || character.is_alphabetic() => 600,
+        None if character == '·' => 276,
+        None if character == '∞' => 930,
+        None if matches!(character, '¬' | '≥' | '≤' | '…') || character.is_alphabetic() => 700,
         None => 1000,
     }
 }

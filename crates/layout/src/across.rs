@@ -25,19 +25,20 @@ pub(crate) fn add_arcs_across(
     collapsed_ends: &BTreeSet<(NodeId, NodeId)>,
     drawing: &mut NetworkDrawing,
 ) {
+    let folding = &tree.folding;
     let hidden = |node: NodeId| {
-        let hider = tree.hidden_nodes.get(node.index()).copied().flatten();
+        let hider = folding.hidden_nodes.get(node.index()).copied().flatten();
         hider.filter(|_| drawing.node(node).is_none())
+    };
+    let is_end = |fold: u32, node: NodeId| {
+        let fold = folding.folds[fold as usize];
+        fold.start == node || fold.end == node
     };
     let is_inside = |from: NodeId, to: NodeId| match (hidden(from), hidden(to)) {
         (None, None) => collapsed_ends.contains(&(from, to)),
         (Some(left), Some(right)) => left == right,
-        (Some(block), None) => {
-            network.blocks[block.index()].end == to || network.blocks[block.index()].start == to
-        }
-        (None, Some(block)) => {
-            network.blocks[block.index()].start == from || network.blocks[block.index()].end == from
-        }
+        (Some(fold), None) => is_end(fold, to),
+        (None, Some(fold)) => is_end(fold, from),
     };
     let missing: Vec<ArcId> = (0..network.arcs.len())
         .filter(|&at| drawing.arc_slots[at] == NO_SLOT)
@@ -134,7 +135,7 @@ fn write_texts(
         drawing.texts.push(TextShape {
             text: run.text.clone(),
             role: run.role,
-            size: run.role.size(),
+            size: run.size,
             rect: Rect::new(left, row.min.y, left + run.width, row.max.y),
             owner: run.owner,
             slide: None,

@@ -31,6 +31,8 @@ pub struct NetworkDrawing {
     pub(crate) arc_slots: Vec<u32>,
     /// Where every node is, or, if it is hidden, the box that hides it.
     pub(crate) anchors: Vec<Point>,
+    /// Of every node that is hidden, the position of its box in `blocks`.
+    pub(crate) box_slots: Vec<u32>,
     pub(crate) index: SpatialIndex<Shape>,
 }
 
@@ -127,6 +129,8 @@ impl TextShape {
 pub struct BlockShape {
     /// Which one; `None` for structure that was recovered from the graph.
     pub block: Option<BlockId>,
+    /// The last one, if it is a box for several neighbours; otherwise the same.
+    pub last: Option<BlockId>,
     /// What it is.
     pub form: BlockForm,
     /// Where it is.
@@ -208,6 +212,11 @@ impl NetworkDrawing {
     /// Where a node is, or the middle of the collapsed block that hides it.
     pub fn anchor(&self, id: NodeId) -> Point {
         self.anchors.get(id.index()).copied().unwrap_or_default()
+    }
+
+    /// The box that hides a node, if one does.
+    pub fn box_of(&self, id: NodeId) -> Option<&BlockShape> {
+        self.box_slots.get(id.index()).and_then(|&slot| self.blocks.get(slot as usize))
     }
 
     /// The pieces of an arc's curve.

@@ -12,7 +12,7 @@ use crate::overlay::reversed;
 use crate::place::{Frame, Placer};
 use crate::size::{Arch, Clearance};
 use crate::text::{Run, line_size};
-use crate::tree::{PartId, PartKind};
+use crate::tree::PartId;
 
 impl Placer<'_> {
     pub(crate) fn outline(&mut self, id: PartId, frame: Frame, occurrence: OccurrenceId) {
@@ -22,6 +22,7 @@ impl Placer<'_> {
         let (x, y) = (frame.start.x, frame.start.y);
         self.drawing.blocks.push(BlockShape {
             block: part.block,
+            last: part.block,
             form: BlockForm::Activity,
             rect: Rect::new(
                 x - left - OUTLINE_PAD,
@@ -93,7 +94,7 @@ impl Placer<'_> {
         }
     }
 
-    pub(crate) fn collapsed(&mut self, id: PartId, frame: Frame, caption: usize) {
+    pub(crate) fn collapsed(&mut self, id: PartId, fold: u32, frame: Frame, caption: usize) {
         let part = self.tree.part(id);
         let Some(block) = part.block else { return };
         let end = frame.start.shifted(frame.width, 0.0);
@@ -105,33 +106,27 @@ impl Placer<'_> {
             end.x - gap(last, last.before),
             frame.start.y + COLLAPSED_HEIGHT / 2.0,
         );
-        self.connect(
-            part.start,
-            frame.start.shifted(first.radius, 0.0),
-            &[Piece::Line(Point::new(rect.min.x, frame.start.y))],
-        );
-        self.connect(part.end, Point::new(rect.max.x, end.y), &[Piece::Line(end.shifted(-last.radius, 0.0))]);
-        self.boxes[block.index()] = Some(rect.center());
+        let from = frame.start.shifted(self.clearance_at(part.start, frame.start).radius, 0.0);
+        let to = end.shifted(-self.clearance_at(part.end, end).radius, 0.0);
+        self.connect(part.start, from, &[Piece::Line(Point::new(rect.min.x, frame.start.y))]);
+        self.connect(part.end, Point::new(rect.max.x, end.y), &[Piece::Line(to)]);
+        self.boxes[fold as usize] = Some((rect.center(), self.drawing.blocks.len() as u32));
         self.collapsed_ends.insert((part.start, part.end));
         let caption = self.sizes.captions[caption].clone();
-        let occurrence = match part.kind {
-            PartKind::Collapsed { occurrence, .. } => occurrence,
-            _ => None,
-        };
         let lines = [
-            (caption.title.clone(), TextRole::Title, caption.title_width),
-            (caption.detail, TextRole::Bounds, caption.detail_width),
+            (caption.title.clone(), TextRole::Title, caption.title_width, caption.sizes[0]),
+            (caption.detail, TextRole::Bounds, caption.detail_width, caption.sizes[1]),
         ];
         let mut top =
-            rect.center().y - lines.iter().map(|(_, role, _)| role.line_height()).sum::<f64>() / 2.0;
-        for (text, role, width) in lines {
+            rect.center().y - lines.iter().map(|(_, role, ..)| role.line_height()).sum::<f64>() / 2.0;
+        for (text, role, width, size) in lines {
             let left = (rect.center().x - width / 2.0).floor();
             let line = Rect::new(left, top, left + width, top + role.line_height());
             top = line.max.y;
             self.drawing.texts.push(TextShape {
                 text,
                 role,
-                size: role.size(),
+                size,
                 rect: line,
                 owner: Item::Block(block),
                 slide: None,
@@ -139,10 +134,11 @@ impl Placer<'_> {
         }
         self.drawing.blocks.push(BlockShape {
             block: Some(block),
+            last: Some(self.tree.folding.folds[fold as usize].last),
             form: BlockForm::Collapsed,
             rect,
             depth: frame.depth,
-            occurrence,
+            occurrence: caption.occurrence,
             title: caption.title,
         });
     }
@@ -208,7 +204,7 @@ impl Placer<'_> {
             self.drawing.texts.push(TextShape {
                 text: run.text.clone(),
                 role: run.role,
-                size: run.role.size(),
+                size: run.size,
                 rect: Rect::new(left, row.min.y, left + run.width, row.max.y),
                 owner: run.owner,
                 slide,

@@ -18,10 +18,14 @@ pub mod threads;
 pub mod timeline;
 
 mod across;
+mod caption;
 mod emit;
+mod fit;
+mod folding;
 mod layered;
 mod place;
 mod recover;
+mod rows;
 mod size;
 mod tree;
 
@@ -30,11 +34,12 @@ pub use drawing::{
     ArcShape, BlockForm, BlockShape, Connector, Item, NetworkDrawing, NodeShape, Route, Shape, Slide,
     TextShape,
 };
+pub use fit::{LEAST_TEXT, Range, Room, fitted};
 pub use list::automaton::{AutomatonState, automaton_list};
 pub use list::network::{NetworkState, network_list};
 pub use machine::{MachineArc, MachineArcShape, MachineDrawing, machine};
 pub use metrics::TextRole;
-pub use options::Options;
+pub use options::{Detail, Finer, Options};
 pub use overlay::{OverlayCurve, OverlayKind};
 pub use progress::Progress;
 pub use style::Parts;
@@ -58,11 +63,22 @@ pub fn network(network: &Network, options: &Options, measure: &dyn Measure) -> N
     }
     let tree = tree::tree_from_blocks(network, options).unwrap_or_else(|| recover::tree_from_graph(network));
     let texts = ArcTexts::new(network, options, measure);
-    let sizes = size::Sizes::new(network, &tree, &texts, options, measure);
-    let mut placer = place::Placer::new(network, &tree, sizes);
+    finish(network, &tree, &texts, options, measure)
+}
+
+/// Draws a network whose structure and texts are known.
+fn finish(
+    network: &Network,
+    tree: &tree::Tree,
+    texts: &ArcTexts,
+    options: &Options,
+    measure: &dyn Measure,
+) -> NetworkDrawing {
+    let sizes = size::Sizes::new(network, tree, texts, options, measure);
+    let mut placer = place::Placer::new(network, tree, sizes);
     placer.place();
     let (mut drawing, collapsed_ends) = placer.finish();
-    across::add_arcs_across(network, &tree, &texts, &collapsed_ends, &mut drawing);
+    across::add_arcs_across(network, tree, texts, &collapsed_ends, &mut drawing);
     write_node_names(network, measure, &mut drawing);
     drawing.bounds = place::content_bounds(&drawing);
     drawing.index = drawing.indexed();

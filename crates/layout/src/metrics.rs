@@ -42,10 +42,18 @@ pub(crate) const OUTLINE_PAD: f64 = 5.0;
 pub(crate) const COLLAPSED_HEIGHT: f64 = 40.0;
 /// Narrowest and widest space in which the arcs of a fork spread.
 pub(crate) const GUTTER: (f64, f64) = (22.0, 60.0);
+/// Between the rows of a series that is broken into rows.
+pub(crate) const ROW_GAP: f64 = 22.0;
+/// How far right of the line back to it each row but the first begins: past the outline of an activity.
+pub(crate) const ROW_INDENT: f64 = 40.0;
+/// How far right of a row's last node the line turns.
+pub(crate) const ROW_TURN: f64 = 36.0;
+/// Radius of the turns.
+pub(crate) const ROW_CORNER: f64 = 10.0;
 /// Between the vertices of a path.
 pub(crate) const BEAD_STEP: f64 = 12.0;
 /// Around the whole drawing.
-pub(crate) const MARGIN: f64 = 16.0;
+pub(crate) const MARGIN: f64 = 12.0;
 
 /// What a text is for; decides its size, and its colour when painted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -79,8 +87,7 @@ impl TextRole {
             Self::Name | Self::Title => 13.0,
             Self::Quiet | Self::Node => 12.0,
             Self::Bounds | Self::Nature | Self::Ask | Self::Tell => 11.5,
-            Self::Window => 10.5,
-            Self::ZeroBounds => 10.0,
+            Self::Window | Self::ZeroBounds => 11.0,
         }
     }
 

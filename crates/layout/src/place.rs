@@ -24,12 +24,12 @@ pub(crate) struct Placer<'a> {
     pub(crate) sizes: Sizes<'a>,
     pub(crate) network: &'a Network,
     pub(crate) tree: &'a Tree,
-    frames: Vec<Option<Frame>>,
+    pub(crate) frames: Vec<Option<Frame>>,
     pub(crate) positions: Vec<Option<Point>>,
     pub(crate) arcs: Vec<Option<ArcShape>>,
     pub(crate) drawing: NetworkDrawing,
-    /// The middle of each collapsed block's box.
-    pub(crate) boxes: Vec<Option<Point>>,
+    /// The middle of each box, and its position among the blocks of the drawing.
+    pub(crate) boxes: Vec<Option<(Point, u32)>>,
     /// The ends of collapsed parts: arcs between them are inside.
     pub(crate) collapsed_ends: BTreeSet<(NodeId, NodeId)>,
 }
@@ -44,7 +44,7 @@ impl<'a> Placer<'a> {
             positions: vec![None; network.nodes.len()],
             arcs: vec![None; network.arcs.len()],
             drawing: NetworkDrawing::default(),
-            boxes: vec![None; network.blocks.len()],
+            boxes: vec![None; tree.folding.folds.len()],
             collapsed_ends: BTreeSet::new(),
         }
     }
@@ -56,7 +56,7 @@ impl<'a> Placer<'a> {
         self.frames[root.index()] = Some(Frame { start: Point::default(), width, depth: 0 });
         let mut captions = self.sizes.captions.len();
         for at in (0..self.tree.parts.len()).rev() {
-            let is_collapsed = matches!(self.tree.parts[at].kind, PartKind::Collapsed { .. });
+            let is_collapsed = matches!(self.tree.parts[at].kind, PartKind::Collapsed(_));
             captions -= usize::from(is_collapsed);
             if let Some(frame) = self.frames[at] {
                 self.part(PartId(at as u32), frame, captions);
@@ -71,9 +71,12 @@ impl<'a> Placer<'a> {
         drawing.node_slots = vec![NO_SLOT; self.network.nodes.len()];
         drawing.arc_slots = vec![NO_SLOT; self.network.arcs.len()];
         for (at, node) in self.network.nodes.iter().enumerate() {
-            let hider = self.tree.hidden_nodes.get(at).copied().flatten();
-            let hider = hider.and_then(|block| self.boxes[block.index()]);
-            drawing.anchors.push(self.positions[at].or(hider).unwrap_or_default());
+            let hider = self.tree.folding.hidden_nodes.get(at).copied().flatten();
+            let hider = hider.and_then(|fold| self.boxes[fold as usize]);
+            let anchor = self.positions[at].or(hider.map(|(middle, _)| middle));
+            drawing.anchors.push(anchor.unwrap_or_default());
+            let slot = hider.filter(|_| self.positions[at].is_none()).map(|(_, slot)| slot);
+            drawing.box_slots.push(slot.unwrap_or(NO_SLOT));
             if let Some(center) = self.positions[at] {
                 drawing.node_slots[at] = drawing.nodes.len() as u32;
                 let (id, radius) = (NodeId::from_index(at), node_radius(self.network, node));
@@ -92,7 +95,8 @@ impl<'a> Placer<'a> {
 
     /// Puts nodes that the structure does not reach into a row below everything.
     fn place_leftovers(&mut self) {
-        let is_hidden = |at: usize| self.tree.hidden_nodes.get(at).copied().flatten().is_some();
+        let hidden = &self.tree.folding.hidden_nodes;
+        let is_hidden = |at: usize| hidden.get(at).copied().flatten().is_some();
         let missing: Vec<usize> =
             (0..self.positions.len()).filter(|&at| self.positions[at].is_none() && !is_hidden(at)).collect();
         if missing.is_empty() {
@@ -120,7 +124,10 @@ impl<'a> Placer<'a> {
                 let ends = (self.clearance_at(part.start, start), self.clearance_at(part.end, end));
                 self.level_arc(*arc, start, end, ends);
             }
-            PartKind::Series(range) => self.series(self.tree.children(range), frame),
+            PartKind::Series(range) => match self.sizes.rows.get(&id) {
+                Some(rows) => self.rows(id, rows.clone(), self.tree.children(range), frame),
+                None => self.series(self.tree.children(range), frame),
+            },
             PartKind::Fan { branches, is_choice } => self.fan(id, branches.clone(), *is_choice, frame),
             PartKind::Span { child, arcs, occurrence } => {
                 let arches = self.sizes.arches(*child, arcs);
@@ -139,7 +146,7 @@ impl<'a> Placer<'a> {
                 self.level_arc(*arc, start, end, ends);
                 self.beads(*arc, chain, (start, end), (part.start, part.end));
             }
-            PartKind::Collapsed { .. } => self.collapsed(id, frame, caption),
+            PartKind::Collapsed(fold) => self.collapsed(id, *fold, frame, caption),
             PartKind::Core(core) => self.core(*core as usize, frame),
         }
     }
@@ -234,6 +241,7 @@ impl<'a> Placer<'a> {
             let rect = Rect::new(left.x, left.y - size.room.above, right.x, left.y + size.room.below);
             self.drawing.blocks.push(BlockShape {
                 block: branch.block,
+                last: branch.block,
                 form: if is_choice { BlockForm::Alternative } else { BlockForm::Lane },
                 rect,
                 depth: frame.depth,

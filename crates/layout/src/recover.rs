@@ -30,7 +30,7 @@ enum What {
 
 /// The tree of a network without blocks.
 pub(crate) fn tree_from_graph(network: &Network) -> Tree {
-    let mut tree = Tree { hidden_nodes: vec![None; network.nodes.len()], ..Tree::default() };
+    let mut tree = Tree::default();
     let (start, end) = (network.start, network.end);
     if network.nodes.is_empty() || start == end {
         tree.across = (0..network.arcs.len()).map(ArcId::from_index).collect();

@@ -1,8 +1,12 @@
 //! How much room each part of the tree needs: bottom up, in time linear in the tree.
 
+use std::collections::BTreeMap;
+
 use display::Measure;
 use display::list::ARROW_LENGTH;
 use tpn::{ArcId, Network, NodeId, Role};
+
+use crate::caption::{self, Caption};
 
 use crate::layered::{self, CoreLayout};
 use crate::metrics::{
@@ -10,7 +14,8 @@ use crate::metrics::{
     OUTLINE_PAD, SHORTEST_RUN, TEXT_LIFT, TEXT_PAD, TextRole, VERTEX_RADIUS, node_radius,
 };
 use crate::options::Options;
-use crate::text::{ArcTexts, Run, cut_to_width, one_row_size, sizes_above_and_below, text_width};
+use crate::rows::Rows;
+use crate::text::{ArcTexts, Run, one_row_size, sizes_above_and_below};
 use crate::tree::{Branch, Part, PartId, PartKind, Tree};
 
 /// The room of a part: from its start node's middle to its end node's, and above and below the line between them.
@@ -64,18 +69,12 @@ pub(crate) struct Sizes<'a> {
     /// Of each spanning arc, how many arches rise further left at its start, and come down further right at its end.
     pub(crate) arch_ranks: Vec<(u32, u32)>,
     pub(crate) cores: Vec<CoreLayout>,
+    /// The rows of the series that are broken into rows.
+    pub(crate) rows: BTreeMap<PartId, Rows>,
+    /// Series longer than this are.
+    row_width: f64,
     /// Of each collapsed part, in the order of the parts, what its box says.
     pub(crate) captions: Vec<Caption>,
-}
-
-/// What the box of a collapsed part says.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Caption {
-    pub(crate) part: PartId,
-    pub(crate) title: smol_str::SmolStr,
-    pub(crate) title_width: f64,
-    pub(crate) detail: smol_str::SmolStr,
-    pub(crate) detail_width: f64,
 }
 
 impl<'a> Sizes<'a> {
@@ -96,7 +95,9 @@ impl<'a> Sizes<'a> {
             branches: vec![BranchSize::default(); tree.branches.len()],
             arch_ranks,
             cores: Vec::with_capacity(tree.cores.len()),
-            captions: captions(network, tree, options, measure),
+            rows: BTreeMap::new(),
+            row_width: options.row_width,
+            captions: caption::captions(network, tree, options, measure),
         };
         let mut next_caption = 0;
         for part in &tree.parts {
@@ -126,10 +127,24 @@ impl<'a> Sizes<'a> {
             PartKind::Nothing if part.start == part.end => ends,
             PartKind::Nothing => Size { width: start.radius + SHORTEST_RUN + end.radius, ..ends },
             PartKind::Arc(arc) => cover(ends, self.straight(*arc, start, end)),
-            PartKind::Series(range) => self.tree.children(range).iter().map(|&child| self.of(child)).fold(
-                Size::default(),
-                |sum, size| Size { width: sum.width + size.width, ..cover(sum, size) },
-            ),
+            PartKind::Series(range) => {
+                let children: Vec<Size> =
+                    self.tree.children(range).iter().map(|&child| self.of(child)).collect();
+                let line = children.iter().fold(Size::default(), |sum, &size| Size {
+                    width: sum.width + size.width,
+                    ..cover(sum, size)
+                });
+                let rows = (line.width > self.row_width && !self.has_core(range))
+                    .then(|| Rows::new(&children, self.row_width, end));
+                match rows.filter(|rows| rows.starts.len() > 1) {
+                    Some(rows) => {
+                        let size = rows.size;
+                        self.rows.insert(PartId(self.parts.len() as u32), rows);
+                        cover(ends, size)
+                    }
+                    None => line,
+                }
+            }
             PartKind::Fan { branches, .. } => {
                 let range = branches.start as usize..branches.end as usize;
                 for (at, branch) in range.clone().zip(self.tree.branches(branches)) {
@@ -164,7 +179,7 @@ impl<'a> Sizes<'a> {
                 size.above = beads.height + VERTEX_RADIUS + TEXT_LIFT;
                 cover(ends, size)
             }
-            PartKind::Collapsed { .. } => {
+            PartKind::Collapsed(_) => {
                 let caption = &self.captions[*next_caption];
                 *next_caption += 1;
                 let text = caption.title_width.max(caption.detail_width) + 4.0 * TEXT_PAD;
@@ -179,6 +194,11 @@ impl<'a> Sizes<'a> {
                 cover(ends, size)
             }
         }
+    }
+
+    /// Whether a series holds an irregular graph, whose nodes cannot begin in one row and end in the next.
+    fn has_core(&self, range: &std::ops::Range<u32>) -> bool {
+        self.tree.children(range).iter().any(|&child| matches!(self.tree.part(child).kind, PartKind::Core(_)))
     }
 
     /// An arc between two nodes on one line.
@@ -379,36 +399,4 @@ fn clearances(network: &Network, options: &Options, tree: &Tree, arches: &[(u32,
         }
     }
     clearances
-}
-
-fn captions(network: &Network, tree: &Tree, options: &Options, measure: &dyn Measure) -> Vec<Caption> {
-    let mut hidden_counts = vec![0_u32; network.blocks.len()];
-    for hider in tree.hidden_nodes.iter().flatten() {
-        hidden_counts[hider.index()] += 1;
-    }
-    let mut captions = Vec::new();
-    for (at, part) in tree.parts.iter().enumerate() {
-        let PartKind::Collapsed { occurrence, arc } = part.kind else { continue };
-        let block = part.block.map(|block| &network.blocks[block.index()].kind);
-        let name = match (occurrence, block) {
-            (Some(occurrence), _) => network.occurrences[occurrence.index()].activity.clone(),
-            (None, Some(kind)) => crate::text::structure_name(kind),
-            (None, None) => smol_str::SmolStr::default(),
-        };
-        let title = cut_to_width(&name, TextRole::Title, options.longest_name, measure);
-        let count = part.block.map_or(0, |block| hidden_counts[block.index()]);
-        let events = if count == 1 { "1 event".to_owned() } else { format!("{count} events") };
-        let detail: smol_str::SmolStr = match arc.map(|arc| &network.arcs[arc.index()]) {
-            Some(arc) => format!("{} · {events}", crate::text::arc_bounds_label(arc)).into(),
-            None => events.into(),
-        };
-        captions.push(Caption {
-            part: PartId(at as u32),
-            title_width: text_width(&title, TextRole::Title, measure),
-            title,
-            detail_width: text_width(&detail, TextRole::Bounds, measure),
-            detail,
-        });
-    }
-    captions
 }

@@ -10,14 +10,16 @@ use crate::drawing::Item;
 use crate::metrics::{TextRole, WORD_GAP, whole};
 use crate::options::Options;
 
-/// Conditions go on the line of the bounds up to this width, or that of the name above if it is wider.
-const EASY_LINE_WIDTH: f64 = 130.0;
+/// The least height of a line of text, as a part of the text's size.
+const LINE_HEIGHT: f64 = 1.15;
 
 /// A text with its width, and the line that it stands on: −1 is on the arc, 0 the first below it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Run {
     pub(crate) text: SmolStr,
     pub(crate) role: TextRole,
+    /// The size of the text.
+    pub(crate) size: f64,
     pub(crate) width: f64,
     pub(crate) line: i32,
     pub(crate) owner: Item,
@@ -55,15 +57,17 @@ impl ArcTexts {
     fn add_arc(&mut self, network: &Network, options: &Options, measure: &dyn Measure, id: ArcId, arc: &Arc) {
         let first = self.runs.len();
         let push = |runs: &mut Vec<Run>, text: SmolStr, role: TextRole, line: i32, owner: Item| {
-            let width = text_width(&text, role, measure);
-            runs.push(Run { text, role, width, line, owner });
+            let size = options.text_size(role);
+            let width = width_at(&text, size, measure);
+            runs.push(Run { text, role, size, width, line, owner });
         };
         if let Some((text, role)) = arc_name(network, options, id, arc) {
             let text = cut_to_width(&text, role, options.longest_name, measure);
             push(&mut self.runs, text, role, -1, Item::Arc(id));
         }
+        let labels = || arc.labels.iter().copied().filter(|&label| is_written(network, options, label));
         if self.runs.len() == first {
-            for &label in &arc.labels {
+            for label in labels() {
                 let (text, role) = label_text(network, label);
                 push(&mut self.runs, text, role, -1, Item::Label(label));
             }
@@ -73,12 +77,12 @@ impl ArcTexts {
             push(&mut self.runs, text, role, if named { 0 } else { -1 }, Item::Arc(id));
         }
         if self.runs.get(first).is_some_and(|run| run.owner == Item::Arc(id)) && named {
-            let easy = self.runs[first].width.max(EASY_LINE_WIDTH);
-            for &label in &arc.labels {
+            let easy = self.runs[first].width.max(options.easy_line);
+            for label in labels() {
                 let (text, role) = label_text(network, label);
                 let last = self.runs.last().map_or(0, |run| run.line.max(0));
                 let used = line_size(&self.runs[first..], last).width;
-                let width = text_width(&text, role, measure);
+                let width = width_at(&text, options.text_size(role), measure);
                 let fits = used == 0.0 || used + WORD_GAP + width <= easy;
                 push(&mut self.runs, text, role, if fits { last } else { last + 1 }, Item::Label(label));
             }
@@ -110,14 +114,24 @@ fn row_size<'a>(runs: impl Iterator<Item = &'a Run>) -> TextSize {
     let mut size = TextSize::default();
     for run in runs {
         size.width += run.width + if size.width > 0.0 { WORD_GAP } else { 0.0 };
-        size.height = size.height.max(run.role.line_height());
+        size.height = size.height.max(run.role.line_height()).max((run.size * LINE_HEIGHT).ceil());
     }
     size
 }
 
+/// Whether a condition is written at its arc.
+fn is_written(network: &Network, options: &Options, label: LabelId) -> bool {
+    options.changes || !matches!(network.labels[label.index()].extent, Extent::Effect | Extent::Initial)
+}
+
+/// The width of `text` at `size`.
+pub(crate) fn width_at(text: &str, size: f64, measure: &dyn Measure) -> f64 {
+    whole(text_width_at(text, size, measure)) + 1.0
+}
+
 /// The width of `text` in its role.
 pub(crate) fn text_width(text: &str, role: TextRole, measure: &dyn Measure) -> f64 {
-    whole(text_width_at(text, role.size(), measure)) + 1.0
+    width_at(text, role.size(), measure)
 }
 
 /// `text`, or as much of it as fits with an ellipsis.
@@ -166,6 +180,11 @@ fn bounds_text(arc: &Arc, options: &Options) -> Option<(SmolStr, TextRole)> {
     let at_once = arc.lower.is_zero() && arc.upper == Bound::ZERO;
     if at_once && arc.occurrence.is_none() {
         return options.zero_bounds.then_some((text, TextRole::ZeroBounds));
+    }
+    // That something comes later, its arrow says.
+    let is_free = arc.lower.is_zero() && arc.upper == Bound::Infinite && !arc.is_contingent;
+    if is_free && arc.occurrence.is_none() && !options.zero_bounds {
+        return None;
     }
     Some((text, if arc.is_contingent { TextRole::Nature } else { TextRole::Bounds }))
 }

@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use tpn::{ArcId, ArcKind, BlockId, BlockKind, Network, NodeId, OccurrenceId};
 
+use crate::folding::Folding;
 use crate::options::Options;
 
 /// A part of the tree, by its position in [`Tree::parts`].
@@ -33,8 +34,8 @@ pub(crate) struct Tree {
     pub(crate) root: Option<PartId>,
     /// Arcs that the structure does not have; they are drawn across it.
     pub(crate) across: Vec<ArcId>,
-    /// The collapsed block that hides each node, if one does.
-    pub(crate) hidden_nodes: Vec<Option<BlockId>>,
+    /// The boxes.
+    pub(crate) folding: Folding,
 }
 
 /// A piece of the network between two nodes.
@@ -60,8 +61,8 @@ pub(crate) enum PartKind {
     Span { child: PartId, arcs: Range<u32>, occurrence: Option<OccurrenceId> },
     /// An arc with the pieces of its path above it, as a string of beads.
     Beads { arc: ArcId, chain: Range<u32> },
-    /// A box that hides what is between the ends.
-    Collapsed { occurrence: Option<OccurrenceId>, arc: Option<ArcId> },
+    /// A box that hides what is between the ends, by its position in [`Folding::folds`].
+    Collapsed(u32),
     /// An irregular graph.
     Core(u32),
 }
@@ -187,51 +188,18 @@ pub(crate) fn tree_from_blocks(network: &Network, options: &Options) -> Option<T
     let root = network.root.filter(|root| root.index() < network.blocks.len())?;
     let mut builder = Builder {
         network,
-        tree: Tree { hidden_nodes: vec![None; network.nodes.len()], ..Tree::default() },
+        tree: Tree { folding: Folding::new(network, options, root), ..Tree::default() },
         part_of_block: vec![None; network.blocks.len()],
         arc_to: vec![None; network.nodes.len()],
         arc_from: vec![None; network.nodes.len()],
     };
-    let visible = visible_blocks(network, options, root, &mut builder.tree.hidden_nodes);
-    for (at, is_visible) in visible.into_iter().enumerate() {
-        if is_visible {
-            let id = BlockId::from_index(at);
-            builder.part_of_block[at] = builder.part(id, options.collapsed.contains(&id));
+    for at in 0..network.blocks.len() {
+        if builder.tree.folding.visible[at] {
+            builder.part_of_block[at] = builder.part(BlockId::from_index(at));
         }
     }
     builder.tree.root = builder.part_of_block[root.index()];
     builder.tree.root.is_some().then_some(builder.tree)
-}
-
-/// Which blocks are drawn, and which collapsed block hides each node of the others.
-fn visible_blocks(
-    network: &Network,
-    options: &Options,
-    root: BlockId,
-    hidden_nodes: &mut [Option<BlockId>],
-) -> Vec<bool> {
-    let mut visible = vec![false; network.blocks.len()];
-    let mut hidden_in: Vec<Option<BlockId>> = vec![None; network.blocks.len()];
-    visible[root.index()] = true;
-    for at in (0..network.blocks.len()).rev() {
-        let id = BlockId::from_index(at);
-        let block = &network.blocks[at];
-        let hider = hidden_in[at].or_else(|| (visible[at] && options.collapsed.contains(&id)).then_some(id));
-        if hidden_in[at].is_some() {
-            hidden_nodes[block.start.index()] = hider;
-            hidden_nodes[block.end.index()] = hider;
-        }
-        if let (Some(_), BlockKind::Leaf { arc }) = (hider, &block.kind) {
-            for arc in path_chain(network, *arc) {
-                hidden_nodes[network.arcs[arc.index()].to.index()] = hider;
-            }
-        }
-        for child in block_children(&block.kind).iter().filter(|child| child.index() < at) {
-            visible[child.index()] = visible[at] && hider.is_none();
-            hidden_in[child.index()] = hider;
-        }
-    }
-    visible
 }
 
 /// The blocks directly inside a block, in textual order.
@@ -246,7 +214,7 @@ pub fn block_children(kind: &BlockKind) -> &[BlockId] {
 }
 
 /// The pieces of the path of a traverse (SPEC 7.3), in order; empty if `arc` has no path beside it.
-fn path_chain(network: &Network, arc: ArcId) -> Vec<ArcId> {
+pub(crate) fn path_chain(network: &Network, arc: ArcId) -> Vec<ArcId> {
     let (mut at, end) = (network.arcs[arc.index()].from, network.arcs[arc.index()].to);
     let mut chain = Vec::new();
     while at != end && chain.len() < network.nodes.len() {
@@ -272,17 +240,14 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    fn part(&mut self, id: BlockId, is_collapsed: bool) -> Option<PartId> {
+    /// The part of a block; of blocks that share a box, the first has it.
+    fn part(&mut self, id: BlockId) -> Option<PartId> {
         let network = self.network;
         let block = &network.blocks[id.index()];
-        if is_collapsed && block.start != block.end {
-            let (occurrence, arc) = collapsed_name(network, &block.kind);
-            return Some(self.tree.push(
-                PartKind::Collapsed { occurrence, arc },
-                block.start,
-                block.end,
-                Some(id),
-            ));
+        if let Some(at) = self.tree.folding.fold_of[id.index()] {
+            let fold = self.tree.folding.folds[at as usize];
+            let kind = PartKind::Collapsed(at);
+            return (fold.first == id).then(|| self.tree.push(kind, fold.start, fold.end, Some(id)));
         }
         match &block.kind {
             BlockKind::Leaf { arc } => Some(self.leaf(id, *arc)),
@@ -403,14 +368,5 @@ impl Builder<'_> {
         self.tree.branches.extend(branches);
         let branches = begin..self.tree.branches.len() as u32;
         self.tree.push(PartKind::Fan { branches, is_choice }, block.start, block.end, Some(id))
-    }
-}
-
-/// The occurrence and the arc that name a collapsed block.
-fn collapsed_name(network: &Network, kind: &BlockKind) -> (Option<OccurrenceId>, Option<ArcId>) {
-    match kind {
-        BlockKind::Scope { arcs, occurrence, .. } => (*occurrence, arcs.first().copied()),
-        BlockKind::Leaf { arc } => (network.arcs[arc.index()].occurrence, Some(*arc)),
-        _ => (None, None),
     }
 }

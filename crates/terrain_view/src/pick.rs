@@ -40,6 +40,8 @@ pub struct OnPath {
 
 /// Pointers this near to a post or a vehicle, in points, are on it.
 const REACH: f32 = 14.0;
+/// Pointers this near to one, in points, can take hold of it.
+const HANDLE_REACH: f32 = 9.0;
 /// Pointers this near to a path, in points, are on it.
 const PATH_REACH: f32 = 8.0;
 /// Metres between the points of a path that are looked at.
@@ -72,7 +74,7 @@ impl Scene<'_> {
         if let Some((_, named)) = self.plates.iter().find(|(plate, _)| plate.contains(pointer)) {
             return named.clone();
         }
-        if let Some(standing) = self.pick_standing(pointer) {
+        if let Some(standing) = self.pick_standing(pointer, REACH) {
             return standing;
         }
         if let Some(on_path) = self.pick_path(pointer) {
@@ -84,8 +86,19 @@ impl Scene<'_> {
         obstacle.map_or(Selection::None, |it| Selection::Obstacle(it.name.text.clone()))
     }
 
-    /// The nearest vehicle or post of a location.
-    fn pick_standing(&self, pointer: Pos2) -> Option<Selection> {
+    /// What a drag from a point of the window takes hold of: the vehicle or the post that is there, or anything that is
+    /// selected. A name, or a whole obstacle, is no handle: turning the view must not move what it happens to begin on.
+    pub fn pick_handle(&self, pointer: Pos2) -> Option<Selection> {
+        let picked = self.pick(pointer);
+        if !picked.is_none() && picked == self.state.selection {
+            return Some(picked);
+        }
+        let is_on_plate = self.plates.iter().any(|(plate, _)| plate.contains(pointer));
+        if is_on_plate { None } else { self.pick_standing(pointer, HANDLE_REACH) }
+    }
+
+    /// The nearest vehicle or post of a location, at most `reach` points away.
+    fn pick_standing(&self, pointer: Pos2, reach: f32) -> Option<Selection> {
         let (inside, projector) = (self.inside(pointer), self.camera.projector(self.size()));
         let away = |place: Vec2, lift_m: f32| {
             let point = projector.project(self.ground.drape(place, lift_m));
@@ -103,7 +116,7 @@ impl Scene<'_> {
             let lifts = [0.0, 0.5, 1.0].into_iter().map(|part| away(place, part * scene::POST_M));
             (lifts.fold(f32::INFINITY, f32::min), Selection::Location(location.name.text.clone()))
         });
-        let found = vehicles.chain(locations).filter(|(away, _)| *away < REACH);
+        let found = vehicles.chain(locations).filter(|(away, _)| *away < reach);
         found.min_by(|(left, _), (right, _)| left.total_cmp(right)).map(|(_, selection)| selection)
     }
 

@@ -61,6 +61,10 @@ pub enum Icon {
     Minus,
     /// Everything at once.
     Fit,
+    /// A frame: the whole window.
+    Maximize,
+    /// A frame before another one: back among the others.
+    Restore,
     /// Options.
     Options,
     /// Two arrows apart: at another time.
@@ -255,6 +259,14 @@ impl Drawing<'_> {
                 self.line(&[(3.2, 8.0), (12.8, 8.0)]);
             }
             Icon::Minus => self.line(&[(3.2, 8.0), (12.8, 8.0)]),
+            Icon::Maximize => {
+                self.line(&[(3.0, 3.0), (13.0, 3.0), (13.0, 13.0), (3.0, 13.0), (3.0, 3.0)]);
+                self.line(&[(3.0, 5.2), (13.0, 5.2)]);
+            }
+            Icon::Restore => {
+                self.line(&[(3.0, 6.0), (10.0, 6.0), (10.0, 13.0), (3.0, 13.0), (3.0, 6.0)]);
+                self.line(&[(6.0, 6.0), (6.0, 3.0), (13.0, 3.0), (13.0, 10.0), (10.0, 10.0)]);
+            }
             Icon::Fit => {
                 for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
                     let (outer, inner) = (5.2, 2.0);

@@ -34,8 +34,6 @@ const INSET: f64 = 3.0;
 const TAG: (f64, f64) = (9.5, 5.0);
 /// Size of notes.
 const NOTE: f64 = 11.0;
-/// Below this size in points a text is left out.
-const LEAST_TEXT: f32 = 5.0;
 
 /// The display list of an automaton. Linear in the drawing.
 pub fn automaton_list(
@@ -153,7 +151,7 @@ impl Builder<'_> {
         let half = size / 2.0;
         let rect = Rect::new(right - width, shape.rect.max.y - half, right, shape.rect.max.y + half);
         let text = Text::new(name, size, rect).colored(ColorRole::TextMuted);
-        list.write(Text { plate: Some(ColorRole::Surface.into()), least_size: LEAST_TEXT, ..text })
+        list.write(Text { plate: Some(ColorRole::Surface.into()), ..text })
             .stands_for(TargetKind::Location, shape.id.0);
     }
 
@@ -179,7 +177,6 @@ impl Builder<'_> {
         let shown = Text {
             overbar: barred.map(|at| at as u32),
             plate: is_plated.then_some(ColorRole::Selection.into()),
-            least_size: LEAST_TEXT,
             ..Text::new(words, text.role.size(), text.rect).colored(role)
         };
         list.write(shown).stands_for(kind, id);

@@ -32,8 +32,6 @@ const PERCENT_SIZE: f64 = 9.5;
 const LIFTS: (f64, f64) = (5.0, 6.5);
 /// How much of the accent the most certain mode has in its fill.
 const STRONGEST_FILL: f64 = 0.5;
-/// Texts are written whatever their size: the drawing is never made much smaller.
-const LEAST_TEXT: f32 = 1.0;
 
 /// The display list of a state machine with its modes; `taken` is the arc that was taken last, by its modes.
 pub fn machine_list(
@@ -82,7 +80,7 @@ fn add_mode(number: u32, mode: &ModeState, rect: Rect, list: &mut DisplayList) {
     let moved = |by: f64| Rect { min: rect.min.shifted(0.0, by), max: rect.max.shifted(0.0, by) };
     let write = |list: &mut DisplayList, text: &SmolStr, size: f64, by: f64, weight: Weight| {
         let text = Text::new(text.clone(), size, moved(by)).anchored(Anchor::Middle, Fit::Overflow);
-        list.write(Text { weight, least_size: LEAST_TEXT, ..text.colored(color) });
+        list.write(Text { weight, ..text.colored(color) });
     };
     let weight = if mode.is_estimate { Weight::Strong } else { Weight::Regular };
     write(list, &mode.name, NAME_SIZE, -name_lift, weight);

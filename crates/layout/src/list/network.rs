@@ -197,6 +197,16 @@ pub fn emphasis_list(
         for node in emphasis.nodes.iter().filter_map(|&node| drawing.node(node)) {
             list.circle(node.center, node.radius + RING.0, Some(color.into()), None);
         }
+        let boxes = emphasis.nodes.iter().filter_map(|&node| drawing.box_of(node)).map(|shape| shape.rect);
+        let boxes: Vec<Rect> = boxes.fold(Vec::new(), |mut found, rect| {
+            if !found.contains(&rect) {
+                found.push(rect);
+            }
+            found
+        });
+        for rect in boxes {
+            list.rectangle(rect.expanded(RING.0), 8.0, Some(color.into()), None);
+        }
     }
     list.begin(Group { layer: layer::EMPHASIS, ..Group::default() });
     for emphasis in emphases {
@@ -379,7 +389,6 @@ impl Builder<'_> {
             _ => None,
         };
         Text {
-            least_size: if text.role == TextRole::Node { 5.0 } else { 6.0 },
             legible: (text.role == TextRole::Name).then(|| room().unwrap_or_else(|| text.rect.width())),
             slide: text.slide.map(crate::drawing::Slide::along_row),
             ..Text::new(text.text.clone(), text.size, text.rect)

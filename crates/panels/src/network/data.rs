@@ -6,12 +6,14 @@ use std::sync::Arc;
 use display::{DisplayList, Piece, Point, approximate_text_width};
 use layout::overlay::{causal_links, negative_cycle, orderings, threats, windows};
 use layout::{NetworkDrawing, NetworkState, Options, OverlayCurve, TextShape};
+
 use mission::{ContentKey, Planning, Snapshot};
 use tpn::{BlockId, BlockKind, Network, NodeId, Plan};
 use workbench::state::search::View;
 use workbench::state::selection::node_name;
 use workbench::state::settings::NetworkView;
 
+use super::detail::Detail;
 use super::marks::{Mark, marks};
 
 /// A drawing with what lies over it.
@@ -23,7 +25,7 @@ pub(super) struct Drawn {
     planning: Option<Arc<Planning>>,
     /// What the search had selected at the step that is looked at.
     step: Option<Arc<Plan>>,
-    collapsed: BTreeSet<String>,
+    detail: Detail,
     /// The shapes.
     pub(super) drawing: NetworkDrawing,
     /// Causal links of the plan.
@@ -72,7 +74,7 @@ impl Drawn {
         snapshot: &Snapshot,
         network: &Arc<Network>,
         step: Option<&View>,
-        collapsed: &BTreeSet<String>,
+        detail: &Detail,
         latest: Option<&Snapshot>,
         windows_of: Option<(u64, Option<&Plan>)>,
     ) -> bool {
@@ -82,18 +84,17 @@ impl Drawn {
             .then_some(snapshot.keys.network)
             .filter(|&key| key != ContentKey::default());
         let is_same = same(&self.network) || key.is_some() && self.key == key;
-        let is_new = !is_same || self.collapsed != *collapsed;
+        let is_new = !is_same || self.detail != *detail;
         self.key = key;
         if !is_new {
             self.network = Some(Arc::clone(network));
         }
         if is_new {
-            let options = Options { collapsed: collapsed_blocks(network, collapsed), ..Options::default() };
-            self.drawing = layout::network(network, &options, &approximate_text_width);
+            self.drawing = detail.drawing(network);
             self.sliding = sliding_texts(&self.drawing);
             self.outline = outline(&self.drawing, network);
             self.network = Some(Arc::clone(network));
-            self.collapsed.clone_from(collapsed);
+            self.detail.clone_from(detail);
             self.version += 1;
         }
         let same_planning = match (&self.planning, &snapshot.planning) {
@@ -237,7 +238,7 @@ pub(super) fn is_collapsible(network: &Network, block: BlockId) -> bool {
     network.root != Some(block) && network.blocks.get(block.index()).is_some_and(|block| is_part(&block.kind))
 }
 
-fn collapsed_blocks(network: &Network, keys: &BTreeSet<String>) -> BTreeSet<BlockId> {
+pub(super) fn collapsed_blocks(network: &Network, keys: &BTreeSet<String>) -> BTreeSet<BlockId> {
     if keys.is_empty() {
         return BTreeSet::new();
     }

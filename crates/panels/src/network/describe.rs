@@ -1,10 +1,10 @@
 //! What the tooltip says of an item, and what a screen reader says of the whole.
 
 use exact::Bound;
-use layout::Item;
 use layout::text::{bounds_label, label_words};
+use layout::{Item, NetworkDrawing};
 use rmpl::program::Controllability;
-use tpn::{ArcKind, Network, Plan, Role};
+use tpn::{ArcKind, BlockId, Network, OccurrenceKind, Plan, Role};
 use workbench::state::selection::node_name;
 
 /// A heading and lines about an item of the drawing.
@@ -31,6 +31,38 @@ pub(super) fn describe(item: Item, network: &Network, plan: Option<&Plan>) -> Op
             Some((name, vec![ends, "double click to open or close".to_owned()]))
         }
     }
+}
+
+/// A box names so much of what it holds.
+const MAX_INSIDE: usize = 12;
+
+/// A heading and lines about a box that begins with block `first`.
+pub(super) fn describe_box(
+    title: &str,
+    first: BlockId,
+    network: &Network,
+    drawing: &NetworkDrawing,
+) -> (String, Vec<String>) {
+    let is_inside = |occurrence: &&tpn::Occurrence| {
+        let boxes = [occurrence.start, occurrence.end].map(|node| drawing.box_of(node));
+        let is_this = |shape: &Option<&layout::BlockShape>| shape.is_some_and(|it| it.block == Some(first));
+        boxes.iter().any(is_this)
+    };
+    let bounds = |occurrence: &tpn::Occurrence| {
+        let arc = occurrence.arc.and_then(|arc| network.arcs.get(arc.index()));
+        arc.map_or_else(String::new, |arc| format!(" {}", bounds_label(arc.lower, arc.upper)))
+    };
+    let named = |it: &&tpn::Occurrence| {
+        matches!(it.kind, OccurrenceKind::Primitive | OccurrenceKind::Activity | OccurrenceKind::Assertion)
+    };
+    let inside: Vec<&tpn::Occurrence> = network.occurrences.iter().filter(is_inside).filter(named).collect();
+    let mut lines: Vec<String> =
+        inside.iter().take(MAX_INSIDE).map(|it| format!("{}{}", it.name, bounds(it))).collect();
+    if let Some(more) = inside.len().checked_sub(MAX_INSIDE).filter(|&more| more > 0) {
+        lines.push(format!("… and {more} more"));
+    }
+    lines.push("double click, or Enter, to open".to_owned());
+    (title.to_owned(), lines)
 }
 
 /// With more choices than this, nobody wants to hear them one by one.

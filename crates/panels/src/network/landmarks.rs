@@ -1,8 +1,9 @@
 //! The activities and decisions in view as widgets: a screen reader lists them, Tab walks them, Enter selects them.
 
 use egui::{Rect, Role, Sense, Ui, WidgetInfo};
-use layout::{Item, TextRole};
-use tpn::Network;
+use layout::{BlockForm, Item, TextRole};
+use smol_str::SmolStr;
+use tpn::{BlockId, Network};
 use workbench::state::Selection;
 
 use super::data::Drawn;
@@ -20,6 +21,8 @@ pub(super) struct Act {
     pub(super) selection: Selection,
     /// Whether it was double clicked.
     pub(super) is_double: bool,
+    /// The blocks whose box it opens, if a key pressed a box that stands for no single activity.
+    pub(super) opens: Option<(BlockId, BlockId)>,
 }
 
 /// Adds the landmarks in view, in the order of time, and answers what was done with one.
@@ -36,11 +39,14 @@ pub(super) fn show(
         return None;
     }
     found.sort_by(|left, right| {
-        left.0.min.x.total_cmp(&right.0.min.x).then(left.0.min.y.total_cmp(&right.0.min.y))
+        left.rect.min.x.total_cmp(&right.rect.min.x).then(left.rect.min.y.total_cmp(&right.rect.min.y))
     });
     let mut act = None;
-    for (rect, selection) in found {
-        let name = format!("{} in the network", selection.name(Some(network)));
+    for Landmark { rect, selection, opens } in found {
+        let name = match &opens {
+            Some((_, _, title)) => format!("{title}, folded, in the network"),
+            None => format!("{} in the network", selection.name(Some(network))),
+        };
         let response = ui.interact(rect, ui.scope_id().with(("landmark", &name)), Sense::click());
         let is_chosen = selection == *chosen;
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &name));
@@ -49,26 +55,38 @@ pub(super) fn show(
             ui.painter_at(panel).rect_stroke(rect.expand(2.0), 3.0, stroke, egui::StrokeKind::Outside);
         }
         if response.clicked() {
-            act = Some(Act { selection, is_double: response.double_clicked() });
+            let is_double = response.double_clicked();
+            let by_key = !response.clicked_by(egui::PointerButton::Primary) || is_double;
+            let opens = opens.filter(|_| by_key).map(|(first, last, _)| (first, last));
+            act = Some(Act { selection, is_double, opens });
         }
     }
     act
 }
 
-fn in_view(panel: Rect, view: &View, drawn: &Drawn, network: &Network) -> Vec<(Rect, Selection)> {
+/// Something in view.
+struct Landmark {
+    rect: Rect,
+    selection: Selection,
+    /// The blocks and the title of a box that stands for no single activity.
+    opens: Option<(BlockId, BlockId, SmolStr)>,
+}
+
+fn in_view(panel: Rect, view: &View, drawn: &Drawn, network: &Network) -> Vec<Landmark> {
     let drawing = &drawn.drawing;
     let area = view.visible(panel);
     let inset = 16.0 / view.zoom();
-    let mut found: Vec<(Rect, Selection)> = Vec::new();
+    let mut found: Vec<Landmark> = Vec::new();
     let mut add = |rect: display::Rect, selection: Selection| {
         let rect = view.screen_rect(panel, rect).intersect(panel);
-        let is_new = found.last().is_none_or(|(_, last)| *last != selection);
+        let is_new = found.last().is_none_or(|last| last.selection != selection);
         if rect.height() >= LEAST_HEIGHT && rect.width() > 0.0 && is_new {
-            found.push((rect, selection));
+            found.push(Landmark { rect, selection, opens: None });
         }
     };
     let least = f64::from(LEAST_HEIGHT) / view.zoom();
     let mut arches = Vec::new();
+    let mut boxes = Vec::new();
     drawing.visit(area, least, &mut |shape| match shape {
         layout::Shape::Text(at) => {
             let text = &drawing.texts[at as usize];
@@ -86,6 +104,14 @@ fn in_view(panel: Rect, view: &View, drawn: &Drawn, network: &Network) -> Vec<(R
             }
         }
         layout::Shape::Arc(at) => arches.extend(drawn.sliding.get(&at)),
+        layout::Shape::Block(at) => {
+            let shape = &drawing.blocks[at as usize];
+            if let (BlockForm::Collapsed, None, Some(first), Some(last)) =
+                (shape.form, shape.occurrence, shape.block, shape.last)
+            {
+                boxes.push((shape.rect, (first, last, shape.title.clone())));
+            }
+        }
         _ => {}
     });
     for text in arches.into_iter().flatten().map(|&at| &drawing.texts[at as usize]) {
@@ -93,6 +119,10 @@ fn in_view(panel: Rect, view: &View, drawn: &Drawn, network: &Network) -> Vec<(R
         if text.role == TextRole::Name && rect.touches(area) {
             add(rect, selection_of(text.owner, network));
         }
+    }
+    for (rect, opens) in boxes {
+        let rect = view.screen_rect(panel, rect).intersect(panel);
+        found.push(Landmark { rect, selection: Selection::None, opens: Some(opens) });
     }
     found
 }

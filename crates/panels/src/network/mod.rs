@@ -5,6 +5,7 @@
 
 mod data;
 mod describe;
+mod detail;
 mod export;
 mod highlight;
 mod landmarks;
@@ -15,12 +16,11 @@ mod search;
 mod toolbar;
 pub(crate) mod view;
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use display::Point;
 use egui::{CursorIcon, Key, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo, vec2};
-use layout::{Item, OverlayCurve, OverlayKind, Progress};
+use layout::{BlockForm, Item, NetworkDrawing, OverlayCurve, OverlayKind, Progress};
 use mission::Snapshot;
 use tpn::{BlockId, Network, Plan};
 use workbench::command::{Command, CommandSender, ViewAction};
@@ -30,7 +30,9 @@ use workbench::state::{Selection, Status, Views};
 use workbench::{PanelEffect, PanelKind};
 
 use self::data::{Drawn, block_key, fits, is_collapsible};
+use self::detail::Detail;
 use self::highlight::{Highlight, selection_of};
+use self::landmarks::Act;
 use self::paint::{Scene, badge};
 use self::search::Search;
 use self::toolbar::Asked;
@@ -43,8 +45,7 @@ use crate::painter::DisplayPainter;
 pub struct NetworkPanel {
     drawn: Drawn,
     view: View,
-    /// Names of collapsed blocks.
-    collapsed: BTreeSet<String>,
+    detail: Detail,
     search: Search,
     /// The selection that was last brought into view.
     followed_selection: Selection,
@@ -70,52 +71,69 @@ impl Panel for NetworkPanel {
             show_empty(ui, context, "The network appears when the mission has been read.");
             return;
         };
-        let begun_secs = (context.clock)();
-        let latest = context.state.snapshots.latest().map(std::convert::AsRef::as_ref);
-        let pins = (context.state.pins.version(), context.state.pins.plan(snapshot));
-        let pins = context.state.settings.views.network.windows.then_some(pins);
-        if self.drawn.follow(snapshot, network, context.step(), &self.collapsed, latest, pins) {
-            context.layout_millis.set(Some(((context.clock)() - begun_secs) * 1000.0));
-        }
-        self.search.follow(network, self.drawn.version);
         let views = &context.state.settings.views;
         let mut options = views.network.clone();
-        let asked =
-            toolbar::show(ui, context, &mut options, &mut self.search, !self.collapsed.is_empty(), commands);
+        let boxes = self.boxes();
+        let asked = toolbar::show(ui, context, &mut options, &mut self.search, boxes, commands);
         if options != views.network {
             commands.send(Command::SetViews(Box::new(Views { network: options.clone(), ..views.clone() })));
         }
+        self.detail.follow(ui.available_size(), self.view.is_fitted(), options.windows);
+        self.draw(context, snapshot, network);
         self.answer(asked, network, commands);
         self.show_drawing(ui, context, snapshot, network, &options, commands);
     }
 }
 
 impl NetworkPanel {
+    /// Whether something is behind a box, and whether that is not as it would be by itself.
+    fn boxes(&self) -> (bool, bool) {
+        let mut blocks = self.drawn.drawing.blocks.iter();
+        (blocks.any(|block| block.form == BlockForm::Collapsed), self.detail.is_changed())
+    }
+
+    /// Draws what the snapshot holds, as far as that has changed, with detail where the selection is.
+    fn draw(&mut self, context: &Context<'_>, snapshot: &Snapshot, network: &Arc<Network>) {
+        let begun_secs = (context.clock)();
+        let latest = context.state.snapshots.latest().map(std::convert::AsRef::as_ref);
+        let pins = (context.state.pins.version(), context.state.pins.plan(snapshot));
+        let pins = context.state.settings.views.network.windows.then_some(pins);
+        let mut is_new = self.drawn.follow(snapshot, network, context.step(), &self.detail, latest, pins);
+        let selection = &context.state.selection;
+        if is_new || *selection != self.followed_selection {
+            let shapes = Highlight::of(selection, network);
+            self.detail.reveal(network, &self.drawn.drawing, &shapes.nodes);
+            is_new |= self.drawn.follow(snapshot, network, context.step(), &self.detail, latest, pins);
+        }
+        if is_new {
+            context.layout_millis.set(Some(((context.clock)() - begun_secs) * 1000.0));
+        }
+        self.search.follow(network, self.drawn.version);
+    }
+
     fn answer(&mut self, asked: Asked, network: &Network, commands: &mut CommandSender) {
         let found = match asked {
             Asked::Nothing => return,
             Asked::OpenAll => {
-                self.collapsed.clear();
+                self.detail.reset();
+                self.detail.is_whole = true;
+                return;
+            }
+            Asked::FitAll => {
+                self.detail.reset();
+                commands.send(Command::ViewOf(PanelKind::Network, ViewAction::Fit));
                 return;
             }
             Asked::CloseAll => {
-                self.collapsed = data::outermost_activities(network);
+                self.detail.reset();
+                self.detail.collapsed = data::outermost_activities(network);
                 return;
             }
             Asked::NextMatch => self.search.step(true),
             Asked::PreviousMatch => self.search.step(false),
         };
         if let Some(selection) = found {
-            self.open_around(&selection, network);
             commands.send(Command::SelectAndReveal(selection));
-        }
-    }
-
-    /// Opens the collapsed blocks that hide a selection.
-    fn open_around(&mut self, selection: &Selection, network: &Network) {
-        let hidden = Highlight::of(selection, network);
-        if hidden.nodes.iter().any(|&node| self.drawn.drawing.node(node).is_none()) {
-            self.collapsed.clear();
         }
     }
 
@@ -148,6 +166,7 @@ impl NetworkPanel {
         self.tell_hover(context, pointed.as_ref(), commands);
         match act {
             Some(act) if act.is_double => self.toggle_block_under(pointer, panel, network),
+            Some(Act { opens: Some((first, last)), .. }) => self.open(network, first, last),
             Some(act) => {
                 self.followed_selection = act.selection.clone();
                 commands.send(Command::SelectAndReveal(act.selection));
@@ -186,7 +205,7 @@ impl NetworkPanel {
             painter.rect_stroke(panel.shrink(1.0), 2.0, stroke, egui::StrokeKind::Inside);
         }
         if let Some(pointed) = pointed.filter(|_| !response.dragged()) {
-            show_tooltip(&response, context, &pointed, network, plan);
+            show_tooltip(&response, context, &pointed, &self.drawn.drawing, network, plan);
         }
     }
 
@@ -268,7 +287,13 @@ impl NetworkPanel {
             Some(ViewAction::ZoomIn) => self.view.zoom_at(panel, panel.center(), KEY_ZOOM),
             Some(ViewAction::ZoomOut) => self.view.zoom_at(panel, panel.center(), 1.0 / KEY_ZOOM),
             Some(ViewAction::ZoomReset) => self.view.reset_zoom(),
-            Some(ViewAction::Fit) => self.view.fit(panel, self.drawn.drawing.bounds),
+            Some(ViewAction::Fit) => {
+                // Asked for twice, it shows the whole again, not what was opened.
+                if self.view.is_fitted() {
+                    self.detail.reset();
+                }
+                self.view.fit(panel, self.drawn.drawing.bounds);
+            }
             Some(ViewAction::FitSelection) => {
                 let shapes = Highlight::of(&context.state.selection, network);
                 match shapes.bounds(&self.drawn.drawing) {
@@ -369,18 +394,26 @@ impl NetworkPanel {
         }
     }
 
-    /// Opens the collapsed block at a place, or collapses the innermost block there.
+    /// Opens the box at a place, or collapses the innermost block there.
     fn toggle_block_under(&mut self, pointer: Option<egui::Pos2>, panel: Rect, network: &Network) {
         let Some(point) = pointer.map(|at| self.view.drawing_point(panel, at)) else { return };
         let blocks = self.drawn.drawing.blocks.iter().filter(|block| block.rect.contains(point));
         let found = blocks.rev().find_map(|block| {
             let id: BlockId = block.block?;
-            is_collapsible(network, id).then_some(id)
+            let is_box = block.form == BlockForm::Collapsed;
+            (is_box || is_collapsible(network, id)).then_some((is_box, id, block.last.unwrap_or(id)))
         });
-        let Some(key) = found.and_then(|block| block_key(network, block)) else { return };
-        if !self.collapsed.remove(&key) {
-            self.collapsed.insert(key);
+        match found {
+            Some((true, first, last)) => self.open(network, first, last),
+            Some((false, block, _)) => self.detail.collapsed.extend(block_key(network, block)),
+            None => {}
         }
+    }
+
+    /// Opens a box, and shows everything with it.
+    fn open(&mut self, network: &Network, first: BlockId, last: BlockId) {
+        self.detail.open(network, first, last);
+        self.view.keep_fitted();
     }
 }
 
@@ -400,7 +433,7 @@ impl Pointed {
 
 fn is_box(drawn: &Drawn, item: Item) -> bool {
     let Item::Block(id) = item else { return false };
-    let mut boxes = drawn.drawing.blocks.iter().filter(|block| block.form == layout::BlockForm::Collapsed);
+    let mut boxes = drawn.drawing.blocks.iter().filter(|block| block.form == BlockForm::Collapsed);
     boxes.any(|block| block.block == Some(id))
 }
 
@@ -488,10 +521,21 @@ fn show_tooltip(
     response: &Response,
     context: &Context<'_>,
     pointed: &Pointed,
+    drawing: &NetworkDrawing,
     network: &Network,
     plan: Option<&Plan>,
 ) {
+    let box_at = |item: &Item| match item {
+        Item::Block(id) => {
+            let mut blocks = drawing.blocks.iter().filter(|shape| shape.form == BlockForm::Collapsed);
+            blocks.find(|shape| shape.block == Some(*id)).map(|shape| (shape.title.clone(), *id))
+        }
+        _ => None,
+    };
     let (heading, lines) = match pointed {
+        Pointed::Item(item, _) if let Some((title, id)) = box_at(item) => {
+            describe::describe_box(&title, id, network, drawing)
+        }
         Pointed::Item(item, _) => match describe::describe(*item, network, plan) {
             Some(described) => described,
             None => return,

@@ -18,8 +18,10 @@ pub(super) enum Asked {
     NextMatch,
     /// The match before.
     PreviousMatch,
-    /// Everything that is collapsed is opened.
+    /// Everything is drawn, however small.
     OpenAll,
+    /// As much is drawn as can be read.
+    FitAll,
     /// The outermost activities are collapsed.
     CloseAll,
 }
@@ -30,7 +32,7 @@ pub(super) fn show(
     context: &Context<'_>,
     view: &mut NetworkView,
     search: &mut Search,
-    has_collapsed: bool,
+    (has_boxes, is_changed): (bool, bool),
     commands: &mut CommandSender,
 ) -> Asked {
     let mut asked = Asked::Nothing;
@@ -78,15 +80,15 @@ pub(super) fn show(
                 }
             }
         });
-        if !has_collapsed
-            && ui.add(small("Close all")).on_hover_text("Collapse the outermost activities").clicked()
-        {
-            asked = Asked::CloseAll;
-        }
-        if has_collapsed
-            && ui.add(small("Open all")).on_hover_text("Open everything that is collapsed").clicked()
-        {
-            asked = Asked::OpenAll;
+        let buttons = [
+            (has_boxes, "Open all", "Draw everything, however small", Asked::OpenAll),
+            (is_changed, "Overview", "As much of everything as can be read here", Asked::FitAll),
+            (!has_boxes, "Close all", "Collapse the outermost activities", Asked::CloseAll),
+        ];
+        for (is_offered, name, help, answer) in buttons {
+            if is_offered && ui.add(small(name)).on_hover_text(help).clicked() {
+                asked = answer;
+            }
         }
     });
     asked

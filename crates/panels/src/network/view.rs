@@ -19,7 +19,7 @@ const ZOOM_LIMITS: (f64, f64) = (0.002, 6.0);
 /// A small drawing is not blown up further than this to fill the panel.
 const LARGEST_FIT: f64 = 1.3;
 /// Around a drawing that is fitted.
-const FIT_MARGIN: f32 = 12.0;
+pub(super) const FIT_MARGIN: f32 = 4.0;
 
 impl Default for View {
     fn default() -> Self {
@@ -89,6 +89,11 @@ impl View {
     /// Shows all of `bounds`, and keeps doing so until the user moves the view.
     pub(crate) fn fit(&mut self, panel: Rect, bounds: display::Rect) {
         self.show(panel, bounds, LARGEST_FIT);
+        self.is_fitted = true;
+    }
+
+    /// From the next frame on shows all of the drawing.
+    pub(crate) fn keep_fitted(&mut self) {
         self.is_fitted = true;
     }
 

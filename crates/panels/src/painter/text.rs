@@ -17,8 +17,6 @@ const RAISED_FROM: f64 = 7.9;
 const LEAST_NAME: f32 = 30.0;
 /// From the ends of a line to the name over it, together, in points.
 const NAME_INSET: f32 = 6.0;
-/// Texts fade in over so many points of size, from so faint.
-const FADE: (f64, f64) = (1.5, 0.35);
 /// How far from the corner of its area a heading may begin that finds others there, in points.
 const FARTHEST_HEADING: f32 = 70.0;
 /// An area smaller than this on the screen has no heading.
@@ -44,13 +42,11 @@ impl DisplayPainter<'_> {
             self.legible(text, place, (room * zoom) as f32 - NAME_INSET, taken);
             return;
         }
-        let least = f64::from(text.least_size);
-        if size < least {
+        if size < RAISED_FROM {
             return;
         }
-        let strength = ((size - least) / FADE.0).clamp(FADE.1, 1.0) as f32;
-        let color = self.color(text.color).gamma_multiply(strength);
-        let size = if size >= RAISED_FROM { size.max(LEGIBLE) } else { size };
+        let color = self.color(text.color);
+        let size = size.max(LEGIBLE);
         let (galley, font) = self.fitted(text, size, place, color);
         let left = match text.anchor {
             Anchor::Start => place.left(),

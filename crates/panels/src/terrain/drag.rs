@@ -69,8 +69,8 @@ impl Drag {
 }
 
 /// Whether dragging at a point of the window would move something.
-pub fn is_draggable(selection: &Selection, scene: &Scene<'_>) -> bool {
-    Dragged::of(selection, scene).is_some()
+pub fn is_draggable(pointer: Pos2, scene: &Scene<'_>) -> bool {
+    scene.pick_handle(pointer).and_then(|handle| Dragged::of(&handle, scene)).is_some()
 }
 
 /// Begins, continues or ends a drag. While it lasts, the dragged thing's numbers in the text follow the pointer.
@@ -87,7 +87,7 @@ pub fn update(
         if response.ctx.input(|input| input.modifiers.shift) {
             return None;
         }
-        let what = Dragged::of(&scene.pick(begun), scene)?;
+        let what = Dragged::of(&scene.pick_handle(begun)?, scene)?;
         *count += 1;
         commands.send(Command::Select(what.selection()));
         let begun_m = scene.ground_at(begun)?;

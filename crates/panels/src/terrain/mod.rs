@@ -222,7 +222,9 @@ impl TerrainPanel {
         let pointed = response.hover_pos().map(|pointer| scene.pick(pointer)).unwrap_or_default();
         if response.hovered() && self.drag.is_none() {
             let icon = match () {
-                () if drag::is_draggable(&pointed, &scene) => Some(CursorIcon::Grab),
+                () if response.hover_pos().is_some_and(|at| drag::is_draggable(at, &scene)) => {
+                    Some(CursorIcon::Grab)
+                }
                 () if !pointed.is_none() => Some(CursorIcon::PointingHand),
                 () => None,
             };

@@ -43,6 +43,7 @@ pub enum Key {
     Comma,
     D,
     End,
+    Enter,
     Equals,
     Escape,
     F,

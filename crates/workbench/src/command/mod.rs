@@ -144,6 +144,8 @@ pub enum Command {
     ShowPanel(PanelKind),
     /// Closes a panel.
     ClosePanel(PanelKind),
+    /// Gives a panel the whole window, the one used last if none is named, or puts all panels back.
+    Maximize(Option<PanelKind>),
     /// The user turned to a panel.
     Activate(PanelKind),
     /// Gives the keyboard to the next (`true`) or the previous (`false`) panel on screen.

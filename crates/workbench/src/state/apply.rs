@@ -159,6 +159,7 @@ impl AppState {
             Command::SetTrace(trace) => self.settings.plan.trace = trace,
 
             Command::ShowWorkspace(workspace) => {
+                self.maximized = None;
                 if self.workspace == Workspace::Teach && workspace != Workspace::Teach {
                     // A step of the search is no plan: elsewhere it would be taken for one.
                     self.search.close();
@@ -178,12 +179,29 @@ impl AppState {
                 }
                 self.fit_time();
             }
-            Command::ResetWorkspace => self.panel_effects.push(PanelEffect::ResetLayout),
+            Command::ResetWorkspace => {
+                self.maximized = None;
+                self.panel_effects.push(PanelEffect::ResetLayout);
+            }
             Command::ShowPanel(panel) => {
+                self.maximized = self.maximized.filter(|&maximized| maximized == panel);
                 self.show_panel(panel);
                 self.active_panel = panel;
             }
-            Command::ClosePanel(panel) => self.panel_effects.push(PanelEffect::Close(panel)),
+            Command::ClosePanel(panel) => {
+                self.maximized = self.maximized.filter(|&maximized| maximized != panel);
+                self.panel_effects.push(PanelEffect::Close(panel));
+            }
+            Command::Maximize(panel) => {
+                self.maximized = match self.maximized {
+                    Some(_) => None,
+                    None => Some(panel.unwrap_or(self.active_panel)),
+                };
+                if let Some(panel) = self.maximized {
+                    self.show_panel(panel);
+                    self.active_panel = panel;
+                }
+            }
             Command::Activate(panel) => self.active_panel = panel,
             Command::View(action) => {
                 let active = self.active_panel;

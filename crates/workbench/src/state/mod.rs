@@ -113,6 +113,8 @@ pub struct AppState {
     pub dialog: Option<Dialog>,
     /// The panel that was used last; view actions go to it.
     pub active_panel: PanelKind,
+    /// The panel that has the window to itself, if one has.
+    pub maximized: Option<PanelKind>,
     /// The panels that were on screen in the last frame, in the order of the layout.
     pub panels_on_screen: Vec<PanelKind>,
     /// What panels and their layout are to do.
@@ -194,6 +196,7 @@ impl AppState {
             toasts: Toasts::default(),
             dialog: None,
             active_panel: PanelKind::Editor,
+            maximized: None,
             panels_on_screen: Vec::new(),
             panel_effects: PanelEffects::default(),
             frame: FrameInfo::default(),

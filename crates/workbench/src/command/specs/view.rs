@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::arguments::{panel_argument, text_argument};
 use super::available::with_selection;
-use super::{CTRL, PLAIN, SHIFT, called, keys, plain, when};
+use super::{ALT, CTRL, PLAIN, SHIFT, called, keys, plain, when};
 use crate::command::chord::Key;
 use crate::command::registry::{CommandSpec, Group, Scope};
 use crate::command::{Command, ViewAction};
@@ -109,6 +109,14 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         &[keys(SHIFT, Key::F6)],
         Scope::Everywhere,
         |_| Command::TurnPanel(false),
+    ),
+    plain(
+        "view.maximize",
+        "Give the panel the whole window, or put it back",
+        Group::View,
+        &[keys(ALT, Key::Enter)],
+        Scope::Everywhere,
+        |_| Command::Maximize(None),
     ),
     called("view.panel", "Show a panel", Group::View, |_, arguments| {
         panel_argument(arguments).map(Command::ShowPanel)

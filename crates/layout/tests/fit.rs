@@ -1,0 +1,151 @@
+//! Drawings that fit the room there is: rows, boxes, and a focus that is drawn in more detail.
+
+mod drawings;
+
+use display::approximate_text_width;
+use drawings::{assert_nothing_overlaps, crossings, draw_with, enroute, network_of, random_mission};
+use layout::{BlockForm, Detail, Item, NetworkDrawing, Options, Room, fitted};
+use tpn::generate::{Recipe, Tightness, mission};
+use tpn::{BlockId, BlockKind, Network};
+
+const ROOM: Room = Room { width: 640.0, height: 360.0 };
+
+fn generated(nodes: usize, seed: u64) -> Network {
+    network_of(&mission(Recipe { nodes, tightness: Tightness::Feasible, seed }))
+}
+
+/// A scenario of so many steps, one after the other.
+fn sequence(steps: usize) -> Network {
+    let steps: Vec<String> = (0..steps).map(|at| format!("Step{}()", at % 7)).collect();
+    let declared: String = (0..7).map(|at| format!("primitive Step{at}()[1,5];\n")).collect();
+    network_of(&format!("{declared}scenario Long = {{ {} }}\n", steps.join("; ")))
+}
+
+fn fit(network: &Network, focus: Option<(BlockId, BlockId)>) -> NetworkDrawing {
+    let options = Options { window_width: 0.0, ..Options::default() };
+    fitted(network, &options, focus, ROOM, &approximate_text_width)
+}
+
+fn assert_fits(drawing: &NetworkDrawing, what: &str) {
+    let bounds = drawing.bounds;
+    assert!(
+        bounds.width() * 0.8 <= ROOM.width && bounds.height() * 0.8 <= ROOM.height,
+        "{what}: {} by {}",
+        bounds.width(),
+        bounds.height()
+    );
+}
+
+fn boxes(drawing: &NetworkDrawing) -> Vec<&layout::BlockShape> {
+    drawing.blocks.iter().filter(|block| block.form == BlockForm::Collapsed).collect()
+}
+
+#[test]
+fn a_sequence_in_rows_overlaps_nothing_and_crosses_nothing() {
+    for seed in 0..40 {
+        let network = network_of(&random_mission(seed, 60));
+        for row_width in [300.0, 500.0, 900.0] {
+            let drawing = draw_with(&network, &Options { row_width, ..Options::default() });
+            let what = format!("seed {seed}, rows of {row_width}");
+            assert_nothing_overlaps(&drawing, &what);
+            assert_eq!(crossings(&drawing), 0, "{what}");
+            assert_eq!(drawing.nodes.len(), network.nodes.len(), "{what}");
+        }
+    }
+}
+
+#[test]
+fn a_level_of_detail_overlaps_nothing_and_shows_or_hides_each_event_once() {
+    for seed in 0..40 {
+        let network = network_of(&random_mission(seed, 60));
+        for grain in [2, 4, 9, 30] {
+            let detail = Detail { grain, finer: Vec::new() };
+            let drawing = draw_with(&network, &Options { detail, row_width: 500.0, ..Options::default() });
+            let what = format!("seed {seed}, grain {grain}");
+            assert_nothing_overlaps(&drawing, &what);
+            for (at, _) in network.nodes.iter().enumerate() {
+                let node = tpn::NodeId::from_index(at);
+                let (shown, hidden) = (drawing.node(node).is_some(), drawing.box_of(node).is_some());
+                assert!(shown != hidden, "{what}: event {at} is shown {shown}, hidden {hidden}");
+            }
+        }
+    }
+}
+
+#[test]
+fn missions_of_any_size_fit_their_room_at_their_designed_size() {
+    assert_fits(&fit(&enroute(), None), "enroute");
+    for steps in [12, 40, 150, 5000] {
+        assert_fits(&fit(&sequence(steps), None), &format!("{steps} steps"));
+    }
+    for (nodes, seed) in [(27, 1), (76, 2), (300, 3), (10_000, 4)] {
+        let network = generated(nodes, seed);
+        let drawing = fit(&network, None);
+        assert_fits(&drawing, &format!("{nodes} events"));
+        assert_nothing_overlaps(&drawing, &format!("{nodes} events"));
+    }
+}
+
+#[test]
+fn what_fits_is_drawn_whole_and_unbroken() {
+    let network = network_of("primitive A()[1,5];\nscenario Short = { A(); A() }\n");
+    assert_eq!(
+        fit(&network, None),
+        draw_with(&network, &Options { window_width: 0.0, ..Options::default() })
+    );
+}
+
+#[test]
+fn what_does_not_fit_in_one_line_is_in_rows_before_anything_is_folded() {
+    let network = sequence(14);
+    let drawing = fit(&network, None);
+    assert!(boxes(&drawing).is_empty());
+    let lines: std::collections::BTreeSet<i64> =
+        drawing.nodes.iter().map(|node| node.center.y as i64).collect();
+    assert!(lines.len() > 1, "all on one line");
+    assert!(drawing.bounds.height() * 4.0 > drawing.bounds.width(), "the room is used");
+}
+
+#[test]
+fn a_long_sequence_is_boxes_that_name_what_they_hold_and_its_focus_is_open() {
+    let network = sequence(2000);
+    let drawing = fit(&network, None);
+    let found = boxes(&drawing);
+    assert!((4..60).contains(&found.len()), "{} boxes", found.len());
+    let titles: Vec<&str> = drawing
+        .texts
+        .iter()
+        .filter(|it| it.role == layout::TextRole::Title)
+        .map(|it| it.text.as_str())
+        .collect();
+    assert!(titles.iter().all(|title| title.contains("Step")), "{titles:?}");
+    let (first, last) = (found[1].block.expect("a block"), found[1].last.expect("a block"));
+    assert!(first < last);
+    let focused = fit(&network, Some((first, last)));
+    assert_fits(&focused, "the focus");
+    let is_inside = |block: BlockId| first <= block && block <= last;
+    let inside =
+        boxes(&focused).into_iter().filter_map(|it| it.block).filter(|&block| is_inside(block)).count();
+    let leaves = focused.arcs.len();
+    assert!(inside > 1 || leaves > 10, "{inside} boxes and {leaves} arcs in the focus");
+}
+
+#[test]
+fn an_activity_that_is_the_focus_is_open_whatever_is_around_it() {
+    let network = generated(300, 5);
+    let activity = |block: &tpn::Block| matches!(block.kind, BlockKind::Scope { occurrence: Some(_), .. });
+    for (at, _) in network.blocks.iter().enumerate().filter(|(_, block)| activity(block)) {
+        let id = BlockId::from_index(at);
+        let drawing = fit(&network, Some((id, id)));
+        assert!(drawing.blocks.iter().any(|it| it.block == Some(id) && it.form != BlockForm::Collapsed));
+    }
+}
+
+#[test]
+fn a_place_in_a_box_leads_to_its_first_block() {
+    let network = sequence(300);
+    let drawing = fit(&network, None);
+    for shape in boxes(&drawing) {
+        assert_eq!(drawing.pick(shape.rect.center(), 0.0), shape.block.map(Item::Block));
+    }
+}

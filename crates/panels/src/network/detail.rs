@@ -1,0 +1,104 @@
+//! How much detail the drawing has: as much as can be read in the panel, more of it where the user looks.
+
+use std::collections::BTreeSet;
+
+use display::approximate_text_width;
+use egui::Vec2;
+use layout::{NetworkDrawing, Options, Room};
+use tpn::{BlockId, Network, NodeId};
+
+use super::data::{block_key, collapsed_blocks};
+use super::view::FIT_MARGIN;
+
+/// What decides which blocks are drawn and which are behind boxes. Blocks are named, so that they are found again after
+/// an edit.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Detail {
+    /// Blocks that the user collapsed.
+    pub(super) collapsed: BTreeSet<String>,
+    /// The first and the last of the neighbours that are drawn in more detail than the rest.
+    focus: Option<(String, String)>,
+    /// Whether everything is drawn, however small.
+    pub(super) is_whole: bool,
+    /// The room that the drawing is made for; none before the panel has been seen.
+    room: Option<(u32, u32)>,
+    /// Whether there is room for the windows of events.
+    has_windows: bool,
+}
+
+/// Rooms that differ by less than this have the same drawing, in points.
+const ROOM_STEP: f32 = 8.0;
+/// A selection is looked for in boxes inside of boxes so often.
+const MAX_DEPTH: usize = 12;
+
+impl Detail {
+    /// Follows the size of the panel and what is shown.
+    pub(super) fn follow(&mut self, panel: Vec2, is_fitted: bool, has_windows: bool) {
+        let room = panel - Vec2::splat(2.0 * FIT_MARGIN);
+        let step = |length: f32| (length.max(0.0) / ROOM_STEP) as u32;
+        // A view that the user has moved keeps what it shows.
+        if is_fitted || self.room.is_none() {
+            self.room = Some((step(room.x), step(room.y)));
+        }
+        self.has_windows = has_windows;
+    }
+
+    /// Whether something is open or collapsed that was not by itself.
+    pub(super) fn is_changed(&self) -> bool {
+        self.is_whole || self.focus.is_some() || !self.collapsed.is_empty()
+    }
+
+    /// What fits the panel, and nothing else.
+    pub(super) fn reset(&mut self) {
+        self.collapsed.clear();
+        self.focus = None;
+        self.is_whole = false;
+    }
+
+    /// Opens the box that stands for blocks from `first` to `last`.
+    pub(super) fn open(&mut self, network: &Network, first: BlockId, last: BlockId) {
+        let (Some(first), Some(last)) = (block_key(network, first), block_key(network, last)) else { return };
+        if first != last || !self.collapsed.remove(&first) {
+            self.focus = Some((first, last));
+        }
+    }
+
+    /// Opens boxes until one of `nodes` is visible, if all of them are hidden in `drawing`.
+    pub(super) fn reveal(&mut self, network: &Network, drawing: &NetworkDrawing, nodes: &[NodeId]) {
+        let is_shown = |drawing: &NetworkDrawing| nodes.iter().any(|&node| drawing.node(node).is_some());
+        if nodes.is_empty() || is_shown(drawing) {
+            return;
+        }
+        let mut hider = nodes.iter().find_map(|&node| drawing.box_of(node)).cloned();
+        for _ in 0..MAX_DEPTH {
+            let Some((first, last)) = hider.and_then(|shape| Some((shape.block?, shape.last?))) else {
+                return;
+            };
+            self.open(network, first, last);
+            let opened = self.drawing(network);
+            if is_shown(&opened) {
+                return;
+            }
+            hider = nodes.iter().find_map(|&node| opened.box_of(node)).cloned();
+        }
+    }
+
+    /// The drawing of a network in this detail.
+    pub(super) fn drawing(&self, network: &Network) -> NetworkDrawing {
+        let window_width = if self.has_windows { Options::default().window_width } else { 0.0 };
+        let collapsed = collapsed_blocks(network, &self.collapsed);
+        let options = Options { collapsed, window_width, ..Options::default() };
+        let Some((width, height)) = self.room.filter(|_| !self.is_whole) else {
+            return layout::network(network, &options, &approximate_text_width);
+        };
+        let length = |steps: u32| f64::from(steps) * f64::from(ROOM_STEP);
+        let room = Room { width: length(width), height: length(height) };
+        let block = |key: &String| {
+            let mut blocks = (0..network.blocks.len()).map(BlockId::from_index);
+            blocks.find(|&block| block_key(network, block).as_ref() == Some(key))
+        };
+        let focus = self.focus.as_ref().and_then(|(first, last)| Some((block(first)?, block(last)?)));
+        let focus = focus.filter(|(first, last)| first <= last);
+        layout::fitted(network, &options, focus, room, &approximate_text_width)
+    }
+}
