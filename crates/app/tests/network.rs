@@ -5,7 +5,9 @@ mod support;
 use egui::Key;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::json;
+use workbench::command::Command;
 use workbench::host::Remote as _;
+use workbench::state::Selection;
 
 fn started() -> support::App {
     let mut app = support::start();
@@ -201,4 +203,56 @@ fn lanes_carry_the_names_of_the_threads() {
         })
     };
     assert!(is_written("Thread 1 · delay") || is_written("Thread 1 · Group-Enroute"));
+}
+
+/// A mission of one long sequence.
+fn long(app: &mut support::App, steps: usize) {
+    let calls: Vec<String> = (0..steps).map(|at| format!("Step{}()", at % 5)).collect();
+    let declared: String = (0..5).map(|at| format!("primitive Step{at}()[1,5];\n")).collect();
+    let source = format!("{declared}scenario Long = {{ {} }}\n", calls.join("; "));
+    app.harness.state_mut().set_source(&source);
+    for _ in 0..4 {
+        app.settle();
+    }
+}
+
+/// The names of the boxes that stand for several activities.
+fn folded(app: &support::App) -> Vec<String> {
+    let buttons = app.harness.query_all_by_role(egui::Role::Button);
+    let labels = buttons.filter_map(|node| node.accesskit_node().label());
+    labels.filter(|label| label.ends_with(", folded, in the network")).collect()
+}
+
+#[test]
+fn a_long_mission_is_boxes_that_open_and_the_overview_folds_them_again() {
+    let mut app = started();
+    long(&mut app, 600);
+    let boxes = folded(&app);
+    assert!((3..40).contains(&boxes.len()), "{boxes:?}");
+    assert!(boxes.iter().all(|name| name.starts_with("Step")), "{boxes:?}");
+    app.harness.query_all_by_label(&boxes[0]).next().expect("a box").focus();
+    app.settle();
+    app.harness.key_press(Key::Enter);
+    app.settle();
+    app.settle();
+    assert_ne!(folded(&app), boxes, "the box is open");
+    app.harness.get_by_role_and_label(egui::Role::Button, "Overview").click();
+    app.settle();
+    app.settle();
+    assert_eq!(folded(&app), boxes);
+}
+
+#[test]
+fn a_box_opens_where_the_selection_is() {
+    let mut app = started();
+    long(&mut app, 600);
+    assert!(!has(&app, "Step1#61 in the network"));
+    let shown = app.harness.state().app_state().shown().cloned().expect("a snapshot");
+    let network = shown.network.as_ref().expect("a network");
+    let at = network.occurrences.iter().position(|it| it.name == "Step1#61").expect("it is there");
+    let selection = Selection::Occurrence(tpn::OccurrenceId::from_index(at));
+    app.harness.state_mut().run(Command::Select(selection));
+    app.settle();
+    app.settle();
+    assert!(has(&app, "Step1#61 in the network"), "{:?}", folded(&app));
 }

@@ -184,3 +184,34 @@ fn is_line(shape: &egui::Shape) -> bool {
         _ => false,
     }
 }
+
+#[test]
+fn a_double_click_on_a_tab_gives_its_panel_the_window_and_another_puts_the_panels_back() {
+    let mut app = support::start();
+    app.settle();
+    let shown = |app: &support::App| app.harness.state().app_state().panels_on_screen.clone();
+    let all = shown(&app);
+    assert!(all.len() > 3);
+    let double_click = |app: &mut support::App| {
+        for _ in 0..40 {
+            app.settle();
+        }
+        for _ in 0..2 {
+            app.harness.get_by_role_and_label(Role::Button, "Network").click();
+        }
+        app.settle();
+        app.settle();
+    };
+    double_click(&mut app);
+    assert_eq!(shown(&app), [PanelKind::Network]);
+    double_click(&mut app);
+    assert_eq!(shown(&app), all);
+    app.harness.key_press_modifiers(egui::Modifiers::ALT, egui::Key::Enter);
+    app.settle();
+    app.settle();
+    assert_eq!(shown(&app), [PanelKind::Network], "the panel used last, by keys");
+    app.harness.state_mut().dispatch("view.panel", &json!("plan")).expect("a panel");
+    app.settle();
+    app.settle();
+    assert_eq!(shown(&app), all, "another panel that is asked for is seen");
+}

@@ -206,6 +206,35 @@ fn a_dragged_location_moves_plan_and_path_and_is_put_back_in_one_step() {
 }
 
 #[test]
+fn a_drag_that_begins_on_a_name_turns_the_view_until_the_thing_is_selected() {
+    let mut app = above();
+    let drag = |app: &mut support::App| {
+        let plate = app.harness.get_by_label("THERE on the map").rect();
+        let from = plate.left_center() + vec2(4.0, 0.0);
+        press(app, from, true);
+        for step in 1..=4 {
+            app.harness.event(egui::Event::PointerMoved(from + vec2(0.0, -10.0 * step as f32)));
+            app.harness.step();
+            app.settle();
+        }
+        press(app, from + vec2(0.0, -40.0), false);
+        app.settle();
+    };
+    drag(&mut app);
+    assert_eq!(app.harness.state().source(), MISSION, "turning the view moves nothing");
+    assert_eq!(app.json()["selection"], json!(null));
+    dispatch(&mut app, "terrain.top", &json!(null));
+    for _ in 0..20 {
+        app.settle();
+    }
+    let plate = app.harness.get_by_label("THERE on the map").rect();
+    click(&mut app, plate.left_center() + vec2(4.0, 0.0));
+    assert_eq!(app.json()["selection"]["name"], json!("THERE"));
+    drag(&mut app);
+    assert_ne!(app.harness.state().source(), MISSION, "what is selected follows the pointer");
+}
+
+#[test]
 fn the_search_tree_grows_by_samples_and_goes_back() {
     let mut app = above();
     dispatch(&mut app, "terrain.growth", &json!(null));

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use rmpl::{Edit, Span};
 
+use crate::carets::Carets;
 use crate::history::{Change, EditKind, Step, joins};
 
 /// Where text is selected: from `anchor`, where the selection began, to `head`, where the caret is.
@@ -50,10 +51,17 @@ pub struct Document {
     line_starts: Vec<usize>,
     revision: u64,
     saved_revision: u64,
-    caret: Caret,
-    undo: Vec<Step>,
+    pub(crate) caret: Caret,
+    pub(crate) others: Vec<Caret>,
+    /// Carets at which a key has done its work already while it does so at the others.
+    pub(crate) parked: Vec<Caret>,
+    /// Whether a key does its work at one caret after the other.
+    pub(crate) is_many: bool,
+    /// Where stands what was written to close a bracket or a quote.
+    pub(crate) closers: Vec<usize>,
+    pub(crate) undo: Vec<Step>,
     redo: Vec<Step>,
-    may_join: bool,
+    pub(crate) may_join: bool,
 }
 
 impl Document {
@@ -67,6 +75,10 @@ impl Document {
             revision: 1,
             saved_revision: 1,
             caret: Caret::default(),
+            others: Vec::new(),
+            parked: Vec::new(),
+            is_many: false,
+            closers: Vec::new(),
             undo: Vec::new(),
             redo: Vec::new(),
             may_join: false,
@@ -129,7 +141,7 @@ impl Document {
         self.caret
     }
 
-    /// Moves the caret; out-of-range offsets go to the nearest character boundary before them. What is typed next
+    /// Moves the caret, and leaves only this one; out-of-range offsets go to the nearest character boundary before them. What is typed next
     /// starts a new step of the history.
     pub fn set_caret(&mut self, caret: Caret) {
         let caret = Caret {
@@ -139,6 +151,10 @@ impl Document {
         };
         self.may_join &= caret.head == self.caret.head && caret.anchor == self.caret.anchor;
         self.caret = caret;
+        self.others.clear();
+        if !self.is_many {
+            self.closers.retain(|&closer| closer >= caret.head);
+        }
     }
 
     /// The selected text.
@@ -191,8 +207,8 @@ impl Document {
     pub fn edit(&mut self, edits: &[Edit], kind: EditKind, caret: Option<Caret>) {
         let mut changes = Vec::with_capacity(edits.len());
         let mut shift = 0_isize;
-        let before = self.caret;
-        let (mut anchor, mut head) = (before.anchor, before.head);
+        let before = Carets { main: self.caret, others: self.others.clone() };
+        let (mut anchor, mut head) = (self.caret.anchor, self.caret.head);
         for edit in edits {
             let shifted = |offset: u32| self.boundary_before((offset as usize).saturating_add_signed(shift));
             let start = shifted(edit.span.start);
@@ -204,6 +220,14 @@ impl Document {
             }
             anchor = moved(anchor, start, removed.len(), inserted.len());
             head = moved(head, start, removed.len(), inserted.len());
+            for caret in self.others.iter_mut().chain(&mut self.parked) {
+                caret.anchor = moved(caret.anchor, start, removed.len(), inserted.len());
+                caret.head = moved(caret.head, start, removed.len(), inserted.len());
+            }
+            self.closers.retain(|&closer| closer < start || closer >= start + removed.len());
+            for closer in &mut self.closers {
+                *closer = moved(*closer, start, removed.len(), inserted.len());
+            }
             shift += inserted.len() as isize - removed.len() as isize;
             changes.push(Change { start, removed, inserted });
             if let Some(change) = changes.last() {
@@ -223,7 +247,8 @@ impl Document {
             head: self.boundary_before(after.head),
             goal_column: None,
         };
-        self.record(Step { kind, changes, before, after: self.caret });
+        let after = Carets { main: self.caret, others: self.others.clone() };
+        self.record(Step { kind, changes, before, after });
     }
 
     /// Replaces a span as one step and puts the caret behind the new text.
@@ -256,7 +281,8 @@ impl Document {
             let range = change.start..change.start + change.inserted.len();
             self.text.replace_range(range, &change.removed);
         }
-        self.caret = step.before;
+        (self.caret, self.others) = (step.before.main, step.before.others.clone());
+        self.closers.clear();
         self.redo.push(step);
         self.may_join = false;
         self.text_changed();
@@ -269,7 +295,8 @@ impl Document {
             let range = change.start..change.start + change.removed.len();
             self.text.replace_range(range, &change.inserted);
         }
-        self.caret = step.after;
+        (self.caret, self.others) = (step.after.main, step.after.others.clone());
+        self.closers.clear();
         self.undo.push(step);
         self.may_join = false;
         self.text_changed();

@@ -1,6 +1,6 @@
 //! The steps of a text's history, and which edits are one step.
 
-use crate::document::Caret;
+use crate::carets::Carets;
 
 /// How an edit joins the edits before it in the history.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,8 +20,8 @@ pub enum EditKind {
 pub(crate) struct Step {
     pub(crate) kind: EditKind,
     pub(crate) changes: Vec<Change>,
-    pub(crate) before: Caret,
-    pub(crate) after: Caret,
+    pub(crate) before: Carets,
+    pub(crate) after: Carets,
 }
 
 /// One replacement, applied after the ones before it in its step.

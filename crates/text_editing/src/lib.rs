@@ -4,9 +4,11 @@
 //! Everything here is a pure change of data: no key, no pointer and no pixel. The widget that shows such a text is the
 //! crate `editor`.
 
+mod carets;
 mod document;
 mod find;
 mod history;
+mod pairs;
 mod rows;
 mod shift;
 mod typing;

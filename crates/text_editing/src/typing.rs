@@ -6,7 +6,7 @@
 use rmpl::{Edit, Span};
 use unicode_segmentation::{GraphemeCursor, UnicodeSegmentation as _};
 
-use crate::{Caret, Document, EditKind};
+use crate::{Caret, Document, EditKind, pairs};
 
 /// Blanks per level of indentation, as the formatter writes them.
 pub const INDENT: &str = "  ";
@@ -46,6 +46,20 @@ pub enum TextCommand {
     SelectLine(usize),
     /// Selects everything.
     SelectAll,
+    /// Selects the lines that the selection touches, and one more if they are selected already.
+    SelectLines,
+    /// Selects the word at the caret, or with what is selected where it stands next, too.
+    SelectNextOccurrence,
+    /// Another caret at an offset, or one less.
+    ToggleCaret(usize),
+    /// Another caret in the line above.
+    AddCaretAbove,
+    /// Another caret in the line below.
+    AddCaretBelow,
+    /// Leaves the main caret only.
+    OneCaret,
+    /// Repeats the selected lines above themselves.
+    CopyLinesUp,
     /// Repeats the selected lines below themselves.
     DuplicateLines,
     /// Deletes the selected lines.
@@ -91,8 +105,39 @@ impl TextCommand {
     /// Applies the command.
     pub fn apply(&self, document: &mut Document) {
         match self {
+            Self::Paste(text) => paste(document, text),
+            Self::Insert(_) | Self::NewLine | Self::Delete(_) | Self::Move { .. } => {
+                document.at_each_caret(|document, _| self.apply_at_caret(document));
+            }
+            _ => self.apply_at_caret(document),
+        }
+    }
+
+    fn apply_at_caret(&self, document: &mut Document) {
+        match self {
             Self::Insert(text) => insert(document, text),
             Self::Paste(text) => document.replace(selected(document), text, EditKind::Single),
+            Self::SelectLines => {
+                let lines = selected_lines(document);
+                let start = document.line_range(lines.start).start;
+                let end = next_line_start(document, lines.end - 1);
+                let end = if document.caret().range() == (start..end) {
+                    next_line_start(document, document.line_at(end))
+                } else {
+                    end
+                };
+                document.set_caret(Caret::selecting(start, end));
+            }
+            Self::SelectNextOccurrence => document.select_next_occurrence(),
+            Self::ToggleCaret(offset) => document.toggle_caret(*offset),
+            Self::AddCaretAbove => document.add_caret_beside(false),
+            Self::AddCaretBelow => document.add_caret_beside(true),
+            Self::OneCaret => document.set_caret(document.caret()),
+            Self::CopyLinesUp => {
+                let caret = document.caret();
+                duplicate_lines(document);
+                document.set_caret(caret);
+            }
             Self::NewLine => new_line(document),
             Self::Indent => indent(document),
             Self::Outdent => outdent(document),
@@ -169,7 +214,20 @@ fn next_line_start(document: &Document, line: usize) -> usize {
     if line + 1 < document.line_count() { document.line_range(line + 1).start } else { document.text().len() }
 }
 
+/// Pastes at every caret: one line to each if there are as many, otherwise all of it.
+fn paste(document: &mut Document, text: &str) {
+    let lines: Vec<&str> = text.lines().collect();
+    let is_one_each = lines.len() == document.carets().len();
+    document.at_each_caret(|document, index| {
+        let text = if is_one_each { lines[index] } else { text };
+        document.replace(selected(document), text, EditKind::Single);
+    });
+}
+
 fn insert(document: &mut Document, text: &str) {
+    if pairs::insert(document, text) {
+        return;
+    }
     let caret = document.caret();
     let line = document.line_range(document.line_at(caret.head));
     let before = document.text().get(line.start..caret.range().start).unwrap_or_default();
@@ -238,6 +296,9 @@ fn delete(document: &mut Document, motion: Motion) {
     let caret = document.caret();
     if !caret.is_empty() {
         document.replace(selected(document), "", EditKind::Single);
+        return;
+    }
+    if motion == Motion::Left && pairs::delete_empty(document) {
         return;
     }
     let (to, _) = destination(document, motion);

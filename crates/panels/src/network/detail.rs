@@ -55,6 +55,11 @@ impl Detail {
         self.is_whole = false;
     }
 
+    /// The same with everything drawn but what the user collapsed.
+    pub(super) fn whole(&self) -> Self {
+        Self { is_whole: true, ..self.clone() }
+    }
+
     /// Opens the box that stands for blocks from `first` to `last`.
     pub(super) fn open(&mut self, network: &Network, first: BlockId, last: BlockId) {
         let (Some(first), Some(last)) = (block_key(network, first), block_key(network, last)) else { return };

@@ -47,7 +47,9 @@ pub(super) fn show(
             Some((_, _, title)) => format!("{title}, folded, in the network"),
             None => format!("{} in the network", selection.name(Some(network))),
         };
-        let response = ui.interact(rect, ui.scope_id().with(("landmark", &name)), Sense::click());
+        // Several boxes may have one name.
+        let block = opens.as_ref().map(|(first, ..)| first.0);
+        let response = ui.interact(rect, ui.scope_id().with(("landmark", &name, block)), Sense::click());
         let is_chosen = selection == *chosen;
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &name));
         if response.has_focus() {

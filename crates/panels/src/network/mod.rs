@@ -151,7 +151,7 @@ impl NetworkPanel {
         let now = context.state.playback.time;
         let is_timed = options.now && now > 0.0 && context.step().is_none();
         let progress = plan.filter(|_| is_timed).map(|plan| Progress::at(network, plan, now));
-        self.save_picture(context, network, plan, progress.as_ref(), options, commands);
+        self.save_picture(context, (snapshot, network), plan, progress.as_ref(), options, commands);
         let (panel, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let summary = describe::summary(network, plan);
         response
@@ -209,11 +209,11 @@ impl NetworkPanel {
         }
     }
 
-    /// Saves the drawing once for every time that was asked for.
+    /// Saves the drawing once for every time that was asked for: with all its detail, since a file has any room.
     fn save_picture(
         &self,
         context: &Context<'_>,
-        network: &Network,
+        (snapshot, network): (&Snapshot, &Arc<Network>),
         plan: Option<&Plan>,
         progress: Option<&Progress>,
         options: &NetworkView,
@@ -223,8 +223,19 @@ impl NetworkPanel {
             PanelEffect::SaveDrawing(format) => Some(format),
             _ => None,
         });
+        if formats.is_empty() {
+            return;
+        }
+        let detail = self.detail.whole();
+        let windows_of = options.windows.then(|| {
+            let pins = &context.state.pins;
+            (pins.version(), pins.plan(snapshot))
+        });
+        let mut drawn = Drawn::default();
+        drawn.follow(snapshot, network, context.step(), &detail, None, windows_of);
+        drawn.list(network, plan, options);
         for format in formats {
-            commands.send(export::save(format, context, &self.drawn, network, plan, progress, options));
+            commands.send(export::save(format, context, &drawn, network, plan, progress, options));
         }
     }
 
