@@ -19,8 +19,10 @@ pub fn text(egui: &egui::Context, chord: Chord) -> String {
 const fn key(key: chord::Key) -> Key {
     match key {
         chord::Key::ArrowDown => Key::ArrowDown,
+        chord::Key::ArrowLeft => Key::ArrowLeft,
         chord::Key::ArrowRight => Key::ArrowRight,
         chord::Key::ArrowUp => Key::ArrowUp,
+        chord::Key::Backslash => Key::Backslash,
         chord::Key::C => Key::C,
         chord::Key::CloseBracket => Key::CloseBracket,
         chord::Key::Comma => Key::Comma,
@@ -35,7 +37,9 @@ const fn key(key: chord::Key) -> Key {
         chord::Key::F2 => Key::F2,
         chord::Key::F3 => Key::F3,
         chord::Key::F6 => Key::F6,
+        chord::Key::F7 => Key::F7,
         chord::Key::F8 => Key::F8,
+        chord::Key::F9 => Key::F9,
         chord::Key::G => Key::G,
         chord::Key::H => Key::H,
         chord::Key::Home => Key::Home,

@@ -26,9 +26,15 @@ pub fn take_pressed(context: &Context, state: &AppState, editor: egui::Id) -> Ve
     }
     let focus = focus(context, editor);
     let mut commands = Vec::new();
+    let is_mac = context.os().is_mac();
     context.input_mut(|input| {
         input.events.retain(|event| {
             let Event::Key { key, pressed: true, modifiers, .. } = event else { return true };
+            // There, these go from word to word.
+            let is_arrow = matches!(key, egui::Key::ArrowLeft | egui::Key::ArrowRight);
+            if is_mac && is_arrow && focus == Focus::Editor && modifiers.matches_exact(egui::Modifiers::ALT) {
+                return true;
+            }
             let found = best_match(*key, *modifiers, focus, state);
             commands.extend(found.and_then(|spec| spec.plain(state)));
             found.is_none()

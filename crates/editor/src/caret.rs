@@ -14,7 +14,10 @@ const BLINKING_SECS: f64 = 30.0;
 
 /// Where the caret is on screen, if its line is visible.
 pub(crate) fn rect(view: &EditorView<'_>, geometry: &Geometry<'_>, shown: &ShownLines) -> Option<Rect> {
-    let head = view.document.caret().head;
+    rect_at(view, geometry, shown, view.document.caret().head)
+}
+
+fn rect_at(view: &EditorView<'_>, geometry: &Geometry<'_>, shown: &ShownLines, head: usize) -> Option<Rect> {
     let line = view.document.line_at(head);
     let layout = shown.layout_of(line)?;
     let x = geometry.origin.x + layout.x_of(view, head);
@@ -30,6 +33,15 @@ pub(crate) fn paint(
     painter: &Painter,
     response: &Response,
 ) {
+    if response.has_focus() {
+        // The others do not blink: they say where typing goes, too.
+        for caret in view.document.other_carets() {
+            let row = rect_at(view, geometry, shown, caret.head).map(|row| row.shrink2(egui::vec2(0.0, 1.5)));
+            if let Some(row) = row {
+                painter.vline(row.left(), row.y_range(), Stroke::new(1.5, view.tokens.accent));
+            }
+        }
+    }
     let Some(row) = rect(view, geometry, shown).filter(|_| response.has_focus()) else { return };
     let row = row.shrink2(egui::vec2(0.0, 1.5));
     let since = view.now_secs - view.active_secs;

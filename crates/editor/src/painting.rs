@@ -87,11 +87,10 @@ impl Painting<'_> {
     }
 
     pub(crate) fn selected_text(&self, has_focus: bool) {
-        let range = self.view.document.caret().range();
         let tokens = self.view.tokens;
         let color = if has_focus { tokens.selection } else { tokens.pressed };
-        if !range.is_empty() {
-            for rect in self.rects(range) {
+        for caret in self.view.document.carets().iter().filter(|caret| !caret.is_empty()) {
+            for rect in self.rects(caret.range()) {
                 self.painter.rect_filled(rect, 2.0, color);
             }
         }

@@ -40,7 +40,11 @@ impl Drag {
             Some(layout) => layout.offset_at(view, x),
             None => document.offset_at(line, (x / geometry.character_width).max(0.0) as usize),
         };
-        if primary_pressed {
+        let adds = ui.input(|input| input.modifiers.alt);
+        if primary_pressed && adds {
+            self.anchor = offset;
+            actions.push(EditorAction::Text(TextCommand::ToggleCaret(offset)));
+        } else if primary_pressed {
             let extends = ui.input(|input| input.modifiers.shift);
             self.anchor = if extends { document.caret().anchor } else { offset };
             actions.push(EditorAction::Text(TextCommand::Select { anchor: self.anchor, head: offset }));
@@ -48,7 +52,10 @@ impl Drag {
             actions.push(EditorAction::Text(TextCommand::SelectWord(offset)));
         } else if response.triple_clicked() {
             actions.push(EditorAction::Text(TextCommand::SelectLine(offset)));
-        } else if response.dragged_by(egui::PointerButton::Primary) && offset != document.caret().head {
+        } else if response.dragged_by(egui::PointerButton::Primary)
+            && !adds
+            && offset != document.caret().head
+        {
             actions.push(EditorAction::Text(TextCommand::Select { anchor: self.anchor, head: offset }));
         }
         if crate::is_pressed(response) {

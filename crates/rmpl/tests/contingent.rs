@@ -190,7 +190,7 @@ fn offered(line: &str) -> Vec<(String, String)> {
 
 #[test]
 fn the_word_is_offered_where_bounds_may_stand_and_nowhere_else() {
-    let template = ("contingent".to_owned(), "contingent [$0,]".to_owned());
+    let template = ("contingent".to_owned(), "contingent [$1,$2]$0".to_owned());
     for line in [
         "primitive Talk(x) $0",
         "primitive Talk(x) cont$0",
@@ -216,7 +216,7 @@ fn the_word_is_offered_where_bounds_may_stand_and_nowhere_else() {
     ] {
         assert!(offered(line).iter().all(|(label, _)| label != "contingent"), "{line}: {:?}", offered(line));
     }
-    let delay = ("delay contingent".to_owned(), "delay contingent [$0,]".to_owned());
+    let delay = ("delay contingent".to_owned(), "delay contingent [$1,$2]$0".to_owned());
     assert!(offered("M() = { $0 }").contains(&delay));
 }
 

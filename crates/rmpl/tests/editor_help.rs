@@ -131,10 +131,28 @@ fn nothing_is_offered_in_comments_and_texts() {
 }
 
 #[test]
+fn a_text_in_quotes_says_what_it_names_and_is_replaced_between_its_quotes() {
+    for (written, wants) in [
+        ("terrain \"ta$0\";", Some(editor::Wanted::Map)),
+        ("terrain \"$0\";", Some(editor::Wanted::Map)),
+        ("import \"wor$0\";", Some(editor::Wanted::File)),
+        ("terrain \"tai\"$0;", None),
+    ] {
+        let fixture = fixture(written);
+        let completion = editor::complete(&parse(&fixture.text), fixture.cursor);
+        assert_eq!(completion.wants, wants, "{written}");
+        if wants.is_some() {
+            let replaced = &fixture.text[completion.replaces.range()];
+            assert!(!replaced.contains('"') && written.contains(replaced), "{written}: {replaced}");
+        }
+    }
+}
+
+#[test]
 fn a_call_is_completed_with_the_cursor_between_its_parentheses() {
     let fixture = fixture(&format!("{HEAD}scenario S = {{ Dr$0 }}\n"));
     let completion = editor::complete(&parse(&fixture.text), fixture.cursor);
-    assert_eq!(completion.items[0].insert, "Drive($0)");
+    assert_eq!(completion.items[0].insert, "Drive($1)$0");
     assert_eq!(&fixture.text[completion.replaces.range()], "Dr");
 }
 
@@ -222,4 +240,44 @@ fn signature_help_names_the_parameter_being_written() {
     assert_eq!(signature.label, "primitive Drive(from, to)[20,30]");
     assert_eq!(signature.active, 1);
     assert_eq!(&signature.label[signature.parameters[1].range()], "to");
+}
+
+#[test]
+fn brackets_of_declarations_say_what_they_want() {
+    for (written, label, active) in [
+        ("location A (1, $0", "location NAME (EAST, NORTH)", "NORTH"),
+        ("obstacle O circle (1, 2, $0);", "circle (EAST, NORTH, RADIUS)", "RADIUS"),
+        ("primitive Drive(a)[$0", "[LEAST, MOST]", "LEAST"),
+        ("scenario S = { delay[3,$0] }", "[LEAST, MOST]", "MOST"),
+        ("state X : {$0", "{VALUE, …}", "VALUE"),
+    ] {
+        let fixture = fixture(written);
+        let signature = editor::signature_at(&parse(&fixture.text), fixture.cursor).expect(written);
+        assert_eq!(signature.label, label, "{written}");
+        assert_eq!(&signature.label[signature.parameters[signature.active as usize].range()], active);
+    }
+    let fixture = fixture("scenario S = { $0 }");
+    assert_eq!(editor::signature_at(&parse(&fixture.text), fixture.cursor), None);
+}
+
+#[test]
+fn what_is_not_declared_can_be_declared_by_a_fix() {
+    let text = "location A (0, 0);\nvehicle R : ATRV at BASE;\nscenario S = { Drive(A, A)[2,5] }\n";
+    let found = parse(text);
+    let fixes: Vec<_> = found.diagnostics().into_iter().flat_map(|it| it.fixes).collect();
+    for (label, inserted) in [
+        ("Declare primitive `Drive`", "primitive Drive(p1, p2)[2,5];\n"),
+        ("Declare activity `Drive`", "Drive(p1, p2)[l,u] = {\n  delay[l,u]\n}\n"),
+        ("Declare location `BASE`", "location BASE (0, 0);\n"),
+    ] {
+        let fix = fixes.iter().find(|fix| fix.label == label).unwrap_or_else(|| panic!("{label}: {fixes:?}"));
+        assert_eq!(fix.edits[0].text, inserted);
+        let mut mended = text.to_owned();
+        for edit in fix.edits.iter().rev() {
+            mended.replace_range(edit.span.range(), &edit.text);
+        }
+        let left = parse(&mended).diagnostics();
+        let name = label.split('`').nth(1).expect("a name");
+        assert!(left.iter().all(|it| !it.message.contains(&format!("`{name}` is declared"))), "{left:?}");
+    }
 }

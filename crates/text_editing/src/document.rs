@@ -9,6 +9,7 @@ use rmpl::{Edit, Span};
 
 use crate::carets::Carets;
 use crate::history::{Change, EditKind, Step, joins};
+use crate::template::Stops;
 
 /// Where text is selected: from `anchor`, where the selection began, to `head`, where the caret is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,6 +60,8 @@ pub struct Document {
     pub(crate) is_many: bool,
     /// Where stands what was written to close a bracket or a quote.
     pub(crate) closers: Vec<usize>,
+    /// The template around the caret.
+    pub(crate) stops: Stops,
     pub(crate) undo: Vec<Step>,
     redo: Vec<Step>,
     pub(crate) may_join: bool,
@@ -79,6 +82,7 @@ impl Document {
             parked: Vec::new(),
             is_many: false,
             closers: Vec::new(),
+            stops: Stops::default(),
             undo: Vec::new(),
             redo: Vec::new(),
             may_join: false,
@@ -152,6 +156,9 @@ impl Document {
         self.may_join &= caret.head == self.caret.head && caret.anchor == self.caret.anchor;
         self.caret = caret;
         self.others.clear();
+        if caret.head < self.stops.range.0 || caret.head > self.stops.range.1 {
+            self.stops = Stops::default();
+        }
         if !self.is_many {
             self.closers.retain(|&closer| closer >= caret.head);
         }
@@ -225,6 +232,10 @@ impl Document {
                 caret.head = moved(caret.head, start, removed.len(), inserted.len());
             }
             self.closers.retain(|&closer| closer < start || closer >= start + removed.len());
+            let stops = &mut self.stops;
+            for at in stops.left.iter_mut().chain([&mut stops.range.0, &mut stops.range.1]) {
+                *at = moved(*at, start, removed.len(), inserted.len());
+            }
             for closer in &mut self.closers {
                 *closer = moved(*closer, start, removed.len(), inserted.len());
             }
@@ -283,6 +294,7 @@ impl Document {
         }
         (self.caret, self.others) = (step.before.main, step.before.others.clone());
         self.closers.clear();
+        self.stops = Stops::default();
         self.redo.push(step);
         self.may_join = false;
         self.text_changed();
@@ -297,6 +309,7 @@ impl Document {
         }
         (self.caret, self.others) = (step.after.main, step.after.others.clone());
         self.closers.clear();
+        self.stops = Stops::default();
         self.undo.push(step);
         self.may_join = false;
         self.text_changed();

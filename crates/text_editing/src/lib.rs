@@ -11,6 +11,7 @@ mod history;
 mod pairs;
 mod rows;
 mod shift;
+mod template;
 mod typing;
 
 pub use document::{Caret, Document, difference};

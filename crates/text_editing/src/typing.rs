@@ -20,7 +20,7 @@ pub enum TextCommand {
     Paste(String),
     /// A line break, indented like its line and one deeper behind an opening bracket.
     NewLine,
-    /// Indents the selected lines, or inserts blanks up to the next level.
+    /// Goes to the next stop of a template, or indents the selected lines, or inserts blanks up to the next level.
     Indent,
     /// Takes one level of indentation from the selected lines.
     Outdent,
@@ -139,6 +139,7 @@ impl TextCommand {
                 document.set_caret(caret);
             }
             Self::NewLine => new_line(document),
+            Self::Indent if document.go_to_next_stop() => {}
             Self::Indent => indent(document),
             Self::Outdent => outdent(document),
             Self::Delete(motion) => delete(document, *motion),

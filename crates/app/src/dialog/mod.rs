@@ -52,3 +52,17 @@ pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandS
         commands.send(Command::CloseDialog);
     }
 }
+
+/// Selects all of a text field of so many characters that has not had the keyboard yet, so that typing replaces it.
+fn select_all_at_first(ui: &egui::Ui, field: &egui::Response, characters: usize) {
+    if field.has_focus() || field.lost_focus() {
+        return;
+    }
+    let mut state = egui::TextEdit::load_state(ui.ctx(), field.id).unwrap_or_default();
+    let all = egui::text::CCursorRange::two(
+        egui::text::CCursor::default(),
+        egui::text::CCursor::new(egui::text::CharIndex::from(characters)),
+    );
+    state.cursor.set_char_range(Some(all));
+    state.store(ui.ctx(), field.id);
+}

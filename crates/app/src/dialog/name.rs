@@ -23,6 +23,7 @@ pub(super) fn show(ui: &mut Ui, named: Named, name: &str, commands: &mut Command
     ui.label(question);
     let mut text = name.to_owned();
     let field = ui.add(TextEdit::singleline(&mut text).desired_width(f32::INFINITY)).accessible_name(label);
+    super::select_all_at_first(ui, &field, text.chars().count());
     let mut is_asked = ui.input(|input| input.key_pressed(Key::Enter));
     if !is_asked {
         field.request_focus();

@@ -12,6 +12,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, old: &str, name: &str, co
     let mut text = name.to_owned();
     let field =
         ui.add(TextEdit::singleline(&mut text).desired_width(f32::INFINITY)).accessible_name("New name");
+    super::select_all_at_first(ui, &field, text.chars().count());
     let enter = ui.input(|input| input.key_pressed(Key::Enter));
     if !enter {
         field.request_focus();

@@ -247,7 +247,8 @@ impl<'a> Checker<'a> {
     fn undeclared_call(&mut self, call: &Call) {
         let nearest = self.nearest(call.name, Namespace::Callable);
         let is_strict = self.index.is_strict();
-        let diagnostic = undefined::call(self.text(call.name), call, nearest.as_deref(), is_strict);
+        let diagnostic =
+            undefined::call(self.text(call.name), call, nearest.as_deref(), is_strict, self.summary.start);
         if nearest.is_some() {
             self.push(diagnostic);
         } else {
@@ -296,8 +297,14 @@ impl<'a> Checker<'a> {
         if self.index.facts(used.name).definition(namespace).is_none() {
             let nearest = self.nearest(used.name, namespace);
             let is_strict = self.index.is_strict();
-            let diagnostic =
-                undefined::world(what, self.text(used.name), used.span, nearest.as_deref(), is_strict);
+            let diagnostic = undefined::world(
+                what,
+                self.text(used.name),
+                used.span,
+                nearest.as_deref(),
+                is_strict,
+                self.summary.start,
+            );
             self.push_once(namespace, used.name, diagnostic);
         }
     }
@@ -306,7 +313,12 @@ impl<'a> Checker<'a> {
     fn place(&mut self, used: &Use) {
         if self.index.facts(used.name).definition(Namespace::Location).is_none() {
             let nearest = self.nearest(used.name, Namespace::Location);
-            self.push(value::no_location(self.text(used.name), used.span, nearest.as_deref()));
+            let name = self.text(used.name);
+            let diagnostic = value::no_location(name, used.span, nearest.as_deref());
+            let declare = || undefined::declare_location(name, self.summary.start);
+            let is_new = nearest.is_none();
+            let diagnostic = if is_new { diagnostic.with_fix(declare()) } else { diagnostic };
+            self.push(diagnostic);
         }
     }
 

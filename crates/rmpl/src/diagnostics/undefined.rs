@@ -1,7 +1,9 @@
 //! `E-UNDEF` and `W-UNDEF`: a name that is used but not declared (SPEC 1.4).
 
 use crate::analysis::Call;
-use crate::diagnostic::{Code, Diagnostic, Severity};
+use exact::Bound;
+
+use crate::diagnostic::{Code, Diagnostic, Fix, Severity};
 use crate::explanation::Explanation;
 use crate::parser::{insertion, replacement};
 use crate::program::{Change, component_of_state};
@@ -42,21 +44,42 @@ needs, but it is also what a misspelled name gets.",
 scenario Day[0,60] = { Drive() }",
 };
 
-/// A call of something that the file does not declare.
-pub(crate) fn call(name: &str, call: &Call, nearest: Option<&str>, is_strict: bool) -> Diagnostic {
+/// A call of something that the file does not declare. `start` is where the declaration that calls it begins.
+pub(crate) fn call(
+    name: &str,
+    call: &Call,
+    nearest: Option<&str>,
+    is_strict: bool,
+    start: u32,
+) -> Diagnostic {
     let message = format!("no activity or primitive `{name}` is declared");
     let mut diagnostic = severity(call.span, message, is_strict);
     if let Some(nearest) = nearest {
-        return diagnostic.with_hint(format!("did you mean `{nearest}`?")).with_fix(replacement(
+        diagnostic = diagnostic.with_hint(format!("did you mean `{nearest}`?")).with_fix(replacement(
             format!("Change to `{nearest}`"),
             call.span,
             nearest,
         ));
-    }
-    if !is_strict {
+    } else if !is_strict {
         diagnostic = diagnostic.with_hint("it is taken for a primitive that may last any time, [0,inf]");
     }
+    let parameters: Vec<String> = (1..=call.arguments).map(|at| format!("p{at}")).collect();
+    let header = format!("{name}({})", parameters.join(", "));
+    let bounds = call.bounds.map_or("[0,inf]".to_owned(), |((lower, upper), _)| match upper {
+        Bound::Finite(upper) => format!("[{lower},{upper}]"),
+        Bound::Infinite => format!("[{lower},inf]"),
+    });
     diagnostic
+        .with_fix(insertion(
+            format!("Declare primitive `{name}`"),
+            start,
+            format!("primitive {header}{bounds};\n"),
+        ))
+        .with_fix(insertion(
+            format!("Declare activity `{name}`"),
+            start,
+            format!("{header}[l,u] = {{\n  delay[l,u]\n}}\n"),
+        ))
 }
 
 /// A vehicle or a location that the world mentions but does not declare.
@@ -66,16 +89,16 @@ pub(crate) fn world(
     span: Span,
     nearest: Option<&str>,
     is_strict: bool,
+    start: u32,
 ) -> Diagnostic {
     let diagnostic = severity(span, format!("no {what} `{name}` is declared"), is_strict);
-    match nearest {
-        Some(nearest) => diagnostic.with_hint(format!("did you mean `{nearest}`?")).with_fix(replacement(
-            format!("Change to `{nearest}`"),
-            span,
-            nearest,
-        )),
-        None => diagnostic,
-    }
+    let diagnostic = change_to(diagnostic, nearest, span).unwrap_or_else(|diagnostic| diagnostic);
+    if what == "location" { diagnostic.with_fix(declare_location(name, start)) } else { diagnostic }
+}
+
+/// The fix that declares a location in front of the declaration that mentions it.
+pub(crate) fn declare_location(name: &str, start: u32) -> Fix {
+    insertion(format!("Declare location `{name}`"), start, format!("location {name} (0, 0);\n"))
 }
 
 /// The place of something that is no vehicle.

@@ -25,7 +25,7 @@ mod users;
 
 pub use brackets::matching_bracket;
 pub use comment::toggle_comment;
-pub use completion::{Completion, CompletionItem, CompletionKind, complete};
+pub use completion::{Completion, CompletionItem, CompletionKind, Wanted, complete};
 pub use definition::{Reference, definition, references};
 pub use fixes::{add_declaration, fixes_at, set_option};
 pub use folding::{Fold, FoldKind, folds};

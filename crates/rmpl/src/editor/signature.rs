@@ -20,8 +20,65 @@ pub struct Signature {
     pub documentation: String,
 }
 
-/// The signature of the innermost call whose parentheses surround `offset`, if its activity is declared.
+/// What is written in the brackets around `offset`: the arguments of a call whose activity is declared, bounds, or the
+/// numbers, parameters and values of a declaration.
 pub fn signature_at(parse: &Parse, offset: u32) -> Option<Signature> {
+    match open_bracket(parse, offset) {
+        Some((bracket, owner, first, active)) => {
+            of_call(parse, offset).filter(|_| bracket == "(").or_else(|| {
+                let (label, documentation) = of_declaration(&bracket, &owner, &first)?;
+                let (label, documentation) = (label.to_owned(), documentation.to_owned());
+                Some(Signature { parameters: parameters(&label, &bracket), label, active, documentation })
+            })
+        }
+        None => of_call(parse, offset),
+    }
+}
+
+/// The innermost bracket that is open at `offset`, the words before it and at the start of the declaration, and how many
+/// commas follow it.
+fn open_bracket(parse: &Parse, offset: u32) -> Option<(String, String, String, u32)> {
+    let root = declaration_at_cursor(parse, offset)?;
+    let tokens: Vec<_> =
+        root.tokens().filter(|token| !token.kind.is_trivia() && token.span.end <= offset).collect();
+    let mut open: Vec<(usize, u32)> = Vec::new();
+    for (at, token) in tokens.iter().enumerate() {
+        match token.kind {
+            SyntaxKind::LeftParen | SyntaxKind::LeftBracket | SyntaxKind::LeftBrace => open.push((at, 0)),
+            SyntaxKind::RightParen | SyntaxKind::RightBracket | SyntaxKind::RightBrace => {
+                open.pop();
+            }
+            SyntaxKind::Comma => {
+                if let Some((_, commas)) = open.last_mut() {
+                    *commas += 1;
+                }
+            }
+            _ => {}
+        }
+    }
+    let &(at, commas) = open.last()?;
+    let owner = at.checked_sub(1).and_then(|before| tokens.get(before)).map_or("", |token| token.text);
+    let first = tokens.first().map_or("", |token| token.text);
+    Some((tokens[at].text.to_owned(), owner.to_owned(), first.to_owned(), commas))
+}
+
+/// What a declaration, or bounds, want in a bracket behind the word `owner`, where the declaration begins with `first`.
+fn of_declaration(bracket: &str, owner: &str, first: &str) -> Option<(&'static str, &'static str)> {
+    Some(match (bracket, owner, first) {
+        ("[", ..) => ("[LEAST, MOST]", "How long it takes at least and at most; `inf` for any time."),
+        ("(", "speed", _) => ("speed (SLOWEST, FASTEST)", "How fast it drives, in metres per second."),
+        ("(", "origin", _) => ("origin (EAST, NORTH)", "Where the map's first corner lies, in metres."),
+        ("(", "circle", _) => ("circle (EAST, NORTH, RADIUS)", "Its middle and its radius, in metres."),
+        ("(", "polygon", _) => ("polygon (EAST, NORTH, …)", "Its corners one after the other, in metres."),
+        ("(", _, "location") => ("location NAME (EAST, NORTH)", "Where it lies, in metres."),
+        ("(", _, "primitive") => ("primitive NAME(PARAMETER, …)", "What a call of it names."),
+        ("{", _, "var" | "state") => ("{VALUE, …}", "The values that it may have."),
+        _ => return None,
+    })
+}
+
+/// The signature of the innermost call whose parentheses surround `offset`, if its activity is declared.
+fn of_call(parse: &Parse, offset: u32) -> Option<Signature> {
     let root = declaration_at_cursor(parse, offset)?;
     let inside = |arguments: &SyntaxNode<'_>| {
         let open = arguments.token(SyntaxKind::LeftParen).map(|token| token.span.end);
@@ -44,11 +101,17 @@ pub fn signature_at(parse: &Parse, offset: u32) -> Option<Signature> {
         })
     })?;
     let (label, documentation) = header(declaration)?;
-    Some(Signature { parameters: parameters(&label), label, active, documentation })
+    Some(Signature { parameters: parameters(&label, "("), label, active, documentation })
 }
 
-fn parameters(label: &str) -> Vec<Span> {
-    let (Some(open), Some(close)) = (label.find('('), label.find(')')) else { return Vec::new() };
+/// The parts between the first bracket of this kind and the one that closes it.
+fn parameters(label: &str, bracket: &str) -> Vec<Span> {
+    let close = match bracket {
+        "[" => ']',
+        "{" => '}',
+        _ => ')',
+    };
+    let (Some(open), Some(close)) = (label.find(bracket), label.find(close)) else { return Vec::new() };
     let mut found = Vec::new();
     let mut start = open + 1;
     for part in label.get(open + 1..close).unwrap_or("").split(',') {

@@ -36,8 +36,10 @@ impl Modifiers {
 #[expect(missing_docs, reason = "the names are what stands on the keys")]
 pub enum Key {
     ArrowDown,
+    ArrowLeft,
     ArrowRight,
     ArrowUp,
+    Backslash,
     C,
     CloseBracket,
     Comma,
@@ -52,7 +54,9 @@ pub enum Key {
     F2,
     F3,
     F6,
+    F7,
     F8,
+    F9,
     G,
     H,
     Home,

@@ -251,6 +251,13 @@ pub enum EditorCommand {
     FindReferences,
     /// Goes to where the name at the caret is declared.
     GoToDefinition,
+    /// Goes to the bracket that belongs to the one at the caret.
+    GoToBracket,
+    /// Goes where the caret was before, or forward again.
+    GoToPlace {
+        /// Whether to go forward.
+        forwards: bool,
+    },
     /// Moves in the list at the caret.
     MoveInPopup(isize),
     /// Takes an entry of the list at the caret, the chosen one if none is given.

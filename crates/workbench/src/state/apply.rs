@@ -519,6 +519,14 @@ impl AppState {
         if self.editor.popup.take().is_some() {
             return;
         }
+        if !self.document.other_carets().is_empty() {
+            text_editing::TextCommand::OneCaret.apply(&mut self.document);
+            return;
+        }
+        if self.document.has_stops() {
+            self.document.leave_template();
+            return;
+        }
         if self.editor.find.take().is_some() {
             self.focus_editor();
         } else if self.escape_from_terrain() {

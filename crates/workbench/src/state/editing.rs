@@ -13,7 +13,8 @@ use crate::state::{AppState, Effect, Selection, ToastKind};
 
 impl AppState {
     pub(super) fn type_text(&mut self, command: &TextCommand) {
-        match (command, self.language.parse()) {
+        let is_one = self.document.other_carets().is_empty();
+        match (command, self.language.parse().filter(|_| is_one)) {
             (TextCommand::NewLine, Some(parse)) => {
                 let range = self.document.caret().range();
                 let (edit, caret) = editor::new_line(parse, span_of(&range));
@@ -65,6 +66,14 @@ impl AppState {
     }
 
     pub(super) fn reveal(&mut self, span: Span) {
+        let (from, to) = (self.document.caret().head, span.start as usize);
+        if self.document.line_at(from) != self.document.line_at(to) {
+            self.editor.places.leave(from);
+        }
+        self.go_to(span);
+    }
+
+    fn go_to(&mut self, span: Span) {
         self.document.set_caret(Caret::selecting(span.start as usize, span.end as usize));
         self.scroll_to(span, true);
         self.editor.active_secs = self.frame.now_secs;
@@ -100,6 +109,22 @@ impl AppState {
             EditorCommand::QuickFix => self.list_fixes(),
             EditorCommand::FindReferences => self.list_references(),
             EditorCommand::GoToDefinition => self.go_to_definition(),
+            EditorCommand::GoToBracket => {
+                let head = self.document.caret().head as u32;
+                let pair = self.language.parse().and_then(|parse| editor::matching_bracket(parse, head));
+                if let Some((_, other)) = pair {
+                    self.reveal(Span::new(other.start, other.start));
+                    self.focus_editor();
+                }
+            }
+            EditorCommand::GoToPlace { forwards } => {
+                let here = self.document.caret().head;
+                if let Some(place) = self.editor.places.step(here, forwards) {
+                    let place = self.document.boundary_before(place) as u32;
+                    self.go_to(Span::new(place, place));
+                    self.focus_editor();
+                }
+            }
             EditorCommand::MoveInPopup(steps) => {
                 if let Some(popup) = &mut self.editor.popup {
                     let last = popup.items.len().saturating_sub(1);
@@ -186,6 +211,13 @@ impl AppState {
 
     fn copy_selection(&mut self, cut: bool) {
         let caret = self.document.caret();
+        if !self.document.other_carets().is_empty() {
+            self.effects.push(Effect::Copy(self.document.all_selected_text()));
+            if cut && self.document.carets().iter().any(|caret| !caret.is_empty()) {
+                TextCommand::Insert(String::new()).apply(&mut self.document);
+            }
+            return;
+        }
         if caret.is_empty() {
             // Without a selection, copy and cut mean the line, as in other editors.
             TextCommand::SelectLine(caret.head).apply(&mut self.document);

@@ -15,10 +15,43 @@ pub struct EditorState {
     pub popup: Option<Popup>,
     /// What is folded away.
     pub folding: Folding,
+    /// Where the caret was before it went elsewhere.
+    pub places: Places,
     /// Text that an input method is composing at the caret; it is not part of the document yet.
     pub composition: String,
     /// When the caret last moved or the text last changed, in seconds on the host's clock: the caret blinks from then.
     pub active_secs: f64,
+}
+
+/// The places that the caret went away from, to go back to and forward again.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Places {
+    back: Vec<usize>,
+    forward: Vec<usize>,
+}
+
+/// So many places are remembered.
+const MAX_PLACES: usize = 50;
+
+impl Places {
+    /// The caret leaves a place for one far away.
+    pub(crate) fn leave(&mut self, offset: usize) {
+        if self.back.last() != Some(&offset) {
+            self.back.push(offset);
+        }
+        let surplus = self.back.len().saturating_sub(MAX_PLACES);
+        self.back.drain(..surplus);
+        self.forward.clear();
+    }
+
+    /// The place before or after `here`, which can be returned to.
+    pub(crate) fn step(&mut self, here: usize, forwards: bool) -> Option<usize> {
+        let (from, to) =
+            if forwards { (&mut self.forward, &mut self.back) } else { (&mut self.back, &mut self.forward) };
+        let place = from.pop()?;
+        to.push(here);
+        Some(place)
+    }
 }
 
 /// A place to scroll to.

@@ -12,7 +12,7 @@ use crate::state::folding::Folding;
 use crate::state::{AppState, ToastKind};
 
 /// Characters that begin a place where something known can be written.
-const OPENERS: [char; 4] = ['=', '(', '[', ':'];
+const OPENERS: [char; 5] = ['=', '(', '[', ':', '"'];
 
 /// Entries that a list shows at most; the rest is reached by typing on.
 const MAX_ITEMS: usize = 100;
@@ -25,7 +25,7 @@ impl AppState {
             TextCommand::Insert(text) => {
                 let last = text.chars().next_back();
                 if last.is_some_and(|c| is_name_character(c) && (is_completing || c.is_alphabetic()))
-                    || last.is_some_and(|c| OPENERS.contains(&c))
+                    || last.is_some_and(|c| OPENERS.contains(&c)) && self.document.other_carets().is_empty()
                 {
                     self.complete(false);
                 } else {
@@ -33,24 +33,46 @@ impl AppState {
                 }
             }
             TextCommand::Delete(_) if is_completing => self.complete(false),
+            // What may stand at the next stop of a template is listed there.
+            TextCommand::Indent => self.offer(),
             _ => self.editor.popup = None,
         }
     }
 
-    /// Lists what can be written at the caret. Unless the author asked for it, only where it helps: in a word of at
-    /// least two letters, or right behind a sign that asks for something.
+    /// Lists what can be written at the caret. Unless the author asked for it, or a list is open, only where it helps: in
+    /// a word of at least two letters, or right behind a sign that asks for something.
     pub(super) fn complete(&mut self, is_asked: bool) {
-        self.editor.popup = None;
-        let Some(parse) = self.language.parse() else { return };
+        let is_open = self.editor.popup.take().is_some_and(|popup| popup.kind == PopupKind::Completion);
+        let Some(found) = self.completions() else { return };
         let head = self.document.caret().head;
-        let found = editor::complete(parse, head as u32);
-        let typed = self.document.text().get(found.replaces.start as usize..head).unwrap_or_default();
+        let typed = self.document.text().get(found.span.start as usize..head).unwrap_or_default();
         let behind_opener = self.document.text()[..head].ends_with(OPENERS);
-        let is_finished = found.items.iter().any(|item| item.label == typed);
-        if !is_asked && ((typed.chars().count() < 2 && !behind_opener) || is_finished) {
+        let is_wanted = behind_opener || typed.chars().count() >= if is_open { 1 } else { 2 };
+        let is_finished = match found.items.as_slice() {
+            [only] => only.label == typed,
+            items => !is_open && items.iter().any(|item| item.label == typed),
+        };
+        if !is_asked && (!is_wanted || is_finished) {
             return;
         }
-        let items: Vec<PopupItem> = found
+        if !found.items.is_empty() {
+            self.editor.popup = Some(found);
+        } else if is_asked {
+            self.toasts.add(ToastKind::Info, "Nothing is known to go here");
+        }
+    }
+
+    /// Lists what can be written at the caret, if anything is known.
+    fn offer(&mut self) {
+        let is_at_stop = self.document.has_stops();
+        self.editor.popup = self.completions().filter(|found| is_at_stop && !found.items.is_empty());
+    }
+
+    /// What can be written at the caret, as a list.
+    fn completions(&self) -> Option<Popup> {
+        let head = self.document.caret().head;
+        let found = editor::complete(self.language.parse()?, head as u32);
+        let mut items: Vec<PopupItem> = found
             .items
             .into_iter()
             .take(MAX_ITEMS)
@@ -61,14 +83,23 @@ impl AppState {
                 action: PopupAction::Insert(item.insert),
             })
             .collect();
-        if items.is_empty() {
-            if is_asked {
-                self.toasts.add(ToastKind::Info, "Nothing is known to go here");
-            }
-            return;
+        if found.wants == Some(editor::Wanted::Map) {
+            let typed = self.document.text().get(found.replaces.start as usize..head).unwrap_or_default();
+            let built_in = ::terrain::asset_names().map(|name| (name, "built in"));
+            let own = self.maps.keys().map(|key| (key.asset.as_str(), "a map of yours"));
+            let mut known: BTreeSet<&str> = BTreeSet::new();
+            items.extend(
+                built_in.chain(own).filter(|(name, _)| name.contains(typed) && known.insert(name)).map(
+                    |(name, detail)| PopupItem {
+                        label: name.to_owned(),
+                        detail: detail.to_owned(),
+                        kind: Some(editor::CompletionKind::Value),
+                        action: PopupAction::Insert(name.to_owned()),
+                    },
+                ),
+            );
         }
-        self.editor.popup =
-            Some(Popup { kind: PopupKind::Completion, items, chosen: 0, span: found.replaces });
+        Some(Popup { kind: PopupKind::Completion, items, chosen: 0, span: found.replaces })
     }
 
     /// Lists what mends the problems at the caret, in its line if there are none right there.
@@ -152,12 +183,10 @@ impl AppState {
         let Some(item) = popup.items.into_iter().nth(index.unwrap_or(popup.chosen)) else { return };
         match item.action {
             PopupAction::Insert(text) => {
-                let start = popup.span.start as usize;
-                let caret = text.find("$0").unwrap_or(text.len());
-                let text = text.replacen("$0", "", 1);
                 let end = self.document.caret().head.max(popup.span.end as usize);
-                let edit = rmpl::Edit { span: rmpl::Span::new(popup.span.start, end as u32), text };
-                self.document.edit(&[edit], EditKind::Single, Some(Caret::at(start + caret)));
+                self.document.insert_template(rmpl::Span::new(popup.span.start, end as u32), &text);
+                self.language.follow(&self.document);
+                self.offer();
             }
             PopupAction::Edit(edits) => self.document.edit(&edits, EditKind::Single, None),
             PopupAction::Reveal(span) => self.reveal(span),

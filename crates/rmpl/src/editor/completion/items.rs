@@ -23,11 +23,11 @@ pub(super) fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<Completion
             conditions(parse, offset, &mut items);
         }
         Place::Condition => {
-            items.push(keyword("not", "not($0)"));
+            items.push(keyword("not", "not($1)$0"));
             conditions(parse, offset, &mut items);
         }
         Place::Requirement => {
-            items.push(keyword("not", "not($0)"));
+            items.push(keyword("not", "not($1)$0"));
             items.push(keyword("at start", "at start "));
             conditions(parse, offset, &mut items);
         }
@@ -98,7 +98,7 @@ pub(super) fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<Completion
             items.push(keyword("polygon", "polygon ($0);"));
         }
         Place::Words(words) => {
-            let template = |word| if word == CONTINGENT { "contingent [$0,]" } else { word };
+            let template = |word| if word == CONTINGENT { "contingent [$1,$2]$0" } else { word };
             items.extend(words.iter().map(|word| keyword(word, template(word))));
         }
         Place::Occurrence => occurrences(parse, &mut items),
@@ -108,38 +108,38 @@ pub(super) fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<Completion
 }
 
 const DECLARATIONS: [(&str, &str); 14] = [
-    ("constrain", "constrain $0.start to .end [,];"),
-    ("import", "import \"$0\";"),
-    ("state", "state $0 : {} = ;"),
-    ("resource", "resource $0;"),
-    ("objective", "objective $0;"),
-    ("const", "const $0 = ;"),
-    ("var", "var $0 : {};"),
-    ("primitive", "primitive $0();"),
-    ("scenario", "scenario $0 = {\n}"),
-    ("option", "option $0;"),
-    ("terrain", "terrain \"$0\";"),
-    ("location", "location $0 (0, 0);"),
-    ("obstacle", "obstacle $0 circle (0, 0, 1);"),
-    ("vehicle", "vehicle $0 : ATRV at BASE;"),
+    ("constrain", "constrain $1.start to $2.end [$3,$4];$0"),
+    ("import", "import \"$1\";$0"),
+    ("state", "state $1 : {$2} = $3;$0"),
+    ("resource", "resource $1;$0"),
+    ("objective", "objective $1;$0"),
+    ("const", "const $1 = $2;$0"),
+    ("var", "var $1 : {$2};$0"),
+    ("primitive", "primitive $1($2)[$3,$4];$0"),
+    ("scenario", "scenario $1 = {\n  $2\n}$0"),
+    ("option", "option $1;$0"),
+    ("terrain", "terrain \"$1\";$0"),
+    ("location", "location $1 ($2, $3);$0"),
+    ("obstacle", "obstacle $1 circle ($2, $3, $4);$0"),
+    ("vehicle", "vehicle $1 : $2 at $3;$0"),
 ];
 
 const STATEMENTS: [(&str, &str); 15] = [
     ("optional", "optional "),
-    ("unordered", "unordered { $0 }"),
-    ("do … using", "do { $0 } using "),
-    ("repeat", "repeat $0 { }"),
+    ("unordered", "unordered { $1 }$0"),
+    ("do … using", "do { $1 } using $0"),
+    ("repeat", "repeat $1 { $2 }$0"),
     ("free", "free "),
-    ("if … thennext … else", "if $0 thennext  else "),
-    ("choose", "choose { $0 }"),
-    ("do … maintaining", "do { $0 } maintaining "),
-    ("do … watching", "do { $0 } watching "),
-    ("if … thennext", "if $0 thennext "),
-    ("delay", "delay[$0,inf]"),
-    ("delay contingent", "delay contingent [$0,]"),
+    ("if … thennext … else", "if $1 thennext $2 else $0"),
+    ("choose", "choose { $1, $2 }$0"),
+    ("do … maintaining", "do { $1 } maintaining $0"),
+    ("do … watching", "do { $1 } watching $0"),
+    ("if … thennext", "if $1 thennext $0"),
+    ("delay", "delay[$1,$2]$0"),
+    ("delay contingent", "delay contingent [$1,$2]$0"),
     ("tell", "tell "),
     ("ask", "ask "),
-    ("not", "not($0)"),
+    ("not", "not($1)$0"),
 ];
 
 fn keyword(label: &str, insert: &str) -> CompletionItem {
@@ -163,11 +163,11 @@ fn calls(parse: &Parse, items: &mut Vec<CompletionItem>) {
             OutlineKind::Activity => CompletionKind::Activity,
             _ => continue,
         };
-        let insert = if detail.starts_with("()") || !detail.starts_with('(') {
-            format!("{name}()")
-        } else {
-            format!("{name}($0)")
-        };
+        let parameters = detail.strip_prefix('(').and_then(|rest| rest.split(')').next()).unwrap_or_default();
+        let count = parameters.split(',').filter(|parameter| !parameter.trim().is_empty()).count();
+        let stops: Vec<String> = (1..=count).map(|at| format!("${at}")).collect();
+        let end = if count == 0 { "" } else { "$0" };
+        let insert = format!("{name}({}){end}", stops.join(", "));
         items.push(CompletionItem { label: name, kind, detail, insert });
     }
 }

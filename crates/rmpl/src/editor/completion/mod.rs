@@ -22,6 +22,17 @@ pub struct Completion {
     pub replaces: Span,
     /// The items that begin with what is typed (or contain it), best first.
     pub items: Vec<CompletionItem>,
+    /// What else fits, which the text itself does not know.
+    pub wants: Option<Wanted>,
+}
+
+/// What a text in quotes names, outside of the mission text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Wanted {
+    /// A map: `terrain "…"`.
+    Map,
+    /// A file of the mission: `import "…"`.
+    File,
 }
 
 /// One thing that can be written.
@@ -33,7 +44,8 @@ pub struct CompletionItem {
     pub kind: CompletionKind,
     /// More about it, in a few words.
     pub detail: String,
-    /// What is written; `$0` marks where the cursor goes, if not behind it.
+    /// What is written. `$1`, `$2` and so on mark where the cursor goes one after the other, `$0` where it goes at last,
+    /// if not behind everything.
     pub insert: String,
 }
 
@@ -75,8 +87,11 @@ pub fn complete(parse: &Parse, offset: u32) -> Completion {
         .flat_map(SyntaxNode::tokens)
         .filter(|token| token.span.start < offset)
         .collect();
+    if let Some(quoted) = in_quotes(&before, offset) {
+        return quoted;
+    }
     if before.last().is_some_and(|token| is_opaque(*token, offset)) {
-        return Completion { replaces: Span::new(offset, offset), items: Vec::new() };
+        return Completion { replaces: Span::new(offset, offset), ..Completion::default() };
     }
     let typed = before.last().filter(|token| token.span.end >= offset && is_word(token.kind));
     let replaces = typed.map_or(Span::new(offset, offset), |token| token.span);
@@ -102,7 +117,22 @@ pub fn complete(parse: &Parse, offset: u32) -> Completion {
         ))
     });
     items.dedup_by(|one, other| one.label == other.label);
-    Completion { replaces, items }
+    Completion { replaces, items, wants: None }
+}
+
+/// What a text in quotes around the cursor may be, if something is known of it; what stands between the quotes is
+/// replaced.
+fn in_quotes(before: &[SyntaxToken<'_>], offset: u32) -> Option<Completion> {
+    let (last, context) = before.split_last()?;
+    let is_inside = last.kind == SyntaxKind::String && last.span.start < offset && offset < last.span.end;
+    let word = context.iter().rev().find(|token| !token.kind.is_trivia()).filter(|_| is_inside)?;
+    let wants = match word.text {
+        "terrain" => Wanted::Map,
+        "import" => Wanted::File,
+        _ => return None,
+    };
+    let end = last.span.end - u32::from(last.text.len() > 1 && last.text.ends_with('"'));
+    Some(Completion { replaces: Span::new(last.span.start + 1, end), items: Vec::new(), wants: Some(wants) })
 }
 
 /// What is called by the call that the tokens end with, if they do.

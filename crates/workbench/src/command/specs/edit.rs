@@ -4,7 +4,7 @@ use text_editing::TextCommand;
 
 use super::arguments::{number_argument, text_argument};
 use super::available::{with_redo, with_undo};
-use super::{ALT, ALT_SHIFT, CTRL, CTRL_SHIFT, PLAIN, called, keys, plain, when};
+use super::{ALT, ALT_SHIFT, CTRL, CTRL_ALT, CTRL_SHIFT, PLAIN, SHIFT, called, keys, plain, when};
 use crate::command::chord::Key;
 use crate::command::registry::{CommandSpec, Group, Scope};
 use crate::command::{Command, EditorCommand};
@@ -43,10 +43,45 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         |_| Command::Text(TextCommand::ToggleComment),
     ),
     plain(
-        "edit.duplicate",
-        "Duplicate lines",
+        "edit.selectNext",
+        "Select where this stands next, too",
         Group::Edit,
-        &[keys(CTRL_SHIFT, Key::D)],
+        &[keys(CTRL, Key::D)],
+        Scope::Typing,
+        |_| Command::Text(TextCommand::SelectNextOccurrence),
+    ),
+    plain(
+        "edit.caretAbove",
+        "Another caret above",
+        Group::Edit,
+        &[keys(CTRL_ALT, Key::ArrowUp)],
+        Scope::Typing,
+        |_| Command::Text(TextCommand::AddCaretAbove),
+    ),
+    plain(
+        "edit.caretBelow",
+        "Another caret below",
+        Group::Edit,
+        &[keys(CTRL_ALT, Key::ArrowDown)],
+        Scope::Typing,
+        |_| Command::Text(TextCommand::AddCaretBelow),
+    ),
+    plain("edit.selectLine", "Select the line", Group::Edit, &[keys(CTRL, Key::L)], Scope::Typing, |_| {
+        Command::Text(TextCommand::SelectLines)
+    }),
+    plain(
+        "edit.copyUp",
+        "Copy lines up",
+        Group::Edit,
+        &[keys(ALT_SHIFT, Key::ArrowUp)],
+        Scope::Typing,
+        |_| Command::Text(TextCommand::CopyLinesUp),
+    ),
+    plain(
+        "edit.duplicate",
+        "Copy lines down",
+        Group::Edit,
+        &[keys(ALT_SHIFT, Key::ArrowDown), keys(CTRL_SHIFT, Key::D)],
         Scope::Typing,
         |_| Command::Text(TextCommand::DuplicateLines),
     ),
@@ -99,14 +134,19 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         Scope::Typing,
         |_| Command::Editor(EditorCommand::ExpandSelection),
     ),
-    plain("edit.fold", "Fold", Group::Edit, &[keys(CTRL_SHIFT, Key::OpenBracket)], Scope::Typing, |_| {
-        Command::Editor(EditorCommand::FoldAtCaret(true))
-    }),
+    plain(
+        "edit.fold",
+        "Fold",
+        Group::Edit,
+        &[keys(CTRL_SHIFT, Key::OpenBracket), keys(PLAIN, Key::F9)],
+        Scope::Typing,
+        |_| Command::Editor(EditorCommand::FoldAtCaret(true)),
+    ),
     plain(
         "edit.unfold",
         "Unfold",
         Group::Edit,
-        &[keys(CTRL_SHIFT, Key::CloseBracket)],
+        &[keys(CTRL_SHIFT, Key::CloseBracket), keys(SHIFT, Key::F9)],
         Scope::Typing,
         |_| Command::Editor(EditorCommand::FoldAtCaret(false)),
     ),

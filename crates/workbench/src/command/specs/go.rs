@@ -2,7 +2,7 @@
 
 use super::arguments::text_argument;
 use super::available::{with_problems, with_selection};
-use super::{CTRL, CTRL_SHIFT, PLAIN, SHIFT, called, keys, plain, when};
+use super::{ALT, CTRL, CTRL_SHIFT, PLAIN, SHIFT, called, keys, plain, when};
 use crate::Dialog;
 use crate::command::chord::Key;
 use crate::command::registry::{CommandSpec, Group, Scope};
@@ -27,6 +27,20 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     }),
     plain("go.references", "References", Group::Go, &[keys(SHIFT, Key::F12)], Scope::Everywhere, |_| {
         Command::Editor(EditorCommand::FindReferences)
+    }),
+    plain(
+        "go.bracket",
+        "The other bracket",
+        Group::Go,
+        &[keys(CTRL_SHIFT, Key::Backslash), keys(PLAIN, Key::F7)],
+        Scope::Typing,
+        |_| Command::Editor(EditorCommand::GoToBracket),
+    ),
+    plain("go.back", "Back", Group::Go, &[keys(ALT, Key::ArrowLeft)], Scope::Editor, |_| {
+        Command::Editor(EditorCommand::GoToPlace { forwards: false })
+    }),
+    plain("go.forward", "Forward", Group::Go, &[keys(ALT, Key::ArrowRight)], Scope::Editor, |_| {
+        Command::Editor(EditorCommand::GoToPlace { forwards: true })
     }),
     when(
         plain(
