@@ -101,8 +101,21 @@ loaded.catch((error) => showFailure("Enroute cannot start", explain(error), erro
 
 // Published pages say their version and keep a copy of themselves; a page that is being developed does neither.
 if (document.documentElement.dataset.version) {
-  navigator.serviceWorker?.register("service-worker.js").catch((reason) => {
+  navigator.serviceWorker?.register("service-worker.js").then(announceNewVersion, (reason) => {
     console.warn(`The page will not open offline: ${reason.message}`);
+  });
+}
+
+/** Says once that a newer version is kept. It takes over when no tab shows this one any more. */
+function announceNewVersion(registration) {
+  const say = () => loaded.then(() => api.enroute.dispatch("help.newVersion", null));
+  if (registration.waiting) say();
+  registration.addEventListener("updatefound", () => {
+    const next = registration.installing;
+    next?.addEventListener("statechange", () => {
+      // The first version that is kept is the one that is shown.
+      if (next.state === "installed" && navigator.serviceWorker.controller) say();
+    });
   });
 }
 

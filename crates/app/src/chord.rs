@@ -13,7 +13,35 @@ pub fn shortcut(chord: Chord) -> KeyboardShortcut {
 
 /// The chord as menus and lists write it on this system.
 pub fn text(egui: &egui::Context, chord: Chord) -> String {
-    egui.format_shortcut(&shortcut(chord))
+    let shortcut = shortcut(chord);
+    let name = printed(chord.key).map_or_else(|| shortcut.logical_key.name().to_owned(), str::to_owned);
+    let mut held = egui::ModifierNames::NAMES.format(&shortcut.modifiers, egui.os().is_mac());
+    if !held.is_empty() {
+        held.push('+');
+    }
+    held + &name
+}
+
+/// What is printed on a key, where that is not its name.
+const fn printed(key: chord::Key) -> Option<&'static str> {
+    Some(match key {
+        chord::Key::ArrowDown => "Down",
+        chord::Key::ArrowLeft => "Left",
+        chord::Key::ArrowRight => "Right",
+        chord::Key::ArrowUp => "Up",
+        chord::Key::Backslash => "\\",
+        chord::Key::CloseBracket => "]",
+        chord::Key::Comma => ",",
+        chord::Key::Equals => "=",
+        chord::Key::Escape => "Esc",
+        chord::Key::Minus => "-",
+        chord::Key::OpenBracket => "[",
+        chord::Key::Period => ".",
+        chord::Key::Plus => "+",
+        chord::Key::Questionmark => "?",
+        chord::Key::Slash => "/",
+        _ => return None,
+    })
 }
 
 const fn key(key: chord::Key) -> Key {

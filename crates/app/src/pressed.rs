@@ -1,6 +1,7 @@
 //! Finds the commands whose keys were pressed.
 
 use egui::{Context, Event, KeyboardShortcut};
+use workbench::PanelKind;
 use workbench::command::{Command, CommandSpec, Scope, all_commands};
 use workbench::state::AppState;
 
@@ -56,6 +57,7 @@ fn take_in_dialog(context: &Context) -> Vec<Command> {
 fn focus(context: &Context, editor: egui::Id) -> Focus {
     match context.memory(egui::Memory::focused) {
         None => Focus::Nothing,
+        Some(_) if panels::is_region_focused(context) => Focus::Nothing,
         Some(id) if id == editor => Focus::Editor,
         Some(_) if context.text_edit_focused() => Focus::TextField,
         Some(_) => Focus::Widget,
@@ -75,6 +77,7 @@ fn best_match(
             keys.logical_key == key
                 && matches_modifiers(modifiers, *keys)
                 && works(spec.scope, focus, *keys)
+                && (!is_letter(*keys) || focus != Focus::Nothing || state.active_panel != PanelKind::Editor)
                 && (spec.available)(state).is_ok()
         })
         .max_by_key(|(_, keys)| specificity(*keys))
@@ -107,6 +110,14 @@ fn works(scope: Scope, focus: Focus, keys: KeyboardShortcut) -> bool {
             Focus::Editor | Focus::TextField => false,
         },
     }
+}
+
+/// Whether it is a letter alone. Letters act only where a panel was turned to that is not the text: what is typed while
+/// the text happens not to have the keyboard is meant for the text.
+fn is_letter(keys: KeyboardShortcut) -> bool {
+    let name = keys.logical_key.name();
+    let is_held = keys.modifiers.command || keys.modifiers.alt || keys.modifiers.ctrl;
+    !is_held && name.len() == 1 && name.chars().all(|sign| sign.is_ascii_alphabetic())
 }
 
 fn is_widget_key(key: egui::Key) -> bool {

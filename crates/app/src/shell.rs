@@ -164,13 +164,12 @@ impl Enroute {
     /// Does what commands have left for the window and for the layout of its panels.
     fn follow_effects(&mut self) {
         self.layouts.follow(self.session.state_mut());
-        let leaves_focus = |effect: PanelEffect| (effect == PanelEffect::LeaveFocus).then_some(());
-        if !self.session.state_mut().panel_effects.take(leaves_focus).is_empty() {
-            self.egui.memory_mut(|memory| {
-                if let Some(focused) = memory.focused() {
-                    memory.surrender_focus(focused);
-                }
-            });
+        let focused = |effect: PanelEffect| match effect {
+            PanelEffect::FocusPanel(panel) => Some(panel),
+            _ => None,
+        };
+        if let Some(panel) = self.session.state_mut().panel_effects.take(focused).pop() {
+            self.egui.memory_mut(|memory| memory.request_focus(panels::region_id(panel)));
         }
         for effect in self.session.take_window_effects() {
             match effect {
@@ -295,7 +294,27 @@ impl PanelTiles<'_> {
         if pressed && self.context.state.active_panel != kind && self.context.state.dialog.is_none() {
             self.commands.send(Command::Activate(kind));
         }
+        self.region(ui, kind);
         ui.push_id(kind.name(), |ui| self.panels.show(kind, ui, self.context, self.commands));
+    }
+
+    /// The panel as something that can have the keyboard: Tab goes from it to what it holds.
+    fn region(&self, ui: &Ui, kind: PanelKind) {
+        let id = panels::region_id(kind);
+        let rect = ui.max_rect();
+        let has_focus = ui.memory(|memory| memory.has_focus(id));
+        // It stands in the order of Tab only while it has the keyboard: to the others it would be a stop without use.
+        if !has_focus {
+            return;
+        }
+        let region = ui.interact(rect, id, egui::Sense::focusable_noninteractive());
+        region.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Group, true, kind.title()));
+        let filter =
+            egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
+        let stroke = egui::Stroke::new(1.5, self.context.tokens.accent);
+        let painter = ui.ctx().layer_painter(egui::LayerId::new(egui::Order::Middle, id.with("ring")));
+        painter.rect_stroke(rect.shrink(1.0), 2.0, stroke, egui::StrokeKind::Inside);
     }
 }
 

@@ -215,3 +215,39 @@ fn a_double_click_on_a_tab_gives_its_panel_the_window_and_another_puts_the_panel
     app.settle();
     assert_eq!(shown(&app), all, "another panel that is asked for is seen");
 }
+
+#[test]
+fn f6_gives_a_panel_the_keyboard_and_tab_goes_to_what_it_holds() {
+    let mut app = support::start();
+    app.settle();
+    app.harness.key_press(egui::Key::F6);
+    app.settle();
+    app.settle();
+    let active = app.harness.state().app_state().active_panel;
+    assert_ne!(active, PanelKind::Editor);
+    let region = panels::region_id(active);
+    let focused = |app: &support::App| app.harness.ctx.memory(egui::Memory::focused);
+    assert_eq!(focused(&app), Some(region));
+    app.harness.get_by_role_and_label(Role::Group, active.title());
+    app.harness.key_press(egui::Key::Tab);
+    app.settle();
+    let inside = focused(&app).expect("something has the keyboard");
+    assert_ne!(inside, region);
+    let place = app.harness.ctx.read_response(inside).expect("it is shown").rect;
+    let tree_has_it = app.harness.state().app_state().panels_on_screen.contains(&active);
+    assert!(tree_has_it && place.is_positive());
+}
+
+#[test]
+fn letters_act_only_where_a_panel_was_turned_to() {
+    let mut app = support::start();
+    app.settle();
+    app.harness.key_press(egui::Key::L);
+    app.settle();
+    assert!(!app.harness.state().app_state().lesson.is_beside(), "the text was used last");
+    app.harness.key_press(egui::Key::F6);
+    app.settle();
+    app.harness.key_press(egui::Key::L);
+    app.settle();
+    assert!(app.harness.state().app_state().lesson.is_beside());
+}

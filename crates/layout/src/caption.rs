@@ -1,5 +1,7 @@
 //! What the boxes of folded blocks say.
 
+use std::collections::BTreeSet;
+
 use display::Measure;
 use smol_str::{SmolStr, format_smolstr};
 use tpn::{BlockKind, Network, OccurrenceId, OccurrenceKind};
@@ -8,7 +10,7 @@ use crate::folding::Folding;
 use crate::metrics::TextRole;
 use crate::options::Options;
 use crate::text::{arc_bounds_label, cut_to_width, structure_name, width_at};
-use crate::tree::{PartId, PartKind, Tree};
+use crate::tree::{PartId, PartKind, Tree, block_children};
 
 /// What the box of a collapsed part says.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,30 +83,43 @@ pub(crate) fn captions(
     captions
 }
 
-/// The first and the last activity behind a box, or what is asserted there if there is none.
+/// The first and the last activity behind a box, or what is asserted there if there is none. What an activity does
+/// inside is its own.
 fn summary(network: &Network, folding: &Folding, fold: u32) -> Option<SmolStr> {
-    let ends = folding.folds[fold as usize];
-    let is_behind = |at: &usize| folding.fold_of[*at] == Some(fold);
-    let name = |at: usize, wanted: &[OccurrenceKind]| {
-        let occurrence = match &network.blocks[at].kind {
+    let activities = [OccurrenceKind::Primitive, OccurrenceKind::Activity];
+    let (first, last) = outermost(network, folding, fold, &activities)
+        .or_else(|| outermost(network, folding, fold, &[OccurrenceKind::Assertion]))?;
+    Some(if first == last { first } else { format_smolstr!("{first} … {last}") })
+}
+
+/// The names of the first and the last outermost occurrence of these kinds behind a box.
+fn outermost(
+    network: &Network,
+    folding: &Folding,
+    fold: u32,
+    wanted: &[OccurrenceKind],
+) -> Option<(SmolStr, SmolStr)> {
+    let mut inside: BTreeSet<usize> = BTreeSet::new();
+    let (mut first, mut last) = (None, None);
+    // Blocks come after what they hold.
+    let from = folding.folds[fold as usize].last.index();
+    for at in (0..=from).rev().take_while(|&at| folding.fold_of[at] == Some(fold)) {
+        let kind = &network.blocks[at].kind;
+        let occurrence = match kind {
             BlockKind::Scope { occurrence, .. } => *occurrence,
             BlockKind::Leaf { arc } => network.arcs[arc.index()].occurrence,
             _ => None,
         };
-        let occurrence = &network.occurrences[occurrence?.index()];
-        wanted.contains(&occurrence.kind).then(|| occurrence.activity.clone())
-    };
-    let behind = || (0..=ends.last.index()).rev().take_while(is_behind);
-    let activities = [OccurrenceKind::Primitive, OccurrenceKind::Activity];
-    let wanted: &[OccurrenceKind] = if behind().any(|at| name(at, &activities).is_some()) {
-        &activities
-    } else {
-        &[OccurrenceKind::Assertion]
-    };
-    let first = behind().filter_map(|at| name(at, wanted)).last();
-    let last = behind().find_map(|at| name(at, wanted));
-    match (first, last) {
-        (Some(first), Some(last)) if first != last => Some(format_smolstr!("{first} … {last}")),
-        (first, last) => first.or(last),
+        let occurrence = occurrence.map(|it| &network.occurrences[it.index()]);
+        let named = occurrence.filter(|it| wanted.contains(&it.kind));
+        let is_inside = inside.remove(&at);
+        if is_inside || named.is_some() {
+            inside.extend(block_children(kind).iter().map(|child| child.index()));
+        }
+        if let Some(occurrence) = named.filter(|_| !is_inside) {
+            first = Some(&occurrence.activity);
+            last = last.or(first);
+        }
     }
+    Some((first?.clone(), last?.clone()))
 }

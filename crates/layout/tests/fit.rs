@@ -149,3 +149,15 @@ fn a_place_in_a_box_leads_to_its_first_block() {
         assert_eq!(drawing.pick(shape.rect.center(), 0.0), shape.block.map(Item::Block));
     }
 }
+
+#[test]
+fn a_box_is_named_by_the_activities_it_holds_and_not_by_what_they_do() {
+    let network = network_of(
+        "primitive Look()[1,2];\nSurvey() = { Look(); delay[1,2]; Look() }\nscenario S = { Survey(); Survey(); \
+         delay[1,1]; Look(); X=ON }\n",
+    );
+    let detail = Detail { grain: 40, finer: Vec::new() };
+    let drawing = draw_with(&network, &Options { detail, ..Options::default() });
+    let titles: Vec<&str> = boxes(&drawing).iter().map(|shape| shape.title.as_str()).collect();
+    assert_eq!(titles, ["Survey … Look"]);
+}

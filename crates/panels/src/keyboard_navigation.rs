@@ -61,7 +61,7 @@ pub fn follow(ui: &Ui, context: &Context<'_>, commands: &mut CommandSender) {
 }
 
 fn has_focus(ui: &Ui) -> bool {
-    ui.memory(|memory| memory.focused().is_some())
+    ui.memory(|memory| memory.focused().is_some()) && !crate::is_region_focused(ui.ctx())
 }
 
 /// Whether plain keys belong to the panel: nobody types, and no dialog is open.

@@ -43,3 +43,14 @@ pub const fn tokens(theme: ThemeChoice) -> &'static theme::Tokens {
 pub(crate) fn is_pressed(response: &egui::Response) -> bool {
     response.is_pointer_button_down_on() || response.clicked()
 }
+
+/// The widget id of a panel as a whole: who has the keyboard while somebody has turned to it and to nothing in it.
+pub fn region_id(panel: workbench::PanelKind) -> egui::Id {
+    egui::Id::unique(("panel", panel.name()))
+}
+
+/// Whether a panel as a whole has the keyboard.
+pub fn is_region_focused(context: &egui::Context) -> bool {
+    let focused = context.memory(egui::Memory::focused);
+    focused.is_some_and(|id| workbench::PanelKind::ALL.iter().any(|&panel| region_id(panel) == id))
+}

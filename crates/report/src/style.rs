@@ -31,7 +31,7 @@ ins { background: #dff3e4; text-decoration: none; }
 .attention { color: #9a6200; }
 .failed { color: #b84300; }
 .signatures td { height: 2.2em; border-bottom: 1px solid #a9b5c2; width: 33%; }
-.muted { color: #6a7684; }
+.muted { color: #5a6674; }
 figure { margin: .8em 0; }
 figure svg { display: block; max-width: 100%; height: auto; }
 figcaption { color: #4e5b6a; font-size: .9em; margin-top: .4em; }
@@ -40,7 +40,7 @@ figcaption { color: #4e5b6a; font-size: .9em; margin-top: .4em; }
 .listing .line:target { background: #fff3d6; }
 .listing b { display: inline-block; width: 2.8em; margin-right: .8em; text-align: right; text-indent: 0; font-weight: 400; color: #a3aeba; user-select: none; }
 .listing i { font-style: normal; }
-.listing .comment { color: #6a7684; font-style: italic; }
+.listing .comment { color: #5a6674; font-style: italic; }
 .listing .keyword { color: #0072b2; font-weight: 600; }
 .listing .activity { color: #161d26; font-weight: 600; }
 .listing .condition { color: #007555; }

@@ -26,7 +26,11 @@ pub(crate) fn insert(document: &mut Document, text: &str) -> bool {
     // Behind a name a quote ends a text; within a comment nothing is paired.
     let is_name_before = before.chars().next_back().is_some_and(|c| is_name_character(c) || c == '"');
     let line = &before[before.rfind('\n').map_or(0, |at| at + 1)..];
-    if !has_room || open == "\"" && is_name_before || line.contains("//") {
+    if !has_room
+        || open == "\"" && is_name_before
+        || line.contains("//")
+        || is_owed(document, range.start, open, close)
+    {
         return false;
     }
     let edit =
@@ -34,6 +38,17 @@ pub(crate) fn insert(document: &mut Document, text: &str) -> bool {
     document.edit(&[edit], EditKind::Typing, Some(Caret::at(range.start + open.len())));
     document.closers.push(range.start + open.len());
     true
+}
+
+/// Whether what closes is there already, and only what opens is missing: of brackets in the whole text, of quotes in the
+/// line.
+fn is_owed(document: &Document, at: usize, open: &str, close: &str) -> bool {
+    if open == close {
+        let line = document.line_text(document.line_at(at));
+        return line.matches(open).count() % 2 == 1;
+    }
+    let text = document.text();
+    text.matches(close).count() > text.matches(open).count()
 }
 
 /// Goes over what closes if that was written with what opens and only blanks lie between: those of a line that holds
@@ -116,6 +131,13 @@ mod tests {
         assert_eq!(typed("// see ", "("), "// see (|");
         assert_eq!(typed("a", "\""), "a\"|");
         assert_eq!(typed("(|)", ")"), "()|)", "only what was written with it is typed over");
+    }
+
+    #[test]
+    fn what_opens_is_typed_alone_where_what_closes_waits_for_it() {
+        assert_eq!(typed("choose {|\n  A()\n}", "<{"), "choose {|\n  A()\n}");
+        assert_eq!(typed("f(a|)", "<<(a"), "f(a|)");
+        assert_eq!(typed("terrain |tai\"", "\""), "terrain \"|tai\"");
     }
 
     #[test]

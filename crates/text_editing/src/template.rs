@@ -23,8 +23,10 @@ impl Document {
         let mut stops = stops.into_iter().map(|at| start + at);
         let caret = Caret::at(stops.next().unwrap_or(start + length));
         self.edit(&[Edit { span, text }], EditKind::Single, Some(caret));
-        let left: Vec<usize> = stops.collect();
-        self.stops = Stops { range: (start, start + length), left };
+        // One inside of another goes back to that one.
+        let outer = std::mem::take(&mut self.stops);
+        let range = if outer.left.is_empty() { (start, start + length) } else { outer.range };
+        self.stops = Stops { range, left: stops.chain(outer.left).collect() };
     }
 
     /// Whether Tab goes to another stop of a template.
@@ -85,6 +87,18 @@ mod tests {
         assert_eq!(document.caret(), Caret::at(document.text().len()));
         TextCommand::Indent.apply(&mut document);
         assert!(document.text().ends_with("; "), "then Tab indents again");
+    }
+
+    #[test]
+    fn a_template_inside_of_another_goes_back_to_that_one() {
+        let mut document = Document::new("");
+        document.insert_template(Span::new(0, 0), "do { $1 } maintaining $0");
+        document.insert_template(Span::new(5, 5), "Drive($1)$0");
+        for typed in ["A", ";", "P=ON"] {
+            TextCommand::Insert(typed.to_owned()).apply(&mut document);
+            TextCommand::Indent.apply(&mut document);
+        }
+        assert!(document.text().starts_with("do { Drive(A); } maintaining P=ON"), "{}", document.text());
     }
 
     #[test]

@@ -211,7 +211,7 @@ pub static DARK: Tokens = Tokens {
     shadow: Color32::from_black_alpha(110),
     text: rgb(0xDD_E4_EC),
     text_muted: rgb(0x9A_A7_B6),
-    text_faint: rgb(0x75_82_91),
+    text_faint: rgb(0x82_8F_9E),
     text_on_accent: rgb(0x06_17_22),
     accent: rgb(0x56_B4_E9),
     accent_soft: rgb(0x17_30_40),
@@ -254,7 +254,7 @@ pub static DARK: Tokens = Tokens {
         place: rgb(0x9F_CB_F0),
         number: rgb(0xF4_A8_72),
         string: rgb(0xB9_D3_8C),
-        comment: rgb(0x77_86_96),
+        comment: rgb(0x82_91_A1),
         punctuation: rgb(0x9A_A7_B6),
     },
 };
@@ -273,7 +273,7 @@ pub static LIGHT: Tokens = Tokens {
     shadow: Color32::from_black_alpha(40),
     text: rgb(0x16_1D_26),
     text_muted: rgb(0x4E_5B_6A),
-    text_faint: rgb(0x6A_76_84),
+    text_faint: rgb(0x5A_66_74),
     text_on_accent: rgb(0xFF_FF_FF),
     accent: rgb(0x00_68_A8),
     accent_soft: rgb(0xDB_EB_F7),
@@ -290,7 +290,7 @@ pub static LIGHT: Tokens = Tokens {
     tell: rgb(0x00_75_55),
     ask: rgb(0x9C_3F_77),
     link: rgb(0x00_75_55),
-    ordering: rgb(0x9A_62_00),
+    ordering: rgb(0x8A_57_00),
     nature: rgb(0x5B_3F_A8),
     threat: rgb(0xB8_43_00),
     slack: rgb(0x2B_8C_CC),
@@ -316,7 +316,7 @@ pub static LIGHT: Tokens = Tokens {
         place: rgb(0x2B_5F_A8),
         number: rgb(0xA8_47_00),
         string: rgb(0x4E_6B_14),
-        comment: rgb(0x66_72_80),
+        comment: rgb(0x58_64_72),
         punctuation: rgb(0x4E_5B_6A),
     },
 };
@@ -369,8 +369,11 @@ mod tests {
                 syntax.punctuation,
             ];
             for (index, text) in texts.into_iter().enumerate() {
-                let found = contrast(text, tokens.surface);
-                assert!(found >= 4.5, "text {index}, dark {}: contrast {found:.2}", tokens.is_dark);
+                for ground in [tokens.surface, tokens.sunken, tokens.raised, tokens.background] {
+                    let found = contrast(text, ground);
+                    let what = format!("text {index} on {ground:?}, dark {}", tokens.is_dark);
+                    assert!(found >= 4.5, "{what}: contrast {found:.2}");
+                }
             }
             assert!(contrast(tokens.text, tokens.selection) >= 4.5);
             assert!(contrast(tokens.text_on_accent, tokens.accent) >= 4.5);

@@ -23,8 +23,8 @@ pub enum PanelEffect {
     Reveal(Reveal),
     /// The editor takes the keyboard, when no dialog is open.
     FocusEditor,
-    /// Whatever has the keyboard gives it up, so that plain keys go to the active panel.
-    LeaveFocus,
+    /// A panel takes the keyboard: plain keys go to it, and Tab to what it holds.
+    FocusPanel(PanelKind),
 }
 
 /// What is still to be done, oldest first. What is meant for a panel waits until that panel is on screen and takes it.
@@ -61,12 +61,12 @@ impl PanelEffects {
 
 /// Whether `newer` makes `earlier` pointless.
 fn replaces(newer: PanelEffect, earlier: PanelEffect) -> bool {
-    use PanelEffect::{Arrange, FocusEditor, LeaveFocus, ResetLayout, Reveal, View};
+    use PanelEffect::{Arrange, FocusEditor, FocusPanel, ResetLayout, Reveal, View};
     match (newer, earlier) {
         (Reveal(_), Reveal(_))
         | (ResetLayout, ResetLayout)
         | (Arrange, Arrange)
-        | (FocusEditor | LeaveFocus, FocusEditor | LeaveFocus) => true,
+        | (FocusEditor | FocusPanel(_), FocusEditor | FocusPanel(_)) => true,
         (View(newer, _), View(earlier, _)) => newer == earlier,
         _ => false,
     }
@@ -99,13 +99,13 @@ mod tests {
         effects.push(PanelEffect::View(PanelKind::Terrain, ViewAction::Fit));
         effects.push(PanelEffect::FocusEditor);
         effects.push(PanelEffect::View(PanelKind::Network, ViewAction::ZoomIn));
-        effects.push(PanelEffect::LeaveFocus);
+        effects.push(PanelEffect::FocusPanel(PanelKind::Network));
         assert_eq!(
             effects.waiting(),
             [
                 PanelEffect::View(PanelKind::Terrain, ViewAction::Fit),
                 PanelEffect::View(PanelKind::Network, ViewAction::ZoomIn),
-                PanelEffect::LeaveFocus,
+                PanelEffect::FocusPanel(PanelKind::Network),
             ]
         );
     }

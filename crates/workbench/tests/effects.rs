@@ -72,10 +72,10 @@ fn turning_goes_round_the_panels_on_screen_and_the_keyboard_goes_along() {
     app.session.state_mut().panels_on_screen = on_screen;
     app.run(Command::Activate(PanelKind::Network));
     for (forwards, panel, keyboard) in [
-        (true, PanelKind::Timeline, PanelEffect::LeaveFocus),
+        (true, PanelKind::Timeline, PanelEffect::FocusPanel(PanelKind::Timeline)),
         (true, PanelKind::Editor, PanelEffect::FocusEditor),
-        (false, PanelKind::Timeline, PanelEffect::LeaveFocus),
-        (false, PanelKind::Network, PanelEffect::LeaveFocus),
+        (false, PanelKind::Timeline, PanelEffect::FocusPanel(PanelKind::Timeline)),
+        (false, PanelKind::Network, PanelEffect::FocusPanel(PanelKind::Network)),
     ] {
         let left = leaves(&mut app, Command::TurnPanel(forwards));
         assert_eq!((app.session.state().active_panel, left), (panel, vec![keyboard]));

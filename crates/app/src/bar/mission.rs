@@ -13,6 +13,14 @@ use workbench::state::missions::LibraryCommand;
 /// Missions that the menu lists; the others are in the list of all.
 const MAX_LISTED: usize = 8;
 
+/// The width at which the whole name can be read.
+pub(super) fn width(ui: &Ui, context: &Context<'_>) -> f32 {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let title = context.state.mission_title().to_owned();
+    let galley = ui.painter().layout_no_wrap(title, font, context.tokens.text);
+    galley.size().x + space::ROW + 20.0
+}
+
 /// Shows the name, `width` points wide in all, and the menu beside it.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, width: f32, commands: &mut CommandSender) {
     ui.spacing_mut().item_spacing.x = space::XS;

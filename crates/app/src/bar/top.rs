@@ -26,7 +26,11 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
             ui.add_space(space::S);
             menus(ui, context, commands);
             ui.add_space(space::S);
-            let width = if is_narrow(ui) { 128.0 } else { 180.0 };
+            // The name has all the room that the frame before left over.
+            let spare_id = ui.scope_id().with("spare");
+            let (given, spare) = ui.data(|data| data.get_temp::<(f32, f32)>(spare_id)).unwrap_or_default();
+            let wanted = mission::width(ui, context);
+            let width = wanted.min(given + spare).max(if is_narrow(ui) { 128.0 } else { 150.0 });
             mission::show(ui, context, width, commands);
             ui.add_space(space::L);
             workspaces(ui, context, commands);
@@ -34,6 +38,11 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
                 tools(ui, context, commands);
                 ui.add_space(space::M);
                 status(ui, context, commands);
+                let left = (ui.available_width() - STATUS_ROOM).max(0.0);
+                if (given, spare) != (width, left) {
+                    ui.data_mut(|data| data.insert_temp(spare_id, (width, left)));
+                    ui.ctx().request_repaint();
+                }
                 if context.state.is_long_at_work()
                     && icon::button(ui, tokens, Icon::Close, "Stop planning").clicked()
                 {
@@ -44,6 +53,8 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     });
 }
 
+/// Kept free between the workspaces and the sign of the plan, whose words change.
+const STATUS_ROOM: f32 = 70.0;
 /// A bar narrower than this has its menus in one.
 const ROOM_FOR_MENUS: f32 = 1_240.0;
 

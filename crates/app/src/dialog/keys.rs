@@ -1,46 +1,85 @@
-//! The list of keys, made from the command registry.
+//! The list of keys, made from the command registry and from what the editor does by itself.
 
-use egui::{Grid, RichText, ScrollArea, Ui};
+use egui::{Grid, RichText, ScrollArea, TextEdit, Ui};
 use panels::Context;
 use theme::space;
 use workbench::command::{Command, CommandSender, Group, all_commands};
 
 use crate::chord;
 
+/// What the editor does with keys that are no commands.
+const EDITOR_KEYS: [(&str, &str); 12] = [
+    ("Arrows, Home, End, Page Up, Page Down", "Move the caret; with Shift, select"),
+    ("Ctrl+Left, Ctrl+Right", "Move by words"),
+    ("Ctrl+Home, Ctrl+End", "To the start or the end of the text"),
+    ("Ctrl+A", "Select everything"),
+    ("Ctrl+X, Ctrl+C, Ctrl+V", "Cut, copy, paste; without a selection, the line"),
+    ("Tab, Shift+Tab", "Next place of a template, or indent and outdent"),
+    ("Ctrl+Backspace, Ctrl+Delete", "Delete a word"),
+    ("Alt+click", "Another caret, or one less"),
+    ("Double click, triple click", "Select the word or the line"),
+    ("Up, Down, Enter, Tab", "In a list at the caret: choose and take"),
+    ("Escape", "Close the list at the caret, leave one caret, leave a template"),
+    ("Double click on a tab", "Give the panel the whole window, or put it back"),
+];
+
 /// Shows the list.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
-    let tokens = context.tokens;
-    ui.set_width(620.0);
+    let room = ui.ctx().content_rect().size();
+    ui.set_width((room.x - 80.0).min(720.0));
+    let id = ui.scope_id().with("keys-query");
+    let mut query = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
     ui.horizontal(|ui| {
         ui.heading("Keyboard shortcuts");
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if ui.button("Close").clicked() {
                 commands.send(Command::CloseDialog);
             }
-        });
-    });
-    ui.add_space(space::S);
-    ScrollArea::vertical().max_height(460.0).auto_shrink([false, true]).show(ui, |ui| {
-        ui.columns(2, |columns| {
-            for (index, group) in Group::ALL.into_iter().enumerate() {
-                let ui = &mut columns[index % 2];
-                let with_keys: Vec<_> =
-                    all_commands().filter(|spec| spec.group == group && !spec.keys.is_empty()).collect();
-                if with_keys.is_empty() {
-                    continue;
-                }
-                ui.label(RichText::new(group.title()).strong().color(tokens.accent));
-                Grid::new(group.title()).num_columns(2).spacing([space::L, space::XS]).show(ui, |ui| {
-                    for spec in with_keys {
-                        let keys: Vec<String> =
-                            spec.keys.iter().map(|&keys| chord::text(ui.ctx(), keys)).collect();
-                        ui.label(RichText::new(keys.join("  ")).monospace().color(tokens.text_muted));
-                        ui.label(spec.title);
-                        ui.end_row();
-                    }
-                });
-                ui.add_space(space::M);
+            let field = TextEdit::singleline(&mut query).hint_text("Find a key or what it does");
+            let field = ui.add(field.desired_width(240.0)).accessible_name("Find a key or what it does");
+            if ui.memory(|memory| memory.focused().is_none()) {
+                field.request_focus();
             }
         });
+    });
+    ui.data_mut(|data| data.insert_temp(id, query.clone()));
+    ui.add_space(space::S);
+    let wanted = query.trim().to_lowercase();
+    let fits = |keys: &str, title: &str| {
+        wanted.is_empty() || keys.to_lowercase().contains(&wanted) || title.to_lowercase().contains(&wanted)
+    };
+    let of_commands = Group::ALL.into_iter().map(|group| {
+        let rows = all_commands().filter(|spec| spec.group == group && !spec.keys.is_empty()).map(|spec| {
+            let keys: Vec<String> = spec.keys.iter().map(|&keys| chord::text(ui.ctx(), keys)).collect();
+            (keys.join("  or  "), spec.title)
+        });
+        (group.title(), rows.collect::<Vec<_>>())
+    });
+    let of_editor = EDITOR_KEYS.map(|(keys, title)| (keys.to_owned(), title)).to_vec();
+    let sections: Vec<_> = of_commands.chain([("Text and panels", of_editor)]).collect();
+    ScrollArea::vertical().max_height(room.y - 200.0).auto_shrink([false, true]).show(ui, |ui| {
+        let mut is_empty = true;
+        for (title, rows) in sections {
+            let rows: Vec<_> = rows.into_iter().filter(|(keys, title)| fits(keys, title)).collect();
+            if rows.is_empty() {
+                continue;
+            }
+            is_empty = false;
+            ui.label(RichText::new(title).strong().color(context.tokens.accent));
+            Grid::new(title).num_columns(2).min_col_width(260.0).spacing([space::L, space::S]).show(
+                ui,
+                |ui| {
+                    for (keys, title) in rows {
+                        ui.label(RichText::new(keys).strong());
+                        ui.label(title);
+                        ui.end_row();
+                    }
+                },
+            );
+            ui.add_space(space::M);
+        }
+        if is_empty {
+            ui.label(RichText::new("No key does that.").color(context.tokens.text_muted));
+        }
     });
 }

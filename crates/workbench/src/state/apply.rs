@@ -377,7 +377,7 @@ impl AppState {
         if panel == PanelKind::Editor {
             self.focus_editor();
         } else {
-            self.panel_effects.push(PanelEffect::LeaveFocus);
+            self.panel_effects.push(PanelEffect::FocusPanel(panel));
         }
     }
 

@@ -62,3 +62,45 @@ fn every_key_press_is_a_revision_and_undo_takes_it_back() -> Result<()> {
     page.tab.wait_until(&format!("enroute.source() === {before}"))?;
     page.wait_for("!state.isStale")
 }
+
+#[test]
+fn a_mission_is_written_with_real_keys_templates_pairs_and_several_carets() -> Result<()> {
+    let page = Opened::planned()?;
+    let is_source = |text: &str| page.tab.wait_until(&format!("enroute.source() === {}", json!(text)));
+    page.place_caret_after("scenario Day1")?;
+    page.tab.press(Key::Character('a'), Modifiers::CONTROL)?;
+    page.tab.press(Key::Delete, Modifiers::NONE)?;
+    is_source("")?;
+
+    // A bracket comes with its partner, which is typed over, and a block comes out as typed.
+    page.tab.type_text("primitive Go()[1,2];\nscenario S = {\n")?;
+    is_source("primitive Go()[1,2];\nscenario S = {\n  \n}")?;
+    page.tab.type_text("Go();\nGo()\n}")?;
+    is_source("primitive Go()[1,2];\nscenario S = {\n  Go();\n  Go()\n}")?;
+    page.wait_for("state.status === 'plan' && !state.isStale")?;
+
+    // The same word three times, typed over at once; Escape leaves one caret and the keyboard in the text.
+    page.place_caret_after("primitive G")?;
+    for _ in 0..3 {
+        page.tab.press(Key::Character('d'), Modifiers::CONTROL)?;
+    }
+    page.tab.type_text("Run")?;
+    is_source("primitive Run()[1,2];\nscenario S = {\n  Run();\n  Run()\n}")?;
+    page.tab.press(Key::Escape, Modifiers::NONE)?;
+    page.tab.type_text("m")?;
+    page.tab.wait_until("enroute.source().split('Runm').length === 2")?;
+    page.tab.press(Key::Character('z'), Modifiers::CONTROL)?;
+
+    // A caret below, a line copied, a line selected and deleted.
+    page.place_caret_after("  Run();")?;
+    page.tab.press(Key::ArrowDown, Modifiers::CONTROL | Modifiers::ALT)?;
+    page.tab.type_text(" ")?;
+    page.tab.wait_until("enroute.source().includes('Run(); \\n  Run() \\n')")?;
+    page.tab.press(Key::Escape, Modifiers::NONE)?;
+    page.tab.press(Key::ArrowDown, Modifiers::ALT | Modifiers::SHIFT)?;
+    page.tab.wait_until("enroute.source().split('Run()').length === 5")?;
+    page.tab.press(Key::Character('l'), Modifiers::CONTROL)?;
+    page.tab.press(Key::Delete, Modifiers::NONE)?;
+    page.tab.wait_until("enroute.source().split('Run()').length === 4")?;
+    Ok(())
+}

@@ -1,0 +1,118 @@
+//! The editor's help while somebody types: lists that stay, templates, carets, places gone back to.
+
+mod support;
+
+use support::App;
+use text_editing::{Motion, TextCommand};
+use workbench::command::{Command, EditorCommand};
+use workbench::host::Remote as _;
+
+fn showing(source: &str) -> App {
+    let mut app = support::start();
+    app.run(Command::SetSource(source.replace('|', "")));
+    let at = source.find('|').unwrap_or(source.len());
+    app.run(Command::Text(TextCommand::Select { anchor: at, head: at }));
+    app
+}
+
+fn type_text(app: &mut App, text: &str) {
+    for character in text.chars() {
+        app.run(Command::Text(match character {
+            '\n' => TextCommand::NewLine,
+            '\t' => TextCommand::Indent,
+            other => TextCommand::Insert(other.to_string()),
+        }));
+    }
+}
+
+fn listed(app: &App) -> Vec<String> {
+    let popup = app.session.state().editor.popup.as_ref();
+    popup.map(|popup| popup.items.iter().map(|item| item.label.clone()).collect()).unwrap_or_default()
+}
+
+fn take(app: &mut App, label: &str) {
+    let at = listed(app).iter().position(|item| item == label);
+    let at = at.unwrap_or_else(|| panic!("{label} is not in {:?}", listed(app)));
+    app.run(Command::Editor(EditorCommand::TakeFromPopup(Some(at))));
+}
+
+#[test]
+fn a_list_that_was_asked_for_stays_while_it_is_narrowed() {
+    let mut app = showing("primitive Drive()[1,2];\nprimitive Drill()[1,2];\nscenario S = { | }\n");
+    app.run(Command::Editor(EditorCommand::Complete));
+    assert!(listed(&app).contains(&"choose".to_owned()));
+    type_text(&mut app, "D");
+    assert_eq!(listed(&app)[..2], ["Drill", "Drive"]);
+    for letter in ["r", "i"] {
+        type_text(&mut app, letter);
+        assert_eq!(listed(&app), ["Drill", "Drive"], "after {letter}");
+    }
+    app.run(Command::Text(TextCommand::Delete(Motion::Left)));
+    assert_eq!(listed(&app), ["Drill", "Drive"]);
+    type_text(&mut app, "iv");
+    assert_eq!(listed(&app), ["Drive"]);
+}
+
+#[test]
+fn a_text_in_quotes_lists_the_maps() {
+    let mut app = showing("");
+    type_text(&mut app, "terrain \"");
+    assert!(listed(&app).contains(&"tai-plain".to_owned()), "{:?}", listed(&app));
+    type_text(&mut app, "tai");
+    take(&mut app, "tai-plain");
+    assert_eq!(app.session.source(), "terrain \"tai-plain\"");
+}
+
+#[test]
+fn a_template_is_filled_in_from_stop_to_stop_with_what_fits_each() {
+    let mut app = showing("location BASE (0, 0);\n");
+    type_text(&mut app, "vehi");
+    take(&mut app, "vehicle");
+    type_text(&mut app, "Rover\t");
+    assert!(listed(&app).contains(&"ATRV".to_owned()), "{:?}", listed(&app));
+    take(&mut app, "ATRV");
+    type_text(&mut app, "\t");
+    take(&mut app, "BASE");
+    type_text(&mut app, "\t");
+    assert_eq!(app.session.source(), "location BASE (0, 0);\nvehicle Rover : ATRV at BASE;");
+}
+
+#[test]
+fn escape_leaves_the_list_then_the_carets_and_nothing_else() {
+    let mut app = showing("primitive Drive()[1,2];\nscenario S = { Drive(); Dr| }\n");
+    app.run(Command::Editor(EditorCommand::Complete));
+    app.run(Command::Text(TextCommand::ToggleCaret(0)));
+    app.run(Command::Editor(EditorCommand::Complete));
+    assert!(!listed(&app).is_empty());
+    app.run(Command::Escape);
+    assert!(listed(&app).is_empty());
+    assert_eq!(app.session.state().document.carets().len(), 2);
+    app.run(Command::Escape);
+    assert_eq!(app.session.state().document.carets().len(), 1);
+}
+
+#[test]
+fn what_is_gone_to_is_gone_back_from_and_forward_again() {
+    let mut app = showing("primitive Drive()[1,2];\n\nscenario S = { Dri|ve() }\n");
+    let head = |app: &App| app.session.state().document.caret().head;
+    let used = head(&app);
+    app.run(Command::Editor(EditorCommand::GoToDefinition));
+    let declared = head(&app);
+    assert!(declared < 20, "{declared}");
+    app.run(Command::Editor(EditorCommand::GoToPlace { forwards: false }));
+    assert_eq!(head(&app), used);
+    app.run(Command::Editor(EditorCommand::GoToPlace { forwards: true }));
+    assert_eq!(head(&app), declared);
+    app.run(Command::Editor(EditorCommand::GoToPlace { forwards: true }));
+    assert_eq!(head(&app), declared, "there is nothing beyond");
+}
+
+#[test]
+fn a_bracket_leads_to_its_partner_and_back() {
+    let mut app = showing("scenario S = |{ delay[1,2] }");
+    let head = |app: &App| app.session.state().document.caret().head;
+    app.run(Command::Editor(EditorCommand::GoToBracket));
+    assert_eq!(&app.session.source()[head(&app)..], "}");
+    app.run(Command::Editor(EditorCommand::GoToBracket));
+    assert_eq!(head(&app), 13);
+}
