@@ -50,17 +50,13 @@ pub(crate) fn captions(
             Some(BlockKind::Leaf { arc }) => (network.arcs[arc.index()].occurrence, Some(*arc)),
             _ => (None, None),
         };
-        let title = match occurrence {
-            Some(occurrence) => {
-                let name = &network.occurrences[occurrence.index()].activity;
-                cut_to_width(name, TextRole::Title, options.longest_name, measure)
-            }
-            None => {
-                let name = summary(network, &tree.folding, fold).or_else(|| kind.map(structure_name));
-                let longest = options.longest_name.min(LONGEST_SUMMARY);
-                cut_to_width(&name.unwrap_or_default(), TextRole::Title, longest, measure)
-            }
+        let (name, longest) = if let Some(occurrence) = occurrence {
+            (Some(network.occurrences[occurrence.index()].activity.clone()), options.longest_name)
+        } else {
+            let name = summary(network, &tree.folding, fold).or_else(|| kind.map(structure_name));
+            (name, options.longest_name.min(LONGEST_SUMMARY))
         };
+        let title = cut_to_width(&name.unwrap_or_default(), TextRole::Title, longest, measure);
         let events = match hidden_counts[fold as usize] {
             1 => SmolStr::new_static("1 event"),
             count => format_smolstr!("{count} events"),

@@ -125,7 +125,10 @@ impl<'a> Placer<'a> {
                 self.level_arc(*arc, start, end, ends);
             }
             PartKind::Series(range) => match self.sizes.rows.get(&id) {
-                Some(rows) => self.rows(id, rows.clone(), self.tree.children(range), frame),
+                Some(rows) => {
+                    let rows = rows.clone();
+                    self.rows(id, &rows, self.tree.children(range), frame);
+                }
                 None => self.series(self.tree.children(range), frame),
             },
             PartKind::Fan { branches, is_choice } => self.fan(id, branches.clone(), *is_choice, frame),

@@ -67,7 +67,7 @@ impl Rows {
 
 impl Placer<'_> {
     /// Places the children of series `id` in rows, and the lines from row to row.
-    pub(crate) fn rows(&mut self, id: PartId, rows: Rows, children: &[PartId], frame: Frame) {
+    pub(crate) fn rows(&mut self, id: PartId, rows: &Rows, children: &[PartId], frame: Frame) {
         let end = self.tree.part(id).end;
         let target = frame.start.shifted(frame.width, 0.0);
         for (row, &first) in rows.starts.iter().enumerate() {

@@ -45,8 +45,8 @@ pub(super) fn describe_box(
 ) -> (String, Vec<String>) {
     let is_inside = |occurrence: &&tpn::Occurrence| {
         let boxes = [occurrence.start, occurrence.end].map(|node| drawing.box_of(node));
-        let is_this = |shape: &Option<&layout::BlockShape>| shape.is_some_and(|it| it.block == Some(first));
-        boxes.iter().any(is_this)
+        let is_this = |shape: Option<&layout::BlockShape>| shape.is_some_and(|it| it.block == Some(first));
+        boxes.into_iter().any(is_this)
     };
     let bounds = |occurrence: &tpn::Occurrence| {
         let arc = occurrence.arc.and_then(|arc| network.arcs.get(arc.index()));

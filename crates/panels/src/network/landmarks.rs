@@ -114,7 +114,7 @@ fn in_view(panel: Rect, view: &View, drawn: &Drawn, network: &Network) -> Vec<La
                 boxes.push((shape.rect, (first, last, shape.title.clone())));
             }
         }
-        _ => {}
+        layout::Shape::Connector(_) => {}
     });
     for text in arches.into_iter().flatten().map(|&at| &drawing.texts[at as usize]) {
         let rect = text.rect_in_view(area.min.x + inset, area.max.x - inset);
