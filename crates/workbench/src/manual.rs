@@ -34,6 +34,7 @@ pub struct Found {
 const FILES: &[(&str, &str)] = &[
     ("language", include_str!("../../../docs/language.md")),
     ("missions", include_str!("../../../docs/missions.md")),
+    ("network", include_str!("../../../docs/network.md")),
     ("timeline", include_str!("../../../docs/timeline.md")),
     ("terrain", include_str!("../../../docs/terrain.md")),
     ("simulation", include_str!("../../../docs/simulation.md")),
@@ -134,7 +135,7 @@ pub const fn about_panel(panel: PanelKind) -> (&'static str, &'static str) {
     match panel {
         PanelKind::Editor | PanelKind::Outline => ("language", ""),
         PanelKind::Problems => ("diagnostics", ""),
-        PanelKind::Network => ("specification", "3-the-temporal-plan-network"),
+        PanelKind::Network => ("network", ""),
         PanelKind::Plan => ("specification", "5-planning"),
         PanelKind::Timeline => ("timeline", ""),
         PanelKind::Terrain => ("terrain", ""),

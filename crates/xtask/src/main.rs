@@ -2,6 +2,7 @@
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a command line talks to its user")]
 
 mod bench;
+mod disturb;
 mod serve;
 mod shot;
 mod test;
@@ -33,6 +34,8 @@ enum Task {
     Dist,
     /// Prints the benchmark tables.
     Bench(bench::Options),
+    /// Reloads, closes, crashes and starves the page while somebody types, and counts the key presses that are lost.
+    Disturb(disturb::Options),
     /// Takes a picture of the built page in headless Chromium.
     Shot(shot::Options),
 }
@@ -57,6 +60,7 @@ fn main() -> ExitCode {
         },
         Task::Dist => write_dist(),
         Task::Bench(options) => bench::run_all(&options),
+        Task::Disturb(options) => disturb::run(&options),
         Task::Shot(options) => shot::run(&options),
     };
     match outcome {

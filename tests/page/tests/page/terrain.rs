@@ -46,6 +46,9 @@ fn an_obstacle_dragged_onto_the_first_path_makes_the_plan_take_the_second() -> R
             (boulder.0 + part * (gap.0 - boulder.0), boulder.1 + part * (gap.1 - boulder.1))
         })
         .collect();
+    // A drag that begins on what is not selected turns the view.
+    page.tab.click(boulder.0, boulder.1)?;
+    page.wait_for("state.selection?.name === 'Boulder'")?;
     page.tab.drag(&way)?;
     page.wait_for("state.plan?.choices.D1 === 1")?;
     page.settle()?;
