@@ -1,4 +1,4 @@
-//! `cargo xtask disturb`: reloads, closes, crashes and starves the page right after key presses, again and again, and
+//! `cargo xtask disturb`: reloads, closes and starves the page right after key presses, again and again, and
 //! counts the key presses that are lost.
 
 use std::fmt::Write as _;
@@ -46,7 +46,7 @@ impl Disturbance {
             Self::Reload => "reloaded right after a key press",
             Self::CloseTab => "tab closed right after a key press",
             Self::KillWorkers => "planning workers killed while typing",
-            Self::FillStorage => "storage full while typing",
+            Self::FillStorage => "database full (quota of 1 byte) while typing",
         }
     }
 }

@@ -34,7 +34,7 @@ enum Task {
     Dist,
     /// Prints the benchmark tables.
     Bench(bench::Options),
-    /// Reloads, closes, crashes and starves the page while somebody types, and counts the key presses that are lost.
+    /// Reloads, closes and starves the page while somebody types, and counts the key presses that are lost.
     Disturb(disturb::Options),
     /// Takes a picture of the built page in headless Chromium.
     Shot(shot::Options),
