@@ -110,6 +110,16 @@ impl Departures {
     }
 }
 
+/// How many metres of a route were counted when its plan was chosen: the most that any planned path of it has.
+pub(crate) fn counted_m(network: &Network, route: &Route) -> f64 {
+    let is_its = |distance: &&tpn::Distance| {
+        let arrival = &network.labels[distance.arrival.index()];
+        let place = network.variables[arrival.literal.variable.index()].values.get(distance.from.index());
+        arrival.owner == Some(route.occurrence) && place == route.from.as_ref()
+    };
+    network.distances.iter().find(is_its).map_or(0.0, |distance| distance.metres.to_f64())
+}
+
 /// Writes down how many metres a route drives that was planned.
 pub(crate) fn record(network: &mut Network, route: &Route, length_m: f64) {
     let Some((from, metres)) = route.from.as_ref().zip(rounded_up(length_m)) else { return };

@@ -45,7 +45,7 @@ pub(crate) fn kept_apart(
     mut planned: Planned,
     plan_again: &mut dyn FnMut(&Problem<'_>) -> Planned,
 ) -> Planned {
-    let best = planned.planning.outcome.plans.first().cloned();
+    let best = planned.planning.outcome.plans.first().cloned().map(|plan| (plan, planned.counted_m));
     let mut network = Arc::clone(problem.network);
     let mut tried: BTreeSet<(OccurrenceId, OccurrenceId)> = BTreeSet::new();
     let options = Options { explain: false, relax: false, ..problem.options };
@@ -62,21 +62,26 @@ pub(crate) fn kept_apart(
         }
     }
     let mut planned = led_around(&Problem { network: &network, options, ..*problem }, planned, plan_again);
-    if let Some(best) = best {
-        admit_worse(problem.network, &best, &mut planned);
+    if let Some((best, counted_m)) = best {
+        admit_worse(problem.network, (&best, counted_m), &mut planned);
     }
     planned
 }
 
 /// Where keeping apart made an optimal plan worse, nothing is proven but that none is better than it was without.
-fn admit_worse(network: &Network, best: &Plan, planned: &mut Planned) {
+fn admit_worse(network: &Network, (best, counted_m): (&Plan, f64), planned: &mut Planned) {
+    let own_m = planned.counted_m;
     let planning = Arc::make_mut(&mut planned.planning);
     let Some(plan) = planning.outcome.plans.first_mut() else { return };
-    let values = |plan: &Plan| worth::goal_values(network, plan);
-    let (Some(before), Some(after)) = (values(best), values(plan)) else { return };
-    if let Some((bound, _)) = before.iter().zip(&after).find(|(before, after)| before != after) {
+    let values = |plan: &Plan, driven_m: f64| worth::goal_values(network, plan, driven_m);
+    let (Some(before), Some(after)) = (values(best, counted_m), values(plan, own_m)) else { return };
+    let mut goals = network.objective.iter().zip(before.iter().zip(&after));
+    let differs = goals.find(|(_, (before, after))| before != after);
+    if let Some((goal, (before, after))) = differs
+        && (before > after) == goal.is_maximized
+    {
         plan.quality.is_optimal = Some(false);
-        planning.outcome.bound = Some(*bound);
+        planning.outcome.bound = Some(*before);
     }
 }
 

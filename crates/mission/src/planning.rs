@@ -72,6 +72,8 @@ pub struct Planned {
     pub others: Vec<Listed>,
     /// The plan's traverses.
     pub traverses: Vec<Traverse>,
+    /// The metres that were counted when the plan was chosen, where the objective counts them.
+    pub counted_m: f64,
     /// Where the vehicles of each traverse can be.
     pub spaces: Vec<(OccurrenceId, Arc<ConfigurationSpace>)>,
     /// Where vehicles are over time.
@@ -291,6 +293,7 @@ pub fn without_paths(network: &Arc<Network>, outcome: Outcome) -> Planned {
         planning,
         others: Vec::new(),
         traverses: Vec::new(),
+        counted_m: 0.0,
         spaces: Vec::new(),
         motions: Vec::new(),
         separation_violations: Vec::new(),
@@ -554,10 +557,12 @@ fn conclude(
     let mut traverses = Vec::new();
     let mut drives: Vec<Drive> = Vec::new();
     let mut spaces = Vec::new();
+    let mut counted_m = 0.0;
     let world = &problem.program.world;
     if let (Some((key, map)), Some(plan)) = (problem.ground, outcome.plans.first()) {
         let routes = traverse::routes(&network, problem.program, plan, places(problem));
         if !network.distances.is_empty() {
+            counted_m = routes.iter().map(|route| departures::counted_m(&network, route)).sum();
             let described = Arc::make_mut(&mut network);
             for route in &routes {
                 if let Some(Inserted { legs: Ok(legs), .. }) = inserted.get(&route.occurrence) {
@@ -603,7 +608,17 @@ fn conclude(
     let planning =
         Arc::new(Planning { outcome, verdict, undrivable, left_out: Vec::new(), repairs: Vec::new() });
     let others = Vec::new();
-    Planned { network, planning, others, traverses, spaces, motions, separation_violations, warnings }
+    Planned {
+        network,
+        planning,
+        others,
+        traverses,
+        counted_m,
+        spaces,
+        motions,
+        separation_violations,
+        warnings,
+    }
 }
 
 /// Where the vehicles are that move, and where those stay that do not: others have to keep apart from these as well.

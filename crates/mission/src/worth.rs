@@ -39,15 +39,15 @@ pub fn words(network: &Network, plan: &Plan) -> Option<String> {
     (!figures.is_empty()).then(|| figures.join(", "))
 }
 
-/// What a plan comes to in each goal of its mission's objective, metres rounded up to the millimetre; `None` where a number
-/// does not fit.
-pub fn goal_values(network: &Network, plan: &Plan) -> Option<Vec<Rational>> {
+/// What a plan comes to in each goal of its mission's objective, with so many metres driven, rounded up to the millimetre;
+/// `None` where a number does not fit.
+pub fn goal_values(network: &Network, plan: &Plan, driven_m: f64) -> Option<Vec<Rational>> {
     let quality = &plan.quality;
     let value = |measure: Measure| match measure {
         Measure::Cost => Some(quality.cost),
         Measure::Reward => Some(quality.reward),
         Measure::End => Some(quality.end.units()),
-        Measure::Length => rounded_up(quality.length_m),
+        Measure::Length => rounded_up(driven_m),
     };
     let add = |sum: Rational, &(factor, measure): &(Rational, Measure)| {
         sum.checked_add(factor.checked_mul(value(measure)?)?)

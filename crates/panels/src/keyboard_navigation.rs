@@ -60,7 +60,8 @@ pub fn follow(ui: &Ui, context: &Context<'_>, commands: &mut CommandSender) {
     }
 }
 
-fn has_focus(ui: &Ui) -> bool {
+/// Whether something has the keyboard other than a panel as a whole.
+pub(crate) fn has_focus(ui: &Ui) -> bool {
     ui.memory(|memory| memory.focused().is_some()) && !crate::is_region_focused(ui.ctx())
 }
 

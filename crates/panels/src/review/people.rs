@@ -152,7 +152,7 @@ impl People {
         let (send, hint) = about.words();
         let field = TextEdit::singleline(&mut answer.text).hint_text(hint).desired_width(f32::INFINITY);
         let field = ui.add(field).accessible_name(hint);
-        if answer.text.is_empty() && ui.memory(|memory| memory.focused().is_none()) {
+        if answer.text.is_empty() && !crate::keyboard_navigation::has_focus(ui) {
             field.request_focus();
         }
         let needs_words = matches!(about, About::Line(_));

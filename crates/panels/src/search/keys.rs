@@ -22,7 +22,7 @@ pub fn follow(
     let trace = recording.trace();
     let is_meant = context.state.active_panel == PanelKind::Search
         && context.state.dialog.is_none()
-        && ui.memory(|memory| memory.focused().is_none());
+        && !crate::keyboard_navigation::has_focus(ui);
     if !is_meant {
         return;
     }
