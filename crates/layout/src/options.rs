@@ -82,7 +82,7 @@ impl Default for Options {
             changes: true,
             easy_line: 130.0,
             least_text: 0.0,
-            longest_name: 230.0,
+            longest_name: 260.0,
             window_width: 52.0,
         }
     }

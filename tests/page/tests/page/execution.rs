@@ -96,7 +96,8 @@ fn a_vehicle_stops_and_an_obstacle_appears_by_hand_and_both_are_taken_back() -> 
 fn a_component_that_fails_by_hand_sends_the_mission_to_the_other_one() -> Result<()> {
     let page = Opened::with_fragment("mission=flyby&workspace=execute")?;
     page.tab.resize(1280, 1500)?;
-    page.wait_for("state.execution?.status === 'finished' || !state.execution?.isWorking")?;
+    page.settle()?;
+    page.wait_for("state.execution !== null && !state.execution.isWorking")?;
     assert_eq!(page.state()?["plan"]["choices"], json!({ "D1": 0 }));
     page.tab.evaluate("enroute.dispatch('play.seek', { time: 1 })")?;
     page.wait_for("state.execution.underWay.includes('Start-Up#1')")?;
