@@ -174,7 +174,8 @@ fn push(
 
 /// That tasks go on at a time which together take more than `room`: as few as suffice.
 fn surely_on(tasks: &[Task], time: i64, room: i64, besides: Option<&Task>) -> Conflict {
-    let is_other = |task: &&Task| besides.is_none_or(|besides| besides.starts_after != task.starts_after);
+    // Not by its start: branches of one block begin at one event.
+    let is_other = |task: &&Task| besides.is_none_or(|besides| !std::ptr::eq(besides, *task));
     let mut on: Vec<&Task> = tasks.iter().filter(|task| task.is_on(time)).filter(is_other).collect();
     on.sort_by_key(|task| (std::cmp::Reverse(task.amount), task.starts_after));
     let mut taken = 0;
