@@ -7,18 +7,23 @@ use kirk::{Options, Outcome, Status};
 use tpn::generate::Rng;
 
 /// Missions that are compared.
-const MISSIONS: u64 = 150;
+const MISSIONS: u64 = 600;
 
 struct Activity {
     duration: i64,
     amounts: Vec<i64>,
+}
+
+/// Activities that start together.
+struct Block {
+    activities: Vec<Activity>,
     /// The one that comes before it in its branch.
     after: Option<usize>,
 }
 
 struct Project {
     capacities: Vec<i64>,
-    activities: Vec<Activity>,
+    blocks: Vec<Block>,
 }
 
 impl Project {
@@ -26,14 +31,21 @@ impl Project {
         let mut random = Rng::new(seed);
         let mut whole = |low: i64, high: i64| random.between(low, high);
         let capacities: Vec<i64> = (0..whole(1, 2)).map(|_| whole(3, 7)).collect();
-        let activities = (0..whole(4, 6) as usize)
-            .map(|index| Activity {
-                duration: whole(1, 5),
-                amounts: capacities.iter().map(|&capacity| whole(0, (capacity - 1).min(4))).collect(),
-                after: (index > 0 && whole(0, 2) == 0).then(|| index - 1),
+        let blocks = (0..whole(4, 5) as usize)
+            .map(|index| {
+                let together = 1 + whole(0, 3) / 3;
+                let activities = (0..together).map(|_| Activity {
+                    duration: whole(1, 5),
+                    amounts: capacities
+                        .iter()
+                        .map(|&capacity| whole(0, (capacity / together).min(4)))
+                        .collect(),
+                });
+                let activities: Vec<Activity> = activities.collect();
+                Block { activities, after: (index > 0 && whole(0, 2) == 0).then(|| index - 1) }
             })
             .collect();
-        Self { capacities, activities }
+        Self { capacities, blocks }
     }
 
     fn text(&self, horizon: i64, objective: &str) -> String {
@@ -42,15 +54,21 @@ impl Project {
             text.push_str(&format!("resource R{index} capacity {capacity};\n"));
         }
         let mut branches: Vec<String> = Vec::new();
-        for (index, activity) in self.activities.iter().enumerate() {
-            let duration = activity.duration;
-            let used = (0..).zip(&activity.amounts).filter(|&(_, &amount)| amount > 0);
-            let uses: Vec<String> = used.map(|(resource, amount)| format!("R{resource} {amount}")).collect();
-            let clause = if uses.is_empty() { String::new() } else { format!(" uses {}", uses.join(", ")) };
-            text.push_str(&format!("primitive A{index}()[{duration},{duration}]{clause};\n"));
-            match activity.after.and_then(|_| branches.last_mut()) {
-                Some(branch) => branch.push_str(&format!("; delay; A{index}()")),
-                None => branches.push(format!("delay; A{index}()")),
+        for (index, block) in self.blocks.iter().enumerate() {
+            let mut calls = Vec::new();
+            for (part, Activity { duration, amounts }) in block.activities.iter().enumerate() {
+                let used = (0..).zip(amounts).filter(|&(_, &amount)| amount > 0);
+                let uses: Vec<String> =
+                    used.map(|(resource, amount)| format!("R{resource} {amount}")).collect();
+                let clause =
+                    if uses.is_empty() { String::new() } else { format!(" uses {}", uses.join(", ")) };
+                text.push_str(&format!("primitive A{index}{part}()[{duration},{duration}]{clause};\n"));
+                calls.push(format!("A{index}{part}()"));
+            }
+            let block_text = format!("delay; {{ {} }}", calls.join(", "));
+            match block.after.and_then(|_| branches.last_mut()) {
+                Some(branch) => branch.push_str(&format!("; {block_text}")),
+                None => branches.push(block_text),
             }
         }
         let branches: Vec<String> = branches.iter().map(|branch| format!("{{ {branch} }}")).collect();
@@ -60,22 +78,21 @@ impl Project {
 
     /// The end of the shortest schedule.
     fn shortest(&self) -> i64 {
-        self.extend(&mut vec![None; self.activities.len()])
+        self.extend(&mut vec![None; self.blocks.len()])
     }
 
     fn extend(&self, starts: &mut Vec<Option<i64>>) -> i64 {
-        let end = |index: usize, start: i64| start + self.activities[index].duration;
         let mut shortest = i64::MAX;
         let mut is_whole = true;
-        for index in 0..self.activities.len() {
-            let before = self.activities[index].after.map(|before| (before, starts[before]));
+        for index in 0..self.blocks.len() {
+            let before = self.blocks[index].after.map(|before| (before, starts[before]));
             if starts[index].is_some() {
                 continue;
             }
             is_whole = false;
             let from = match before {
                 Some((_, None)) => continue,
-                Some((before, Some(start))) => end(before, start),
+                Some((before, Some(start))) => start + self.blocks[before].duration(),
                 None => 0,
             };
             let start =
@@ -85,23 +102,39 @@ impl Project {
             starts[index] = None;
         }
         if is_whole {
-            let ends = starts.iter().enumerate().filter_map(|(index, start)| Some(end(index, (*start)?)));
+            let ends = self
+                .blocks
+                .iter()
+                .zip(starts)
+                .filter_map(|(block, start)| Some((*start)? + block.duration()));
             return ends.max().unwrap_or(0);
         }
         shortest
     }
 
     fn fits(&self, index: usize, start: i64, starts: &[Option<i64>]) -> bool {
-        let own = &self.activities[index];
-        (start..start + own.duration).all(|time| {
+        let own = &self.blocks[index];
+        (0..own.duration()).all(|time| {
             (0..self.capacities.len()).all(|resource| {
-                let running = self.activities.iter().zip(starts).filter(|(other, begun)| {
-                    begun.is_some_and(|begun| begun <= time && time < begun + other.duration)
-                });
-                let taken: i64 = running.map(|(other, _)| other.amounts[resource]).sum();
-                taken + own.amounts[resource] <= self.capacities[resource]
+                let begun =
+                    self.blocks.iter().zip(starts).filter_map(|(block, begun)| Some((block, (*begun)?)));
+                let taken: i64 =
+                    begun.map(|(block, begun)| block.takes(resource, start + time - begun)).sum();
+                taken + own.takes(resource, time) <= self.capacities[resource]
             })
         })
+    }
+}
+
+impl Block {
+    fn duration(&self) -> i64 {
+        self.activities.iter().map(|activity| activity.duration).max().unwrap_or(0)
+    }
+
+    /// What it takes some time after its start.
+    fn takes(&self, resource: usize, time: i64) -> i64 {
+        let running = self.activities.iter().filter(|activity| (0..activity.duration).contains(&time));
+        running.map(|activity| activity.amounts[resource]).sum()
     }
 }
 
