@@ -54,6 +54,10 @@ fn value<'a>(execution: &'a Execution, state: &str) -> Option<&'a str> {
     execution.log.iter().filter_map(given).next_back()
 }
 
+fn closed_at(at: i64) -> Disturbance {
+    Disturbance::Withdrawn { condition: "Tell(PATH1=OK)#1".into(), at: at.into() }
+}
+
 #[test]
 fn rovers_and_a_blimp_explore_from_the_base_to_the_last_report() {
     let ran = run(EXPLORATION, &[]);
@@ -70,8 +74,7 @@ fn rovers_and_a_blimp_explore_from_the_base_to_the_last_report() {
 
 #[test]
 fn a_path_that_is_closed_at_100_while_rovers_are_on_it_is_left_for_the_other() {
-    let closed = Disturbance::Withdrawn { condition: "Tell(PATH1=OK)#1".into(), at: 100.into() };
-    let ran = run(EXPLORATION, &[closed]);
+    let ran = run(EXPLORATION, &[closed_at(100)]);
     assert_eq!(ran.ending, Ending::Finished, "{:?}", ran.log.last());
     assert_eq!(violations(&ran), ["Tell(PATH1=OK)#1 was withdrawn at 100; it was to hold until 260"]);
     assert!(told(&ran, "Group-Traverse-Path#1").iter().any(|text| text.starts_with("is ended early")));
@@ -82,6 +85,15 @@ fn a_path_that_is_closed_at_100_while_rovers_are_on_it_is_left_for_the_other() {
             .any(|entry| matches!(&entry.happening, Happening::Executed { name: event } if event == name))
     };
     assert!(named("Group-Traverse-Path#2.end") && !named("Group-Traverse-Path#1.end"));
+}
+
+/// Wherever the rovers are then: they turn around without blocking each other.
+#[test]
+fn rovers_turn_back_wherever_they_are_when_their_path_is_closed() {
+    for at in [30, 160, 245] {
+        let ran = run(EXPLORATION, &[closed_at(at)]);
+        assert_eq!(ran.ending, Ending::Finished, "{at}: {:?}", ran.log.last());
+    }
 }
 
 #[test]

@@ -27,6 +27,8 @@ struct Member {
     /// The length of the path that it set out with, in metres: what the others expect it to drive.
     planned_m: f64,
     has_arrived: bool,
+    /// Until it is this far along its path, in metres, it goes around the others rather than wait for them.
+    passes_until_m: f64,
     /// What of the world is near, and where it was looked for.
     near: Option<(FineWorld, Point2<f64>)>,
 }
@@ -35,6 +37,11 @@ impl Member {
     /// Metres that it still has to go.
     fn remaining_m(&self) -> f64 {
         if self.has_arrived { 0.0 } else { self.driver.length_m() - self.driver.progress_m() }
+    }
+
+    /// Whether it goes around the others rather than wait for them.
+    fn passes(&self) -> bool {
+        self.driver.progress_m() < self.passes_until_m
     }
 
     /// Whether it is this near to the end of its path.
@@ -86,7 +93,7 @@ impl Convoy {
                 let settings = DriverSettings { step_s, ..settings };
                 let driver = Driver::new(path, heading_rad, settings, seed.wrapping_add(index as u64));
                 let planned_m = driver.length_m();
-                Member { driver, planned_m, has_arrived: false, near: None }
+                Member { driver, planned_m, has_arrived: false, passes_until_m: 0.0, near: None }
             })
             .collect();
         Self { members, spacing_m, step_s, time_s: 0.0 }
@@ -122,6 +129,7 @@ impl Convoy {
         if let Some(member) = self.members.get_mut(vehicle) {
             member.driver.follow(path);
             member.has_arrived = false;
+            member.passes_until_m = 0.0;
         }
     }
 
@@ -136,21 +144,29 @@ impl Convoy {
         let share = self.leader_share();
         // By what is left to drive, so that a detour counts as lag and what lies behind a vehicle does not.
         let lag_m = |member: &Member| member.remaining_m() - (1.0 - share) * member.planned_m;
-        let waits = self.members.iter().skip(1).any(|it| lag_m(it) > WAITING_SPACINGS * self.spacing_m);
+        let lags_m: Vec<f64> = self.members.iter().map(lag_m).collect();
+        self.give_way(&lags_m);
+        let leader_waits = !self.members.first().is_some_and(Member::passes)
+            && lags_m.iter().skip(1).any(|&lag_m| self.is_far_behind(lag_m));
         let mut steps = Vec::with_capacity(self.members.len());
         for index in 0..self.members.len() {
             let most = most_mps.get(index).copied().unwrap_or(0.0);
             let wanted = match index {
-                0 if waits => 0.0,
+                0 if leader_waits => 0.0,
                 0 => pace_mps,
-                _ => (pace_mps * (1.0 + 0.5 * lag_m(&self.members[index]))).max(0.0),
+                _ if self.members[index].passes() => pace_mps,
+                _ => (pace_mps * (1.0 + 0.5 * lags_m[index])).max(0.0),
             };
-            let is_held = self.is_held(index, around.others);
+            let in_its_way = self.in_its_way(index);
+            let is_held = in_its_way.iter().any(|&other| self.waits_behind(index, other))
+                || self.is_held_by(index, around.others);
+            let must_stand = is_held || self.members[index].has_arrived;
             let mut others = self.members.iter().enumerate().filter(|(other, _)| *other != index);
             let others_are_there = others.all(|(_, other)| other.has_arrived) && self.members.len() > 1;
-            let speed = if is_held || self.members[index].has_arrived { 0.0 } else { wanted.min(most) };
+            let to_pass = self.to_pass(index);
             let member = &mut self.members[index];
-            member.driver.set_cruise(speed);
+            member.driver.set_cruise(if must_stand { 0.0 } else { wanted.min(most) });
+            member.driver.set_vehicles(&to_pass);
             let here = member.driver.state().position_m;
             let is_at_hand = |near: &(FineWorld, Point2<f64>)| distance(&near.1, &here) <= AT_HAND_STEP_M;
             if around.has_changed || !member.near.as_ref().is_some_and(is_at_hand) {
@@ -160,7 +176,8 @@ impl Convoy {
             let (event, scan) = member.driver.step(world, around.maps.get(index));
             member.has_arrived |= event == DriveEvent::Arrived;
             // One that came another way than planned has its place wherever the others leave it room.
-            member.has_arrived |= is_held && others_are_there && member.is_within(2.0 * self.spacing_m);
+            let is_near_its_place = others_are_there && member.is_within(2.0 * self.spacing_m);
+            member.has_arrived |= is_near_its_place && !in_its_way.is_empty();
             steps.push((event, scan));
         }
         steps
@@ -177,26 +194,85 @@ impl Convoy {
         (1.0 - leader.remaining_m() / leader.planned_m).clamp(0.0, 1.0)
     }
 
-    /// Whether a vehicle must not go on because another is close in front of it.
-    fn is_held(&self, vehicle: usize, others: &[(Point2<f64>, f64)]) -> bool {
-        let own = &self.members[vehicle].driver;
-        let state = own.state();
-        let world_from_body = state.world_from_body();
-        let is_near = |place: Point2<f64>, reach_m: f64| {
-            let place_in_body = world_from_body.inverse_transform_point(&place);
-            place_in_body.x > 0.0 && Ball::new(reach_m).contains_local_point(&place_in_body)
+    const fn is_far_behind(&self, lag_m: f64) -> bool {
+        lag_m > WAITING_SPACINGS * self.spacing_m
+    }
+
+    /// Of vehicles that wait for each other in a ring, the first of the convoy goes on, around the others.
+    fn give_way(&mut self, lags_m: &[f64]) {
+        let count = self.members.len();
+        let waits_for = |vehicle: usize| -> Vec<usize> {
+            let member = &self.members[vehicle];
+            if member.has_arrived || member.passes() {
+                return Vec::new();
+            }
+            let mut found = self.in_its_way(vehicle);
+            if vehicle == 0 {
+                found.extend((1..count).filter(|&other| self.is_far_behind(lags_m[other])));
+            } else if 1.0 + 0.5 * lags_m[vehicle] <= 0.0 {
+                found.push(0);
+            }
+            found
         };
-        let radius_m = own.settings().radius_m;
-        let stopping_m = state.speed_mps * state.speed_mps / (2.0 * own.settings().limits.acceleration_mps2)
-            + state.speed_mps * self.step_s;
-        let within = self.members.iter().enumerate().any(|(index, other)| {
+        let waiting: Vec<Vec<usize>> = (0..count).map(waits_for).collect();
+        let is_first_of_ring = |first: &usize| {
+            let (mut reached, mut open) = (vec![false; count], vec![*first]);
+            while let Some(vehicle) = open.pop() {
+                for &other in waiting[vehicle].iter().filter(|other| *other >= first) {
+                    if !std::mem::replace(&mut reached[other], true) {
+                        open.push(other);
+                    }
+                }
+            }
+            reached[*first]
+        };
+        let going: Vec<usize> = (0..count).filter(is_first_of_ring).collect();
+        for vehicle in going {
+            let member = &mut self.members[vehicle];
+            member.passes_until_m = member.driver.progress_m() + self.spacing_m;
+        }
+    }
+
+    /// Whether a vehicle stands behind another that is in its way, rather than go around it.
+    fn waits_behind(&self, vehicle: usize, other: usize) -> bool {
+        !self.members[vehicle].passes() && !self.members[other].has_arrived
+    }
+
+    /// The vehicles of the convoy that one goes around, as place and radius in metres.
+    fn to_pass(&self, vehicle: usize) -> Vec<(Point2<f64>, f64)> {
+        let others = self.members.iter().enumerate().filter(|(other, _)| *other != vehicle);
+        let passed = others.filter(|(other, _)| !self.waits_behind(vehicle, *other));
+        passed.map(|(_, other)| (other.driver.state().position_m, other.driver.settings().radius_m)).collect()
+    }
+
+    /// The vehicles of the convoy that are close in front of one.
+    fn in_its_way(&self, vehicle: usize) -> Vec<usize> {
+        let radius_m = self.members[vehicle].driver.settings().radius_m;
+        let is_in_its_way = |(index, other): (usize, &Member)| {
             let reach_m = if index < vehicle {
                 0.85 * self.spacing_m
             } else {
                 radius_m + other.driver.settings().radius_m + 0.2
             };
-            index != vehicle && is_near(other.driver.state().position_m, reach_m + stopping_m)
-        });
-        within || others.iter().any(|&(place, other)| is_near(place, radius_m + other + 0.5 + stopping_m))
+            (index != vehicle && self.is_ahead(vehicle, other.driver.state().position_m, reach_m))
+                .then_some(index)
+        };
+        self.members.iter().enumerate().filter_map(is_in_its_way).collect()
+    }
+
+    /// Whether others that move are close in front of a vehicle.
+    fn is_held_by(&self, vehicle: usize, others: &[(Point2<f64>, f64)]) -> bool {
+        let radius_m = self.members[vehicle].driver.settings().radius_m;
+        others.iter().any(|&(place, other)| self.is_ahead(vehicle, place, radius_m + other + 0.5))
+    }
+
+    /// Whether a place is in front of a vehicle, and nearer than it can stop and a reach in metres.
+    fn is_ahead(&self, vehicle: usize, place: Point2<f64>, reach_m: f64) -> bool {
+        let own = &self.members[vehicle].driver;
+        let state = own.state();
+        let stopping_m = state.speed_mps * state.speed_mps / (2.0 * own.settings().limits.acceleration_mps2)
+            + state.speed_mps * self.step_s;
+        let place_in_body = state.world_from_body().inverse_transform_point(&place);
+        place_in_body.x > 0.0 && Ball::new(reach_m + stopping_m).contains_local_point(&place_in_body)
     }
 }

@@ -9,9 +9,8 @@ use terrain::{Cell, CellState, ConfigurationSpace, GridFrame, Obstacle, Occupanc
 
 use crate::path::Path;
 use crate::range_sensor::RangeScan;
-use crate::search::{PlannerKind, Query, Settings, find_path};
-use crate::shortcut::ShortcutSettings;
 use crate::sonar::{Echo, Echoes, SonarArray};
+use crate::way_around::way_around;
 
 /// Seen points farther away than this are forgotten, in metres.
 const MEMORY_RADIUS_M: f64 = 6.0;
@@ -43,6 +42,8 @@ pub(crate) struct SeenPoints {
     points: BTreeMap<(i64, i64), Seen>,
     /// What sonars have heard besides.
     echoes: Echoes,
+    /// Rims of vehicles to go around.
+    vehicles: Vec<Point2<f64>>,
 }
 
 impl SeenPoints {
@@ -61,8 +62,19 @@ impl SeenPoints {
         self.echoes.add(array, echoes, scan, MEMORY_RADIUS_M);
     }
 
+    /// Replaces the vehicles to go around, given as place and radius in metres.
+    pub(crate) fn set_vehicles(&mut self, vehicles: &[(Point2<f64>, f64)]) {
+        const CORNERS: u32 = 16;
+        let corner = |corner: u32| std::f64::consts::TAU * f64::from(corner) / f64::from(CORNERS);
+        let rim = |&(place, radius_m): &(Point2<f64>, f64)| {
+            (0..CORNERS).map(move |at| place + UnitComplex::new(corner(at)) * Vector2::new(radius_m, 0.0))
+        };
+        self.vehicles = vehicles.iter().flat_map(rim).collect();
+    }
+
     pub(crate) fn points_m(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
-        self.points.values().map(|seen| seen.mean_m).chain(self.echoes.points_m())
+        let seen = self.points.values().map(|seen| seen.mean_m);
+        seen.chain(self.echoes.points_m()).chain(self.vehicles.iter().copied())
     }
 
     /// What sonars have heard that the range finder cannot see.
@@ -133,7 +145,9 @@ pub(crate) fn find_detour(
     path: &Path,
     progress_m: f64,
 ) -> Option<Path> {
-    const SAMPLES: u32 = 400;
+    // Every cell is looked at, so that the side on which an obstacle is passed does not change from one look to another.
+    const BLOCKS: u32 = u32::MAX;
+    const MAX_LENGTH_M: f64 = 4.0 * MEMORY_RADIUS_M;
     let start_m = nearest_free(surroundings, here)?;
     let [low, high] = [surroundings.frame().origin_m, surroundings.frame().far_corner_m()];
     let length = path.length_m();
@@ -144,16 +158,9 @@ pub(crate) fn find_detour(
         if !inside || !surroundings.is_free(goal_m) {
             return None;
         }
-        let settings =
-            Settings { step_m: 1.0, greatest_samples: SAMPLES, ..Settings::of(PlannerKind::RrtConnect) };
-        let query = Query { start_m, goal_m };
-        let found =
-            find_path(surroundings, query, &settings, Some(&ShortcutSettings::default()), &mut |_| false);
-        let mut path = found.path.ok()?;
-        if start_m != here {
-            path.points_m.insert(0, here);
-        }
-        Some(path)
+        let way = way_around(surroundings, [start_m, goal_m], MAX_LENGTH_M, BLOCKS)?;
+        let before = Some(here).filter(|&here| here != start_m);
+        Some(Path::new(before.into_iter().chain(way).collect()))
     })
 }
 

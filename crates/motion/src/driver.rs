@@ -217,6 +217,11 @@ impl Driver {
         }
     }
 
+    /// Tells it of vehicles that it goes around, as place and radius in metres; those told before are forgotten.
+    pub fn set_vehicles(&mut self, vehicles: &[(Point2<f64>, f64)]) {
+        self.seen.set_vehicles(vehicles);
+    }
+
     /// Goes on along another path from where it is, at its speed: after a report.
     pub fn follow(&mut self, path: Path) {
         self.length_m = path.length_m();

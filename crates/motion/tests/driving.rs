@@ -169,3 +169,48 @@ fn a_convoy_keeps_apart_waits_for_a_stopped_follower_and_arrives() {
     // 55 m at 0.5 m/s are 110 s, and 40 s of standing, less the lead that the leader had.
     assert!((130.0..190.0).contains(&convoy.time_s()), "{}", convoy.time_s());
 }
+
+/// Where those behind are sent back the way they came, the leader has to get past them, and they past each other.
+#[test]
+fn a_convoy_that_is_sent_back_turns_around_without_touching() {
+    let jr = rover();
+    let spacing_m = 2.2 * jr.circumradius_m + 1.0;
+    let settings = DriverSettings::new(DriveLimits::of(jr), jr.circumradius_m).at_most(0.5);
+    let count = 3;
+    for (seed, half_width_m) in [(1, 20.0), (2, 3.0), (3, 2.5), (4, 2.0)] {
+        let along = |from: f64, to: f64| Path::new([[from, 0.0], [to, 0.0]].map(Point2::from).to_vec());
+        let behind_m = |vehicle: usize| spacing_m * vehicle as f64;
+        let members = (0..count).map(|vehicle| {
+            let path = along(-behind_m(vehicle), 40.0 - behind_m(vehicle));
+            ConvoyMember { path, heading_rad: 0.0, settings }
+        });
+        let mut convoy = Convoy::new(members.collect(), spacing_m, seed);
+        let mut world = FineWorld::default();
+        for side in [-1.0, 1.0] {
+            let [near, far] = [side * half_width_m, side * (half_width_m + 1.0)];
+            let corners = [[-60.0, near], [60.0, near], [60.0, far], [-60.0, far]];
+            world.add(&Obstacle::Polygon { corners_m: corners.map(Point2::from).to_vec() });
+        }
+        let around = Surroundings { world: &world, has_changed: false, maps: &[], others: &[] };
+        let (mut is_sent_back, mut nearest) = (false, f64::INFINITY);
+        while !convoy.has_arrived() && convoy.time_s() < 1_000.0 {
+            if convoy.time_s() > 30.0 && !is_sent_back {
+                is_sent_back = true;
+                for vehicle in 0..count {
+                    let here = convoy.state(vehicle).position_m;
+                    convoy.follow(vehicle, along(here.x, -40.0 + behind_m(vehicle)));
+                }
+            }
+            convoy.step(&around, 0.4, &[0.5; 3]);
+            for first in 0..count {
+                for second in first + 1..count {
+                    let places = [first, second].map(|vehicle| convoy.state(vehicle).position_m);
+                    nearest = distance(&places[0], &places[1]).min(nearest);
+                }
+            }
+        }
+        let places = [0, 1, 2].map(|vehicle| convoy.state(vehicle).position_m);
+        assert!(convoy.has_arrived(), "{half_width_m} m: {places:?}");
+        assert!(nearest > 2.0 * jr.circumradius_m, "{half_width_m} m: {nearest} m apart");
+    }
+}
