@@ -149,13 +149,13 @@ impl Convoy {
         let leader_waits = !self.members.first().is_some_and(Member::passes)
             && lags_m.iter().skip(1).any(|&lag_m| self.is_far_behind(lag_m));
         let mut steps = Vec::with_capacity(self.members.len());
-        for index in 0..self.members.len() {
+        for (index, &lag_m) in lags_m.iter().enumerate() {
             let most = most_mps.get(index).copied().unwrap_or(0.0);
             let wanted = match index {
                 0 if leader_waits => 0.0,
                 0 => pace_mps,
                 _ if self.members[index].passes() => pace_mps,
-                _ => (pace_mps * (1.0 + 0.5 * lags_m[index])).max(0.0),
+                _ => (pace_mps * (1.0 + 0.5 * lag_m)).max(0.0),
             };
             let in_its_way = self.in_its_way(index);
             let is_held = in_its_way.iter().any(|&other| self.waits_behind(index, other))
