@@ -32,7 +32,10 @@ pub(crate) fn paint(
     for &line in &shown.lines {
         let row = geometry.row(line, clip.left()..signs.min);
         let color = if line == current { tokens.text } else { tokens.text_faint };
-        let number = (line + 1).to_string();
+        let number = match document.line_in_file(line) {
+            0 => String::new(),
+            number => number.to_string(),
+        };
         painter.text(row.right_center(), Align2::RIGHT_CENTER, number, geometry.font.clone(), color);
         let sign_at = |x: f32| Rect::from_center_size(Pos2::new(x, row.center().y), egui::Vec2::ZERO);
         let is_folded = geometry.rows.is_folded_at(line);

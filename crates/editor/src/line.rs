@@ -29,6 +29,8 @@ impl LineLayout {
         let document = view.document;
         let text = document.text().get(bytes.clone()).unwrap_or_default();
         let plain = |color| TextFormat::simple(font.clone(), color);
+        // A heading's mark is a blank of the same length.
+        let heading = document.heading(document.line_at(bytes.start)).map(|name| format!(" {name}"));
         let mut job = LayoutJob::default();
         let mut done = bytes.start;
         let mut append = |range: Range<usize>, format: TextFormat| {
@@ -47,6 +49,10 @@ impl LineLayout {
             }
         }
         append(done..bytes.end, plain(view.tokens.text));
+        if let Some(heading) = heading {
+            job = LayoutJob::default();
+            job.append(&heading, 0.0, plain(view.tokens.accent));
+        }
         let composed = Self::compose(view, &bytes, &mut job, font);
         if job.text.is_empty() {
             job.append("", 0.0, plain(view.tokens.text));

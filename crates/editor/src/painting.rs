@@ -49,6 +49,17 @@ impl Painting<'_> {
         }
     }
 
+    /// Bands behind the names of files.
+    pub(crate) fn headings(&self) {
+        let tokens = self.view.tokens;
+        let left = self.painter.clip_rect().left();
+        for (line, _) in self.shown.each().filter(|(line, _)| self.view.document.heading(*line).is_some()) {
+            let row = self.geometry.row(line, left..self.right);
+            self.painter.rect_filled(row, 0.0, tokens.pressed);
+            self.painter.hline(row.x_range(), row.top(), Stroke::new(1.0, tokens.line_strong));
+        }
+    }
+
     /// A sign behind a line whose rest is folded away.
     pub(crate) fn folded(&self, line: usize, layout: &LineLayout) {
         let left = self.geometry.origin.x + layout.galley().size().x + self.geometry.character_width * 0.6;

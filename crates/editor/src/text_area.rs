@@ -160,6 +160,7 @@ fn paint(
     let painter = ui.painter().with_clip_rect(text_clip);
     let painting = Painting { view, geometry, shown, painter: &painter, right: clip.right() };
     painting.current_line(clip.left());
+    painting.headings();
     painting.marks();
     painting.matches_of_find();
     painting.selected_text(response.has_focus());

@@ -103,7 +103,8 @@ fn show_row(ui: &mut Ui, context: &Context<'_>, problem: &Problem, is_selected: 
     let sign_rect = egui::Rect::from_min_size(top, egui::vec2(14.0, 16.0));
     icon::paint(painter, sign, sign_rect, 13.0, color);
     painter.galley(top + egui::vec2(20.0, 0.0), message, tokens.text);
-    let place = format!("{}   {}:{}", problem.code, problem.line, problem.column);
+    let file = problem.file.as_ref().map_or_else(String::new, |file| format!("{file}:"));
+    let place = format!("{}   {file}{}:{}", problem.code, problem.line, problem.column);
     let right = rect.right_top() + egui::vec2(-space::M, 5.0);
     painter.text(right, egui::Align2::RIGHT_TOP, place, small, tokens.text_muted);
     response

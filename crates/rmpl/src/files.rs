@@ -15,7 +15,7 @@ use crate::program::ImportDecl;
 use crate::span::{LineColumn, LineIndex, Span};
 
 /// Begins a heading, which goes to the end of its line. A doubled one gives the first file's own name.
-pub(crate) const MARK: char = '\u{1c}';
+pub const MARK: char = '\u{1c}';
 
 /// What joins no text: more files than this, or a longer name, are none that anybody wrote.
 const MAX_FILES: usize = 1_000;
@@ -107,14 +107,8 @@ pub fn join(name: &str, text: &str, mut read: impl FnMut(&str) -> Option<String>
             continue;
         }
         let Some(text) = read(&file) else { continue };
-        // What would begin a heading means nothing in a text.
-        let text = text.replace(MARK, " ");
         open.append(&mut resolved(&file, &imports(&text)));
-        joined.push('\n');
-        joined.push(MARK);
-        joined.push_str(&file);
-        joined.push('\n');
-        joined.push_str(&text);
+        append(&mut joined, &file, &text);
         known.push(file);
     }
     if !own.is_empty() {
@@ -124,6 +118,47 @@ pub fn join(name: &str, text: &str, mut read: impl FnMut(&str) -> Option<String>
         joined.push('\n');
     }
     joined
+}
+
+/// Adds a file to a joined text.
+fn append(joined: &mut String, name: &str, text: &str) {
+    joined.push('\n');
+    joined.push(MARK);
+    joined.push_str(name);
+    joined.push('\n');
+    // What would begin a heading means nothing in a text.
+    joined.push_str(&text.replace(MARK, " "));
+}
+
+/// A text of these files, name and text, the first one first; whether they import each other or not. [`split`] takes it
+/// apart again.
+pub fn joined<'a>(files: impl IntoIterator<Item = (&'a str, &'a str)>) -> String {
+    let mut files = files.into_iter();
+    let mut text = files.next().map_or_else(String::new, |(_, text)| text.replace(MARK, " "));
+    for (name, own) in files {
+        append(&mut text, name, own);
+    }
+    text
+}
+
+/// The files of a text, name and text, the first one first, which has no name. The line break in front of a heading
+/// belongs to the heading.
+pub fn split(text: &str) -> Vec<(&str, &str)> {
+    let mut rest = text.split(MARK);
+    let first = rest.next().unwrap_or_default();
+    let mut files = vec![("", first)];
+    for part in rest {
+        if let Some((_, before)) = files.last_mut() {
+            *before = before.strip_suffix('\n').unwrap_or(before);
+        }
+        files.push(part.split_once('\n').unwrap_or((part, "")));
+    }
+    files
+}
+
+/// Whether a file of a mission can have this name: one in the mission's folder, or in a folder of it, without a way out.
+pub fn is_name(name: &str) -> bool {
+    !name.contains(char::is_control) && name.len() <= 255 && resolve("", name).as_deref() == Some(name)
 }
 
 /// What a text imports, in textual order.
@@ -158,10 +193,10 @@ pub fn resolve(importer: &str, file: &str) -> Option<String> {
 
 /// What is wrong with the imports of a text.
 pub(crate) fn check(parse: &Parse, imports: &[(Span, ImportDecl)]) -> Vec<Diagnostic> {
-    if imports.is_empty() {
+    let files = Files::of(parse.text());
+    if imports.is_empty() && files.all().len() == 1 {
         return Vec::new();
     }
-    let files = Files::of(parse.text());
     let positions: BTreeMap<&str, usize> =
         files.all().iter().enumerate().map(|(position, file)| (file.name.as_str(), position)).collect();
     let mut found = Vec::new();
@@ -177,6 +212,15 @@ pub(crate) fn check(parse: &Parse, imports: &[(Span, ImportDecl)]) -> Vec<Diagno
             _ => found.push(undefined::file(&name, *span)),
         }
     }
+    let (mut is_reached, mut open) = (vec![false; files.all().len()], vec![0]);
+    while let Some(file) = open.pop() {
+        if !std::mem::replace(&mut is_reached[file], true) {
+            open.extend(edges[file].iter().map(|&(imported, _)| imported));
+        }
+    }
+    for (file, _) in files.all().iter().zip(is_reached).filter(|(_, is_reached)| !is_reached) {
+        found.push(undefined::file_not_imported(&file.name, Span::new(file.start - 1, file.start)));
+    }
     for cycle in call_cycles(&edges) {
         let names: Vec<&str> =
             cycle.members.iter().map(|&member| files.all()[member].name.as_str()).collect();
@@ -188,6 +232,25 @@ pub(crate) fn check(parse: &Parse, imports: &[(Span, ImportDecl)]) -> Vec<Diagno
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn files_that_are_joined_and_split_are_the_same_again() {
+        let cases: [&[(&str, &str)]; 4] = [
+            &[("", "")],
+            &[("", "scenario S = { delay }\n"), ("world.rmpl", "location A (0, 0);\n")],
+            &[("", ""), ("a.rmpl", ""), ("b/c.rmpl", "\n\n")],
+            &[("", "x"), ("a.rmpl", "y")],
+        ];
+        for files in cases {
+            let text = joined(files.iter().copied());
+            assert_eq!(split(&text), files, "{text:?}");
+            let known: Vec<&str> =
+                Files::of(&text).files.iter().map(|file| file.end).zip(files).map(|(_, it)| it.0).collect();
+            assert_eq!(known.len(), files.len());
+        }
+        assert!(is_name("world/rocks.rmpl") && is_name("a b.rmpl"));
+        assert!(["", "../a", "/a", "a//b", "a\nb", "a\u{1c}", "./a"].iter().all(|name| !is_name(name)));
+    }
 
     fn mission(files: &[(&str, &str)]) -> String {
         let read =

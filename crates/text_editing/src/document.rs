@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use rmpl::files::MARK;
 use rmpl::{Edit, Span};
 
 use crate::carets::Carets;
@@ -50,6 +51,8 @@ pub struct Document {
     text: String,
     shared: Option<Arc<str>>,
     line_starts: Vec<usize>,
+    /// The lines that begin another file of the mission (`rmpl::files`).
+    headings: Vec<usize>,
     revision: u64,
     saved_revision: u64,
     pub(crate) caret: Caret,
@@ -67,11 +70,15 @@ pub struct Document {
     pub(crate) may_join: bool,
 }
 
+/// What is added at the end of a text to begin another file.
+const NEW_FILE: &str = "\n\u{1c}";
+
 impl Document {
     /// A document at revision 1, with the caret at the start and no history.
     pub fn new(text: &str) -> Self {
         let text = normalized(text);
         Self {
+            headings: headings(&text),
             line_starts: line_starts(&text),
             text,
             shared: None,
@@ -191,6 +198,45 @@ impl Document {
         self.text.get(self.line_range(line)).unwrap_or_default()
     }
 
+    /// The lines that begin another file of the mission: they hold its name, and no edit touches them.
+    pub fn headings(&self) -> &[usize] {
+        &self.headings
+    }
+
+    /// The name of the file that a line begins, if it does.
+    pub fn heading(&self, line: usize) -> Option<&str> {
+        self.headings.binary_search(&line).ok()?;
+        self.line_text(line).strip_prefix(MARK)
+    }
+
+    /// The first line of the file that holds a line, and the one behind its last; a heading belongs to no file.
+    pub fn file_lines(&self, line: usize) -> std::ops::Range<usize> {
+        let next = self.headings.partition_point(|&heading| heading <= line);
+        let first = next.checked_sub(1).map_or(0, |own| self.headings[own] + 1);
+        first..self.headings.get(next).copied().unwrap_or(self.line_count())
+    }
+
+    /// The number of a line in its file, from 1; of a heading in the file that it begins, 0.
+    pub fn line_in_file(&self, line: usize) -> usize {
+        (line + 1).saturating_sub(self.file_lines(line).start)
+    }
+
+    /// The bytes of the file that holds `offset`, without the line break in front of the next heading.
+    pub fn file_range(&self, offset: usize) -> std::ops::Range<usize> {
+        let lines = self.file_lines(self.line_at(offset));
+        self.line_range(lines.start).start..self.line_range(lines.end.max(lines.start + 1) - 1).end
+    }
+
+    /// Whether a replacement would change where a file begins or what it is called.
+    fn is_of_heading(&self, start: usize, end: usize) -> bool {
+        self.headings.iter().any(|&heading| {
+            let line = self.line_range(heading);
+            // With the line breaks on both sides.
+            let (from, to) = (line.start.saturating_sub(1), line.end + 1);
+            if start == end { from < start && start < to } else { start < to && from < end }
+        })
+    }
+
     /// The column of `offset` in its line, in characters from 0.
     pub fn column_at(&self, offset: usize) -> usize {
         let start = self.line_range(self.line_at(offset)).start;
@@ -210,8 +256,27 @@ impl Document {
     }
 
     /// Applies disjoint edits in textual order as one step, and puts the caret at `caret`, an offset in the new text;
-    /// without one it moves along with the text around it.
+    /// without one it moves along with the text around it. What would change where a file begins is left out, but for a
+    /// new file at the end.
     pub fn edit(&mut self, edits: &[Edit], kind: EditKind, caret: Option<Caret>) {
+        if self.headings.is_empty() && !edits.iter().any(|edit| edit.text.contains(MARK)) {
+            return self.edit_freely(edits, kind, caret);
+        }
+        let whole = |edit: &&Edit| {
+            let [start, end] = [edit.span.start, edit.span.end].map(|at| self.boundary_before(at as usize));
+            !self.is_of_heading(start, end.max(start))
+        };
+        let plain = |edit: &Edit| {
+            let adds_file = edit.span.start as usize == self.text.len() && edit.text.starts_with(NEW_FILE);
+            let text = if adds_file { edit.text.clone() } else { edit.text.replace(MARK, "") };
+            Edit { text, ..edit.clone() }
+        };
+        let left: Vec<Edit> = edits.iter().filter(whole).map(plain).collect();
+        let caret = caret.filter(|_| left.len() == edits.len());
+        self.edit_freely(&left, kind, caret);
+    }
+
+    fn edit_freely(&mut self, edits: &[Edit], kind: EditKind, caret: Option<Caret>) {
         let mut changes = Vec::with_capacity(edits.len());
         let mut shift = 0_isize;
         let before = Carets { main: self.caret, others: self.others.clone() };
@@ -268,11 +333,11 @@ impl Document {
         self.edit(&[Edit { span, text: text.to_owned() }], kind, Some(Caret::at(end)));
     }
 
-    /// Replaces the whole text as one undoable step, changing only what differs.
+    /// Replaces the whole text, its files included, as one undoable step, changing only what differs.
     pub fn replace_all(&mut self, text: &str) {
         let text = normalized(text);
         let edit = difference(&self.text, &text);
-        self.edit(&[edit], EditKind::Single, None);
+        self.edit_freely(&[edit], EditKind::Single, None);
     }
 
     /// Whether there is something to undo.
@@ -317,6 +382,7 @@ impl Document {
 
     fn text_changed(&mut self) {
         self.line_starts = line_starts(&self.text);
+        self.headings = headings(&self.text);
         self.shared = None;
         self.revision += 1;
     }
@@ -377,6 +443,15 @@ fn normalized(text: &str) -> String {
 fn line_starts(text: &str) -> Vec<usize> {
     let breaks = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n').map(|(at, _)| at + 1);
     std::iter::once(0).chain(breaks).collect()
+}
+
+/// The lines that begin another file of the mission.
+fn headings(text: &str) -> Vec<usize> {
+    if !text.contains(MARK) {
+        return Vec::new();
+    }
+    let lines = text.split('\n').enumerate();
+    lines.filter(|(line, text)| *line > 0 && text.starts_with(MARK)).map(|(line, _)| line).collect()
 }
 
 #[cfg(test)]

@@ -155,7 +155,10 @@ impl TextCommand {
                 let end = next_line_start(document, line);
                 document.set_caret(Caret::selecting(start, end));
             }
-            Self::SelectAll => document.set_caret(Caret::selecting(0, document.text().len())),
+            Self::SelectAll => {
+                let file = document.file_range(document.caret().head);
+                document.set_caret(Caret::selecting(file.start, file.end));
+            }
             Self::DuplicateLines => duplicate_lines(document),
             Self::DeleteLines => {
                 let lines = selected_lines(document);

@@ -53,6 +53,13 @@ pub enum Dialog {
         /// What was typed.
         name: String,
     },
+    /// Asks for a name of a file of the mission.
+    FileName {
+        /// What was typed.
+        name: String,
+        /// Whether the file at the caret gets it; otherwise a new one does.
+        renames: bool,
+    },
     /// Lists all keys.
     Keys,
     /// What this program is.
@@ -71,6 +78,7 @@ impl Dialog {
             Self::Missions { .. } => "missions",
             Self::MissionName { .. } => "mission-name",
             Self::VersionName { .. } => "version-name",
+            Self::FileName { .. } => "file-name",
             Self::Keys => "keys",
             Self::About => "about",
         }

@@ -78,7 +78,8 @@ fn keeping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
 fn caret(ui: &mut Ui, context: &Context<'_>) {
     let document = &context.state.document;
     let head = document.caret().head;
-    let place = format!("Ln {}, Col {}", document.line_at(head) + 1, document.column_at(head) + 1);
+    let line = document.line_in_file(document.line_at(head));
+    let place = format!("Ln {line}, Col {}", document.column_at(head) + 1);
     ui.label(RichText::new(place).color(context.tokens.text_muted));
     let selected = document.selected_text().chars().count();
     if selected > 0 {

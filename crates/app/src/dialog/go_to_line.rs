@@ -8,7 +8,9 @@ use workbench::command::{Command, CommandSender, EditorCommand};
 /// Shows the question.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, line: &str, commands: &mut CommandSender) {
     ui.set_width(260.0);
-    let lines = context.state.document.line_count();
+    let document = &context.state.document;
+    let file = document.file_lines(document.line_at(document.caret().head));
+    let lines = file.len();
     let mut text = line.to_owned();
     let field =
         TextEdit::singleline(&mut text).hint_text(format!("Line, 1 to {lines}")).desired_width(f32::INFINITY);
@@ -25,7 +27,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, line: &str, commands: &mu
     match wanted.filter(|_| enter) {
         Some(line) => {
             commands.send(Command::CloseDialog);
-            commands.send(Command::Editor(EditorCommand::GoToLine(line)));
+            commands.send(Command::Editor(EditorCommand::GoToLine(file.start + line)));
         }
         None => commands.send(Command::ShowDialog(Dialog::GoToLine { line: text })),
     }

@@ -26,6 +26,7 @@ pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandS
             | Dialog::Rename { .. }
             | Dialog::MissionName { .. }
             | Dialog::VersionName { .. }
+            | Dialog::FileName { .. }
     );
     let anchor = if is_list { Align2::CENTER_TOP } else { Align2::CENTER_CENTER };
     let offset = if is_list { egui::vec2(0.0, 72.0) } else { egui::Vec2::ZERO };
@@ -45,6 +46,10 @@ pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandS
         Dialog::Missions { query, renaming } => missions::show(ui, context, query, renaming, commands),
         Dialog::MissionName { name } => name::show(ui, name::Named::Mission, name, commands),
         Dialog::VersionName { name } => name::show(ui, name::Named::Version, name, commands),
+        Dialog::FileName { name, renames } => {
+            let named = if *renames { name::Named::File } else { name::Named::NewFile };
+            name::show(ui, named, name, commands);
+        }
         Dialog::Keys => keys::show(ui, context, commands),
         Dialog::About => about::show(ui, context, commands),
     });

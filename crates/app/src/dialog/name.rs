@@ -1,9 +1,10 @@
-//! Asks for a name: of the open mission, or of a version of it.
+//! Asks for a name: of the open mission, of a version of it, or of one of its files.
 
 use egui::{Button, Key, TextEdit, Ui};
 use theme::space;
 use workbench::Dialog;
 use workbench::command::{Command, CommandSender};
+use workbench::state::files::FileCommand;
 use workbench::state::missions::LibraryCommand;
 
 /// What the name is for.
@@ -11,6 +12,9 @@ use workbench::state::missions::LibraryCommand;
 pub(super) enum Named {
     Mission,
     Version,
+    /// The file at the caret.
+    File,
+    NewFile,
 }
 
 /// Shows the question.
@@ -19,6 +23,8 @@ pub(super) fn show(ui: &mut Ui, named: Named, name: &str, commands: &mut Command
     let (question, label, done) = match named {
         Named::Mission => ("Rename the mission", "Name of the mission", "Rename"),
         Named::Version => ("Keep the text as a version", "Name of the version", "Keep"),
+        Named::File => ("Rename the file, where it is imported, too", "Name of the file", "Rename"),
+        Named::NewFile => ("Add a file to the mission, and import it", "Name of the file", "Add"),
     };
     ui.label(question);
     let mut text = name.to_owned();
@@ -38,13 +44,17 @@ pub(super) fn show(ui: &mut Ui, named: Named, name: &str, commands: &mut Command
     let dialog = |name: String| match named {
         Named::Mission => Dialog::MissionName { name },
         Named::Version => Dialog::VersionName { name },
+        Named::File => Dialog::FileName { name, renames: true },
+        Named::NewFile => Dialog::FileName { name, renames: false },
     };
     if is_asked && !text.trim().is_empty() {
         commands.send(Command::CloseDialog);
-        commands.send(Command::Library(match named {
-            Named::Mission => LibraryCommand::Rename { id: None, name: text },
-            Named::Version => LibraryCommand::KeepVersion(text),
-        }));
+        commands.send(match named {
+            Named::Mission => Command::Library(LibraryCommand::Rename { id: None, name: text }),
+            Named::Version => Command::Library(LibraryCommand::KeepVersion(text)),
+            Named::File => Command::Files(FileCommand::Rename(text)),
+            Named::NewFile => Command::Files(FileCommand::Add(text)),
+        });
     } else if text != name {
         commands.send(Command::ShowDialog(dialog(text)));
     }

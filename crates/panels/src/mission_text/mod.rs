@@ -1,5 +1,6 @@
 //! The mission text: the code editor, told what the workbench knows of the text.
 
+mod files;
 mod keyboard;
 mod language;
 
@@ -28,6 +29,9 @@ pub struct EditorPanel {
 impl Panel for EditorPanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let state = context.state;
+        if !state.document.headings().is_empty() {
+            files::show(ui, context, commands);
+        }
         let shift = self.shift(context);
         let popup = popup(context);
         let reveal = context.take_last(|effect| match effect {

@@ -189,6 +189,12 @@ pub(crate) fn file(name: &str, span: Span) -> Diagnostic {
         .with_hint("files are found from the folder of the file that imports them")
 }
 
+/// A file beside the mission's first one that none imports.
+pub(crate) fn file_not_imported(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(CODE, span, format!("nothing imports the file `{name}`"))
+        .with_hint(format!("`import \"{name}\";` in the main text makes it part of the mission"))
+}
+
 /// An import of what is no file of the mission's folder.
 pub(crate) fn file_outside(name: &str, span: Span) -> Diagnostic {
     Diagnostic::error(CODE, span, format!("`{name}` is no file in the mission's folder")).with_hint(

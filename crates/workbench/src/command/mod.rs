@@ -17,6 +17,7 @@ use crate::state::chance::ChanceCommand;
 use crate::state::compare::CompareCommand;
 use crate::state::documents::ScheduleForm;
 use crate::state::execution::ExecutionCommand;
+use crate::state::files::FileCommand;
 use crate::state::lesson::LessonCommand;
 use crate::state::manual::ManualCommand;
 use crate::state::missions::LibraryCommand;
@@ -46,6 +47,8 @@ pub enum Command {
     },
     /// Something that concerns the missions of the library.
     Library(LibraryCommand),
+    /// Something that concerns the files of the open mission.
+    Files(FileCommand),
     /// Lets the user choose a file.
     OpenFile(FileKind),
     /// Lets the user save the mission text.

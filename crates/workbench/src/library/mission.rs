@@ -55,6 +55,20 @@ pub struct TextFile {
     pub text: String,
 }
 
+/// Texts as one.
+pub(crate) fn joined(texts: &[TextFile]) -> String {
+    rmpl::files::joined(texts.iter().map(|file| (file.name.as_str(), file.text.as_str())))
+}
+
+/// The texts of a joined one; the main one keeps its name.
+pub(super) fn split(text: &str, main: &str) -> Vec<TextFile> {
+    let named = |(name, text): (&str, &str)| {
+        let name = if name.is_empty() { main } else { name };
+        TextFile { name: name.into(), text: text.to_owned() }
+    };
+    rmpl::files::split(text).into_iter().map(named).collect()
+}
+
 /// A map of a mission.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MapFile {
@@ -137,9 +151,15 @@ struct Written<'a> {
 }
 
 impl Mission {
-    /// The main text.
-    pub fn main_text(&self) -> &str {
-        self.texts.first().map_or("", |file| file.text.as_str())
+    /// All texts as one, which is what is edited (`rmpl::files`).
+    pub fn joined_text(&self) -> String {
+        joined(&self.texts)
+    }
+
+    /// Makes its texts those of a joined one.
+    pub(crate) fn say(&mut self, text: &str) {
+        let main = self.texts.first().map_or(MAIN_TEXT, |main| &main.name);
+        self.texts = split(text, main);
     }
 
     /// The mission as JSON with all that it holds.

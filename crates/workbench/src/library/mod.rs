@@ -13,10 +13,13 @@ use std::sync::Arc;
 
 use smol_str::{SmolStr, format_smolstr};
 
+pub(crate) use mission::joined;
 pub use mission::{
     FORMAT, MAIN_TEXT, MapFile, Mission, MissionError, MissionId, MissionKind, TextFile, Version,
 };
 pub use template::{TEMPLATES, Template, template};
+
+use mission::split;
 
 /// What is open.
 #[derive(Clone, Debug, PartialEq)]
@@ -177,7 +180,7 @@ impl Library {
             created_millis: now_millis,
             changed_millis: now_millis,
             deleted_millis: None,
-            texts: vec![TextFile { name: MAIN_TEXT.into(), text: text.to_owned() }],
+            texts: split(text, MAIN_TEXT),
             maps: Vec::new(),
             versions: Vec::new(),
             review: None,
@@ -224,10 +227,9 @@ impl Library {
             Open::Mission(id) => {
                 let id = id.clone();
                 if let Some(mission) = self.mission_mut(&id)
-                    && let Some(main) = mission.texts.first_mut()
-                    && main.text != text
+                    && mission.joined_text() != text
                 {
-                    text.clone_into(&mut main.text);
+                    mission.say(text);
                     mission.changed_millis = now_millis.max(mission.changed_millis + 1);
                     self.changes.insert(Change::Typed(id));
                 }

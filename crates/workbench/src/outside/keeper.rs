@@ -147,7 +147,7 @@ impl Keeper {
                 self.note(state, host);
                 self.opened(state, outcome);
                 // Another tab may have gone on with the mission that is open here.
-                let kept = state.library.open_mission().map(|open| open.main_text().to_owned());
+                let kept = state.library.open_mission().map(Mission::joined_text);
                 if let Some(kept) = kept.filter(|kept| kept != state.document.text()) {
                     state.adopt_text(&kept);
                 }

@@ -90,6 +90,7 @@ impl AppState {
                 self.open_original(name, MissionKind::Shared, &source);
             }
             Command::Library(command) => self.apply_to_library(command),
+            Command::Files(command) => self.apply_to_files(command),
             Command::OpenFile(kind) => self.effects.push(Effect::OpenFile(kind)),
             Command::SaveMission => self.save(),
             Command::CopyLink => self.effects.push(Effect::CopyLink),
@@ -501,10 +502,7 @@ impl AppState {
     }
 
     fn save(&mut self) {
-        self.effects.push(Effect::SaveFile {
-            name: format!("{}.rmpl", self.mission),
-            bytes: self.document.text().as_bytes().to_vec(),
-        });
+        self.save_files();
         self.document.mark_saved();
     }
 

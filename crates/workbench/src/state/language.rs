@@ -2,7 +2,7 @@
 
 use rmpl::control::{ParsedControl, is_control_text};
 use rmpl::editor::{self, Evaluation, EventWindow, Invocation};
-use rmpl::{Edit, Parse, Span};
+use rmpl::{Parse, Span};
 use text_editing::{Document, difference};
 use tpn::{OccurrenceKind, Plan};
 
@@ -107,15 +107,19 @@ impl Language {
         }
     }
 
-    /// The text in its canonical layout, as edits; nothing if it has that already.
-    pub fn formatted(&self) -> Option<Edit> {
-        match &self.notation {
-            Notation::Mission(parse) => rmpl::format_edit(parse.text()),
-            Notation::Control(_, text) => {
-                let formatted = rmpl::control::format(text);
-                (formatted != *text).then(|| difference(text, &formatted))
+    /// The text in its canonical layout, file by file; nothing if it has that already.
+    pub fn formatted(&self) -> Option<String> {
+        let (text, formatted) = match &self.notation {
+            Notation::Mission(parse) => {
+                let files = rmpl::files::split(parse.text());
+                let formatted: Vec<(&str, String)> =
+                    files.into_iter().map(|(name, text)| (name, rmpl::format(text))).collect();
+                let files = formatted.iter().map(|(name, text)| (*name, text.as_str()));
+                (parse.text(), rmpl::files::joined(files))
             }
-        }
+            Notation::Control(_, text) => (text.as_str(), rmpl::control::format(text)),
+        };
+        (formatted != text).then_some(formatted)
     }
 }
 

@@ -4,11 +4,10 @@ use std::sync::Arc;
 
 use mission::{Request, Snapshot};
 use smol_str::SmolStr;
-use text_editing::EditKind;
 
 use crate::Dialog;
 use crate::host::FileKind;
-use crate::library::{MapFile, Mission, MissionError, MissionId, MissionKind, Open, Template};
+use crate::library::{MapFile, Mission, MissionError, MissionId, MissionKind, Open, Template, joined};
 use crate::mission_file;
 use crate::state::review::Aside;
 use crate::state::{AppState, Effect, ToastKind};
@@ -161,7 +160,7 @@ impl AppState {
             self.toasts.add(ToastKind::Failed, "This mission is not in the library of this browser");
             return;
         };
-        let (name, text) = (mission.name.clone(), mission.main_text().to_owned());
+        let (name, text) = (mission.name.clone(), mission.joined_text());
         let maps = mission.maps.clone();
         self.set_document_aside();
         self.library.show(id);
@@ -237,7 +236,7 @@ impl AppState {
     fn restore_version(&mut self, index: usize) {
         let Some(mission) = self.library.open_mission() else { return };
         let Some(version) = mission.versions.get(index) else { return };
-        let Some(text) = version.texts.first().map(|file| file.text.clone()) else { return };
+        let text = joined(&version.texts);
         let name = version.name.clone();
         self.document.replace_all(&text);
         self.dialog = None;
@@ -271,6 +270,11 @@ impl AppState {
         };
         match Mission::from_json(&text) {
             Ok(mission) => self.open_whole(mission),
+            Err(MissionError::NoMission) if let Some(missing) = self.missing_file(name) => {
+                if let Err(reason) = self.add_file(&missing, &text) {
+                    refuse(self, &reason);
+                }
+            }
             Err(MissionError::NoMission) if reads_as_mission(name, &text) => {
                 let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
                 let id = self.library.add(stem, MissionKind::File, &text, self.frame.unix_millis);
@@ -331,8 +335,7 @@ impl AppState {
 
     /// Another tab has changed the text of the open mission: this one says the same from here on.
     pub(crate) fn adopt_text(&mut self, text: &str) {
-        let edit = text_editing::difference(self.document.text(), text);
-        self.document.edit(&[edit], EditKind::Single, None);
+        self.document.replace_all(text);
         self.language.follow(&self.document);
         self.editor.folding.follow(&mut self.document, self.language.parse());
         self.automaton.follow(&self.document, self.language.is_control());

@@ -8,6 +8,7 @@ pub mod documents;
 mod editing;
 pub mod editor;
 pub mod execution;
+pub mod files;
 pub mod folding;
 pub mod growth;
 pub mod language;

@@ -152,7 +152,7 @@ impl AppState {
                     detail: format!(
                         "{}{}",
                         if found.is_definition { "declared, line " } else { "line " },
-                        line + 1
+                        self.document.line_in_file(line)
                     ),
                     kind: None,
                     action: PopupAction::Reveal(found.span),
@@ -223,8 +223,8 @@ impl AppState {
 
     pub(super) fn format(&mut self) {
         match self.language.formatted() {
-            Some(edit) => {
-                self.document.edit(&[edit], EditKind::Single, None);
+            Some(text) => {
+                self.document.replace_all(&text);
                 self.toasts.add(ToastKind::Done, "Formatted");
             }
             None => self.toasts.add(ToastKind::Info, "The text is formatted already"),

@@ -6,6 +6,7 @@ use mission::problem::Problem;
 use mission::{Snapshot, Stage};
 use rmpl::Severity;
 
+use crate::state::files::offer_files;
 use crate::state::no_plan;
 
 /// Snapshots as they arrived.
@@ -62,6 +63,7 @@ impl Snapshots {
             self.latest_secs = now_secs;
         }
         self.problems = snapshot.problems.iter().cloned().chain(no_plan::problems(&snapshot)).collect();
+        offer_files(&mut self.problems, &snapshot.source, &snapshot.program.imports);
         self.problems.sort_by_key(|problem| problem.span.start);
         self.latest = Some(snapshot);
     }

@@ -20,6 +20,11 @@ pub(super) fn while_working(state: &AppState) -> Availability {
     if is_working { Ok(()) } else { Err("nothing is being worked out") }
 }
 
+/// Whether the caret is in a file beside the main text.
+pub(super) fn with_file_at_caret(state: &AppState) -> Availability {
+    if state.file_at_caret() > 0 { Ok(()) } else { Err("the caret is in the main text") }
+}
+
 pub(super) fn with_network(state: &AppState) -> Availability {
     let has_network = state.shown().is_some_and(|shown| shown.network.is_some());
     if has_network { Ok(()) } else { Err("there is no network") }

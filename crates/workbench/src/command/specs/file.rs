@@ -1,7 +1,7 @@
 //! Missions and files.
 
 use super::arguments::text_argument;
-use super::available::{with_deleted, with_network, with_own_mission};
+use super::available::{with_deleted, with_file_at_caret, with_network, with_own_mission};
 use super::{CTRL, CTRL_SHIFT, called, keys, plain, when};
 use crate::Dialog;
 use crate::command::chord::Key;
@@ -10,6 +10,7 @@ use crate::command::{Command, PictureFormat};
 use crate::host::FileKind;
 use crate::library::{MissionId, TEMPLATES, template};
 use crate::mission_file;
+use crate::state::files::FileCommand;
 use crate::state::missions::LibraryCommand;
 
 /// In the order of the menus.
@@ -55,6 +56,32 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     plain("file.saveAs", "Save as…", Group::File, &[keys(CTRL_SHIFT, Key::S)], Scope::Everywhere, |_| {
         Command::Library(LibraryCommand::SaveWhole)
     }),
+    plain("file.addFile", "Add a file to the mission…", Group::File, &[], Scope::Everywhere, |_| {
+        Command::ShowDialog(Dialog::FileName { name: String::new(), renames: false })
+    }),
+    when(
+        plain(
+            "file.renameFile",
+            "Rename the file at the caret…",
+            Group::File,
+            &[],
+            Scope::Everywhere,
+            |state| {
+                let name = state
+                    .file_names()
+                    .get(state.file_at_caret())
+                    .map_or_else(String::new, ToString::to_string);
+                Command::ShowDialog(Dialog::FileName { name, renames: true })
+            },
+        ),
+        with_file_at_caret,
+    ),
+    when(
+        plain("file.removeFile", "Remove the file at the caret", Group::File, &[], Scope::Everywhere, |_| {
+            Command::Files(FileCommand::Remove)
+        }),
+        with_file_at_caret,
+    ),
     plain("file.importMap", "Import a map…", Group::File, &[], Scope::Everywhere, |_| {
         Command::OpenFile(FileKind::Map)
     }),
@@ -93,6 +120,12 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     called("file.keepVersionAs", "Keep the text as a version of a name", Group::File, |_, arguments| {
         let name = text_argument(arguments, "name")?.to_owned();
         Ok(Command::Library(LibraryCommand::KeepVersion(name)))
+    }),
+    called("file.addFileNamed", "Add a file of a name to the open mission", Group::File, |_, arguments| {
+        Ok(Command::Files(FileCommand::Add(text_argument(arguments, "name")?.to_owned())))
+    }),
+    called("file.renameFileTo", "Give the file at the caret a name", Group::File, |_, arguments| {
+        Ok(Command::Files(FileCommand::Rename(text_argument(arguments, "name")?.to_owned())))
     }),
     called("file.example", "Open an example", Group::File, |_, arguments| {
         let name = text_argument(arguments, "name")?;

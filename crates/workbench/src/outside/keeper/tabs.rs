@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::host::Host;
-use crate::library::{Mission, MissionId, TextFile, Version};
+use crate::library::{Mission, MissionId, Version};
 use crate::outside::keeper::Keeper;
 use crate::state::{AppState, ToastKind};
 
@@ -30,19 +30,15 @@ impl Keeper {
     /// Tells the text of the open mission, if it is not what the tabs agree on.
     pub(super) fn tell_text(&mut self, state: &AppState, host: &mut dyn Host) {
         let Some(mission) = state.library.open_mission() else { return };
-        let text = mission.main_text();
-        let now = print(text);
+        let text = mission.joined_text();
+        let now = print(&text);
         let base = match &self.agreed {
             Some((id, base)) if *id == mission.id => *base,
             _ => now,
         };
         if base != now {
-            let message = Message::Text {
-                id: mission.id.clone(),
-                base,
-                text: text.to_owned(),
-                changed_millis: mission.changed_millis,
-            };
+            let message =
+                Message::Text { id: mission.id.clone(), base, text, changed_millis: mission.changed_millis };
             tell(host, &message);
         }
         self.agreed = Some((mission.id.clone(), now));
@@ -54,14 +50,14 @@ impl Keeper {
         let Ok(message) = serde_json::from_str(message) else { return };
         match message {
             Message::Text { id, base, text, changed_millis } => {
-                self.hear_text(state, &id, base, text, changed_millis);
+                self.hear_text(state, &id, base, &text, changed_millis);
             }
             Message::Mission { json } => {
                 let Ok(mut mission) = Mission::from_json(&json) else { return };
                 let is_open = state.library.open_id() == Some(&mission.id);
                 // The open text is told by itself, and must not change under the caret here.
-                if let Some(main) = mission.texts.first_mut().filter(|_| is_open) {
-                    state.document.text().clone_into(&mut main.text);
+                if is_open {
+                    mission.say(state.document.text());
                 }
                 state.library.take_in(mission);
                 if let Some(open) = state.library.open_mission().filter(|_| is_open) {
@@ -76,35 +72,28 @@ impl Keeper {
         state: &mut AppState,
         id: &MissionId,
         base: u64,
-        text: String,
+        text: &str,
         changed_millis: i64,
     ) {
         let is_open = state.library.open_id() == Some(id);
-        let Some(mission) = state.library.mission(id).cloned() else { return };
+        let Some(mut mission) = state.library.mission(id).cloned() else { return };
         if !is_open {
-            let texts = mission.texts.iter().cloned();
-            let texts: Vec<TextFile> = texts
-                .enumerate()
-                .map(|(index, file)| if index == 0 { TextFile { text: text.clone(), ..file } } else { file })
-                .collect();
-            state.library.take_in(Mission { changed_millis, texts, ..mission });
+            mission.say(text);
+            state.library.take_in(Mission { changed_millis, ..mission });
             return;
         }
         let mine = print(state.document.text());
-        if mine == print(&text) {
+        if mine == print(text) {
             self.agreed = Some((id.clone(), mine));
         } else if mine == base {
-            state.adopt_text(&text);
+            state.adopt_text(text);
             self.noted_revision = state.document.revision();
             state.note_text();
-            self.agreed = Some((id.clone(), print(&text)));
+            self.agreed = Some((id.clone(), print(text)));
         } else {
-            let name = mission.texts[0].name.clone();
-            let version = Version {
-                name: OTHER_TAB.to_owned(),
-                at_millis: changed_millis,
-                texts: vec![TextFile { name, text }],
-            };
+            mission.say(text);
+            let version =
+                Version { name: OTHER_TAB.to_owned(), at_millis: changed_millis, texts: mission.texts };
             state.library.put_version(id, version);
             let text = "This mission is edited in another tab too, and the two differ: what it says there is kept as \
                         a version";

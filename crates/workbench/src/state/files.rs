@@ -1,0 +1,217 @@
+//! The files of the open mission, which are edited as one text (`rmpl::files`): adding, naming and removing them.
+
+use mission::Problem;
+use mission::problem::TextFix;
+use rmpl::files::{self, Files, MARK};
+use rmpl::program::ImportDecl;
+use rmpl::{Edit, Span};
+use smol_str::SmolStr;
+
+use crate::library::MAIN_TEXT;
+use crate::state::{AppState, Effect, ToastKind};
+use text_editing::Caret;
+
+/// Something that concerns the files of the open mission.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FileCommand {
+    /// Adds an empty file of this name, and imports it in the main text.
+    Add(String),
+    /// Gives the file at the caret another name, where it is imported, too.
+    Rename(String),
+    /// Removes the file at the caret, with what imports it.
+    Remove,
+}
+
+/// The extension of a file whose name has none.
+const EXTENSION: &str = ".rmpl";
+
+impl AppState {
+    /// The names of the mission's files, the main text first.
+    pub fn file_names(&self) -> Vec<SmolStr> {
+        let named = |line: &usize| self.document.heading(*line).map(SmolStr::new);
+        let main = self.library.open_mission().and_then(|mission| mission.texts.first());
+        let main = main.map_or_else(|| MAIN_TEXT.into(), |main| main.name.clone());
+        std::iter::once(main).chain(self.document.headings().iter().filter_map(named)).collect()
+    }
+
+    /// Which of them the caret is in.
+    pub fn file_at_caret(&self) -> usize {
+        let line = self.document.line_at(self.document.caret().head);
+        self.document.headings().partition_point(|&heading| heading <= line)
+    }
+
+    pub(super) fn apply_to_files(&mut self, command: FileCommand) {
+        self.dialog = None;
+        let done = match command {
+            FileCommand::Add(name) => self.add_file(&name, ""),
+            FileCommand::Rename(name) => self.rename_file(&name),
+            FileCommand::Remove => self.remove_file(),
+        };
+        if let Err(reason) = done {
+            self.toasts.add(ToastKind::Failed, reason);
+        }
+        self.focus_editor();
+    }
+
+    /// Adds a file, and imports it in the main text unless something imports it already.
+    pub(super) fn add_file(&mut self, name: &str, text: &str) -> Result<(), String> {
+        let name = self.free_name(name)?;
+        let imports = import_line(self.document.text(), &name);
+        let mut whole = self.document.text().to_owned();
+        if !self.imports().iter().any(|(file, _)| *file == name) {
+            whole.insert_str(imports.0, &imports.1);
+        }
+        let known = files::split(&whole).into_iter().chain([(name.as_str(), text)]);
+        self.document.replace_all(&files::joined(known));
+        let start = self.document.text().len() - text.len();
+        self.document.set_caret(Caret::at(start));
+        self.toasts.add(ToastKind::Done, format!("{name} is a file of this mission now"));
+        Ok(())
+    }
+
+    fn rename_file(&mut self, name: &str) -> Result<(), String> {
+        let (old, heading) = self.file_of_caret()?;
+        if name.trim() == old {
+            return Ok(());
+        }
+        let name = self.free_name(name)?;
+        let known = Files::of(self.document.text());
+        let renamed = |(_, import): (String, ImportDecl)| {
+            let importer = &known.at(import.span.start).name;
+            (import.file_span, format!("\"{}\"", relative(importer, &name)))
+        };
+        let mut edits: Vec<(Span, String)> =
+            self.imports().into_iter().filter(|(file, _)| *file == old).map(renamed).collect();
+        edits.push((heading, name.clone()));
+        self.replace_spans(edits);
+        Ok(())
+    }
+
+    fn remove_file(&mut self) -> Result<(), String> {
+        let (old, heading) = self.file_of_caret()?;
+        let file = self.document.file_range(heading.end as usize);
+        // With the mark of its heading, and the line break in front of it.
+        let start = heading.start.saturating_sub(1 + MARK.len_utf8() as u32);
+        let mut spans = vec![Span::new(start, file.end as u32)];
+        let text = self.document.text();
+        let imports = self.imports().into_iter().filter(|(file, _)| *file == old).map(|(_, import)| {
+            let rest = text.get(import.span.end as usize..).unwrap_or_default();
+            Span::new(import.span.start, import.span.end + u32::from(rest.starts_with('\n')))
+        });
+        spans.extend(imports.filter(|span| !(start..file.end as u32).contains(&span.start)));
+        self.replace_spans(spans.into_iter().map(|span| (span, String::new())).collect());
+        self.toasts.add(ToastKind::Done, format!("{old} is removed; undo brings it back"));
+        Ok(())
+    }
+
+    /// The text with all its files, each as a file of its own.
+    pub(super) fn save_files(&mut self) {
+        for (index, (name, text)) in files::split(self.document.text()).into_iter().enumerate() {
+            let name = if index == 0 { format!("{}{EXTENSION}", self.mission) } else { name.to_owned() };
+            self.effects.push(Effect::SaveFile { name, bytes: text.as_bytes().to_vec() });
+        }
+    }
+
+    /// The file that is imported under this name, or one like it in a folder, and is not there.
+    pub(super) fn missing_file(&self, name: &str) -> Option<String> {
+        let known = Files::of(self.document.text());
+        let is_missing = |file: &String| known.named(file).is_none();
+        let is_it = |file: &String| file == name || file.ends_with(&format!("/{name}"));
+        self.imports().into_iter().map(|(file, _)| file).filter(is_missing).find(is_it)
+    }
+
+    /// Each import with the file that it means.
+    fn imports(&self) -> Vec<(String, ImportDecl)> {
+        self.language.parse().map_or_else(Vec::new, |parse| imports(parse.text(), &parse.program().imports))
+    }
+
+    /// The name of the file at the caret, and where its heading has it.
+    fn file_of_caret(&self) -> Result<(String, Span), String> {
+        let line = self.document.line_at(self.document.caret().head);
+        let heading = self.document.file_lines(line).start.checked_sub(1);
+        let name = heading.and_then(|heading| Some((heading, self.document.heading(heading)?)));
+        let (heading, name) = name.ok_or("The main text is named by the mission, and stays")?;
+        let range = self.document.line_range(heading);
+        Ok((name.to_owned(), Span::new((range.start + MARK.len_utf8()) as u32, range.end as u32)))
+    }
+
+    /// The name as a file's, if a file can have it and none does.
+    fn free_name(&self, name: &str) -> Result<String, String> {
+        let name = name.trim();
+        let name = if name.contains('.') { name.to_owned() } else { format!("{name}{EXTENSION}") };
+        if name.starts_with('.') || !files::is_name(&name) {
+            return Err(format!("\"{name}\" is no name of a file in the mission's folder"));
+        }
+        if self.file_names().iter().any(|known| *known == name) {
+            return Err(format!("{name} is a file of this mission already"));
+        }
+        Ok(name)
+    }
+
+    fn replace_spans(&mut self, mut edits: Vec<(Span, String)>) {
+        edits.sort_by_key(|(span, _)| std::cmp::Reverse(span.start));
+        let mut text = self.document.text().to_owned();
+        for (span, by) in edits {
+            text.replace_range(span.range(), &by);
+        }
+        self.document.replace_all(&text);
+    }
+}
+
+/// Each import with the file that it means.
+fn imports(text: &str, imports: &[ImportDecl]) -> Vec<(String, ImportDecl)> {
+    let known = Files::of(text);
+    let meant = |import: &ImportDecl| files::resolve(&known.at(import.span.start).name, &import.file);
+    imports.iter().filter_map(|import| Some((meant(import)?, import.clone()))).collect()
+}
+
+/// How the file `importer` names another one.
+fn relative(importer: &str, name: &str) -> String {
+    let folder = importer.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let steps: Vec<&str> = folder.split('/').filter(|part| !part.is_empty()).collect();
+    let common = steps.iter().zip(name.split('/')).take_while(|(left, right)| **left == *right).count();
+    let rest = name.split('/').skip(common).collect::<Vec<_>>().join("/");
+    format!("{}{rest}", "../".repeat(steps.len() - common))
+}
+
+/// Where a file is imported in the main text, and the line that does it: behind its last import, otherwise in front of
+/// its first declaration.
+fn import_line(text: &str, name: &str) -> (usize, String) {
+    let main = files::split(text).first().map_or("", |(_, text)| text);
+    let (mut at, mut place) = (0, None);
+    let mut begin = None;
+    for line in main.split_inclusive('\n') {
+        let is_comment = line.trim().is_empty() || line.trim_start().starts_with("//");
+        if begin.is_none() && !is_comment {
+            begin = Some(at);
+        }
+        at += line.len();
+        if line.trim_start().starts_with("import ") {
+            place = Some(at);
+        }
+    }
+    let at = place.or(begin).unwrap_or(main.len());
+    let is_at_line_start = at == 0 || main.as_bytes().get(at - 1) == Some(&b'\n');
+    let before = if is_at_line_start { "" } else { "\n" };
+    let after = if place.is_some() { "" } else { "\n" };
+    (at, format!("{before}import \"{name}\";\n{after}"))
+}
+
+/// Gives each problem of an import whose file is not there the fix that adds it.
+pub(super) fn offer_files(problems: &mut [Problem], text: &str, declared: &[ImportDecl]) {
+    if declared.is_empty() {
+        return;
+    }
+    let known = Files::of(text);
+    let end = text.len() as u32;
+    for (file, import) in imports(text, declared) {
+        if known.named(&file).is_some() || !files::is_name(&file) {
+            continue;
+        }
+        let of_import = problems.iter_mut().filter(|it| it.span == import.file_span && it.fixes.is_empty());
+        for problem in of_import {
+            let edit = Edit { span: Span::new(end, end), text: format!("\n{MARK}{file}\n") };
+            problem.fixes.push(TextFix { label: format!("Add the file `{file}`"), edits: vec![edit] });
+        }
+    }
+}
