@@ -104,3 +104,37 @@ fn a_mission_is_written_with_real_keys_templates_pairs_and_several_carets() -> R
     page.tab.wait_until("enroute.source().split('Run()').length === 4")?;
     Ok(())
 }
+
+#[test]
+fn a_mission_of_two_files_is_written_with_real_keys_planned_and_there_after_a_reload() -> Result<()> {
+    let page = Opened::planned()?;
+    page.place_caret_after("scenario Day1")?;
+    page.tab.press(Key::Character('a'), Modifiers::CONTROL)?;
+    page.tab.press(Key::Delete, Modifiers::NONE)?;
+    page.tab.type_text("import \"world.rmpl\";\nscenario S = { Go(BASE) }")?;
+    page.wait_for("state.diagnostics.some(it => it.message.includes('no file `world.rmpl`'))")?;
+    // The fix of the import adds the file, and what is typed there counts.
+    page.place_caret_after("import \"wor")?;
+    page.tab.press(Key::Character('.'), Modifiers::CONTROL)?;
+    page.tab.press(Key::Enter, Modifiers::NONE)?;
+    page.tab.wait_until("enroute.source().endsWith('\\n\\u001cworld.rmpl\\n')")?;
+    page.tab.press(Key::End, Modifiers::CONTROL)?;
+    page.tab.type_text("primitive Go(place)[1,2];\nlocation BASE (0, 0);")?;
+    page.wait_for("state.status === 'plan' && !state.isStale")?;
+    let text = page.tab.evaluate("enroute.source()")?;
+    // A name of one file is changed in both; Backspace at a file's first line keeps its name.
+    page.place_caret_after("location BAS")?;
+    page.tab.press(Key::Function(2), Modifiers::NONE)?;
+    page.tab.type_text("HOME")?;
+    page.tab.press(Key::Enter, Modifiers::NONE)?;
+    page.tab.wait_until("enroute.source().split('HOME').length === 3")?;
+    page.tab.press(Key::Character('z'), Modifiers::CONTROL)?;
+    page.place_caret_after("\u{1c}world.rmpl\n")?;
+    page.tab.press(Key::Backspace, Modifiers::NONE)?;
+    page.tab.wait_until(&format!("enroute.source() === {text}"))?;
+    page.tab.evaluate("window.isOldPage = true; location.reload()")?;
+    page.tab.wait_until("!('isOldPage' in window) && 'enroute' in window")?;
+    page.tab.wait_until_ready()?;
+    assert_eq!(page.tab.evaluate("enroute.source()")?, text);
+    Ok(())
+}
