@@ -1,11 +1,13 @@
 // The interface as a document: hidden elements with the role, name, value and place of every widget on the canvas.
 // The front end says what changed; see crates/app/src/accessibility/document.rs for the fields.
 
-/** Keeps the elements under `root` in step with the front end that draws on `canvas`. */
-export function createMirror(root, canvas) {
+/** Keeps the elements under `root` in step with the front end that draws on `canvas`, and says in `announcements` what is new. */
+export function createMirror(root, canvas, announcements) {
   const shown = new Map();
   const bounds = new Map();
   let act = () => {};
+  // The element that says which one has the keyboard.
+  let pointing = null;
 
   for (const kind of ["click", "focus"]) {
     root.addEventListener(
@@ -21,11 +23,13 @@ export function createMirror(root, canvas) {
   }
 
   function setFocus(id) {
+    pointing?.removeAttribute("aria-activedescendant");
+    pointing = null;
     const holder = document.activeElement ?? canvas;
-    for (const element of [canvas, holder]) element.removeAttribute("aria-activedescendant");
     const focused = id && shown.get(id);
     if (!focused) return;
     holder.setAttribute("aria-activedescendant", focused.id);
+    pointing = holder;
     // Typing goes to a small input that the canvas keeps; it is named for the widget that it types into.
     if (holder !== canvas && holder instanceof HTMLInputElement) {
       holder.setAttribute("aria-label", focused.getAttribute("aria-label") ?? "");
@@ -35,7 +39,8 @@ export function createMirror(root, canvas) {
   return {
     /** Applies a change, given as JSON. */
     apply(json) {
-      const { removed, changed, top, focus } = JSON.parse(json);
+      const { removed, changed, top, focus, announcement } = JSON.parse(json);
+      if (announcements.textContent !== announcement) announcements.textContent = announcement;
       for (const element of changed) {
         if (!shown.has(element.id)) shown.set(element.id, create(element.id));
       }
@@ -102,16 +107,21 @@ function create(id) {
 function describe(element, { role, label, value, description, enabled, clickable, toggled, selected, ...rest }) {
   const { expanded, multiline, number, level } = rest;
   const pressed = role === "button";
+  const checks = role === "menuitemcheckbox";
+  // What only some roles can be; elsewhere a browser would not pass it on.
+  const choice = selected ?? toggled ?? null;
+  const selects = role === "tab" || role === "option" || role === "row" || role === "treeitem";
   const attributes = {
     role: role || null,
     tabindex: clickable || role === "textbox" ? "-1" : null,
     "aria-label": label || null,
     "aria-description": description,
     "aria-disabled": enabled ? null : "true",
-    "aria-checked": toggled && !pressed ? toggled : null,
-    "aria-pressed": toggled && pressed ? toggled : null,
-    "aria-selected": selected,
-    "aria-expanded": expanded,
+    "aria-checked": checks ? choice : toggled && !pressed && !selects ? toggled : null,
+    "aria-pressed": pressed ? choice : null,
+    "aria-selected": selects ? choice : null,
+    "aria-expanded": role === "combobox" ? String(expanded ?? false) : expanded,
+    "aria-modal": role === "dialog" ? "true" : null,
     "aria-multiline": multiline ? "true" : null,
     "aria-level": level,
     "aria-valuenow": number?.[0],

@@ -26,7 +26,11 @@ async function load() {
   await init({ module_or_path: module });
   await shelf.patience(SHELF_PATIENCE_MILLIS);
   const typing = noteTyping(window);
-  const mirror = createMirror(document.getElementById("accessibility"), canvas);
+  const mirror = createMirror(
+    document.getElementById("accessibility"),
+    canvas,
+    document.getElementById("announcements"),
+  );
   let frontEnd = null;
   const glue = {
     startCore,
@@ -64,6 +68,8 @@ async function load() {
   }
 
   frontEnd = await start(canvas, glue);
+  // The small input that typing goes to; it is named anew for each widget that has the keyboard.
+  document.querySelector("body > input")?.setAttribute("aria-label", "Keyboard");
   mirror.onAct((element, act) => frontEnd.act(element, JSON.stringify(act)));
   api.connect(frontEnd, mirror);
   keepShortcutsFromBrowser(window, usesKey);

@@ -5,6 +5,7 @@
 //! (click, focus, step a slider) goes back into egui as AccessKit action requests. Nothing here knows of a document
 //! or a browser.
 
+mod arrange;
 mod document;
 mod role;
 
@@ -20,6 +21,7 @@ pub struct AccessibilityMirror {
     latest: Document,
     handed_out: Document,
     requests: Vec<Request>,
+    announcement: String,
 }
 
 /// What a user of the mirror does to one element.
@@ -50,6 +52,13 @@ impl AccessibilityMirror {
         let change = self.latest.change_since(&self.handed_out)?;
         self.handed_out = self.latest.clone();
         Some(change)
+    }
+
+    /// Says something to those who do not see it; said again only after something else.
+    pub fn announce(&mut self, words: &str) {
+        if self.announcement != words {
+            words.clone_into(&mut self.announcement);
+        }
     }
 
     /// The interface as of the last frame.
@@ -93,6 +102,7 @@ impl Plugin for AccessibilityMirror {
     fn output_hook(&mut self, context: &Context, output: &mut FullOutput) {
         if let Some(update) = &output.platform_output.accesskit_update {
             self.latest = Document::read(update, f64::from(context.zoom_factor()));
+            self.latest.announcement.clone_from(&self.announcement);
         }
     }
 }

@@ -3,18 +3,21 @@
 use std::cell::{Cell, RefCell};
 
 use eframe::egui_wgpu::RenderState;
+use egui::accesskit::Role;
 use egui::{CentralPanel, Frame, Ui};
 use egui_tiles::{Behavior, TileId, Tiles, UiResponse};
 use panels::{Context, Panels};
 use serde_json::Value;
 use theme::icon::{self, Icon};
+use theme::structure;
 use workbench::command::{Command, CommandSender};
 use workbench::host::{Host, Remote, RemoteError};
 use workbench::outside::PageState;
-use workbench::state::AppState;
+use workbench::state::{AppState, System};
 use workbench::state::manual::ManualCommand;
 use workbench::{PanelEffect, PanelKind, Session, WindowEffect};
 
+use crate::accessibility::AccessibilityMirror;
 use crate::bar;
 use crate::default_layout::SizeClass;
 use crate::dialog;
@@ -84,6 +87,7 @@ impl Enroute {
         for file in self.egui.input(|input| input.raw.dropped_files.clone()) {
             (self.read_dropped)(file);
         }
+        self.follow_system();
         let next_secs = self.session.begin_frame();
         self.wake_after(next_secs);
         self.follow_effects();
@@ -100,6 +104,9 @@ impl Enroute {
         self.follow_effects();
         let next_secs = self.session.end_frame(layout_millis);
         self.wake_after(next_secs);
+        if let Some(mirror) = self.egui.plugin_opt::<AccessibilityMirror>() {
+            mirror.lock().announce(&self.app_state().announcement());
+        }
         // What is kept is kept when nobody is dragging.
         if !self.egui.input(|input| input.pointer.any_down()) {
             self.session.remember();
@@ -122,7 +129,7 @@ impl Enroute {
             state,
             snapshot: state.looked_at(),
             is_stale: state.snapshots.is_stale(state.document.revision()),
-            tokens: panels::tokens(state.settings.theme),
+            tokens: panels::tokens(state),
             render_state,
             now_secs: state.frame.now_secs,
             clock: &clock,
@@ -135,6 +142,7 @@ impl Enroute {
         let tree = self.layouts.tree_mut(state.arrangement());
         let mut shown = Vec::new();
         CentralPanel::default().frame(Frame::new().fill(context.tokens.background)).show(ui, |ui| {
+            structure::part(ui, Role::Main, "Panels");
             let mut tiles =
                 PanelTiles { panels: &mut self.panels, context: &context, commands, shown: Vec::new() };
             match state.maximized {
@@ -179,9 +187,23 @@ impl Enroute {
         }
     }
 
+    /// Looks at what the user has asked of all programs; it may change while the app runs.
+    fn follow_system(&mut self) {
+        let system = System {
+            is_light: self.egui.system_theme() == Some(egui::Theme::Light),
+            reduces_motion: self.session.host().reduces_motion(),
+        };
+        if self.app_state().system != system {
+            self.session.state_mut().system = system;
+            self.restyle();
+            self.egui.request_repaint();
+        }
+    }
+
     fn restyle(&self) {
-        let settings = &self.app_state().settings;
-        theme::apply(&self.egui, panels::tokens(settings.theme), settings.text_scale);
+        let state = self.app_state();
+        let motion = state.system.reduces_motion;
+        theme::apply(&self.egui, panels::tokens(state), state.settings.text_scale, motion);
     }
 
     fn wake_after(&self, seconds: Option<f64>) {
@@ -200,7 +222,7 @@ impl eframe::App for Enroute {
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        panels::tokens(self.app_state().settings.theme).background.to_normalized_gamma_f32()
+        panels::tokens(self.app_state()).background.to_normalized_gamma_f32()
     }
 
     #[cfg(target_arch = "wasm32")]
@@ -294,6 +316,7 @@ impl PanelTiles<'_> {
         if pressed && self.context.state.active_panel != kind && self.context.state.dialog.is_none() {
             self.commands.send(Command::Activate(kind));
         }
+        structure::part(ui, Role::Region, &format!("{} panel", kind.title()));
         self.region(ui, kind);
         ui.push_id(kind.name(), |ui| self.panels.show(kind, ui, self.context, self.commands));
     }

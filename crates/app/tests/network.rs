@@ -172,7 +172,7 @@ fn an_error_is_marked_at_the_activity_that_it_is_in() {
 #[test]
 fn time_shows_on_the_network_while_it_is_not_at_the_start() {
     let mut app = started();
-    let now = panels::tokens(workbench::state::settings::ThemeChoice::Dark).now;
+    let now = theme::DARK.now;
     let dots = |app: &support::App| {
         let is_dot = |shape: &&egui::epaint::ClippedShape| match &shape.shape {
             egui::Shape::Circle(circle) => circle.fill == now,

@@ -18,7 +18,7 @@ pub(crate) fn show(
     actions: &mut Vec<EditorAction>,
 ) -> Option<Rect> {
     let popup = view.popup?;
-    let row = space::ROW - 1.0;
+    let row = space::ROW;
     let height = popup.items.len().min(ROWS) as f32 * row + 8.0;
     let screen = ui.ctx().content_rect();
     let is_below = caret.bottom() + height + 12.0 < screen.bottom();

@@ -82,7 +82,7 @@ fn open(told: Told) -> Window {
         if frames == 1 {
             // Fonts are there from the next frame on.
             theme::install_fonts(ui.ctx());
-            theme::apply(ui.ctx(), &theme::DARK, 1.0);
+            theme::apply(ui.ctx(), &theme::DARK, 1.0, false);
             return;
         }
         let told = &mut *inner_told.borrow_mut();

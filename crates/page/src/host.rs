@@ -3,7 +3,7 @@
 use js_sys::Uint8Array;
 use mission::Request;
 use wasm_bindgen::prelude::*;
-use web_sys::{Location, Storage, Window};
+use web_sys::{Location, MediaQueryList, Storage, Window};
 use workbench::host::{FileKind, Host, HostEvent, ShelfContent, ShelfNews, ShelfRequest, StorageError};
 
 use crate::{
@@ -20,6 +20,8 @@ pub(crate) struct PageHost {
     glue: Glue,
     link: CoreLink,
     window: Window,
+    /// Whether the user wants nothing to move by itself, where the browser can tell.
+    reduces_motion: Option<MediaQueryList>,
     _fragment_listener: Closure<dyn FnMut()>,
     _tab_listener: Closure<dyn FnMut(String)>,
 }
@@ -40,7 +42,8 @@ impl PageHost {
         });
         glue.on_tab_said(&tab_listener);
         let listeners = (listener, tab_listener);
-        Some(Self { glue, link, window, _fragment_listener: listeners.0, _tab_listener: listeners.1 })
+        let reduces_motion = window.match_media("(prefers-reduced-motion: reduce)").ok().flatten();
+        Some(Self { glue, link, window, reduces_motion, _fragment_listener: listeners.0, _tab_listener: listeners.1 })
     }
 
     /// Reads files that are dropped on the canvas.
@@ -150,6 +153,10 @@ impl Host for PageHost {
 
     fn tell_tabs(&mut self, message: &str) {
         self.glue.tell_tabs(message);
+    }
+
+    fn reduces_motion(&self) -> bool {
+        self.reduces_motion.as_ref().is_some_and(MediaQueryList::matches)
     }
 
     fn random(&mut self) -> u64 {

@@ -23,20 +23,15 @@ mod strategy;
 mod terrain;
 mod timeline;
 
-use workbench::state::settings::ThemeChoice;
-
 pub use empty::show_empty;
 pub use mission_text::{editor_id, typed_text};
 pub use panel::{Context, Panel};
 pub use plan::counted;
 pub use registry::Panels;
 
-/// The tokens of the theme that the user has chosen.
-pub const fn tokens(theme: ThemeChoice) -> &'static theme::Tokens {
-    match theme {
-        ThemeChoice::Dark => &theme::DARK,
-        ThemeChoice::Light => &theme::LIGHT,
-    }
+/// The tokens of the theme that is shown.
+pub fn tokens(state: &workbench::state::AppState) -> &'static theme::Tokens {
+    if state.is_dark() { &theme::DARK } else { &theme::LIGHT }
 }
 
 /// Whether the pointer went down here, though it may be up again: where frames are slow, one frame sees both.

@@ -1,6 +1,6 @@
 //! How pointer and keys move the camera.
 
-use egui::{Key, PointerButton, Response};
+use egui::{InputState, Key, PointerButton, Response};
 use glam::{Vec2, Vec3};
 
 use crate::camera::Camera;
@@ -10,6 +10,15 @@ const KEY_STEP: f32 = 24.0;
 
 /// Moves the camera as pointer and keys ask, in an image of `size` points; `under` is the ground under the pointer.
 pub fn update(response: &Response, camera: &mut Camera, size: Vec2, under: Option<Vec3>) {
+    // Two fingers move and zoom; one of them alone would turn as well.
+    let touch = response.ctx.input(InputState::multi_touch);
+    if let Some(touch) = touch.filter(|touch| response.rect.contains(touch.start_pos)) {
+        camera.pan(Vec2::new(touch.translation_delta.x, touch.translation_delta.y), size.y);
+        if touch.zoom_delta != 1.0 && touch.zoom_delta > 0.0 {
+            camera.zoom(1.0 / touch.zoom_delta);
+        }
+        return;
+    }
     let drag = Vec2::new(response.drag_delta().x, response.drag_delta().y);
     let shift = response.ctx.input(|input| input.modifiers.shift);
     if response.dragged_by(PointerButton::Secondary)

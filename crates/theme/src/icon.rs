@@ -89,7 +89,7 @@ pub fn button(ui: &mut Ui, tokens: &Tokens, icon: Icon, name: &str) -> Response 
 
 /// A flat button with an icon that shows whether it is on.
 pub fn toggle(ui: &mut Ui, tokens: &Tokens, icon: Icon, name: &str, is_on: bool) -> Response {
-    let (rect, response) = ui.allocate_exact_size(Vec2::splat(space::ROW + 2.0), Sense::click());
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(space::ROW), Sense::click());
     let is_enabled = ui.is_enabled();
     response.widget_info(|| WidgetInfo::selected(Role::Button, is_enabled, is_on, name));
     let fill = match (is_on, response.is_pointer_button_down_on(), response.hovered()) {

@@ -6,6 +6,7 @@
 pub mod icon;
 mod prose;
 mod short;
+pub mod structure;
 mod style;
 mod tokens;
 
@@ -29,7 +30,7 @@ pub mod space {
     /// Around dialogs.
     pub const XL: f32 = 16.0;
     /// The height of a row in lists and tables.
-    pub const ROW: f32 = 22.0;
+    pub const ROW: f32 = 24.0;
     /// The height of bars.
     pub const BAR: f32 = 36.0;
 }

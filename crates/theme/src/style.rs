@@ -4,19 +4,25 @@ use std::sync::Arc;
 
 use egui::{
     Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Shadow, Stroke,
-    Style, TextStyle, Theme, Vec2, Visuals, style::ScrollStyle,
+    Style, TextStyle, Theme, Vec2, Visuals, style::{ScrollAnimation, ScrollStyle},
 };
 
 use crate::{Tokens, size, space};
 
-/// Makes `context` look like the theme of `tokens`, with text scaled by `text_scale`.
-pub fn apply(context: &Context, tokens: &Tokens, text_scale: f32) {
+/// Makes `context` look like the theme of `tokens`, with text scaled by `text_scale`; nothing moves by itself if
+/// `reduces_motion`.
+pub fn apply(context: &Context, tokens: &Tokens, text_scale: f32, reduces_motion: bool) {
     let (wanted, visuals) =
         if tokens.is_dark { (Theme::Dark, Visuals::dark()) } else { (Theme::Light, Visuals::light()) };
     let mut style = Style { visuals, ..Style::default() };
     set_type(&mut style);
     set_spacing(&mut style);
     set_visuals(&mut style.visuals, tokens);
+    if reduces_motion {
+        style.animation_time = 0.0;
+        style.scroll_animation = ScrollAnimation::none();
+        style.visuals.text_cursor.blink = false;
+    }
     context.set_theme(wanted);
     context.set_style_of(wanted, style);
     context.set_zoom_factor(text_scale);

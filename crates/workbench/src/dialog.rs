@@ -84,6 +84,22 @@ impl Dialog {
         }
     }
 
+    /// Its title for those who do not see it.
+    pub fn title(&self) -> &'static str {
+        match self {
+            Self::Palette { .. } => "Command palette",
+            Self::GoToLine { .. } => "Go to line",
+            Self::Rename { .. } => "Rename",
+            Self::Epoch { .. } => "Start of the mission",
+            Self::Explain(_) => "Explanation",
+            Self::Missions { .. } => "Missions",
+            Self::MissionName { .. } => "Name of the mission",
+            Self::VersionName { .. } => "Name of the version",
+            Self::Keys => "Keyboard shortcuts",
+            Self::About => "About Enroute",
+        }
+    }
+
     /// An empty palette.
     pub fn palette() -> Self {
         Self::Palette { query: String::new(), chosen: 0 }

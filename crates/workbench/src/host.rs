@@ -60,6 +60,11 @@ pub trait Host {
     /// Tells the other tabs that show this page; [`HostEvent::TabSaid`] is how they hear it.
     fn tell_tabs(&mut self, message: &str);
 
+    /// Whether the user wants nothing to move by itself.
+    fn reduces_motion(&self) -> bool {
+        false
+    }
+
     /// A number that no other run has drawn.
     fn random(&mut self) -> u64;
 

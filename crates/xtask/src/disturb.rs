@@ -1,29 +1,18 @@
-//! `cargo xtask disturb`: reloads, closes and starves the page right after key presses, again and again, and
-//! counts the key presses that are lost.
+//! Reloads, closes and starves the page right after key presses, again and again, and counts the key presses that are
+//! lost: `cargo xtask disturb`, and a few of them in the tests of the page.
 
-use std::fmt::Write as _;
-
-use anyhow::{Context as _, Result, ensure};
-use serde_json::{Value, json};
-use xtask::{
-    browser::{Browser, Graphics, Tab},
-    server::SiteServer,
-    site::{self, Flavour},
+use std::{
+    fmt::{self, Display, Formatter},
+    path::Path,
 };
 
-/// How often, and with which chance.
-#[derive(clap::Args)]
-pub(crate) struct Options {
-    /// How many disturbances.
-    #[arg(long, default_value_t = 100)]
-    runs: u32,
-    /// Decides what is typed and what happens then.
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-    /// Takes the page as it was last built.
-    #[arg(long)]
-    no_build: bool,
-}
+use anyhow::{Context as _, Result};
+use serde_json::json;
+
+use crate::{
+    browser::{Browser, Graphics, Tab},
+    server::SiteServer,
+};
 
 /// What happens to the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,25 +48,69 @@ struct Tally {
     lost: usize,
 }
 
+/// What came of all disturbances. Displays as a table in Markdown.
+pub struct Losses {
+    tallies: [Tally; Disturbance::ALL.len()],
+    /// Each text that was not as it was to be, with what it was to be.
+    pub differences: Vec<[String; 2]>,
+}
+
+impl Losses {
+    /// How many disturbances there were.
+    pub fn runs(&self) -> u32 {
+        self.tallies.iter().map(|tally| tally.runs).sum()
+    }
+
+    /// How many key presses were lost.
+    pub fn lost(&self) -> usize {
+        self.tallies.iter().map(|tally| tally.lost).sum()
+    }
+}
+
+impl Display for Losses {
+    fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
+        out.write_str("| disturbance | runs | key presses | lost |\n|---|---|---|---|\n")?;
+        let mut sum = Tally::default();
+        for (kind, &Tally { runs, keys, lost }) in Disturbance::ALL.iter().zip(&self.tallies) {
+            writeln!(out, "| {} | {runs} | {keys} | {lost} |", kind.words())?;
+            sum = Tally { runs: sum.runs + runs, keys: sum.keys + keys, lost: sum.lost + lost };
+        }
+        writeln!(out, "| all | {} | {} | {} |", sum.runs, sum.keys, sum.lost)
+    }
+}
+
+/// Gives the text the keyboard, and tells whether it has it.
+const FOCUS_TEXT: &str = "(() => { \
+    const text = document.querySelector('[role=textbox][aria-label=\"Mission text\"]'); \
+    if (document.querySelector(`[aria-activedescendant=${text.id}]`)) return true; \
+    text.focus(); return false; })()";
 /// A text longer than this is begun anew.
 const LONGEST_TEXT: usize = 1500;
+/// After so many disturbances a browser gives way to a fresh one: tabs that were closed leave something behind.
+const RUNS_OF_A_BROWSER: u32 = 100;
+/// Width and height of the page in CSS pixels: small, because it is drawn without a graphics card.
+const SIZE: [u32; 2] = [560, 420];
 /// Bytes that a full storage has room for.
 const NO_ROOM: u64 = 1;
 /// Collects the workers that the page starts, so that they can be ended.
 const COLLECT_WORKERS: &str = "window.startedWorkers = []; window.Worker = class extends Worker { \
     constructor(...all) { super(...all); window.startedWorkers.push(this); } };";
 
-/// Builds the page, disturbs it, and prints the table of losses. Fails if a key press was lost.
-pub(crate) fn run(options: &Options) -> Result<()> {
-    let flavour = Flavour::Development;
-    let folder = if options.no_build { flavour.folder() } else { site::build(flavour)? };
-    let server = SiteServer::start(&folder, 0, false)?;
-    let browser = Browser::start(Graphics::WebGl2)?;
-    let mut chance = Chance(options.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
-    let mut page = Page { tab: opened(&browser, &server)?, expected: String::new() };
+/// Disturbs the page of a site `runs` times; `seed` decides what is typed and what happens then. `tell` hears of each
+/// run that has been made.
+pub fn disturb(site: &Path, runs: u32, seed: u64, mut tell: impl FnMut(u32)) -> Result<Losses> {
+    let server = SiteServer::start(site, 0, false)?;
+    let mut browser = Browser::start(Graphics::WebGl2)?;
+    let mut chance = Chance(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
+    let mut page = Page { tab: opened(&browser, &server)?, expected: String::new(), differences: Vec::new() };
     page.begin("// ")?;
-    let mut tallies = [Tally::default(); Disturbance::ALL.len()];
-    for run in 0..options.runs {
+    let mut losses = Losses { tallies: [Tally::default(); Disturbance::ALL.len()], differences: Vec::new() };
+    for run in 0..runs {
+        if run > 0 && run % RUNS_OF_A_BROWSER == 0 {
+            browser = Browser::start(Graphics::WebGl2)?;
+            page.tab = opened(&browser, &server)?;
+            page.begin(&format!("// {run} "))?;
+        }
         let kind = chance.below(Disturbance::ALL.len() as u64) as usize;
         let typed: String = (0..4 + chance.below(28)).map(|_| chance.key()).collect();
         if page.expected.len() > LONGEST_TEXT {
@@ -86,33 +119,16 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         let lost = page
             .disturbed(Disturbance::ALL[kind], &typed, &browser, &server)
             .with_context(|| format!("run {run}, {}", Disturbance::ALL[kind].words()))?;
-        let tally = &mut tallies[kind];
+        let tally = &mut losses.tallies[kind];
         *tally = Tally { runs: tally.runs + 1, keys: tally.keys + typed.len(), lost: tally.lost + lost };
+        tell(run + 1);
     }
-    print!("{}", table(&tallies));
-    let lost: usize = tallies.iter().map(|tally| tally.lost).sum();
-    ensure!(lost == 0, "{lost} key presses were lost (seed {})", options.seed);
-    Ok(())
-}
-
-/// The table of losses, in Markdown.
-fn table(tallies: &[Tally]) -> String {
-    let mut text = "| disturbance | runs | key presses | lost |\n|---|---|---|---|\n".to_owned();
-    let mut sum = Tally::default();
-    let mut row = |words: &str, tally: Tally| {
-        let Tally { runs, keys, lost } = tally;
-        let _ = writeln!(text, "| {words} | {runs} | {keys} | {lost} |");
-    };
-    for (kind, &tally) in Disturbance::ALL.iter().zip(tallies) {
-        row(kind.words(), tally);
-        sum = Tally { runs: sum.runs + tally.runs, keys: sum.keys + tally.keys, lost: sum.lost + tally.lost };
-    }
-    row("all", sum);
-    text
+    losses.differences = page.differences;
+    Ok(losses)
 }
 
 fn opened(browser: &Browser, server: &SiteServer) -> Result<Tab> {
-    let tab = browser.open_tab(1000, 700)?;
+    let tab = browser.open_tab(SIZE[0], SIZE[1])?;
     tab.call("Page.addScriptToEvaluateOnNewDocument", &json!({ "source": COLLECT_WORKERS }))?;
     tab.go_to(server.url())?;
     tab.wait_until_ready()?;
@@ -123,6 +139,8 @@ fn opened(browser: &Browser, server: &SiteServer) -> Result<Tab> {
 struct Page {
     tab: Tab,
     expected: String,
+    /// Texts found and expected, where they differ.
+    differences: Vec<[String; 2]>,
 }
 
 impl Page {
@@ -142,7 +160,7 @@ impl Page {
         browser: &Browser,
         server: &SiteServer,
     ) -> Result<usize> {
-        self.tab.click_widget("textbox", "Mission text")?;
+        self.tab.wait_until(FOCUS_TEXT)?;
         self.tab.evaluate(&format!("enroute.dispatch('edit.select', {{ start: {} }})", 1 << 20))?;
         let origin = server.url().trim_end_matches('/').to_owned();
         let (first, rest) = typed.split_at(typed.len() / 2);
@@ -180,8 +198,7 @@ impl Page {
         let found = outcome.as_str().unwrap_or_default().to_owned();
         let lost = missing(&self.expected, &found);
         if found != self.expected {
-            eprintln!("expected {text}\nfound    {}", Value::from(found.clone()));
-            self.expected = found;
+            self.differences.push([found.clone(), std::mem::replace(&mut self.expected, found)]);
         }
         Ok(lost)
     }
@@ -226,7 +243,9 @@ mod tests {
     #[test]
     fn the_table_sums_what_happened() {
         let tally = Tally { runs: 2, keys: 10, lost: 1 };
-        let text = table(&[tally; 4]);
+        let losses = Losses { tallies: [tally; 4], differences: Vec::new() };
+        assert_eq!((losses.runs(), losses.lost()), (8, 4));
+        let text = losses.to_string();
         assert!(text.ends_with("| all | 8 | 40 | 4 |\n"), "{text}");
     }
 }

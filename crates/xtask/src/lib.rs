@@ -5,6 +5,7 @@
 pub mod browser;
 pub mod dependencies;
 pub mod dist;
+pub mod disturb;
 pub mod process;
 pub mod server;
 pub mod site;

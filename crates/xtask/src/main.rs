@@ -2,17 +2,16 @@
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a command line talks to its user")]
 
 mod bench;
-mod disturb;
 mod serve;
 mod shot;
 mod test;
 
-use std::process::ExitCode;
+use std::{path::PathBuf, process::ExitCode};
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::{Parser, Subcommand};
 use xtask::{
-    dist, process,
+    dist, disturb, process,
     site::{self, Flavour},
 };
 
@@ -35,9 +34,41 @@ enum Task {
     /// Prints the benchmark tables.
     Bench(bench::Options),
     /// Reloads, closes and starves the page while somebody types, and counts the key presses that are lost.
-    Disturb(disturb::Options),
+    Disturb(Disturbances),
     /// Takes a picture of the built page in headless Chromium.
     Shot(shot::Options),
+}
+
+/// How often the page is disturbed, and with which chance.
+#[derive(clap::Args)]
+struct Disturbances {
+    /// How many disturbances.
+    #[arg(long, default_value_t = 100)]
+    runs: u32,
+    /// Decides what is typed and what happens then.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Takes the page in this folder, such as `dist`, instead of building it.
+    #[arg(long)]
+    site: Option<PathBuf>,
+}
+
+fn disturb_page(options: &Disturbances) -> Result<()> {
+    let folder = match &options.site {
+        Some(folder) => folder.clone(),
+        None => site::build(Flavour::Development)?,
+    };
+    let losses = disturb::disturb(&folder, options.runs, options.seed, |made| {
+        if made % 100 == 0 {
+            eprintln!("{made} of {}", options.runs);
+        }
+    })?;
+    for [found, expected] in &losses.differences {
+        eprintln!("expected {expected:?}\nfound    {found:?}");
+    }
+    print!("{losses}");
+    ensure!(losses.lost() == 0, "{} key presses were lost (seed {})", losses.lost(), options.seed);
+    Ok(())
 }
 
 fn write_dist() -> Result<()> {
@@ -60,7 +91,7 @@ fn main() -> ExitCode {
         },
         Task::Dist => write_dist(),
         Task::Bench(options) => bench::run_all(&options),
-        Task::Disturb(options) => disturb::run(&options),
+        Task::Disturb(options) => disturb_page(&options),
         Task::Shot(options) => shot::run(&options),
     };
     match outcome {

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use egui::accesskit::{Node, NodeId, Role, Toggled, TreeUpdate};
 use serde::Serialize;
 
+use super::arrange::{gather_rows, gather_tabs, is_leaf};
 use super::role::aria_role;
 
 /// The interface as a tree of elements.
@@ -13,6 +14,8 @@ pub struct Document {
     elements: BTreeMap<u64, Element>,
     top: Vec<u64>,
     focus: Option<u64>,
+    /// What is to be said now, to somebody who does not see it.
+    pub(super) announcement: String,
 }
 
 /// One element: a widget, a text, or a group of them.
@@ -79,6 +82,31 @@ pub struct Change {
     /// The element that has the keyboard.
     #[serde(serialize_with = "maybe_as_text")]
     pub focus: Option<u64>,
+    /// What is to be said now, to somebody who does not see it.
+    pub announcement: String,
+}
+
+impl Element {
+    /// An element that only holds others.
+    pub(super) fn group(id: u64, role: &'static str, bounds: [f64; 4], children: Vec<u64>) -> Self {
+        Self {
+            id,
+            role,
+            label: String::new(),
+            value: None,
+            description: None,
+            bounds,
+            children,
+            enabled: true,
+            clickable: false,
+            toggled: None,
+            selected: None,
+            expanded: None,
+            multiline: false,
+            number: None,
+            level: None,
+        }
+    }
 }
 
 impl Document {
@@ -130,6 +158,7 @@ impl Document {
                 .collect(),
             top: self.top.clone(),
             focus: self.focus,
+            announcement: self.announcement.clone(),
         })
     }
 }
@@ -163,14 +192,19 @@ impl Reader<'_> {
             }
             let children = self.read_children(child, elements, seen);
             match self.element(child, node, children) {
-                Ok(element) => {
+                Ok(mut element) => {
                     inside.push(element.id);
+                    if is_leaf(element.role) {
+                        inside.append(&mut element.children);
+                    } else if element.role == "table" {
+                        element.children = gather_rows(element.id, &element.children, elements);
+                    }
                     elements.insert(element.id, element);
                 }
                 Err(children) => inside.extend(children),
             }
         }
-        inside
+        gather_tabs(parent.0, inside, elements)
     }
 
     /// A node as an element, or its children if it says nothing itself.

@@ -21,7 +21,6 @@ pub(super) fn aria_role(role: Role) -> Option<&'static str> {
         Role::ListBoxOption | Role::MenuListOption => "option",
         Role::ProgressIndicator => "progressbar",
         Role::Meter => "meter",
-        Role::ScrollBar => "scrollbar",
         Role::Splitter => "separator",
         Role::Tab => "tab",
         Role::TabList => "tablist",

@@ -6,6 +6,7 @@ use panels::counted;
 use rmpl::Severity;
 use theme::icon::{self, Icon};
 use theme::space;
+use theme::structure;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender};
 use workbench::library::Keeping;
@@ -16,6 +17,7 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let tokens = context.tokens;
     let frame = Frame::new().fill(tokens.background).inner_margin(Margin::symmetric(10, 0));
     Panel::bottom("status-bar").exact_size(24.0).show_separator_line(false).frame(frame).show(ui, |ui| {
+        structure::part(ui, egui::accesskit::Role::ContentInfo, "");
         ui.style_mut().override_text_style = Some(egui::TextStyle::Small);
         ui.horizontal_centered(|ui| {
             problems(ui, context, commands);
@@ -43,7 +45,7 @@ fn problems(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let counts =
         [errors, warnings].map(|count| ui.painter().layout_no_wrap(count.to_string(), font.clone(), color));
     let width = 58.0 + counts.iter().map(|count| count.size().x).sum::<f32>();
-    let (rect, response) = ui.allocate_exact_size(egui::vec2(width, 20.0), egui::Sense::click());
+    let (rect, response) = ui.allocate_exact_size(egui::vec2(width, space::ROW), egui::Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
     if response.hovered() || response.has_focus() {
         ui.painter().rect_filled(rect, 4.0, tokens.hover);

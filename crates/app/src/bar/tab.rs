@@ -18,6 +18,8 @@ pub struct Tab {
 
 const MARGIN: f32 = 10.0;
 const CROSS: f32 = 16.0;
+/// The cross is pressed within a square of this size.
+const TARGET: f32 = 24.0;
 
 /// Shows the tab of a panel, or of a group of panels if `kind` is none.
 pub fn show(ui: &mut Ui, context: &Context<'_>, kind: Option<PanelKind>, id: Id, state: &TabState) -> Tab {
@@ -30,7 +32,7 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, kind: Option<PanelKind>, id: Id,
     let size = Vec2::new(galley.size().x + 2.0 * MARGIN + cross_width, ui.available_height());
     let (_, rect) = ui.allocate_space(size);
     let response = ui.interact(rect, id, Sense::click_and_drag()).on_hover_cursor(CursorIcon::Grab);
-    response.widget_info(|| WidgetInfo::selected(Role::Button, true, state.active, galley.text()));
+    response.widget_info(|| WidgetInfo::selected(Role::Tab, true, state.active, galley.text()));
     if state.is_being_dragged {
         return Tab { response, is_closed: false };
     }
@@ -67,12 +69,12 @@ fn cross(
 ) -> bool {
     let tokens = context.tokens;
     let center = tab.right_center() - Vec2::new(MARGIN - 4.0 + CROSS / 2.0, 0.0);
-    let rect = Rect::from_center_size(center, Vec2::splat(CROSS));
+    let rect = Rect::from_center_size(center, Vec2::splat(TARGET));
     let cross = ui.interact(rect, id.with("close"), Sense::click());
     let name = format!("Close {}", kind.title());
     cross.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
     if cross.hovered() {
-        ui.painter().rect_filled(rect, 3.0, tokens.pressed);
+        ui.painter().rect_filled(rect.shrink((TARGET - CROSS) / 2.0), 3.0, tokens.pressed);
     }
     if is_active || response.hovered() || cross.hovered() || cross.has_focus() {
         let color = if cross.hovered() { tokens.text } else { tokens.text_faint };

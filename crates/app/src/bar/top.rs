@@ -1,9 +1,12 @@
 //! The bar on top: menus, the mission, the workspaces, and where the plan stands.
 
+use egui::accesskit;
+use egui::containers::menu::MenuButton;
 use egui::{Align, Button, Frame, Layout, Margin, Panel, RichText, Role, Sense, Stroke, Ui, WidgetInfo};
 use panels::Context;
 use theme::icon::{self, Icon};
 use theme::space;
+use theme::structure;
 use workbench::Dialog;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, CommandSpec, Group, all_commands};
@@ -21,10 +24,14 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let tokens = context.tokens;
     let frame = Frame::new().fill(tokens.background).inner_margin(Margin::symmetric(10, 0));
     Panel::top("top-bar").exact_size(space::BAR).show_separator_line(false).frame(frame).show(ui, |ui| {
+        structure::part(ui, accesskit::Role::Banner, "");
         ui.horizontal_centered(|ui| {
-            ui.label(RichText::new("Enroute").strong().size(15.0).color(tokens.text));
+            structure::heading(ui, RichText::new("Enroute").strong().size(15.0).color(tokens.text), 1);
             ui.add_space(space::S);
-            menus(ui, context, commands);
+            // The menus stand close to each other, as one thing.
+            ui.spacing_mut().item_spacing.x = 0.0;
+            ui.scope(|ui| menus(ui, context, commands));
+            ui.spacing_mut().item_spacing.x = space::M;
             ui.add_space(space::S);
             // The name has all the room that the frame before left over.
             let spare_id = ui.scope_id().with("spare");
@@ -59,22 +66,25 @@ const STATUS_ROOM: f32 = 70.0;
 const ROOM_FOR_MENUS: f32 = 1_240.0;
 
 fn menus(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
-    ui.spacing_mut().item_spacing.x = 0.0;
+    structure::part(ui, accesskit::Role::MenuBar, "Menus");
     let color = context.tokens.text_muted;
     let button = |title: &str| Button::new(RichText::new(title).color(color)).frame_when_inactive(false);
     if is_narrow(ui) {
-        egui::containers::menu::MenuButton::from_button(button("Menu")).ui(ui, |ui| {
+        let (opener, _) = MenuButton::from_button(button("Menu")).ui(ui, |ui| {
+            structure::part(ui, accesskit::Role::Menu, "Menu");
             for group in Group::ALL {
-                ui.menu_button(group.title(), |ui| menu(ui, context, group, commands));
+                let opener = ui.menu_button(group.title(), |ui| menu(ui, context, group, commands)).response;
+                structure::role(&opener, accesskit::Role::MenuItem);
             }
         });
+        structure::role(&opener, accesskit::Role::MenuItem);
     } else {
         for group in Group::ALL {
-            egui::containers::menu::MenuButton::from_button(button(group.title()))
+            let (opener, _) = MenuButton::from_button(button(group.title()))
                 .ui(ui, |ui| menu(ui, context, group, commands));
+            structure::role(&opener, accesskit::Role::MenuItem);
         }
     }
-    ui.spacing_mut().item_spacing.x = space::M;
 }
 
 fn is_narrow(ui: &Ui) -> bool {
@@ -83,6 +93,7 @@ fn is_narrow(ui: &Ui) -> bool {
 
 fn menu(ui: &mut Ui, context: &Context<'_>, group: Group, commands: &mut CommandSender) {
     ui.set_min_width(220.0);
+    structure::part(ui, accesskit::Role::Menu, group.title());
     for spec in all_commands().filter(|spec| spec.group == group && spec.is_plain()) {
         menu_item(ui, context, spec, commands);
     }
@@ -90,7 +101,9 @@ fn menu(ui: &mut Ui, context: &Context<'_>, group: Group, commands: &mut Command
         ui.separator();
         for panel in PanelKind::ALL {
             let is_on_screen = context.state.panels_on_screen.contains(&panel);
-            if ui.selectable_label(is_on_screen, panel.title()).clicked() {
+            let item = ui.selectable_label(is_on_screen, panel.title());
+            structure::role(&item, accesskit::Role::MenuItemCheckBox);
+            if item.clicked() {
                 commands.send(Command::ShowPanel(panel));
                 ui.close();
             }
@@ -103,6 +116,7 @@ fn menu_item(ui: &mut Ui, context: &Context<'_>, spec: &CommandSpec, commands: &
     let availability = (spec.available)(context.state);
     let button = Button::new(spec.title).shortcut_text(keys);
     let mut response = ui.add_enabled(availability.is_ok(), button);
+    structure::role(&response, accesskit::Role::MenuItem);
     if let Err(reason) = availability {
         response = response.on_disabled_hover_text(reason);
     }
@@ -150,7 +164,7 @@ fn status(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let width = galley.size().x + 40.0;
     // The sign alone says enough where the words would cover the workspaces.
     let has_room = width <= ui.available_width();
-    let size = egui::vec2(if has_room { width } else { 32.0 }, space::ROW + 2.0);
+    let size = egui::vec2(if has_room { width } else { 32.0 }, space::ROW);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let name = status_name(context);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
@@ -189,12 +203,13 @@ fn tools(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     if icon::button(ui, tokens, Icon::Help, "Keyboard shortcuts").clicked() {
         commands.send(Command::ShowDialog(Dialog::Keys));
     }
-    let (sign, name) = match context.state.settings.theme {
-        ThemeChoice::Dark => (Icon::Sun, "Light theme"),
-        ThemeChoice::Light => (Icon::Moon, "Dark theme"),
+    let (sign, name, other) = if context.state.is_dark() {
+        (Icon::Sun, "Light theme", ThemeChoice::Light)
+    } else {
+        (Icon::Moon, "Dark theme", ThemeChoice::Dark)
     };
     if icon::button(ui, tokens, sign, name).clicked() {
-        commands.send(Command::SetTheme(context.state.settings.theme.toggled()));
+        commands.send(Command::SetTheme(other));
     }
     if icon::button(ui, tokens, Icon::Palette, "Command palette").clicked() {
         commands.send(Command::ShowDialog(Dialog::palette()));

@@ -8,7 +8,7 @@ use workbench::command::{Command, CommandSender};
 /// Shows name, version and purpose.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     ui.set_width(380.0);
-    ui.heading(concat!("Enroute ", env!("CARGO_PKG_VERSION")));
+    theme::structure::mark_heading(&ui.heading(concat!("Enroute ", env!("CARGO_PKG_VERSION"))), 2);
     ui.label(
         "Mission plans for cooperative vehicles: written in RMPL, planned as temporal plan networks, checked \
               by an independent verifier, and driven over terrain.",

@@ -18,7 +18,7 @@ pub(super) fn show(
     commands: &mut CommandSender,
 ) {
     ui.set_width(340.0);
-    ui.heading(form.title());
+    theme::structure::mark_heading(&ui.heading(form.title()), 2);
     ui.label("When does the mission start?");
     let mut text = epoch.to_owned();
     let field =

@@ -18,7 +18,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, code: &str, commands: &mu
         return;
     };
     ui.horizontal(|ui| {
-        ui.heading(page.title);
+        theme::structure::mark_heading(&ui.heading(page.title), 2);
         ui.label(RichText::new(code).monospace().color(tokens.text_muted));
     });
     ui.add_space(space::S);

@@ -30,7 +30,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
     let id = ui.scope_id().with("keys-query");
     let mut query = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
     ui.horizontal(|ui| {
-        ui.heading("Keyboard shortcuts");
+        theme::structure::mark_heading(&ui.heading("Keyboard shortcuts"), 2);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if ui.button("Close").clicked() {
                 commands.send(Command::CloseDialog);
@@ -65,10 +65,11 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
                 continue;
             }
             is_empty = false;
-            ui.label(RichText::new(title).strong().color(context.tokens.accent));
+            theme::structure::heading(ui, RichText::new(title).strong().color(context.tokens.accent), 3);
             Grid::new(title).num_columns(2).min_col_width(260.0).spacing([space::L, space::S]).show(
                 ui,
                 |ui| {
+                    theme::structure::part(ui, egui::accesskit::Role::Table, title);
                     for (keys, title) in rows {
                         ui.label(RichText::new(keys).strong());
                         ui.label(title);

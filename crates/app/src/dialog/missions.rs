@@ -60,7 +60,7 @@ pub(super) fn show(
 
 fn heading(ui: &mut Ui, query: &mut String, commands: &mut CommandSender) {
     ui.horizontal(|ui| {
-        ui.heading("Missions");
+        theme::structure::mark_heading(&ui.heading("Missions"), 2);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if ui.button("Close").clicked() {
                 commands.send(Command::CloseDialog);

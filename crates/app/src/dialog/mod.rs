@@ -13,6 +13,7 @@ mod rename;
 use egui::{Align2, Area, Frame, Id, Order};
 use panels::Context;
 use theme::space;
+use theme::structure;
 use workbench::Dialog;
 use workbench::command::{Command, CommandSender};
 
@@ -37,7 +38,17 @@ pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandS
         .area(area)
         .backdrop_color(context.tokens.shadow)
         .frame(Frame::window(&egui.style_of(egui.theme())).inner_margin(space::L));
-    let answer = modal.show(egui, |ui| match dialog {
+    let answer = modal.show(egui, |ui| {
+        show_content(ui, context, dialog, commands);
+        structure::part_in(ui, ui.min_rect(), egui::accesskit::Role::Dialog, dialog.title());
+    });
+    if answer.should_close() {
+        commands.send(Command::CloseDialog);
+    }
+}
+
+fn show_content(ui: &mut egui::Ui, context: &Context<'_>, dialog: &Dialog, commands: &mut CommandSender) {
+    match dialog {
         Dialog::Palette { query, chosen } => palette::show(ui, context, query, *chosen, commands),
         Dialog::GoToLine { line } => go_to_line::show(ui, context, line, commands),
         Dialog::Rename { old, name } => rename::show(ui, context, old, name, commands),
@@ -52,9 +63,6 @@ pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandS
         }
         Dialog::Keys => keys::show(ui, context, commands),
         Dialog::About => about::show(ui, context, commands),
-    });
-    if answer.should_close() {
-        commands.send(Command::CloseDialog);
     }
 }
 

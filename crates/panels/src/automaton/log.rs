@@ -27,6 +27,7 @@ pub(super) fn show(
         let has_plant = shown.moment.plant.is_some();
         let is_told = |(_, needs_plant): (&str, bool)| has_plant || !needs_plant;
         Grid::new("automaton-steps").striped(true).show(ui, |ui| {
+            theme::structure::part(ui, egui::accesskit::Role::Table, "Steps");
             let headings = COLUMNS.into_iter().filter(|column| is_told(*column)).map(|(heading, _)| heading);
             for heading in std::iter::once("Step").chain(headings) {
                 ui.label(RichText::new(heading).small().color(tokens.text_muted));

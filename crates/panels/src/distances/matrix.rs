@@ -56,6 +56,7 @@ pub fn show(ui: &mut egui::Ui, context: &Context<'_>, parts: &Parts<'_>, command
             ui.label(RichText::new(text).small().color(tokens.text_muted));
         }
         egui::Grid::new("distance-matrix").striped(true).spacing([10.0, 3.0]).show(ui, |ui| {
+            theme::structure::part(ui, egui::accesskit::Role::Table, "Distances");
             let text = |text: String| RichText::new(text).monospace().size(size::SMALL);
             ui.label(text(" from \\ to".into()).color(tokens.text_muted));
             for (index, &node) in named.iter().enumerate() {

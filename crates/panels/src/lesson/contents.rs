@@ -16,7 +16,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
     let tokens = context.tokens;
     ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         Frame::new().inner_margin(Margin::symmetric(14, 10)).show(ui, |ui| {
-            ui.heading("Lessons");
+            theme::structure::mark_heading(&ui.heading("Lessons"), 2);
             ui.label(
                 RichText::new("A course from the first line of a mission to a whole one.")
                     .color(tokens.text_muted),

@@ -98,7 +98,7 @@ fn show_page(
 }
 
 fn contents(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
-    ui.heading("Manual");
+    theme::structure::mark_heading(&ui.heading("Manual"), 2);
     ui.add_space(space::S);
     for page in manual::pages() {
         ui.horizontal(|ui| {

@@ -19,7 +19,7 @@ pub(crate) mod view;
 use std::sync::Arc;
 
 use display::Point;
-use egui::{CursorIcon, Key, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo, vec2};
+use egui::{CursorIcon, InputState, Key, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo, vec2};
 use layout::{BlockForm, Item, NetworkDrawing, OverlayCurve, OverlayKind, Progress};
 use mission::Snapshot;
 use tpn::{BlockId, Network, Plan};
@@ -251,6 +251,14 @@ impl NetworkPanel {
         let overview = minimap::place(panel, &self.view, &self.drawn)
             .filter(|_| context.state.settings.views.network.minimap);
         let pointer = response.interact_pointer_pos();
+        // Two fingers move and zoom; one of them alone would drag as well.
+        let touch = ui.input(InputState::multi_touch).filter(|touch| panel.contains(touch.start_pos));
+        if let Some(touch) = touch {
+            self.is_dragging_overview = false;
+            self.view.pan(touch.translation_delta);
+            self.view.zoom_at(panel, touch.center_pos, f64::from(touch.zoom_delta));
+            return;
+        }
         if response.drag_started() || response.clicked() {
             let is_over = |place: &Rect| pointer.is_some_and(|at| place.contains(at));
             self.is_dragging_overview = overview.as_ref().is_some_and(is_over);

@@ -106,7 +106,7 @@ pub fn counted(count: u64, noun: &str) -> String {
 pub(crate) fn section(ui: &mut Ui, context: &Context<'_>, title: &str, note: &str) {
     ui.add_space(space::M);
     ui.horizontal(|ui| {
-        ui.label(theme::strong(title).color(context.tokens.text));
+        theme::structure::heading(ui, theme::strong(title).color(context.tokens.text), 2);
         if !note.is_empty() {
             ui.label(RichText::new(note).small().color(context.tokens.text_muted));
         }

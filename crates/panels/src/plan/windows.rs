@@ -69,7 +69,7 @@ impl WindowTable {
         });
         ui.add_space(space::XS);
         show_header(ui, context, commands);
-        let height = space::ROW - 2.0;
+        let height = space::ROW;
         let (table, _) = ui.allocate_exact_size(
             egui::vec2(ui.available_width(), height * rows.len() as f32),
             Sense::hover(),

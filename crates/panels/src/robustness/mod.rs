@@ -1,9 +1,10 @@
 //! How robust the plan is: many runs with chance, how many reach the end, and what breaks the others.
 
+use egui::accesskit;
 use egui::{DragValue, Grid, ProgressBar, RichText, ScrollArea, Ui};
 use mission::Robustness;
 use mission::robustness::{Others, Traverses};
-use theme::{size, space, strong};
+use theme::{size, space, strong, structure};
 use workbench::command::{Command, CommandSender};
 use workbench::state::chance::{ChanceCommand, MAX_RUNS};
 
@@ -166,6 +167,7 @@ fn show_result(ui: &mut Ui, context: &Context<'_>, robustness: &Robustness) {
     if !tally.breaks.is_empty() {
         section(ui, context, "What breaks the plan", "");
         Grid::new("breaks").num_columns(3).striped(true).show(ui, |ui| {
+            structure::part(ui, accesskit::Role::Table, "What breaks the plan");
             heading(ui, context, ["Event", "plan broken", "run stopped"]);
             for (name, breaks) in tally.worst_events().into_iter().take(MAX_LISTED) {
                 ui.add(egui::Label::new(name.as_str()).truncate()).on_hover_text(&breaks.example);
@@ -177,6 +179,7 @@ fn show_result(ui: &mut Ui, context: &Context<'_>, robustness: &Robustness) {
     }
     section(ui, context, "Slack used", "how far into its window each event came, 100 % is the latest moment");
     Grid::new("slack").num_columns(3).striped(true).show(ui, |ui| {
+        structure::part(ui, accesskit::Role::Table, "Slack used");
         heading(ui, context, ["Event", "mean", "most"]);
         for (name, mean, most) in tally.tightest_events().into_iter().take(MAX_LISTED) {
             ui.add(egui::Label::new(name.as_str()).truncate());

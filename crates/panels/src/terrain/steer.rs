@@ -107,6 +107,10 @@ impl TerrainPanel {
     }
 
     fn fly(&mut self, from: Camera, to: Camera, context: &Context<'_>) {
-        self.flight = Some(Flight::new(from, to, context.now_secs));
+        if context.state.system.reduces_motion {
+            (self.camera, self.flight) = (Some(to), None);
+        } else {
+            self.flight = Some(Flight::new(from, to, context.now_secs));
+        }
     }
 }

@@ -9,7 +9,7 @@ use egui::{
 use markdown::{Run, plain};
 
 use super::Prose;
-use crate::strong_family;
+use crate::{strong_family, structure::mark_heading};
 
 /// How words look where their own style says nothing else.
 #[derive(Clone, Copy)]
@@ -37,6 +37,10 @@ pub(super) fn show_words(
     let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
     let role = if heading.is_some() { Role::Heading } else { Role::Label };
     response.widget_info(|| WidgetInfo::labeled(role, true, plain(runs)));
+    if let Some(level) = heading {
+        // A page of prose stands in a panel, whose own heading is of level 2.
+        mark_heading(&response, usize::from(level) + 1);
+    }
     place(ui, prose, runs, rect.min, &galley)
 }
 

@@ -159,7 +159,7 @@ pub enum Command {
     ViewOf(PanelKind, ViewAction),
     /// What panels show.
     SetViews(Box<Views>),
-    /// Light or dark.
+    /// Light, dark, or as the system has it.
     SetTheme(ThemeChoice),
     /// How large text is; 1 is the designed size.
     SetTextScale(f32),

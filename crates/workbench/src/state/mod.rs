@@ -1,5 +1,6 @@
 //! Everything the app knows: the one thing that commands change and panels read.
 
+mod announcement;
 mod apply;
 pub mod automaton;
 pub mod chance;
@@ -50,6 +51,7 @@ pub use toast::{Toast, ToastKind, Toasts};
 use crate::library::{Library, MissionId, MissionKind};
 use crate::mission_file;
 use crate::state::editor::Reveal;
+use crate::state::settings::ThemeChoice;
 use crate::workspace::{Arrangement, Workspace};
 use crate::{Dialog, PanelEffect, PanelEffects, PanelKind};
 
@@ -122,8 +124,19 @@ pub struct AppState {
     pub panel_effects: PanelEffects,
     /// How the last frame went.
     pub frame: FrameInfo,
+    /// How the user has set up the system.
+    pub system: System,
     /// What the host is to do.
     pub(crate) effects: Vec<Effect>,
+}
+
+/// What the user has asked of all programs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct System {
+    /// Dark on light.
+    pub is_light: bool,
+    /// Nothing moves by itself.
+    pub reduces_motion: bool,
 }
 
 /// How the last frame went.
@@ -199,6 +212,7 @@ impl AppState {
             active_panel: PanelKind::Editor,
             maximized: None,
             panels_on_screen: Vec::new(),
+            system: System::default(),
             panel_effects: PanelEffects::default(),
             frame: FrameInfo::default(),
             effects: vec![Effect::RecallReview],
@@ -223,6 +237,15 @@ impl AppState {
         match self.snapshots.status(self.document.revision()) {
             Status::Empty if self.automaton.is_control() => Status::Program,
             status => status,
+        }
+    }
+
+    /// Whether the theme that is shown is light on dark.
+    pub const fn is_dark(&self) -> bool {
+        match self.settings.theme {
+            ThemeChoice::System => !self.system.is_light,
+            ThemeChoice::Dark => true,
+            ThemeChoice::Light => false,
         }
     }
 

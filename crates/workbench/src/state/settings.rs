@@ -10,7 +10,7 @@ use crate::state::lesson::Learned;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
-    /// Light or dark.
+    /// Light, dark, or as the system has it.
     pub theme: ThemeChoice,
     /// How large text and everything with it is; 1 is the designed size.
     pub text_scale: f32,
@@ -68,21 +68,13 @@ fn within(number: f32, [least, most]: [f32; 2], otherwise: f32) -> f32 {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ThemeChoice {
-    /// Light on dark.
+    /// What the system has, also when that changes.
     #[default]
+    System,
+    /// Light on dark.
     Dark,
     /// Dark on light.
     Light,
-}
-
-impl ThemeChoice {
-    /// The other one.
-    pub const fn toggled(self) -> Self {
-        match self {
-            Self::Dark => Self::Light,
-            Self::Light => Self::Dark,
-        }
-    }
 }
 
 /// What and how to plan.

@@ -1,5 +1,6 @@
 //! A headless Chromium, driven as a user would drive it: keys, clicks, wheel, and looking at what is drawn.
 
+mod axe;
 mod devtools;
 mod find;
 mod keys;
@@ -24,6 +25,7 @@ use std::{
 use anyhow::{Context as _, Result, bail};
 use serde_json::json;
 
+pub use axe::axe_script;
 pub use find::{find_or_install_chromium, is_root};
 pub use keys::{Key, Modifiers};
 pub use picture::Picture;

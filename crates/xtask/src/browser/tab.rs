@@ -66,6 +66,7 @@ impl Tab {
             tab.call(domain, &json!({}))?;
         }
         tab.resize(width, height)?;
+        tab.prefer(&[("prefers-color-scheme", "dark")])?;
         Ok(tab)
     }
 
@@ -75,6 +76,14 @@ impl Tab {
             "Emulation.setDeviceMetricsOverride",
             &json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false }),
         )?;
+        Ok(())
+    }
+
+    /// What the user has asked of all pages: media features with their values. Others are as the system has them.
+    pub fn prefer(&self, features: &[(&str, &str)]) -> Result<()> {
+        let features: Vec<Value> =
+            features.iter().map(|(name, value)| json!({ "name": name, "value": value })).collect();
+        self.call("Emulation.setEmulatedMedia", &json!({ "features": features }))?;
         Ok(())
     }
 

@@ -1,7 +1,8 @@
 //! The page as a document: what screen readers and voice control find and use.
 
 use anyhow::Result;
-use xtask::browser::{Key, Modifiers};
+use serde_json::{Value, json};
+use xtask::browser::{Key, Modifiers, axe_script};
 
 use crate::opened::Opened;
 
@@ -47,5 +48,104 @@ fn everything_that_takes_input_has_a_name() -> Result<()> {
             .map((widget) => JSON.stringify(widget))",
     )?;
     assert_eq!(nameless, serde_json::json!([]));
+    Ok(())
+}
+
+#[test]
+fn the_document_has_landmarks_headings_menus_tabs_and_tables() -> Result<()> {
+    let page = Opened::planned()?;
+    page.tab.widget("textbox", "Mission text")?;
+    let count = |selector: &str| -> Result<u64> {
+        let found = page.tab.evaluate(&format!("document.querySelectorAll({}).length", json!(selector)))?;
+        Ok(found.as_u64().unwrap_or_default())
+    };
+    for landmark in ["banner", "main", "contentinfo"] {
+        assert_eq!(count(&format!("#accessibility [role={landmark}]"))?, 1, "{landmark}");
+    }
+    assert!(count("[role=main] [role=region][aria-label='Network panel'] [role=img]")? > 0);
+    assert_eq!(count("[role=heading][aria-level='1']")?, 1);
+    assert!(count("[role=region][aria-label='Plan panel'] [role=heading]")? > 1);
+    assert!(count("[role=menubar] > [role=menuitem]")? > 0);
+    assert!(count("[role=tablist] > [role=tab][aria-selected=true]")? > 1);
+    assert_eq!(count("[role=tablist] > :not([role=tab], span)")?, 0, "only tabs are in a list of tabs");
+    page.tab.evaluate("enroute.dispatch('help.keys', null)")?;
+    page.tab.wait_until("document.querySelector('[role=dialog] [role=table] [role=row] [role=cell]')")?;
+    Ok(())
+}
+
+#[test]
+fn what_becomes_of_the_plan_and_each_step_is_announced() -> Result<()> {
+    let page = Opened::planned()?;
+    let says = |words: &str| {
+        let question = format!("document.getElementById('announcements').textContent.includes({})", json!(words));
+        page.tab.wait_until(&question).map(|_| ())
+    };
+    says("Plan found and verified.")?;
+    page.tab.evaluate("enroute.setSource('location A (1, 2);\\nlocation A (1, 2);')")?;
+    says("error")?;
+    says("Line ")?;
+    page.tab.evaluate("enroute.open('enroute')")?;
+    says("Plan found and verified.")?;
+    page.tab.evaluate("enroute.dispatch('view.workspace', 'teach')")?;
+    page.wait_for("state.search.steps > 1")?;
+    page.tab.evaluate("enroute.dispatch('search.goTo', { step: 2 })")?;
+    says("Step 2 of ")
+}
+
+#[test]
+fn the_theme_follows_the_system_until_one_is_chosen() -> Result<()> {
+    let page = Opened::planned()?;
+    page.wait_for("state.theme === 'dark'")?;
+    page.tab.prefer(&[("prefers-color-scheme", "light")])?;
+    page.wait_for("state.theme === 'light'")?;
+    page.tab.evaluate("enroute.dispatch('view.setTheme', { theme: 'dark' })")?;
+    page.wait_for("state.theme === 'dark'")?;
+    page.tab.evaluate("enroute.dispatch('view.systemTheme', null)")?;
+    page.wait_for("state.theme === 'light'")
+}
+
+/// What axe-core finds wrong in the page as it stands: rule, how grave, and the elements.
+fn violations(page: &Opened, script: &str) -> Result<Value> {
+    page.tab.evaluate(&format!("{script}; 0"))?;
+    page.tab.evaluate(
+        "axe.run(document, { resultTypes: ['violations'] }).then(({ violations }) => violations.flatMap(
+            ({ id, impact, nodes }) => nodes.slice(0, 3).map(({ html }) => [id, impact, html.slice(0, 300)])))",
+    )
+}
+
+/// The input that typing goes to stands beside the document: egui makes it, and moves it to the caret.
+const STANDS_BESIDE: &str = "<input type=\"text\" autocapitalize=\"off\"";
+
+#[test]
+fn axe_core_finds_nothing_wrong() -> Result<()> {
+    let script = match axe_script() {
+        Ok(script) => script,
+        Err(reason) => {
+            println!("axe-core did not run: {reason}");
+            return Ok(());
+        }
+    };
+    let page = Opened::planned()?;
+    page.tab.widget("textbox", "Mission text")?;
+    let views = [
+        ("author", "enroute.dispatch('view.workspace', 'author')"),
+        ("teach", "enroute.dispatch('view.workspace', 'teach')"),
+        ("review", "enroute.dispatch('view.workspace', 'review')"),
+        ("execute", "enroute.dispatch('view.workspace', 'execute')"),
+        ("keys", "enroute.dispatch('help.keys', null)"),
+        ("missions", "enroute.dispatch('file.missions', null)"),
+    ];
+    let mut found = Vec::new();
+    for (name, act) in views {
+        page.tab.evaluate(act)?;
+        page.settle()?;
+        let all = violations(&page, &script)?;
+        let of_document = all.as_array().into_iter().flatten().filter(|violation| {
+            let is_beside = violation[2].as_str().is_some_and(|html| html.starts_with(STANDS_BESIDE));
+            !(violation[0] == "region" && is_beside)
+        });
+        found.extend(of_document.map(|violation| format!("{name}: {violation}")));
+    }
+    assert!(found.is_empty(), "{}", found.join("\n"));
     Ok(())
 }

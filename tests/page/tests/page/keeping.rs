@@ -75,3 +75,11 @@ fn without_any_storage_the_page_says_so_and_works() -> Result<()> {
     assert_eq!(page.tab.evaluate("enroute.source()")?, "A()[l,u] = { Work()[1,2] }");
     Ok(())
 }
+
+#[test]
+fn twenty_disturbances_lose_no_key_press() -> Result<()> {
+    let _turn = crate::opened::take_turn();
+    let losses = xtask::disturb::disturb(&crate::opened::SITE, 20, 7, |_| {})?;
+    assert_eq!((losses.runs(), losses.lost()), (20, 0), "{losses}{:?}", losses.differences);
+    Ok(())
+}

@@ -78,7 +78,10 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         with_selection,
     ),
     plain("view.theme", "Light or dark", Group::View, &[], Scope::Everywhere, |state| {
-        Command::SetTheme(state.settings.theme.toggled())
+        Command::SetTheme(if state.is_dark() { ThemeChoice::Light } else { ThemeChoice::Dark })
+    }),
+    plain("view.systemTheme", "Light or dark as the system has it", Group::View, &[], Scope::Everywhere, |_| {
+        Command::SetTheme(ThemeChoice::System)
     }),
     plain(
         "view.textLarger",
@@ -139,7 +142,8 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         match text_argument(arguments, "theme")? {
             "dark" => Ok(Command::SetTheme(ThemeChoice::Dark)),
             "light" => Ok(Command::SetTheme(ThemeChoice::Light)),
-            other => Err(format!("\"theme\" is \"dark\" or \"light\", not \"{other}\"")),
+            "system" => Ok(Command::SetTheme(ThemeChoice::System)),
+            other => Err(format!("\"theme\" is \"dark\", \"light\" or \"system\", not \"{other}\"")),
         }
     }),
     called("view.workspace", "Show a workspace", Group::View, |_, arguments| {

@@ -25,7 +25,6 @@ use tpn::plan_json::plan_to_json;
 #[cfg(test)]
 use ts_rs::TS;
 
-use crate::state::settings::ThemeChoice;
 use crate::state::{AppState, Status};
 
 pub use self::execution::{Execution, Pinned, Robustness};
@@ -69,7 +68,7 @@ pub struct PageState {
     /// The panels on screen, by name.
     panels: Vec<&'static str>,
     #[cfg_attr(test, ts(type = "\"dark\" | \"light\""))]
-    theme: ThemeChoice,
+    theme: &'static str,
     diagnostics: Vec<Diagnostic>,
     /// How many of each the network has; `null` while the text does not compile.
     tpn: Option<NetworkSize>,
@@ -239,7 +238,7 @@ impl PageState {
             workspace: state.workspace.name(),
             active_panel: state.active_panel.name(),
             panels: state.panels_on_screen.iter().map(|panel| panel.name()).collect(),
-            theme: state.settings.theme,
+            theme: if state.is_dark() { "dark" } else { "light" },
             diagnostics: state.snapshots.problems().iter().map(diagnostic).collect(),
             tpn: network.map(network_size),
             plan: plan.map(|(network, plan)| plan_to_json(network, plan)),

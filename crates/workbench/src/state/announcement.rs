@@ -1,0 +1,61 @@
+//! What somebody who does not see the window is told as it happens: where the plan stands, mistakes, steps, messages.
+
+use rmpl::Severity;
+
+use super::search::wording::event;
+use super::{AppState, Status};
+
+impl AppState {
+    /// What is to be said now. It is said when it is other than before; empty while there is nothing new to say.
+    pub fn announcement(&self) -> String {
+        let parts = [self.plan_words(), self.step_words(), self.program_words(), self.message_words()];
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        parts.join(" ")
+    }
+
+    fn plan_words(&self) -> Option<String> {
+        let problems = self.snapshots.problems();
+        let first = || problems.iter().find(|problem| problem.severity == Severity::Error);
+        let latest = self.snapshots.latest();
+        let verdict = latest.and_then(|latest| latest.planning.as_ref()?.verdict.as_ref());
+        Some(match self.status() {
+            // Said when it takes long, not with every key.
+            Status::Working if self.is_long_at_work() => "Planning.".to_owned(),
+            Status::Working | Status::Empty | Status::Program => return None,
+            Status::Broken => {
+                let count = problems.iter().filter(|it| it.severity == Severity::Error).count();
+                let noun = if count == 1 { "error" } else { "errors" };
+                let line = first().map_or(0, |problem| self.document.line_at(problem.span.start as usize) + 1);
+                let message = first().map_or("", |problem| problem.message.as_str());
+                format!("{count} {noun}. Line {line}: {message}.")
+            }
+            Status::NoPlan => {
+                let reason = problems.iter().find(|it| it.severity == Severity::Error);
+                reason.map_or_else(|| "No plan.".to_owned(), |it| format!("No plan. {}.", it.message))
+            }
+            Status::Undecided => "Not decided whether there is a plan.".to_owned(),
+            Status::Plan => match verdict.map(|verdict| verdict.valid) {
+                Some(true) => "Plan found and verified.".to_owned(),
+                Some(false) => "A plan was found that the checker refuses.".to_owned(),
+                None => "Plan found.".to_owned(),
+            },
+        })
+    }
+
+    fn step_words(&self) -> Option<String> {
+        let view = self.search.shown()?;
+        let trace = view.recording.trace();
+        let entry = trace.events.get(view.step.step)?;
+        let words = event(view.recording.network(), trace, &entry.event);
+        Some(format!("Step {} of {}: {words}.", view.step.step + 1, trace.events.len()))
+    }
+
+    fn program_words(&self) -> Option<String> {
+        let at = self.automaton.at();
+        (self.automaton.is_control() && at > 0).then(|| format!("Step {at} of the program."))
+    }
+
+    fn message_words(&self) -> Option<String> {
+        self.toasts.shown().last().map(|toast| toast.text.clone())
+    }
+}
