@@ -13,8 +13,8 @@ use theme::structure;
 use workbench::command::{Command, CommandSender};
 use workbench::host::{Host, Remote, RemoteError};
 use workbench::outside::PageState;
-use workbench::state::{AppState, System};
 use workbench::state::manual::ManualCommand;
+use workbench::state::{AppState, System};
 use workbench::{PanelEffect, PanelKind, Session, WindowEffect};
 
 use crate::accessibility::AccessibilityMirror;
@@ -177,7 +177,9 @@ impl Enroute {
             _ => None,
         };
         if let Some(panel) = self.session.state_mut().panel_effects.take(focused).pop() {
-            self.egui.memory_mut(|memory| memory.request_focus(panels::region_id(panel)));
+            let id = panels::region_id(panel);
+            self.egui.memory_mut(|memory| memory.request_focus(id));
+            self.egui.data_mut(|data| data.insert_temp(id, Ring(false)));
         }
         for effect in self.session.take_window_effects() {
             match effect {
@@ -263,6 +265,10 @@ impl Remote for Enroute {
     }
 }
 
+/// Whether a panel that has the keyboard as a whole says so by a ring.
+#[derive(Clone, Copy)]
+struct Ring(bool);
+
 /// Shows panels in the tiles of the layout.
 struct PanelTiles<'a> {
     panels: &'a mut Panels,
@@ -335,6 +341,17 @@ impl PanelTiles<'_> {
         let filter =
             egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
+        // The pointer's user knows where they are; the ring is for those who go by keys.
+        let uses_keys = ui.input(|input| {
+            input.raw.events.iter().any(|event| matches!(event, egui::Event::Key { pressed: true, .. }))
+        });
+        let Ring(is_shown) = ui.data(|data| data.get_temp(id)).unwrap_or(Ring(true));
+        if uses_keys && !is_shown {
+            ui.data_mut(|data| data.insert_temp(id, Ring(true)));
+        }
+        if !is_shown && !uses_keys {
+            return;
+        }
         let stroke = egui::Stroke::new(1.5, self.context.tokens.accent);
         let painter = ui.ctx().layer_painter(egui::LayerId::new(egui::Order::Middle, id.with("ring")));
         painter.rect_stroke(rect.shrink(1.0), 2.0, stroke, egui::StrokeKind::Inside);

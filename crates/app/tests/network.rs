@@ -256,3 +256,39 @@ fn a_box_opens_where_the_selection_is() {
     app.settle();
     assert!(has(&app, "Step1#61 in the network"), "{:?}", folded(&app));
 }
+
+#[test]
+fn two_fingers_move_the_drawing() {
+    let mut app = started();
+    let place = |app: &support::App| app.harness.get_by_label("Group-Enroute#1 in the network").rect().min;
+    let before = place(&app);
+    let middle = app.harness.get_by(|node| {
+        node.role() == egui::Role::Image && node.label().is_some_and(|label| label.starts_with("Network"))
+    });
+    let middle = middle.rect().center();
+    let away = egui::vec2(-30.0, 24.0);
+    let steps =
+        [(egui::TouchPhase::Start, 0.0), (egui::TouchPhase::Move, 0.5), (egui::TouchPhase::Move, 1.0)];
+    for (phase, part) in steps.into_iter().chain([(egui::TouchPhase::End, 1.0)]) {
+        for (id, aside) in [(0, -40.0), (1, 40.0)] {
+            let pos = middle + egui::vec2(aside, 0.0) + away * part;
+            // A browser takes the first finger for the pointer, too.
+            if id == 0 {
+                app.harness.event(egui::Event::PointerMoved(pos));
+            }
+            if id == 0 && phase != egui::TouchPhase::Move {
+                app.harness.event(egui::Event::PointerButton {
+                    pos,
+                    button: egui::PointerButton::Primary,
+                    pressed: phase == egui::TouchPhase::Start,
+                    modifiers: egui::Modifiers::NONE,
+                });
+            }
+            let (device_id, id) = (egui::TouchDeviceId(0), egui::TouchId(id));
+            app.harness.event(egui::Event::Touch { device_id, id, phase, pos, force: None });
+        }
+        app.harness.step();
+    }
+    app.settle();
+    assert!((place(&app) - before - away).length() < 3.0, "{before:?} {:?}", place(&app));
+}

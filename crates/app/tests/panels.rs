@@ -197,7 +197,7 @@ fn a_double_click_on_a_tab_gives_its_panel_the_window_and_another_puts_the_panel
             app.settle();
         }
         for _ in 0..2 {
-            app.harness.get_by_role_and_label(Role::Button, "Network").click();
+            app.harness.get_by_role_and_label(Role::Tab, "Network").click();
         }
         app.settle();
         app.settle();

@@ -149,3 +149,45 @@ fn saving_hands_the_text_to_the_host() {
     assert_eq!(name, "enroute.rmpl");
     assert_eq!(bytes, app.harness.state().source().as_bytes());
 }
+
+#[test]
+fn the_system_decides_on_light_or_dark_until_somebody_chooses() {
+    let mut app = support::start();
+    app.settle();
+    assert_eq!(app.json()["theme"], "dark", "where the system says nothing");
+    app.harness.input_mut().system_theme = Some(egui::Theme::Light);
+    app.settle();
+    assert_eq!(app.json()["theme"], "light");
+    app.harness.state_mut().dispatch("view.theme", &serde_json::Value::Null).expect("a command");
+    app.settle();
+    assert_eq!(app.json()["theme"], "dark", "the other one, whatever the system says");
+    app.harness.state_mut().dispatch("view.systemTheme", &serde_json::Value::Null).expect("a command");
+    app.settle();
+    assert_eq!(app.json()["theme"], "light");
+}
+
+#[test]
+fn a_ring_is_drawn_around_a_panel_only_for_those_who_use_keys() {
+    // The ring lies over everything else: one shape more or less tells whether it is there.
+    let rings = |app: &support::App| {
+        let accent = theme::DARK.accent;
+        let is_ring = |shape: &egui::epaint::ClippedShape| {
+            matches!(&shape.shape, egui::Shape::Rect(rect) if rect.stroke.color == accent
+                && (rect.stroke.width - 1.5).abs() < 0.01)
+        };
+        app.harness.output().shapes.iter().filter(|shape| is_ring(shape)).count()
+    };
+    let mut app = support::start();
+    app.settle();
+    app.harness.get_by_label("Teach").click();
+    app.settle();
+    assert_eq!(app.json()["activePanel"], "search");
+    assert_eq!(rings(&app), 0, "the pointer brought it there");
+    app.harness.key_press(Key::F6);
+    app.settle();
+    if app.json()["activePanel"] == "editor" {
+        app.harness.key_press(Key::F6);
+        app.settle();
+    }
+    assert_eq!(rings(&app), 1, "a key brought it to {}", app.json()["activePanel"]);
+}

@@ -320,3 +320,72 @@ fn the_panel_is_usable_at_a_width_of_300_points() {
         assert!(rect.left() >= 0.0 && rect.right() <= 300.0 && rect.bottom() <= 420.0, "{name} at {rect:?}");
     }
 }
+
+/// Two fingers on the ground, from some places to others.
+fn two_fingers(app: &mut support::App, from: [Pos2; 2], to: [Pos2; 2]) {
+    let mut touch = |phase: egui::TouchPhase, places: [Pos2; 2]| {
+        app.harness.event(egui::Event::PointerMoved(places[0]));
+        if phase != egui::TouchPhase::Move {
+            app.harness.event(egui::Event::PointerButton {
+                pos: places[0],
+                button: egui::PointerButton::Primary,
+                pressed: phase == egui::TouchPhase::Start,
+                modifiers: egui::Modifiers::NONE,
+            });
+        }
+        for (id, pos) in (0..).zip(places) {
+            let event = egui::Event::Touch {
+                device_id: egui::TouchDeviceId(0),
+                id: egui::TouchId(id),
+                phase,
+                pos,
+                force: None,
+            };
+            app.harness.event(event);
+        }
+        app.harness.step();
+    };
+    // A browser takes the first finger for the pointer, too.
+    touch(egui::TouchPhase::Start, from);
+    for part in [0.25, 0.5, 0.75, 1.0] {
+        touch(egui::TouchPhase::Move, [from[0].lerp(to[0], part), from[1].lerp(to[1], part)]);
+    }
+    touch(egui::TouchPhase::End, to);
+    app.settle();
+}
+
+#[test]
+fn two_fingers_move_the_ground_and_zoom_it() {
+    let mut app = above();
+    let names = |app: &support::App| ["HERE", "THERE"].map(|name| place(app, name));
+    let before = names(&app);
+    let away = vec2(40.0, 30.0);
+    let fingers = [before[0] + vec2(0.0, 60.0), before[1] + vec2(0.0, 60.0)];
+    two_fingers(&mut app, fingers, fingers.map(|at| at + away));
+    let moved = names(&app);
+    assert!((moved[0] - before[0] - away).length() < 6.0, "{before:?} {moved:?}");
+    assert!((moved[1] - before[1] - away).length() < 6.0, "{before:?} {moved:?}");
+    let apart = vec2(25.0, 0.0);
+    two_fingers(&mut app, fingers, [fingers[0] - apart, fingers[1] + apart]);
+    let zoomed = names(&app);
+    assert!(zoomed[0].distance(zoomed[1]) > 1.1 * moved[0].distance(moved[1]), "{moved:?} {zoomed:?}");
+}
+
+#[test]
+fn the_camera_is_there_at_once_where_nothing_is_to_move_by_itself() {
+    let mut app = above();
+    app.world.reduces_motion.set(true);
+    app.settle();
+    let before = place(&app, "HERE").distance(place(&app, "THERE"));
+    app.harness.state_mut().dispatch("view.panel", &json!("terrain")).expect("a panel");
+    app.harness.state_mut().dispatch("view.zoomIn", &json!(null)).expect("a command");
+    // Two frames: one does it, and the names follow what is drawn. No time goes by.
+    app.harness.step();
+    app.harness.step();
+    let at_once = place(&app, "HERE").distance(place(&app, "THERE"));
+    for _ in 0..10 {
+        app.settle();
+    }
+    let later = place(&app, "HERE").distance(place(&app, "THERE"));
+    assert!(at_once > 1.2 * before && (at_once - later).abs() < 0.5, "{before} {at_once} {later}");
+}

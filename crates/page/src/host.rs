@@ -43,7 +43,14 @@ impl PageHost {
         glue.on_tab_said(&tab_listener);
         let listeners = (listener, tab_listener);
         let reduces_motion = window.match_media("(prefers-reduced-motion: reduce)").ok().flatten();
-        Some(Self { glue, link, window, reduces_motion, _fragment_listener: listeners.0, _tab_listener: listeners.1 })
+        Some(Self {
+            glue,
+            link,
+            window,
+            reduces_motion,
+            _fragment_listener: listeners.0,
+            _tab_listener: listeners.1,
+        })
     }
 
     /// Reads files that are dropped on the canvas.

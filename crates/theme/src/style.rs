@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use egui::{
     Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Shadow, Stroke,
-    Style, TextStyle, Theme, Vec2, Visuals, style::{ScrollAnimation, ScrollStyle},
+    Style, TextStyle, Theme, Vec2, Visuals,
+    style::{ScrollAnimation, ScrollStyle},
 };
 
 use crate::{Tokens, size, space};
@@ -134,5 +135,23 @@ fn set_visuals(visuals: &mut Visuals, tokens: &Tokens) {
         widget.fg_stroke = Stroke::new(1.0, text);
         widget.corner_radius = radius;
         widget.expansion = 0.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_moves_by_itself_where_the_user_wants_that() {
+        let context = Context::default();
+        let looks = |reduces_motion| {
+            apply(&context, &crate::DARK, 1.0, reduces_motion);
+            let style = context.style_of(Theme::Dark);
+            (style.animation_time, style.visuals.text_cursor.blink, style.scroll_animation)
+        };
+        assert_eq!(looks(true), (0.0, false, ScrollAnimation::none()));
+        let (seconds, blinks, scrolls) = looks(false);
+        assert!(seconds > 0.0 && blinks && scrolls != ScrollAnimation::none());
     }
 }

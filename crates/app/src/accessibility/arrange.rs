@@ -7,8 +7,21 @@ use super::document::Element;
 
 /// Elements of these roles are leaves: assistive technology does not look inside.
 const LEAVES: [&str; 15] = [
-    "button", "checkbox", "img", "link", "meter", "option", "progressbar", "radio", "separator", "slider",
-    "spinbutton", "switch", "tab", "textbox", "searchbox",
+    "button",
+    "checkbox",
+    "img",
+    "link",
+    "meter",
+    "option",
+    "progressbar",
+    "radio",
+    "separator",
+    "slider",
+    "spinbutton",
+    "switch",
+    "tab",
+    "textbox",
+    "searchbox",
 ];
 
 /// Whether what is inside an element of this role has to stand behind it instead.

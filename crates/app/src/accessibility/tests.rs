@@ -119,3 +119,62 @@ fn focusing_an_element_gives_its_widget_the_keyboard() {
     let plugin = context.plugin::<AccessibilityMirror>();
     assert_eq!(plugin.lock().document().focus(), Some(input.id));
 }
+
+#[test]
+fn tabs_stand_in_a_list_and_cells_in_rows() {
+    let context = mirrored();
+    for _ in 0..2 {
+        frame(&context, |ui| {
+            ui.horizontal(|ui| {
+                for (name, is_open) in [("Text", true), ("Outline", false)] {
+                    let tab = ui.button(name);
+                    theme::structure::role(&tab, egui::accesskit::Role::Tab);
+                    let cross = ui.button("x");
+                    cross.widget_info(|| {
+                        egui::WidgetInfo::selected(egui::Role::Button, true, is_open, format!("Close {name}"))
+                    });
+                }
+            });
+            egui::Grid::new("grid").show(ui, |ui| {
+                theme::structure::part(ui, egui::accesskit::Role::Table, "Keys");
+                for row in [["Key", "What"], ["F6", "Next panel"]] {
+                    row.into_iter().for_each(|cell| drop(ui.label(cell)));
+                    ui.end_row();
+                }
+            });
+        });
+    }
+    let plugin = context.plugin::<AccessibilityMirror>();
+    let mirror = plugin.lock();
+    let element =
+        |id: u64| mirror.document().elements().find(|element| element.id == id).expect("an element");
+    let lists: Vec<&Element> =
+        mirror.document().elements().filter(|element| element.role == "tablist").collect();
+    assert_eq!(lists.len(), 1);
+    let tabs: Vec<&str> = lists[0].children.iter().map(|&id| element(id).label.as_str()).collect();
+    assert_eq!(tabs, ["Text", "Outline"]);
+    let table = mirror.document().find("table", "Keys").next().expect("a table");
+    let cells = |row: u64| -> Vec<(&str, &str)> {
+        let cell = |&id: &u64| (element(id).role, element(id).value.as_deref().unwrap_or_default());
+        element(row).children.iter().map(cell).collect()
+    };
+    assert_eq!(table.children.len(), 2);
+    assert_eq!(cells(table.children[0]), [("columnheader", "Key"), ("columnheader", "What")]);
+    assert_eq!(cells(table.children[1]), [("cell", "F6"), ("cell", "Next panel")]);
+}
+
+#[test]
+fn what_is_announced_is_handed_out_once() {
+    let context = mirrored();
+    let announce = |words: &str| context.plugin::<AccessibilityMirror>().lock().announce(words);
+    let draw = |ui: &mut Ui| drop(ui.button("Steady"));
+    announce("Plan found and verified.");
+    frame(&context, draw);
+    assert_eq!(take_change(&context).expect("news").announcement, "Plan found and verified.");
+    announce("Plan found and verified.");
+    frame(&context, draw);
+    assert_eq!(take_change(&context), None);
+    announce("No plan.");
+    frame(&context, draw);
+    assert_eq!(take_change(&context).expect("news").announcement, "No plan.");
+}

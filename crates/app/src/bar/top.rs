@@ -66,7 +66,6 @@ const STATUS_ROOM: f32 = 70.0;
 const ROOM_FOR_MENUS: f32 = 1_240.0;
 
 fn menus(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
-    structure::part(ui, accesskit::Role::MenuBar, "Menus");
     let color = context.tokens.text_muted;
     let button = |title: &str| Button::new(RichText::new(title).color(color)).frame_when_inactive(false);
     if is_narrow(ui) {
@@ -85,6 +84,7 @@ fn menus(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
             structure::role(&opener, accesskit::Role::MenuItem);
         }
     }
+    structure::part_in(ui, ui.min_rect(), accesskit::Role::MenuBar, "Menus");
 }
 
 fn is_narrow(ui: &Ui) -> bool {

@@ -154,7 +154,7 @@ impl TimelinePanel {
         );
         let mut view = self.view_for(axis, horizon);
         self.follow_request(context, (network, plan), axis, horizon, &mut view);
-        self.follow_axis(ui, axis, view, commands);
+        self.follow_axis(ui, axis, view, (context.state.playback.time, horizon), commands);
         let unit = context.snapshot.map_or("", |it| time_text::unit(it.program.options.time_unit));
         paint::axis(ui, context, axis, &view, (unit, rect.left()));
 
@@ -346,9 +346,21 @@ impl TimelinePanel {
     }
 
     /// Dragging along the axis moves the time; with Shift it selects a range.
-    fn follow_axis(&mut self, ui: &Ui, axis: Rect, view: TimeView, commands: &mut CommandSender) {
+    fn follow_axis(
+        &mut self,
+        ui: &Ui,
+        axis: Rect,
+        view: TimeView,
+        (time, horizon): (f64, f64),
+        commands: &mut CommandSender,
+    ) {
         let response = ui.interact(axis, ui.scope_id().with("axis"), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Slider, true, "Time axis"));
+        ui.ctx().accesskit_node_builder(response.id, |node| {
+            node.set_numeric_value(time);
+            node.set_min_numeric_value(0.0);
+            node.set_max_numeric_value(horizon);
+        });
         if !self.select_range(ui, &response, axis, view, commands)
             && let Some(pointer) = response.interact_pointer_pos()
             && crate::is_pressed(&response)

@@ -25,7 +25,8 @@ impl AppState {
             Status::Broken => {
                 let count = problems.iter().filter(|it| it.severity == Severity::Error).count();
                 let noun = if count == 1 { "error" } else { "errors" };
-                let line = first().map_or(0, |problem| self.document.line_at(problem.span.start as usize) + 1);
+                let line =
+                    first().map_or(0, |problem| self.document.line_at(problem.span.start as usize) + 1);
                 let message = first().map_or("", |problem| problem.message.as_str());
                 format!("{count} {noun}. Line {line}: {message}.")
             }

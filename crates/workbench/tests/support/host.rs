@@ -55,6 +55,8 @@ pub struct World {
     pub is_deaf: Cell<bool>,
     /// Events that the host tells next.
     pub news: RefCell<VecDeque<HostEvent>>,
+    /// Whether nothing is to move by itself.
+    pub reduces_motion: Cell<bool>,
     /// How many requests were posted.
     pub posted: Cell<usize>,
     /// How often everything was taken back.
@@ -206,6 +208,10 @@ impl Host for TestHost {
     fn random(&mut self) -> u64 {
         self.world.drawn.set(self.world.drawn.get() + 1);
         self.world.drawn.get().wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    }
+
+    fn reduces_motion(&self) -> bool {
+        self.world.reduces_motion.get()
     }
 
     fn open_file(&mut self, kind: FileKind) {

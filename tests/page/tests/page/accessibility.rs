@@ -77,7 +77,8 @@ fn the_document_has_landmarks_headings_menus_tabs_and_tables() -> Result<()> {
 fn what_becomes_of_the_plan_and_each_step_is_announced() -> Result<()> {
     let page = Opened::planned()?;
     let says = |words: &str| {
-        let question = format!("document.getElementById('announcements').textContent.includes({})", json!(words));
+        let question =
+            format!("document.getElementById('announcements').textContent.includes({})", json!(words));
         page.tab.wait_until(&question).map(|_| ())
     };
     says("Plan found and verified.")?;

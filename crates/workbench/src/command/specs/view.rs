@@ -80,9 +80,14 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     plain("view.theme", "Light or dark", Group::View, &[], Scope::Everywhere, |state| {
         Command::SetTheme(if state.is_dark() { ThemeChoice::Light } else { ThemeChoice::Dark })
     }),
-    plain("view.systemTheme", "Light or dark as the system has it", Group::View, &[], Scope::Everywhere, |_| {
-        Command::SetTheme(ThemeChoice::System)
-    }),
+    plain(
+        "view.systemTheme",
+        "Light or dark as the system has it",
+        Group::View,
+        &[],
+        Scope::Everywhere,
+        |_| Command::SetTheme(ThemeChoice::System),
+    ),
     plain(
         "view.textLarger",
         "Larger text",
