@@ -62,7 +62,10 @@ impl Connection {
             let mut received = self.receive().with_context(|| format!("waiting for {method}"))?;
             if received["id"] == id {
                 if let Some(reason) = received.get("error") {
-                    bail!("{method}: {}", reason["message"].as_str().unwrap_or("refused"));
+                    bail!(
+                        "{method}: {}",
+                        reason["message"].as_str().or(received["message"].as_str()).unwrap_or("refused")
+                    );
                 }
                 return Ok(received["result"].take());
             }

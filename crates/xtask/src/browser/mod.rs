@@ -3,6 +3,7 @@
 mod axe;
 mod devtools;
 mod find;
+mod firefox;
 mod keys;
 mod picture;
 mod tab;
@@ -27,6 +28,7 @@ use serde_json::json;
 
 pub use axe::axe_script;
 pub use find::{find_or_install_chromium, is_root};
+pub use firefox::Firefox;
 pub use keys::{Key, Modifiers};
 pub use picture::Picture;
 pub use tab::{Tab, Widget};
@@ -149,6 +151,11 @@ impl Drop for Browser {
 
 /// Waits for Chromium to say where it listens, and connects.
 fn connect(process: &mut Child) -> Result<Connection> {
+    Connection::open(&wait_for_address(process, "DevTools listening on ")?)
+}
+
+/// Waits for a browser to say, after these words, where it listens.
+fn wait_for_address(process: &mut Child, words: &str) -> Result<String> {
     let stderr = process.stderr.take().context("no standard error to read")?;
     let (sender, receiver) = mpsc::channel();
     // Reads to the very end: Chromium would stop at a full pipe.
@@ -161,12 +168,12 @@ fn connect(process: &mut Child) -> Result<Connection> {
     loop {
         match receiver.recv_timeout(START_LIMIT) {
             Ok(line) => {
-                if let Some(address) = line.strip_prefix("DevTools listening on ") {
-                    return Connection::open(address.trim());
+                if let Some(address) = line.strip_prefix(words) {
+                    return Ok(address.trim().to_owned());
                 }
                 said.push(line);
             }
-            Err(_) => bail!("Chromium did not start:\n{}", said.join("\n")),
+            Err(_) => bail!("the browser did not start:\n{}", said.join("\n")),
         }
     }
 }

@@ -13,6 +13,7 @@ mod drawing;
 mod editing;
 mod execution;
 mod failure;
+mod firefox;
 mod keeping;
 mod language;
 mod lesson;

@@ -1,0 +1,41 @@
+//! The page in Firefox, where there is one: it starts, compiles, plans, draws, and is used by keyboard.
+
+use anyhow::Result;
+use xtask::{browser::Firefox, server::SiteServer};
+
+use crate::opened::{SITE, take_turn};
+
+/// F6, as `WebDriver` spells it.
+const F6: &str = "\u{e036}";
+
+#[test]
+fn firefox_starts_plans_draws_and_takes_keys() -> Result<()> {
+    let _turn = take_turn();
+    let Some(program) = Firefox::find() else {
+        println!("nothing was tried in Firefox: there is none (on Debian: apt-get install firefox-esr)");
+        return Ok(());
+    };
+    let server = SiteServer::start(&SITE, 0, false)?;
+    let mut firefox = Firefox::start(&program, 1280, 800)?;
+    firefox.go_to(&format!("{}#mission=enroute", server.url()))?;
+    firefox.wait_until("'enroute' in window")?;
+    let outcome = firefox.evaluate("enroute.ready.then(() => 'ready', (reason) => String(reason))")?;
+    if outcome.as_str().is_some_and(|reason| reason.contains("no-graphics") || reason.contains("WebGL")) {
+        println!("Firefox has neither WebGPU nor WebGL2 on this machine; nothing more was tried: {outcome}");
+        return Ok(());
+    }
+    assert_eq!(outcome, "ready");
+    firefox.wait_until("enroute.state().status === 'plan'")?;
+    assert_eq!(firefox.evaluate("enroute.state().verdict.valid")?, true);
+    firefox.wait_until("document.getElementById('announcements').textContent.includes('verified')")?;
+    let picture = firefox.screenshot()?;
+    assert!(picture.colours() > 20, "nothing is drawn");
+    // By keys alone: on to the next panel, and a letter into the text.
+    firefox.evaluate("document.querySelector('[role=textbox][aria-label=\"Mission text\"]').focus()")?;
+    firefox.wait_until("document.querySelector('[aria-activedescendant]')")?;
+    firefox.evaluate("enroute.dispatch('edit.select', { start: 0 })")?;
+    firefox.press("// ")?;
+    firefox.wait_until("enroute.source().startsWith('// ')")?;
+    firefox.press(F6)?;
+    firefox.wait_until("enroute.state().activePanel !== 'editor'")
+}
