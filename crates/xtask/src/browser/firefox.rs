@@ -4,6 +4,7 @@
 
 use std::{
     fs,
+    io::{BufRead as _, BufReader},
     path::PathBuf,
     process::{Child, Command, Stdio},
 };
@@ -28,11 +29,14 @@ user_pref(\"webgl.disable-fail-if-major-performance-caveat\", true);
 user_pref(\"browser.shell.checkDefaultBrowser\", false);
 user_pref(\"datareporting.policy.dataSubmissionEnabled\", false);
 user_pref(\"app.update.enabled\", false);
+user_pref(\"gfx.x11-egl.force-enabled\", true);
 ";
 
 /// A running Firefox; ends when it is dropped.
 pub struct Firefox {
     process: Child,
+    /// The display that was started for it.
+    display: Option<Child>,
     profile: PathBuf,
     connection: Connection,
     context: String,
@@ -48,11 +52,24 @@ impl Firefox {
     pub fn start(program: &PathBuf, width: u32, height: u32) -> Result<Self> {
         let profile = fresh_profile()?;
         fs::write(profile.join("user.js"), PREFERENCES)?;
-        let mut process = Command::new(program)
-            .args(["--headless", "--no-remote", "--remote-debugging-port=0", "--profile"])
+        let mut command = Command::new(program);
+        // Headless Firefox draws nothing in WebGL on most systems; a display in memory will do.
+        let mut display = None;
+        if std::env::var_os("DISPLAY").is_none() {
+            display = start_display()?;
+            match &display {
+                Some((_, name)) => command.env("DISPLAY", name),
+                None => command.arg("--headless"),
+            };
+        }
+        let display = display.map(|(server, _)| server);
+        let mut process = command
+            .args(["--no-remote", "--remote-debugging-port=0", "--profile"])
             .arg(&profile)
             .arg("about:blank")
             .env("HOME", &profile)
+            // Mesa draws where there is no graphics card.
+            .env("LIBGL_ALWAYS_SOFTWARE", "1")
             .stdin(Stdio::null())
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
@@ -69,7 +86,7 @@ impl Firefox {
                 return Err(reason);
             }
         };
-        let mut firefox = Self { process, profile, connection, context: String::new() };
+        let mut firefox = Self { process, display, profile, connection, context: String::new() };
         firefox.call("session.new", &json!({ "capabilities": {} }))?;
         let tree = firefox.call("browsingContext.getTree", &json!({}))?;
         tree["contexts"][0]["context"].as_str().context("there is no page")?.clone_into(&mut firefox.context);
@@ -138,6 +155,18 @@ impl Firefox {
         self.call("input.performActions", &all).map(|_| ())
     }
 
+    /// Clicks at a place, in CSS pixels.
+    pub fn click(&mut self, x: f64, y: f64) -> Result<()> {
+        let actions = json!([
+            { "type": "pointerMove", "x": x.round() as i64, "y": y.round() as i64 },
+            { "type": "pointerDown", "button": 0 },
+            { "type": "pointerUp", "button": 0 },
+        ]);
+        let source = json!({ "type": "pointer", "id": "mouse", "actions": actions });
+        let all = json!({ "context": self.context, "actions": [source] });
+        self.call("input.performActions", &all).map(|_| ())
+    }
+
     /// The page as pixels.
     pub fn screenshot(&mut self) -> Result<Picture> {
         let answer = self.call("browsingContext.captureScreenshot", &json!({ "context": self.context }))?;
@@ -155,6 +184,26 @@ impl Drop for Firefox {
             let _ = self.process.kill();
         }
         let _ = self.process.wait();
+        if let Some(display) = &mut self.display {
+            let _ = display.kill();
+            let _ = display.wait();
+        }
         let _ = fs::remove_dir_all(&self.profile);
     }
+}
+
+/// A display in memory with its name, where there is a program for that.
+fn start_display() -> Result<Option<(Child, String)>> {
+    let Some(program) = find_program(&["Xvfb"]) else { return Ok(None) };
+    let mut server = Command::new(program)
+        .args(["-displayfd", "1", "-screen", "0", "1400x1000x24", "-nolisten", "tcp"])
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .context("Xvfb could not be started")?;
+    let mut number = String::new();
+    let output = server.stdout.take().context("Xvfb has no output")?;
+    BufReader::new(output).read_line(&mut number)?;
+    Ok(Some((server, format!(":{}", number.trim()))))
 }

@@ -12,7 +12,7 @@ const F6: &str = "\u{e036}";
 fn firefox_starts_plans_draws_and_takes_keys() -> Result<()> {
     let _turn = take_turn();
     let Some(program) = Firefox::find() else {
-        println!("nothing was tried in Firefox: there is none (on Debian: apt-get install firefox-esr)");
+        println!("nothing was tried in Firefox: there is none (on Debian: apt-get install firefox-esr xvfb)");
         return Ok(());
     };
     let server = SiteServer::start(&SITE, 0, false)?;
@@ -30,8 +30,12 @@ fn firefox_starts_plans_draws_and_takes_keys() -> Result<()> {
     firefox.wait_until("document.getElementById('announcements').textContent.includes('verified')")?;
     let picture = firefox.screenshot()?;
     assert!(picture.colours() > 20, "nothing is drawn");
-    // By keys alone: on to the next panel, and a letter into the text.
-    firefox.evaluate("document.querySelector('[role=textbox][aria-label=\"Mission text\"]').focus()")?;
+    // A click into the text, letters, and on to the next panel by a key.
+    let text = firefox.evaluate("enroute.widgets('textbox', 'Mission text')[0]")?;
+    let middle = |from: &str, size: &str| -> f64 {
+        text[from].as_f64().unwrap_or_default() + text[size].as_f64().unwrap_or_default() / 2.0
+    };
+    firefox.click(middle("x", "width"), middle("y", "height"))?;
     firefox.wait_until("document.querySelector('[aria-activedescendant]')")?;
     firefox.evaluate("enroute.dispatch('edit.select', { start: 0 })")?;
     firefox.press("// ")?;
