@@ -31,7 +31,7 @@ pub(super) fn is_leaf(role: &str) -> bool {
 
 /// Puts the tabs among neighbours into a list of tabs, where the first of them stood. `parent` is whose children they
 /// are.
-pub(super) fn gather_tabs(parent: u64, inside: Vec<u64>, elements: &mut BTreeMap<u64, Element>) -> Vec<u64> {
+pub(super) fn gather_tabs(parent: u64, inside: &[u64], elements: &mut BTreeMap<u64, Element>) -> Vec<u64> {
     let is_tab = |id: &u64| elements.get(id).is_some_and(|element| element.role == "tab");
     let (tabs, others): (Vec<u64>, Vec<u64>) = inside.iter().partition(|id| is_tab(id));
     let Some(first) = inside.iter().position(is_tab) else { return others };

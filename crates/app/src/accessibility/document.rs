@@ -204,7 +204,7 @@ impl Reader<'_> {
                 Err(children) => inside.extend(children),
             }
         }
-        gather_tabs(parent.0, inside, elements)
+        gather_tabs(parent.0, &inside, elements)
     }
 
     /// A node as an element, or its children if it says nothing itself.

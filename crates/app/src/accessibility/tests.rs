@@ -138,7 +138,9 @@ fn tabs_stand_in_a_list_and_cells_in_rows() {
             egui::Grid::new("grid").show(ui, |ui| {
                 theme::structure::part(ui, egui::accesskit::Role::Table, "Keys");
                 for row in [["Key", "What"], ["F6", "Next panel"]] {
-                    row.into_iter().for_each(|cell| drop(ui.label(cell)));
+                    for cell in row {
+                        ui.label(cell);
+                    }
                     ui.end_row();
                 }
             });
