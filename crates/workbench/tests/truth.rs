@@ -199,3 +199,19 @@ fn flight_rules_are_changed_kept_with_the_mission_and_part_of_what_is_signed() {
     again.settle();
     assert_eq!(again.json()["review"]["rules"]["slope_deg"], 2.5);
 }
+
+#[test]
+fn a_mission_that_is_being_written_shows_its_places_and_not_the_mission_before() {
+    let mut app = support::start();
+    assert!(!app.session.state().shown().expect("an example").traverses.is_empty());
+    let source = "location BASE (24, 52);\nvehicle Rover1 : ATRV at BASE;\n";
+    app.run(Command::SetSource(source.to_owned()));
+    assert_eq!((&app.json()["status"], &app.json()["isStale"]), (&json!("broken"), &json!(false)));
+    let shown = app.session.state().shown().expect("what is written so far");
+    let names: Vec<&str> = shown.program.world.locations.iter().map(|it| it.name.text.as_str()).collect();
+    assert_eq!(names, ["BASE"]);
+    assert!(shown.network.is_none() && shown.plan().is_none());
+    // A slip in the middle of a word leaves what was shown.
+    app.run(Command::SetSource(format!("{source}location RIM (1")));
+    assert_eq!(app.session.state().shown().expect("as before").program.world.vehicles.len(), 1);
+}

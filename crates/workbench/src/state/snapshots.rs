@@ -56,7 +56,7 @@ impl Snapshots {
         }
         let is_drawable = snapshot.network.is_some() && snapshot.stage == Stage::Complete;
         let is_first = self.shown.is_none() && snapshot.network.is_some();
-        if is_drawable || is_first {
+        if is_drawable || is_first || lacks_a_scenario(&snapshot) {
             self.shown = Some(Arc::clone(&snapshot));
         }
         if self.latest.as_ref().is_none_or(|latest| latest.revision != snapshot.revision) {
@@ -101,7 +101,8 @@ impl Snapshots {
     }
 
     /// The answer that drawings show: the latest with a network and its plan. A text with errors keeps the last good
-    /// one on screen.
+    /// one on screen; one that only lacks a scenario is a mission that is being written, and shows its places and
+    /// vehicles.
     pub fn shown(&self) -> Option<&Arc<Snapshot>> {
         self.shown.as_ref()
     }
@@ -129,3 +130,12 @@ impl Snapshots {
         }
     }
 }
+/// Whether nothing is wrong with a text but that it says nothing to plan yet.
+fn lacks_a_scenario(snapshot: &Snapshot) -> bool {
+    let mut errors =
+        snapshot.problems.iter().filter(|problem| problem.severity == Severity::Error).peekable();
+    snapshot.network.is_none() && errors.peek().is_some() && errors.all(|it| it.code == NO_SCENARIO)
+}
+
+/// The code of that problem.
+const NO_SCENARIO: &str = "E-NOSCENARIO";
