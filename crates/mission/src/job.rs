@@ -90,7 +90,12 @@ pub const RULES: [Rule; 10] = {
             key: "revision, text, goal, search, seed, whether the search is recorded",
             kept: "the parse, the program, the network, control programs, the plan, paths, configuration spaces",
         },
-        Rule { kind: Review, supersedes: &[Review], key: "as of Update", kept: "as of Update" },
+        Rule {
+            kind: Review,
+            supersedes: &[Review],
+            key: "as of Update, and the rules of the mission",
+            kept: "as of Update",
+        },
         Rule { kind: Evaluate, supersedes: &[Evaluate], key: "token, as of Update", kept: "paths" },
         Rule {
             kind: CompareSearches,
@@ -151,7 +156,7 @@ impl Request {
     pub const fn kind(&self) -> Kind {
         match self {
             Self::Update(_) => Kind::Update,
-            Self::Review(_) => Kind::Review,
+            Self::Review { .. } => Kind::Review,
             Self::Evaluate { .. } => Kind::Evaluate,
             Self::CompareSearches(_) => Kind::CompareSearches,
             Self::Execute { .. } => Kind::Execute,
@@ -167,7 +172,7 @@ impl Request {
     pub const fn revision(&self) -> Option<u64> {
         match self {
             Self::Update(update)
-            | Self::Review(update)
+            | Self::Review { update, .. }
             | Self::CompareSearches(update)
             | Self::Execute { update, .. }
             | Self::Sample { update, .. } => Some(update.revision),

@@ -11,7 +11,7 @@ use crate::control_run::{ControlRun, ControlStanding};
 use crate::execution::Execution;
 use crate::path_growth::{GrowthStanding, PathGrowth};
 use crate::program_chance::ProgramChance;
-use crate::review::Review;
+use crate::review::{MissionRule, Review};
 use crate::robustness::{RobustnessSettings, Tally};
 use crate::snapshot::{MapKey, Snapshot};
 
@@ -50,7 +50,12 @@ pub enum Request {
         from: u64,
     },
     /// Review the plan of a text: see [`crate::review`].
-    Review(Update),
+    Review {
+        /// The text and how it is planned.
+        update: Update,
+        /// The rules of the mission to hold the plan against.
+        rules: Vec<MissionRule>,
+    },
     /// Plan another text than the open one, to compare with: answered once, when it is done.
     Evaluate {
         /// Comes back with the answer.

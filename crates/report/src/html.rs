@@ -111,8 +111,9 @@ fn figures(document: &Document<'_>) -> String {
     let figures = [
         (
             "Timeline",
-            figure::timeline(snapshot),
-            "Solid: the earliest schedule. Pale: all the time in which it may happen. Green rows are conditions.",
+            figure::timeline(snapshot, document.review),
+            "Solid: the earliest schedule. Pale: all the time in which it may happen. Green rows are conditions. \
+             Flight rules: a thin line where the plan is held against them, a filled stretch where it breaks them.",
         ),
         (
             "Network",

@@ -13,6 +13,7 @@ mod listing;
 mod style;
 mod tables;
 
+pub use figure::rule_tracks;
 pub use html::{Document, html};
 
 #[cfg(test)]

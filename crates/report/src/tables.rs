@@ -24,6 +24,7 @@ pub(crate) fn sections(review: &Review) -> String {
         }
         out.push_str(&match section {
             Section::Plan
+            | Section::MissionRules
             | Section::States
             | Section::Durations
             | Section::SeparationViolations

@@ -15,6 +15,7 @@ mod lower;
 pub mod parse;
 mod parser;
 pub mod program;
+pub mod rule;
 pub mod span;
 pub mod spans;
 pub mod syntax;

@@ -268,3 +268,33 @@ fn schedules_say_how_the_plan_stands_and_what_is_pinned() {
     assert_eq!((&wait["end"]["earliest"], &wait["end"]["latest"]), (&json!(450), &json!(450)));
     assert_eq!(wait["end"]["earliest_utc"], "2004-01-25T12:35:00Z");
 }
+
+#[test]
+fn rules_of_the_mission_are_evaluated_as_soon_as_they_are_set() {
+    let mut app = before_the_board();
+    let lines = |app: &App| -> Vec<(String, String)> {
+        let items = app.json()["review"]["items"].as_array().expect("a list").clone();
+        let rules = items.iter().filter(|item| item["section"] == "mission-rules");
+        let text = |item: &Value, member: &str| item[member].as_str().expect("a text").to_owned();
+        rules.map(|item| (text(item, "status"), text(item, "text"))).collect()
+    };
+    assert_eq!(lines(&app), []);
+    let rule = |rule: &str| json!([{ "name": "Way", "rule": rule, "source": "FR 2", "waivable": false }]);
+    app.dispatch("review.rules", &json!({ "rules": rule("PATH1=OK while Group-Traverse-Path") }));
+    app.settle();
+    let held = ("passed".to_owned(), "Way: holds in every execution of the plan".to_owned());
+    assert_eq!(lines(&app), [held]);
+    assert_eq!(app.session.state().rule_tracks().len(), 1);
+    // A rule that the plan breaks keeps the board from approving, whatever is acknowledged.
+    app.dispatch("review.rules", &json!({ "rules": rule("never Group-Traverse-Path while PATH1=OK") }));
+    app.settle();
+    let [(status, text)] = &lines(&app)[..] else { panic!("one line") };
+    assert_eq!(status, "failed", "{text}");
+    app.acknowledge_all("Ada");
+    let why = refused(&mut app, "review.approve", &json!({ "name": "Ada", "role": "Science" }));
+    assert!(why.contains("failed"), "{why}");
+    // With another text it is stale, and drawn no more; with the text again, it is there again.
+    let source = app.session.source();
+    app.run(Command::SetSource(source.replace("[450,450]", "[440,440]")));
+    assert!(app.session.state().rule_tracks().is_empty());
+}

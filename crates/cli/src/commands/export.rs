@@ -100,7 +100,7 @@ impl Args {
         let status = record.map_or(PlanStatus::Draft, |record| {
             let mut review = review(snapshot, &goal, self.seed, &mut || false);
             let found = record.runs_of(&hash).map(Runs::robustness);
-            review.judge(record.rules(), found.as_ref());
+            review.hold_against(snapshot, record.rules(), found.as_ref(), &mut || false);
             standing(&record, &Present::of_review(&review)).status
         });
         let calendar = self.epoch.as_deref().map(|epoch| calendar(epoch, snapshot)).transpose()?;

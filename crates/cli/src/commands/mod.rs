@@ -8,6 +8,7 @@ pub mod explain;
 pub mod export;
 pub mod fmt;
 pub mod hca;
+pub mod held_rules;
 pub mod import;
 pub mod path;
 pub mod plan;

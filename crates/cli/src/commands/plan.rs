@@ -18,6 +18,8 @@ use rmpl::program::Program;
 use serde_json::{Value, json};
 use tpn::{Levels, Network, Supply};
 
+use crate::commands::held_rules::HeldRules;
+use crate::commands::report::read_rules;
 use crate::deadline::TimeLimit;
 use crate::diagnostics::{path_of_file, print_problems};
 use crate::ground::ground;
@@ -57,6 +59,9 @@ pub struct Args {
     /// Plans without looking for paths of traverses.
     #[arg(long)]
     no_paths: bool,
+    /// Flight rules: holds the plan against those that are in the mission's own language.
+    #[arg(long, value_name = "RULES.json")]
+    rules: Option<PathBuf>,
     /// Leaves out how long it took, so that the same call gives the same document.
     #[arg(long)]
     no_timings: bool,
@@ -100,11 +105,18 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             .with_context(|| format!("cannot write {}", file.display()))?;
     }
     let outcome = &planned.planning.outcome;
+    let rules = match &args.rules {
+        Some(path) => HeldRules::new(&read_rules(path)?, &loaded, &planned),
+        None => HeldRules::default(),
+    };
     match args.format {
         Format::Json => {
             let mut body = outcome_json(&planned, &loaded, [compile_millis, plan_millis]);
             if args.no_timings {
                 without_timings(&mut body["stats"]);
+            }
+            if args.rules.is_some() {
+                body["rules"] = rules.json();
             }
             let mut problems = loaded.problems.clone();
             problems.extend(Problem::all(&planned.warnings, &loaded.source));
@@ -115,12 +127,13 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
             print_problems(&loaded.name, &loaded.source, &warnings)?;
             print_text(&outcome_text(&planned, &loaded))?;
+            print_text(&rules.text())?;
         }
     }
     let is_refused = planned.planning.verdict.as_ref().is_some_and(|verdict| !verdict.valid);
     Ok(exit(match outcome.status {
         // What the independent checker does not accept is no plan to rely on.
-        Status::Plan if is_refused => NO,
+        Status::Plan if is_refused || !rules.are_kept() => NO,
         Status::Plan => YES,
         Status::NoPlan => NO,
         Status::Limit => LIMIT,

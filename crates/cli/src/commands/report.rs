@@ -61,7 +61,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Some(path) => Some(read_robustness(path, &review.content_hash)?),
         None => record.runs_of(&review.content_hash).map(Runs::robustness),
     };
-    review.judge(&rules, robustness.as_ref());
+    review.hold_against(snapshot, &rules, robustness.as_ref(), &mut || false);
     if let Some(path) = &args.output {
         let page = report::html(&report::Document {
             name,
@@ -198,6 +198,7 @@ fn review_json(review: &Review) -> Value {
             "spare": it.spare,
             "room": it.room,
         }))).collect::<Vec<_>>(),
+        "mission_rules": plain(&review.mission_rules),
         "durations": plain(&review.durations),
         "robustness": review.robustness.as_ref().map(|line| line_json(line, json!({}))),
         "events": review.events.iter().map(|it| line_json(&it.line, json!({

@@ -68,7 +68,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let limit = deadline.enforce();
     let mut review = review(&snapshot, &target.goal()?, args.seed, &mut || false);
     let found = record.runs_of(&review.content_hash).map(Runs::robustness);
-    review.judge(record.rules(), found.as_ref());
+    review.hold_against(&snapshot, record.rules(), found.as_ref(), &mut || false);
     let standing = standing(&record, &Present::of_review(&review));
     limit.answered();
     args.answer(&record, &standing, &review.content_hash)?;

@@ -12,7 +12,8 @@ use tpn::{
 };
 
 use super::profile::{Profile, ProfilePart, profiles};
-use super::{ChartOptions, group, profile};
+use super::rule::RuleTrack;
+use super::{ChartOptions, group, profile, rule};
 
 /// Rows of bars, and the links between them.
 #[derive(Clone, Debug, Default)]
@@ -25,6 +26,8 @@ pub struct Chart {
     pub links: Vec<Link>,
     /// The profiles of resources, each with rows of its own.
     pub profiles: Vec<Profile>,
+    /// The flight rules, each with a row.
+    pub rules: Vec<RuleTrack>,
     /// The last time that is certain to matter: every finite bound of every bar.
     pub horizon: f64,
 }
@@ -59,6 +62,8 @@ pub enum RowKind {
     State,
     /// A part of the profile of a resource.
     Profile(ProfilePart),
+    /// The flight rule of this number.
+    Rule(usize),
 }
 
 /// An activity, condition or delay over time.
@@ -214,6 +219,20 @@ impl Chart {
         chart.horizon = horizon(&chart.bars);
         chart.links = chart.links_of(network, plan);
         chart
+    }
+
+    /// Adds flight rules below everything else.
+    pub fn add_rules(&mut self, rules: Vec<RuleTrack>, closed: &BTreeSet<SmolStr>) {
+        for item in rule::items(&rules) {
+            let Item { kind, name, key, depth, .. } = item;
+            let is_closed = key.as_ref().is_some_and(|key| closed.contains(key));
+            let end = self.bars.len();
+            self.rows.push(Row { kind, name, depth, key, is_closed, bars: end..end });
+            if is_closed {
+                break;
+            }
+        }
+        self.rules = rules;
     }
 
     /// Puts all windows to those of `plan`, which selects the same; in time linear in the bars.

@@ -3,6 +3,7 @@
 mod chart;
 mod group;
 pub mod profile;
+pub mod rule;
 pub mod state;
 mod ticks;
 

@@ -20,7 +20,7 @@ use crate::ground::Grounds;
 use crate::problem::Problem;
 use crate::reading::{Followed, Reading};
 use crate::request::{Request, Response, Update};
-use crate::review;
+use crate::review::{self, MissionRule};
 use crate::snapshot::{MapKey, Snapshot, Stage, Timings};
 use crate::traverse::Paths;
 
@@ -69,7 +69,7 @@ impl Core {
             Request::SampleProgram { revision, source, chance, from } => {
                 self.sample_program((revision, &source), chance, from, host);
             }
-            Request::Review(update) => self.review(&update, host),
+            Request::Review { update, rules } => self.review(&update, &rules, host),
             Request::Evaluate { token, update } => self.evaluate_beside(token, &update, host),
             Request::CompareSearches(update) => self.search_both_ways(&update, host),
             Request::RunControl(wanted) => self.run_control(&wanted, host),
@@ -89,12 +89,13 @@ impl Core {
     }
 
     /// The plan is kept from the update before, so this takes only the time of the review itself.
-    fn review(&mut self, update: &Update, host: &mut dyn CoreHost) {
+    fn review(&mut self, update: &Update, rules: &[MissionRule], host: &mut dyn CoreHost) {
         let mut quiet = Quiet { host, passes_maps: true, last: None };
         self.update(update, &mut quiet);
         let Some(snapshot) = quiet.last else { return };
         let mut stop = || host.is_superseded();
-        let review = review::review(&snapshot, &update.goal, update.seed, &mut stop);
+        let mut review = review::review(&snapshot, &update.goal, update.seed, &mut stop);
+        review.findings = review::flight_rule::evaluate(&snapshot, rules, &mut stop);
         if !host.is_superseded() {
             let review = Arc::new(review);
             host.answer(Response::Review { revision: update.revision, review });

@@ -54,6 +54,10 @@ fn text(revision: u64) -> Update {
     }
 }
 
+fn review(revision: u64) -> Request {
+    Request::Review { update: text(revision), rules: Vec::new() }
+}
+
 fn update(revision: u64) -> Request {
     Request::Update(text(revision))
 }
@@ -125,7 +129,7 @@ fn only_the_newest_text_is_sent() {
 fn a_newer_text_ends_what_was_asked_of_the_older_one_and_not_the_other_way_round() {
     let mut link = ready();
     link.post(update(1));
-    link.post(Request::Review(text(1)));
+    link.post(review(1));
     link.post(Request::CompareSearches(text(1)));
     link.post(Request::Evaluate { token: 1, update: text(1) });
     assert_eq!(told(&mut link), ["send Update 1"]);
@@ -163,8 +167,8 @@ fn what_waits_or_is_under_way_already_is_not_asked_twice() {
     let first = link.post(update(1));
     assert_eq!(link.post(update(1)), first);
     assert_eq!(told(&mut link), ["send Update 1"]);
-    link.post(Request::Review(text(1)));
-    link.post(Request::Review(text(1)));
+    link.post(review(1));
+    link.post(review(1));
     link.hear(1, News::Finished);
     link.hear(1, News::Finished);
     assert_eq!(told(&mut link), ["send Review 1"]);
@@ -184,7 +188,7 @@ fn a_text_that_comes_back_is_asked_again_if_it_was_being_given_up() {
 fn a_job_that_is_taken_back_is_not_started_or_is_given_up() {
     let mut link = ready();
     let under_way = link.post(update(1));
-    let waiting = link.post(Request::Review(text(1)));
+    let waiting = link.post(review(1));
     link.cancel(waiting);
     assert_eq!(told(&mut link), ["send Update 1"]);
     link.cancel(under_way);
@@ -237,7 +241,7 @@ fn a_job_is_tried_once_more_after_a_crash_and_then_given_up() {
     link.post(map("m", 1));
     link.hear(1, News::Finished);
     link.post(update(7));
-    link.post(Request::Review(text(7)));
+    link.post(review(7));
     told(&mut link);
     link.hear(1, News::Failed("out of memory".to_owned()));
     assert_eq!(told(&mut link), ["terminate", "start 2", "send ImportMap m 1"]);
@@ -310,7 +314,7 @@ fn what_cannot_be_sent_is_given_up() {
 fn everything_that_was_asked_can_be_taken_back_and_maps_are_read_all_the_same() {
     let mut link = ready();
     link.post(update(1));
-    link.post(Request::Review(text(1)));
+    link.post(review(1));
     link.post(map("a", 1));
     assert_eq!(told(&mut link), ["send Update 1"]);
     link.cancel_all();

@@ -36,6 +36,8 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
         traverses: Vec::new(),
         separation_violations: separation_violations(snapshot, &places),
         robustness: None,
+        findings: Vec::new(),
+        mission_rules: Vec::new(),
         warnings: warnings(snapshot, &places),
     };
     if let Some(mut lines) = PlanLines::new(snapshot, &places) {

@@ -9,6 +9,7 @@ pub mod board;
 mod demand_lines;
 pub(crate) mod distances;
 mod entry;
+pub mod flight_rule;
 mod former_record;
 mod hash;
 mod lines;
@@ -24,9 +25,12 @@ use rmpl::Span;
 use serde::{Deserialize, Serialize};
 use tpn::{NodeId, OccurrenceId, Window};
 
+use crate::{Robustness, Snapshot};
+
 pub use alternatives::{Alternative, Fate};
 pub use board::{PlanStatus, Present, Standing, standing};
 pub use demand_lines::ResourceReview;
+pub use flight_rule::{Finding, MissionRule, Outcome, Stretch};
 pub use hash::{content_hash, plan_hash};
 pub use lines::review;
 pub use record::Record;
@@ -68,6 +72,10 @@ pub struct Review {
     pub separation_violations: Vec<Line>,
     /// What runs with chance came to, if any were made.
     pub robustness: Option<Line>,
+    /// What was found of the rules of the mission, by what they say: see [`flight_rule::evaluate`].
+    pub findings: Vec<Finding>,
+    /// The rules of the mission, each held or not.
+    pub mission_rules: Vec<Line>,
     /// What is wrong with the text, or could be.
     pub warnings: Vec<Line>,
 }
@@ -257,6 +265,8 @@ pub enum Section {
     Traverses,
     /// [`Review::separation_violations`].
     SeparationViolations,
+    /// [`Review::mission_rules`].
+    MissionRules,
     /// [`Review::robustness`].
     Robustness,
     /// [`Review::warnings`].
@@ -265,8 +275,9 @@ pub enum Section {
 
 impl Section {
     /// All, in the order in which they are read.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Plan,
+        Self::MissionRules,
         Self::Choices,
         Self::CausalLinks,
         Self::Conflicts,
@@ -293,6 +304,7 @@ impl Section {
             Self::Events => "Windows and slack",
             Self::Traverses => "Traverses",
             Self::SeparationViolations => "Conflicts between vehicles",
+            Self::MissionRules => "Rules of the mission",
             Self::Robustness => "Robustness",
             Self::Warnings => "Warnings in the text",
         }
@@ -313,9 +325,22 @@ impl Review {
             Section::Events => self.events.iter().map(|it| &it.line).collect(),
             Section::Traverses => self.traverses.iter().map(|it| &it.line).collect(),
             Section::SeparationViolations => self.separation_violations.iter().collect(),
+            Section::MissionRules => self.mission_rules.iter().collect(),
             Section::Robustness => self.robustness.iter().collect(),
             Section::Warnings => self.warnings.iter().collect(),
         }
+    }
+
+    /// Holds everything against `rules`: those of the mission against the plan of `snapshot`, which was reviewed.
+    pub fn hold_against(
+        &mut self,
+        snapshot: &Snapshot,
+        rules: &FlightRules,
+        robustness: Option<&Robustness>,
+        stop: &mut dyn FnMut() -> bool,
+    ) {
+        self.findings = flight_rule::evaluate(snapshot, &rules.rules, stop);
+        self.judge(rules, robustness);
     }
 
     /// Whether there is a plan to say anything about.
@@ -323,15 +348,17 @@ impl Review {
         !self.events.is_empty()
     }
 
-    /// The worst status of a section's lines; a section without lines has passed.
+    /// The worst status of a section's lines; a section without lines has passed, but for rules that nobody has set.
     pub fn section_status(&self, section: Section) -> Status {
-        self.lines(section).into_iter().map(|line| line.status).max().unwrap_or(Status::Passed)
+        let none = if section == Section::MissionRules { Status::Information } else { Status::Passed };
+        self.lines(section).into_iter().map(|line| line.status).max().unwrap_or(none)
     }
 
     /// What a section without lines says: that there is nothing to find fault with, or no plan to look at.
     pub fn nothing(&self, section: Section) -> &'static str {
         match section {
             Section::Warnings => "The text has no errors and no warnings.",
+            Section::MissionRules => "The flight rules have none in the mission's own language.",
             _ if !self.is_planned() => "There is no plan to look at.",
             Section::Plan | Section::Events => "There is nothing to look at.",
             Section::Choices => "The plan has no choice to make.",
@@ -360,6 +387,8 @@ impl Review {
 
 #[cfg(test)]
 mod board_tests;
+#[cfg(test)]
+mod five_missions;
 #[cfg(test)]
 mod mutations;
 #[cfg(test)]

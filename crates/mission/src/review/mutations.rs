@@ -5,7 +5,7 @@ use std::sync::Arc;
 use exact::{Rational, Time};
 
 use super::tests::{LASTING, MISSION, SCENARIO, refused, reviewed, reviewed_with, snapshot};
-use super::{FlightRules, Line, Review, Section, Status, SuccessRate, review};
+use super::{FlightRules, Line, MissionRule, Review, Section, Status, SuccessRate, review};
 use crate::snapshot::{SeparationViolation, Snapshot};
 use crate::{Goal, Planning, Robustness, RobustnessSettings, Tally, Uncertainty};
 
@@ -247,6 +247,36 @@ fn problems_of_the_text() {
 }
 
 #[test]
+fn rules_of_the_mission() {
+    let held = |source: &str, rule: &str, waivable: bool| {
+        let rule = MissionRule { name: "Open".into(), rule: rule.into(), source: "FR 7".into(), waivable };
+        let rules = FlightRules { rules: vec![rule], ..FlightRules::default() };
+        let mut review = reviewed(source);
+        review.judge(&rules, None);
+        assert_eq!(worst(&review, Section::MissionRules), Status::Failed, "not evaluated is not passed");
+        review.hold_against(&snapshot(source), &rules, None, &mut || false);
+        let [line] = review.lines(Section::MissionRules)[..] else { panic!("one line") };
+        (line.status, line.text.clone(), line.criterion.clone().unwrap_or_default())
+    };
+    let (status, text, criterion) = held(OPEN, "P=OK while A", false);
+    assert_eq!((status, text.as_str()), (Status::Passed, "Open: holds in every execution of the plan"));
+    assert_eq!(criterion, "P=OK while A (FR 7, flight rules of this mission)");
+    // The mission asserts it for too short a time.
+    let short = OPEN.replace("do { A() } maintaining P=OK", "A()").replace("[20,20]", "[9,9]");
+    let (status, text, _) = held(&short, "never A while P=OK", false);
+    assert_eq!(status, Status::Failed, "{text}");
+    assert!(text.contains("an execution of the plan breaks it, from 5 to 9,"), "{text}");
+    assert_eq!(held(&short, "never A while P=OK", true).0, Status::Attention, "it may be waived");
+    assert_eq!(held(&short, "P=OK while A", false).0, Status::Attention, "nothing says what it is from 9 on");
+    assert_eq!(held(OPEN, "P=OFF", true).0, Status::Failed, "it cannot be read");
+    assert_eq!(held(OPEN, "P=OK at start of A", false).0, Status::Passed);
+    let none = held("primitive A(); scenario S[0,9] = { delay }", "never A", false);
+    assert_eq!(none.0, Status::Passed);
+    let unplanned = held(&OPEN.replace("[20,20]", "[9,9]"), "never A", true);
+    assert_eq!(unplanned.0, Status::Failed, "there is no plan");
+}
+
+#[test]
 fn what_nature_chooses_is_said_event_by_event() {
     let source = "primitive Drive() contingent [20,40]; scenario S[0,60] = { Drive(); delay }";
     let review = reviewed(source);
@@ -261,6 +291,8 @@ fn what_nature_chooses_is_said_event_by_event() {
 fn rules_are_read_back_and_wrong_ones_refused() {
     let mut rules = FlightRules { slope_deg: None, ..FlightRules::default() };
     rules.reserves.insert("Battery".into(), Rational::from_integer(20));
+    let rule = MissionRule { name: "Open".into(), rule: "P=OK while A".into(), ..MissionRule::default() };
+    rules.rules.push(rule);
     assert_eq!(FlightRules::from_json(&rules.to_json()), Ok(rules));
     let some =
         FlightRules::from_json("{\"format\": \"enroute-rules/1\", \"margin\": 15, \"clearance_m\": null}");
@@ -272,6 +304,8 @@ fn rules_are_read_back_and_wrong_ones_refused() {
         "{\"format\": \"enroute-plan/1\"}",
         "{\"format\": \"enroute-rules/1\", \"margin\": -1}",
         "{\"format\": \"enroute-rules/1\", \"margins\": 1}",
+        "{\"format\": \"enroute-rules/1\", \"rules\": [{\"name\": \"A\", \"rule\": \"\"}]}",
+        "{\"format\": \"enroute-rules/1\", \"rules\": [{\"name\": \"\", \"rule\": \"P=OK\"}]}",
         "{\"format\": \"enroute-rules/1\", \"success_rate\": {\"wanted\": 0.5, \"least\": 0.6}}",
     ] {
         assert!(FlightRules::from_json(wrong).is_err(), "{wrong}");

@@ -11,6 +11,7 @@ use smol_str::SmolStr;
 use tpn::Supply;
 
 use super::board::{self, Seat};
+use super::flight_rule::{Finding, MissionRule, Outcome};
 use super::{Line, Review, Section, Status};
 use crate::Robustness;
 
@@ -31,6 +32,8 @@ pub struct FlightRules {
     pub reserves: BTreeMap<SmolStr, Rational>,
     /// How many of the runs with chance reach the end.
     pub success_rate: Option<SuccessRate>,
+    /// What the mission has to keep to besides, in its own language.
+    pub rules: Vec<MissionRule>,
     /// Who has to approve.
     pub board: Vec<Seat>,
 }
@@ -45,6 +48,9 @@ pub struct SuccessRate {
     pub least: f64,
 }
 
+/// How many rules of its own a mission has.
+const MAX_RULES: usize = 200;
+
 /// The format of a document of flight rules.
 pub const RULES_FORMAT: &str = "enroute-rules/1";
 
@@ -57,6 +63,7 @@ impl Default for FlightRules {
             reserve: Some(Rational::ZERO),
             reserves: BTreeMap::new(),
             success_rate: Some(SuccessRate { wanted: 0.95, least: 0.8 }),
+            rules: Vec::new(),
             board: board::default_board(),
         }
     }
@@ -77,8 +84,26 @@ impl FlightRules {
                 Some("a success rate is from 0 to 1")
             }
             Some(rate) if rate.least > rate.wanted => Some("what fails is no more than what is wanted"),
-            _ => board::problem(&self.board),
+            _ => self.problem_of_rules().or_else(|| board::problem(&self.board)),
         }
+    }
+
+    fn problem_of_rules(&self) -> Option<&'static str> {
+        let mut names: Vec<&str> = self.rules.iter().map(|rule| rule.name.trim()).collect();
+        names.sort_unstable();
+        if names.len() > MAX_RULES {
+            return Some("there are at most 200 rules of a mission");
+        }
+        if names.first().is_some_and(|name| name.is_empty()) {
+            return Some("each rule of the mission has a name");
+        }
+        if names.windows(2).any(|pair| pair[0] == pair[1]) {
+            return Some("two rules of the mission have one name");
+        }
+        self.rules
+            .iter()
+            .any(|it| it.rule.trim().is_empty())
+            .then_some("each rule of the mission says something")
     }
 
     /// Reads a document `{"format": "enroute-rules/1", …}`; what it does not name is as by default, and `null` is no rule.
@@ -143,6 +168,11 @@ impl FlightRules {
                 percent(rate.least)
             ),
         });
+        words.extend(self.rules.iter().map(|rule| {
+            let source = if rule.source.is_empty() { String::new() } else { format!(" ({})", rule.source) };
+            let waivable = if rule.waivable { ", may be waived" } else { "" };
+            format!("{}: {}{source}{waivable}", rule.name, rule.rule)
+        }));
         let seats = self.board.iter().map(|seat| format!("{} {}", seat.approvals, seat.role));
         words.push(format!("who approves: {}", seats.collect::<Vec<_>>().join(", ")));
         words
@@ -187,6 +217,44 @@ impl Line {
 /// Where what the checker examines is judged.
 const CHECKER: &str = "the independent checker finds the plan valid";
 
+impl MissionRule {
+    /// What was found of a rule, as a line. What has not been evaluated never counts as held.
+    pub fn line(&self, findings: &[Finding]) -> Line {
+        let found = findings.iter().find(|it| it.rule == self.rule);
+        let broken = if self.waivable { Status::Attention } else { Status::Failed };
+        let name = &self.name;
+        let (status, text) = match found.map(|it| &it.outcome) {
+            Some(Outcome::Holds) => (Status::Passed, format!("{name}: holds in every execution of the plan")),
+            Some(Outcome::NeverApplies) => {
+                (Status::Information, format!("{name}: the plan never comes to what it is about"))
+            }
+            Some(Outcome::Broken(when)) => {
+                (broken, format!("{name}: an execution of the plan breaks it, {when}"))
+            }
+            Some(Outcome::Unsure(when)) => (
+                Status::Attention,
+                format!("{name}: the mission does not say enough to be sure of it, {when}"),
+            ),
+            Some(Outcome::Undecided) => {
+                (Status::Attention, format!("{name}: there are too many cases to decide whether it holds"))
+            }
+            Some(Outcome::Unreadable { column, message }) => (
+                Status::Failed,
+                format!("{name}: cannot be read in this mission: {message} (character {column})"),
+            ),
+            Some(Outcome::NoPlan) => (Status::Failed, format!("{name}: there is no plan to hold against it")),
+            None => (Status::Failed, format!("{name}: has not been evaluated yet")),
+        };
+        let mut line = Line::new(status, text);
+        if let Some(Finding { names, nodes, .. }) = found {
+            (line.names, line.nodes) = (names.clone(), nodes.clone());
+        }
+        let source = if self.source.is_empty() { String::new() } else { format!("{}, ", self.source) };
+        line.criterion = Some(format!("{} ({source}flight rules of this mission)", self.rule));
+        line
+    }
+}
+
 impl Review {
     /// Holds everything against `rules`, and against what runs with chance came to, if any were made. What was held
     /// against other rules before is judged anew.
@@ -213,6 +281,7 @@ impl Review {
             line.criterion =
                 Some("a plan can use a duration as the mission declares it (the mission)".to_owned());
         }
+        self.mission_rules = rules.rules.iter().map(|rule| rule.line(&self.findings)).collect();
         self.judge_margins(rules, &unit);
         self.judge_resources(rules);
         self.judge_traverses(rules);
@@ -220,6 +289,11 @@ impl Review {
         let worst =
             Section::ALL.iter().flat_map(|&section| self.lines(section)).map(|line| line.status).max();
         self.status = worst.unwrap_or(Status::Passed).max(Status::Passed);
+    }
+
+    /// Whether every rule of the mission has been evaluated.
+    pub fn is_evaluated(&self, rules: &FlightRules) -> bool {
+        rules.rules.iter().all(|rule| self.findings.iter().any(|it| it.rule == rule.rule))
     }
 
     fn judge_margins(&mut self, rules: &FlightRules, unit: &str) {

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use egui::{Button, DragValue, RichText, TextEdit, Ui};
 use exact::{Rational, Time};
 use mission::review::board::{MAX_APPROVALS, MAX_SEATS, Seat};
+use mission::review::flight_rule::{self, MissionRule, Outcome};
 use mission::review::{FlightRules, SuccessRate};
 use theme::space;
 use workbench::command::{Command, CommandSender};
@@ -109,7 +110,65 @@ fn fields(ui: &mut Ui, context: &Context<'_>, rules: &mut FlightRules) {
         rate.least = least.map_or(rate.least, |least| least / 100.0);
         rules.success_rate = is_held.then_some(rate);
     }
+    mission_rules(ui, context, &mut rules.rules);
     board(ui, &mut rules.board);
+}
+
+/// What the mission has to keep to in its own language.
+fn mission_rules(ui: &mut Ui, context: &Context<'_>, rules: &mut Vec<MissionRule>) {
+    ui.add_space(space::S);
+    row::quiet_word(
+        ui,
+        "Rules in the mission's own language, such as `Battery >= 20` or `never Drive while Mast=UP`",
+    );
+    let mut gone = None;
+    for (index, rule) in rules.iter_mut().enumerate() {
+        let number = index + 1;
+        ui.push_id(("mission rule", index), |ui| {
+            ui.horizontal_wrapped(|ui| {
+                let field =
+                    |text, hint, width| TextEdit::singleline(text).hint_text(hint).desired_width(width);
+                let name = field(&mut rule.name, "Name", 140.0);
+                ui.add(name).accessible_name(format!("Name of rule {number}"));
+                let source = field(&mut rule.source, "Source, such as FR 4.2", 150.0);
+                ui.add(source).accessible_name(format!("Source of rule {number}"));
+                ui.checkbox(&mut rule.waivable, "May be waived")
+                    .on_hover_text("A plan that breaks it is for attention, and has not failed")
+                    .accessible_name(format!("Rule {number} may be waived"));
+                if ui.button("Remove").accessible_name(format!("Remove rule {number}")).clicked() {
+                    gone = Some(index);
+                }
+            });
+            let width = ui.available_width().min(420.0);
+            let text = TextEdit::singleline(&mut rule.rule)
+                .hint_text("never … while …")
+                .font(egui::TextStyle::Monospace)
+                .desired_width(width);
+            ui.add(text).accessible_name(format!("What rule {number} says"));
+            if let Some(problem) = problem_of(context, &rule.rule) {
+                ui.label(RichText::new(problem).color(context.tokens.error));
+            }
+        });
+    }
+    if let Some(index) = gone {
+        rules.remove(index);
+    }
+    if ui.button("Add a rule").clicked() {
+        let is_new = |name: &String| !rules.iter().any(|rule| rule.name == *name);
+        let name =
+            (1..=rules.len() + 1).map(|number| format!("Rule {number}")).find(is_new).unwrap_or_default();
+        rules.push(MissionRule { name, ..MissionRule::default() });
+    }
+}
+
+/// What is wrong with a rule in the open mission.
+fn problem_of(context: &Context<'_>, rule: &str) -> Option<String> {
+    let snapshot = context.snapshot.filter(|_| !rule.trim().is_empty())?;
+    let network = snapshot.network.as_deref()?;
+    match flight_rule::problem(&snapshot.program, network, rule)? {
+        Outcome::Unreadable { column, message } => Some(format!("character {column}: {message}")),
+        _ => None,
+    }
 }
 
 /// Who has to approve, and how many of them.

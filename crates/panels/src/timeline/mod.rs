@@ -11,6 +11,7 @@ mod link;
 mod overview;
 mod paint;
 mod profile;
+mod rule;
 mod view;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,6 +23,7 @@ use egui::{
 use layout::list::timeline::{LinkCurve, Standing, TimelineState, timeline_list};
 use layout::timeline::{Bar, Chart, Row, RowKind, state, times};
 use mission::Snapshot;
+use mission::review::Review;
 use smol_str::SmolStr;
 use tpn::{LabelId, Network, Plan};
 use workbench::PanelKind;
@@ -64,6 +66,8 @@ struct Prepared {
     view: TimelineView,
     closed: BTreeSet<SmolStr>,
     pins: u64,
+    /// The review whose rules are drawn.
+    review: Option<Arc<Review>>,
     chart: Chart,
     silhouette: Silhouette,
 }
@@ -112,22 +116,36 @@ impl TimelinePanel {
         let (view, step) =
             (&state.settings.views.timeline, context.step().map(|step| Arc::clone(&step.plan)));
         let pins = state.pins.version();
+        // What a step of the search shows is not what was reviewed.
+        let review = state.current_review().filter(|_| step.is_none()).cloned();
         let is_current = self.prepared.as_ref().is_some_and(|it| {
             let same_step = match (&it.step, &step) {
                 (Some(one), Some(other)) => Arc::ptr_eq(one, other),
                 (None, None) => true,
                 _ => false,
             };
-            it.snapshot.shows_same(snapshot) && same_step && it.view == *view && it.closed == self.closed
+            let same_review = match (&it.review, &review) {
+                (Some(one), Some(other)) => Arc::ptr_eq(one, other),
+                (None, None) => true,
+                _ => false,
+            };
+            it.snapshot.shows_same(snapshot)
+                && same_step
+                && same_review
+                && it.view == *view
+                && it.closed == self.closed
         });
         if !is_current {
             // Pinned events only narrow windows: rows are those of the plan without them.
             let free = if step.is_none() { snapshot.plan().unwrap_or(plan) } else { plan };
             let mut chart = Chart::new(&snapshot.program, network, free, view.chart(), &self.closed);
+            if review.is_some() {
+                chart.add_rules(state.rule_tracks(), &self.closed);
+            }
             let silhouette = Silhouette::new(&chart);
             chart.retime(plan);
             let (snapshot, closed, view) = (Arc::clone(snapshot), self.closed.clone(), view.clone());
-            self.prepared = Some(Prepared { snapshot, step, view, closed, pins, chart, silhouette });
+            self.prepared = Some(Prepared { snapshot, step, view, closed, pins, review, chart, silhouette });
         } else if let Some(prepared) = self.prepared.as_mut().filter(|it| it.pins != pins) {
             prepared.chart.retime(plan);
             prepared.pins = pins;
@@ -210,6 +228,9 @@ impl TimelinePanel {
             let bars = shown.bars.clone().map(|at| (at, &painting.chart.bars[at]));
             let is_row_selected = shown.kind == RowKind::Single
                 && bars.clone().any(|(_, bar)| is_chosen(bar, &state.selection, painting.network));
+            if let RowKind::Rule(rule) = shown.kind {
+                rule::show(ui, painting, index, rule);
+            }
             if let RowKind::Profile(part) = shown.kind {
                 profile::show(ui, painting, index, part);
             }

@@ -7,6 +7,7 @@ use display::Theme;
 use mission::Snapshot;
 
 pub(crate) use map::map;
+pub use timeline::rule_tracks;
 pub(crate) use timeline::timeline;
 
 /// The network with the plan marked in it; `None` without a network.

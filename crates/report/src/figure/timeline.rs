@@ -6,8 +6,10 @@ use display::{Rect, Theme};
 use layout::list::timeline::{
     ROW_HEIGHT, Standing, TOP_MARGIN, TimelineState, Track, axis_list, timeline_list,
 };
+use layout::timeline::rule::{RuleBand, RuleStanding, RuleTrack};
 use layout::timeline::{Bar, Chart, ChartOptions, Grouping, RowKind};
 use mission::Snapshot;
+use mission::review::{Review, Stretch};
 use rmpl::program::TimeUnit;
 use smol_str::{SmolStr, format_smolstr};
 
@@ -27,10 +29,11 @@ pub(super) const OPTIONS: ChartOptions = ChartOptions {
 };
 
 /// The timeline of the snapshot's plan; `None` without one.
-pub(crate) fn timeline(snapshot: &Snapshot) -> Option<String> {
+pub(crate) fn timeline(snapshot: &Snapshot, review: &Review) -> Option<String> {
     let network = snapshot.network.as_deref()?;
     let plan = snapshot.plan()?;
-    let chart = Chart::new(&snapshot.program, network, plan, OPTIONS, &BTreeSet::new());
+    let mut chart = Chart::new(&snapshot.program, network, plan, OPTIONS, &BTreeSet::new());
+    chart.add_rules(rule_tracks(review), &BTreeSet::new());
     let height = AXIS_HEIGHT + TOP_MARGIN + ROW_HEIGHT * chart.rows.len() as f64 + 6.0;
     let (left, right) = (NAMES_WIDTH, WIDTH - TIMES_WIDTH);
     let track = Track {
@@ -69,4 +72,26 @@ pub(crate) fn timeline(snapshot: &Snapshot) -> Option<String> {
     };
     let rows = timeline_list(&chart, (network, plan), &track, 0..chart.rows.len(), &state);
     Some(display::svg(&[&axis, &rows], Theme::Light, "Timeline of the plan"))
+}
+
+/// The rules of the mission that a review has held its plan against, as the timeline draws them.
+pub fn rule_tracks(review: &Review) -> Vec<RuleTrack> {
+    let lines = review.rules.rules.iter().zip(&review.mission_rules);
+    let track = |(rule, line): (&mission::review::MissionRule, &mission::review::Line)| {
+        let finding = review.findings.iter().find(|it| it.rule == rule.rule)?;
+        let bands = |stretches: &[Stretch], standing: RuleStanding| {
+            let band = |it: &Stretch| RuleBand { times: [it.from.to_f64(), it.to.to_f64()], standing };
+            stretches.iter().map(band).collect::<Vec<_>>()
+        };
+        let bands = [
+            bands(&finding.applies, RuleStanding::Applies),
+            bands(&finding.open, RuleStanding::Open),
+            bands(&finding.breaks, RuleStanding::Broken),
+        ];
+        let name = rule.name.trim();
+        let words =
+            line.text.strip_prefix(name).map_or(line.text.as_str(), |rest| rest.trim_start_matches(": "));
+        Some(RuleTrack { name: name.into(), words: words.to_owned(), bands: bands.concat() })
+    };
+    lines.filter_map(track).collect()
 }

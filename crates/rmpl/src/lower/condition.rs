@@ -24,7 +24,7 @@ pub(super) enum Formula {
 }
 
 /// Whether a node of this kind is a condition.
-pub(super) const fn is_condition(kind: SyntaxKind) -> bool {
+pub(crate) const fn is_condition(kind: SyntaxKind) -> bool {
     matches!(
         kind,
         SyntaxKind::Condition
@@ -84,7 +84,7 @@ impl Formula {
 }
 
 /// A literal, with its negations folded.
-pub(super) fn literal(node: SyntaxNode<'_>) -> Option<Condition> {
+pub(crate) fn literal(node: SyntaxNode<'_>) -> Option<Condition> {
     let mut negated = false;
     let mut compared = false;
     let mut variable = node.child(SyntaxKind::Dotted).and_then(|_| variable_in(node));

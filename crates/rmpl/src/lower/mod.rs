@@ -2,7 +2,7 @@
 
 pub(crate) mod bounds;
 mod clause;
-mod condition;
+pub(crate) mod condition;
 mod contingent;
 mod declaration;
 mod lasting;

@@ -73,6 +73,8 @@ impl Parser<'_> {
         if matches!(self.kind_at(index), SyntaxKind::Equals | SyntaxKind::NotEquals) {
             index = self.index_after(index);
             index = self.index_after(index);
+        } else if self.is_rule && matches!(self.kind_at(index), SyntaxKind::Order | SyntaxKind::LeftParen) {
+            index = self.behind_rule_atom(index);
         } else if self.kind_at(index) == SyntaxKind::Name && self.text_of(index) == "in" {
             while !matches!(
                 self.kind_at(index),
@@ -151,6 +153,9 @@ impl Parser<'_> {
         if self.at_word("in") {
             self.bump();
             self.domain();
+            return;
+        }
+        if self.is_rule && self.rule_atom() {
             return;
         }
         if matches!(self.kind, SyntaxKind::Equals | SyntaxKind::NotEquals) {

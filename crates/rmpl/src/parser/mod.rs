@@ -12,6 +12,7 @@ mod declaration;
 mod lasting;
 mod occurrence;
 mod recovery;
+mod rule;
 mod statement;
 mod world;
 
@@ -53,6 +54,13 @@ pub(crate) fn parse_declaration(text: &str, scratch: &mut Scratch) -> ParsedDecl
     parser.finish(scratch)
 }
 
+/// Parses a flight rule, which is no declaration of a mission.
+pub(crate) fn parse_rule(text: &str) -> ParsedDeclaration {
+    let mut parser = Parser::of(text, Lexer::of_rule(text), Scratch::default());
+    parser.flight_rule();
+    parser.finish(&mut Scratch::default())
+}
+
 /// A node that is open: its tokens and children are still to come.
 #[derive(Clone, Copy)]
 struct Mark(u32);
@@ -73,13 +81,19 @@ struct Parser<'t> {
     depth: u32,
     /// The declaration nests too deeply, and the rest of it is skipped.
     is_cut: bool,
+    /// Conditions are those of flight rules, which know activities and amounts as well.
+    is_rule: bool,
 }
 
 impl<'t> Parser<'t> {
     fn new(text: &'t str, scratch: Scratch) -> Self {
+        Self::of(text, Lexer::new(text), scratch)
+    }
+
+    fn of(text: &'t str, lexer: Lexer<'t>, scratch: Scratch) -> Self {
         let mut parser = Self {
             text,
-            lexer: Lexer::new(text),
+            lexer,
             tokens: scratch.tokens,
             current: 0,
             kind: SyntaxKind::End,
@@ -89,6 +103,7 @@ impl<'t> Parser<'t> {
             reported_at: None,
             depth: 0,
             is_cut: false,
+            is_rule: false,
         };
         parser.current = parser.next_significant(0);
         parser.kind = parser.kind_at(parser.current);

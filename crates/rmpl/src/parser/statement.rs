@@ -293,7 +293,7 @@ impl Parser<'_> {
         }
     }
 
-    fn arguments(&mut self) {
+    pub(super) fn arguments(&mut self) {
         let node = self.open();
         self.bump();
         while !self.at(SyntaxKind::RightParen) {

@@ -63,6 +63,8 @@ pub enum SyntaxKind {
     Dot,
     /// `..`
     DotDot,
+    /// `<`, `<=`, `>` or `>=`, which only flight rules have.
+    Order,
     /// `choose`
     ChooseKeyword,
     /// `do`
@@ -240,6 +242,10 @@ pub enum SyntaxKind {
     Naming,
     /// `NAME.start` or `NAME.end`
     EventName,
+    /// A flight rule (SPEC 16.1).
+    Rule,
+    /// `at end of Drive` or `from 10 to 20` of a flight rule.
+    Moment,
     /// Tokens that were skipped to recover.
     Skipped,
 }
@@ -314,6 +320,7 @@ impl SyntaxKind {
             Self::Slash => "`/`",
             Self::Dot => "`.`",
             Self::DotDot => "`..`",
+            Self::Order => "`<`, `<=`, `>` or `>=`",
             Self::ThennextKeyword => "`thennext`",
             Self::End => "the end of the text",
             _ => "this",

@@ -8,6 +8,7 @@ mod board;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use layout::timeline::rule::RuleTrack;
 use mission::review::record::Act;
 use mission::review::{FlightRules, Record, Review, content_hash};
 use mission::{Request, Robustness, SearchKind, Stage, Update};
@@ -223,7 +224,8 @@ impl AppState {
         self.review.asked = self.review.hash().map(str::to_owned);
         let source = self.document.shared_text();
         let update = Update { revision, source, goal, search, seed, trace };
-        self.effects.push(Effect::Post(Request::Review(update)));
+        let rules = self.review.record.rules().rules.clone();
+        self.effects.push(Effect::Post(Request::Review { update, rules }));
     }
 
     /// Takes a review that was asked for.
@@ -291,6 +293,11 @@ impl AppState {
     /// The review of the present content, if it has been made.
     pub fn current_review(&self) -> Option<&Arc<Review>> {
         self.review.shown(self.settings.plan.search).filter(|(_, is_stale)| !is_stale).map(|(it, _)| it)
+    }
+
+    /// The rules of the mission over time, as far as the present content has been held against them.
+    pub fn rule_tracks(&self) -> Vec<RuleTrack> {
+        self.current_review().map(|review| report::rule_tracks(review)).unwrap_or_default()
     }
 
     /// Adds what a file has.
@@ -380,11 +387,22 @@ impl AppState {
             (it.revision, it.answered) == (revision, answered) && it.settings == self.settings.plan
         });
         if is_known {
+            self.evaluate_rules();
             return;
         }
         let settings = self.settings.plan.clone();
         let hash = content_hash(self.document.text(), latest.map.as_ref(), &settings.goal, settings.seed);
         self.review.current = Some(Current { revision, answered, settings, hash });
+    }
+
+    /// Asks for the rules of the mission that the present review has not been held against.
+    fn evaluate_rules(&mut self) {
+        let rules = self.review.record.rules();
+        if !self.review.is_running()
+            && self.current_review().is_some_and(|review| !review.is_evaluated(rules))
+        {
+            self.run_review();
+        }
     }
 
     /// Now, as an ISO 8601 time in UTC.

@@ -4,6 +4,7 @@
 //! variables keep and how far resources are used is drawn for the earliest schedule alone. The frame is that of whoever shows the chart: a [`Track`] says where times and rows lie in it.
 
 mod profile;
+mod rule;
 mod state;
 
 use std::ops::Range;
@@ -358,6 +359,9 @@ impl Builder<'_> {
 
     fn bars(&mut self, index: usize) {
         let row = self.track.row(index);
+        if let RowKind::Rule(rule) = self.chart.rows[index].kind {
+            self.rule(rule, row);
+        }
         let mut drawn_to = f64::MIN;
         let seen = self.track.visible.expanded(40.0);
         for at in self.chart.rows[index].bars.clone() {

@@ -1,0 +1,186 @@
+//! How low and how high a resource can be at an instant, over all executions: exactly.
+//!
+//! The events that have come hold with each all that surely comes before it. The set that takes most is a closure of
+//! greatest worth (Picard 1976), found by a maximum flow, as for the envelopes of resources (Muscettola 2002).
+
+use std::collections::VecDeque;
+
+use exact::Rational;
+
+use super::cases::Case;
+use super::cut::{Edge, Times};
+
+/// What a level is to be like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Wanted {
+    /// Which of the resources.
+    pub(super) resource: usize,
+    /// Above the amount; otherwise below.
+    pub(super) is_above: bool,
+    pub(super) amount: Rational,
+    /// Whether the amount itself will do.
+    pub(super) may_equal: bool,
+    /// Whether it is looked at an instant where something starts or ends, which what starts there does not count at.
+    pub(super) is_instant: bool,
+}
+
+impl Wanted {
+    pub(super) const fn negated(self) -> Self {
+        Self { is_above: !self.is_above, may_equal: !self.may_equal, ..self }
+    }
+
+    /// Whether a level is like this.
+    pub(super) fn is_met_by(&self, level: Rational) -> bool {
+        (self.may_equal && level == self.amount)
+            || if self.is_above { level > self.amount } else { level < self.amount }
+    }
+}
+
+/// A resource as a plan uses it.
+#[derive(Clone, Debug)]
+pub(super) struct Resource {
+    /// Before anything has come.
+    pub(super) first: Rational,
+    pub(super) changes: Vec<Change>,
+}
+
+/// What an event does to a level.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Change {
+    pub(super) node: tpn::NodeId,
+    /// How much more there is from then on.
+    pub(super) more: Rational,
+    /// It is the start of something, which comes behind what ends at the same instant.
+    pub(super) is_start: bool,
+}
+
+impl Change {
+    /// It has come.
+    fn has_come(&self, is_instant: bool) -> Edge {
+        Edge::past(self.node, !(is_instant && self.is_start))
+    }
+}
+
+impl Resource {
+    /// The level of `case` that is the furthest where `wanted` looks, and which changes have come then; `None` where figures
+    /// are too large.
+    pub(super) fn furthest(
+        &self,
+        times: &mut Times,
+        case: &Case,
+        wanted: &Wanted,
+    ) -> Option<(Rational, Vec<bool>)> {
+        let mut has_come = vec![false; self.changes.len()];
+        let mut free = Vec::new();
+        for (index, change) in self.changes.iter().enumerate() {
+            let past = change.has_come(wanted.is_instant);
+            let can_come = case.future.iter().all(|&future| times.fits(past, future));
+            let can_wait = case.past.iter().all(|&other| times.fits(other, past.negated()));
+            if can_come && can_wait {
+                free.push(index);
+            } else {
+                has_come[index] = can_come;
+            }
+        }
+        // What leads where `wanted` looks is gained, and the rest is lost.
+        let leads = |index: &&usize| self.changes[**index].more.is_positive() == wanted.is_above;
+        let (gains, losses): (Vec<usize>, Vec<usize>) = free.iter().partition(leads);
+        let size = |&index: &usize| {
+            let more = self.changes[index].more;
+            if more.is_negative() { more.checked_neg() } else { Some(more) }
+        };
+        let mut flow = Flow {
+            gives: gains.iter().map(size).collect::<Option<_>>()?,
+            takes: losses.iter().map(size).collect::<Option<_>>()?,
+            needs: Vec::with_capacity(gains.len()),
+            passed: vec![vec![Rational::ZERO; losses.len()]; gains.len()],
+        };
+        for &gain in &gains {
+            let past = self.changes[gain].has_come(wanted.is_instant);
+            let needed = losses.iter().map(|&loss| {
+                let waits = self.changes[loss].has_come(wanted.is_instant).negated();
+                !times.fits(past, waits)
+            });
+            flow.needs.push(needed.collect());
+        }
+        let (gained, lost) = flow.best()?;
+        for (at, index) in gains.iter().enumerate().filter(|(at, _)| gained[*at]) {
+            has_come[*index] = gained[at];
+        }
+        for (at, index) in losses.iter().enumerate().filter(|(at, _)| lost[*at]) {
+            has_come[*index] = lost[at];
+        }
+        Some((self.level(&has_come)?, has_come))
+    }
+
+    /// The level once these changes have come.
+    pub(super) fn level(&self, has_come: &[bool]) -> Option<Rational> {
+        let come = self.changes.iter().zip(has_come).filter(|(_, has_come)| **has_come);
+        come.map(|(change, _)| change.more).try_fold(self.first, Rational::checked_add)
+    }
+}
+
+/// Gains, each of which needs some of the losses.
+struct Flow {
+    gives: Vec<Rational>,
+    takes: Vec<Rational>,
+    needs: Vec<Vec<bool>>,
+    passed: Vec<Vec<Rational>>,
+}
+
+impl Flow {
+    /// Which gains are worth their losses, and these losses: passes on as much as possible, along shortest paths.
+    fn best(mut self) -> Option<(Vec<bool>, Vec<bool>)> {
+        loop {
+            let (gains, losses) = (self.gives.len(), self.takes.len());
+            let mut via: Vec<Option<usize>> = vec![None; losses];
+            let mut back: Vec<Option<usize>> = vec![None; gains];
+            let mut is_seen: Vec<bool> = self.gives.iter().map(|left| left.is_positive()).collect();
+            let mut open: VecDeque<usize> = (0..gains).filter(|&gain| is_seen[gain]).collect();
+            let mut last = None;
+            while let Some(gain) = open.pop_front().filter(|_| last.is_none()) {
+                let mut reached = (0..losses).filter(|&loss| self.needs[gain][loss]);
+                while let Some(loss) = reached.find(|&loss| via[loss].is_none()) {
+                    via[loss] = Some(gain);
+                    if self.takes[loss].is_positive() {
+                        last = Some(loss);
+                        break;
+                    }
+                    for other in 0..gains {
+                        if !is_seen[other] && self.passed[other][loss].is_positive() {
+                            is_seen[other] = true;
+                            back[other] = Some(loss);
+                            open.push_back(other);
+                        }
+                    }
+                }
+            }
+            let Some(last) = last else {
+                return Some((is_seen, via.iter().map(Option::is_some).collect()));
+            };
+            let mut path = Vec::new();
+            let mut loss = last;
+            let mut amount = self.takes[last];
+            let first = loop {
+                let gain = via[loss]?;
+                path.push((gain, loss));
+                match back[gain] {
+                    Some(before) => {
+                        amount = amount.min(self.passed[gain][before]);
+                        loss = before;
+                    }
+                    None => break gain,
+                }
+            };
+            amount = amount.min(self.gives[first]);
+            self.gives[first] = self.gives[first].checked_sub(amount)?;
+            self.takes[last] = self.takes[last].checked_sub(amount)?;
+            for &(gain, loss) in &path {
+                self.passed[gain][loss] = self.passed[gain][loss].checked_add(amount)?;
+                if let Some(before) = back[gain] {
+                    self.passed[gain][before] = self.passed[gain][before].checked_sub(amount)?;
+                }
+            }
+        }
+    }
+}
