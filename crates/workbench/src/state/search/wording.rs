@@ -2,7 +2,7 @@
 
 mod conflict_driven;
 
-use kirk::{Constraint, CycleMember, Event, Trace, TreeChoice};
+use kirk::{Constraint, CycleMember, Event, Trace, TreeChoice, TreeNodeId};
 use tpn::{LabelId, Network};
 
 use crate::state::selection::{alternative_text, node_name};
@@ -30,16 +30,17 @@ pub fn choice(network: &Network, choice: Option<TreeChoice>) -> String {
 /// One event of a search in a sentence.
 pub fn event(network: &Network, trace: &Trace, event: &Event) -> String {
     let own = trace.is_conflict_driven().then(|| conflict_driven::event(network, trace, event));
-    own.flatten().unwrap_or_else(|| step_by_step(network, event))
+    own.flatten().unwrap_or_else(|| step_by_step(network, trace, event))
 }
 
 /// One event of a search that makes one choice after the other.
-fn step_by_step(network: &Network, event: &Event) -> String {
+fn step_by_step(network: &Network, trace: &Trace, event: &Event) -> String {
     let label = |id: LabelId| network.label_name(id);
     match event {
         Event::Expand { node } => format!("Follow all arcs out of {}.", node_name(network, *node)),
         Event::Decide { decision, alternative } => {
-            format!("Decide {} = {alternative}.", Network::decision_name(*decision))
+            let chosen = TreeChoice::Decision { decision: *decision, alternative: *alternative };
+            format!("Decide {}.", choice(network, Some(chosen)))
         }
         Event::AddArc { arc } => {
             let Some(arc) = network.arcs.get(arc.index()) else { return String::new() };
@@ -66,17 +67,29 @@ fn step_by_step(network: &Network, event: &Event) -> String {
         }
         Event::Known => "Failure: these choices contain a conflict that was learned before.".to_owned(),
         Event::Backtrack { .. } => "Back to the last choice.".to_owned(),
-        Event::Backjump { because, .. } => {
-            format!(
-                "Jump back to the last choice that the failure rests on, one of {}.",
-                because.len().max(1)
-            )
-        }
+        Event::Backjump { to, because } => backjump(network, trace, *to, because),
         Event::Solution { .. } => "A plan.".to_owned(),
         Event::Exhausted => "Nothing is left to try.".to_owned(),
         // All others are only met where conflicts drive the search.
         _ => String::new(),
     }
+}
+
+/// Back over choices that have no part in a failure, to the last one that has.
+fn backjump(network: &Network, trace: &Trace, to: TreeNodeId, because: &[TreeNodeId]) -> String {
+    let state = |id: TreeNodeId| trace.tree.get(id as usize);
+    let named = |id: TreeNodeId| choice(network, state(id).and_then(|state| state.choice));
+    let is_last = |id: &TreeNodeId| state(*id).is_some_and(|state| state.parent == Some(to));
+    let last = because.iter().copied().find(is_last).or(because.iter().copied().max());
+    let Some(last) = last else {
+        return "Jump back to the start: the failure rests on no choice.".to_owned();
+    };
+    let others: Vec<String> = because.iter().filter(|&&id| id != last).map(|&id| named(id)).collect();
+    let besides = match others.as_slice() {
+        [] => String::new(),
+        others => format!(", besides {}", others.join(" and ")),
+    };
+    format!("Jump back to {}, the last choice that the failure rests on{besides}.", named(last))
 }
 
 /// A constraint of a negative cycle, and why it holds.

@@ -101,7 +101,7 @@ fn an_objective() {
          scenario S[0,20] = { choose { Long(), Short() } }",
         &[
             "Look for some plan first, and then for better and better ones.",
-            "Decide D1 = 0.",
+            "Decide D1 = 0: Long#1.",
             "The times fit, and what must be kept of their order follows from the choices.",
             "The best plan so far: end 5.",
             "Look for a plan that is better than end 5: with less end.",
@@ -124,7 +124,7 @@ fn nature() {
          scenario S[0,30] = { choose { Drive(), Walk() } [0,15] }",
         &[
             "Search in the order of the text. Each failure teaches what never to choose together again.",
-            "Decide D1 = 0.",
+            "Decide D1 = 0: Drive#1.",
             "Failure: with D1=0 nature can choose durations that leave no times. Learned: never D1=0.",
             "Back to the start, with all that was learned.",
             "Whatever is chosen, D1=0 is ruled out.",

@@ -1,0 +1,234 @@
+//! Every sentence of the key steps of lessons 1 to 8, by both searches, listed in `key_sentences.txt`, and each held
+//! against what the search did: against the network, the choices behind it, and the list of all plans.
+
+mod support;
+
+use std::collections::BTreeSet;
+
+use kirk::{Constraint, Event, Options, Search, Trace, TreeChoice, TreeNodeId, Unlimited};
+use rmpl::program::LabelMode;
+use support::start;
+use tpn::{ArcId, LabelId, Network, Plan, Top, compile};
+use workbench::command::Command;
+use workbench::lesson::COURSE;
+use workbench::state::lesson::LessonCommand;
+use workbench::state::search::wording;
+
+/// A search with what it was made of.
+struct Told<'a> {
+    network: &'a Network,
+    trace: &'a Trace,
+    /// Every plan that there is.
+    plans: &'a [Plan],
+}
+
+/// Steps that only prepare others.
+fn is_key(event: &Event) -> bool {
+    !matches!(event, Event::Expand { .. } | Event::AddArc { .. } | Event::Propagate { .. })
+}
+
+impl Told<'_> {
+    /// A state and all that it was reached through.
+    fn line(&self, state: TreeNodeId) -> Vec<TreeNodeId> {
+        let mut line = vec![state];
+        while let Some(parent) = self.trace.tree[*line.last().expect("a state") as usize].parent {
+            line.push(parent);
+        }
+        line
+    }
+
+    /// The arcs that had been selected on the way to a step.
+    fn selected(&self, step: usize) -> BTreeSet<ArcId> {
+        let line = self.line(self.trace.events[step].tree_node);
+        let before = self.trace.events[..step].iter().filter(|entry| line.contains(&entry.tree_node));
+        let arcs = before.filter_map(|entry| match entry.event {
+            Event::AddArc { arc } => Some(arc),
+            _ => None,
+        });
+        arcs.collect()
+    }
+
+    /// Whether no plan makes all of these choices of alternatives.
+    fn excludes(&self, choices: &[TreeChoice]) -> bool {
+        let makes = |plan: &Plan, choice: &TreeChoice| match choice {
+            TreeChoice::Decision { decision, alternative } => {
+                plan.choices.iter().any(|it| it.decision == *decision && it.alternative == *alternative)
+            }
+            _ => true,
+        };
+        !self.plans.iter().any(|plan| choices.iter().all(|choice| makes(plan, choice)))
+    }
+
+    fn name(&self, label: LabelId) -> String {
+        self.network.label_name(label)
+    }
+
+    fn choice_of(&self, state: TreeNodeId) -> Option<TreeChoice> {
+        self.trace.tree[state as usize].choice
+    }
+
+    /// What of a sentence is not so.
+    fn lie(&self, step: usize, sentence: &str) -> Option<String> {
+        let entry = &self.trace.events[step];
+        let selected = self.selected(step);
+        let arc_of = |label: LabelId| self.network.labels[label.index()].arc;
+        let is_selected = |label: LabelId| selected.contains(&arc_of(label));
+        let literal = |label: LabelId| &self.network.labels[label.index()].literal;
+        let line = self.line(entry.tree_node);
+        let says =
+            |words: &str| sentence.contains(words).then_some(()).ok_or(format!("it does not say {words}"));
+        let holds = |is_so: bool, what: &str| is_so.then_some(()).ok_or(what.to_owned());
+        let check = || -> Result<(), String> {
+            match &entry.event {
+                Event::Decide { decision, alternative } => {
+                    let chosen = TreeChoice::Decision { decision: *decision, alternative: *alternative };
+                    says(&format!("{} = {alternative}", Network::decision_name(*decision)))?;
+                    holds(self.choice_of(entry.tree_node) == Some(chosen), "the state has another choice")
+                }
+                Event::Inconsistent { cycle } => {
+                    let total = exact::Time::checked_sum(cycle.iter().map(|it| it.weight)).expect("it fits");
+                    says(&total.to_string())?;
+                    holds(total.is_negative(), "the cycle is not negative")?;
+                    for (at, member) in cycle.iter().enumerate() {
+                        let next = &cycle[(at + 1) % cycle.len()];
+                        holds(member.to == next.from, "the cycle is not closed")?;
+                        let (id, is_upper) = match member.constraint {
+                            Constraint::Lower(arc) => (arc, false),
+                            Constraint::Upper(arc) => (arc, true),
+                            _ => continue,
+                        };
+                        let arc = &self.network.arcs[id.index()];
+                        let ends = if is_upper { (arc.from, arc.to) } else { (arc.to, arc.from) };
+                        holds(
+                            ends == (member.from, member.to),
+                            "a constraint of the cycle is between other events",
+                        )?;
+                        let weight = if is_upper { arc.upper.finite() } else { arc.lower.checked_neg() };
+                        holds(weight == Some(member.weight), "a constraint of the cycle has another weight")?;
+                    }
+                    Ok(())
+                }
+                Event::Unclosable { ask } => {
+                    says(&self.name(*ask))?;
+                    holds(is_selected(*ask), "the requirement is not selected")?;
+                    let tried = |tell: LabelId| {
+                        self.trace.events[..step].iter().any(|it| {
+                            matches!(it.event, Event::TryLink { link } if link.ask == *ask && link.tell == tell)
+                        })
+                    };
+                    let carriers = (0..self.network.labels.len()).map(LabelId::from_index).filter(|&it| {
+                        self.network.labels[it.index()].mode == LabelMode::Tell
+                            && literal(it).supports(literal(*ask))
+                            && is_selected(it)
+                    });
+                    let left: Vec<String> =
+                        carriers.filter(|&it| !tried(it)).map(|it| self.name(it)).collect();
+                    // What is left is known not to contain the requirement, or it would have been tried.
+                    let chosen: Vec<TreeChoice> = line.iter().filter_map(|&it| self.choice_of(it)).collect();
+                    holds(left.is_empty() || self.excludes(&chosen), &format!("{left:?} could carry it"))
+                }
+                Event::TryLink { link } => {
+                    says(&self.name(link.ask))?;
+                    says(&self.name(link.tell))?;
+                    holds(literal(link.tell).supports(literal(link.ask)), "it carries something else")?;
+                    holds(is_selected(link.ask) && is_selected(link.tell), "one of them is not selected")
+                }
+                Event::Threat { left, right } | Event::Unresolvable { left, right } => {
+                    says(&self.name(*left))?;
+                    says(&self.name(*right))?;
+                    holds(self.network.conflict(*left, *right), "they may overlap")?;
+                    holds(is_selected(*left) && is_selected(*right), "one of them is not selected")
+                }
+                Event::TryOrder { order } => {
+                    says(&format!("{} before {}", self.name(order.first), self.name(order.then)))?;
+                    let is_threat = |event: &Event| {
+                        matches!(event, Event::Threat { left, right }
+                            if [(*left, *right), (*right, *left)].contains(&(order.first, order.then)))
+                    };
+                    let before = &self.trace.events[..step];
+                    holds(before.iter().any(|it| is_threat(&it.event)), "nothing said that they may overlap")
+                }
+                Event::Known => {
+                    let chosen: Vec<TreeChoice> = line.iter().filter_map(|&it| self.choice_of(it)).collect();
+                    holds(self.excludes(&chosen), "there is a plan with these choices")
+                }
+                Event::Backtrack { to } => {
+                    holds(line.contains(to), "it goes to a state that did not lead here")
+                }
+                Event::Backjump { to, because } => {
+                    holds(line.contains(to), "it goes to a state that did not lead here")?;
+                    let blamed: Vec<TreeChoice> =
+                        because.iter().filter_map(|&it| self.choice_of(it)).collect();
+                    for &choice in &blamed {
+                        says(&wording::choice(self.network, Some(choice)))?;
+                    }
+                    holds(!blamed.is_empty(), "it blames nothing")?;
+                    holds(self.excludes(&blamed), "there is a plan with the choices that are blamed")
+                }
+                Event::Solution { .. } => holds(!self.plans.is_empty(), "there is no plan"),
+                Event::Exhausted => holds(self.plans.is_empty(), "there is a plan"),
+                other => Err(format!("nobody has said when this is so: {other:?}")),
+            }
+        };
+        check().err()
+    }
+}
+
+#[test]
+fn every_sentence_of_the_key_steps_of_lessons_1_to_8_is_true() {
+    let mut listing = String::new();
+    let mut lies = Vec::new();
+    let mut kinds = BTreeSet::new();
+    let lessons = COURSE.iter().flat_map(|chapter| chapter.lessons).take(8);
+    let mut app = start();
+    for (number, lesson) in lessons.enumerate() {
+        app.run(Command::Lesson(LessonCommand::Open(lesson.name.into(), 0)));
+        app.settle();
+        let program = rmpl::parse(app.session.state().document.text()).program();
+        let (network, problems) = compile(&program, &Top::Scenario(None));
+        let network = network.unwrap_or_else(|| panic!("{}: {problems:?}", lesson.name));
+        let all = Options { all: true, max_plans: 10_000, ..Options::default() };
+        let plans = kirk::plan(&network, &all, &mut Unlimited).plans;
+        for (search, title) in
+            [(Search::Chronological, "one after the other"), (Search::ConflictDirected, "learning")]
+        {
+            let options = Options { search, trace_events: Some(100_000), ..Options::default() };
+            let trace = kirk::plan(&network, &options, &mut Unlimited).trace.expect("it was asked for");
+            assert!(!trace.is_truncated, "{}", lesson.name);
+            let told = Told { network: &network, trace: &trace, plans: &plans };
+            listing.push_str(&format!("{}. {}, {title}\n", number + 1, lesson.name));
+            let mut said: Vec<(String, usize)> = Vec::new();
+            for (step, entry) in trace.events.iter().enumerate().filter(|(_, entry)| is_key(&entry.event)) {
+                let sentence = wording::event(&network, &trace, &entry.event);
+                kinds.insert(
+                    format!("{:?}", entry.event).split([' ', '{']).next().unwrap_or_default().to_owned(),
+                );
+                let lie = told.lie(step, &sentence);
+                lies.extend(lie.map(|lie| format!("{}, step {step}: {sentence} ({lie})", lesson.name)));
+                match said.iter_mut().find(|(it, _)| *it == sentence) {
+                    Some((_, times)) => *times += 1,
+                    None => said.push((sentence, 1)),
+                }
+            }
+            for (sentence, times) in said {
+                let times = if times == 1 { String::new() } else { format!(" ({times} times)") };
+                listing.push_str(&format!("  {sentence}{times}\n"));
+            }
+        }
+    }
+    assert_eq!(lies, Vec::<String>::new());
+    for kind in
+        ["Decide", "Inconsistent", "Unresolvable", "TryLink", "Threat", "TryOrder", "Backtrack", "Backjump"]
+    {
+        assert!(kinds.contains(kind), "no {kind} among {kinds:?}");
+    }
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/key_sentences.txt");
+    if std::env::var_os("UPDATE_SNAPSHOTS").is_some() {
+        std::fs::write(file, &listing).expect("the listing can be written");
+    }
+    let kept = std::fs::read_to_string(file).unwrap_or_default();
+    assert!(
+        listing == kept,
+        "key_sentences.txt is not what the test finds: UPDATE_SNAPSHOTS=1 writes it anew"
+    );
+}
