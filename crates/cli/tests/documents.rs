@@ -221,3 +221,31 @@ fn reports_and_schedules_say_how_the_plan_stands() {
     assert_eq!((&without["plan_status"], &without["epoch"]), (&json!("draft"), &Value::Null));
     assert_eq!(without["content_hash"], schedule["content_hash"]);
 }
+
+#[test]
+fn a_plan_is_held_against_rules_of_its_mission() {
+    let held = |rule: &str| {
+        let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("held.rules.json");
+        let rules = json!([{ "name": "Way", "rule": rule, "source": "FR 2", "waivable": true }]);
+        let document = json!({ "format": "enroute-rules/1", "rules": rules });
+        std::fs::write(&path, document.to_string()).expect("a file");
+        let path = path.to_str().expect("a path in UTF-8").to_owned();
+        let output = enroute(&["plan", MISSION, "--rules", &path, "--format", "json"]);
+        let answer: Value = serde_json::from_str(&written(&output)).expect("JSON");
+        (output.status.code(), answer["rules"][0].clone(), path)
+    };
+    let (status, rule, _) = held("PATH1=OK while Group-Traverse-Path");
+    assert_eq!((status, &rule["outcome"], &rule["status"]), (Some(0), &json!("holds"), &json!("passed")));
+    // What may be waived still has to be looked at.
+    let (status, rule, path) = held("never Group-Traverse-Path while PATH1=OK");
+    assert_eq!((status, &rule["outcome"], &rule["status"]), (Some(1), &json!("broken"), &json!("attention")));
+    assert!(!rule["breaks"].as_array().expect("a list").is_empty());
+    let report = enroute(&["report", MISSION, "--rules", &path, "--format", "json"]);
+    let report: Value = serde_json::from_str(&written(&report)).expect("JSON");
+    assert_eq!(report["mission_rules"][0]["status"], "attention");
+    let (status, rule, _) = held("PATH1=OPEN");
+    assert_eq!(
+        (status, &rule["outcome"], &rule["status"]),
+        (Some(1), &json!("unreadable"), &json!("failed"))
+    );
+}

@@ -10,7 +10,9 @@ use drawings::{draw, enroute, network_of, overlapping};
 use exact::{Bound, Time};
 use layout::list::map::{MapFrame, MapPath, extent_m, map_list, path_stroke};
 use layout::list::timeline::{ROW_HEIGHT, Standing, TimelineState, Track, axis_list, timeline_list};
-use layout::timeline::{BarKind, Chart, ChartOptions, Grouping, RowKind};
+use layout::timeline::before::{BarChange, Before};
+use layout::timeline::rule::{RuleBand, RuleStanding, RuleTrack};
+use layout::timeline::{Bar, BarKind, Chart, ChartOptions, Grouping, RowKind};
 use layout::{Item, NetworkDrawing, NetworkState, network_list};
 use tpn::generate::{Recipe, Tightness, mission};
 use tpn::{Levels, Network, Plan, Quality, Window};
@@ -378,4 +380,78 @@ fn everything_of_a_world_is_on_its_map() {
     }
     let written = display::svg(&[&list], Theme::Light, "Map");
     assert!(written.contains("<title>tour &lt;1&gt;</title>"));
+}
+
+#[test]
+fn another_plan_is_laid_over_a_timeline() {
+    let mission = |first: &str, second: &str| {
+        format!("primitive A(); primitive B(); primitive C(); scenario S = {{ {first}; B()[4,6]; {second} }}")
+    };
+    let (before, after) = (mission("A()[2,3]", "C()[1,2]"), mission("A()[5,6]", "A()[1,1]"));
+    let times = |text: &str| {
+        let network = network_of(text);
+        let plan = plan_of(&network);
+        let bars = chart_of(&network, &plan, text).bars;
+        let named = bars.iter().filter_map(|bar| {
+            let occurrence = network.occurrences.get(bar.occurrence?.index())?;
+            Some((occurrence.name.clone(), [bar.start, bar.end]))
+        });
+        named.collect::<Vec<_>>()
+    };
+    let former = Before::new(times(&before));
+    let network = network_of(&after);
+    let plan = plan_of(&network);
+    let mut chart = chart_of(&network, &plan, &after);
+    let unchanged = chart.rows.len();
+    chart.compare_with(&Before::new(times(&after)), &network, &plan);
+    assert_eq!((chart.changes.len(), chart.gone.len(), chart.rows.len()), (0, 0, unchanged));
+    chart.compare_with(&former, &network, &plan);
+    let gone: Vec<&str> = chart.gone.iter().map(|gone| gone.name.as_str()).collect();
+    assert_eq!(gone, ["C#1"]);
+    assert_eq!(chart.rows.len(), unchanged + 2, "a heading and what is gone");
+    let change = |name: &str| {
+        let is_it = |bar: &Bar| bar.occurrence.is_some_and(|it| network.occurrences[it.index()].name == name);
+        let at = chart.bars.iter().position(is_it).expect("a bar");
+        chart.changes.get(&at).copied()
+    };
+    assert_eq!(change("A#2"), Some(BarChange::New));
+    assert_eq!(change("A#1"), Some(BarChange::Moved([[0.0, 30.0], [2.0, 32.0]])));
+    assert_eq!(change("B#1"), Some(BarChange::Moved([[2.0, 32.0], [6.0, 36.0]])));
+    // What was is dashed: both that have moved, the whole mission, and what is gone.
+    let list =
+        rows_of(&chart, (&network, &plan), &track(&chart, Rect::new(0.0, 0.0, 900.0, 400.0), 200.0, 8.0));
+    let dashed = list.items().iter().filter(|item| {
+        matches!(item.shape, Shape::Rectangle { .. })
+            && item.stroke.is_some_and(|stroke| stroke.dash != display::Dash::Solid)
+    });
+    let moved = chart.changes.values().filter(|it| matches!(it, BarChange::Moved(_))).count();
+    assert_eq!(dashed.count(), moved + 1);
+}
+
+#[test]
+fn a_rule_is_drawn_where_it_is_looked_at_and_where_it_is_broken() {
+    let network = network_of(TIMED);
+    let plan = plan_of(&network);
+    let mut chart = chart_of(&network, &plan, TIMED);
+    let rows = chart.rows.len();
+    let band = |from: f64, to: f64, standing| RuleBand { times: [from, to], standing };
+    let bands = vec![
+        band(0.0, f64::INFINITY, RuleStanding::Applies),
+        band(2.0, 30.0, RuleStanding::Open),
+        band(4.0, 30.0, RuleStanding::Broken),
+    ];
+    let rule = RuleTrack { name: "Quiet".into(), words: "an execution breaks it".to_owned(), bands };
+    chart.add_rules(vec![rule], &BTreeSet::new());
+    assert_eq!(
+        chart.rows[rows..].iter().map(|row| row.name.as_str()).collect::<Vec<_>>(),
+        ["Flight rules", "Quiet"]
+    );
+    let track = track(&chart, Rect::new(0.0, 0.0, 1_900.0, 900.0), 200.0, 8.0);
+    let list = rows_of(&chart, (&network, &plan), &track);
+    let has_word = list.texts().iter().any(|text| text.text == "broken");
+    assert!(has_word, "a state is a word, never a colour alone");
+    let closed: BTreeSet<_> = [chart.rows[rows].key.clone().expect("it can be closed")].into();
+    let mut folded = chart_of(&network, &plan, TIMED);
+    folded.add_rules(chart.rules.clone(), &closed);
+    assert_eq!(folded.rows.len(), rows + 1);
 }

@@ -9,6 +9,7 @@ use mission::review::{PlanStatus, Present, Record, Review, Since, Standing, Stat
 
 use crate::Document;
 use crate::escape::escaped;
+use crate::figure;
 use crate::html::readable_time;
 use crate::tables::{status, table, word};
 
@@ -102,6 +103,11 @@ pub(crate) fn changes(document: &Document<'_>, record: &Record) -> String {
         out.push_str(&format!("<h3>Text</h3>\n<pre class=\"program\">{}</pre>\n", text(&since.text)));
     }
     out.push_str(&plan(&since));
+    if since.plan.as_ref().is_some_and(|plan| !plan.is_same()) {
+        let drawing = figure::timeline_since(document.snapshot, approved);
+        let caption = "Dashed: when it could be in the approved plan. “new” is not in it, and what is dashed alone is gone.";
+        out.push_str(&drawing.map(|it| figure::framed(&it, caption)).unwrap_or_default());
+    }
     if !since.lines.is_empty() {
         let rows = since.lines.iter().map(line);
         out.push_str(&format!("<h3>Checklist</h3>\n{}", table(&["Section", "What"], rows)));

@@ -129,12 +129,7 @@ fn figures(document: &Document<'_>) -> String {
     let mut out = String::new();
     for (heading, drawing, caption) in figures {
         if let Some(drawing) = drawing {
-            // A drawing inside HTML needs no namespace of its own.
-            let drawing = drawing.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
-            out.push_str(&format!(
-                "<h2>{heading}</h2>\n<figure>\n{drawing}<figcaption>{}</figcaption>\n</figure>\n",
-                escaped(caption)
-            ));
+            out.push_str(&format!("<h2>{heading}</h2>\n{}", figure::framed(&drawing, caption)));
         }
     }
     out

@@ -13,7 +13,7 @@ mod listing;
 mod style;
 mod tables;
 
-pub use figure::rule_tracks;
+pub use figure::{rule_tracks, windows_before};
 pub use html::{Document, html};
 
 #[cfg(test)]

@@ -85,8 +85,17 @@ fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
     edit(&mut app, "PATH1=OK [450,450]", "PATH1=OK [460,460]");
     assert_eq!(status(&app), "lapsed");
     assert_eq!(app.json()["review"]["signed"]["stale"], true);
+    // The approved plan lies under the present one, on the timeline and in the report.
+    assert!(app.session.state().approved_times().is_some());
+    app.run(Command::WriteReport);
+    let page =
+        String::from_utf8(app.world.saved.borrow().last().expect("a report").1.clone()).expect("a text");
+    for part in ["Timeline of the plan over the approved one", "approved: from "] {
+        assert!(page.contains(part), "{part}");
+    }
     app.dispatch("edit.undo", &json!(null));
     assert_eq!(status(&app), "approved-with-comments");
+    assert_eq!(app.session.state().approved_times(), None);
     app.dispatch("edit.redo", &json!(null));
     assert_eq!(status(&app), "lapsed");
     // The board approves the edited plan; what differs is acknowledged anew, what does not is not.

@@ -1,7 +1,7 @@
 //! The timeline as data: its rows, the bars in them, and when they can be. Prepared once for a plan and its grouping;
 //! when only windows change, [`Chart::retime`] is enough. Nothing is drawn here.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use rmpl::program::Program;
@@ -11,6 +11,7 @@ use tpn::{
     Window,
 };
 
+use super::before::{BarChange, Gone};
 use super::profile::{Profile, ProfilePart, profiles};
 use super::rule::RuleTrack;
 use super::{ChartOptions, group, profile, rule};
@@ -28,6 +29,10 @@ pub struct Chart {
     pub profiles: Vec<Profile>,
     /// The flight rules, each with a row.
     pub rules: Vec<RuleTrack>,
+    /// What differs from another plan, by the number of the bar.
+    pub changes: BTreeMap<usize, BarChange>,
+    /// What only the other plan has, each with a row.
+    pub gone: Vec<Gone>,
     /// The last time that is certain to matter: every finite bound of every bar.
     pub horizon: f64,
 }
@@ -64,6 +69,8 @@ pub enum RowKind {
     Profile(ProfilePart),
     /// The flight rule of this number.
     Rule(usize),
+    /// What is gone of another plan, by its number.
+    Gone(usize),
 }
 
 /// An activity, condition or delay over time.

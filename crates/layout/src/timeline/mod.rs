@@ -1,5 +1,6 @@
 //! A plan over time as data: rows, the bars in them, when they can be, and where an axis has its marks.
 
+pub mod before;
 mod chart;
 mod group;
 pub mod profile;

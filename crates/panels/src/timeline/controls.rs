@@ -12,6 +12,7 @@ use workbench::command::{Command, CommandSender, ViewAction};
 use workbench::state::PinCommand;
 use workbench::time_text;
 use workbench::transport::TransportCommand;
+use workbench::workspace::Workspace;
 
 use super::handle;
 use crate::Context;
@@ -143,6 +144,15 @@ fn switches(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let mut views = context.state.settings.views.clone();
     let view = &mut views.timeline;
     let mut changed = false;
+    let has_approved = context.state.workspace == Workspace::Review
+        && context.state.review.record().last_approval().is_some();
+    if has_approved {
+        let button = Button::selectable(view.approved, RichText::new("Approved").small());
+        if ui.add(button).on_hover_text("Where bars were in the plan that was last approved").clicked() {
+            view.approved = !view.approved;
+            changed = true;
+        }
+    }
     let all = [
         (&mut view.delays, "Delays"),
         (&mut view.conditions, "Conditions"),

@@ -31,6 +31,7 @@ use workbench::command::{Command, CommandSender, ViewAction};
 use workbench::state::Selection;
 use workbench::state::settings::TimelineView;
 use workbench::time_text;
+use workbench::workspace::Workspace;
 
 use self::bounds::BoundDrag;
 use self::handle::Pinned;
@@ -68,6 +69,8 @@ struct Prepared {
     pins: u64,
     /// The review whose rules are drawn.
     review: Option<Arc<Review>>,
+    /// The approval whose plan is laid over it.
+    approved: Option<String>,
     chart: Chart,
     silhouette: Silhouette,
 }
@@ -118,6 +121,9 @@ impl TimelinePanel {
         let pins = state.pins.version();
         // What a step of the search shows is not what was reviewed.
         let review = state.current_review().filter(|_| step.is_none()).cloned();
+        let is_reviewing = state.workspace == Workspace::Review && view.approved;
+        let approval = state.review.record().last_approval().filter(|_| is_reviewing);
+        let approved = approval.map(|(entry, _)| entry.digest().to_owned());
         let is_current = self.prepared.as_ref().is_some_and(|it| {
             let same_step = match (&it.step, &step) {
                 (Some(one), Some(other)) => Arc::ptr_eq(one, other),
@@ -132,6 +138,7 @@ impl TimelinePanel {
             it.snapshot.shows_same(snapshot)
                 && same_step
                 && same_review
+                && it.approved == approved
                 && it.view == *view
                 && it.closed == self.closed
         });
@@ -139,13 +146,18 @@ impl TimelinePanel {
             // Pinned events only narrow windows: rows are those of the plan without them.
             let free = if step.is_none() { snapshot.plan().unwrap_or(plan) } else { plan };
             let mut chart = Chart::new(&snapshot.program, network, free, view.chart(), &self.closed);
+            let before = review.as_ref().filter(|_| approved.is_some()).and_then(|_| state.approved_times());
+            if let Some(before) = before {
+                chart.compare_with(&before, network, free);
+            }
             if review.is_some() {
                 chart.add_rules(state.rule_tracks(), &self.closed);
             }
             let silhouette = Silhouette::new(&chart);
             chart.retime(plan);
             let (snapshot, closed, view) = (Arc::clone(snapshot), self.closed.clone(), view.clone());
-            self.prepared = Some(Prepared { snapshot, step, view, closed, pins, review, chart, silhouette });
+            self.prepared =
+                Some(Prepared { snapshot, step, view, closed, pins, review, approved, chart, silhouette });
         } else if let Some(prepared) = self.prepared.as_mut().filter(|it| it.pins != pins) {
             prepared.chart.retime(plan);
             prepared.pins = pins;

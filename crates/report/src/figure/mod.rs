@@ -6,9 +6,18 @@ mod timeline;
 use display::Theme;
 use mission::Snapshot;
 
+use crate::escape::escaped;
+
 pub(crate) use map::map;
-pub use timeline::rule_tracks;
-pub(crate) use timeline::timeline;
+pub use timeline::{rule_tracks, windows_before};
+pub(crate) use timeline::{timeline, timeline_since};
+
+/// A drawing with what is to be said of it, as HTML.
+pub(crate) fn framed(drawing: &str, caption: &str) -> String {
+    // A drawing inside HTML needs no namespace of its own.
+    let drawing = drawing.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
+    format!("<figure>\n{drawing}<figcaption>{}</figcaption>\n</figure>\n", escaped(caption))
+}
 
 /// The network with the plan marked in it; `None` without a network.
 pub(crate) fn network(snapshot: &Snapshot) -> Option<String> {

@@ -6,12 +6,16 @@ use display::{Rect, Theme};
 use layout::list::timeline::{
     ROW_HEIGHT, Standing, TOP_MARGIN, TimelineState, Track, axis_list, timeline_list,
 };
+use layout::timeline::before::Before;
 use layout::timeline::rule::{RuleBand, RuleStanding, RuleTrack};
 use layout::timeline::{Bar, Chart, ChartOptions, Grouping, RowKind};
 use mission::Snapshot;
+use mission::compare::Side;
+use mission::review::record::Subject;
 use mission::review::{Review, Stretch};
 use rmpl::program::TimeUnit;
 use smol_str::{SmolStr, format_smolstr};
+use tpn::{Network, Plan};
 
 /// Lengths in user units of the drawing; on paper one is about a point.
 const WIDTH: f64 = 940.0;
@@ -30,10 +34,32 @@ pub(super) const OPTIONS: ChartOptions = ChartOptions {
 
 /// The timeline of the snapshot's plan; `None` without one.
 pub(crate) fn timeline(snapshot: &Snapshot, review: &Review) -> Option<String> {
-    let network = snapshot.network.as_deref()?;
-    let plan = snapshot.plan()?;
+    let (network, plan) = (snapshot.network.as_deref()?, snapshot.plan()?);
     let mut chart = Chart::new(&snapshot.program, network, plan, OPTIONS, &BTreeSet::new());
     chart.add_rules(rule_tracks(review), &BTreeSet::new());
+    Some(drawn(snapshot, &chart, (network, plan), "Timeline of the plan"))
+}
+
+/// The timeline of the snapshot's plan with that of an approved one laid over it; `None` without one of them.
+pub(crate) fn timeline_since(snapshot: &Snapshot, approved: &Subject) -> Option<String> {
+    let (network, plan) = (snapshot.network.as_deref()?, snapshot.plan()?);
+    let before = windows_before(approved)?;
+    let options = ChartOptions { states: false, resources: false, ..OPTIONS };
+    let mut chart = Chart::new(&snapshot.program, network, plan, options, &BTreeSet::new());
+    chart.compare_with(&before, network, plan);
+    Some(drawn(snapshot, &chart, (network, plan), "Timeline of the plan over the approved one"))
+}
+
+/// When the events of an approved plan could be; `None` where it was not kept.
+pub fn windows_before(approved: &Subject) -> Option<Before> {
+    let side = Side::of_json("approved", &approved.plan).ok()?;
+    let times = side.items.iter().map(|(name, item)| {
+        (name.as_str().into(), item.windows.map(|it| [it.earliest.to_f64(), it.latest.to_f64()]))
+    });
+    Some(Before::new(times))
+}
+
+fn drawn(snapshot: &Snapshot, chart: &Chart, (network, plan): (&Network, &Plan), title: &str) -> String {
     let height = AXIS_HEIGHT + TOP_MARGIN + ROW_HEIGHT * chart.rows.len() as f64 + 6.0;
     let (left, right) = (NAMES_WIDTH, WIDTH - TIMES_WIDTH);
     let track = Track {
@@ -60,7 +86,7 @@ pub(crate) fn timeline(snapshot: &Snapshot, review: &Review) -> Option<String> {
         });
         format_smolstr!("{}–{}", times[0], times[1])
     };
-    let links: Vec<_> = track.links(&chart).into_iter().map(|curve| (curve, false)).collect();
+    let links: Vec<_> = track.links(chart).into_iter().map(|curve| (curve, false)).collect();
     let state = TimelineState {
         now: None,
         is_executing: false,
@@ -70,8 +96,8 @@ pub(crate) fn timeline(snapshot: &Snapshot, review: &Review) -> Option<String> {
         links: &links,
         note: Some(&earliest),
     };
-    let rows = timeline_list(&chart, (network, plan), &track, 0..chart.rows.len(), &state);
-    Some(display::svg(&[&axis, &rows], Theme::Light, "Timeline of the plan"))
+    let rows = timeline_list(chart, (network, plan), &track, 0..chart.rows.len(), &state);
+    display::svg(&[&axis, &rows], Theme::Light, title)
 }
 
 /// The rules of the mission that a review has held its plan against, as the timeline draws them.

@@ -8,6 +8,7 @@ mod board;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use layout::timeline::before::Before;
 use layout::timeline::rule::RuleTrack;
 use mission::review::record::Act;
 use mission::review::{FlightRules, Record, Review, content_hash};
@@ -298,6 +299,14 @@ impl AppState {
     /// The rules of the mission over time, as far as the present content has been held against them.
     pub fn rule_tracks(&self) -> Vec<RuleTrack> {
         self.current_review().map(|review| report::rule_tracks(review)).unwrap_or_default()
+    }
+
+    /// When things could be in the plan that was last approved, if the present content is another.
+    pub fn approved_times(&self) -> Option<Before> {
+        let (entry, approved) = self.review.record.last_approval()?;
+        let review = self.current_review()?;
+        let is_other = entry.content_hash != review.content_hash || entry.plan_hash != review.plan_hash;
+        if is_other { report::windows_before(approved) } else { None }
     }
 
     /// Adds what a file has.

@@ -183,6 +183,8 @@ pub struct TimelineView {
     pub resources: bool,
     /// Delays as bars of their own.
     pub delays: bool,
+    /// In a review, where bars were in the plan that was last approved.
+    pub approved: bool,
     /// By what the bars are grouped.
     pub grouping: Grouping,
 }
@@ -208,6 +210,7 @@ impl Default for TimelineView {
             states: true,
             resources: true,
             delays: false,
+            approved: true,
             grouping: Grouping::default(),
         }
     }

@@ -3,6 +3,7 @@
 //! Bars are solid where they go on for certain and hatched where they may, with the earliest schedule under them. What
 //! variables keep and how far resources are used is drawn for the earliest schedule alone. The frame is that of whoever shows the chart: a [`Track`] says where times and rows lie in it.
 
+mod before;
 mod profile;
 mod rule;
 mod state;
@@ -359,8 +360,10 @@ impl Builder<'_> {
 
     fn bars(&mut self, index: usize) {
         let row = self.track.row(index);
-        if let RowKind::Rule(rule) = self.chart.rows[index].kind {
-            self.rule(rule, row);
+        match self.chart.rows[index].kind {
+            RowKind::Rule(rule) => self.rule(rule, row),
+            RowKind::Gone(gone) => self.gone(gone, row),
+            _ => {}
         }
         let mut drawn_to = f64::MIN;
         let seen = self.track.visible.expanded(40.0);
@@ -378,6 +381,7 @@ impl Builder<'_> {
             if (place.touches(seen) || bar.is_narrowed()) && !is_merged {
                 drawn_to = drawn_to.max(place.max.x);
                 self.bar(at, bar, row);
+                self.change(at, place, row);
             }
         }
     }
