@@ -243,7 +243,7 @@ fn a_plan_is_held_against_rules_of_its_mission() {
     let report = enroute(&["report", MISSION, "--rules", &path, "--format", "json"]);
     let report: Value = serde_json::from_str(&written(&report)).expect("JSON");
     assert_eq!(report["mission_rules"][0]["status"], "attention");
-    let (status, rule, _) = held("PATH1=OPEN");
+    let (status, rule, _) = held("PATH9=OK");
     assert_eq!(
         (status, &rule["outcome"], &rule["status"]),
         (Some(1), &json!("unreadable"), &json!("failed"))
