@@ -95,6 +95,8 @@ impl Dialog {
             Self::Missions { .. } => "Missions",
             Self::MissionName { .. } => "Name of the mission",
             Self::VersionName { .. } => "Name of the version",
+            Self::FileName { renames: true, .. } => "Rename a file",
+            Self::FileName { renames: false, .. } => "Add a file",
             Self::Keys => "Keyboard shortcuts",
             Self::About => "About Enroute",
         }

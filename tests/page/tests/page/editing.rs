@@ -125,6 +125,7 @@ fn a_mission_of_two_files_is_written_with_real_keys_planned_and_there_after_a_re
     // A name of one file is changed in both; Backspace at a file's first line keeps its name.
     page.place_caret_after("location BAS")?;
     page.tab.press(Key::Function(2), Modifiers::NONE)?;
+    page.wait_for("state.dialog === 'rename'")?;
     page.tab.type_text("HOME")?;
     page.tab.press(Key::Enter, Modifiers::NONE)?;
     page.tab.wait_until("enroute.source().split('HOME').length === 3")?;
