@@ -37,13 +37,19 @@ fn has(app: &App, start: &str) -> bool {
 
 /// Clicks the button whose name starts like this.
 fn click(app: &mut App, start: &str) {
-    let is_named_so = |label: String| label.starts_with(start);
-    app.harness.get_by(|node| node.role() == Role::Button && node.label().is_some_and(is_named_so)).click();
+    let is_it = |node: &egui_kittest::kittest::AccessKitNode<'_>| {
+        node.role() == Role::Button && node.label().is_some_and(|label| label.starts_with(start))
+    };
+    app.harness.get_by(is_it).scroll_to_me();
+    app.settle();
+    app.harness.get_by(is_it).click();
     app.settle();
 }
 
 /// Clicks the button of this very name.
 fn click_exactly(app: &mut App, name: &str) {
+    app.harness.get_by_role_and_label(Role::Button, name).scroll_to_me();
+    app.settle();
     app.harness.get_by_role_and_label(Role::Button, name).click();
     app.settle();
 }
