@@ -82,6 +82,12 @@ const AT_HAND_STEP_M: f64 = 4.0;
 /// The leader waits when a follower is this many spacings behind its place.
 const WAITING_SPACINGS: f64 = 3.0;
 
+/// The share of the leader's pace at which a follower keeps up that is so many metres behind its place; none, and it
+/// waits for the leader, where it is far ahead of it.
+fn follower_share(lag_m: f64) -> f64 {
+    (1.0 + 0.5 * lag_m).max(0.0)
+}
+
 impl Convoy {
     /// Vehicles at rest; all decide as often as the one that decides most often.
     pub fn new(members: Vec<ConvoyMember>, spacing_m: f64, seed: u64) -> Self {
@@ -155,7 +161,7 @@ impl Convoy {
                 0 if leader_waits => 0.0,
                 0 => pace_mps,
                 _ if self.members[index].passes() => pace_mps,
-                _ => (pace_mps * (1.0 + 0.5 * lag_m)).max(0.0),
+                _ => pace_mps * follower_share(lag_m),
             };
             let in_its_way = self.in_its_way(index);
             let is_held = in_its_way.iter().any(|&other| self.waits_behind(index, other))
@@ -209,7 +215,7 @@ impl Convoy {
             let mut found = self.in_its_way(vehicle);
             if vehicle == 0 {
                 found.extend((1..count).filter(|&other| self.is_far_behind(lags_m[other])));
-            } else if 1.0 + 0.5 * lags_m[vehicle] <= 0.0 {
+            } else if follower_share(lags_m[vehicle]) <= 0.0 {
                 found.push(0);
             }
             found

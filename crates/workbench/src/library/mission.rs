@@ -156,6 +156,17 @@ impl Mission {
         joined(&self.texts)
     }
 
+    /// Whether its texts are those of a joined one.
+    pub(crate) fn says(&self, text: &str) -> bool {
+        let files = rmpl::files::split(text);
+        files.len() == self.texts.len()
+            && files
+                .iter()
+                .zip(&self.texts)
+                .enumerate()
+                .all(|(index, (file, kept))| file.1 == kept.text && (index == 0 || file.0 == kept.name))
+    }
+
     /// Makes its texts those of a joined one.
     pub(crate) fn say(&mut self, text: &str) {
         let main = self.texts.first().map_or(MAIN_TEXT, |main| &main.name);

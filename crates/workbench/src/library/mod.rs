@@ -227,7 +227,7 @@ impl Library {
             Open::Mission(id) => {
                 let id = id.clone();
                 if let Some(mission) = self.mission_mut(&id)
-                    && mission.joined_text() != text
+                    && !mission.says(text)
                 {
                     mission.say(text);
                     mission.changed_millis = now_millis.max(mission.changed_millis + 1);

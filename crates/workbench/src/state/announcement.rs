@@ -25,14 +25,13 @@ impl AppState {
             Status::Broken => {
                 let count = problems.iter().filter(|it| it.severity == Severity::Error).count();
                 let noun = if count == 1 { "error" } else { "errors" };
-                let line =
-                    first().map_or(0, |problem| self.document.line_at(problem.span.start as usize) + 1);
+                // As the list of problems has it: of its own file.
+                let line = first().map_or(0, |problem| problem.line);
                 let message = first().map_or("", |problem| problem.message.as_str());
                 format!("{count} {noun}. Line {line}: {message}.")
             }
             Status::NoPlan => {
-                let reason = problems.iter().find(|it| it.severity == Severity::Error);
-                reason.map_or_else(|| "No plan.".to_owned(), |it| format!("No plan. {}.", it.message))
+                first().map_or_else(|| "No plan.".to_owned(), |it| format!("No plan. {}.", it.message))
             }
             Status::Undecided => "Not decided whether there is a plan.".to_owned(),
             Status::Plan => match verdict.map(|verdict| verdict.valid) {

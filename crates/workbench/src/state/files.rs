@@ -56,10 +56,10 @@ impl AppState {
     /// Adds a file, and imports it in the main text unless something imports it already.
     pub(super) fn add_file(&mut self, name: &str, text: &str) -> Result<(), String> {
         let name = self.free_name(name)?;
-        let imports = import_line(self.document.text(), &name);
         let mut whole = self.document.text().to_owned();
         if !self.imports().iter().any(|(file, _)| *file == name) {
-            whole.insert_str(imports.0, &imports.1);
+            let (at, line) = import_line(&whole, &name);
+            whole.insert_str(at, &line);
         }
         let known = files::split(&whole).into_iter().chain([(name.as_str(), text)]);
         self.document.replace_all(&files::joined(known));
