@@ -32,7 +32,7 @@ fn focusing_an_element_of_the_document_sends_keys_to_the_widget() -> Result<()> 
     page.tab.evaluate("document.querySelector('[role=textbox][aria-label=\"Mission text\"]').focus()")?;
     page.tab.wait_until("document.querySelector('[aria-activedescendant]')")?;
     page.tab.press(Key::End, Modifiers::CONTROL)?;
-    page.tab.type_text("x")?;
+    page.type_text("x")?;
     page.tab.wait_until("enroute.source().trimEnd().endsWith('x')")?;
     Ok(())
 }

@@ -57,7 +57,7 @@ fn click(page: &Opened, start: &str) -> Result<()> {
 
 fn type_into(page: &Opened, field: &str, text: &str) -> Result<()> {
     click_widget(page, "textbox", field)?;
-    page.tab.type_text(text)?;
+    page.type_text(text)?;
     page.settle()
 }
 

@@ -40,7 +40,7 @@ fn a_syntax_error_keeps_the_last_good_network_and_points_at_the_cause() -> Resul
     assert_eq!(state["tpn"], network);
     assert!(state["diagnostics"][0]["span"]["line"].as_u64() > Some(1), "{}", state["diagnostics"]);
 
-    page.tab.type_text("{")?;
+    page.type_text("{")?;
     page.wait_for("state.status === 'plan' && !state.isStale")?;
     let diagnostics = page.state()?["diagnostics"].clone();
     assert!(diagnostics.as_array().is_some_and(|all| all.iter().all(|it| it["severity"] != "error")));
@@ -54,7 +54,7 @@ fn every_key_press_is_a_revision_and_undo_takes_it_back() -> Result<()> {
     let revision = page.state()?["revision"].clone();
 
     page.place_caret_after("scenario Day1")?;
-    page.tab.type_text("x")?;
+    page.type_text("x")?;
     page.tab.wait_until("enroute.source().includes('scenario Day1x')")?;
     assert!(page.state()?["revision"].as_u64() > revision.as_u64());
 
@@ -73,9 +73,9 @@ fn a_mission_is_written_with_real_keys_templates_pairs_and_several_carets() -> R
     is_source("")?;
 
     // A bracket comes with its partner, which is typed over, and a block comes out as typed.
-    page.tab.type_text("primitive Go()[1,2];\nscenario S = {\n")?;
+    page.type_text("primitive Go()[1,2];\nscenario S = {\n")?;
     is_source("primitive Go()[1,2];\nscenario S = {\n  \n}")?;
-    page.tab.type_text("Go();\nGo()\n}")?;
+    page.type_text("Go();\nGo()\n}")?;
     is_source("primitive Go()[1,2];\nscenario S = {\n  Go();\n  Go()\n}")?;
     page.wait_for("state.status === 'plan' && !state.isStale")?;
 
@@ -84,17 +84,17 @@ fn a_mission_is_written_with_real_keys_templates_pairs_and_several_carets() -> R
     for _ in 0..3 {
         page.tab.press(Key::Character('d'), Modifiers::CONTROL)?;
     }
-    page.tab.type_text("Run")?;
+    page.type_text("Run")?;
     is_source("primitive Run()[1,2];\nscenario S = {\n  Run();\n  Run()\n}")?;
     page.tab.press(Key::Escape, Modifiers::NONE)?;
-    page.tab.type_text("m")?;
+    page.type_text("m")?;
     page.tab.wait_until("enroute.source().split('Runm').length === 2")?;
     page.tab.press(Key::Character('z'), Modifiers::CONTROL)?;
 
     // A caret below, a line copied, a line selected and deleted.
     page.place_caret_after("  Run();")?;
     page.tab.press(Key::ArrowDown, Modifiers::CONTROL | Modifiers::ALT)?;
-    page.tab.type_text(" ")?;
+    page.type_text(" ")?;
     page.tab.wait_until("enroute.source().includes('Run(); \\n  Run() \\n')")?;
     page.tab.press(Key::Escape, Modifiers::NONE)?;
     page.tab.press(Key::ArrowDown, Modifiers::ALT | Modifiers::SHIFT)?;
@@ -111,7 +111,7 @@ fn a_mission_of_two_files_is_written_with_real_keys_planned_and_there_after_a_re
     page.place_caret_after("scenario Day1")?;
     page.tab.press(Key::Character('a'), Modifiers::CONTROL)?;
     page.tab.press(Key::Delete, Modifiers::NONE)?;
-    page.tab.type_text("import \"world.rmpl\";\nscenario S = { Go(BASE) }")?;
+    page.type_text("import \"world.rmpl\";\nscenario S = { Go(BASE) }")?;
     page.wait_for("state.diagnostics.some(it => it.message.includes('no file `world.rmpl`'))")?;
     // The fix of the import adds the file, and what is typed there counts.
     page.place_caret_after("import \"wor")?;
@@ -119,14 +119,14 @@ fn a_mission_of_two_files_is_written_with_real_keys_planned_and_there_after_a_re
     page.tab.press(Key::Enter, Modifiers::NONE)?;
     page.tab.wait_until("enroute.source().endsWith('\\n\\u001cworld.rmpl\\n')")?;
     page.tab.press(Key::End, Modifiers::CONTROL)?;
-    page.tab.type_text("primitive Go(place)[1,2];\nlocation BASE (0, 0);")?;
+    page.type_text("primitive Go(place)[1,2];\nlocation BASE (0, 0);")?;
     page.wait_for("state.status === 'plan' && !state.isStale")?;
     let text = page.tab.evaluate("enroute.source()")?;
     // A name of one file is changed in both; Backspace at a file's first line keeps its name.
     page.place_caret_after("location BAS")?;
     page.tab.press(Key::Function(2), Modifiers::NONE)?;
     page.wait_for("state.dialog === 'rename'")?;
-    page.tab.type_text("HOME")?;
+    page.type_text("HOME")?;
     page.tab.press(Key::Enter, Modifiers::NONE)?;
     page.tab.wait_until("enroute.source().split('HOME').length === 3")?;
     page.tab.press(Key::Character('z'), Modifiers::CONTROL)?;

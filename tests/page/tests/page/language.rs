@@ -64,7 +64,7 @@ fn keys_complete_a_value_rename_a_name_fix_a_mistake_and_format_the_text() -> Re
 
     // Completion knows that a variable's value is wanted, and Tab takes the chosen one.
     recording.page.place_caret_after("Drive(Ridge)")?;
-    recording.page.tab.type_text("; LAMP=")?;
+    recording.page.type_text("; LAMP=")?;
     recording.widget("button", "ON")?;
     recording.widget("button", "OFF")?;
     recording.keep("complete")?;
@@ -76,7 +76,7 @@ fn keys_complete_a_value_rename_a_name_fix_a_mistake_and_format_the_text() -> Re
     recording.press(Key::Function(2), Modifiers::NONE)?;
     recording.page.wait_for("state.dialog === 'rename'")?;
     recording.press(Key::Character('a'), Modifiers::CONTROL)?;
-    recording.page.tab.type_text("Go")?;
+    recording.page.type_text("Go")?;
     recording.press(Key::Enter, Modifiers::NONE)?;
     recording.source_has("primitive Go(to)")?;
     recording.source_has("{ Go(Ridge)")?;
@@ -87,7 +87,7 @@ fn keys_complete_a_value_rename_a_name_fix_a_mistake_and_format_the_text() -> Re
 
     // A wrong name is told, and Control with the full stop mends it.
     recording.page.place_caret_after("Survey = { Go")?;
-    recording.page.tab.type_text("o")?;
+    recording.page.type_text("o")?;
     recording.page.wait_for("state.diagnostics.some((it) => it.code === 'W-UNDEF')")?;
     recording.press(Key::Escape, Modifiers::NONE)?;
     recording.press(Key::Character('.'), Modifiers::CONTROL)?;

@@ -120,12 +120,18 @@ impl Opened {
         self.wait_for(&format!("state.caret.head === {end}"))
     }
 
+    /// Types a text and waits for the frame that has it.
+    pub(crate) fn type_text(&self, text: &str) -> Result<()> {
+        self.tab.type_text(text)?;
+        self.tab.next_frame()
+    }
+
     /// Deletes this many characters before the caret and types a text.
     pub(crate) fn retype(&self, deleted: usize, typed: &str) -> Result<()> {
         for _ in 0..deleted {
             self.tab.press(Key::Backspace, Modifiers::NONE)?;
         }
-        self.tab.type_text(typed)
+        self.type_text(typed)
     }
 
     /// The page as pixels, once what was done is drawn.
