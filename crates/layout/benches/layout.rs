@@ -7,30 +7,38 @@ use std::time::{Duration, Instant};
 
 use display::geometry::flatten;
 use display::{Point, Rect, approximate_text_width};
-use layout::{NetworkDrawing, Options, Shape};
+use layout::{NetworkDrawing, Options, Room, Shape};
 use tpn::generate::{Recipe, Tightness, mission};
 use tpn::{Network, Top};
 
 const SIZES: [usize; 4] = [100, 1_000, 10_000, 100_000];
+/// The room of the network's panel in a window of 1280 × 800 points.
+const PANEL: Room = Room { width: 620.0, height: 360.0 };
 
 #[expect(clippy::print_stdout, reason = "printing its table is what a benchmark is for")]
 fn main() {
     println!(
-        "| nodes | arcs | layout ms | ns per node | recovered from the graph ms | crossings | view query µs |"
+        "| nodes | arcs | layout ms | ns per node | recovered from the graph ms | fitted into a panel ms | crossings | view query µs |"
     );
-    println!("|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|");
     for nodes in SIZES {
         let network = generated(nodes);
         let bare = Network { blocks: Vec::new(), root: None, ..network.clone() };
-        let (with, drawing) = median(&network);
-        let (without, _) = median(&bare);
+        let whole =
+            |network: &Network| layout::network(network, &Options::default(), &approximate_text_width);
+        let (with, drawing) = median(&network, whole);
+        let (without, _) = median(&bare, whole);
+        let (fitted, _) = median(&network, |network| {
+            layout::fitted(network, &Options::default(), None, PANEL, &approximate_text_width)
+        });
         let per_node = with.as_secs_f64() * 1e9 / network.nodes.len() as f64;
         println!(
-            "| {} | {} | {:.3} | {per_node:.0} | {:.3} | {} | {:.1} |",
+            "| {} | {} | {:.3} | {per_node:.0} | {:.3} | {:.3} | {} | {:.1} |",
             network.nodes.len(),
             network.arcs.len(),
             with.as_secs_f64() * 1e3,
             without.as_secs_f64() * 1e3,
+            fitted.as_secs_f64() * 1e3,
             crossings(&drawing),
             view_query(&drawing).as_secs_f64() * 1e6,
         );
@@ -44,14 +52,13 @@ fn generated(nodes: usize) -> Network {
 }
 
 /// The median of some runs, and the drawing.
-fn median(network: &Network) -> (Duration, NetworkDrawing) {
-    let options = Options::default();
+fn median(network: &Network, draw: impl Fn(&Network) -> NetworkDrawing) -> (Duration, NetworkDrawing) {
     let runs = (200_000 / network.nodes.len().max(1)).clamp(5, 200);
     let mut drawing = NetworkDrawing::default();
     let mut times: Vec<Duration> = (0..runs)
         .map(|_| {
             let start = Instant::now();
-            drawing = layout::network(network, &options, &approximate_text_width);
+            drawing = draw(network);
             start.elapsed()
         })
         .collect();

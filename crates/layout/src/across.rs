@@ -21,15 +21,13 @@ const CELL: f64 = 128.0;
 pub(crate) fn add_arcs_across(
     network: &Network,
     tree: &Tree,
-    texts: &ArcTexts,
+    texts: &ArcTexts<'_>,
+    hidden_nodes: &[Option<u32>],
     collapsed_ends: &BTreeSet<(NodeId, NodeId)>,
     drawing: &mut NetworkDrawing,
 ) {
     let folding = &tree.folding;
-    let hidden = |node: NodeId| {
-        let hider = folding.hidden_nodes.get(node.index()).copied().flatten();
-        hider.filter(|_| drawing.node(node).is_none())
-    };
+    let hidden = |node: NodeId| hidden_nodes[node.index()].filter(|_| drawing.node(node).is_none());
     let is_end = |fold: u32, node: NodeId| {
         let fold = folding.folds[fold as usize];
         fold.start == node || fold.end == node
@@ -86,7 +84,7 @@ fn cells(rect: Rect) -> impl Iterator<Item = (i64, i64)> {
 
 fn add_arc(
     network: &Network,
-    texts: &ArcTexts,
+    texts: &ArcTexts<'_>,
     id: ArcId,
     taken: &mut Taken<'_>,
     drawing: &mut NetworkDrawing,
@@ -112,7 +110,7 @@ fn add_arc(
 
 /// Writes the arc's texts in one row beside its curve, where nothing else is; nowhere if there is no such place.
 fn write_texts(
-    texts: &ArcTexts,
+    texts: &ArcTexts<'_>,
     id: ArcId,
     start: Point,
     piece: Piece,

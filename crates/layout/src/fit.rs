@@ -4,16 +4,17 @@ use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
 use display::Measure;
-use tpn::{BlockId, Network};
+use tpn::{BlockId, Network, NodeId};
 
+use crate::contents::Contents;
 use crate::drawing::NetworkDrawing;
 use crate::folding::Fold;
-use crate::metrics::{EVENT_RADIUS, MARGIN, OUTLINE_PAD};
+use crate::metrics::{EVENT_RADIUS, MARGIN, OUTLINE_PAD, SHORTEST_RUN, VERTEX_RADIUS};
 use crate::options::{Detail, Finer, Options};
 use crate::size::Sizes;
 use crate::text::ArcTexts;
 use crate::tree::Tree;
-use crate::{finish, recover, tree};
+use crate::{finish, tree_of};
 
 /// Room for a drawing, in drawing units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,21 +34,25 @@ const LEAST_ZOOM: f64 = 0.8;
 /// And its texts are at least so large then, in points of the screen.
 pub const LEAST_TEXT: f64 = 11.0;
 
-/// How many times, for each so many blocks of a network, what is left of the room is tried for more detail, between a
-/// least and a greatest number.
-const REFINEMENTS: (u32, usize, usize) = (150_000, 6, 40);
+/// What is left of the room is tried for more detail so many times.
+const REFINEMENTS: usize = 100;
 /// A box is opened into boxes of its steps divided by these, the finest that fits.
-const PARTS: [u32; 3] = [12, 5, 3];
+const PARTS: [u32; 5] = [12, 8, 5, 3, 2];
 
 /// Neighbours, from the first to the last.
 pub type Range = (BlockId, BlockId);
+
+/// Something is looked for in boxes inside of boxes so often before everything around it is opened.
+const MAX_OPENINGS: usize = 24;
+/// No step takes less room than this, in square units: the shortest arc, as high as the smallest node.
+const LEAST_AREA: f64 = SHORTEST_RUN * 2.0 * VERTEX_RADIUS;
 
 /// Draws a network as [`crate::network`] does, with as much detail as fits into `room` at its designed size: as it is if
 /// that fits; otherwise with long sequences in rows; otherwise with less written, and so small that the texts still are
 /// at [`LEAST_TEXT`]; otherwise with what is fine behind boxes, `focus` last of all. Of `options` what it says of rows
 /// and of the level of detail is not used.
 ///
-/// Takes time linear in the network for each of a number of tries that grows with its logarithm.
+/// Takes time linear in the network once, and for each of a number of tries in what is drawn.
 pub fn fitted(
     network: &Network,
     options: &Options,
@@ -58,14 +63,66 @@ pub fn fitted(
     if network.nodes.is_empty() {
         return NetworkDrawing::default();
     }
-    let fitter = Fitter::new(network, options, focus, room, measure, 1.0);
-    if let Some(found) = fitter.tried(&Detail::default()).filter(|_| focus.is_none()) {
+    let contents = Contents::new(network);
+    let fitter = Fitter::new(network, &contents, options, room, measure, 1.0);
+    if focus.is_none()
+        && !fitter.are_too_many()
+        && let Some(found) = fitter.tried(&Detail::default())
+    {
         return fitter.drawn(&found);
     }
     let brief = options.brief(LEAST_TEXT / LEAST_ZOOM);
-    let fitter = Fitter::new(network, &brief, focus, room, measure, LEAST_ZOOM);
-    let found = fitter.refined(fitter.finest());
+    let fitter = Fitter::new(network, &contents, &brief, room, measure, LEAST_ZOOM);
+    let found = fitter.refined(fitter.finest(focus));
     fitter.drawn(&found)
+}
+
+/// The boxes to open, one after the other, until the drawing that [`fitted`] makes shows one of `nodes`: each the focus
+/// of the drawing then, or no longer collapsed if the options say that it is. Without `room`, everything is drawn that
+/// is not collapsed.
+pub fn openings(
+    network: &Network,
+    options: &Options,
+    mut focus: Option<Range>,
+    room: Option<Room>,
+    nodes: &[NodeId],
+    measure: &dyn Measure,
+) -> Vec<Range> {
+    let contents = Contents::new(network);
+    let mut options = match room {
+        Some(_) => options.brief(LEAST_TEXT / LEAST_ZOOM),
+        None => Options { detail: Detail::default(), ..options.clone() },
+    };
+    let mut openings = Vec::new();
+    loop {
+        let tree = match room {
+            Some(room) => {
+                let fitter = Fitter::new(network, &contents, &options, room, measure, LEAST_ZOOM);
+                fitter.finest(focus).tree
+            }
+            None => tree_of(network, &contents, &options),
+        };
+        let folds = &tree.folding.folds;
+        let hiders: Option<Vec<&Fold>> = nodes.iter().map(|&node| contents.hider(node, folds)).collect();
+        let (Some(&node), Some(&hider)) = (nodes.first(), hiders.iter().flatten().next()) else {
+            return openings;
+        };
+        let mut opened = (hider.first, hider.last);
+        if openings.len() >= MAX_OPENINGS {
+            opened = contents.home(node).map_or(opened, |home| (home, home));
+        } else if focus == Some(opened) {
+            // These neighbours are behind one box even where there is more detail: the one of them that holds the node.
+            let holder = tree.folding.shown.iter().copied().find(|&block| contents.holds(block, node));
+            opened = holder.map_or(opened, |holder| (holder, holder));
+        }
+        if openings.last() == Some(&opened) {
+            return openings;
+        }
+        openings.push(opened);
+        if opened.0 != opened.1 || !options.collapsed.remove(&opened.0) {
+            focus = Some(opened);
+        }
+    }
 }
 
 /// A drawing that was tried: its options, and its structure.
@@ -76,41 +133,39 @@ struct Found {
 
 struct Fitter<'a> {
     network: &'a Network,
+    contents: &'a Contents,
     options: &'a Options,
-    focus: Option<Range>,
-    texts: ArcTexts,
+    texts: ArcTexts<'a>,
     room: Room,
-    measure: &'a dyn Measure,
 }
 
 impl<'a> Fitter<'a> {
     fn new(
         network: &'a Network,
+        contents: &'a Contents,
         options: &'a Options,
-        focus: Option<Range>,
         room: Room,
         measure: &'a dyn Measure,
         zoom: f64,
     ) -> Self {
-        let texts = ArcTexts::new(network, options, measure);
         let room = Room { width: room.width / zoom, height: room.height / zoom };
-        Self { network, options, focus, texts, room, measure }
+        Self { network, contents, options, texts: ArcTexts::new(network, options, measure), room }
     }
 
     /// The finest uniform detail whose drawing fits, first inside of the focus and then around it; the coarsest if
     /// none does.
-    fn finest(&self) -> Found {
+    fn finest(&self, focus: Option<Range>) -> Found {
         let grains = grains(self.network.blocks.len() as u32);
         let coarsest = grains.last().copied().unwrap_or(0);
         let detail = |grain: u32, inside: u32| {
-            let finer = self.focus.map(|(first, last)| Finer { first, last, grain: inside });
+            let finer = focus.map(|(first, last)| Finer { first, last, grain: inside });
             Detail { grain, finer: finer.into_iter().collect() }
         };
-        let (fine, found) = self.first_that_fits(&grains, &|grain| match self.focus {
+        let (fine, found) = self.first_that_fits(&grains, &|grain| match focus {
             None => detail(grain, grain),
             Some(_) => detail(coarsest, grain),
         });
-        if self.focus.is_none() {
+        if focus.is_none() {
             return found;
         }
         let around: Vec<u32> = grains.into_iter().filter(|&grain| grain >= fine).collect();
@@ -134,14 +189,13 @@ impl<'a> Fitter<'a> {
         let grain = grains.get(high).copied().unwrap_or(0);
         match best.filter(|(at, _)| *at == high) {
             Some((_, found)) => (grain, found),
-            None => (grain, self.arranged(&detail(grain)).0),
+            None => (grain, self.arranged(self.unplaced(&detail(grain))).0),
         }
     }
 
     /// The same with boxes opened, the largest first, as long as all of it fits.
     fn refined(&self, mut best: Found) -> Found {
-        let (blocks, least, most) = REFINEMENTS;
-        let mut left = (blocks as usize / self.network.blocks.len().max(1)).clamp(least, most);
+        let mut left = REFINEMENTS;
         let mut tried: BTreeSet<Range> = BTreeSet::new();
         loop {
             let is_new = |fold: &&Fold| {
@@ -167,20 +221,31 @@ impl<'a> Fitter<'a> {
 
     /// A drawing in this detail, if it fits.
     fn tried(&self, detail: &Detail) -> Option<Found> {
-        let (found, fits) = self.arranged(detail);
+        let (found, fits) = self.arranged(self.unplaced(detail));
         fits.then_some(found)
     }
 
-    /// A drawing in this detail with rows as wide as there is room, and whether it fits.
-    fn arranged(&self, detail: &Detail) -> (Found, bool) {
+    /// Whether all steps together are too many for the room, however they are arranged.
+    fn are_too_many(&self) -> bool {
+        let root = self.network.root.filter(|root| root.index() < self.network.blocks.len());
+        let steps = root.map_or(0, |root| self.contents.steps(root));
+        let is_whole = self.options.collapsed.is_empty();
+        is_whole && f64::from(steps) * LEAST_AREA > self.room.width * self.room.height
+    }
+
+    /// The structure of a drawing in this detail.
+    fn unplaced(&self, detail: &Detail) -> Found {
+        let options = Options { detail: detail.clone(), row_width: f64::INFINITY, ..self.options.clone() };
+        Found { tree: tree_of(self.network, self.contents, &options), options }
+    }
+
+    /// The same with rows as wide as there is room, and whether it fits.
+    fn arranged(&self, mut found: Found) -> (Found, bool) {
         let Room { width: across, height: down } = self.room;
-        let mut options =
-            Options { detail: detail.clone(), row_width: f64::INFINITY, ..self.options.clone() };
-        let tree = tree::tree_from_blocks(self.network, &options)
-            .unwrap_or_else(|| recover::tree_from_graph(self.network));
+        let Found { options, tree } = &mut found;
+        let mut sizes = Sizes::new(self.network, self.contents, tree, &self.texts, options);
         let mut fits = false;
         for _ in 0..TRIES {
-            let sizes = Sizes::new(self.network, &tree, &self.texts, &options, self.measure);
             let size = tree.root.map(|root| sizes.of(root)).unwrap_or_default();
             let width = size.width + 2.0 * (MARGIN + EVENT_RADIUS + OUTLINE_PAD);
             let height = size.above + size.below + 2.0 * MARGIN;
@@ -189,18 +254,19 @@ impl<'a> Fitter<'a> {
                 break;
             }
             options.row_width = (options.row_width.min(width) - (width - across)).max(SHORTEST_ROW);
+            sizes.break_rows(options.row_width);
         }
-        (Found { options, tree }, fits)
+        (found, fits)
     }
 
     fn drawn(&self, found: &Found) -> NetworkDrawing {
-        finish(self.network, &found.tree, &self.texts, &found.options, self.measure)
+        finish(self.network, self.contents, &found.tree, &self.texts, &found.options)
     }
 }
 
 /// How many steps boxes may hold, from none to all of `most`, each about a third more than the one before.
 fn grains(most: u32) -> Vec<u32> {
-    let mut grains = vec![0, 2, 3];
+    let mut grains = if most == 0 { vec![0] } else { vec![0, 2, 3] };
     while let Some(&last) = grains.last().filter(|&&last| last < most) {
         grains.push(last + (last / 3).max(1));
     }

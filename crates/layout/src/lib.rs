@@ -19,6 +19,7 @@ pub mod timeline;
 
 mod across;
 mod caption;
+mod contents;
 mod emit;
 mod fit;
 mod folding;
@@ -34,7 +35,7 @@ pub use drawing::{
     ArcShape, BlockForm, BlockShape, Connector, Item, NetworkDrawing, NodeShape, Route, Shape, Slide,
     TextShape,
 };
-pub use fit::{LEAST_TEXT, Range, Room, fitted};
+pub use fit::{LEAST_TEXT, Range, Room, fitted, openings};
 pub use list::automaton::{AutomatonState, automaton_list};
 pub use list::network::{NetworkState, network_list};
 pub use machine::{MachineArc, MachineArcShape, MachineDrawing, machine};
@@ -49,7 +50,10 @@ use display::{Measure, Rect};
 use smol_str::{SmolStr, format_smolstr};
 use tpn::{Network, NodeId, Role};
 
+use crate::contents::Contents;
+use crate::folding::Folding;
 use crate::text::{ArcTexts, text_width};
+use crate::tree::Tree;
 
 /// Draws a network from left to right, as time flows.
 ///
@@ -61,25 +65,36 @@ pub fn network(network: &Network, options: &Options, measure: &dyn Measure) -> N
     if network.nodes.is_empty() {
         return NetworkDrawing::default();
     }
-    let tree = tree::tree_from_blocks(network, options).unwrap_or_else(|| recover::tree_from_graph(network));
+    let contents = Contents::new(network);
+    let tree = tree_of(network, &contents, options);
     let texts = ArcTexts::new(network, options, measure);
-    finish(network, &tree, &texts, options, measure)
+    finish(network, &contents, &tree, &texts, options)
+}
+
+/// The structure of a network, folded as the options say.
+fn tree_of(network: &Network, contents: &Contents, options: &Options) -> Tree {
+    let root = network.root.filter(|root| root.index() < network.blocks.len());
+    let folded = root.and_then(|root| {
+        tree::tree_from_blocks(network, root, Folding::new(network, contents, options, root))
+    });
+    folded.unwrap_or_else(|| recover::tree_from_graph(network))
 }
 
 /// Draws a network whose structure and texts are known.
 fn finish(
     network: &Network,
-    tree: &tree::Tree,
-    texts: &ArcTexts,
+    contents: &Contents,
+    tree: &Tree,
+    texts: &ArcTexts<'_>,
     options: &Options,
-    measure: &dyn Measure,
 ) -> NetworkDrawing {
-    let sizes = size::Sizes::new(network, tree, texts, options, measure);
-    let mut placer = place::Placer::new(network, tree, sizes);
+    let sizes = size::Sizes::new(network, contents, tree, texts, options);
+    let hidden_nodes = tree.folding.hidden_nodes(network, contents);
+    let mut placer = place::Placer::new(network, tree, sizes, &hidden_nodes);
     placer.place();
     let (mut drawing, collapsed_ends) = placer.finish();
-    across::add_arcs_across(network, tree, texts, &collapsed_ends, &mut drawing);
-    write_node_names(network, measure, &mut drawing);
+    across::add_arcs_across(network, tree, texts, &hidden_nodes, &collapsed_ends, &mut drawing);
+    write_node_names(network, texts.measure, &mut drawing);
     drawing.bounds = place::content_bounds(&drawing);
     drawing.index = drawing.indexed();
     drawing

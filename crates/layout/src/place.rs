@@ -24,6 +24,8 @@ pub(crate) struct Placer<'a> {
     pub(crate) sizes: Sizes<'a>,
     pub(crate) network: &'a Network,
     pub(crate) tree: &'a Tree,
+    /// Of each node, the box that hides it.
+    hidden_nodes: &'a [Option<u32>],
     pub(crate) frames: Vec<Option<Frame>>,
     pub(crate) positions: Vec<Option<Point>>,
     pub(crate) arcs: Vec<Option<ArcShape>>,
@@ -35,11 +37,17 @@ pub(crate) struct Placer<'a> {
 }
 
 impl<'a> Placer<'a> {
-    pub(crate) fn new(network: &'a Network, tree: &'a Tree, sizes: Sizes<'a>) -> Self {
+    pub(crate) fn new(
+        network: &'a Network,
+        tree: &'a Tree,
+        sizes: Sizes<'a>,
+        hidden_nodes: &'a [Option<u32>],
+    ) -> Self {
         Self {
             sizes,
             network,
             tree,
+            hidden_nodes,
             frames: vec![None; tree.parts.len()],
             positions: vec![None; network.nodes.len()],
             arcs: vec![None; network.arcs.len()],
@@ -71,7 +79,7 @@ impl<'a> Placer<'a> {
         drawing.node_slots = vec![NO_SLOT; self.network.nodes.len()];
         drawing.arc_slots = vec![NO_SLOT; self.network.arcs.len()];
         for (at, node) in self.network.nodes.iter().enumerate() {
-            let hider = self.tree.folding.hidden_nodes.get(at).copied().flatten();
+            let hider = self.hidden_nodes[at];
             let hider = hider.and_then(|fold| self.boxes[fold as usize]);
             let anchor = self.positions[at].or(hider.map(|(middle, _)| middle));
             drawing.anchors.push(anchor.unwrap_or_default());
@@ -95,8 +103,7 @@ impl<'a> Placer<'a> {
 
     /// Puts nodes that the structure does not reach into a row below everything.
     fn place_leftovers(&mut self) {
-        let hidden = &self.tree.folding.hidden_nodes;
-        let is_hidden = |at: usize| hidden.get(at).copied().flatten().is_some();
+        let is_hidden = |at: usize| self.hidden_nodes[at].is_some();
         let missing: Vec<usize> =
             (0..self.positions.len()).filter(|&at| self.positions[at].is_none() && !is_hidden(at)).collect();
         if missing.is_empty() {

@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use display::Measure;
 use display::list::ARROW_LENGTH;
 use tpn::{ArcId, Network, NodeId, Role};
 
 use crate::caption::{self, Caption};
-
+use crate::contents::Contents;
 use crate::layered::{self, CoreLayout};
 use crate::metrics::{
     ARCH_CORNER, ARCH_FIRST, ARCH_FOOT, ARCH_GAP, ARCH_STEP, BEAD_STEP, COLLAPSED_HEIGHT, GUTTER, LANE_GAP,
@@ -62,7 +61,7 @@ pub(crate) struct Clearance {
 /// The sizes of everything in a tree.
 pub(crate) struct Sizes<'a> {
     pub(crate) tree: &'a Tree,
-    pub(crate) texts: &'a ArcTexts,
+    pub(crate) texts: &'a ArcTexts<'a>,
     pub(crate) clearances: Vec<Clearance>,
     pub(crate) parts: Vec<Size>,
     pub(crate) branches: Vec<BranchSize>,
@@ -79,11 +78,11 @@ pub(crate) struct Sizes<'a> {
 
 impl<'a> Sizes<'a> {
     pub(crate) fn new(
-        network: &'a Network,
+        network: &Network,
+        contents: &Contents,
         tree: &'a Tree,
-        texts: &'a ArcTexts,
+        texts: &'a ArcTexts<'a>,
         options: &Options,
-        measure: &dyn Measure,
     ) -> Self {
         let ArchRanks { ranks: arch_ranks, counts: arches } = arch_ranks(network, tree);
         let clearances = clearances(network, options, tree, &arches);
@@ -97,14 +96,27 @@ impl<'a> Sizes<'a> {
             cores: Vec::with_capacity(tree.cores.len()),
             rows: BTreeMap::new(),
             row_width: options.row_width,
-            captions: caption::captions(network, tree, options, measure),
+            captions: caption::captions(network, contents, tree, options, texts.measure),
         };
-        let mut next_caption = 0;
-        for part in &tree.parts {
-            let size = sizes.part(part, &mut next_caption);
-            sizes.parts.push(size);
-        }
+        sizes.measure();
         sizes
+    }
+
+    /// Breaks series that are longer than `width` into rows, and no others.
+    pub(crate) fn break_rows(&mut self, width: f64) {
+        self.row_width = width;
+        self.parts.clear();
+        self.cores.clear();
+        self.rows.clear();
+        self.measure();
+    }
+
+    fn measure(&mut self) {
+        let mut next_caption = 0;
+        for part in &self.tree.parts {
+            let size = self.part(part, &mut next_caption);
+            self.parts.push(size);
+        }
     }
 
     pub(crate) fn of(&self, part: PartId) -> Size {
@@ -372,12 +384,14 @@ fn arch_ranks(network: &Network, tree: &Tree) -> ArchRanks {
     ArchRanks { ranks, counts }
 }
 
+/// The space around each node at which a part begins or ends.
 fn clearances(network: &Network, options: &Options, tree: &Tree, arches: &[(u32, u32)]) -> Vec<Clearance> {
     let half_window = (options.window_width / 2.0).ceil();
     let side = |radius: f64, count: u32| {
         if count == 0 { radius } else { radius.max(arch_offset(count - 1) + TEXT_LIFT) }
     };
-    let clearance = |(node, &(after, before)): (&tpn::Node, &(u32, u32))| {
+    let clearance = |at: usize| {
+        let (node, (after, before)) = (&network.nodes[at], arches[at]);
         let radius = node_radius(network, node);
         let has_window =
             options.window_width > 0.0 && node.role != Role::Structural && radius > VERTEX_RADIUS;
@@ -388,7 +402,12 @@ fn clearances(network: &Network, options: &Options, tree: &Tree, arches: &[(u32,
         };
         Clearance { radius, after: side(radius, after), before: side(radius, before), beneath, below }
     };
-    let mut clearances: Vec<Clearance> = network.nodes.iter().zip(arches).map(clearance).collect();
+    let mut clearances = vec![Clearance::default(); network.nodes.len()];
+    for part in &tree.parts {
+        for node in [part.start.index(), part.end.index()] {
+            clearances[node] = clearance(node);
+        }
+    }
     for part in &tree.parts {
         // Outside an activity, texts begin beyond its outline.
         if let PartKind::Span { occurrence: Some(_), .. } = part.kind {

@@ -1,5 +1,7 @@
 //! What is written at each arc, and how much room it takes.
 
+use std::cell::OnceCell;
+
 use display::{Measure, text_width_at};
 use exact::{Bound, Time};
 use rmpl::program::LabelMode;
@@ -25,10 +27,12 @@ pub(crate) struct Run {
     pub(crate) owner: Item,
 }
 
-/// The texts of all arcs of a network.
-pub(crate) struct ArcTexts {
-    runs: Vec<Run>,
-    starts: Vec<u32>,
+/// The texts of the arcs of a network, made when they are asked for.
+pub(crate) struct ArcTexts<'a> {
+    network: &'a Network,
+    options: &'a Options,
+    pub(crate) measure: &'a dyn Measure,
+    runs: Vec<OnceCell<Vec<Run>>>,
 }
 
 /// Width and height of some lines of text.
@@ -38,55 +42,51 @@ pub(crate) struct TextSize {
     pub(crate) height: f64,
 }
 
-impl ArcTexts {
-    pub(crate) fn new(network: &Network, options: &Options, measure: &dyn Measure) -> Self {
-        let mut texts = Self { runs: Vec::new(), starts: Vec::with_capacity(network.arcs.len() + 1) };
-        for (at, arc) in network.arcs.iter().enumerate() {
-            texts.starts.push(texts.runs.len() as u32);
-            texts.add_arc(network, options, measure, ArcId::from_index(at), arc);
-        }
-        texts.starts.push(texts.runs.len() as u32);
-        texts
+impl<'a> ArcTexts<'a> {
+    pub(crate) fn new(network: &'a Network, options: &'a Options, measure: &'a dyn Measure) -> Self {
+        Self { network, options, measure, runs: vec![OnceCell::new(); network.arcs.len()] }
     }
 
     /// The texts of one arc, in the order of their lines.
     pub(crate) fn of(&self, arc: ArcId) -> &[Run] {
-        &self.runs[self.starts[arc.index()] as usize..self.starts[arc.index() + 1] as usize]
+        self.runs[arc.index()].get_or_init(|| self.written(arc))
     }
 
-    fn add_arc(&mut self, network: &Network, options: &Options, measure: &dyn Measure, id: ArcId, arc: &Arc) {
-        let first = self.runs.len();
-        let push = |runs: &mut Vec<Run>, text: SmolStr, role: TextRole, line: i32, owner: Item| {
+    fn written(&self, id: ArcId) -> Vec<Run> {
+        let Self { network, options, measure, .. } = *self;
+        let arc = &network.arcs[id.index()];
+        let mut runs: Vec<Run> = Vec::new();
+        let run = |text: SmolStr, role: TextRole, line: i32, owner: Item| {
             let size = options.text_size(role);
             let width = width_at(&text, size, measure);
-            runs.push(Run { text, role, size, width, line, owner });
+            Run { text, role, size, width, line, owner }
         };
-        if let Some((text, role)) = arc_name(network, options, id, arc) {
-            let text = cut_to_width(&text, role, options.longest_name, measure);
-            push(&mut self.runs, text, role, -1, Item::Arc(id));
-        }
         let labels = || arc.labels.iter().copied().filter(|&label| is_written(network, options, label));
-        if self.runs.len() == first {
-            for label in labels() {
+        let name = arc_name(network, options, id, arc);
+        if let Some((text, role)) = &name {
+            let text = cut_to_width(text, *role, options.longest_name, measure);
+            runs.push(run(text, *role, -1, Item::Arc(id)));
+        } else {
+            runs.extend(labels().map(|label| {
                 let (text, role) = label_text(network, label);
-                push(&mut self.runs, text, role, -1, Item::Label(label));
-            }
+                run(text, role, -1, Item::Label(label))
+            }));
         }
-        let named = self.runs.len() > first;
         if let Some((text, role)) = bounds_text(arc, options) {
-            push(&mut self.runs, text, role, if named { 0 } else { -1 }, Item::Arc(id));
+            runs.push(run(text, role, if runs.is_empty() { -1 } else { 0 }, Item::Arc(id)));
         }
-        if self.runs.get(first).is_some_and(|run| run.owner == Item::Arc(id)) && named {
-            let easy = self.runs[first].width.max(options.easy_line);
+        if name.is_some() {
+            let easy = runs[0].width.max(options.easy_line);
             for label in labels() {
                 let (text, role) = label_text(network, label);
-                let last = self.runs.last().map_or(0, |run| run.line.max(0));
-                let used = line_size(&self.runs[first..], last).width;
+                let last = runs.last().map_or(0, |run| run.line.max(0));
+                let used = line_size(&runs, last).width;
                 let width = width_at(&text, options.text_size(role), measure);
                 let fits = used == 0.0 || used + WORD_GAP + width <= easy;
-                push(&mut self.runs, text, role, if fits { last } else { last + 1 }, Item::Label(label));
+                runs.push(run(text, role, if fits { last } else { last + 1 }, Item::Label(label)));
             }
         }
+        runs
     }
 }
 

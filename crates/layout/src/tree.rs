@@ -7,7 +7,6 @@ use std::ops::Range;
 use tpn::{ArcId, ArcKind, BlockId, BlockKind, Network, NodeId, OccurrenceId};
 
 use crate::folding::Folding;
-use crate::options::Options;
 
 /// A part of the tree, by its position in [`Tree::parts`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -183,20 +182,18 @@ impl Tree {
     }
 }
 
-/// The tree of a network whose blocks are known; `None` if it has no usable root.
-pub(crate) fn tree_from_blocks(network: &Network, options: &Options) -> Option<Tree> {
-    let root = network.root.filter(|root| root.index() < network.blocks.len())?;
+/// The tree of a network whose blocks are known, as it is folded under `root`; `None` if the blocks do not hold together.
+pub(crate) fn tree_from_blocks(network: &Network, root: BlockId, folding: Folding) -> Option<Tree> {
+    let shown = folding.shown.clone();
     let mut builder = Builder {
         network,
-        tree: Tree { folding: Folding::new(network, options, root), ..Tree::default() },
+        tree: Tree { folding, ..Tree::default() },
         part_of_block: vec![None; network.blocks.len()],
         arc_to: vec![None; network.nodes.len()],
         arc_from: vec![None; network.nodes.len()],
     };
-    for at in 0..network.blocks.len() {
-        if builder.tree.folding.visible[at] {
-            builder.part_of_block[at] = builder.part(BlockId::from_index(at));
-        }
+    for block in shown {
+        builder.part_of_block[block.index()] = builder.part(block);
     }
     builder.tree.root = builder.part_of_block[root.index()];
     builder.tree.root.is_some().then_some(builder.tree)

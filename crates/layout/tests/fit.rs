@@ -2,9 +2,11 @@
 
 mod drawings;
 
+use std::collections::BTreeMap;
+
 use display::approximate_text_width;
 use drawings::{assert_nothing_overlaps, crossings, draw_with, enroute, network_of, random_mission};
-use layout::{BlockForm, Detail, Item, NetworkDrawing, Options, Room, fitted};
+use layout::{BlockForm, Detail, Item, NetworkDrawing, Options, Room, fitted, openings};
 use tpn::generate::{Recipe, Tightness, mission};
 use tpn::{BlockId, BlockKind, Network};
 
@@ -138,6 +140,71 @@ fn an_activity_that_is_the_focus_is_open_whatever_is_around_it() {
         let id = BlockId::from_index(at);
         let drawing = fit(&network, Some((id, id)));
         assert!(drawing.blocks.iter().any(|it| it.block == Some(id) && it.form != BlockForm::Collapsed));
+    }
+}
+
+#[test]
+fn any_event_is_seen_once_its_boxes_are_open() {
+    let nested =
+        (0..40).fold("Step()".to_owned(), |inner, _| format!("sequence {{ Step(); {inner}; Step() }}"));
+    let nested = network_of(&format!("primitive Step()[1,5];\nscenario Deep = {{ {nested} }}\n"));
+    let networks = [generated(300, 5), sequence(3000), nested, network_of(&random_mission(7, 60))];
+    let options = Options { window_width: 0.0, ..Options::default() };
+    let measure = &approximate_text_width;
+    for (which, network) in networks.iter().enumerate() {
+        for node in
+            (0..network.nodes.len()).step_by(1 + network.nodes.len() / 40).map(tpn::NodeId::from_index)
+        {
+            let opened = openings(network, &options, None, Some(ROOM), &[node], measure);
+            let drawing = fitted(network, &options, opened.last().copied(), ROOM, measure);
+            let was_hidden = fit(network, None).node(node).is_none();
+            assert!(drawing.node(node).is_some(), "network {which}: {node:?} after {opened:?}");
+            assert_eq!(!opened.is_empty(), was_hidden, "network {which}: {node:?} after {opened:?}");
+        }
+    }
+}
+
+#[test]
+fn a_collapsed_activity_is_opened_for_what_it_holds() {
+    let network = network_of("primitive A()[1,5];\nB() = { A(); A() }\nscenario S = { B(); A() }\n");
+    let is_activity = |block: &tpn::Block| matches!(block.kind, BlockKind::Scope { occurrence: Some(_), .. });
+    let at = network.blocks.iter().position(is_activity).expect("an activity");
+    let (id, block) = (BlockId::from_index(at), &network.blocks[at]);
+    let options = Options { collapsed: [id].into(), ..Options::default() };
+    let drawing = draw_with(&network, &options);
+    let hidden =
+        (0..network.nodes.len()).map(tpn::NodeId::from_index).find(|&node| drawing.node(node).is_none());
+    let hidden = hidden.expect("an event inside");
+    for room in [None, Some(ROOM)] {
+        let seen =
+            |nodes: &[tpn::NodeId]| openings(&network, &options, None, room, nodes, &approximate_text_width);
+        assert_eq!(seen(&[hidden]), [(id, id)]);
+        assert!(seen(&[hidden, block.start]).is_empty(), "one of them is seen");
+    }
+}
+
+#[test]
+fn a_box_counts_the_events_that_it_hides() {
+    for seed in 0..40 {
+        let network = network_of(&random_mission(seed, 60));
+        for grain in [2, 4, 9, 30] {
+            let detail = Detail { grain, finer: Vec::new() };
+            let drawing = draw_with(&network, &Options { detail, ..Options::default() });
+            let mut hidden: BTreeMap<BlockId, usize> = BTreeMap::new();
+            for node in (0..network.nodes.len()).map(tpn::NodeId::from_index) {
+                if let Some(block) = drawing.box_of(node).and_then(|shape| shape.block) {
+                    *hidden.entry(block).or_default() += 1;
+                }
+            }
+            for shape in boxes(&drawing) {
+                let count = shape.block.and_then(|block| hidden.get(&block)).copied().unwrap_or(0);
+                let told = if count == 1 { "1 event".to_owned() } else { format!("{count} events") };
+                let owner = shape.block.map(Item::Block);
+                let is_told =
+                    drawing.texts.iter().any(|it| Some(it.owner) == owner && it.text.ends_with(&told));
+                assert!(is_told, "seed {seed}, grain {grain}: {} hides {told}", shape.title);
+            }
+        }
     }
 }
 

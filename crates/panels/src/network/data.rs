@@ -229,7 +229,8 @@ pub(super) fn block_key(network: &Network, block: BlockId) -> Option<String> {
     if let BlockKind::Scope { occurrence: Some(occurrence), .. } = block.kind {
         return Some(network.occurrences.get(occurrence.index())?.name.to_string());
     }
-    Some(format!("{}@{}", layout::text::structure_name(&block.kind), node_name(network, block.start)))
+    let [start, end] = [block.start, block.end].map(|node| node_name(network, node));
+    Some(format!("{}@{start}…{end}", layout::text::structure_name(&block.kind)))
 }
 
 /// Whether a block can be collapsed: single arcs cannot, nor can the whole mission.

@@ -28,8 +28,6 @@ pub(super) struct Detail {
 
 /// Rooms that differ by less than this have the same drawing, in points.
 const ROOM_STEP: f32 = 8.0;
-/// A selection is looked for in boxes inside of boxes so often.
-const MAX_DEPTH: usize = 12;
 
 impl Detail {
     /// Follows the size of the panel and what is shown.
@@ -70,40 +68,39 @@ impl Detail {
 
     /// Opens boxes until one of `nodes` is visible, if all of them are hidden in `drawing`.
     pub(super) fn reveal(&mut self, network: &Network, drawing: &NetworkDrawing, nodes: &[NodeId]) {
-        let is_shown = |drawing: &NetworkDrawing| nodes.iter().any(|&node| drawing.node(node).is_some());
-        if nodes.is_empty() || is_shown(drawing) {
+        let is_hidden = |&node: &NodeId| drawing.node(node).is_none() && drawing.box_of(node).is_some();
+        if nodes.is_empty() || !nodes.iter().all(is_hidden) {
             return;
         }
-        let mut hider = nodes.iter().find_map(|&node| drawing.box_of(node)).cloned();
-        for _ in 0..MAX_DEPTH {
-            let Some((first, last)) = hider.and_then(|shape| Some((shape.block?, shape.last?))) else {
-                return;
-            };
+        let (options, focus, room) = self.drawn(network);
+        for (first, last) in layout::openings(network, &options, focus, room, nodes, &approximate_text_width)
+        {
             self.open(network, first, last);
-            let opened = self.drawing(network);
-            if is_shown(&opened) {
-                return;
-            }
-            hider = nodes.iter().find_map(|&node| opened.box_of(node)).cloned();
         }
     }
 
     /// The drawing of a network in this detail.
     pub(super) fn drawing(&self, network: &Network) -> NetworkDrawing {
+        let (options, focus, room) = self.drawn(network);
+        match room {
+            None => layout::network(network, &options, &approximate_text_width),
+            Some(room) => layout::fitted(network, &options, focus, room, &approximate_text_width),
+        }
+    }
+
+    /// What is drawn of a network: its options, what has most detail, and the room there is, if it is made to fit.
+    fn drawn(&self, network: &Network) -> (Options, Option<layout::Range>, Option<Room>) {
         let window_width = if self.has_windows { Options::default().window_width } else { 0.0 };
         let collapsed = collapsed_blocks(network, &self.collapsed);
         let options = Options { collapsed, window_width, ..Options::default() };
-        let Some((width, height)) = self.room.filter(|_| !self.is_whole) else {
-            return layout::network(network, &options, &approximate_text_width);
-        };
         let length = |steps: u32| f64::from(steps) * f64::from(ROOM_STEP);
-        let room = Room { width: length(width), height: length(height) };
+        let room = self.room.filter(|_| !self.is_whole);
+        let room = room.map(|(width, height)| Room { width: length(width), height: length(height) });
         let block = |key: &String| {
             let mut blocks = (0..network.blocks.len()).map(BlockId::from_index);
             blocks.find(|&block| block_key(network, block).as_ref() == Some(key))
         };
         let focus = self.focus.as_ref().and_then(|(first, last)| Some((block(first)?, block(last)?)));
-        let focus = focus.filter(|(first, last)| first <= last);
-        layout::fitted(network, &options, focus, room, &approximate_text_width)
+        (options, focus.filter(|(first, last)| first <= last), room)
     }
 }
