@@ -15,7 +15,7 @@ use crate::options::{Options, Outcome, Stats, Status, Termination};
 use crate::overflow::TimeOverflow;
 use crate::partial_order;
 use crate::search::Gaps;
-use crate::solver::{Answer, Part, Problem, Record, Solver, TooLarge};
+use crate::solver::{Answer, GoalSums, Part, Problem, Record, Solver, TooLarge};
 use crate::structure::Relation;
 use crate::trace::{Event, SearchRound};
 
@@ -106,6 +106,7 @@ pub(crate) fn search(
         is_stopped: false,
         bound: None,
         found: Vec::new(),
+        incumbent: None,
         record: options.trace_events.map(|limit| Box::new(Record::new(limit, has_goals))),
     };
     searching.stats.nodes = model.num_nodes as u64;
@@ -134,6 +135,8 @@ struct Searching<'a> {
     bound: Option<Rational>,
     /// The choices of plans that have been found, where others are looked for.
     found: Vec<Vec<Choice>>,
+    /// The choices of the best plan so far, where a better one is looked for.
+    incumbent: Option<Vec<Choice>>,
     /// What is told of all searches; the solver has it while it searches.
     record: Option<Box<Record>>,
 }
@@ -170,43 +173,47 @@ impl<'a> Searching<'a> {
         gaps: Gaps,
         limits: &Limits,
         is_in_order: bool,
-    ) -> Result<(Problem<'a>, Solver), TooLarge> {
-        let (problem, mut solver) = self.problem(gaps, limits, is_in_order)?;
-        if let Some(record) = self.record.take() {
-            let goals = self.model.demands.goals.iter().zip(limits);
-            let values = goals.map_while(|(goal, limit)| limit.map(|limit| (goal, limit)));
-            let mut values: Vec<(&ModelGoal, i64)> = values.collect();
-            // The last of them is to be better than this.
-            if let Some((_, limit)) = values.last_mut() {
-                *limit += 1;
-            }
-            let round = SearchRound {
-                is_in_textual_order: is_in_order,
-                may_touch: gaps == Gaps::Ignored && self.gaps().len() > 1,
-                values: values.into_iter().map(|(goal, value)| goal.value(value)).collect(),
-            };
-            solver.begin_record(&problem, Some(record), round);
-        }
-        Ok((problem, solver))
+    ) -> Result<Asked<'a>, TooLarge> {
+        let mut asked = self.problem(gaps, limits, is_in_order)?;
+        self.begin_record(&mut asked, gaps, limits);
+        Ok(asked)
     }
 
-    fn problem(
-        &self,
-        gaps: Gaps,
-        limits: &Limits,
-        is_in_order: bool,
-    ) -> Result<(Problem<'a>, Solver), TooLarge> {
+    /// Goes on with the record in a solver that begins to search within these limits.
+    fn begin_record(&mut self, asked: &mut Asked<'a>, gaps: Gaps, limits: &Limits) {
+        let Some(record) = self.record.take() else { return };
+        let goals = self.model.demands.goals.iter().zip(limits);
+        let values = goals.map_while(|(goal, limit)| limit.map(|limit| (goal, limit)));
+        let mut values: Vec<(&ModelGoal, i64)> = values.collect();
+        // The last of them is to be better than this.
+        if let Some((_, limit)) = values.last_mut() {
+            *limit += 1;
+        }
+        let round = SearchRound {
+            is_in_textual_order: asked.solver.is_in_textual_order,
+            may_touch: gaps == Gaps::Ignored && self.gaps().len() > 1,
+            values: values.into_iter().map(|(goal, value)| goal.value(value)).collect(),
+        };
+        asked.solver.begin_record(&asked.problem, Some(record), round);
+    }
+
+    fn problem(&self, gaps: Gaps, limits: &Limits, is_in_order: bool) -> Result<Asked<'a>, TooLarge> {
         let (problem, mut solver) = Problem::new(self.model, gaps, Part::default())?;
         solver.is_in_textual_order = is_in_order;
         for choices in &self.found {
             problem.forbid_choices(&mut solver, choices);
         }
-        for (goal, limit) in self.model.demands.goals.iter().zip(limits) {
+        if let Some(incumbent) = &self.incumbent {
+            problem.prefer(&mut solver, incumbent);
+        }
+        let sought = limits.iter().rposition(Option::is_some);
+        let mut sums = GoalSums::default();
+        for (at, (goal, limit)) in self.model.demands.goals.iter().zip(limits).enumerate() {
             if let Some(limit) = *limit {
-                problem.add_goal(&mut solver, goal, limit);
+                sums = problem.add_goal(&mut solver, goal, limit, sought == Some(at))?;
             }
         }
-        Ok((problem, solver))
+        Ok(Asked { problem, solver, sums })
     }
 
     /// Solves, with at most so many conflicts where a number is given. `None` if these are spent, or the search was stopped.
@@ -278,10 +285,10 @@ impl<'a> Searching<'a> {
         let model = self.model;
         for &gaps in self.gaps() {
             for most in [Some(MAX_CONFLICTS_IN_ORDER), None] {
-                let Ok((mut problem, mut solver)) = self.recorded_problem(gaps, &Vec::new(), most.is_some())
-                else {
+                let Ok(asked) = self.recorded_problem(gaps, &Vec::new(), most.is_some()) else {
                     return Err(TimeOverflow::at(model.start));
                 };
+                let Asked { mut problem, mut solver, .. } = asked;
                 let next = self.next_plan(model, &mut problem, &mut solver, most)?;
                 self.record = solver.record.take();
                 match next {
@@ -300,9 +307,10 @@ impl<'a> Searching<'a> {
         let model = self.model;
         let mut plans: Vec<Plan> = Vec::new();
         for &gaps in self.gaps() {
-            let Ok((mut problem, mut solver)) = self.recorded_problem(gaps, &Vec::new(), true) else {
+            let Ok(asked) = self.recorded_problem(gaps, &Vec::new(), true) else {
                 return Err(TimeOverflow::at(model.start));
             };
+            let Asked { mut problem, mut solver, .. } = asked;
             problem.order_all_pairs(&mut solver);
             solver.record_choice_points(&problem);
             loop {
@@ -342,15 +350,18 @@ impl<'a> Searching<'a> {
     fn best(&mut self) -> Result<Option<Plan>, TimeOverflow> {
         let model = self.model;
         let mut limits: Limits = vec![None; model.demands.goals.len()];
-        let Some(mut plan) = self.any(&limits)? else {
+        self.incumbent = None;
+        let Some(mut plan) = self.better(&mut Improving::default(), &limits)? else {
             return Ok(None);
         };
         self.tell_values(&plan)?;
         for goal in 0..model.demands.goals.len() {
+            let mut improving = Improving::default();
             loop {
                 let value = model.demands.goals[goal].sum(model, &plan)?;
                 limits[goal] = Some(value - 1);
-                let Some(better) = self.any(&limits)? else {
+                self.incumbent = Some(plan.choices.clone());
+                let Some(better) = self.better(&mut improving, &limits)? else {
                     limits[goal] = Some(value);
                     break;
                 };
@@ -380,28 +391,62 @@ impl<'a> Searching<'a> {
     /// What follows for a goal from the limits of those before it, whatever is decided.
     fn proven_bound(&self, goal: usize, limits: &Limits) -> Option<Rational> {
         let gaps = if self.model.gap == 0 { Gaps::Ignored } else { Gaps::Trusted };
-        let (problem, solver) = self.problem(gaps, limits, false).ok()?;
+        let Asked { problem, solver, .. } = self.problem(gaps, limits, false).ok()?;
         let goal = &self.model.demands.goals[goal];
         Some(goal.value(problem.goal_bound(&solver, goal)))
     }
 
-    /// A plan within the limits, the same one each time.
-    fn any(&mut self, limits: &Limits) -> Result<Option<Plan>, TimeOverflow> {
+    /// A plan within the limits, the same one each time. The last of them is no greater than in the attempts before, with
+    /// whose solver the search goes on.
+    fn better(
+        &mut self,
+        improving: &mut Improving<'a>,
+        limits: &Limits,
+    ) -> Result<Option<Plan>, TimeOverflow> {
         let model = self.model;
-        for &gaps in self.gaps() {
-            let Ok((mut problem, mut solver)) = self.recorded_problem(gaps, limits, false) else {
-                return Err(TimeOverflow::at(model.start));
+        let limit = limits.iter().rev().find_map(|limit| *limit).unwrap_or(0);
+        while let Some(&gaps) = self.gaps().get(improving.exhausted) {
+            let mut asked = match improving.asked.take() {
+                Some((mut asked, last_limit)) => {
+                    Problem::lower_goal(&mut asked.solver, &asked.sums, last_limit - limit);
+                    self.begin_record(&mut asked, gaps, limits);
+                    asked
+                }
+                None => match self.recorded_problem(gaps, limits, false) {
+                    Ok(asked) => asked,
+                    Err(TooLarge) => return Err(TimeOverflow::at(model.start)),
+                },
             };
-            let next = self.next_plan(model, &mut problem, &mut solver, None)?;
-            self.record = solver.record.take();
+            let next = self.next_plan(model, &mut asked.problem, &mut asked.solver, None)?;
+            self.record = asked.solver.record.take();
             match next {
-                Next::Plan(found) => return Ok(Some(*found)),
-                Next::Nothing => {}
+                Next::Plan(found) => {
+                    improving.asked = Some((asked, limit));
+                    return Ok(Some(*found));
+                }
+                Next::Nothing => improving.exhausted += 1,
                 Next::Stopped => return Ok(None),
             }
         }
         Ok(None)
     }
+}
+
+/// A problem that is being solved.
+struct Asked<'m> {
+    problem: Problem<'m>,
+    solver: Solver,
+    /// Of the last goal that has a limit.
+    sums: GoalSums,
+}
+
+/// Attempts to reach less and less of one goal.
+#[derive(Default)]
+struct Improving<'m> {
+    /// How many ways to treat gaps have nothing better to give.
+    exhausted: usize,
+    /// What the last attempt was at, with its limit.
+    asked: Option<(Asked<'m>, i64)>,
 }
 
 #[cfg(test)]

@@ -8,11 +8,9 @@ use typed_index_collections::{TiSlice, TiVec};
 
 use super::alternatives::Way;
 use super::lasting::Sides;
-use super::linear;
 use super::literal::{Literal, Side, Variable};
 use super::resources::Shares;
 use super::{ChoicePoint, ChoicePointKind, Solver, interchangeable};
-use crate::demands::ModelGoal;
 use crate::model::{Alternatives, Context, INFINITE, Model, ModelArc, node};
 use crate::partial_order::Solution;
 use crate::search::{Choices, Gaps, UNBOUNDED_BELOW};
@@ -199,58 +197,6 @@ impl<'m> Problem<'m> {
     pub(crate) fn forbid_choices(&self, solver: &mut Solver, choices: &[Choice]) {
         let literals = choices.iter().map(|choice| !self.presence(Some(*choice)));
         solver.at_least_one(literals);
-    }
-
-    /// Adds that a goal's sum is at most a limit.
-    pub(crate) fn add_goal(&self, solver: &mut Solver, goal: &ModelGoal, limit: i64) {
-        solver.linears.add(self.terms(goal), limit);
-    }
-
-    /// What a goal's sum is at least, by what holds whatever is decided.
-    pub(crate) fn goal_bound(&self, solver: &Solver, goal: &ModelGoal) -> i64 {
-        let terms = self.terms(goal);
-        let sum: i128 = terms.into_iter().map(|term| linear::least(&solver.trail, term)).sum();
-        i64::try_from(sum).unwrap_or(i64::MIN)
-    }
-
-    /// The weighted variables that a goal's sum consists of.
-    fn terms(&self, goal: &ModelGoal) -> Vec<(i64, Variable)> {
-        let mut terms: BTreeMap<Variable, i64> = BTreeMap::new();
-        for &(arc, weight) in &goal.by_arc {
-            let presence = self.presence(self.model.arcs[arc].context);
-            *terms.entry(presence.side.variable()).or_default() += weight;
-        }
-        self.add_departing_terms(goal, &mut terms);
-        if goal.per_tick != 0 {
-            *terms.entry(self.times[self.model.demands.end]).or_default() += goal.per_tick;
-        }
-        let terms = terms.into_iter().filter(|&(_, weight)| weight != 0);
-        terms.map(|(variable, weight)| (weight, variable)).collect()
-    }
-
-    /// What movements add by where they start: each of them the least of all its starts, and the rest by its own.
-    fn add_departing_terms(&self, goal: &ModelGoal, terms: &mut BTreeMap<Variable, i64>) {
-        if goal.by_departure.is_empty() {
-            return;
-        }
-        let labels = &self.model.conditions.labels;
-        let mut by_movement: BTreeMap<LabelId, Vec<(Literal, i64)>> = BTreeMap::new();
-        for (departing, last) in &self.sides.departures {
-            let weight = labels[departing.before]
-                .value
-                .and_then(|from| goal.by_departure.get(&(departing.movement, from)))
-                .copied()
-                .unwrap_or(0);
-            by_movement.entry(departing.movement).or_default().push((*last, weight));
-        }
-        for (movement, starts) in by_movement {
-            let least = starts.iter().map(|&(_, weight)| weight).min().unwrap_or(0);
-            let presence = self.intervals[movement].presence;
-            *terms.entry(presence.side.variable()).or_default() += least;
-            for (last, weight) in starts {
-                *terms.entry(last.side.variable()).or_default() += weight - least;
-            }
-        }
     }
 
     /// What must lie between the end of a labelled interval and the start of one that excludes it, at most.

@@ -23,14 +23,21 @@ pub(crate) struct Linears {
 
 impl Linears {
     /// Adds a sum. Weights are not 0.
-    pub(crate) fn add(&mut self, terms: Vec<(i64, Variable)>, most: i64) {
+    pub(crate) fn add(&mut self, terms: Vec<(i64, Variable)>, most: i64) -> LinearId {
         let sides = terms.iter().map(
             |&(weight, variable)| {
                 if weight > 0 { variable.lower() } else { variable.upper() }
             },
         );
         self.queue.add(sides);
-        self.all.push(Linear { terms, most });
+        self.all.push_and_get_key(Linear { terms, most })
+    }
+
+    /// Lowers the limit of a sum. At the root.
+    pub(crate) fn lower(&mut self, id: LinearId, by: i64) {
+        let most = &mut self.all[id].most;
+        *most = most.saturating_sub(by);
+        self.queue.push(id);
     }
 
     pub(crate) fn propagate(&mut self, trail: &mut Trail) -> Result<(), Conflict> {

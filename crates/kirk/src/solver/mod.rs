@@ -25,6 +25,7 @@ mod cumulative;
 mod difference;
 mod disjunctive;
 mod encode;
+mod goals;
 mod interchangeable;
 mod lasting;
 mod leaf;
@@ -32,7 +33,9 @@ mod linear;
 mod literal;
 mod queue;
 mod record;
+mod relaxation;
 mod resources;
+mod simplex;
 mod trail;
 
 use tpn::LabelId;
@@ -55,6 +58,7 @@ use resources::Sharing;
 use trail::{Conflict, Trail};
 
 pub(crate) use encode::{Part, Problem, TooLarge};
+pub(crate) use goals::GoalSums;
 pub(crate) use lasting::Kept;
 pub(crate) use record::Record;
 

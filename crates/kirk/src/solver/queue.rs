@@ -47,6 +47,14 @@ where
         }
     }
 
+    /// A constraint itself has changed.
+    pub(crate) fn push(&mut self, id: Id) {
+        if !self.is_waiting[id] {
+            self.is_waiting[id] = true;
+            self.waiting.push(id);
+        }
+    }
+
     /// Drops what waits: the events that it waits for are being taken back.
     pub(crate) fn forget(&mut self) {
         for id in self.waiting.drain(..) {
