@@ -48,6 +48,8 @@ ids! {
     ExclusionId;
     /// A resource of the solver that several tasks share at a time.
     CumulativeId;
+    /// The movements of a vehicle that the solver orders.
+    TourId;
     /// A tightening of a bound on the solver's trail.
     EventId;
     /// A reason that was noted on the solver's trail.

@@ -67,6 +67,21 @@ impl Departures {
         }
     }
 
+    /// At most so many routes whose paths were not asked yet, the shortest first.
+    pub(crate) fn unknown(&self, network: &Network, program: &Program, most: usize) -> Vec<Route> {
+        let open = self.movements.iter().flat_map(|movement| {
+            let is_known = |place: &SmolStr| self.known.contains_key(&(movement.occurrence, place.clone()));
+            let places = movement.places.iter().filter(move |(_, place, _, _)| !is_known(place));
+            places.filter_map(|(_, place, _, metres)| Some(((*metres)?, movement.occurrence, place)))
+        });
+        let mut open: Vec<(Rational, OccurrenceId, &SmolStr)> = open.collect();
+        open.sort_unstable();
+        let routes = open
+            .into_iter()
+            .filter_map(|(_, occurrence, place)| traverse::route_from(network, program, occurrence, place));
+        routes.filter(|route| !self.knows(route)).take(most).collect()
+    }
+
     /// All that is known, for the planner.
     pub(crate) fn all(&self) -> Vec<Departure> {
         self.listed(|_, _| true)

@@ -136,10 +136,12 @@ fn plan_paths(
     let mut inserted: BTreeMap<OccurrenceId, Inserted> = BTreeMap::new();
     let ordered;
     let is_by_departure = kirk::has_open_order(problem.network) || problem.network.counts_metres();
+    let mut unproven = None;
     let problem = if problem.ground.is_some() && is_by_departure {
         match order_movements(problem, grounds, paths, stop) {
-            Ok(network) => {
-                ordered = Arc::new(network);
+            Ok(order) => {
+                ordered = Arc::new(order.network);
+                unproven = order.unproven;
                 &Problem { network: &ordered, ..*problem }
             }
             Err(answer) => return conclude(problem, grounds, answer.network, answer.outcome, answer.tried),
@@ -172,6 +174,11 @@ fn plan_paths(
             break;
         }
     }
+    if let (Some(Unproven { bound }), Some(plan)) = (unproven, outcome.plans.first_mut()) {
+        // The best plan in this order of movements, but perhaps not in another one.
+        plan.quality.is_optimal = Some(false);
+        outcome.bound = bound;
+    }
     conclude(problem, grounds, network, outcome, inserted)
 }
 
@@ -203,6 +210,22 @@ pub(crate) fn without_upper_limits(
     relaxed.map(Arc::new)
 }
 
+/// The network in which movements start where they do in the best plan.
+struct Order {
+    network: Network,
+    /// There, if the search for the best plan was stopped.
+    unproven: Option<Unproven>,
+}
+
+/// A plan that was not shown to be the best.
+struct Unproven {
+    /// What no plan is better than.
+    bound: Option<Rational>,
+}
+
+/// How many legs that a plan does not have are looked at after the first one; after each plan it is twice as many.
+const LEGS_AT_FIRST: usize = 8;
+
 /// What came of it where movements fit in no order.
 struct NoOrder {
     network: Arc<Network>,
@@ -211,14 +234,17 @@ struct NoOrder {
 }
 
 /// The network in which movements start where they do in the first plan whose paths are all known: each path that is found
-/// tells how long its leg takes, and excludes the orders in which there is no time for it (SPEC 10.3).
+/// tells how long its leg takes, and excludes the orders in which there is no time for it (SPEC 10.3). Of the legs that the
+/// plan does not have, more and more of the shortest are looked at as well, so that the straight lines of those that are not
+/// known do not promise plans for long.
 fn order_movements(
     problem: &Problem<'_>,
     grounds: &mut Grounds,
     paths: &mut Paths,
     stop: &mut dyn FnMut() -> bool,
-) -> Result<Network, Box<NoOrder>> {
+) -> Result<Order, Box<NoOrder>> {
     let mut departures = Departures::new(problem.network, problem.program);
+    let mut extra = LEGS_AT_FIRST;
     let mut tried: BTreeMap<OccurrenceId, Inserted> = BTreeMap::new();
     loop {
         let mut network = problem.network.as_ref().clone();
@@ -255,9 +281,30 @@ fn order_movements(
         if !is_new {
             network.departures = departures.only(&routes);
             network.distances = distances(problem, &departures);
-            return Ok(network);
+            let unproven = plan.quality.is_optimal == Some(false);
+            return Ok(Order { network, unproven: unproven.then_some(Unproven { bound: outcome.bound }) });
         }
+        for route in departures.unknown(problem.network, problem.program, extra) {
+            if stop() {
+                break;
+            }
+            let (least, length_m) = measured(problem, ground, grounds, paths, &route);
+            departures.learn(&route, least, length_m);
+        }
+        extra *= 2;
     }
+}
+
+/// How long a route takes at least, if it can be driven, and its metres.
+fn measured(
+    problem: &Problem<'_>,
+    ground: (&MapKey, &Arc<Terrain>),
+    grounds: &mut Grounds,
+    paths: &mut Paths,
+    route: &Route,
+) -> (Option<Time>, Option<Rational>) {
+    let Ok(legs) = legs(problem, ground, grounds, paths, route) else { return (None, None) };
+    (least_duration(problem, route, &legs), rounded_up(traverse::joined(&legs).length_m()))
 }
 
 /// The metres that movements drive at least, where the objective counts them.

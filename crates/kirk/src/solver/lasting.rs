@@ -10,10 +10,14 @@ use tpn::{CausalLink, LabelId, Ordering};
 
 use super::encode::{MAX_LINKS, Part, Problem, TooLarge};
 use super::literal::Literal;
+use super::tours::MAX_MOVEMENTS;
 use super::{ChoicePoint, ChoicePointKind, Solver};
 use crate::demands::LastingVariable;
 use crate::structure::Relation;
 use crate::trace::{Departing, Event, TreeChoice};
+
+/// Pairs of so few movements as a tour may have.
+const MAX_PAIRS: usize = MAX_MOVEMENTS * MAX_MOVEMENTS;
 
 /// What the solver knows of variables that keep their values.
 #[derive(Clone, Debug, Default)]
@@ -81,7 +85,8 @@ impl Problem<'_> {
     /// A movement takes at least as long as it does from where the one right before it ends (SPEC 10.3).
     fn add_departures(&mut self, solver: &mut Solver, variable: &LastingVariable, changes: &[LabelId]) {
         let model = self.model;
-        for &movement in changes {
+        let mut durations = vec![vec![None; changes.len()]; changes.len() + 1];
+        for (column, &movement) in changes.iter().enumerate() {
             let Some(departures) = model.demands.departures.get(&movement) else { continue };
             let moving = self.intervals[movement];
             let mut found = vec![!moving.presence];
@@ -110,6 +115,9 @@ impl Problem<'_> {
                 }
                 let departure =
                     departures.iter().find(|departure| model.conditions.gives_value(before, departure.from));
+                let least = departure.map_or(Some(0), |departure| departure.least);
+                let row = changes.iter().position(|&change| change == before).unwrap_or(changes.len());
+                durations[row][column] = least.map(|least| least.max(moving.duration));
                 match departure.map(|departure| departure.least) {
                     None => {}
                     Some(None) => solver.assert(!last),
@@ -125,6 +133,49 @@ impl Problem<'_> {
             }
             solver.at_least_one(found);
         }
+        if self.are_movements_in_any_order(changes) {
+            let movements = changes.iter().map(|&movement| self.intervals[movement]).collect();
+            let quickest = solver.tours.add(movements, &durations);
+            for (position, &first) in quickest.iter().enumerate() {
+                for &then in &quickest[position + 1..] {
+                    self.prefer_before(solver, changes[first], changes[then]);
+                }
+            }
+        }
+    }
+
+    /// Tries first that one change comes before another.
+    fn prefer_before(&self, solver: &mut Solver, first: LabelId, then: LabelId) {
+        let Some(order) = self.before(first, then) else { return };
+        for &id in &solver.choice_points_of[order.side.variable()] {
+            let ChoicePoint { kind, options, last, .. } = &mut solver.choice_points[id];
+            if *kind == ChoicePointKind::Sides
+                && let Some(option) = options.iter().position(|&option| option == order)
+            {
+                *last = Some(option as u32);
+            }
+        }
+    }
+
+    /// Whether all changes of a variable are movements of which no two overlap, and planning orders most of them.
+    fn are_movements_in_any_order(&self, changes: &[LabelId]) -> bool {
+        let pairs = changes
+            .iter()
+            .enumerate()
+            .flat_map(|(position, &left)| changes[position + 1..].iter().map(move |&right| (left, right)));
+        let mut open = 0;
+        for (left, right) in pairs.take(MAX_PAIRS) {
+            if !self.can_be_together(left, right) {
+                continue;
+            }
+            if self.before(left, right).is_none() {
+                return false;
+            }
+            open += usize::from(self.model.nested_order(left, right) == Relation::Open);
+        }
+        open > changes.len()
+            && changes.len() <= MAX_MOVEMENTS
+            && changes.iter().all(|change| self.model.demands.departures.contains_key(change))
     }
 
     fn add_carriers(

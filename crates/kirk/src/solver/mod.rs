@@ -36,6 +36,7 @@ mod record;
 mod relaxation;
 mod resources;
 mod simplex;
+mod tours;
 mod trail;
 
 use tpn::LabelId;
@@ -55,6 +56,7 @@ use linear::Linears;
 use literal::{Literal, Side, Variable};
 use record::Origin;
 use resources::Sharing;
+use tours::Tours;
 use trail::{Conflict, Trail};
 
 pub(crate) use encode::{Part, Problem, TooLarge};
@@ -106,6 +108,7 @@ pub(crate) struct Solver {
     disjunctives: Disjunctives,
     cumulatives: Cumulatives,
     linears: Linears,
+    tours: Tours,
     /// By side of a Boolean: sides that follow.
     implied: TiVec<Side, Vec<Side>>,
     /// The choice point whose options exclude each other, of variables that have one.
@@ -146,6 +149,7 @@ impl Solver {
             disjunctives: Disjunctives::default(),
             cumulatives: Cumulatives::default(),
             linears: Linears::default(),
+            tours: Tours::default(),
             implied: TiVec::new(),
             exclusive: TiVec::new(),
             choice_points: TiVec::new(),
@@ -188,6 +192,7 @@ impl Solver {
         self.exclusive.resize(count, None);
         self.choice_points_of.resize(count, Vec::new());
         self.linears.queue.resize(count);
+        self.tours.queue.resize(count);
     }
 
     /// `left` implies `right`, both Booleans. At the root.
@@ -352,6 +357,7 @@ impl Solver {
                 self.disjunctives.queue.moved(side);
                 self.cumulatives.queue.moved(side);
                 self.linears.queue.moved(side);
+                self.tours.queue.moved(side);
             }
             if self.differences.propagate(&mut self.trail)? {
                 continue;
@@ -368,7 +374,8 @@ impl Solver {
                 continue;
             }
             let has_looked = self.disjunctives.propagate(&mut self.trail)?
-                || self.cumulatives.propagate(&mut self.trail)?;
+                || self.cumulatives.propagate(&mut self.trail)?
+                || self.tours.propagate(&mut self.trail)?;
             if !has_looked {
                 return Ok(());
             }
@@ -470,6 +477,7 @@ impl Solver {
         self.disjunctives.queue.forget();
         self.cumulatives.queue.forget();
         self.linears.queue.forget();
+        self.tours.queue.forget();
     }
 
     /// Makes the next decision. `false` if everything that counts is decided.
