@@ -53,9 +53,10 @@ def solve(project, limit_s):
     done = now()
     has_schedule = status in (cp_model.OPTIMAL, cp_model.FEASIBLE)
     return {
-        "end": int(solver.objective_value) if has_schedule else None,
+        "value": int(solver.objective_value) if has_schedule else None,
         "is_proven": status == cp_model.OPTIMAL,
         "total_s": min(done[0] - begun[0], done[1] - begun[1]),
+        "first_s": None,
     }
 
 

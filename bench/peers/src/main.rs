@@ -29,6 +29,8 @@ enum Subject {
     Families,
     /// Shortest schedules of activities that share resources, proven: aries, CP-SAT.
     Resources,
+    /// Days with more wishes than room, and stops in any order, proven: CP-SAT.
+    Objectives,
     /// Simple temporal networks, arc by arc: aries.
     Stn,
     /// Drawings of networks: Graphviz, ELK, dagre, rust-sugiyama.
@@ -65,6 +67,7 @@ fn main() -> Result<()> {
         Subject::Planner,
         Subject::Families,
         Subject::Resources,
+        Subject::Objectives,
         Subject::Stn,
         Subject::Layout,
         Subject::Paths,
@@ -79,6 +82,7 @@ fn main() -> Result<()> {
             Subject::Planner => planner::compare(&mut tools, options.quick)?,
             Subject::Families => planner::families::compare(&options.family, options.quick),
             Subject::Resources => planner::resources::compare(&mut tools, options.quick)?,
+            Subject::Objectives => planner::objectives::compare(&mut tools, options.quick)?,
             Subject::Stn => network::compare(options.quick),
             Subject::Layout => layouts::compare(&mut tools, options.quick)?,
             Subject::Paths => paths::compare(&mut tools, options.quick)?,

@@ -3,6 +3,8 @@
 mod aries;
 pub(crate) mod families;
 mod instance;
+pub(crate) mod objectives;
+mod proofs;
 pub(crate) mod resources;
 
 use std::fs;

@@ -4,24 +4,16 @@
 //! (`resource … capacity`, `uses`, `objective minimize end`), CP-SAT as cumulative constraints, aries as `no_overlap` where
 //! a resource serves one at a time, and otherwise task by task: what runs at its start takes no more than there is.
 
-use std::fs;
-use std::process::Command;
-use std::time::Duration;
-
 use anyhow::Result;
 use aries_solver::prelude::{Interval, LinSum, Lit, Model, SearchLimit, Solver, Var, leq, no_overlap, or};
-use kirk::{Options, Stats};
-use serde::{Deserialize, Serialize};
-use tpn::compile::{Top, compile};
+use serde::Serialize;
 use tpn::families::JOB_SHOPS;
 use tpn::generate::Rng;
 
+use super::proofs::{self, Answer, LIMIT, network_of};
 use crate::stopwatch::Stopwatch;
-use crate::table::{Table, figure, median, millis, quantile};
-use crate::tools::{Tools, answer, source_path};
-
-/// How long a solver may take for one project.
-const LIMIT: Duration = Duration::from_secs(10);
+use crate::table::Table;
+use crate::tools::Tools;
 
 /// What is to be scheduled.
 #[derive(Serialize)]
@@ -38,29 +30,9 @@ struct Activity {
     amounts: Vec<i64>,
 }
 
-/// The best end that was found, whether it is proven, and the time it took.
-#[derive(Clone, Copy, Debug)]
-struct Answer {
-    end: Option<i64>,
-    is_proven: bool,
-    total: Duration,
-}
-
 /// Prints the table.
 pub(crate) fn compare(tools: &mut Tools, quick: bool) -> Result<()> {
-    let mut table = Table::new(
-        "Resources: shortest schedules, proven",
-        &[
-            "projects",
-            "number",
-            "solver",
-            "median ms",
-            "worst ms",
-            "unproven",
-            "longer than the best known",
-            "agrees",
-        ],
-    );
+    let mut table = Table::new("Resources: shortest schedules, proven", &proofs::COLUMNS);
     let count = if quick { 2 } else { 5 };
     let small = JOB_SHOPS.iter().filter(|shop| shop.name != "ft10");
     let mut families = vec![(
@@ -83,47 +55,12 @@ pub(crate) fn compare(tools: &mut Tools, quick: bool) -> Result<()> {
 }
 
 fn compare_family(tools: &mut Tools, table: &mut Table, name: &str, projects: &[Project]) -> Result<()> {
-    let folder = tools.folder("resources")?;
-    let mut files = Vec::new();
-    for (index, project) in projects.iter().enumerate() {
-        let file = folder.join(format!("{}-{index}.json", name.replace(' ', "-")));
-        fs::write(&file, serde_json::to_vec(project)?)?;
-        files.push(file);
-    }
+    let files = proofs::files(tools, "resources", name, projects)?;
     let ours: Vec<Answer> = projects.iter().map(ours).collect();
     let theirs: Vec<Answer> = projects.iter().map(aries).collect();
-    let cp_sat = tools.python().and_then(|python| {
-        let mut command = Command::new(python);
-        command.arg(source_path("resources.py")).arg(LIMIT.as_secs().to_string());
-        let text = answer(command.args(&files), LIMIT * (2 * files.len() as u32 + 2))?;
-        text.lines().map(python_answer).collect::<Result<Vec<Answer>, String>>()
-    });
+    let cp_sat = proofs::of_python(tools, "resources.py", &files);
     let rows = [("ours", Ok(ours)), ("aries-solver 0.6.0", Ok(theirs)), ("OR-tools CP-SAT", cp_sat)];
-    let found: Vec<&Vec<Answer>> = rows.iter().filter_map(|(_, answers)| answers.as_ref().ok()).collect();
-    let best: Vec<Option<i64>> = (0..projects.len())
-        .map(|index| found.iter().filter_map(|answers| answers[index].end).min())
-        .collect();
-    for (solver, answers) in &rows {
-        let mut cells = vec![name.to_owned(), projects.len().to_string(), (*solver).to_owned()];
-        match answers {
-            Ok(answers) => {
-                let times: Vec<f64> = answers.iter().map(|answer| millis(answer.total)).collect();
-                let unproven = answers.iter().filter(|answer| !answer.is_proven).count();
-                let pairs = || answers.iter().zip(&best);
-                let longer = pairs().filter(|(answer, best)| answer.end != **best).count();
-                let is_wrong = pairs().any(|(answer, best)| answer.is_proven && answer.end != *best);
-                cells.extend([
-                    figure(median(&times)),
-                    figure(quantile(&times, 1.0)),
-                    unproven.to_string(),
-                    longer.to_string(),
-                    if is_wrong { "NO" } else { "yes" }.to_owned(),
-                ]);
-            }
-            Err(why) => cells.push(why.clone()),
-        }
-        table.row(cells);
-    }
+    proofs::add_rows(table, name, projects.len(), &rows);
     Ok(())
 }
 
@@ -191,20 +128,7 @@ impl Project {
 }
 
 fn ours(project: &Project) -> Answer {
-    let (network, diagnostics) = compile(&rmpl::parse(&project.text()).program(), &Top::Scenario(None));
-    let network = network.unwrap_or_else(|| panic!("does not compile: {diagnostics:?}"));
-    let options = Options { explain: false, relax: false, ..Options::default() };
-    let start = Stopwatch::start();
-    let mut asked = 0_u32;
-    let mut is_over = |_: &Stats| {
-        asked += 1;
-        asked.is_multiple_of(64) && start.elapsed() > LIMIT
-    };
-    let outcome = std::hint::black_box(kirk::plan(&network, &options, &mut is_over));
-    let total = start.elapsed();
-    let plan = outcome.plans.first();
-    let end = plan.and_then(|plan| plan.quality.end.to_string().parse().ok());
-    Answer { end, is_proven: plan.is_some_and(|plan| plan.quality.is_optimal == Some(true)), total }
+    proofs::ours(&network_of(&project.text()), |plan| plan.quality.end)
 }
 
 fn aries(project: &Project) -> Answer {
@@ -260,19 +184,8 @@ fn aries(project: &Project) -> Answer {
     );
     let total = start.elapsed();
     match found {
-        Ok(Some((value, _))) => Answer { end: Some(i64::from(value)), is_proven: true, total },
-        Ok(None) => Answer { end: None, is_proven: true, total },
-        Err(_) => Answer { end: best, is_proven: false, total },
+        Ok(Some((value, _))) => Answer { value: Some(i64::from(value)), is_proven: true, total, first: None },
+        Ok(None) => Answer { value: None, is_proven: true, total, first: None },
+        Err(_) => Answer { value: best, is_proven: false, total, first: None },
     }
-}
-
-fn python_answer(line: &str) -> Result<Answer, String> {
-    #[derive(Deserialize)]
-    struct Line {
-        end: Option<i64>,
-        is_proven: bool,
-        total_s: f64,
-    }
-    let Line { end, is_proven, total_s } = serde_json::from_str(line).map_err(|error| error.to_string())?;
-    Ok(Answer { end, is_proven, total: Duration::from_secs_f64(total_s) })
 }
