@@ -315,3 +315,36 @@ fn a_key_let_go_in_the_same_frame_does_not_take_the_list_away_from_enter() {
     app.press(NONE, Key::Enter);
     assert!(app.harness.state().source().contains("Drive(A)"), "{}", app.harness.state().source());
 }
+
+#[test]
+fn long_lines_are_wrapped_at_the_panel_s_width_and_the_caret_goes_by_their_rows() {
+    let comment = format!("// {}", "word ".repeat(60).trim_end());
+    let mut app = editing(&format!("$0{comment}\nscenario S = {{ Drive(A) }}\n"));
+    let line = |app: &App| {
+        let state = app.harness.state().app_state();
+        state.document.line_at(state.document.caret().head)
+    };
+    app.press(NONE, Key::ArrowDown);
+    assert_eq!(line(&app), 1);
+    app.press(NONE, Key::ArrowUp);
+    app.press(Modifiers::ALT, Key::Z);
+    app.settle();
+    let rows = app.harness.state().app_state().document.rows_of_line(0).len();
+    assert!(rows > 2, "{rows} rows");
+    for row in 1..rows {
+        app.press(NONE, Key::ArrowDown);
+        assert_eq!(line(&app), 0, "row {row}");
+    }
+    app.press(NONE, Key::ArrowDown);
+    assert_eq!(line(&app), 1);
+    app.press(NONE, Key::ArrowUp);
+    app.press(NONE, Key::End);
+    assert_eq!(app.text(), format!("{comment}$0\nscenario S = {{ Drive(A) }}\n"), "the end of the last row");
+    // Another mission is wrapped, too, and the setting ends it.
+    app.harness.state_mut().run(Command::OpenSource { name: "other".into(), source: comment.clone() });
+    app.settle();
+    assert_eq!(app.harness.state().app_state().document.rows_of_line(0).len(), rows);
+    app.press(Modifiers::ALT, Key::Z);
+    app.settle();
+    assert_eq!(app.harness.state().app_state().document.rows_of_line(0).len(), 1);
+}

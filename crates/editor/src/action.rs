@@ -22,6 +22,8 @@ pub enum EditorAction {
     Press,
     /// Folds what begins in this line, or unfolds it. Lines count from 0.
     ToggleFold(usize),
+    /// The view has room for so many columns and breaks longer lines into rows, or breaks none.
+    WrapAt(Option<usize>),
     /// Chooses so many entries further down in the list at the caret.
     MoveInPopup(isize),
     /// Takes an entry of the list at the caret: this one, or the chosen one.

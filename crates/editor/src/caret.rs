@@ -3,7 +3,7 @@
 use egui::{Painter, Rect, Response, Stroke, Ui};
 
 use crate::EditorView;
-use crate::geometry::{Geometry, ShownLines};
+use crate::geometry::{Geometry, ShownRows};
 
 /// A caret is shown for this part of each period, and then not for the rest of it.
 const SHOWN_SECS: f64 = 0.65;
@@ -12,16 +12,15 @@ const PERIOD_SECS: f64 = 1.1;
 /// A caret that has not moved for so long stops blinking, and the app can rest.
 const BLINKING_SECS: f64 = 30.0;
 
-/// Where the caret is on screen, if its line is visible.
-pub(crate) fn rect(view: &EditorView<'_>, geometry: &Geometry<'_>, shown: &ShownLines) -> Option<Rect> {
+/// Where the caret is on screen, if its row is visible.
+pub(crate) fn rect(view: &EditorView<'_>, geometry: &Geometry<'_>, shown: &ShownRows) -> Option<Rect> {
     rect_at(view, geometry, shown, view.document.caret().head)
 }
 
-fn rect_at(view: &EditorView<'_>, geometry: &Geometry<'_>, shown: &ShownLines, head: usize) -> Option<Rect> {
-    let line = view.document.line_at(head);
-    let layout = shown.layout_of(line)?;
-    let x = geometry.origin.x + layout.x_of(view, head);
-    Some(geometry.row(line, x..x + 1.0))
+fn rect_at(view: &EditorView<'_>, geometry: &Geometry<'_>, shown: &ShownRows, head: usize) -> Option<Rect> {
+    let row = shown.row_at(head)?;
+    let x = geometry.origin.x + row.layout.x_of(view, head);
+    Some(geometry.rect_of(row.row, x..x + 1.0))
 }
 
 /// Paints the caret while the text has the focus, and tells input methods where it is.
@@ -29,7 +28,7 @@ pub(crate) fn paint(
     ui: &Ui,
     view: &EditorView<'_>,
     geometry: &Geometry<'_>,
-    shown: &ShownLines,
+    shown: &ShownRows,
     painter: &Painter,
     response: &Response,
 ) {

@@ -1,9 +1,9 @@
-//! Where lines stand on screen.
+//! Where rows of the text stand on screen. A line has one row, unless long lines are broken into several.
 
 use std::ops::Range;
 
 use egui::{FontId, Pos2, Rangef, Rect, Ui};
-use text_editing::{Document, Rows};
+use text_editing::{Document, Rows, WrappedRows};
 
 use crate::line::LineLayout;
 use crate::{EditorView, LanguageService};
@@ -16,23 +16,45 @@ pub(crate) struct Geometry<'a> {
     pub(crate) gutter_width: f32,
     /// The top left corner of the first line's text.
     pub(crate) origin: Pos2,
-    /// Which line stands in which row.
-    pub(crate) rows: &'a Rows,
+    /// Which lines are folded away.
+    pub(crate) folded: &'a Rows,
+    /// Which row of which line stands where, if lines are broken into rows.
+    pub(crate) wrapped: Option<&'a WrappedRows>,
 }
 
 impl Geometry<'_> {
-    pub(crate) fn top_of(&self, line: usize) -> f32 {
-        self.origin.y + self.rows.row_of(line) as f32 * self.row_height
+    /// The first row of a line.
+    pub(crate) fn row_of(&self, line: usize) -> usize {
+        self.wrapped.map_or_else(|| self.folded.row_of(line), |wrapped| wrapped.row_of(line))
     }
 
-    /// The line at a height, whether there is text or not.
-    pub(crate) fn line_at(&self, y: f32) -> Option<usize> {
+    /// The line in a row, and which of its rows that is.
+    pub(crate) fn place_of(&self, row: usize) -> (usize, usize) {
+        self.wrapped.map_or_else(|| (self.folded.line_of(row), 0), |wrapped| wrapped.place_of(row))
+    }
+
+    /// How many rows there are.
+    pub(crate) fn num_rows(&self, document: &Document) -> usize {
+        self.wrapped.map_or_else(|| self.folded.count(document.line_count()), WrappedRows::count)
+    }
+
+    /// The row that holds a place.
+    pub(crate) fn row_at(&self, document: &Document, offset: usize) -> usize {
+        self.row_of(document.line_at(offset)) + document.row_in_line(offset)
+    }
+
+    pub(crate) fn top_of(&self, row: usize) -> f32 {
+        self.origin.y + row as f32 * self.row_height
+    }
+
+    /// The row at a height, whether there is text or not.
+    pub(crate) fn row_at_height(&self, y: f32) -> Option<usize> {
         let row = ((y - self.origin.y) / self.row_height).floor();
-        (row >= 0.0).then(|| self.rows.line_of(row as usize))
+        (row >= 0.0).then_some(row as usize)
     }
 
-    pub(crate) fn row(&self, line: usize, x: Range<f32>) -> Rect {
-        let top = self.top_of(line);
+    pub(crate) fn rect_of(&self, row: usize, x: Range<f32>) -> Rect {
+        let top = self.top_of(row);
         Rect::from_min_max(Pos2::new(x.start, top), Pos2::new(x.end, top + self.row_height))
     }
 
@@ -48,42 +70,71 @@ impl Geometry<'_> {
     }
 }
 
-/// The lines on screen, laid out, in order; what is folded is left out.
-pub(crate) struct ShownLines {
-    pub(crate) lines: Vec<usize>,
-    layouts: Vec<LineLayout>,
+/// A row on screen, laid out.
+pub(crate) struct ShownRow {
+    /// Counted from the first row of the text.
+    pub(crate) row: usize,
+    pub(crate) line: usize,
+    /// Which of its line's rows it is.
+    pub(crate) nth: usize,
+    pub(crate) layout: LineLayout,
 }
 
-impl ShownLines {
-    /// Lays out `lines`.
+/// The rows on screen, in order; what is folded is left out.
+pub(crate) struct ShownRows {
+    rows: Vec<ShownRow>,
+}
+
+impl ShownRows {
+    /// Lays out `rows`.
     pub(crate) fn new(
         ui: &Ui,
         view: &EditorView<'_>,
         language: &mut dyn LanguageService,
         geometry: &Geometry<'_>,
-        lines: Vec<usize>,
+        rows: Range<usize>,
     ) -> Self {
-        let mut shown = Self { lines, layouts: Vec::new() };
-        let highlights = language.highlights(shown.bytes(view.document));
-        let layouts = shown.lines.iter().map(|&line| {
-            LineLayout::new(ui, view, &geometry.font, view.document.line_range(line), &highlights)
+        let document = view.document;
+        let [first, last] =
+            [rows.start, rows.end.max(1) - 1].map(|row| document.line_range(geometry.place_of(row).0));
+        let highlights = language.highlights(if rows.is_empty() { 0..0 } else { first.start..last.end });
+        // Of the rows of one line that are on screen only the first asks where it breaks.
+        let mut of_line: (usize, Vec<Range<usize>>) = (usize::MAX, Vec::new());
+        let laid_out = rows.filter_map(|row| {
+            let (line, nth) = geometry.place_of(row);
+            if of_line.0 != line {
+                of_line = (line, document.rows_of_line(line));
+            }
+            let bytes = of_line.1.get(nth)?.clone();
+            let is_last = nth + 1 == of_line.1.len();
+            let left = document.hanging_columns(line, nth) as f32 * geometry.character_width;
+            let layout = LineLayout::new(ui, view, &geometry.font, bytes, is_last, left, &highlights);
+            Some(ShownRow { row, line, nth, layout })
         });
-        shown.layouts = layouts.collect();
-        shown
+        Self { rows: laid_out.collect() }
     }
 
-    pub(crate) fn each(&self) -> impl Iterator<Item = (usize, &LineLayout)> {
-        self.lines.iter().copied().zip(&self.layouts)
+    pub(crate) fn each(&self) -> impl Iterator<Item = &ShownRow> {
+        self.rows.iter()
     }
 
-    pub(crate) fn layout_of(&self, line: usize) -> Option<&LineLayout> {
-        self.layouts.get(self.lines.binary_search(&line).ok()?)
+    /// A row, counted from the first one of the text.
+    pub(crate) fn row(&self, row: usize) -> Option<&ShownRow> {
+        self.rows.get(self.rows.binary_search_by_key(&row, |shown| shown.row).ok()?)
     }
 
-    /// From the first line to the last, those between that are folded included.
+    /// The row that holds a place.
+    pub(crate) fn row_at(&self, offset: usize) -> Option<&ShownRow> {
+        let after = self.rows.partition_point(|shown| shown.layout.bytes().start <= offset);
+        self.rows[..after].last().filter(|shown| shown.layout.holds(offset))
+    }
+
+    /// From the first line on screen to the last, both whole, what is folded between them included.
     pub(crate) fn bytes(&self, document: &Document) -> Range<usize> {
-        match (self.lines.first(), self.lines.last()) {
-            (Some(&first), Some(&last)) => document.line_range(first).start..document.line_range(last).end,
+        match (self.rows.first(), self.rows.last()) {
+            (Some(first), Some(last)) => {
+                document.line_range(first.line).start..document.line_range(last.line).end
+            }
             _ => 0..0,
         }
     }

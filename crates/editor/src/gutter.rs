@@ -6,7 +6,7 @@ use egui::{Align2, Pos2, Rect, Ui};
 use theme::icon::{self, Icon};
 use theme::space;
 
-use crate::geometry::{Geometry, ShownLines};
+use crate::geometry::{Geometry, ShownRows};
 use crate::{EditorView, LanguageService, Severity};
 
 pub(crate) fn paint(
@@ -14,7 +14,7 @@ pub(crate) fn paint(
     view: &EditorView<'_>,
     language: &mut dyn LanguageService,
     geometry: &Geometry<'_>,
-    shown: &ShownLines,
+    shown: &ShownRows,
 ) {
     let tokens = view.tokens;
     let document = view.document;
@@ -29,8 +29,10 @@ pub(crate) fn paint(
     let current = document.line_at(document.caret().head);
     let worst = worst_by_line(view);
     let signs = geometry.fold_signs(clip);
-    for &line in &shown.lines {
-        let row = geometry.row(line, clip.left()..signs.min);
+    // Of a line that is broken into rows only the first one has a number.
+    for shown in shown.each().filter(|shown| shown.nth == 0) {
+        let line = shown.line;
+        let row = geometry.rect_of(shown.row, clip.left()..signs.min);
         let color = if line == current { tokens.text } else { tokens.text_faint };
         let number = match document.line_in_file(line) {
             0 => String::new(),
@@ -38,7 +40,7 @@ pub(crate) fn paint(
         };
         painter.text(row.right_center(), Align2::RIGHT_CENTER, number, geometry.font.clone(), color);
         let sign_at = |x: f32| Rect::from_center_size(Pos2::new(x, row.center().y), egui::Vec2::ZERO);
-        let is_folded = geometry.rows.is_folded_at(line);
+        let is_folded = geometry.folded.is_folded_at(line);
         if is_folded || foldable.binary_search(&line).is_ok() {
             let sign = if is_folded { Icon::ChevronRight } else { Icon::ChevronDown };
             icon::paint(&painter, sign, sign_at(signs.center()), 10.0, tokens.text_faint);

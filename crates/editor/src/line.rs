@@ -1,4 +1,4 @@
-//! One line of text as a galley, with its colours and with what an input method is composing in it.
+//! One row of text as a galley, with its colours and with what an input method is composing in it.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -8,22 +8,28 @@ use egui::{FontId, Galley, Stroke, Ui};
 
 use crate::{EditorView, Highlight};
 
-/// A laid-out line.
+/// A laid-out line, or one of the rows that it is broken into.
 pub(crate) struct LineLayout {
     galley: Arc<Galley>,
-    /// The bytes of the document that the line shows.
+    /// The bytes of the document that the row shows.
     bytes: Range<usize>,
+    /// Whether the line ends here: then the place behind the last byte belongs to the row.
+    is_last: bool,
+    /// How far right of the line's start the row begins.
+    left: f32,
     /// Where composed text is inserted, in bytes of the document, and how long it is.
     composed: Option<(usize, usize)>,
 }
 
 impl LineLayout {
-    /// Lays out the line that covers `bytes`. `highlights` are in textual order.
+    /// Lays out the row that covers `bytes`. `highlights` are in textual order.
     pub(crate) fn new(
         ui: &Ui,
         view: &EditorView<'_>,
         font: &FontId,
         bytes: Range<usize>,
+        is_last: bool,
+        left: f32,
         highlights: &[Highlight],
     ) -> Self {
         let document = view.document;
@@ -53,25 +59,26 @@ impl LineLayout {
             job = LayoutJob::default();
             job.append(&heading, 0.0, plain(view.tokens.accent));
         }
-        let composed = Self::compose(view, &bytes, &mut job, font);
+        let composed = Self::compose(view, &bytes, is_last, &mut job, font);
         if job.text.is_empty() {
             job.append("", 0.0, plain(view.tokens.text));
         }
         job.keep_trailing_whitespace = true;
         debug_assert!(job.text.len() >= text.len());
-        Self { galley: ui.fonts_mut(|fonts| fonts.layout_job(job)), bytes, composed }
+        Self { galley: ui.fonts_mut(|fonts| fonts.layout_job(job)), bytes, is_last, left, composed }
     }
 
-    /// Inserts composed text at the caret, if it stands in this line.
+    /// Inserts composed text at the caret, if it stands in this row.
     fn compose(
         view: &EditorView<'_>,
         bytes: &Range<usize>,
+        is_last: bool,
         job: &mut LayoutJob,
         font: &FontId,
     ) -> Option<(usize, usize)> {
         let text = view.composition;
         let head = view.document.caret().head;
-        if text.is_empty() || !(bytes.start..=bytes.end).contains(&head) {
+        if text.is_empty() || !holds(bytes, is_last, head) {
             return None;
         }
         let before = std::mem::take(job);
@@ -100,6 +107,31 @@ impl LineLayout {
         &self.galley
     }
 
+    /// The bytes of the document that the row shows.
+    pub(crate) fn bytes(&self) -> Range<usize> {
+        self.bytes.clone()
+    }
+
+    /// Whether the line ends in this row.
+    pub(crate) fn is_last(&self) -> bool {
+        self.is_last
+    }
+
+    /// How far right of the line's start the row begins.
+    pub(crate) fn left(&self) -> f32 {
+        self.left
+    }
+
+    /// How far right of the line's start the row ends.
+    pub(crate) fn right(&self) -> f32 {
+        self.left + self.galley.size().x
+    }
+
+    /// Whether a caret at this place stands in this row.
+    pub(crate) fn holds(&self, offset: usize) -> bool {
+        holds(&self.bytes, self.is_last, offset)
+    }
+
     /// How far right of the line's start a byte of the document stands; behind composed text at its place.
     pub(crate) fn x_of(&self, view: &EditorView<'_>, offset: usize) -> f32 {
         let offset = offset.clamp(self.bytes.start, self.bytes.end);
@@ -108,12 +140,12 @@ impl LineLayout {
         if self.composed.is_some_and(|(at, _)| offset >= at) {
             characters += view.composition.chars().count();
         }
-        self.galley.pos_from_cursor(CCursor::new(characters)).left()
+        self.left + self.galley.pos_from_cursor(CCursor::new(characters)).left()
     }
 
     /// The byte of the document nearest to `x`, measured from the line's start.
     pub(crate) fn offset_at(&self, view: &EditorView<'_>, x: f32) -> usize {
-        let cursor = self.galley.cursor_from_pos(egui::vec2(x, 1.0));
+        let cursor = self.galley.cursor_from_pos(egui::vec2(x - self.left, 1.0));
         let mut character = cursor.index.0;
         let text = view.document.text().get(self.bytes.clone()).unwrap_or_default();
         if let Some((at, _)) = self.composed {
@@ -125,6 +157,12 @@ impl LineLayout {
             }
         }
         let found = text.char_indices().nth(character).map(|(at, _)| at);
-        self.bytes.start + found.unwrap_or(text.len())
+        // Behind the last character of such a row the next row begins.
+        let last = text.char_indices().next_back().map_or(0, |(at, _)| at);
+        self.bytes.start + found.unwrap_or(if self.is_last { text.len() } else { last })
     }
+}
+
+fn holds(bytes: &Range<usize>, is_last: bool, offset: usize) -> bool {
+    bytes.contains(&offset) || is_last && offset == bytes.end
 }

@@ -4,37 +4,35 @@ use std::ops::Range;
 
 use egui::{Align2, Pos2, Rect, Stroke, StrokeKind};
 
-use crate::geometry::{Geometry, ShownLines};
-use crate::line::LineLayout;
+use crate::geometry::{Geometry, ShownRow, ShownRows};
 use crate::{EditorView, brackets};
 
 /// What is painted onto the lines of one frame.
 pub(crate) struct Painting<'a> {
     pub(crate) view: &'a EditorView<'a>,
     pub(crate) geometry: &'a Geometry<'a>,
-    pub(crate) shown: &'a ShownLines,
+    pub(crate) shown: &'a ShownRows,
     pub(crate) painter: &'a egui::Painter,
     pub(crate) right: f32,
 }
 
 impl Painting<'_> {
-    /// The rectangles that bytes cover on screen, one per line; a line break counts as one character.
+    /// The rectangles that bytes cover on screen, one per row; a line break counts as one character.
     fn rects(&self, bytes: Range<usize>) -> Vec<Rect> {
-        let document = self.view.document;
         let mut rects = Vec::new();
-        for (line, layout) in self.shown.each() {
-            let of_line = document.line_range(line);
-            if bytes.end < of_line.start || bytes.start > of_line.end {
+        for ShownRow { row, layout, .. } in self.shown.each() {
+            let of_row = layout.bytes();
+            if bytes.end < of_row.start || bytes.start > of_row.end {
                 continue;
             }
-            let left = layout.x_of(self.view, bytes.start.max(of_line.start));
-            let mut right = layout.x_of(self.view, bytes.end.min(of_line.end));
-            if bytes.end > of_line.end {
+            let left = layout.x_of(self.view, bytes.start.max(of_row.start));
+            let mut right = layout.x_of(self.view, bytes.end.min(of_row.end));
+            if bytes.end > of_row.end && layout.is_last() {
                 right += self.geometry.character_width;
             }
             if right > left {
                 let x = self.geometry.origin.x;
-                rects.push(self.geometry.row(line, x + left..x + right));
+                rects.push(self.geometry.rect_of(*row, x + left..x + right));
             }
         }
         rects
@@ -44,8 +42,10 @@ impl Painting<'_> {
         let document = self.view.document;
         if document.caret().is_empty() {
             let line = document.line_at(document.caret().head);
-            let row = self.geometry.row(line, left..self.right);
-            self.painter.rect_filled(row, 0.0, self.view.tokens.raised);
+            for row in self.shown.each().filter(|row| row.line == line) {
+                let rect = self.geometry.rect_of(row.row, left..self.right);
+                self.painter.rect_filled(rect, 0.0, self.view.tokens.raised);
+            }
         }
     }
 
@@ -53,18 +53,18 @@ impl Painting<'_> {
     pub(crate) fn headings(&self) {
         let tokens = self.view.tokens;
         let left = self.painter.clip_rect().left();
-        for (line, _) in self.shown.each().filter(|(line, _)| self.view.document.heading(*line).is_some()) {
-            let row = self.geometry.row(line, left..self.right);
+        for row in self.shown.each().filter(|row| self.view.document.heading(row.line).is_some()) {
+            let row = self.geometry.rect_of(row.row, left..self.right);
             self.painter.rect_filled(row, 0.0, tokens.pressed);
             self.painter.hline(row.x_range(), row.top(), Stroke::new(1.0, tokens.line_strong));
         }
     }
 
     /// A sign behind a line whose rest is folded away.
-    pub(crate) fn folded(&self, line: usize, layout: &LineLayout) {
-        let left = self.geometry.origin.x + layout.galley().size().x + self.geometry.character_width * 0.6;
+    pub(crate) fn folded(&self, shown: &ShownRow) {
+        let left = self.geometry.origin.x + shown.layout.right() + self.geometry.character_width * 0.6;
         let width = self.geometry.character_width * 2.6;
-        let plate = self.geometry.row(line, left..left + width).shrink2(egui::vec2(0.0, 3.0));
+        let plate = self.geometry.rect_of(shown.row, left..left + width).shrink2(egui::vec2(0.0, 3.0));
         self.painter.rect_filled(plate, 3.0, self.view.tokens.pressed);
         let color = self.view.tokens.text_faint;
         self.painter.text(plate.center(), Align2::CENTER_CENTER, "…", self.geometry.font.clone(), color);

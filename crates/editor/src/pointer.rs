@@ -3,7 +3,7 @@
 use egui::{Response, Ui};
 use text_editing::TextCommand;
 
-use crate::geometry::{Geometry, ShownLines};
+use crate::geometry::{Geometry, ShownRows};
 use crate::{EditorAction, EditorView, LanguageService};
 
 /// A selection that is being drawn with the pointer.
@@ -22,12 +22,13 @@ impl Drag {
         language: &mut dyn LanguageService,
         geometry: &Geometry<'_>,
         response: &Response,
-        shown: &ShownLines,
+        shown: &ShownRows,
         actions: &mut Vec<EditorAction>,
     ) {
         let Some(pointer) = response.interact_pointer_pos() else { return };
         let document = view.document;
-        let line = geometry.line_at(pointer.y).unwrap_or_default().min(document.line_count() - 1);
+        let row = geometry.row_at_height(pointer.y).unwrap_or_default().min(geometry.num_rows(document) - 1);
+        let (line, nth) = geometry.place_of(row);
         let x = pointer.x - geometry.origin.x;
         let primary_pressed =
             ui.input(|input| input.pointer.primary_pressed()) && crate::is_pressed(response);
@@ -36,9 +37,9 @@ impl Drag {
             actions.push(EditorAction::ToggleFold(line));
             return;
         }
-        let offset = match shown.layout_of(line) {
-            Some(layout) => layout.offset_at(view, x),
-            None => document.offset_at(line, (x / geometry.character_width).max(0.0) as usize),
+        let offset = match shown.row(row) {
+            Some(shown) => shown.layout.offset_at(view, x),
+            None => document.offset_in_row(line, nth, (x / geometry.character_width).max(0.0) as usize),
         };
         let adds = ui.input(|input| input.modifiers.alt);
         if primary_pressed && adds {
@@ -69,10 +70,10 @@ pub(crate) fn offset_under(
     view: &EditorView<'_>,
     geometry: &Geometry<'_>,
     response: &Response,
-    shown: &ShownLines,
+    shown: &ShownRows,
 ) -> Option<usize> {
     let pointer = response.hover_pos()?;
-    let layout = shown.layout_of(geometry.line_at(pointer.y)?)?;
+    let layout = &shown.row(geometry.row_at_height(pointer.y)?)?.layout;
     let x = pointer.x - geometry.origin.x;
-    (x >= 0.0 && x <= layout.galley().size().x).then(|| layout.offset_at(view, x))
+    (x >= layout.left() && x <= layout.right()).then(|| layout.offset_at(view, x))
 }

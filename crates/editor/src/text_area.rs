@@ -2,7 +2,9 @@
 
 use egui::{CursorIcon, Pos2, Rect, Response, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo};
 
-use crate::geometry::{Geometry, ShownLines};
+use text_editing::{MIN_WRAP_COLUMNS, Rows, WrappedRows};
+
+use crate::geometry::{Geometry, ShownRows};
 use crate::painting::Painting;
 use crate::pointer::Drag;
 use crate::{
@@ -15,11 +17,28 @@ pub(crate) struct TextArea {
     drag: Drag,
     /// The width of the widest line, for the revision it was measured at.
     widest: (u64, usize),
+    /// Which row stands where, if lines are broken into rows.
+    wrapped: Option<Wrapped>,
     /// How far the view is scrolled.
     offset: egui::Vec2,
     /// Where the list at the caret was on screen in the last frame, if it was open.
     popup: Option<Rect>,
 }
+
+/// The rows that lines are broken into, and what they were worked out for.
+#[derive(Debug)]
+struct Wrapped {
+    revision: u64,
+    columns: usize,
+    folded: Rows,
+    rows: WrappedRows,
+}
+
+/// Columns that stay free at the right of rows that lines are broken into: for a blank that hangs over, and the caret.
+const FREE_COLUMNS: f32 = 2.0;
+
+/// Columns that can be seen behind a place to which the view was scrolled sideways.
+const MARGIN_COLUMNS: f32 = 4.0;
 
 impl TextArea {
     /// Shows the text in what is left of `ui`.
@@ -37,35 +56,46 @@ impl TextArea {
         let num_lines = view.document.line_count();
         let digits = num_lines.to_string().len().max(3);
         let gutter_width = (digits as f32 + 3.0) * character_width;
-        let num_rows = view.rows.count(num_lines);
-        let widest = self.widest_line(view) as f32 * character_width;
         let available = ui.available_size();
-        let size = egui::vec2(
-            (gutter_width + widest + 60.0).max(available.x),
-            (num_rows as f32 * row_height + available.y * 0.5).max(available.y),
-        );
-
+        let columns = ((available.x - gutter_width - ui.spacing().scroll.allocated_width()) / character_width
+            - FREE_COLUMNS)
+            .max(MIN_WRAP_COLUMNS as f32) as usize;
+        let wanted = view.wraps.then_some(columns);
+        if view.document.wrap_columns() != wanted {
+            actions.push(EditorAction::WrapAt(wanted));
+        }
+        self.wrap(view);
+        let is_wrapped = self.wrapped.is_some();
+        let widest = if is_wrapped { 0.0 } else { self.widest_line(view) as f32 * character_width + 60.0 };
+        let wrapped = self.wrapped.as_ref().map(|wrapped| &wrapped.rows);
         let geometry_of = |origin: Pos2| Geometry {
             font: font.clone(),
             row_height,
             character_width,
             gutter_width,
             origin: origin + egui::vec2(gutter_width, 0.0),
-            rows: view.rows,
+            folded: view.rows,
+            wrapped,
         };
+        let num_rows = geometry_of(Pos2::ZERO).num_rows(view.document);
+        let size = egui::vec2(
+            (gutter_width + widest).max(available.x),
+            (num_rows as f32 * row_height + available.y * 0.5).max(available.y),
+        );
+
         let mut area = ScrollArea::both().id_salt("text").auto_shrink(false);
         if let Some(reveal) = view.reveal {
-            area = self.scroll_to(view, area, reveal, &geometry_of(Pos2::ZERO), available);
+            let offset = scrolled_to(view, self.offset, reveal, &geometry_of(Pos2::ZERO), available);
+            area = area.scroll_offset(offset);
         }
         let shown = area.show_viewport(ui, |ui, viewport| {
             let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
             let geometry = geometry_of(rect.min);
             let first = (viewport.top() / row_height).floor().max(0.0) as usize;
             let last = ((viewport.bottom() / row_height).ceil().max(0.0) as usize).min(num_rows);
-            let lines = (first.min(last)..last).map(|row| view.rows.line_of(row)).collect();
             let response = ui.interact(ui.clip_rect().intersect(rect), view.id, Sense::click_and_drag());
             follow_focus(ui, view, &response, self.popup.take());
-            let shown = ShownLines::new(ui, view, language, &geometry, lines);
+            let shown = ShownRows::new(ui, view, language, &geometry, first.min(last)..last);
             self.drag.follow(ui, view, language, &geometry, &response, &shown, actions);
             paint(ui, view, language, &geometry, &response, &shown);
             describe(ui, view, &response);
@@ -80,41 +110,20 @@ impl TextArea {
         self.offset = shown.state.clamped_offset();
     }
 
-    /// Moves the view so that a place can be seen, once.
-    fn scroll_to(
-        &self,
-        view: &EditorView<'_>,
-        area: ScrollArea,
-        reveal: Reveal,
-        geometry: &Geometry<'_>,
-        available: egui::Vec2,
-    ) -> ScrollArea {
-        let document = view.document;
-        let head = document.boundary_before(reveal.offset);
-        let top = geometry.top_of(document.line_at(head));
-        let margin = geometry.row_height * 2.0;
-        let offset = self.offset;
-        let is_visible =
-            top >= offset.y + margin.min(top) && top + geometry.row_height + margin <= offset.y + available.y;
-        let y = if is_visible {
-            offset.y
-        } else if reveal.center {
-            (top - available.y * 0.4).max(0.0)
-        } else if top < offset.y + margin {
-            (top - margin).max(0.0)
-        } else {
-            top + geometry.row_height + margin - available.y
+    /// Works out which row stands where, if lines are broken into rows.
+    fn wrap(&mut self, view: &EditorView<'_>) {
+        let Some(columns) = view.document.wrap_columns() else {
+            self.wrapped = None;
+            return;
         };
-        let left = document.column_at(head) as f32 * geometry.character_width;
-        let room = available.x - geometry.gutter_width - 4.0 * geometry.character_width;
-        let x = if left < offset.x {
-            (left - 8.0 * geometry.character_width).max(0.0)
-        } else if left > offset.x + room {
-            left - room
-        } else {
-            offset.x
-        };
-        area.scroll_offset(egui::vec2(x, y))
+        let revision = view.document.revision();
+        let is_known = self.wrapped.as_ref().is_some_and(|known| {
+            known.revision == revision && known.columns == columns && known.folded == *view.rows
+        });
+        if !is_known {
+            let rows = WrappedRows::new(view.document, view.rows);
+            self.wrapped = Some(Wrapped { revision, columns, folded: view.rows.clone(), rows });
+        }
     }
 
     /// The bytes of the longest line, which are at least its characters.
@@ -126,6 +135,46 @@ impl TextArea {
         }
         self.widest.1
     }
+}
+
+/// How far the view is scrolled when a place is to be seen, once, and it was scrolled by `offset` before.
+fn scrolled_to(
+    view: &EditorView<'_>,
+    offset: egui::Vec2,
+    reveal: Reveal,
+    geometry: &Geometry<'_>,
+    available: egui::Vec2,
+) -> egui::Vec2 {
+    let document = view.document;
+    let head = document.boundary_before(reveal.offset);
+    let top = geometry.top_of(geometry.row_at(document, head));
+    let margin = geometry.row_height * 2.0;
+    let is_visible =
+        top >= offset.y + margin.min(top) && top + geometry.row_height + margin <= offset.y + available.y;
+    let y = if is_visible {
+        offset.y
+    } else if reveal.center {
+        (top - available.y * 0.4).max(0.0)
+    } else if top < offset.y + margin {
+        (top - margin).max(0.0)
+    } else {
+        top + geometry.row_height + margin - available.y
+    };
+    let column = |offset: usize| document.column_at(offset) as f32 * geometry.character_width;
+    let left = column(head);
+    let room = available.x - geometry.gutter_width - geometry.character_width;
+    let line_fits = column(document.line_range(document.line_at(head)).end) <= room;
+    // A view that was scrolled sideways goes all the way back as soon as nothing of the line is hidden then.
+    let x = if geometry.wrapped.is_some() || line_fits || left < offset.x && left <= room {
+        0.0
+    } else if left < offset.x {
+        left - room / 2.0
+    } else if left > offset.x + room {
+        left - room + MARGIN_COLUMNS * geometry.character_width
+    } else {
+        offset.x
+    };
+    egui::vec2(x, y)
 }
 
 /// The text has the focus while it is pressed, and keeps it while the list at its caret, `popup`, is.
@@ -152,7 +201,7 @@ fn paint(
     language: &mut dyn LanguageService,
     geometry: &Geometry<'_>,
     response: &Response,
-    shown: &ShownLines,
+    shown: &ShownRows,
 ) {
     let clip = ui.clip_rect();
     let text_left = clip.left() + geometry.gutter_width;
@@ -165,12 +214,13 @@ fn paint(
     painting.matches_of_find();
     painting.selected_text(response.has_focus());
     painting.brackets();
-    for (line, layout) in shown.each() {
-        let text_top = geometry.top_of(line) + (geometry.row_height - layout.galley().size().y) / 2.0;
-        let at = Pos2::new(geometry.origin.x, text_top);
+    for row in shown.each() {
+        let layout = &row.layout;
+        let text_top = geometry.top_of(row.row) + (geometry.row_height - layout.galley().size().y) / 2.0;
+        let at = Pos2::new(geometry.origin.x + layout.left(), text_top);
         painter.galley(at, layout.galley().clone(), view.tokens.text);
-        if geometry.rows.is_folded_at(line) {
-            painting.folded(line, layout);
+        if layout.is_last() && geometry.folded.is_folded_at(row.line) {
+            painting.folded(row);
         }
     }
     painting.diagnostics();

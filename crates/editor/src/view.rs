@@ -18,6 +18,8 @@ pub struct EditorView<'a> {
     pub document: &'a Document,
     /// Which lines are folded away.
     pub rows: &'a Rows,
+    /// Whether long lines are broken into rows of the view's width.
+    pub wraps: bool,
     /// What an input method is composing at the caret.
     pub composition: &'a str,
     /// The find bar, when it is open.

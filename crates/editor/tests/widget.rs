@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use editor::{
     Diagnostic, Editor, EditorAction, EditorView, Highlight, Keyboard, LanguageService, Popup, PopupItem,
-    Severity, Signature, typed,
+    Reveal, Severity, Signature, typed,
 };
 use egui::{Event, Id, Key, Modifiers, Role};
 use egui_kittest::Harness;
@@ -46,6 +46,8 @@ struct Told {
     document: Document,
     rows: Rows,
     find: Option<Find>,
+    wraps: bool,
+    reveal: Option<Reveal>,
     completions: Vec<&'static str>,
     diagnostics: Vec<Diagnostic<'static>>,
     known: Known,
@@ -57,6 +59,8 @@ impl Told {
             document: Document::new(text),
             rows: Rows::default(),
             find: None,
+            wraps: false,
+            reveal: None,
             completions: Vec::new(),
             diagnostics: Vec::new(),
             known: Known::default(),
@@ -106,7 +110,8 @@ fn open(told: Told) -> Window {
             popup: (!told.completions.is_empty()).then_some(&popup),
             diagnostics: &told.diagnostics,
             marks: &[],
-            reveal: None,
+            wraps: told.wraps,
+            reveal: told.reveal.take(),
             takes_focus: frames == 2,
             active_secs: 0.0,
             now_secs: 100.0,
@@ -122,6 +127,26 @@ fn open(told: Told) -> Window {
 impl Window {
     fn settle(&mut self) {
         self.harness.run_steps(6);
+    }
+
+    /// Presses the primary button at a place of the text area, and lets it go.
+    fn click(&mut self, pos: egui::Pos2) {
+        for pressed in [true, false] {
+            let button = egui::PointerButton::Primary;
+            self.harness.event(Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE });
+        }
+        self.settle();
+    }
+
+    /// The width and height of a character's place, and the left top corner of the first one.
+    fn grid(&mut self) -> (egui::Vec2, egui::Pos2) {
+        let font = egui::FontId::monospace(theme::size::CODE);
+        let (width, height) = self
+            .harness
+            .ctx
+            .fonts_mut(|fonts| (fonts.glyph_width(&font, '0'), (fonts.row_height(&font) * 1.18).round()));
+        let area = self.harness.get_by_role(Role::MultilineTextInput).rect();
+        (egui::vec2(width, height), area.min + egui::vec2(6.0 * width, 0.0))
     }
 
     fn wanted(&self) -> Vec<EditorAction> {
@@ -268,4 +293,70 @@ fn a_signature_stands_above_the_caret_until_text_is_selected() {
     window.told.borrow_mut().document.set_caret(Caret::selecting(0, 4));
     window.settle();
     assert!(window.harness.query_by_label("f(a, b)").is_none());
+}
+
+#[test]
+fn long_lines_are_broken_into_rows_of_the_view_s_width_once_its_owner_knows_it() {
+    let line = "word ".repeat(60);
+    let mut told = Told::new(&format!("{line}\nlast"));
+    told.wraps = true;
+    let mut window = open(told);
+    let columns = window.wanted().into_iter().find_map(|action| match action {
+        EditorAction::WrapAt(columns) => columns,
+        _ => None,
+    });
+    let columns = columns.expect("the view says how much room it has");
+    window.told.borrow_mut().document.wrap_at(Some(columns));
+    window.settle();
+    assert!(!window.wanted().iter().any(|action| matches!(action, EditorAction::WrapAt(_))), "and only once");
+    let (character, origin) = window.grid();
+    assert!(origin.x + columns as f32 * character.x < 600.0, "{columns} columns fit");
+    // A press in the second row is behind the end of the first, and one in the last row in the last line.
+    let rows = window.told.borrow().document.rows_of_line(0);
+    window.click(origin + egui::vec2(3.2 * character.x, 1.5 * character.y));
+    let at = rows[1].start + 1;
+    let select = |at| EditorAction::Text(TextCommand::Select { anchor: at, head: at });
+    let wanted = window.wanted();
+    assert!(wanted.contains(&select(at)), "{at}: {wanted:?}");
+    window.click(origin + egui::vec2(0.2 * character.x, (rows.len() as f32 + 0.5) * character.y));
+    let wanted = window.wanted();
+    assert!(wanted.contains(&select(line.len() + 1)), "{wanted:?}");
+    // Right of a row is in front of the blank that ends it: behind that the next row begins.
+    window.click(origin + egui::vec2(columns as f32 * character.x, 0.5 * character.y));
+    let wanted = window.wanted();
+    assert!(wanted.contains(&select(rows[0].end - 1)), "{wanted:?}");
+    window.told.borrow_mut().wraps = false;
+    window.settle();
+    assert!(window.wanted().contains(&EditorAction::WrapAt(None)));
+}
+
+#[test]
+fn the_text_moves_sideways_only_where_it_must_and_back_as_soon_as_it_can() {
+    let long = "x".repeat(200);
+    let mut told = Told::new(&format!("{long}\nshort\n{}", "y".repeat(70)));
+    told.document.set_caret(Caret::at(0));
+    let mut window = open(told);
+    let (character, origin) = window.grid();
+    let columns = ((600.0 - origin.x) / character.x) as usize;
+    // What is at the left edge of the text: the column that a press there selects.
+    let mut left_column = |offset: usize| {
+        window.told.borrow_mut().reveal = Some(Reveal { offset, center: false });
+        window.settle();
+        window.wanted();
+        window.click(origin + egui::vec2(0.1, 0.5 * character.y));
+        let wanted = window.wanted();
+        let pressed = wanted.iter().find_map(|action| match action {
+            EditorAction::Text(TextCommand::Select { head, .. }) => Some(*head),
+            _ => None,
+        });
+        pressed.expect("a press places the caret")
+    };
+    assert_eq!(left_column(0), 0);
+    assert_eq!(left_column(columns - 3), 0, "what can be seen need not be scrolled to");
+    let end = left_column(200);
+    assert!(end > 200 - columns && end < 200, "{end}");
+    assert_eq!(left_column(end + 5), end, "what can be seen leaves the view as it is");
+    assert_eq!(left_column(203), 0, "a line that fits is shown whole");
+    assert!(left_column(200) > 0);
+    assert_eq!(left_column(10), 0, "so is what fits of a longer one");
 }

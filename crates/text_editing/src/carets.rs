@@ -50,17 +50,17 @@ impl Document {
         }
     }
 
-    /// Another caret in the line above the topmost or below the lowest one, at its column.
+    /// Another caret in the row above the topmost or below the lowest one, at its column.
     pub(crate) fn add_caret_beside(&mut self, below: bool) {
         let all = self.carets();
         let Some(outermost) = (if below { all.last() } else { all.first() }) else { return };
-        let line = self.line_at(outermost.head);
-        let next = if below { line + 1 } else { line.wrapping_sub(1) };
-        if next >= self.line_count() {
+        let here = (self.line_at(outermost.head), self.row_in_line(outermost.head));
+        let (line, row) = self.row_away(here.0, here.1, 1, below);
+        if (line, row) == here {
             return;
         }
-        let column = outermost.goal_column.unwrap_or_else(|| self.column_at(outermost.head));
-        let caret = Caret { goal_column: Some(column), ..Caret::at(self.offset_at(next, column)) };
+        let column = outermost.goal_column.unwrap_or_else(|| self.column_in_row(outermost.head));
+        let caret = Caret { goal_column: Some(column), ..Caret::at(self.offset_in_row(line, row, column)) };
         let mut others = self.others.clone();
         others.push(self.caret());
         self.set_carets(caret, others);

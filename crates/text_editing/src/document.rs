@@ -68,6 +68,8 @@ pub struct Document {
     pub(crate) undo: Vec<Step>,
     redo: Vec<Step>,
     pub(crate) may_join: bool,
+    /// The columns at which the view breaks lines into rows.
+    pub(crate) wrap_columns: Option<usize>,
 }
 
 /// What is added at the end of a text to begin another file.
@@ -93,13 +95,14 @@ impl Document {
             undo: Vec::new(),
             redo: Vec::new(),
             may_join: false,
+            wrap_columns: None,
         }
     }
 
     /// Replaces everything, history included: another mission was opened. The revision goes on counting.
     pub fn open(&mut self, text: &str) {
         let revision = self.revision + 1;
-        *self = Self::new(text);
+        *self = Self { wrap_columns: self.wrap_columns, ..Self::new(text) };
         self.revision = revision;
         self.saved_revision = revision;
     }

@@ -1,5 +1,5 @@
 //! A text that is edited: its lines, its caret and an exact history, what editing keys do to it, finding and replacing,
-//! and which of its lines are folded away.
+//! which of its lines are folded away, and how long lines are broken into rows.
 //!
 //! Everything here is a pure change of data: no key, no pointer and no pixel. The widget that shows such a text is the
 //! crate `editor`.
@@ -13,6 +13,7 @@ mod rows;
 mod shift;
 mod template;
 mod typing;
+mod wrap;
 
 pub use document::{Caret, Document, difference};
 pub use find::{Find, Pattern};
@@ -20,3 +21,4 @@ pub use history::EditKind;
 pub use rows::Rows;
 pub use shift::Shift;
 pub use typing::{INDENT, Motion, TextCommand, is_name_character, word_at};
+pub use wrap::{MIN_WRAP_COLUMNS, WrappedRows};

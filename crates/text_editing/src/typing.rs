@@ -87,13 +87,14 @@ pub enum Motion {
     WordLeft,
     /// To the end of the word behind.
     WordRight,
-    /// To the first character of the line that is not blank, or to its start if there already.
+    /// To the first character of the line that is not blank, or to its start if there already; of a line that is broken
+    /// into rows, first to the start of the row.
     LineStart,
-    /// To the end of the line.
+    /// To the end of the line; of one that is broken into rows, first to the end of the row.
     LineEnd,
-    /// Lines up.
+    /// Rows up; a line has one, unless it is broken into several.
     Up(usize),
-    /// Lines down.
+    /// Rows down.
     Down(usize),
     /// To the start of the text.
     TextStart,
@@ -328,7 +329,12 @@ fn destination(document: &Document, motion: Motion) -> (usize, Option<usize>) {
     let text = document.text();
     let head = document.caret().head;
     let line = document.line_at(head);
-    let column = document.caret().goal_column.unwrap_or_else(|| document.column_at(head));
+    let row = document.row_in_line(head);
+    let column = document.caret().goal_column.unwrap_or_else(|| document.column_in_row(head));
+    let away = |rows: usize, down: bool| {
+        let (line, row) = document.row_away(line, row, rows, down);
+        (document.offset_in_row(line, row, column), Some(column))
+    };
     let grapheme = |forwards: bool| {
         let mut cursor = GraphemeCursor::new(head, text.len(), true);
         let found = if forwards { cursor.next_boundary(text, 0) } else { cursor.prev_boundary(text, 0) };
@@ -339,20 +345,35 @@ fn destination(document: &Document, motion: Motion) -> (usize, Option<usize>) {
         Motion::Right => (grapheme(true), None),
         Motion::WordLeft => (word_left(text, head), None),
         Motion::WordRight => (word_right(text, head), None),
-        Motion::LineStart => {
-            let range = document.line_range(line);
-            let blanks = document.line_text(line).len() - document.line_text(line).trim_start().len();
-            let first = range.start + blanks;
-            (if head == first { range.start } else { first }, None)
+        Motion::LineStart => (line_start(document, line, row), None),
+        Motion::LineEnd => {
+            let rows = document.rows_of_line(line);
+            let end = document.last_place(&rows, row);
+            (if head == end { document.line_range(line).end } else { end }, None)
         }
-        Motion::LineEnd => (document.line_range(line).end, None),
-        Motion::Up(lines) if line == 0 && lines > 0 => (0, Some(column)),
-        Motion::Up(lines) => (document.offset_at(line.saturating_sub(lines), column), Some(column)),
-        Motion::Down(lines) if line + 1 == document.line_count() && lines > 0 => (text.len(), Some(column)),
-        Motion::Down(lines) => (document.offset_at(line + lines, column), Some(column)),
+        Motion::Up(rows) if line == 0 && row == 0 && rows > 0 => (0, Some(column)),
+        Motion::Up(rows) => away(rows, false),
+        Motion::Down(rows) if rows > 0 && document.row_away(line, row, 1, true) == (line, row) => {
+            (text.len(), Some(column))
+        }
+        Motion::Down(rows) => away(rows, true),
         Motion::TextStart => (0, None),
         Motion::TextEnd => (text.len(), None),
     }
+}
+
+/// The start of the row, where it is not the first one of its line and the caret not there; then the first character of
+/// the line that is not blank, and then the line's start.
+fn line_start(document: &Document, line: usize, row: usize) -> usize {
+    let head = document.caret().head;
+    let start = document.rows_of_line(line)[row].start;
+    if row > 0 && head != start {
+        return start;
+    }
+    let text = document.line_text(line);
+    let range = document.line_range(line);
+    let first = range.start + text.len() - text.trim_start().len();
+    if head == first { range.start } else { first }
 }
 
 fn word_left(text: &str, offset: usize) -> usize {

@@ -32,6 +32,7 @@ pub(super) fn command(action: EditorAction) -> Command {
         EditorAction::Copy { cut } => EditorCommand::CopySelection { cut },
         EditorAction::Focus => EditorCommand::Focus,
         EditorAction::ToggleFold(line) => EditorCommand::ToggleFold(line),
+        EditorAction::WrapAt(columns) => EditorCommand::WrapAt(columns),
         EditorAction::MoveInPopup(steps) => EditorCommand::MoveInPopup(steps),
         EditorAction::TakeFromPopup(index) => EditorCommand::TakeFromPopup(index),
         EditorAction::SetFind(find) => EditorCommand::SetFind(find),

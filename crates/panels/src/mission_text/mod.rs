@@ -45,6 +45,7 @@ impl Panel for EditorPanel {
             name: "Mission text",
             document: &state.document,
             rows: state.editor.folding.rows(),
+            wraps: state.settings.views.editor.wraps,
             composition: &state.editor.composition,
             find: state.editor.find.as_ref(),
             popup: popup.as_ref(),

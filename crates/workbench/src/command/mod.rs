@@ -51,7 +51,7 @@ pub enum Command {
     Files(FileCommand),
     /// Lets the user choose a file.
     OpenFile(FileKind),
-    /// Lets the user save the mission text.
+    /// Saves the open mission to its file; where the host knows no such files, lets the user save its texts.
     SaveMission,
     /// Puts a link to the mission on the clipboard.
     CopyLink,
@@ -281,6 +281,8 @@ pub enum EditorCommand {
     FoldAtCaret(bool),
     /// Folds every outermost piece, or shows everything.
     FoldAll(bool),
+    /// The view breaks lines into rows of so many columns, or breaks none.
+    WrapAt(Option<usize>),
     /// Cuts or copies the selection, or the line of the caret.
     CopySelection {
         /// Whether it is taken away.

@@ -136,6 +136,7 @@ impl AppState {
             EditorCommand::Rename => self.ask_for_name(),
             EditorCommand::RenameTo(name) => self.rename_to(&name),
             EditorCommand::Format => self.format(),
+            EditorCommand::WrapAt(columns) => self.document.wrap_at(columns),
             EditorCommand::ToggleFold(line) => self.fold(|folding, document, parse| {
                 folding.toggle(line, document, parse);
             }),

@@ -95,8 +95,11 @@ impl Folding {
             (_, true) if hidden.start > 0 => hidden.start - 1,
             _ => return self.unfold_around(line, document, parse),
         };
-        let column = document.column_at(document.caret().head);
-        let head = document.offset_at(target, column);
+        let caret = document.caret();
+        let column = caret.goal_column.unwrap_or_else(|| document.column_in_row(caret.head));
+        // From below one comes to the last of the rows that a long line is broken into.
+        let row = if passes_up { usize::MAX } else { 0 };
+        let head = document.offset_in_row(target, row, column);
         let anchor = if document.caret().is_empty() { head } else { document.caret().anchor };
         document.set_caret(Caret { anchor, head, ..document.caret() });
         self.caret_line = target;

@@ -96,6 +96,8 @@ pub struct PlanSettings {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Views {
+    /// The mission text.
+    pub editor: EditorView,
     /// The network.
     pub network: NetworkView,
     /// The timeline.
@@ -104,6 +106,14 @@ pub struct Views {
     pub plan: PlanView,
     /// The terrain.
     pub terrain: TerrainView,
+}
+
+/// How the mission text is shown.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct EditorView {
+    /// Whether long lines are broken into rows of the panel's width.
+    pub wraps: bool,
 }
 
 /// What the network shows.

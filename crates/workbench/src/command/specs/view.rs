@@ -107,6 +107,18 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     plain("view.textReset", "Normal text size", Group::View, &[], Scope::Everywhere, |_| {
         Command::SetTextScale(1.0)
     }),
+    plain(
+        "view.wordWrap",
+        "Wrap long lines",
+        Group::View,
+        &[keys(ALT, Key::Z)],
+        Scope::Everywhere,
+        |state| {
+            let mut views = state.settings.views.clone();
+            views.editor.wraps = !views.editor.wraps;
+            Command::SetViews(Box::new(views))
+        },
+    ),
     plain("view.nextPanel", "Next panel", Group::View, &[keys(PLAIN, Key::F6)], Scope::Everywhere, |_| {
         Command::TurnPanel(true)
     }),
