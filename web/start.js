@@ -4,6 +4,7 @@ import init, { start, usesKey } from "../wasm/page.js";
 import { findAddress, noteAddress } from "./address.js";
 import { createApi } from "./api.js";
 import { startCore } from "./core.js";
+import { openDisk } from "./disk.js";
 import { chooseFile, saveFile, savePicture } from "./files.js";
 import { fetchWithProgress, hideLoading, showFailure, showStep } from "./loading.js";
 import { createMirror } from "./mirror.js";
@@ -37,6 +38,7 @@ async function load() {
     chooseFile,
     saveFile,
     savePicture,
+    ...openDisk(),
     ...shelf,
     ...joinTabs(),
     // Called while a frame is being drawn. What it leads to must wait until the frame is done.

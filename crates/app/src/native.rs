@@ -97,7 +97,9 @@ impl NativeHost {
             background.run(move || {
                 let name = name_of(file.path());
                 Some(match file.bytes() {
-                    Ok(bytes) => HostEvent::FileOpened { kind: FileKind::of_name(&name), name, bytes },
+                    Ok(bytes) => {
+                        HostEvent::FileOpened { kind: FileKind::of_name(&name), name, bytes, token: None }
+                    }
                     Err(reason) => HostEvent::FileFailed { name, reason },
                 })
             });
@@ -220,7 +222,7 @@ impl Host for NativeHost {
                 .pick_file()?;
             let name = name_of(&path);
             Some(match fs::read(&path) {
-                Ok(bytes) => HostEvent::FileOpened { kind, name, bytes },
+                Ok(bytes) => HostEvent::FileOpened { kind, name, bytes, token: None },
                 Err(reason) => HostEvent::FileFailed { name, reason: reason.to_string() },
             })
         });

@@ -114,7 +114,8 @@ fn a_saved_run_replays_exactly_and_a_changed_log_is_told() {
         toasts.last().and_then(|toast| toast.as_str().map(str::to_owned)).unwrap_or_default()
     };
     let open = |app: &mut support::App, bytes: Vec<u8>| {
-        let event = HostEvent::FileOpened { kind: FileKind::Json, name: "run.json".to_owned(), bytes };
+        let event =
+            HostEvent::FileOpened { kind: FileKind::Json, name: "run.json".to_owned(), bytes, token: None };
         app.world.news.borrow_mut().push_back(event);
         app.settle();
     };

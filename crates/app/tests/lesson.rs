@@ -131,6 +131,7 @@ fn a_file_becomes_the_lesson_and_its_mistakes_are_told_by_line() {
         kind: FileKind::of_name("mine.md"),
         name: "mine.md".to_owned(),
         bytes: text.as_bytes().to_vec(),
+        token: None,
     };
     app.world.news.borrow_mut().push_back(event);
     app.settle();

@@ -394,12 +394,18 @@ fn what_was_said_goes_into_a_file_and_comes_back_from_it() {
         kind: FileKind::Json,
         name: name.clone(),
         bytes: bytes.clone(),
+        token: None,
     });
     other.settle();
     assert_eq!(review(&other)["signed"], review(&app)["signed"]);
     assert_eq!(review(&other)["comments"], review(&app)["comments"]);
     // Once more adds nothing.
-    other.world.news.borrow_mut().push_back(HostEvent::FileOpened { kind: FileKind::Json, name, bytes });
+    other.world.news.borrow_mut().push_back(HostEvent::FileOpened {
+        kind: FileKind::Json,
+        name,
+        bytes,
+        token: None,
+    });
     other.settle();
     assert_eq!(review(&other)["comments"].as_array().map(Vec::len), Some(1));
 }
@@ -513,6 +519,7 @@ fn a_saved_plan_and_another_mission_can_be_compared_with() {
             kind: FileKind::Comparison,
             name: name.to_owned(),
             bytes: text.as_bytes().to_vec(),
+            token: None,
         });
         app.settle();
     };

@@ -283,8 +283,12 @@ fn an_imported_map_is_found_by_the_text_that_names_it_and_a_broken_one_is_explai
     let mut app = support::start();
     app.settle();
     let open = |app: &mut support::App, name: &str, bytes: &[u8]| {
-        let event =
-            HostEvent::FileOpened { kind: FileKind::of_name(name), name: name.into(), bytes: bytes.to_vec() };
+        let event = HostEvent::FileOpened {
+            kind: FileKind::of_name(name),
+            name: name.into(),
+            bytes: bytes.to_vec(),
+            token: None,
+        };
         app.world.news.borrow_mut().push_back(event);
         app.settle();
         app.settle();

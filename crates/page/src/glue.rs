@@ -17,6 +17,23 @@ extern "C" {
     #[wasm_bindgen(method, js_name = chooseFile)]
     pub(crate) fn choose_file(this: &Glue, extensions: Vec<String>) -> Promise;
 
+    /// Whether missions can be saved to files that the user chose once. See `web/disk.js`.
+    #[wasm_bindgen(method, js_name = savesInPlace)]
+    pub(crate) fn saves_in_place(this: &Glue) -> bool;
+
+    /// Lets the user choose a mission that can be saved to its file: a promise of a [`ChosenFile`] or null.
+    #[wasm_bindgen(method, js_name = openMission)]
+    pub(crate) fn open_mission(this: &Glue, extensions: Vec<String>) -> Promise;
+
+    /// Keeps a file that was opened as the one that a mission is saved to.
+    #[wasm_bindgen(method, js_name = keepFile)]
+    pub(crate) fn keep_file(this: &Glue, mission: &str, token: u32);
+
+    /// Saves a mission to its file in one of these forms, objects with `name` and `bytes`: a promise of the file's name or
+    /// null.
+    #[wasm_bindgen(method, js_name = saveInPlace)]
+    pub(crate) fn save_in_place(this: &Glue, mission: &str, asks: bool, forms: js_sys::Array) -> Promise;
+
     /// Lets the user save a file.
     #[wasm_bindgen(method, js_name = saveFile)]
     pub(crate) fn save_file(this: &Glue, name: &str, bytes: Uint8Array);
@@ -83,6 +100,10 @@ extern "C" {
     /// Its name.
     #[wasm_bindgen(method, getter)]
     pub(crate) fn name(this: &ChosenFile) -> String;
+
+    /// What [`Glue::keep_file`] knows it by, if it does.
+    #[wasm_bindgen(method, getter)]
+    pub(crate) fn token(this: &ChosenFile) -> Option<u32>;
 
     /// All of it.
     #[wasm_bindgen(method, getter)]

@@ -4,7 +4,7 @@ use js_sys::Uint8Array;
 use mission::Request;
 use wasm_bindgen::prelude::*;
 use web_sys::{Location, MediaQueryList, Storage, Window};
-use workbench::host::{FileKind, Host, HostEvent, ShelfContent, ShelfNews, ShelfRequest, StorageError};
+use workbench::host::{FileKind, Host, HostEvent, Save, ShelfContent, ShelfNews, ShelfRequest, StorageError};
 
 use crate::{
     core_link::CoreLink,
@@ -61,11 +61,31 @@ impl PageHost {
             wasm_bindgen_futures::spawn_local(async move {
                 let name = file.path().to_string_lossy().into_owned();
                 link.happened(match file.bytes_async().await {
-                    Ok(bytes) => HostEvent::FileOpened { kind: FileKind::of_name(&name), name, bytes },
+                    Ok(bytes) => {
+                        HostEvent::FileOpened { kind: FileKind::of_name(&name), name, bytes, token: None }
+                    }
                     Err(reason) => HostEvent::FileFailed { name, reason },
                 });
             });
         }
+    }
+
+    /// Tells what comes of a file that the user was asked for, unless they chose none.
+    fn tell_later(&self, chosen: js_sys::Promise, event: impl FnOnce(JsValue) -> HostEvent + 'static) {
+        let link = self.link.clone();
+        wasm_bindgen_futures::spawn_local(async move {
+            match wasm_bindgen_futures::JsFuture::from(chosen).await {
+                Ok(none) if none.is_null() => {}
+                Ok(chosen) => link.happened(event(chosen)),
+                Err(thrown) => link.happened(HostEvent::FileFailed {
+                    name: js_sys::Reflect::get(&thrown, &"fileName".into())
+                        .ok()
+                        .and_then(|name| name.as_string())
+                        .unwrap_or_default(),
+                    reason: words(&thrown),
+                }),
+            }
+        });
     }
 
     fn storage(&self) -> Result<Storage, StorageError> {
@@ -174,28 +194,40 @@ impl Host for PageHost {
 
     fn open_file(&mut self, kind: FileKind) {
         let extensions = kind.extensions().iter().map(|&extension| extension.to_owned()).collect();
-        let chosen = self.glue.choose_file(extensions);
-        let link = self.link.clone();
-        wasm_bindgen_futures::spawn_local(async move {
-            match wasm_bindgen_futures::JsFuture::from(chosen).await {
-                Ok(file) if file.is_null() => {}
-                Ok(file) => {
-                    let file: ChosenFile = file.unchecked_into();
-                    link.happened(HostEvent::FileOpened {
-                        kind,
-                        name: file.name(),
-                        bytes: file.bytes().to_vec(),
-                    });
-                }
-                Err(thrown) => link.happened(HostEvent::FileFailed {
-                    name: js_sys::Reflect::get(&thrown, &"fileName".into())
-                        .ok()
-                        .and_then(|name| name.as_string())
-                        .unwrap_or_default(),
-                    reason: words(&thrown),
-                }),
-            }
+        let chosen = if kind == FileKind::Mission && self.glue.saves_in_place() {
+            self.glue.open_mission(extensions)
+        } else {
+            self.glue.choose_file(extensions)
+        };
+        self.tell_later(chosen, move |file| {
+            let file: ChosenFile = file.unchecked_into();
+            let (name, bytes, token) = (file.name(), file.bytes().to_vec(), file.token());
+            HostEvent::FileOpened { kind, name, bytes, token }
         });
+    }
+
+    fn saves_in_place(&self) -> bool {
+        self.glue.saves_in_place()
+    }
+
+    fn save_in_place(&mut self, save: Save) {
+        let form = |(name, bytes): (String, Vec<u8>)| {
+            let form = js_sys::Object::new();
+            // Setting a property of a fresh object cannot fail.
+            let _ = js_sys::Reflect::set(&form, &"name".into(), &name.into());
+            let _ = js_sys::Reflect::set(&form, &"bytes".into(), &Uint8Array::from(bytes.as_slice()));
+            form
+        };
+        let forms = save.forms.into_iter().map(form).collect();
+        let saved = self.glue.save_in_place(&save.mission, save.asks, forms);
+        self.tell_later(saved, move |name| HostEvent::FileSaved {
+            name: name.as_string().unwrap_or_default(),
+            revision: save.revision,
+        });
+    }
+
+    fn keep_file(&mut self, mission: &str, token: u32) {
+        self.glue.keep_file(mission, token);
     }
 
     fn save_file(&mut self, suggested_name: &str, bytes: Vec<u8>) {

@@ -72,6 +72,19 @@ pub trait Host {
     /// key press: browsers refuse otherwise.
     fn open_file(&mut self, kind: FileKind);
 
+    /// Whether missions are saved to files that the user chose once, by [`Host::save_in_place`].
+    fn saves_in_place(&self) -> bool {
+        false
+    }
+
+    /// Saves a mission to its file; lets the user choose one where it has none. [`HostEvent::FileSaved`] or
+    /// [`HostEvent::FileFailed`] answers, and nothing where the user chooses no file. As [`Host::open_file`], only while
+    /// handling a click or a key press; never called where [`Host::saves_in_place`] says no.
+    fn save_in_place(&mut self, _save: Save) {}
+
+    /// From now on a mission is saved to the file that was opened with this token.
+    fn keep_file(&mut self, _mission: &str, _token: u32) {}
+
     /// Lets the user save `bytes` as a file.
     fn save_file(&mut self, suggested_name: &str, bytes: Vec<u8>);
 
@@ -112,6 +125,15 @@ pub enum HostEvent {
         name: String,
         /// All of it.
         bytes: Vec<u8>,
+        /// What [`Host::keep_file`] knows the file by, where the host can write to it.
+        token: Option<u32>,
+    },
+    /// A mission was saved to its file.
+    FileSaved {
+        /// The file's name, without folders.
+        name: String,
+        /// What came with the request.
+        revision: u64,
     },
     /// A file could not be read or written.
     FileFailed {
@@ -176,6 +198,20 @@ pub enum ShelfNews {
         /// What is kept there.
         outcome: Result<Option<Vec<u8>>, StorageError>,
     },
+}
+
+/// A mission that is to be saved to its file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Save {
+    /// What the mission is known by.
+    pub mission: String,
+    /// Whether the user chooses a file even where the mission has one.
+    pub asks: bool,
+    /// The forms in which it can be saved, as names that can be suggested and contents: the text alone, or the whole
+    /// mission. The file's extension decides; the first one is suggested.
+    pub forms: Vec<(String, Vec<u8>)>,
+    /// The revision of the text; comes back with the answer.
+    pub revision: u64,
 }
 
 /// What a file is opened for.

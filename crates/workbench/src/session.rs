@@ -194,6 +194,14 @@ impl Session {
             match effect {
                 Effect::Copy(text) => self.window_effects.push(WindowEffect::Copy(text)),
                 Effect::OpenFile(kind) => self.host.open_file(kind),
+                Effect::Save(save, _) if self.host.saves_in_place() => self.host.save_in_place(save),
+                Effect::Save(_, downloads) => {
+                    for (name, bytes) in downloads {
+                        self.host.save_file(&name, bytes);
+                    }
+                    self.state.document.mark_saved();
+                }
+                Effect::KeepFile(id, token) => self.host.keep_file(&id.0, token),
                 Effect::SaveFile { name, bytes } => self.host.save_file(&name, bytes),
                 Effect::SavePicture { name, svg, size } => self.host.save_picture(&name, svg, size),
                 Effect::CopyLink => self.copy_link(),

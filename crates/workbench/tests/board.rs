@@ -142,6 +142,7 @@ fn open_json(app: &mut App, text: &str) {
         kind: FileKind::Json,
         name: "board.review.json".into(),
         bytes: text.as_bytes().to_vec(),
+        token: None,
     };
     app.world.news.borrow_mut().push_back(file);
     app.settle();

@@ -6,8 +6,9 @@ use std::rc::Rc;
 
 use text_editing::TextCommand;
 use workbench::command::{Command, EditorCommand};
-use workbench::host::{FileKind, HostEvent};
+use workbench::host::{FileKind, HostEvent, Save};
 use workbench::state::files::FileCommand;
+use workbench::state::missions::LibraryCommand;
 
 use support::{App, World, start_in};
 
@@ -138,6 +139,7 @@ fn a_dropped_file_that_is_imported_joins_the_mission_and_each_is_saved_as_itself
         kind: FileKind::Mission,
         name: "places.rmpl".to_owned(),
         bytes: PLACES.as_bytes().to_vec(),
+        token: None,
     });
     app.settle();
     assert_eq!(text(&app), rmpl::files::joined([("", MAIN), ("world/places.rmpl", PLACES)]));
@@ -169,4 +171,105 @@ fn a_file_that_is_added_is_imported_and_one_that_nothing_imports_is_an_error() {
     assert_eq!(problems(&app), ["nothing imports the file `world.rmpl`"]);
     apply(&mut app, vec![Command::Editor(EditorCommand::Format)]);
     assert_eq!(files(&app)[1..], ["world.rmpl"]);
+}
+
+fn forms(save: &Save) -> Vec<(&str, String)> {
+    let form = |(name, bytes): &(String, Vec<u8>)| {
+        let text = String::from_utf8(bytes.clone()).expect("missions are text");
+        (
+            name.rsplit_once('.')
+                .map_or("", |(_, extension)| if extension == "rmpl" { "text" } else { "whole" }),
+            text,
+        )
+    };
+    save.forms.iter().map(form).collect()
+}
+
+#[test]
+fn a_mission_goes_to_its_file_as_text_or_as_a_whole_where_the_host_can_write_files() {
+    let mut app = start_in(Rc::new(World::default()));
+    app.world.saves_in_place.set(true);
+    let source = "// A day.\nscenario Day = { delay[1,2] }\n";
+    apply(&mut app, vec![Command::SetSource(source.to_owned())]);
+    apply(&mut app, vec![Command::SaveMission, Command::Library(LibraryCommand::SaveWhole)]);
+    assert!(app.world.saved.borrow().is_empty(), "nothing is downloaded");
+    let [save, save_as] = <[Save; 2]>::try_from(app.world.saved_in_place.take()).expect("two were asked for");
+    let id = app.session.state().library.open_id().expect("it is a mission of its own").0.to_string();
+    assert_eq!((save.mission.as_str(), save.asks), (id.as_str(), false));
+    assert_eq!((save_as.mission.as_str(), save_as.asks), (id.as_str(), true));
+    let [text, whole] = &forms(&save)[..] else { panic!("as text or as a whole") };
+    assert_eq!(*text, ("text", source.to_owned()));
+    assert!(whole.0 == "whole" && whole.1.contains("enroute-mission/1"), "{whole:?}");
+    assert_eq!(forms(&save_as).iter().map(|form| form.0).collect::<Vec<_>>(), ["whole", "text"]);
+
+    // It is saved when the file is written, and only as far as the text was written.
+    assert!(app.session.state().document.is_modified());
+    let saved = |revision| HostEvent::FileSaved { name: "day.rmpl".to_owned(), revision };
+    type_text(&mut app, " ");
+    app.world.news.borrow_mut().push_back(saved(save.revision));
+    app.settle();
+    assert!(app.session.state().document.is_modified(), "what was typed since is not in the file");
+    apply(&mut app, vec![Command::SaveMission]);
+    let again = app.world.saved_in_place.borrow_mut().pop().expect("it is saved again");
+    app.world.news.borrow_mut().push_back(HostEvent::FileFailed {
+        name: "day.rmpl".to_owned(),
+        reason: "the browser was not allowed to write it".to_owned(),
+    });
+    app.settle();
+    assert!(app.session.state().document.is_modified(), "what could not be written is not saved");
+    assert!(app.json()["toasts"].to_string().contains("day.rmpl: the browser was not allowed to write it"));
+    app.world.news.borrow_mut().push_back(saved(again.revision));
+    app.settle();
+    assert!(!app.session.state().document.is_modified());
+    assert!(app.json()["toasts"].to_string().contains("Saved to day.rmpl"));
+
+    // The text of several files is none.
+    apply(&mut app, vec![Command::Files(FileCommand::Add("world".to_owned())), Command::SaveMission]);
+    let several = app.world.saved_in_place.borrow_mut().pop().expect("it is saved");
+    assert_eq!(forms(&several).iter().map(|form| form.0).collect::<Vec<_>>(), ["whole"]);
+}
+
+#[test]
+fn a_mission_that_was_opened_from_a_file_keeps_it_and_no_other_mission_does() {
+    let mut app = start_in(Rc::new(World::default()));
+    app.world.saves_in_place.set(true);
+    let mut open = |name: &str, text: &str, token| {
+        app.world.news.borrow_mut().push_back(HostEvent::FileOpened {
+            kind: FileKind::Mission,
+            name: name.to_owned(),
+            bytes: text.as_bytes().to_vec(),
+            token,
+        });
+        app.settle();
+        let id = app.session.state().library.open_id().map(|id| id.0.to_string()).unwrap_or_default();
+        (id, app.world.kept_files.take())
+    };
+    let (first, kept) = open("day.rmpl", MAIN, Some(3));
+    assert_eq!(kept, [(first.clone(), 3)]);
+    let (still, kept) = open("places.rmpl", PLACES, Some(4));
+    assert_eq!((still, kept), (first.clone(), Vec::new()), "a file that joined a mission is not its own");
+    let (second, kept) = open("other.rmpl", "scenario Other = { delay[1,2] }\n", Some(5));
+    assert_ne!(second, first);
+    assert_eq!(kept, [(second, 5)]);
+    let (_, kept) = open("noise.txt", "no mission at all", Some(6));
+    assert!(kept.is_empty(), "what is not opened is kept by nobody");
+}
+
+#[test]
+fn an_error_in_another_file_is_announced_with_the_name_and_the_line_of_that_file() {
+    let mut app = start_in(Rc::new(World::default()));
+    let broken = PLACES.replace("vehicle", "vehicel");
+    apply(
+        &mut app,
+        vec![Command::SetSource(rmpl::files::joined([("", MAIN), ("world/places.rmpl", &*broken)]))],
+    );
+    let announced = app.session.state().announcement();
+    assert!(announced.contains("world/places.rmpl, line 2: "), "{announced}");
+    let broken = MAIN.replace("primitive", "primitiv");
+    apply(
+        &mut app,
+        vec![Command::SetSource(rmpl::files::joined([("", &*broken), ("world/places.rmpl", PLACES)]))],
+    );
+    let announced = app.session.state().announcement();
+    assert!(announced.contains("Line 4: "), "{announced}");
 }

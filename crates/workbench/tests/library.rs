@@ -49,6 +49,7 @@ fn drop_file(app: &mut App, name: &str, bytes: &[u8]) {
         kind,
         name: name.to_owned(),
         bytes: bytes.to_vec(),
+        token: None,
     });
     app.settle();
 }

@@ -194,7 +194,8 @@ fn flight_rules_are_changed_kept_with_the_mission_and_part_of_what_is_signed() {
     again.run(Command::Review(ReviewCommand::SaveRules));
     let saved = again.world.saved.borrow().last().expect("a file").1.clone();
     again.dispatch("review.rules", &json!({ "slope_deg": 15 }));
-    let file = HostEvent::FileOpened { kind: FileKind::Json, name: "rules.json".into(), bytes: saved };
+    let file =
+        HostEvent::FileOpened { kind: FileKind::Json, name: "rules.json".into(), bytes: saved, token: None };
     again.world.news.borrow_mut().push_back(file);
     again.settle();
     assert_eq!(again.json()["review"]["rules"]["slope_deg"], 2.5);

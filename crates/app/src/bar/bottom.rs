@@ -71,7 +71,7 @@ fn keeping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         Keeping::LatestOnly(reason) => ("Only the latest text is kept", reason, tokens.warning),
         Keeping::Nothing(reason) => ("Not kept", reason, tokens.error),
     };
-    let button = Button::new(RichText::new(text).color(color)).small();
+    let button = Button::new(RichText::new(text).color(color));
     if ui.add(button).on_hover_text(format!("{reason}. Click to save the mission as a file.")).clicked() {
         commands.send(Command::Library(LibraryCommand::SaveWhole));
     }

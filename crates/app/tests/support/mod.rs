@@ -44,7 +44,7 @@ pub fn start_in(
 fn read_dropped(world: &World, file: &egui::DroppedFileHandle) {
     let name = file.path().to_string_lossy().into_owned();
     let event = match file.bytes() {
-        Ok(bytes) => HostEvent::FileOpened { kind: FileKind::of_name(&name), name, bytes },
+        Ok(bytes) => HostEvent::FileOpened { kind: FileKind::of_name(&name), name, bytes, token: None },
         Err(reason) => HostEvent::FileFailed { name, reason },
     };
     world.news.borrow_mut().push_back(event);

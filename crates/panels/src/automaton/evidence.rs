@@ -153,9 +153,7 @@ fn observations(
             let color = if is_changed { context.tokens.warning } else { context.tokens.text };
             ui.label(RichText::new(variable.name.as_str()).color(color));
             observation(ui, id, &variable.name, &variable.values, value, commands);
-            if is_changed
-                && ui.small_button("as shown").on_hover_text("What the plant really showed").clicked()
-            {
+            if is_changed && ui.button("as shown").on_hover_text("What the plant really showed").clicked() {
                 commands.send(Command::Automaton(AutomatonCommand::Observe(id, None)));
             }
             ui.end_row();

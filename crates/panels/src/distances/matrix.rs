@@ -71,7 +71,7 @@ pub fn show(ui: &mut egui::Ui, context: &Context<'_>, parts: &Parts<'_>, command
                     _ => tokens.text,
                 };
                 let name = text(format!("{:>2} {}", index + 1, node_name(network, from))).color(color);
-                if ui.add(egui::Button::selectable(is_selected, name).small()).clicked() {
+                if ui.add(egui::Button::selectable(is_selected, name)).clicked() {
                     commands.send(Command::Select(Selection::Node(from)));
                 }
                 for &to in &named {

@@ -84,7 +84,7 @@ impl Components {
                 combo(ui, "Mode", &mut self.mode, &names);
                 let label = ui.label(RichText::new("in step").color(muted)).id;
                 ui.add(DragValue::new(&mut self.step).range(next..=1000)).labelled_by(label);
-                if ui.small_button("Let it happen").clicked()
+                if ui.button("Let it happen").clicked()
                     && let Some(mode) = choice.modes.get(self.mode)
                 {
                     let fault = Disturbance::Fault {

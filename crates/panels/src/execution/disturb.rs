@@ -72,7 +72,7 @@ impl Disturb {
         });
         ui.horizontal(|ui| {
             let mut button = |ui: &mut Ui, text: &str, make: &dyn Fn() -> ExecutionCommand| {
-                let response = ui.small_button(text);
+                let response = ui.button(text);
                 response.widget_info(|| {
                     egui::WidgetInfo::labeled(egui::Role::Button, true, format!("{text} {name}"))
                 });

@@ -98,7 +98,7 @@ fn bar(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
                 ("Replay…", "Opens the file of a run and compares its log", ExecutionCommand::Open),
             ];
             for (name, hint, command) in buttons {
-                if ui.small_button(name).on_hover_text(hint).clicked() {
+                if ui.button(name).on_hover_text(hint).clicked() {
                     commands.send(Command::Execution(command));
                 }
             }

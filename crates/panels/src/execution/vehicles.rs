@@ -46,7 +46,7 @@ impl Vehicles {
             ui.horizontal(|ui| {
                 ui.label(vehicle.name.text.as_str());
                 for (text, percent) in [("Stop", 0.0), ("Slow", self.percent)] {
-                    let response = ui.small_button(text);
+                    let response = ui.button(text);
                     let name = format!("{text} {}", vehicle.name.text);
                     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
                     if response.clicked() {

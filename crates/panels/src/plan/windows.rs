@@ -68,25 +68,7 @@ impl WindowTable {
             }
         });
         ui.add_space(space::XS);
-        show_header(ui, context, commands);
-        let height = space::ROW;
-        let (table, _) = ui.allocate_exact_size(
-            egui::vec2(ui.available_width(), height * rows.len() as f32),
-            Sense::hover(),
-        );
-        if !ui.is_rect_visible(table) {
-            return;
-        }
-        sort(&mut rows, context, network);
-        let clip = ui.clip_rect();
-        let first = ((clip.top() - table.top()) / height).floor().max(0.0) as usize;
-        let last = ((clip.bottom() - table.top()) / height).ceil().max(0.0) as usize;
-        for (index, row) in rows.iter().enumerate().take(last).skip(first) {
-            let top = table.top() + index as f32 * height;
-            let rect =
-                egui::Rect::from_min_size(egui::pos2(table.left(), top), egui::vec2(table.width(), height));
-            show_row(ui, context, network, row, rect, commands);
-        }
+        ui.scope(|ui| show_table(ui, context, network, rows, commands));
     }
 
     /// The events that the filter leaves, in no order.
@@ -138,6 +120,33 @@ fn sort(rows: &mut [Row], context: &Context<'_>, network: &Network) {
 
 fn slack(row: &Row) -> Bound {
     row.latest.checked_sub(row.earliest).unwrap_or(Bound::Infinite)
+}
+
+fn show_table(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    network: &Network,
+    mut rows: Vec<Row>,
+    commands: &mut CommandSender,
+) {
+    show_header(ui, context, commands);
+    let height = space::ROW;
+    let (table, _) =
+        ui.allocate_exact_size(egui::vec2(ui.available_width(), height * rows.len() as f32), Sense::hover());
+    theme::structure::part_in(ui, ui.min_rect(), egui::accesskit::Role::Table, "Windows");
+    if !ui.is_rect_visible(table) {
+        return;
+    }
+    sort(&mut rows, context, network);
+    let clip = ui.clip_rect();
+    let first = ((clip.top() - table.top()) / height).floor().max(0.0) as usize;
+    let last = ((clip.bottom() - table.top()) / height).ceil().max(0.0) as usize;
+    for (index, row) in rows.iter().enumerate().take(last).skip(first) {
+        let top = table.top() + index as f32 * height;
+        let rect =
+            egui::Rect::from_min_size(egui::pos2(table.left(), top), egui::vec2(table.width(), height));
+        show_row(ui, context, network, row, rect, commands);
+    }
 }
 
 fn show_header(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
@@ -221,7 +230,10 @@ fn show_row(
     for (column, (text, color)) in numbers.into_iter().enumerate() {
         let right = rect.left() + name_width + (column + 1) as f32 * NUMBER_WIDTH - space::S;
         let at = egui::pos2(right, rect.center().y);
-        ui.painter().text(at, Align2::RIGHT_CENTER, text, body.clone(), color);
+        // A cell of its own for those who read the table.
+        let cell = ui.painter().text(at, Align2::RIGHT_CENTER, &text, body.clone(), color);
+        let cell = ui.interact(cell, response.id.with(column), Sense::hover());
+        cell.widget_info(|| WidgetInfo::labeled(Role::Label, true, &text));
     }
     if response.clicked() {
         commands.send(Command::Select(Selection::Node(row.node)));

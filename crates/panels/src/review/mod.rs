@@ -143,7 +143,7 @@ impl ReviewPanel {
             ui.horizontal(|ui| {
                 ui.add_space(row::INDENT);
                 let name = format!("{text}: {}", section.title());
-                if ui.small_button(&text).accessible_name(name).clicked() {
+                if ui.button(&text).accessible_name(name).clicked() {
                     if is_whole {
                         self.whole.remove(section.title());
                     } else {

@@ -140,7 +140,7 @@ impl People {
     /// A button that begins words about something.
     fn ask(&mut self, ui: &mut Ui, about: &About, label: &str, of: &str) {
         let is_open = self.answer.as_ref().is_some_and(|answer| answer.about == *about);
-        if !is_open && ui.small_button(label).accessible_name(format!("{label} {of}")).clicked() {
+        if !is_open && ui.button(label).accessible_name(format!("{label} {of}")).clicked() {
             self.answer = Some(Answer { about: about.clone(), text: String::new() });
         }
     }
@@ -239,7 +239,7 @@ impl People {
             });
             if let Some(about) = about {
                 let found = context.snapshot.and_then(|snapshot| Selection::by_name(snapshot, about));
-                let link = ui.add_enabled(found.is_some(), egui::Button::new(about).small());
+                let link = ui.add_enabled(found.is_some(), egui::Button::new(about));
                 if link.on_disabled_hover_text("the mission has nothing of this name any more").clicked()
                     && let Some(found) = found
                 {

@@ -57,7 +57,7 @@ fn show_learned(ui: &mut Ui, context: &Context<'_>, recording: &Recording, comma
     ui.label(RichText::new(format!("Learned conflicts: {}", learned.len())).small().color(tokens.text_muted));
     for (step, choices) in learned.into_iter().rev().take(MAX_LEARNED) {
         let text = wording::learned(recording.network(), choices);
-        let button = egui::Button::new(RichText::new(text).small()).frame_when_inactive(false).small().wrap();
+        let button = egui::Button::new(RichText::new(text).small()).frame_when_inactive(false).wrap();
         if ui.add(button).on_hover_text("Goes to the step that taught it").clicked() {
             commands.send(Command::Search(SearchCommand::GoTo(step)));
         }
@@ -139,7 +139,7 @@ fn show_changes(ui: &mut Ui, context: &Context<'_>, recording: &Recording, comma
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
             let name = node_name(network, change.node);
-            let button = egui::Button::new(RichText::new(name).small()).frame_when_inactive(false).small();
+            let button = egui::Button::new(RichText::new(name).small()).frame_when_inactive(false);
             if ui.add(button).clicked() {
                 commands.send(Command::Select(Selection::Node(change.node)));
             }

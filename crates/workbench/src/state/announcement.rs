@@ -26,9 +26,14 @@ impl AppState {
                 let count = problems.iter().filter(|it| it.severity == Severity::Error).count();
                 let noun = if count == 1 { "error" } else { "errors" };
                 // As the list of problems has it: of its own file.
-                let line = first().map_or(0, |problem| problem.line);
-                let message = first().map_or("", |problem| problem.message.as_str());
-                format!("{count} {noun}. Line {line}: {message}.")
+                let place = first().map_or_else(String::new, |problem| {
+                    let line = match &problem.file {
+                        Some(file) => format!("{file}, line {}", problem.line),
+                        None => format!("Line {}", problem.line),
+                    };
+                    format!("{line}: {}", problem.message)
+                });
+                format!("{count} {noun}. {place}.")
             }
             Status::NoPlan => {
                 first().map_or_else(|| "No plan.".to_owned(), |it| format!("No plan. {}.", it.message))

@@ -9,7 +9,7 @@ use rmpl::Span;
 use smol_str::SmolStr;
 
 use crate::command::Command;
-use crate::host::{FileKind, HostEvent};
+use crate::host::{FileKind, HostEvent, Save};
 use crate::library::{Mission, MissionId, MissionKind};
 use crate::mission_file;
 use crate::state::chance::ChanceCommand;
@@ -29,6 +29,10 @@ pub enum Effect {
     Copy(String),
     /// Let the user choose a file.
     OpenFile(FileKind),
+    /// Save the open mission to its file, or these files where the host cannot do that.
+    Save(Save, Vec<(String, Vec<u8>)>),
+    /// A mission is saved from now on to the file that was opened with this token.
+    KeepFile(MissionId, u32),
     /// Let the user save a file.
     SaveFile {
         /// The name to suggest.
@@ -92,7 +96,7 @@ impl AppState {
             Command::Library(command) => self.apply_to_library(command),
             Command::Files(command) => self.apply_to_files(command),
             Command::OpenFile(kind) => self.effects.push(Effect::OpenFile(kind)),
-            Command::SaveMission => self.save(),
+            Command::SaveMission => self.save(false),
             Command::CopyLink => self.effects.push(Effect::CopyLink),
 
             Command::SetSource(text) => self.document.replace_all(&text),
@@ -286,9 +290,24 @@ impl AppState {
                     ),
                 );
             }
-            HostEvent::FileOpened { kind, name, bytes } => self.open_file(kind, &name, bytes),
+            HostEvent::FileOpened { kind, name, bytes, token } => {
+                // What the text imports decides on what a file is for, also where the text came just now.
+                self.language.follow(&self.document);
+                let open_before = self.library.open_id().cloned();
+                self.open_file(kind, &name, bytes);
+                // A file that became part of another mission is not that mission's own.
+                let opened = self.library.open_id().filter(|id| open_before.as_ref() != Some(id)).cloned();
+                self.effects.extend(opened.zip(token).map(|(id, token)| Effect::KeepFile(id, token)));
+            }
+            HostEvent::FileSaved { name, revision } => {
+                if self.document.revision() == revision {
+                    self.document.mark_saved();
+                }
+                self.toasts.add(ToastKind::Done, format!("Saved to {name}"));
+            }
             HostEvent::FileFailed { name, reason } => {
-                self.toasts.add(ToastKind::Failed, format!("{name}: {reason}"));
+                let place = if name.is_empty() { String::new() } else { format!("{name}: ") };
+                self.toasts.add(ToastKind::Failed, format!("{place}{reason}"));
             }
         }
         self.follow_review();
@@ -499,11 +518,6 @@ impl AppState {
                 Err(_) => self.toasts.add(ToastKind::Failed, format!("{name} is not a text file")),
             },
         }
-    }
-
-    fn save(&mut self) {
-        self.save_files();
-        self.document.mark_saved();
     }
 
     pub(super) fn request_view(&mut self, panel: PanelKind, action: crate::command::ViewAction) {

@@ -8,7 +8,7 @@ use rmpl::{Edit, Span};
 use smol_str::SmolStr;
 
 use crate::library::MAIN_TEXT;
-use crate::state::{AppState, Effect, ToastKind};
+use crate::state::{AppState, ToastKind};
 use text_editing::Caret;
 
 /// Something that concerns the files of the open mission.
@@ -105,11 +105,12 @@ impl AppState {
     }
 
     /// The text with all its files, each as a file of its own.
-    pub(super) fn save_files(&mut self) {
-        for (index, (name, text)) in files::split(self.document.text()).into_iter().enumerate() {
+    pub(super) fn files_to_save(&self) -> Vec<(String, Vec<u8>)> {
+        let named = |(index, (name, text)): (usize, (&str, &str))| {
             let name = if index == 0 { format!("{}{EXTENSION}", self.mission) } else { name.to_owned() };
-            self.effects.push(Effect::SaveFile { name, bytes: text.as_bytes().to_vec() });
-        }
+            (name, text.as_bytes().to_vec())
+        };
+        files::split(self.document.text()).into_iter().enumerate().map(named).collect()
     }
 
     /// The file that is imported under this name, or one like it in a folder, and is not there.

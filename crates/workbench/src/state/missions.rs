@@ -6,7 +6,7 @@ use mission::{Request, Snapshot};
 use smol_str::SmolStr;
 
 use crate::Dialog;
-use crate::host::FileKind;
+use crate::host::{FileKind, Save};
 use crate::library::{MapFile, Mission, MissionError, MissionId, MissionKind, Open, Template, joined};
 use crate::mission_file;
 use crate::state::review::Aside;
@@ -109,7 +109,7 @@ impl AppState {
                 self.toasts.add(ToastKind::Done, format!("The version \"{name}\" is kept"));
             }
             LibraryCommand::RestoreVersion(index) => self.restore_version(index),
-            LibraryCommand::SaveWhole => self.save_whole(),
+            LibraryCommand::SaveWhole => self.save(true),
             LibraryCommand::SaveUnreadable(index) => {
                 if let Some(unreadable) = self.library.unreadable.get(index) {
                     let name = unreadable.key.replace('/', "-");
@@ -243,19 +243,41 @@ impl AppState {
         self.toasts.add(ToastKind::Done, format!("This is the version \"{name}\"; undo takes it back"));
     }
 
-    fn save_whole(&mut self) {
-        let id = self.mission_of_its_own();
+    /// Lets the user save the open mission: to the file it has, as its text or as a whole; with `asks` to another file,
+    /// as a whole unless the user wants the text.
+    pub(super) fn save(&mut self, asks: bool) {
+        let texts = self.files_to_save();
+        // The text of an example or a link can be saved as it is; anything more is a mission of its own.
+        if asks || texts.len() > 1 {
+            self.mission_of_its_own();
+        }
         self.note_text();
-        let Some(mission) = self.library.mission(&id) else { return };
-        if mission.maps.iter().any(|map| map.bytes.is_none()) {
+        let own = self.library.open_mission();
+        let knows_maps = |mission: &&Mission| mission.maps.iter().all(|map| map.bytes.is_some());
+        let whole = own.filter(knows_maps).map(|mission| {
+            let record = self.review.record();
+            let review = (!record.is_empty()).then(|| serde_json::from_str(&record.to_json()).ok()).flatten();
+            let whole = Mission { review, ..mission.clone() };
+            (format!("{}.{WHOLE_EXTENSION}", self.mission), whole.to_json().into_bytes())
+        });
+        // What is not of its own has no file: another link may go by the same name.
+        let asks_for_file = asks || own.is_none();
+        let mut forms = Vec::new();
+        // The text alone is a file only where it is one.
+        forms.extend(texts.first().filter(|_| texts.len() == 1).cloned());
+        forms.extend(whole.clone());
+        if asks {
+            forms.reverse();
+        }
+        if asks && whole.is_none() || forms.is_empty() {
             self.toasts.add(ToastKind::Info, "The maps of this mission are still being read; try again");
             return;
         }
-        let record = self.review.record();
-        let review = (!record.is_empty()).then(|| serde_json::from_str(&record.to_json()).ok()).flatten();
-        let whole = Mission { review, ..mission.clone() };
-        let name = format!("{}.{WHOLE_EXTENSION}", self.mission);
-        self.effects.push(Effect::SaveFile { name, bytes: whole.to_json().into_bytes() });
+        let downloads = if asks { whole.into_iter().collect() } else { texts };
+        let revision = self.document.revision();
+        let mission = self.mission_key().to_string();
+        let save = Save { mission, asks: asks_for_file, forms, revision };
+        self.effects.push(Effect::Save(save, downloads));
     }
 
     /// Opens a file as a mission of its own, whatever is open; nothing is opened that does not read as one.

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::rc::Rc;
 
 use mission::{Core, CoreHost, Request, Response};
-use workbench::host::{FileKind, Host, HostEvent, ShelfContent, ShelfNews, ShelfRequest, StorageError};
+use workbench::host::{FileKind, Host, HostEvent, Save, ShelfContent, ShelfNews, ShelfRequest, StorageError};
 
 /// How the shelf of a world does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,6 +45,12 @@ pub struct World {
     pub drawn: Cell<u64>,
     /// Files that were saved.
     pub saved: RefCell<Vec<(String, Vec<u8>)>>,
+    /// Whether missions are saved to files that were chosen once.
+    pub saves_in_place: Cell<bool>,
+    /// Missions that were to be saved to their files.
+    pub saved_in_place: RefCell<Vec<Save>>,
+    /// Missions and the files that they are saved to from then on.
+    pub kept_files: RefCell<Vec<(String, u32)>>,
     /// Width and height of the last picture that was saved, in pixels.
     pub picture_size: Cell<[u32; 2]>,
     /// What files the app asked for.
@@ -216,6 +222,18 @@ impl Host for TestHost {
 
     fn open_file(&mut self, kind: FileKind) {
         self.world.asked.borrow_mut().push(kind);
+    }
+
+    fn saves_in_place(&self) -> bool {
+        self.world.saves_in_place.get()
+    }
+
+    fn save_in_place(&mut self, save: Save) {
+        self.world.saved_in_place.borrow_mut().push(save);
+    }
+
+    fn keep_file(&mut self, mission: &str, token: u32) {
+        self.world.kept_files.borrow_mut().push((mission.to_owned(), token));
     }
 
     fn save_file(&mut self, suggested_name: &str, bytes: Vec<u8>) {

@@ -9,6 +9,7 @@ mod accessibility;
 mod api;
 mod automaton;
 mod board;
+mod disk;
 mod drawing;
 mod editing;
 mod execution;

@@ -50,7 +50,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     plain("file.keepVersion", "Keep a version…", Group::File, &[], Scope::Everywhere, |_| {
         Command::ShowDialog(Dialog::VersionName { name: String::new() })
     }),
-    plain("file.save", "Save the text", Group::File, &[keys(CTRL, Key::S)], Scope::Everywhere, |_| {
+    plain("file.save", "Save", Group::File, &[keys(CTRL, Key::S)], Scope::Everywhere, |_| {
         Command::SaveMission
     }),
     plain("file.saveAs", "Save as…", Group::File, &[keys(CTRL_SHIFT, Key::S)], Scope::Everywhere, |_| {
