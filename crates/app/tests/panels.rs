@@ -251,3 +251,21 @@ fn letters_act_only_where_a_panel_was_turned_to() {
     app.settle();
     assert!(app.harness.state().app_state().lesson.is_beside());
 }
+
+#[test]
+fn a_mission_that_is_being_written_is_told_what_is_missing_and_a_button_writes_it() {
+    let mut app = support::start_in(std::rc::Rc::default(), |builder| builder.with_size([1600.0, 1200.0]));
+    app.settle();
+    let source = "location BASE (24, 52);\nvehicle Scout : ATRV at BASE;\n";
+    app.harness.state_mut().run(Command::OpenSource { name: "test".into(), source: source.to_owned() });
+    app.settle();
+    app.harness.get_by_label("This mission has no scenario yet. With one, it is planned.");
+    app.harness.get_by_label("This mission has no scenario yet. With one, its plan is shown over time here.");
+    app.harness.get_by_label("Add a scenario").click();
+    app.settle();
+    assert_eq!(app.json()["status"], "plan", "{}", app.json());
+    assert!(app.harness.state().source().starts_with(source));
+    app.harness.state_mut().run(Command::OpenSource { name: "other".into(), source: "scenario (".to_owned() });
+    app.settle();
+    app.harness.get_by_label("The text has errors: see the problems. Without them, it is planned.");
+}

@@ -25,10 +25,12 @@ fn the_app_opens_with_the_enroute_mission_and_its_plan() {
 
 #[test]
 fn nothing_on_the_bar_covers_the_workspaces_in_any_window() {
-    for width in [800.0, 1_000.0, 1_100.0, 1_200.0, 1_245.0, 1_440.0] {
+    for width in [680.0, 800.0, 1_000.0, 1_100.0, 1_200.0, 1_245.0, 1_440.0] {
         let mut app = support::start_in(Rc::default(), |builder| builder.with_size([width, 600.0]));
         app.settle();
-        let last = app.harness.get_by_label("Execute").rect();
+        let is_list = app.harness.query_by_label("Workspace").is_some();
+        assert_eq!(is_list, width < 880.0, "{width} points");
+        let last = app.harness.get_by_label(if is_list { "Workspace" } else { "Lessons" }).rect();
         let status = app.harness.get_by_label("Status: plan found").rect();
         assert!(last.right() < status.left(), "{width} points: {last:?} {status:?}");
         // The longest that stands there.
@@ -38,6 +40,7 @@ fn nothing_on_the_bar_covers_the_workspaces_in_any_window() {
         app.settle();
         let status = app.harness.get_by_label_contains("Status: ").rect();
         assert!(last.right() < status.left(), "{width} points: {last:?} {status:?}");
+        assert!(!is_list || status.width() > 60.0, "{width} points: the words are there: {status:?}");
     }
 }
 

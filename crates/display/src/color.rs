@@ -141,7 +141,7 @@ impl Theme {
             ColorRole::Ask => (0x9C3F77, 0xE09BC4),
             ColorRole::Ordering => (0x8A5700, 0xF0B032),
             ColorRole::Nature => (0x5B3FA8, 0xB49CFF),
-            ColorRole::Slack => (0x2B8CCC, 0x56B4E9),
+            ColorRole::Slack => (0x1B6EA8, 0x56B4E9),
             ColorRole::Now => (0xB84300, 0xF0E442),
             ColorRole::Series(number) => SERIES[number as usize % SERIES.len()],
             ColorRole::Relief(shade) => {

@@ -7,44 +7,55 @@ use theme::space;
 
 use crate::{EditorAction, EditorView};
 
+/// A bar at least so wide has its words beside its buttons, a narrower one below them.
+const ROOM_FOR_WORDS: f32 = 520.0;
+/// The room of the words beside the buttons.
+const WORDS_WIDTH: f32 = 100.0;
+/// How wide a field is at least and at most.
+const MIN_FIELD: f32 = 72.0;
+const MAX_FIELD: f32 = 320.0;
+/// What stands beside a field takes about so much, until that is known.
+const REST_WIDTH: f32 = 260.0;
+
 /// Shows the find bar; what changes in it is told as a whole.
 pub(crate) fn show(ui: &mut Ui, view: &EditorView<'_>, find: &Find, actions: &mut Vec<EditorAction>) {
     let tokens = view.tokens;
     let mut changed = find.clone();
     changed.wants_focus = false;
     Frame::new().fill(tokens.raised).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
-        ui.horizontal(|ui| {
+        let is_wide = ui.available_width() >= ROOM_FOR_WORDS;
+        filled_row(ui, "query", |ui, room| {
             let sign = if find.replacing { Icon::ChevronDown } else { Icon::ChevronRight };
             let toggle = icon::button(ui, tokens, sign, "Replace row");
             changed.replacing ^= toggle.clicked();
-            query_field(ui, find, &mut changed, actions);
+            query_field(ui, find, room, &mut changed, actions);
             toggle_button(ui, "Aa", "Match case", &mut changed.case_sensitive);
             toggle_button(ui, "ab", "Whole words", &mut changed.whole_words);
             toggle_button(ui, ".*", "Regular expression", &mut changed.is_regex);
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                button(ui, view, Icon::Close, "Close find bar", EditorAction::CloseFind, actions);
-                button(ui, view, Icon::Down, "Next match", EditorAction::FindNext, actions);
-                button(ui, view, Icon::Up, "Previous match", EditorAction::FindPrevious, actions);
-                // The words have what room is left, and never that of a button.
-                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    let words = RichText::new(outcome(view, find)).small().color(tokens.text_muted);
-                    ui.add(egui::Label::new(words).truncate());
-                });
-            });
+            if is_wide {
+                show_outcome(ui, view, find, WORDS_WIDTH);
+            }
+            button(ui, view, Icon::Up, "Previous match", EditorAction::FindPrevious, actions);
+            button(ui, view, Icon::Down, "Next match", EditorAction::FindNext, actions);
+            button(ui, view, Icon::Close, "Close find bar", EditorAction::CloseFind, actions);
         });
         if find.replacing {
-            ui.horizontal(|ui| {
-                ui.add_space(26.0);
-                let field = TextEdit::singleline(&mut changed.replacement)
-                    .hint_text("Replace by")
-                    .desired_width(200.0);
-                ui.add(field).accessible_name("Replace by");
+            filled_row(ui, "replacement", |ui, room| {
+                ui.add_space(space::ROW + ui.spacing().item_spacing.x);
+                let field = TextEdit::singleline(&mut changed.replacement).hint_text("Replace by");
+                ui.add(field.desired_width(room)).accessible_name("Replace by");
                 if ui.button("Replace").clicked() {
                     actions.push(EditorAction::ReplaceOne);
                 }
                 if ui.button("Replace all").clicked() {
                     actions.push(EditorAction::ReplaceAll);
                 }
+            });
+        }
+        if !is_wide && !find.query.is_empty() {
+            ui.horizontal(|ui| {
+                ui.add_space(space::ROW + ui.spacing().item_spacing.x);
+                show_outcome(ui, view, find, ui.available_width());
             });
         }
     });
@@ -54,8 +65,34 @@ pub(crate) fn show(ui: &mut Ui, view: &EditorView<'_>, find: &Find, actions: &mu
     }
 }
 
-fn query_field(ui: &mut Ui, find: &Find, changed: &mut Find, actions: &mut Vec<EditorAction>) {
-    let field = TextEdit::singleline(&mut changed.query).hint_text("Find").desired_width(200.0);
+/// A row with one field, which has the room that the rest of the row leaves it: as much as was left in the frame before.
+/// Where even that is too little, the row is broken.
+fn filled_row(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui, f32)) {
+    let id = ui.scope_id().with(name);
+    let available = ui.available_width();
+    let taken: f32 = ui.data(|data| data.get_temp(id)).unwrap_or(REST_WIDTH);
+    let room = (available - taken).clamp(MIN_FIELD, MAX_FIELD);
+    let row = ui.horizontal_wrapped(|ui| show(ui, room)).response.rect;
+    // A row that was broken is as wide as it could be.
+    let is_broken = row.height() > 2.0 * space::ROW;
+    let rest = if is_broken { taken } else { row.width() - room };
+    if (rest - taken).abs() > 0.5 {
+        ui.data_mut(|data| data.insert_temp(id, rest));
+        ui.ctx().request_repaint();
+    }
+}
+
+fn show_outcome(ui: &mut Ui, view: &EditorView<'_>, find: &Find, width: f32) {
+    let words = RichText::new(outcome(view, find)).small().color(view.tokens.text_muted);
+    let size = egui::vec2(width, space::ROW);
+    ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+        ui.set_width(width);
+        ui.add(egui::Label::new(words).truncate());
+    });
+}
+
+fn query_field(ui: &mut Ui, find: &Find, room: f32, changed: &mut Find, actions: &mut Vec<EditorAction>) {
+    let field = TextEdit::singleline(&mut changed.query).hint_text("Find").desired_width(room);
     let field = ui.add(field).accessible_name("Find");
     if find.wants_focus {
         field.request_focus();

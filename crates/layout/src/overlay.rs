@@ -37,6 +37,11 @@ pub enum OverlayKind {
     Threat,
 }
 
+/// What is taller than this, in drawing units, is a box and not a line of text.
+const TALLEST_TEXT: f64 = 20.0;
+/// Boxes that are so far apart are joined by a way between them.
+const BOX_GAP: f64 = 4.0;
+
 /// How far above the line of a row its texts end.
 const ABOVE_ROW: f64 = 27.0;
 /// Radius of the corners of a way between rows.
@@ -139,7 +144,10 @@ pub fn between_nodes(
     from: NodeId,
     to: NodeId,
 ) -> OverlayCurve {
-    let radius = |node: NodeId| drawing.node(node).map_or(0.0, |shape| shape.radius);
+    let radius = |node: NodeId| {
+        let of_box = || drawing.box_of(node).map(|hiding| hiding.rect.height() / 2.0);
+        drawing.node(node).map(|shape| shape.radius).or_else(of_box).unwrap_or_default()
+    };
     let (source, target) = (drawing.anchor(from), drawing.anchor(to));
     if (target.y - source.y).abs() < ABOVE_ROW + EVENT_RADIUS {
         let (start, piece) = free_curve(source, radius(from), target, radius(to));
@@ -193,11 +201,13 @@ pub(crate) fn free_curve(from: Point, from_radius: f64, to: Point, to_radius: f6
     (rim(from, first, from_radius), Piece::Cubic(first, second, rim(to, second, to_radius)))
 }
 
-/// Where each label is written, or the place that hides it.
+/// Where each label is written, or the box that hides it.
 fn label_places(drawing: &NetworkDrawing, network: &Network) -> Vec<Rect> {
     let hidden = |label: &tpn::Label| {
-        let anchor = drawing.anchor(network.arcs[label.arc.index()].from);
-        Rect { min: anchor, max: anchor }
+        let from = network.arcs[label.arc.index()].from;
+        let anchor = drawing.anchor(from);
+        // What leads to a box ends at its edge: its words stay free.
+        drawing.box_of(from).map_or(Rect { min: anchor, max: anchor }, |hiding| hiding.rect)
     };
     let mut places: Vec<Rect> = network.labels.iter().map(hidden).collect();
     for text in &drawing.texts {
@@ -212,9 +222,11 @@ fn label_places(drawing: &NetworkDrawing, network: &Network) -> Vec<Rect> {
 
 fn between_labels(number: u32, from: Rect, to: Rect) -> OverlayCurve {
     let (source, target) = (from.center(), to.center());
-    let half = f64::midpoint(from.height(), to.height()) / 2.0;
     let dy = target.y - source.y;
-    let (start, end, first, second) = if dy.abs() < 2.0 * half + SAG.0 {
+    let gap = dy.abs() - f64::midpoint(from.height(), to.height());
+    // Between texts there is little to see of a short way; below a box a longer one would lead through it.
+    let is_box = from.height().max(to.height()) > TALLEST_TEXT;
+    let (start, end, first, second) = if gap < if is_box { BOX_GAP } else { SAG.0 } {
         let (start, end) = (Point::new(source.x, from.max.y), Point::new(target.x, to.max.y));
         let sag = ((target.x - source.x).abs() * 0.2).clamp(SAG.0, SAG.1);
         (start, end, start.shifted(0.0, sag), end.shifted(0.0, sag))

@@ -33,6 +33,17 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, kind: Option<PanelKind>, id: Id,
     let (_, rect) = ui.allocate_space(size);
     let response = ui.interact(rect, id, Sense::click_and_drag()).on_hover_cursor(CursorIcon::Grab);
     response.widget_info(|| WidgetInfo::selected(Role::Tab, true, state.active, galley.text()));
+    // A tab that is turned to is brought into view, where there are more than fit.
+    let shown_id = id.with("shown");
+    let was_active = ui.data_mut(|data| {
+        let width = ui.clip_rect().width();
+        data.get_temp_mut_or_default::<Option<f32>>(shown_id).replace(width)
+    });
+    if !state.active {
+        ui.data_mut(|data| data.insert_temp::<Option<f32>>(shown_id, None));
+    } else if was_active != Some(ui.clip_rect().width()) {
+        ui.scroll_to_rect_animation(rect, None, egui::style::ScrollAnimation::none());
+    }
     if state.is_being_dragged {
         return Tab { response, is_closed: false };
     }

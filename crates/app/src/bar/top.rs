@@ -60,6 +60,8 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     });
 }
 
+/// A bar narrower than this has its workspaces in a list: the sign of the plan keeps its words.
+const ROOM_FOR_WORKSPACES: f32 = 880.0;
 /// Kept free between the workspaces and the sign of the plan, whose words change.
 const STATUS_ROOM: f32 = 70.0;
 /// A bar narrower than this has its menus in one.
@@ -128,6 +130,9 @@ fn menu_item(ui: &mut Ui, context: &Context<'_>, spec: &CommandSpec, commands: &
 
 fn workspaces(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let tokens = context.tokens;
+    if ui.ctx().content_rect().width() < ROOM_FOR_WORKSPACES {
+        return workspace_list(ui, context, commands);
+    }
     ui.spacing_mut().item_spacing.x = space::XS;
     for workspace in Workspace::ALL {
         let is_open = context.state.workspace == workspace && !context.state.lesson.is_beside();
@@ -150,6 +155,25 @@ fn workspaces(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) 
         commands.send(Command::Lesson(LessonCommand::Show));
     }
     ui.spacing_mut().item_spacing.x = space::M;
+}
+
+/// The workspaces as a list that opens.
+fn workspace_list(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    let is_lesson = context.state.lesson.is_beside();
+    let title = if is_lesson { "Lessons" } else { context.state.workspace.title() };
+    let list = egui::ComboBox::from_id_salt("workspace").selected_text(title).width(0.0);
+    let shown = list.show_ui(ui, |ui| {
+        for workspace in Workspace::ALL {
+            let is_open = context.state.workspace == workspace && !is_lesson;
+            if ui.selectable_label(is_open, workspace.title()).clicked() {
+                commands.send(Command::ShowWorkspace(workspace));
+            }
+        }
+        if ui.selectable_label(is_lesson, "Lessons").clicked() {
+            commands.send(Command::Lesson(LessonCommand::Show));
+        }
+    });
+    shown.response.accessible_name("Workspace");
 }
 
 /// Where the plan stands: a sign, a word, and a colour.

@@ -37,7 +37,7 @@ use self::paint::{Scene, badge};
 use self::search::Search;
 use self::toolbar::Asked;
 use self::view::View;
-use super::{Context, Panel, show_empty};
+use super::{Context, Panel};
 use crate::painter::DisplayPainter;
 
 /// The network panel.
@@ -68,7 +68,7 @@ impl Panel for NetworkPanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let Some((snapshot, network)) = context.snapshot.and_then(|it| Some((it, it.network.as_ref()?)))
         else {
-            show_empty(ui, context, "The network appears when the mission has been read.");
+            crate::empty::show_missing(ui, context, "its network is drawn here", commands);
             return;
         };
         let views = &context.state.settings.views;

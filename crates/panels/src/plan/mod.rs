@@ -29,12 +29,11 @@ impl Panel for PlanPanel {
         let planning = context.snapshot.and_then(|snapshot| snapshot.planning.as_ref());
         let Some((snapshot, planning)) = context.snapshot.zip(planning) else {
             let text = match context.state.status() {
-                Status::Broken => "The text has errors. See the problems.",
-                Status::Empty => "There is nothing to plan in this text.",
-                Status::Undecided => "Nothing is known of a plan for this text.",
-                _ => "Planning…",
+                Status::Broken | Status::Empty => crate::empty::missing(context, "it is planned"),
+                Status::Undecided => "Nothing is known of a plan for this text.".to_owned(),
+                _ => "Planning…".to_owned(),
             };
-            show_empty(ui, context, text);
+            show_empty(ui, context, &text);
             return;
         };
         let Some(network) = snapshot.network.as_deref() else { return };

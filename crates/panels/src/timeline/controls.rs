@@ -32,7 +32,8 @@ pub(crate) fn show(ui: &mut Ui, context: &Context<'_>, network: &Network, comman
             grouping(ui, context, commands);
             switches(ui, context, commands);
             ui.add_space(space::M);
-            zoom(ui, context, commands);
+            // These stay together where the row is broken.
+            ui.horizontal(|ui| zoom(ui, context, commands));
             ui.add_space(space::M);
             pins(ui, context, commands);
             range(ui, context, network, commands);

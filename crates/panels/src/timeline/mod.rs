@@ -28,8 +28,8 @@ use smol_str::SmolStr;
 use tpn::{LabelId, Network, Plan};
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, ViewAction};
-use workbench::state::Selection;
 use workbench::state::settings::TimelineView;
+use workbench::state::{Selection, Status};
 use workbench::time_text;
 use workbench::workspace::Workspace;
 
@@ -101,7 +101,13 @@ impl Default for TimelinePanel {
 impl Panel for TimelinePanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let (Some(snapshot), Some((network, plan))) = (context.snapshot, context.plan()) else {
-            show_empty(ui, context, "There is no plan to show over time.");
+            let text = match context.state.status() {
+                Status::Broken | Status::Empty => {
+                    crate::empty::missing(context, "its plan is shown over time here")
+                }
+                _ => "There is no plan to show over time.".to_owned(),
+            };
+            show_empty(ui, context, &text);
             return;
         };
         self.prepare(context, snapshot, network, plan);

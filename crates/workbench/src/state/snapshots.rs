@@ -130,6 +130,14 @@ impl Snapshots {
         }
     }
 }
+
+impl Snapshots {
+    /// Whether nothing is wrong with the last text that was read but that it says nothing to plan yet.
+    pub fn lacks_a_scenario(&self) -> bool {
+        self.latest.as_deref().is_some_and(lacks_a_scenario)
+    }
+}
+
 /// Whether nothing is wrong with a text but that it says nothing to plan yet.
 fn lacks_a_scenario(snapshot: &Snapshot) -> bool {
     let mut errors =
