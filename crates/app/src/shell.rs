@@ -324,7 +324,10 @@ impl PanelTiles<'_> {
         }
         structure::part(ui, Role::Region, &format!("{} panel", kind.title()));
         self.region(ui, kind);
-        ui.push_id(kind.name(), |ui| self.panels.show(kind, ui, self.context, self.commands));
+        panels::show_stale(ui, self.context, kind);
+        let place = egui::UiBuilder::new().max_rect(ui.available_rect_before_wrap());
+        let mut inside = ui.new_child(place.id_salt(kind.name()));
+        self.panels.show(kind, &mut inside, self.context, self.commands);
     }
 
     /// The panel as something that can have the keyboard: Tab goes from it to what it holds.

@@ -265,7 +265,28 @@ fn a_mission_that_is_being_written_is_told_what_is_missing_and_a_button_writes_i
     app.settle();
     assert_eq!(app.json()["status"], "plan", "{}", app.json());
     assert!(app.harness.state().source().starts_with(source));
-    app.harness.state_mut().run(Command::OpenSource { name: "other".into(), source: "scenario (".to_owned() });
+    app.harness
+        .state_mut()
+        .run(Command::OpenSource { name: "other".into(), source: "scenario (".to_owned() });
     app.settle();
     app.harness.get_by_label("The text has errors: see the problems. Without them, it is planned.");
+}
+
+#[test]
+fn what_is_of_an_earlier_text_is_marked_and_says_nothing_good_of_the_present_one() {
+    let mut app = support::start_in(std::rc::Rc::default(), |builder| builder.with_size([1600.0, 1200.0]));
+    app.settle();
+    app.harness.get_by_label("The independent checker accepts this plan.");
+    let source = app.harness.state().source();
+    app.harness.state_mut().set_source(&source.replace("vehicle Rover1 :", "vehicle ((Rover1 :"));
+    app.settle();
+    assert_eq!(app.json()["status"], "broken");
+    let marks = app.harness.query_all_by_label("Of an earlier text: what is written now has errors").count();
+    assert_eq!(marks, 3, "plan, timeline and terrain");
+    assert!(app.harness.query_by_label("The independent checker accepts this plan.").is_none());
+    app.harness.get_by_label("The independent checker accepted this plan of an earlier text.");
+    app.harness.state_mut().set_source(&source);
+    app.settle();
+    assert!(app.harness.query_by_label_contains("Of an earlier text").is_none());
+    app.harness.get_by_label("The independent checker accepts this plan.");
 }

@@ -1,8 +1,10 @@
 //! Says that there is nothing to show, and why.
 
-use egui::{RichText, Ui};
+use egui::{Frame, Label, Margin, RichText, Ui};
 use text_editing::EditKind;
+use theme::icon::{self, Icon};
 use theme::space;
+use workbench::PanelKind;
 use workbench::command::{Command, CommandSender};
 use workbench::state::Status;
 
@@ -12,6 +14,39 @@ use crate::Context;
 pub fn show_empty(ui: &mut Ui, context: &Context<'_>, text: &str) {
     ui.centered_and_justified(|ui| {
         ui.label(RichText::new(text).color(context.tokens.text_muted));
+    });
+}
+
+/// Says above a panel that draws a mission that this is not the mission which is written now. While that is worked out,
+/// which mostly is a moment, nothing is said.
+pub fn show_stale(ui: &mut Ui, context: &Context<'_>, panel: PanelKind) {
+    let draws_mission = matches!(
+        panel,
+        PanelKind::Plan
+            | PanelKind::Timeline
+            | PanelKind::Terrain
+            | PanelKind::Distances
+            | PanelKind::Search
+            | PanelKind::Strategy
+            | PanelKind::Robustness
+    );
+    let now = match context.state.status() {
+        Status::Broken => "what is written now has errors",
+        Status::Empty => "there is nothing to plan in what is written now",
+        Status::Undecided => "what is written now is not worked out",
+        _ => return,
+    };
+    if !draws_mission || !context.is_stale || context.snapshot.is_none() {
+        return;
+    }
+    let color = context.tokens.warning;
+    let margin = Margin::symmetric(10, 2);
+    Frame::new().fill(context.tokens.soft[1]).inner_margin(margin).show(ui, |ui| {
+        ui.set_min_width(ui.available_width());
+        ui.horizontal(|ui| {
+            icon::label(ui, Icon::Warning, color);
+            ui.add(Label::new(RichText::new(format!("Of an earlier text: {now}")).color(color)).truncate());
+        });
     });
 }
 

@@ -23,7 +23,7 @@ mod strategy;
 mod terrain;
 mod timeline;
 
-pub use empty::show_empty;
+pub use empty::{show_empty, show_stale};
 pub use mission_text::{editor_id, typed_text};
 pub use panel::{Context, Panel};
 pub use plan::counted;

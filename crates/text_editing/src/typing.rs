@@ -222,7 +222,8 @@ fn next_line_start(document: &Document, line: usize) -> usize {
 /// Pastes at every caret: one line to each if there are as many, otherwise all of it.
 fn paste(document: &mut Document, text: &str) {
     let lines: Vec<&str> = text.lines().collect();
-    let is_one_each = lines.len() == document.carets().len();
+    let carets = document.carets().len();
+    let is_one_each = carets > 1 && lines.len() == carets;
     document.at_each_caret(|document, index| {
         let text = if is_one_each { lines[index] } else { text };
         document.replace(selected(document), text, EditKind::Single);

@@ -116,3 +116,26 @@ fn a_bracket_leads_to_its_partner_and_back() {
     app.run(Command::Editor(EditorCommand::GoToBracket));
     assert_eq!(head(&app), 13);
 }
+
+#[test]
+fn a_line_that_was_copied_without_selecting_is_pasted_as_a_line_above() {
+    let mut app = showing("one\ntw|o\nthree\n");
+    let text = |app: &App| {
+        let mut text = app.session.source();
+        text.insert(app.session.state().document.caret().head, '|');
+        text
+    };
+    let paste = |text: &str| Command::Text(TextCommand::Paste(text.to_owned()));
+    app.run(Command::Editor(EditorCommand::CopySelection { cut: false }));
+    assert_eq!(text(&app), "one\ntw|o\nthree\n", "the caret stays");
+    app.run(paste("two\r\n"));
+    assert_eq!(text(&app), "one\ntwo\ntw|o\nthree\n");
+    app.run(paste("other\n"));
+    assert_eq!(text(&app), "one\ntwo\ntwother\n|o\nthree\n", "what comes from elsewhere goes to the caret");
+    // What is selected is no line, whatever it holds.
+    app.run(Command::Text(TextCommand::Select { anchor: 0, head: 4 }));
+    app.run(Command::Editor(EditorCommand::CopySelection { cut: false }));
+    app.run(Command::Text(TextCommand::Select { anchor: 1, head: 1 }));
+    app.run(paste("one\n"));
+    assert_eq!(text(&app), "oone\n|ne\ntwo\ntwother\no\nthree\n");
+}

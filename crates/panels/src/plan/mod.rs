@@ -39,10 +39,6 @@ impl Panel for PlanPanel {
         let Some(network) = snapshot.network.as_deref() else { return };
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             egui::Frame::new().inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
-                if context.is_stale {
-                    let note = "This belongs to an older text.";
-                    ui.label(RichText::new(note).color(context.tokens.warning));
-                }
                 match context.plan() {
                     Some((network, plan)) => {
                         match context.step() {
@@ -172,6 +168,12 @@ fn show_verdict(ui: &mut Ui, context: &Context<'_>, planning: &mission::Planning
     let tokens = context.tokens;
     let stats = planning.outcome.stats;
     ui.horizontal_wrapped(|ui| match &planning.verdict {
+        // What is of an earlier text says nothing good of what is written now.
+        Some(verdict) if verdict.valid && context.is_stale => {
+            icon::label(ui, Icon::Nothing, tokens.text_muted);
+            let text = "The independent checker accepted this plan of an earlier text.";
+            ui.label(RichText::new(text).color(tokens.text_muted));
+        }
         Some(verdict) if verdict.valid => {
             icon::label(ui, Icon::Check, tokens.good);
             ui.label(RichText::new("The independent checker accepts this plan.").color(tokens.good));

@@ -32,8 +32,7 @@ pub(crate) fn show(ui: &mut Ui, context: &Context<'_>, network: &Network, comman
             grouping(ui, context, commands);
             switches(ui, context, commands);
             ui.add_space(space::M);
-            // These stay together where the row is broken.
-            ui.horizontal(|ui| zoom(ui, context, commands));
+            zoom(ui, context, commands);
             ui.add_space(space::M);
             pins(ui, context, commands);
             range(ui, context, network, commands);
@@ -173,11 +172,17 @@ fn switches(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
 }
 
 fn zoom(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
-    for (sign, name, action) in [
+    let buttons = [
         (Icon::Fit, "Fit the timeline", ViewAction::Fit),
         (Icon::Plus, "Zoom into the timeline", ViewAction::ZoomIn),
         (Icon::Minus, "Zoom out of the timeline", ViewAction::ZoomOut),
-    ] {
+    ];
+    // They stay together where the row is broken.
+    let width = buttons.len() as f32 * (space::ROW + ui.spacing().item_spacing.x);
+    if ui.available_size_before_wrap().x < width {
+        ui.end_row();
+    }
+    for (sign, name, action) in buttons {
         if icon::button(ui, context.tokens, sign, name).clicked() {
             commands.send(Command::ViewOf(PanelKind::Timeline, action));
         }

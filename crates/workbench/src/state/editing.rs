@@ -2,8 +2,8 @@
 //!
 //! Completion, fixes and renaming are in [`super::services`].
 
-use rmpl::Span;
 use rmpl::editor;
+use rmpl::{Edit, Span};
 use text_editing::{Caret, EditKind, Find, TextCommand};
 
 use crate::PanelKind;
@@ -24,6 +24,13 @@ impl AppState {
                 let edits = editor::toggle_comment(parse.text(), span_of(&self.document.caret().range()));
                 self.document.edit(&edits, EditKind::Single, None);
             }
+            (TextCommand::Paste(text), _) if is_one && self.is_copied_line(text) => {
+                // A line that was copied as one stays one: it goes above the caret's line.
+                let line = self.document.line_at(self.document.caret().head);
+                let start = self.document.line_range(line).start as u32;
+                let edit = Edit { span: Span::new(start, start), text: text.clone() };
+                self.document.edit(&[edit], EditKind::Single, None);
+            }
             _ => command.apply(&mut self.document),
         }
         self.language.follow(&self.document);
@@ -38,6 +45,12 @@ impl AppState {
         ) {
             self.select_at_caret();
         }
+    }
+
+    /// Whether a text that is pasted, with nothing selected, is the line that was copied last.
+    fn is_copied_line(&self, text: &str) -> bool {
+        let is_it = |line: &String| line.ends_with('\n') && *line == text.replace("\r\n", "\n");
+        self.document.caret().is_empty() && self.editor.copied_line.as_ref().is_some_and(is_it)
     }
 
     /// Selects in all panels what stands at the caret, as long as the drawings belong to this text.
@@ -219,9 +232,11 @@ impl AppState {
             }
             return;
         }
+        self.editor.copied_line = None;
         if caret.is_empty() {
             // Without a selection, copy and cut mean the line, as in other editors.
             TextCommand::SelectLine(caret.head).apply(&mut self.document);
+            self.editor.copied_line = Some(self.document.selected_text().to_owned());
         }
         self.effects.push(Effect::Copy(self.document.selected_text().to_owned()));
         if cut {

@@ -13,6 +13,8 @@ pub struct EditorState {
     pub find: Option<Find>,
     /// The list at the caret: completions, fixes, references.
     pub popup: Option<Popup>,
+    /// The line that was copied or cut last, if that was a whole line.
+    pub copied_line: Option<String>,
     /// What is folded away.
     pub folding: Folding,
     /// Where the caret was before it went elsewhere.
