@@ -42,6 +42,8 @@ fn name(ui: &mut Ui, context: &Context<'_>, width: f32, commands: &mut CommandSe
         .desired_width(width)
         .clip_text(true)
         .text_color(color)
+        .align(egui::Align2::LEFT_CENTER)
+        .min_size(egui::vec2(0.0, space::ROW))
         .frame(egui::Frame::NONE.inner_margin(egui::Margin::symmetric(4, 2)));
     let field = ui.add(field).accessible_name("Mission name");
     if field.hovered() || field.has_focus() {

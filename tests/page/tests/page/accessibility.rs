@@ -74,6 +74,25 @@ fn the_document_has_landmarks_headings_menus_tabs_and_tables() -> Result<()> {
 }
 
 #[test]
+fn the_windows_of_a_plan_are_a_table_of_four_columns() -> Result<()> {
+    let page = Opened::planned()?;
+    page.tab.evaluate("enroute.setSource('scenario S = { delay[1,2] }')")?;
+    page.wait_for("state.status === 'plan' && !state.isStale")?;
+    let table = "document.querySelector('[role=table][aria-label=Windows]')";
+    page.tab.wait_until(&format!("{table}?.querySelectorAll('[role=row] > [role=cell]').length >= 8"))?;
+    let columns = page.tab.evaluate(&format!(
+        "[...{table}.querySelectorAll('[role=row]')].map((row) => row.querySelectorAll(':scope > [role]').length)"
+    ))?;
+    let columns = columns.as_array().cloned().unwrap_or_default();
+    assert!(columns.len() > 2 && columns.iter().all(|it| *it == json!(4)), "{columns:?}");
+    // Of the mission's start, which is when it is: at 0, at the latest 0, without slack.
+    let cells = format!("[...{table}.querySelectorAll('[role=row]')[1].querySelectorAll('[role=cell]')]");
+    let texts = page.tab.evaluate(&format!("{cells}.slice(1).map((cell) => cell.textContent)"))?;
+    assert_eq!(texts, json!(["0", "0", "0"]));
+    Ok(())
+}
+
+#[test]
 fn what_becomes_of_the_plan_and_each_step_is_announced() -> Result<()> {
     let page = Opened::planned()?;
     let says = |words: &str| {

@@ -139,3 +139,29 @@ fn a_mission_of_two_files_is_written_with_real_keys_planned_and_there_after_a_re
     assert_eq!(page.tab.evaluate("enroute.source()")?, text);
     Ok(())
 }
+
+#[test]
+fn long_lines_are_wrapped_by_a_key_and_the_caret_goes_down_within_them() -> Result<()> {
+    let page = Opened::planned()?;
+    let line = format!("// {}", "word ".repeat(80).trim_end());
+    page.tab.evaluate(&format!(
+        "enroute.setSource({})",
+        json!(format!("{line}\nscenario S = {{ delay[1,2] }}"))
+    ))?;
+    page.settle()?;
+    page.place_caret_after("// ")?;
+    let down = |condition: &str| -> Result<()> {
+        page.tab.press(Key::ArrowDown, Modifiers::NONE)?;
+        page.wait_for(condition)
+    };
+    down(&format!("state.caret.head > {}", line.len()))?;
+    page.place_caret_after("// ")?;
+    page.tab.press(Key::Character('z'), Modifiers::ALT)?;
+    page.tab.next_frame()?;
+    page.tab.next_frame()?;
+    down(&format!("state.caret.head > 20 && state.caret.head < {}", line.len()))?;
+    page.tab.press(Key::Home, Modifiers::NONE)?;
+    page.tab.press(Key::Character('x'), Modifiers::NONE)?;
+    page.tab.wait_until("enroute.source().includes(' xword') && !enroute.source().includes('// xword')")?;
+    Ok(())
+}
