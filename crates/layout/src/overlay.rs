@@ -49,11 +49,15 @@ const CORNER: f64 = 9.0;
 /// How far a curve between two places on one line hangs below it.
 const SAG: (f64, f64) = (34.0, 150.0);
 
-/// The causal links of a plan.
+/// The causal links of a plan, but for those within a box that hides both ends.
 pub fn causal_links(drawing: &NetworkDrawing, network: &Network, plan: &Plan) -> Vec<OverlayCurve> {
     let places = label_places(drawing, network);
     let curve = |(number, link): (usize, &tpn::CausalLink)| {
         let (from, to) = (places.get(link.tell.index())?, places.get(link.ask.index())?);
+        let node = |label: LabelId| network.arcs[network.labels[label.index()].arc.index()].from;
+        if from == to && are_in_one_box(drawing, node(link.tell), node(link.ask)) {
+            return None;
+        }
         Some(between_labels(number as u32, *from, *to))
     };
     plan.causal_links.iter().enumerate().filter_map(curve).collect()
@@ -73,6 +77,9 @@ pub fn orderings(drawing: &NetworkDrawing, network: &Network, plan: &Plan) -> Ve
     });
     let curve = |(number, ends): (usize, Option<(NodeId, NodeId)>)| {
         let (from, to) = ends?;
+        if are_in_one_box(drawing, from, to) {
+            return None;
+        }
         Some(between_nodes(drawing, OverlayKind::Ordering, number as u32, from, to))
     };
     of_labels.chain(of_uses).enumerate().filter_map(curve).collect()
@@ -199,6 +206,12 @@ pub(crate) fn free_curve(from: Point, from_radius: f64, to: Point, to_radius: f6
         center.shifted(direction.x * radius, direction.y * radius)
     };
     (rim(from, first, from_radius), Piece::Cubic(first, second, rim(to, second, to_radius)))
+}
+
+/// Whether one box hides both.
+fn are_in_one_box(drawing: &NetworkDrawing, one: NodeId, other: NodeId) -> bool {
+    let rect = |node| drawing.box_of(node).map(|hiding| hiding.rect);
+    rect(one).is_some() && rect(one) == rect(other)
 }
 
 /// Where each label is written, or the box that hides it.

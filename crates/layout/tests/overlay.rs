@@ -3,11 +3,11 @@
 mod drawings;
 
 use display::{Theme, approximate_text_width, svg};
-use drawings::{draw, enroute, segment_meets_rect};
+use drawings::{draw, draw_with, enroute, segment_meets_rect};
 use exact::{Bound, Time};
 use layout::overlay::{causal_links, negative_cycle, orderings, windows};
 use layout::{Item, NetworkState, Options, network_list};
-use tpn::{CausalLink, LabelId, Network, Ordering, Plan, Window};
+use tpn::{BlockId, BlockKind, CausalLink, LabelId, Network, Ordering, Plan, Window};
 
 fn label(network: &Network, name: &str) -> LabelId {
     let all = (0..network.labels.len()).map(LabelId::from_index);
@@ -157,4 +157,34 @@ fn an_ordering_between_rows_runs_over_no_text() {
             assert!(over.is_none(), "the ordering runs over {over:?}");
         }
     }
+}
+
+#[test]
+fn links_and_orderings_end_at_the_edge_of_the_box_that_hides_their_end_and_not_within_it() {
+    let network = enroute();
+    let mut plan = plan(&network);
+    let is_enroute = |kind: &BlockKind| match kind {
+        BlockKind::Scope { occurrence: Some(occurrence), .. } => {
+            network.occurrences[occurrence.index()].activity == "Group-Enroute"
+        }
+        _ => false,
+    };
+    let block = network.blocks.iter().position(|block| is_enroute(&block.kind)).map(BlockId::from_index);
+    let collapsed = [block.expect("Group-Enroute is a block")].into();
+    let drawing = draw_with(&network, &Options { collapsed, ..Options::default() });
+    let ask = plan.causal_links[0].ask;
+    let hiding =
+        drawing.box_of(network.arcs[network.labels[ask.index()].arc.index()].from).expect("a box").rect;
+    let is_on_edge = |point: display::Point| point.y == hiding.min.y || point.y == hiding.max.y;
+    let links = causal_links(&drawing, &network, &plan);
+    let [link] = links.as_slice() else { panic!("one link") };
+    assert!(is_on_edge(link.pieces.last().expect("it goes somewhere").end()), "{link:?} {hiding:?}");
+    let curves = orderings(&drawing, &network, &plan);
+    let [curve] = curves.as_slice() else { panic!("one ordering") };
+    assert!(is_on_edge(curve.start), "{curve:?} {hiding:?}");
+    // What is between two hidden places has no way to show.
+    plan.causal_links[0].tell = label(&network, "Tell(not(PROCEED=OK))@Group-Wait#1");
+    plan.orderings_added[0].then = ask;
+    assert_eq!(causal_links(&drawing, &network, &plan), []);
+    assert_eq!(orderings(&drawing, &network, &plan), []);
 }

@@ -83,7 +83,7 @@ fn why_not(context: &Context<'_>) -> String {
 /// The clock and what moves it.
 fn bar(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     Frame::new().inner_margin(Margin::symmetric(8, 3)).show(ui, |ui| {
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = space::XS;
             controls::playing(ui, context, commands);
             ui.add_space(space::M);
@@ -91,7 +91,7 @@ fn bar(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
             ui.add_space(space::M);
             controls::rate(ui, context, commands);
         });
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             let buttons = [
                 ("Start over", "Back to the start, without disturbances", ExecutionCommand::Reset),
                 ("Save run…", "Disturbances and log as a file that replays exactly", ExecutionCommand::Save),

@@ -196,10 +196,15 @@ fn buttons(ui: &mut Ui, context: &Context<'_>, lesson: &Lesson, at: usize, comma
         if again.on_hover_text("Brings step, selection and camera back to what this stop shows").clicked() {
             commands.send(Command::Lesson(LessonCommand::ShowAgain));
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.add_space(space::L);
-            let text = format!("{} of {}", at + 1, lesson.stops.len());
-            ui.label(RichText::new(text).color(context.tokens.text_muted));
-        });
+        // The line above the text says it too, where there is no room beside the buttons.
+        let text = format!("{} of {}", at + 1, lesson.stops.len());
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        let galley = ui.painter().layout_no_wrap(text, font, context.tokens.text_muted);
+        if galley.size().x + space::L + space::S <= ui.available_width() {
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.add_space(space::L);
+                ui.label(galley);
+            });
+        }
     });
 }
