@@ -204,6 +204,15 @@ fn a_name_is_renamed_everywhere() {
 }
 
 #[test]
+fn the_old_name_is_selected_for_renaming_so_that_typing_replaces_it() {
+    let mut app = editing("primitive Dr$0ive(to);\nscenario S = { Drive(A) }");
+    app.press(NONE, Key::F2);
+    app.type_text("Go\n");
+    app.settle();
+    assert_eq!(app.harness.state().source(), "primitive Go(to);\nscenario S = { Go(A) }");
+}
+
+#[test]
 fn definition_leads_from_a_call_to_its_declaration() {
     let mut app = editing("primitive Drive(to);\nscenario S = { Dri$0ve(A) }");
     app.press(NONE, Key::F12);
