@@ -126,14 +126,20 @@ async function unlessCancelled(promise, none) {
 /** The file of each mission. Where the browser's database cannot be used they are known until the page is closed. */
 function openHandles() {
   const known = new Map();
-  const database = new Promise((resolve, reject) => {
-    const request = indexedDB.open(NAME, 1);
-    request.onupgradeneeded = () => request.result.createObjectStore(STORE);
-    request.onerror = () => reject(request.error);
-    request.onsuccess = () => resolve(request.result);
-  });
+  let database;
+  // Opened when it is first needed, and again where that failed.
+  const open = () =>
+    (database ??= new Promise((resolve, reject) => {
+      const request = indexedDB.open(NAME, 1);
+      request.onupgradeneeded = () => request.result.createObjectStore(STORE);
+      request.onerror = () => reject(request.error);
+      request.onsuccess = () => resolve(request.result);
+    }).catch((error) => {
+      database = undefined;
+      throw error;
+    }));
   const ask = async (mode, act) => {
-    const store = (await database).transaction(STORE, mode).objectStore(STORE);
+    const store = (await open()).transaction(STORE, mode).objectStore(STORE);
     return new Promise((resolve, reject) => {
       const request = act(store);
       request.onsuccess = () => resolve(request.result);
