@@ -247,7 +247,7 @@ export type Vehicle = {
 
 /** What is done on the terrain. */
 export type Terrain = {
-  tool: "look" | "measure" | "location" | "circle" | "polygon" | "vehicle";
+  tool: "look" | "measure" | "location" | "circle" | "appear" | "polygon" | "wall" | "vehicle";
   /** The places that the tool has so far, in metres east and north. */
   points: Array<[number, number]>;
   /** Whether the clearance map is shown. */
@@ -259,6 +259,7 @@ export type Terrain = {
 
 /** The search for a path that is looked at sample by sample. */
 export type PathGrowth = {
+  /** Whose searches are shown. */
   planner: string;
   leg: number;
   samples: number;
@@ -266,6 +267,25 @@ export type PathGrowth = {
   vertices: number;
   /** The length of the best path so far, in metres. */
   length: number | null;
+  /** What the last sample did, in a sentence. */
+  sentence: string | null;
+  /** What each search has done by now; several of them race. */
+  searches: Array<PathSearch>;
+};
+
+/** A search for a path by the sample that is looked at. */
+export type PathSearch = {
+  planner: string;
+  samples: number;
+  vertices: number;
+  /** Straight pieces of ground that were checked for obstacles. */
+  checks: number;
+  /** The length of the best path so far, in metres. */
+  length: number | null;
+  /** Whether the core has drawn all samples. */
+  complete: boolean;
+  /** Why there is no search. */
+  refusal: string | null;
 };
 
 /** A run of the mission at the time shown. */

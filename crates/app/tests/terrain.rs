@@ -172,6 +172,60 @@ fn a_drag_places_a_round_obstacle_and_clicks_place_one_with_corners() {
 }
 
 #[test]
+fn a_drag_draws_a_wall_while_a_tree_is_shown_and_a_click_none() {
+    let mut app = above();
+    dispatch(&mut app, "terrain.growth", &json!(null));
+    dispatch(&mut app, "terrain.growTo", &json!({ "samples": 3 }));
+    let (here, there) = (place(&app, "HERE"), place(&app, "THERE"));
+    let ten_metres = (there.x - here.x) / 8.0;
+    let from = on_path(&app) + vec2(0.0, 90.0);
+    dispatch(&mut app, "terrain.wall", &json!(null));
+    app.harness.get_by_label("Drag from one end of the wall to the other · Shift for several");
+    click(&mut app, from);
+    assert_eq!(app.harness.state().source(), MISSION, "a click is no wall");
+    press(&mut app, from, true);
+    for part in 1..=4 {
+        app.harness.event(egui::Event::PointerMoved(from + vec2(ten_metres * part as f32 / 2.0, 0.0)));
+        app.harness.step();
+    }
+    press(&mut app, from + vec2(2.0 * ten_metres, 0.0), false);
+    app.settle();
+    let source = app.harness.state().source();
+    let line =
+        source.lines().find(|line| line.starts_with("obstacle Wall1 polygon (")).expect("a declaration");
+    let numbers = line.trim_start_matches("obstacle Wall1 polygon (").trim_end_matches(");").split(", ");
+    let corners: Vec<f64> = numbers.map(|number| number.parse().expect("a number")).collect();
+    let extent = |axis: usize| {
+        let along = corners.iter().skip(axis).step_by(2);
+        along.clone().copied().fold(f64::MIN, f64::max) - along.copied().fold(f64::MAX, f64::min)
+    };
+    assert!((extent(0) - 20.0).abs() < 1.0 && (2.9..4.5).contains(&extent(1)), "{line}");
+    assert_eq!(app.json()["terrain"]["growth"]["samples"], 3, "the tree is looked at where it was");
+    dispatch(&mut app, "edit.undo", &json!(null));
+    assert_eq!(app.harness.state().source(), MISSION);
+}
+
+#[test]
+fn a_race_is_a_table_and_a_click_shows_one_of_its_planners_alone() {
+    let mut app = above();
+    dispatch(&mut app, "terrain.growth", &json!(null));
+    dispatch(&mut app, "terrain.growBy", &json!({ "planner": "race" }));
+    dispatch(&mut app, "terrain.growTo", &json!({ "samples": 1_000_000 }));
+    for name in ["Planner", "Samples", "Vertices", "Checks", "Path", "Whole search"] {
+        app.harness.get_by_label(name);
+    }
+    let searches = app.json()["terrain"]["growth"]["searches"].clone();
+    assert_eq!(searches.as_array().map(Vec::len), Some(4));
+    let checks = searches[3]["checks"].to_string();
+    app.harness.get_by_label(&checks);
+    app.harness.get_by_label("RRT*").click();
+    app.settle();
+    assert_eq!(app.json()["terrain"]["growth"]["planner"], "RRT*");
+    assert!(app.harness.query_by_label("Whole search").is_none());
+    app.harness.get_by_label("Before the first sample.");
+}
+
+#[test]
 fn a_vehicle_starts_at_the_location_that_is_clicked() {
     let mut app = above();
     dispatch(&mut app, "terrain.vehicle", &json!(null));

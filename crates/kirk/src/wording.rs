@@ -17,6 +17,18 @@ pub(crate) struct Told<'a> {
     pub(crate) cycle: &'a [CycleMember],
 }
 
+/// What contradicts what along a negative cycle, in the author's terms: what needs more time than something else leaves
+/// it, and how much too much that is. `None` for an empty cycle.
+pub fn contradiction(network: &Network, cycle: &[CycleMember]) -> Option<String> {
+    let told = Told { network, kind: FailureKind::Temporal, choices: &[], conflict: &[], cycle };
+    let bounds = told.bounds()?;
+    let total = Time::checked_sum(cycle.iter().map(|member| member.weight)).and_then(Time::checked_neg);
+    Some(match total {
+        Some(excess) => format!("{bounds}: {excess} too much"),
+        None => bounds,
+    })
+}
+
 /// What needs time, in the order in which it is told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Need {

@@ -210,9 +210,11 @@ fn growth() {
             update: update.clone(),
             traverse: traverse.clone(),
             leg: 0,
-            planner,
-            held_search: mission::ContentKey::default(),
-            held: 0,
+            planners: vec![mission::WantedPlanner {
+                planner,
+                held_search: mission::ContentKey::default(),
+                held: 0,
+            }],
         };
         let begun = Instant::now();
         core.handle(Request::GrowPath(wanted), &mut page);

@@ -51,7 +51,7 @@ pub use ground::{ClearanceOverlay, FreeSpace, Grounds};
 pub use job::{Job, JobId, Kind};
 pub use kirk::Search as SearchKind;
 pub use link::{Link, LinkEvent, News, Transport};
-pub use path_growth::{GrowthStanding, PathGrowth};
+pub use path_growth::{GrowthStanding, PathGrowth, WantedPlanner};
 pub use problem::{Problem, TextEdit, TextFix};
 pub use program_chance::{ProgramChance, sample_program};
 pub use reading::{compile, compile_scenarios};

@@ -1,4 +1,4 @@
-//! The search for the path of one leg by a planner of the asker's choice, sample by sample.
+//! Searches for the path of one leg by planners of the asker's choice, sample by sample: one alone, or several that race.
 
 use motion::{GrowthStep, PlannerKind};
 use nalgebra::Point2;
@@ -8,7 +8,7 @@ use smol_str::SmolStr;
 use crate::content::ContentKey;
 use crate::request::Update;
 
-/// A search that is wanted.
+/// Searches that are wanted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PathGrowth {
     /// The mission.
@@ -17,7 +17,14 @@ pub struct PathGrowth {
     pub traverse: SmolStr,
     /// Its leg, from 0.
     pub leg: u32,
-    /// Who searches.
+    /// Who searches. Several draw their samples in turn, on the same ground between the same ends.
+    pub planners: Vec<WantedPlanner>,
+}
+
+/// A planner that is to search.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WantedPlanner {
+    /// Which one.
     pub planner: PlannerKind,
     /// The search that the asker holds samples of.
     pub held_search: ContentKey,
@@ -44,6 +51,8 @@ pub struct GrowthStanding {
     pub first: u32,
     /// What the samples from there on did.
     pub steps: Vec<GrowthStep>,
+    /// Milliseconds that the search has taken by now, with what it takes to record it.
+    pub elapsed_millis: f64,
     /// Whether these are all; otherwise more will come.
     pub is_complete: bool,
     /// Why there is no search.

@@ -8,7 +8,7 @@ use mission::control_run::{Input, Moment};
 use mission::wire::{Reader, Writer};
 use mission::{
     ContentKey, ControlProgram, ControlRun, ControlStanding, Core, CoreHost, Execution, Goal, GrowthStanding,
-    PathGrowth, Request, Response, Snapshot, Update,
+    PathGrowth, Request, Response, Snapshot, Update, WantedPlanner,
 };
 
 /// Collects answers; gives up after so many looks.
@@ -309,9 +309,7 @@ fn the_growth_of_a_tree_goes_on_and_is_the_search_itself() {
         update: update(1, MISSIONS[0]),
         traverse: network.occurrences[snapshot.traverses[0].occurrence.index()].name.clone(),
         leg: 0,
-        planner: motion::PlannerKind::Rrt,
-        held_search: ContentKey::default(),
-        held: 0,
+        planners: vec![unheld(motion::PlannerKind::Rrt)],
     };
     let mut whole = Collected::default();
     Core::default().handle(Request::GrowPath(wanted.clone()), &mut whole);
@@ -332,10 +330,56 @@ fn the_growth_of_a_tree_goes_on_and_is_the_search_itself() {
     assert!(slow.growths.len() > 2);
     assert_eq!(steps, whole.steps);
     // Who holds all gets nothing new.
-    let held = PathGrowth { held_search: slow.growths[0].search, held: steps.len() as u32, ..wanted };
+    let held =
+        WantedPlanner { held_search: slow.growths[0].search, held: steps.len() as u32, ..wanted.planners[0] };
+    let held = PathGrowth { planners: vec![held], ..wanted };
     let mut again = Collected::default();
     core.handle(Request::GrowPath(held), &mut again);
     assert!(again.growths[0].is_complete && again.growths[0].steps.is_empty());
+}
+
+fn unheld(planner: motion::PlannerKind) -> WantedPlanner {
+    WantedPlanner { planner, held_search: ContentKey::default(), held: 0 }
+}
+
+#[test]
+fn planners_that_race_draw_the_samples_that_they_draw_alone_and_by_turns() {
+    let mut core = Core::default();
+    let snapshot = planned(&mut core, 1, MISSIONS[0]);
+    let network = snapshot.network.as_ref().expect("it compiles");
+    let wanted = |planners: &[motion::PlannerKind]| PathGrowth {
+        update: update(1, MISSIONS[0]),
+        traverse: network.occurrences[snapshot.traverses[0].occurrence.index()].name.clone(),
+        leg: 0,
+        planners: planners.iter().copied().map(unheld).collect(),
+    };
+    let mut race = Collected { pace: 20.0, ..Collected::default() };
+    core.handle(Request::GrowPath(wanted(&motion::PlannerKind::ALL)), &mut race);
+    for planner in motion::PlannerKind::ALL {
+        let mut alone = Collected::default();
+        Core::default().handle(Request::GrowPath(wanted(&[planner])), &mut alone);
+        let alone = alone.growths.pop().expect("it is answered");
+        let mut steps = Vec::new();
+        for growth in race.growths.iter().filter(|it| it.planner == planner) {
+            assert_eq!(growth.first as usize, steps.len());
+            steps.extend(growth.steps.clone());
+        }
+        assert_eq!(steps, alone.steps, "{planner:?}");
+        let last = race.growths.iter().rfind(|it| it.planner == planner).expect("it is answered");
+        assert!(last.is_complete && last.elapsed_millis > 0.0, "{planner:?}");
+    }
+    // Nobody waits until somebody else is done: RRT* is the longest, and is under way before the others end.
+    let first = |planner| race.growths.iter().position(|it| it.planner == planner);
+    let last = |planner| race.growths.iter().rposition(|it| it.planner == planner);
+    assert!(first(motion::PlannerKind::RrtStar) < last(motion::PlannerKind::Kinodynamic));
+    // A race that is over is not run again.
+    let mut again = Collected::default();
+    core.handle(Request::GrowPath(wanted(&motion::PlannerKind::ALL)), &mut again);
+    let keys = |collected: &Collected| {
+        collected.growths.iter().map(|it| it.search).collect::<std::collections::BTreeSet<_>>()
+    };
+    assert_eq!(again.growths.len(), 4);
+    assert_eq!(keys(&again), keys(&race));
 }
 
 const ERRAND: &str = "primitive Walk()[5,20]; primitive Rest()[1,9]; scenario S[0,40] = { Walk(); Rest() }";

@@ -42,7 +42,6 @@ impl Kinodynamic {
 
     pub(crate) fn step(&mut self, context: &mut Context) -> Event {
         let sample_m = context.sample();
-        let event = |growth: Growth| Event { sample_m, tree: 0, growth };
         let nearest = self
             .points
             .nearest_by(sample_m, |vertex, _| {
@@ -50,6 +49,7 @@ impl Kinodynamic {
                 measure * measure
             })
             .map_or(0, |(vertex, _)| vertex);
+        let event = |growth: Growth| Event { sample_m, tree: 0, nearest, growth };
         let Some(motion) = extend(self.state(nearest), sample_m, context) else {
             context.statistics.blocked_edges += 1;
             return event(Growth::Blocked { vertex: nearest });
@@ -124,8 +124,8 @@ fn measure(state: MotionState, place_m: Point2<f64>) -> f64 {
 
 /// The free motion that ends nearest to a sample, over all controls and durations; none when every one hits something
 /// at once.
-fn extend(start: MotionState, sample_m: Point2<f64>, context: &Context) -> Option<Vec<MotionState>> {
-    let limits = &context.settings.limits;
+fn extend(start: MotionState, sample_m: Point2<f64>, context: &mut Context) -> Option<Vec<MotionState>> {
+    let limits = &{ context.settings.limits };
     let steps =
         (context.settings.step_m / limits.speed_mps / Trajectory::STEP_S).ceil().clamp(4.0, 120.0) as usize;
     let mut best: Option<(f64, Vec<MotionState>)> = None;
@@ -145,7 +145,7 @@ fn extend(start: MotionState, sample_m: Point2<f64>, context: &Context) -> Optio
                     Trajectory::STEP_S,
                     limits,
                 );
-                if !context.space.is_segment_free(state.position_m, next.position_m) {
+                if !context.is_free(state.position_m, next.position_m) {
                     break;
                 }
                 motion.push(next);
@@ -164,18 +164,17 @@ fn extend(start: MotionState, sample_m: Point2<f64>, context: &Context) -> Optio
 }
 
 /// The way to the goal from a state within two steps of it: braking, turning on the spot, driving straight.
-fn arrive(state: MotionState, context: &Context) -> Option<Trajectory> {
+fn arrive(state: MotionState, context: &mut Context) -> Option<Trajectory> {
     let goal_m = context.query.goal_m;
     if distance(&state.position_m, &goal_m) > 2.0 * context.settings.step_m {
         return None;
     }
-    let limits = &context.settings.limits;
+    let limits = &{ context.settings.limits };
     let mut trajectory = Trajectory::default();
     trajectory.push(0.0, state);
     trajectory.stop(limits);
-    let brakes_freely =
-        trajectory.path().segments().all(|(from, to)| context.space.is_segment_free(from, to));
-    if !brakes_freely || !context.space.is_segment_free(trajectory.last().position_m, goal_m) {
+    let brakes_freely = trajectory.path().segments().all(|(from, to)| context.is_free(from, to));
+    if !brakes_freely || !context.is_free(trajectory.last().position_m, goal_m) {
         return None;
     }
     trajectory.drive_to(goal_m, limits);

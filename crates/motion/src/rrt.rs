@@ -24,8 +24,8 @@ impl Rrt {
     pub(crate) fn step(&mut self, context: &mut Context) -> Event {
         let sample_m = context.sample();
         let goal_m = context.query.goal_m;
-        let event = |growth: Growth| Event { sample_m, tree: 0, growth };
         let (nearest, squared) = self.points.nearest(sample_m).unwrap_or((0, 0.0));
+        let event = |growth: Growth| Event { sample_m, tree: 0, nearest, growth };
         let from = self.tree.point(nearest);
         let length = squared.sqrt();
         let to = if length > context.settings.step_m {

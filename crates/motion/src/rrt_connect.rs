@@ -39,8 +39,8 @@ impl RrtConnect {
             2 => context.query.start_m,
             _ => context.uniform_sample(),
         };
-        let event = |growth: Growth| Event { sample_m, tree: grown as u32, growth };
         let (nearest, _) = self.points[grown].nearest(sample_m).unwrap_or((0, 0.0));
+        let event = |growth: Growth| Event { sample_m, tree: grown as u32, nearest, growth };
         let vertex = self.extend(grown, nearest, sample_m, context);
         let Some(vertex) = vertex else { return event(Growth::Blocked { vertex: nearest }) };
         let target = self.trees[grown].point(vertex);

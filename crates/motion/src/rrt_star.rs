@@ -48,8 +48,8 @@ impl RrtStar {
             Some(best) => informed_sample(context, best.length_m),
             None => context.sample(),
         };
-        let event = |growth: Growth| Event { sample_m, tree: 0, growth };
         let (nearest, squared) = self.points.nearest(sample_m).unwrap_or((0, 0.0));
+        let event = |growth: Growth| Event { sample_m, tree: 0, nearest, growth };
         let from = self.tree.point(nearest);
         let length = squared.sqrt();
         let step_m = context.settings.step_m;

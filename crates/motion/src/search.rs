@@ -27,6 +27,11 @@ pub enum PlannerKind {
     Kinodynamic,
 }
 
+impl PlannerKind {
+    /// All of them, the plainest first.
+    pub const ALL: [Self; 4] = [Self::Rrt, Self::RrtConnect, Self::RrtStar, Self::Kinodynamic];
+}
+
 /// Where from and where to, in metres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Query {
@@ -123,6 +128,8 @@ pub struct Statistics {
     pub vertices: u32,
     /// Edges tried that were not free.
     pub blocked_edges: u32,
+    /// Straight pieces of ground that were checked for obstacles: edges, and the steps of simulated motions.
+    pub collision_checks: u32,
     /// Samples drawn when the first path was found.
     pub samples_to_first_path: Option<u32>,
 }
@@ -134,6 +141,8 @@ pub struct Event {
     pub sample_m: Point2<f64>,
     /// The tree that was grown toward it.
     pub tree: u32,
+    /// The vertex of that tree which was nearest to the sample.
+    pub nearest: u32,
     /// What came of it.
     pub growth: Growth,
 }
@@ -185,9 +194,15 @@ impl Context<'_> {
 
     /// Whether an edge is free, counted.
     pub(crate) fn is_edge_free(&mut self, from_m: Point2<f64>, to_m: Point2<f64>) -> bool {
-        let free = self.space.is_segment_free(from_m, to_m);
+        let free = self.is_free(from_m, to_m);
         self.statistics.blocked_edges += u32::from(!free);
         free
+    }
+
+    /// Whether a straight piece of ground is free, counted as a check.
+    pub(crate) fn is_free(&mut self, from_m: Point2<f64>, to_m: Point2<f64>) -> bool {
+        self.statistics.collision_checks += 1;
+        self.space.is_segment_free(from_m, to_m)
     }
 }
 

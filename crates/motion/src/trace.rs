@@ -4,6 +4,8 @@ use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
 use terrain::ConfigurationSpace;
 
+#[cfg(doc)]
+use crate::search::Statistics;
 use crate::search::{Failure, Growth, PlannerKind, Query, Search, Settings};
 
 /// All steps of a search. The same arguments give the same trace.
@@ -20,10 +22,16 @@ pub struct GrowthTrace {
 pub struct GrowthStep {
     /// The sample in metres.
     pub sample_m: Point2<f64>,
+    /// The tree that was grown toward it, an index into [`GrowthTrace::roots_m`].
+    pub tree: u32,
+    /// Where the vertex of that tree is that was nearest to the sample, in metres.
+    pub nearest_m: Point2<f64>,
     /// The vertices that were added, in order; none where an obstacle was in the way.
     pub added: Vec<GrownVertex>,
     /// Vertices that got another parent, as tree, vertex and parent: RRT* does this.
     pub rewired: Vec<[u32; 3]>,
+    /// How many straight pieces of ground were checked for obstacles ([`Statistics::collision_checks`]).
+    pub checks: u32,
     /// The first path, or a shorter one, that this sample led to, in metres.
     pub path_m: Option<Vec<Point2<f64>>>,
 }
@@ -41,6 +49,13 @@ pub struct GrownVertex {
     pub point_m: Point2<f64>,
     /// The points on the way from its parent, without it, to the vertex; empty if the way is straight.
     pub curve_m: Vec<Point2<f64>>,
+}
+
+impl GrowthStep {
+    /// Where the tree grew to from its nearest vertex, if nothing was in the way: one step towards the sample, in metres.
+    pub fn steered_m(&self) -> Option<Point2<f64>> {
+        self.added.iter().find(|grown| grown.tree == self.tree).map(|grown| grown.point_m)
+    }
 }
 
 impl GrowthTrace {
@@ -88,7 +103,9 @@ impl TracedSearch {
     /// Draws one more sample. Linear in the trees for RRT*, whose vertices change parents, and in what is added for the
     /// others.
     pub fn step(&mut self, space: &ConfigurationSpace) {
+        let checked_before = self.search.statistics().collision_checks;
         let event = self.search.step(space);
+        let checks = self.search.statistics().collision_checks - checked_before;
         let (mut added, mut rewired) = (Vec::new(), Vec::new());
         for (number, (tree, known)) in self.search.trees().into_iter().zip(&mut self.parents).enumerate() {
             let number = number as u32;
@@ -110,7 +127,17 @@ impl TracedSearch {
         }
         let is_found = matches!(event.growth, Growth::Found { .. });
         let path_m = self.search.path().filter(|_| is_found).map(|path| path.points_m);
-        self.trace.steps.push(GrowthStep { sample_m: event.sample_m, added, rewired, path_m });
+        let tree = event.tree;
+        let nearest_m = self.search.trees()[tree as usize].vertices[event.nearest as usize].point_m;
+        self.trace.steps.push(GrowthStep {
+            sample_m: event.sample_m,
+            tree,
+            nearest_m,
+            added,
+            rewired,
+            checks,
+            path_m,
+        });
     }
 }
 
@@ -141,7 +168,7 @@ mod tests {
         occupancy.mark(&disc, CellState::Obstacle);
         let space = ConfigurationSpace::new(occupancy, 0.7);
         let query = Query { start_m: Point2::new(6.0, 29.0), goal_m: Point2::new(54.0, 31.0) };
-        for planner in [PlannerKind::Rrt, PlannerKind::RrtConnect, PlannerKind::RrtStar] {
+        for planner in PlannerKind::ALL {
             let settings = Settings { seed: 5, improving_samples: 200, ..Settings::of(planner) };
             let found = find_path(&space, query, &settings, None, &mut |_| false);
             let traced = trace(&space, query, settings, usize::MAX).expect("both ends are free");
@@ -150,6 +177,16 @@ mod tests {
             let mut trees: Vec<Vec<(Point2<f64>, Option<u32>)>> =
                 traced.roots_m.iter().map(|&root| vec![(root, None)]).collect();
             for step in &traced.steps {
+                let near = |tree: &[(Point2<f64>, _)]| {
+                    let measure = |(point, _): &(Point2<f64>, _)| (point - step.sample_m).norm();
+                    tree.iter().map(measure).fold(f64::INFINITY, f64::min)
+                };
+                if planner != PlannerKind::Kinodynamic {
+                    // A kinodynamic planner measures how far it is for a vehicle, which has to turn.
+                    let nearest = near(&trees[step.tree as usize]);
+                    assert!(((step.nearest_m - step.sample_m).norm() - nearest).abs() < 1e-9, "{planner:?}");
+                    assert!(step.steered_m().is_none_or(|to| (to - step.nearest_m).norm() <= 6.0 + 1e-9));
+                }
                 for vertex in &step.added {
                     let tree = &mut trees[vertex.tree as usize];
                     assert_eq!(tree[vertex.parent as usize].0, vertex.from_m);
@@ -167,6 +204,10 @@ mod tests {
             let path = found.path.expect("there is a way around").points_m;
             assert_eq!(traced.path_m(usize::MAX), Some(path.as_slice()), "{planner:?}");
             assert_eq!(traced.path_m(0), None);
+            let checks: u32 = traced.steps.iter().map(|step| step.checks).sum();
+            assert_eq!(checks, found.statistics.collision_checks, "{planner:?}");
+            let added = traced.grown(usize::MAX).count() as u32;
+            assert!(checks >= added, "{planner:?}: each of {added} edges was checked, in {checks} checks");
         }
     }
 }

@@ -4,6 +4,7 @@
 //! the image, is the terrain panel's.
 
 pub mod camera;
+pub mod dash;
 pub mod decal;
 mod detail;
 pub mod driving;

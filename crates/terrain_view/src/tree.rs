@@ -1,36 +1,72 @@
-//! The growth of a search tree on the ground.
+//! The growth of search trees on the ground.
 
 use glam::Vec2;
+use workbench::state::growth::Standing;
 
+use crate::ground::Ground;
 use crate::scene::{SceneInput, cased_line, faded, place};
 use crate::shapes::{Shapes, circle_outline};
 
-/// Draws the trees as they stand, the last sample, and the best path.
+/// Draws the trees as they stand, the last sample, and the best path. Of searches that race each has its colour, and a
+/// line of its own for its path ([`crate::dash::DASHES`]).
 pub(crate) fn draw(shapes: &mut Shapes, input: &SceneInput<'_>) {
     let Some(shown) = input.growth.shown() else { return };
     let palette = input.palette;
-    let standing = shown.standing();
-    let color = |tree: usize| palette.trees[tree.min(palette.trees.len() - 1)];
-    for (tree, way) in &standing.edges {
-        for pair in way.windows(2) {
-            let ends = [place(pair[0]), place(pair[1])];
-            shapes.draped_line(input.ground, ends, 3.4, faded(palette.under, 0.55));
-            shapes.draped_line(input.ground, ends, 1.6, color(*tree));
+    let is_race = shown.is_race();
+    let standings: Vec<Standing> = shown.standings().collect();
+    let color = |search: usize, tree: usize| {
+        if is_race {
+            palette.vehicles[search % palette.vehicles.len()]
+        } else {
+            palette.trees[tree.min(palette.trees.len() - 1)]
+        }
+    };
+    let width = if is_race { 1.1 } else { 1.6 };
+    for (search, standing) in standings.iter().enumerate() {
+        for (tree, way) in &standing.edges {
+            for pair in way.windows(2) {
+                let ends = [place(pair[0]), place(pair[1])];
+                shapes.draped_line(input.ground, ends, width + 1.8, faded(palette.under, 0.55));
+                shapes.draped_line(input.ground, ends, width, color(search, *tree));
+            }
+        }
+        for (tree, &root) in standing.roots_m.iter().enumerate() {
+            disc(shapes, input, place(root), color(search, tree));
         }
     }
-    for (tree, &root) in standing.roots_m.iter().enumerate() {
-        disc(shapes, input, place(root), color(tree));
-    }
-    for pair in standing.path_m.iter().flat_map(|path| path.windows(2)) {
-        let ends = [place(pair[0]), place(pair[1])];
-        cased_line(shapes, input.ground, ends, 3.6, palette.light, palette.under);
-    }
-    if let Some((sample, is_blocked)) = standing.sample {
-        let (sample, arm) = (place(sample), 0.8 * input.options.vehicle_scale);
-        let color = if is_blocked { palette.warning } else { palette.light };
+    for (search, standing) in standings.iter().enumerate() {
+        let path: Vec<Vec2> = standing.path_m.iter().flatten().map(|&point| place(point)).collect();
+        if is_race {
+            let dash_m = input.options.vehicle_scale;
+            let dashes = crate::dash::DASHES[search % crate::dash::DASHES.len()];
+            for ends in crate::dash::dashed(&path, dashes, dash_m) {
+                cased_line(shapes, input.ground, ends, 3.6, color(search, 0), palette.under);
+            }
+        } else {
+            for pair in path.windows(2) {
+                cased_line(shapes, input.ground, [pair[0], pair[1]], 3.6, palette.light, palette.under);
+            }
+        }
+        let Some(sample) = standing.sample else { continue };
+        let (at, arm) = (place(sample.at_m), 0.8 * input.options.vehicle_scale);
+        let color = match () {
+            () if is_race => color(search, 0),
+            () if sample.is_blocked => palette.warning,
+            () => palette.light,
+        };
+        if !is_race {
+            to_sample(shapes, input.ground, [place(sample.nearest_m), at], arm, color);
+        }
         for side in [Vec2::new(arm, arm), Vec2::new(arm, -arm)] {
-            cased_line(shapes, input.ground, [sample - side, sample + side], 2.4, color, palette.under);
+            cased_line(shapes, input.ground, [at - side, at + side], 2.4, color, palette.under);
         }
+    }
+}
+
+/// The dashed line along which the nearest vertex was steered towards the sample.
+fn to_sample(shapes: &mut Shapes, ground: &Ground, ends: [Vec2; 2], dash_m: f32, color: [f32; 4]) {
+    for dash in crate::dash::dashed(&ends, &[1.0, 1.0], dash_m) {
+        shapes.draped_line(ground, dash, 1.6, color);
     }
 }
 

@@ -49,7 +49,7 @@ pub struct Core {
     sampler: Option<running::Sampled>,
     controls: ControlTexts,
     control_run: Option<control_run::Session>,
-    growth: Option<path_growth::Session>,
+    growth: Vec<path_growth::Session>,
 }
 
 /// Planning that is done within this time is answered once, with the plan.

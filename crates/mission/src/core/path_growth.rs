@@ -1,49 +1,60 @@
-//! The search for a leg's path as a session: it is kept with its trees, and goes on from where it is.
+//! Searches for a leg's path as sessions: each is kept with its trees, and goes on from where it is.
 
 use std::sync::Arc;
 
-use motion::{Query, Settings, TracedSearch};
+use motion::{PlannerKind, Query, Settings, TracedSearch};
 use terrain::ConfigurationSpace;
 
 use super::{ContentKey, Core, CoreHost};
-use crate::path_growth::{GrowthStanding, MAX_SAMPLES, PathGrowth};
+use crate::path_growth::{GrowthStanding, MAX_SAMPLES, PathGrowth, WantedPlanner};
 use crate::request::Response;
 
-/// The search that was asked for last.
+/// A search that was asked for last.
 pub(super) struct Session {
     key: ContentKey,
     space: Arc<ConfigurationSpace>,
     query: Query,
     settings: Settings,
     search: Result<TracedSearch, String>,
+    elapsed_millis: f64,
 }
 
 /// Samples are drawn for about this long before an answer says what they did.
 const PROGRESS_MILLIS: f64 = 60.0;
 
+/// How many samples a planner draws before it is the next one's turn.
+const TURN_SAMPLES: usize = 16;
+
+/// What is searched: the ground, the ends, and the settings of a planner.
+struct Task {
+    space: Arc<ConfigurationSpace>,
+    query: Query,
+    settings: Settings,
+}
+
 impl Core {
-    /// Searches for a leg's path, to the end of the search.
+    /// Searches for a leg's path, to the end of every search.
     pub(super) fn grow_path(&mut self, wanted: &PathGrowth, host: &mut dyn CoreHost) {
-        let Some((space, query, settings)) = self.search_of(wanted, host) else { return };
-        let known = self.growth.take().filter(|known| {
-            // Spaces are kept by what they are made of.
-            Arc::ptr_eq(&known.space, &space) && known.query == query && known.settings == settings
-        });
-        let session = self.growth.insert(known.unwrap_or_else(|| Session {
-            key: self.keys.fresh(),
-            search: TracedSearch::new(&space, query, settings).map_err(|failure| failure.to_string()),
-            space,
-            query,
-            settings,
-        }));
-        session.drive(wanted, host);
+        let Some(task) = self.task_of(wanted, host) else { return };
+        let mut known = std::mem::take(&mut self.growth);
+        for asked in &wanted.planners {
+            let settings = Settings { planner: asked.planner, ..task.settings };
+            let is_it = |known: &Session| {
+                // Spaces are kept by what they are made of.
+                Arc::ptr_eq(&known.space, &task.space)
+                    && known.query == task.query
+                    && known.settings == settings
+            };
+            let session = match known.iter().position(is_it) {
+                Some(at) => known.swap_remove(at),
+                None => Session::new(self.keys.fresh(), &task, settings),
+            };
+            self.growth.push(session);
+        }
+        race(&mut self.growth, wanted, host);
     }
 
-    fn search_of(
-        &mut self,
-        wanted: &PathGrowth,
-        host: &mut dyn CoreHost,
-    ) -> Option<(Arc<ConfigurationSpace>, Query, Settings)> {
+    fn task_of(&mut self, wanted: &PathGrowth, host: &mut dyn CoreHost) -> Option<Task> {
         let evaluated = self.evaluate(&wanted.update, host)?.ok()?;
         let network = &evaluated.planned.network;
         let has_name = |traverse: &&crate::snapshot::Traverse| {
@@ -62,50 +73,95 @@ impl Core {
             seed: wanted.update.seed,
             greatest_samples: MAX_SAMPLES,
             limits: motion::DriveLimits::of(model),
-            ..Settings::of(wanted.planner)
+            ..Settings::of(PlannerKind::Rrt)
         };
-        Some((space, query, settings))
+        Some(Task { space, query, settings })
+    }
+}
+
+/// Lets the sessions draw their samples in turn, and tells what each did: from time to time, and at its end.
+fn race(sessions: &mut [Session], wanted: &PathGrowth, host: &mut dyn CoreHost) {
+    let told = |asked: &WantedPlanner, session: &Session| {
+        if asked.held_search == session.key { asked.held as usize } else { 0 }
+    };
+    let mut told: Vec<usize> = wanted.planners.iter().zip(&*sessions).map(|it| told(it.0, it.1)).collect();
+    let mut running: Vec<usize> = (0..sessions.len()).collect();
+    let mut answered_millis = host.now_millis();
+    while !running.is_empty() {
+        for &at in &running {
+            if !sessions[at].draw(host) {
+                return;
+            }
+        }
+        let is_due = host.now_millis() - answered_millis > PROGRESS_MILLIS;
+        for &at in &running {
+            if is_due || sessions[at].is_finished() {
+                let answer = sessions[at].standing(wanted, told[at]);
+                told[at] = sessions[at].samples();
+                host.answer(Response::PathGrowth(Box::new(answer)));
+            }
+        }
+        if is_due {
+            answered_millis = host.now_millis();
+        }
+        running.retain(|&at| !sessions[at].is_finished());
     }
 }
 
 impl Session {
-    fn drive(&mut self, wanted: &PathGrowth, host: &mut dyn CoreHost) {
-        let mut first = if wanted.held_search == self.key { wanted.held as usize } else { 0 };
-        let key = self.key;
-        let mut send =
-            |search: Result<&TracedSearch, &String>, is_complete: bool, host: &mut dyn CoreHost| {
-                let steps = search.map_or(&[][..], |search| search.trace().steps.as_slice());
-                let from = first.min(steps.len());
-                first = steps.len();
-                host.answer(Response::PathGrowth(Box::new(GrowthStanding {
-                    revision: wanted.update.revision,
-                    traverse: wanted.traverse.clone(),
-                    leg: wanted.leg,
-                    planner: wanted.planner,
-                    search: key,
-                    roots_m: search.map_or_else(|_| Vec::new(), |search| search.trace().roots_m.clone()),
-                    first: from as u32,
-                    steps: steps[from..].to_vec(),
-                    is_complete,
-                    refusal: search.err().cloned(),
-                })));
-            };
-        let search = match &mut self.search {
-            Ok(search) => search,
-            Err(refusal) => return send(Err(refusal), true, host),
-        };
-        let mut answered_millis = host.now_millis();
-        while !search.is_finished() {
-            search.step(&self.space);
-            // A later request goes on from here.
-            if host.is_superseded() {
-                return;
-            }
-            if host.now_millis() - answered_millis > PROGRESS_MILLIS {
-                send(Ok(search), false, host);
-                answered_millis = host.now_millis();
-            }
+    fn new(key: ContentKey, task: &Task, settings: Settings) -> Self {
+        let search = TracedSearch::new(&task.space, task.query, settings);
+        Self {
+            key,
+            space: Arc::clone(&task.space),
+            query: task.query,
+            settings,
+            search: search.map_err(|failure| failure.to_string()),
+            elapsed_millis: 0.0,
         }
-        send(Ok(search), true, host);
+    }
+
+    fn is_finished(&self) -> bool {
+        self.search.as_ref().map_or(true, TracedSearch::is_finished)
+    }
+
+    fn samples(&self) -> usize {
+        self.search.as_ref().map_or(0, |search| search.trace().steps.len())
+    }
+
+    /// Draws the samples of a turn. Returns whether what is searched is still wanted; a later request goes on from here.
+    fn draw(&mut self, host: &mut dyn CoreHost) -> bool {
+        let Ok(search) = &mut self.search else { return true };
+        let begun_millis = host.now_millis();
+        let mut is_wanted = true;
+        for _ in 0..TURN_SAMPLES {
+            if search.is_finished() || !is_wanted {
+                break;
+            }
+            search.step(&self.space);
+            is_wanted = !host.is_superseded();
+        }
+        self.elapsed_millis += host.now_millis() - begun_millis;
+        is_wanted
+    }
+
+    /// The search as it stands, for somebody who holds its first samples.
+    fn standing(&self, wanted: &PathGrowth, held: usize) -> GrowthStanding {
+        let trace = self.search.as_ref().ok().map(TracedSearch::trace);
+        let steps = trace.map_or(&[][..], |trace| trace.steps.as_slice());
+        let first = held.min(steps.len());
+        GrowthStanding {
+            revision: wanted.update.revision,
+            traverse: wanted.traverse.clone(),
+            leg: wanted.leg,
+            planner: self.settings.planner,
+            search: self.key,
+            roots_m: trace.map_or_else(Vec::new, |trace| trace.roots_m.clone()),
+            first: first as u32,
+            steps: steps[first..].to_vec(),
+            elapsed_millis: self.elapsed_millis,
+            is_complete: self.is_finished(),
+            refusal: self.search.as_ref().err().cloned(),
+        }
     }
 }

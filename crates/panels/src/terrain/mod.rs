@@ -199,9 +199,9 @@ impl TerrainPanel {
             self.drag = None;
             tool::update(response, &scene, &mut self.pressed_m, commands);
         }
-        let draws_disc =
-            matches!(tool, Tool::Circle | Tool::Appear) && response.dragged_by(egui::PointerButton::Primary);
-        if self.drag.is_none() && !draws_disc {
+        let is_drawing = matches!(tool, Tool::Circle | Tool::Appear | Tool::Wall)
+            && response.dragged_by(egui::PointerButton::Primary);
+        if self.drag.is_none() && !is_drawing {
             let mut moved = wanted;
             let under = response.hover_pos().and_then(|pointer| scene.hit(pointer));
             navigate::update(response, &mut moved, scene.size(), under);
@@ -327,7 +327,7 @@ fn describe(context: &Context<'_>, snapshot: &Snapshot, measured: Option<&Measur
         }
     }
     if let Some(shown) = context.state.terrain.growth.shown() {
-        text.push_str(&format!(" Search tree: {}.", tree::words(shown)));
+        text.push_str(&format!(" Search tree: {}.", shown.words()));
     }
     if let Some(measured) = measured {
         let rows = measured.rows().into_iter().map(|(what, how_much)| format!("{what} {how_much}"));

@@ -7,7 +7,7 @@ use terrain_view::pick::Scene;
 use terrain_view::scene::{Sketch, place};
 use workbench::command::{Command, CommandSender};
 use workbench::state::execution::ExecutionCommand;
-use workbench::state::placing::{NewThing, VehicleStart};
+use workbench::state::placing::{NewThing, VehicleStart, wall};
 use workbench::state::terrain::{TerrainCommand, Tool};
 
 use super::drag::start_at;
@@ -15,6 +15,9 @@ use super::measure::Measurement;
 
 /// The radius that a click alone gives a round obstacle, in metres.
 const CLICKED_RADIUS_M: f64 = 5.0;
+/// A wall is as thick as this, in metres, or as so many cells if those are more.
+const WALL_M: f64 = 3.0;
+const WALL_CELLS: f64 = 2.0;
 /// Corners nearer to the last one than this many points are not meant.
 const SAME_CORNER: f32 = 8.0;
 
@@ -67,6 +70,16 @@ pub fn update(
                 });
             }
         }
+        Tool::Wall => {
+            let is_drawn = response.drag_stopped_by(PointerButton::Primary);
+            let ends_m = drawn_wall(response, scene, *pressed_m).filter(|_| is_drawn);
+            if let Some(ends_m) = ends_m {
+                send(TerrainCommand::Place {
+                    thing: NewThing::Wall { ends_m, thickness_m: thickness_m(scene) },
+                    again,
+                });
+            }
+        }
         Tool::Polygon => {
             let is_close = |point: Point2<f64>| {
                 let projected = scene.camera.project(scene.ground.drape(place(point), 0.0), scene.size());
@@ -101,6 +114,18 @@ pub fn update(
 fn drawn_disc(response: &Response, scene: &Scene<'_>, center: Option<Vec2>) -> Option<(Vec2, f32)> {
     let rim = scene.ground_at(response.interact_pointer_pos()?)?;
     Some((center?, center?.distance(rim).max(0.5)))
+}
+
+/// The line from the place where the button went down to the pointer, if that is far enough for a wall.
+fn drawn_wall(response: &Response, scene: &Scene<'_>, from: Option<Vec2>) -> Option<[Point2<f64>; 2]> {
+    let to = scene.ground_at(response.interact_pointer_pos()?)?;
+    let from = from.filter(|from| from.distance(to) >= 1.0)?;
+    Some([metres(from), metres(to)])
+}
+
+/// How thick a wall is that is drawn, in metres: it must not slip between the cells of the map.
+fn thickness_m(scene: &Scene<'_>) -> f64 {
+    WALL_M.max(WALL_CELLS * f64::from(scene.ground.cell_m))
 }
 
 /// What the tool has, and what a click at the pointer would add.
@@ -139,6 +164,17 @@ pub fn sketch(
             let hovering = hit.map(|center| (center, CLICKED_RADIUS_M as f32));
             Sketch { disc: drawn.or(hovering), ..Sketch::default() }
         }
+        Tool::Wall => {
+            let is_drawing = response.dragged_by(PointerButton::Primary);
+            let drawn = drawn_wall(response, scene, pressed_m).filter(|_| is_drawing);
+            match drawn.map(|ends_m| wall(ends_m, thickness_m(scene)).map(place)) {
+                Some(corners) => {
+                    let sides = [0, 1, 2, 3].map(|side| [corners[side], corners[(side + 1) % 4]]);
+                    Sketch { lines: sides.to_vec(), ..Sketch::default() }
+                }
+                None => Sketch { marks: hit.into_iter().collect(), ..Sketch::default() },
+            }
+        }
         Tool::Polygon => {
             let corners: Vec<Vec2> = points.iter().copied().chain(hit).collect();
             let closing = (corners.len() >= 3).then(|| [corners[corners.len() - 1], corners[0]]);
@@ -162,6 +198,7 @@ pub fn hint(tool: &Tool, points: usize) -> Option<String> {
         Tool::Appear => {
             "Drag from the centre of the obstacle that appears now · Shift for several".to_owned()
         }
+        Tool::Wall => "Drag from one end of the wall to the other · Shift for several".to_owned(),
         Tool::Polygon => match points {
             0 => "Click the first corner".to_owned(),
             1 | 2 => "Click the next corner".to_owned(),

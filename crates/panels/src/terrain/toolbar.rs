@@ -122,6 +122,7 @@ fn tools(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         };
         item(ui, "Location".into(), "A click declares a place", Tool::Location);
         item(ui, "Round obstacle".into(), "Drag from the centre outwards, or click", Tool::Circle);
+        item(ui, "Wall".into(), "Drag from one end to the other", Tool::Wall);
         if context.state.is_executing() {
             let help = "Drag from the centre outwards, or click: it stands there from the time shown on";
             item(ui, "Obstacle in this run".into(), help, Tool::Appear);

@@ -1,16 +1,17 @@
-//! The row of controls that steps the growth of a search tree.
+//! The controls that step the growth of search trees, what the last sample did in words, and how planners compare.
 
-use egui::{RichText, Ui};
-use motion::PlannerKind;
+use egui::{Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
+use glam::Vec2;
+use terrain_view::dash::{DASHES, dashed};
 use theme::icon::{self, Icon};
-use theme::space;
+use theme::{size, space};
 use workbench::command::{Command, CommandSender};
-use workbench::state::growth::{GrowthCommand, Shown, planner_title};
+use workbench::state::growth::{Counts, GrowthCommand, Planners, Shown};
 use workbench::state::terrain::TerrainCommand;
 
 use crate::Context;
 
-/// The row of controls, when a growth is looked at.
+/// The controls, when a growth is looked at.
 pub(super) fn controls(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let growth = &context.state.terrain.growth;
     let Some(shown) = growth.shown() else { return };
@@ -32,19 +33,18 @@ pub(super) fn controls(ui: &mut Ui, context: &Context<'_>, commands: &mut Comman
         if leg != shown.leg {
             send(GrowthCommand::ChooseLeg(leg));
         }
-        let mut planner = growth.planner;
+        let mut planners = growth.planners;
         let picker = egui::ComboBox::from_id_salt("growth-planner")
-            .selected_text(planner_title(planner))
+            .selected_text(planners.title())
             .width(96.0)
             .show_ui(ui, |ui| {
-                use PlannerKind::{Kinodynamic, Rrt, RrtConnect, RrtStar};
-                for choice in [None, Some(Rrt), Some(RrtConnect), Some(RrtStar), Some(Kinodynamic)] {
-                    ui.selectable_value(&mut planner, choice, planner_title(choice));
+                for choice in Planners::ALL {
+                    ui.selectable_value(&mut planners, choice, choice.title());
                 }
             });
         picker.response.accessible_name("Path planner");
-        if planner != growth.planner {
-            send(GrowthCommand::ChoosePlanner(planner));
+        if planners != growth.planners {
+            send(GrowthCommand::Choose(planners));
         }
         let tokens = context.tokens;
         if icon::button(ui, tokens, Icon::ToStart, "Before the first sample").clicked() {
@@ -62,32 +62,111 @@ pub(super) fn controls(ui: &mut Ui, context: &Context<'_>, commands: &mut Comman
             send(GrowthCommand::Step(1));
         }
         if icon::button(ui, tokens, Icon::ToEnd, "To the end of the search").clicked() {
-            send(GrowthCommand::GoTo(shown.total));
+            send(GrowthCommand::GoTo(shown.total()));
         }
         let mut samples = shown.samples();
         ui.spacing_mut().slider_width = (ui.available_width() - 24.0).clamp(60.0, 180.0);
-        let slider = egui::Slider::new(&mut samples, 0..=shown.total).show_value(false);
+        let slider = egui::Slider::new(&mut samples, 0..=shown.total()).show_value(false);
         if ui.add(slider).accessible_name("Samples").changed() {
             send(GrowthCommand::GoTo(samples));
         }
-        ui.add(egui::Label::new(RichText::new(words(shown)).color(tokens.text_muted)).extend());
+        ui.add(egui::Label::new(RichText::new(shown.words()).color(tokens.text_muted)).extend());
         if icon::button(ui, tokens, Icon::Close, "Hide the search tree").clicked() {
             send(GrowthCommand::Close);
         }
     });
+    if shown.is_race() {
+        race(ui, context, shown, commands);
+    } else if shown.refusal().is_none() {
+        last_sample(ui, context, shown);
+    }
 }
 
-/// How far the search is.
-pub(super) fn words(shown: &Shown) -> String {
-    if let Some(reason) = shown.refusal() {
-        return reason.to_owned();
+/// Characters of the longest sentence about a sample, and how wide one is at most, in parts of its size.
+const SENTENCE_CHARS: f32 = 170.0;
+const CHAR_WIDTH: f32 = 0.55;
+
+/// What the last sample did. It has the room of the longest sentence, so that the ground does not jump as samples come.
+fn last_sample(ui: &mut Ui, context: &Context<'_>, shown: &Shown) {
+    let width = (ui.available_width() - 2.0 * space::S).max(1.0);
+    let lines = (SENTENCE_CHARS * CHAR_WIDTH * size::BODY / width).ceil().clamp(1.0, 4.0);
+    let height = lines * ui.text_style_height(&egui::TextStyle::Body);
+    let sentence = shown.sentence().unwrap_or_else(|| "Before the first sample.".to_owned());
+    ui.horizontal(|ui| {
+        ui.add_space(space::S);
+        ui.allocate_ui(vec2(width, height), |ui| {
+            ui.set_min_height(height);
+            ui.vertical(|ui| ui.label(RichText::new(sentence).color(context.tokens.text)));
+        });
+    });
+}
+
+/// A row for each planner: its line on the ground, and what it has done by the sample that is looked at.
+fn race(ui: &mut Ui, context: &Context<'_>, shown: &Shown, commands: &mut CommandSender) {
+    let tokens = context.tokens;
+    let most_height = (0.5 * ui.available_height()).max(60.0);
+    egui::ScrollArea::both().id_salt("race").max_height(most_height).show(ui, |ui| {
+        let grid = egui::Grid::new("race").num_columns(6).spacing(vec2(space::L, space::XS)).striped(true);
+        ui.horizontal(|ui| {
+            ui.add_space(space::S);
+            grid.show(ui, |ui| {
+                for (head, help) in HEADS {
+                    let text = RichText::new(head).color(tokens.text_muted);
+                    ui.label(text).on_hover_text(help);
+                }
+                ui.end_row();
+                for (at, search) in shown.searches.iter().enumerate() {
+                    let planners = search.planner.map_or(Planners::AsPlanned, Planners::One);
+                    ui.horizontal(|ui| {
+                        swatch(ui, at, tokens.series(at));
+                        if ui.link(planners.title()).on_hover_text("Show this one alone").clicked() {
+                            let command = TerrainCommand::Growth(GrowthCommand::Choose(planners));
+                            commands.send(Command::Terrain(command));
+                        }
+                    });
+                    if let Some(reason) = search.refusal() {
+                        ui.label(reason);
+                        ui.end_row();
+                        continue;
+                    }
+                    let Counts { samples, vertices, checks, length_m } = shown.counts_of(at);
+                    let is_over = search.is_complete() && samples == search.known();
+                    ui.label(if is_over { format!("{samples}, done") } else { samples.to_string() });
+                    ui.label(vertices.to_string());
+                    ui.label(checks.to_string());
+                    ui.label(match length_m {
+                        Some(length_m) => format!("{length_m:.1} m"),
+                        None if is_over => "none found".to_owned(),
+                        None => "not yet".to_owned(),
+                    });
+                    ui.label(match search.whole_millis() {
+                        Some(millis) if millis < 10.0 => format!("{millis:.1} ms"),
+                        Some(millis) => format!("{millis:.0} ms"),
+                        None => "searching".to_owned(),
+                    });
+                    ui.end_row();
+                }
+            });
+        });
+    });
+}
+
+/// The columns of a race, and what they count.
+const HEADS: [(&str, &str); 6] = [
+    ("Planner", "All search on the same ground, between the same ends, from the same seed"),
+    ("Samples", "Places drawn by chance so far"),
+    ("Vertices", "Places that the trees have reached so far"),
+    ("Checks", "Straight pieces of ground that were checked for obstacles so far: what costs most"),
+    ("Path", "The length of the best path so far, before it is shortened"),
+    ("Whole search", "How long the whole search took, in this machine's time"),
+];
+
+/// The line of a planner's path as it is on the ground.
+fn swatch(ui: &mut Ui, search: usize, color: egui::Color32) {
+    let (rect, _) = ui.allocate_exact_size(vec2(30.0, 12.0), Sense::hover());
+    let Rect { min, max } = rect;
+    let line = [Vec2::new(min.x, rect.center().y), Vec2::new(max.x, rect.center().y)];
+    for [from, to] in dashed(&line, DASHES[search % DASHES.len()], 3.0) {
+        ui.painter().line_segment([pos2(from.x, from.y), pos2(to.x, to.y)], Stroke::new(2.6, color));
     }
-    let samples = shown.samples();
-    let mut text = format!("{samples} of {} samples, {} vertices", shown.total, shown.vertices());
-    match shown.length_m() {
-        Some(length_m) => text.push_str(&format!(", best path {length_m:.1} m")),
-        None if samples == shown.total && shown.total > 0 => text.push_str(", no path found"),
-        None => text.push_str(", no path yet"),
-    }
-    text
 }

@@ -4,10 +4,10 @@ use serde_json::Value;
 
 use super::{LessonError, entries};
 use crate::PanelKind;
+use crate::state::growth::Planners;
 use crate::workspace::Workspace;
 use crate::{command, mission_file};
 use kirk::Event;
-use motion::PlannerKind;
 
 /// What a stop shows. What it does not name is as it is at first: no step, nothing selected, everything in view.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,8 +30,8 @@ pub struct Show {
     pub moments: Option<usize>,
     /// How many samples of the path's search are drawn.
     pub samples: Option<u32>,
-    /// The planner whose search for a path is shown; without it, the one that planned.
-    pub planner: Option<PlannerKind>,
+    /// Whose searches for a path are shown; without it, that of the one that planned.
+    pub planner: Option<Planners>,
     /// The mission from this stop on.
     pub mission: Option<&'static str>,
     /// Commands that are run after all that, by name and with arguments.
@@ -181,14 +181,8 @@ fn take(show: &mut Show, line: u32, key: &str, value: &str) -> Result<(), String
         "moments" => show.moments = Some(count(value)?),
         "samples" => show.samples = Some(count(value)? as u32),
         "planner" => {
-            show.planner = match value {
-                "as-planned" => None,
-                "rrt" => Some(PlannerKind::Rrt),
-                "rrt-connect" => Some(PlannerKind::RrtConnect),
-                "rrt-star" => Some(PlannerKind::RrtStar),
-                "kinodynamic" => Some(PlannerKind::Kinodynamic),
-                other => return Err(format!("there is no path planner `{other}`")),
-            };
+            let planners = Planners::named(value);
+            show.planner = Some(planners.ok_or_else(|| format!("there is no path planner `{value}`"))?);
         }
         "mission" => {
             let example =

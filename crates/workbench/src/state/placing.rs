@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 use rmpl::program::{Program, World};
 use rmpl::{Edit, Span};
 use smol_str::{SmolStr, format_smolstr};
@@ -23,6 +23,13 @@ pub enum NewThing {
     },
     /// An obstacle with at least three corners.
     Polygon(Vec<Point2<f64>>),
+    /// A straight wall.
+    Wall {
+        /// Its ends, which differ.
+        ends_m: [Point2<f64>; 2],
+        /// How thick it is, in metres.
+        thickness_m: f64,
+    },
     /// A vehicle.
     Vehicle {
         /// The name of its model.
@@ -78,9 +85,11 @@ pub fn declare(text: &str, program: &Program, thing: &NewThing) -> Declared {
         }
         NewThing::Polygon(corners_m) => {
             let name = names.fresh("Area");
-            let corners: Vec<String> = corners_m.iter().map(|&corner| place(corner)).collect();
-            let text = format!("obstacle {name} polygon ({});", corners.join(", "));
-            (Kind::Obstacle, text, Selection::Obstacle(name), None)
+            (Kind::Obstacle, polygon(&name, corners_m), Selection::Obstacle(name), None)
+        }
+        NewThing::Wall { ends_m, thickness_m } => {
+            let name = names.fresh("Wall");
+            (Kind::Obstacle, polygon(&name, &wall(*ends_m, *thickness_m)), Selection::Obstacle(name), None)
         }
         NewThing::Vehicle { model, start } => {
             let name = names.fresh(if model == "Blimp" { "Blimp" } else { "Rover" });
@@ -119,6 +128,19 @@ pub fn metres(value: f64) -> String {
 /// A place to a tenth of a metre, without parentheses.
 pub fn place(point_m: Point2<f64>) -> String {
     format!("{}, {}", metres(point_m.x), metres(point_m.y))
+}
+
+/// The corners of a wall of some thickness between two ends, counter-clockwise.
+pub fn wall(ends_m: [Point2<f64>; 2], thickness_m: f64) -> [Point2<f64>; 4] {
+    let [from, to] = ends_m;
+    let along = (to - from).try_normalize(1e-9).unwrap_or_else(Vector2::x);
+    let aside = Vector2::new(-along.y, along.x) * (0.5 * thickness_m);
+    [from - aside, to - aside, to + aside, from + aside]
+}
+
+fn polygon(name: &str, corners_m: &[Point2<f64>]) -> String {
+    let corners: Vec<String> = corners_m.iter().map(|&corner| place(corner)).collect();
+    format!("obstacle {name} polygon ({});", corners.join(", "))
 }
 
 fn location(name: &str, at_m: Point2<f64>) -> String {
@@ -245,6 +267,13 @@ mod tests {
         let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]].map(Point2::from).to_vec();
         let text = after(WORLD, &NewThing::Polygon(corners));
         assert!(text.contains("obstacle Area1 polygon (0, 0, 4, 0, 4, 4);"), "{text}");
+    }
+
+    #[test]
+    fn a_wall_is_as_thick_as_it_is_wanted_to_both_sides_of_its_line() {
+        let ends_m = [[10.0, 20.0], [10.0, 50.0]].map(Point2::from);
+        let text = after(WORLD, &NewThing::Wall { ends_m, thickness_m: 3.0 });
+        assert!(text.contains("obstacle Wall1 polygon (11.5, 20, 11.5, 50, 8.5, 50, 8.5, 20);"), "{text}");
     }
 
     #[test]

@@ -32,6 +32,8 @@ pub enum Tool {
     Appear,
     /// They add a corner of an obstacle.
     Polygon,
+    /// A drag declares a wall from where it begins to where it ends.
+    Wall,
     /// They declare a vehicle of this model.
     Vehicle(SmolStr),
 }
@@ -46,6 +48,7 @@ impl Tool {
             Self::Circle => "circle",
             Self::Appear => "appear",
             Self::Polygon => "polygon",
+            Self::Wall => "wall",
             Self::Vehicle(_) => "vehicle",
         }
     }

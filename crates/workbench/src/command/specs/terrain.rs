@@ -1,14 +1,12 @@
 //! The ground, its camera and its tools.
 
-use motion::PlannerKind;
-
 use super::arguments::{number_argument, text_argument};
 use super::available::{with_ground, with_paths, with_run, with_selection, with_vehicles};
 use super::{PLAIN, called, keys, plain, when};
 use crate::command::chord::Key;
 use crate::command::registry::{CommandSpec, Group, Scope};
 use crate::command::{Command, ViewAction};
-use crate::state::growth::GrowthCommand;
+use crate::state::growth::{GrowthCommand, Planners};
 use crate::state::terrain::{TerrainCommand, Tool};
 
 /// In the order of the menus.
@@ -68,15 +66,9 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         Ok(Command::Terrain(TerrainCommand::Growth(GrowthCommand::ChooseLeg(leg))))
     }),
     called("terrain.growBy", "Choose the path planner", Group::Terrain, |_, arguments| {
-        let planner = match text_argument(arguments, "planner")? {
-            "as-planned" => None,
-            "rrt" => Some(PlannerKind::Rrt),
-            "rrt-connect" => Some(PlannerKind::RrtConnect),
-            "rrt-star" => Some(PlannerKind::RrtStar),
-            "kinodynamic" => Some(PlannerKind::Kinodynamic),
-            other => return Err(format!("there is no path planner \"{other}\"")),
-        };
-        Ok(Command::Terrain(TerrainCommand::Growth(GrowthCommand::ChoosePlanner(planner))))
+        let name = text_argument(arguments, "planner")?;
+        let planners = Planners::named(name).ok_or_else(|| format!("there is no path planner \"{name}\""))?;
+        Ok(Command::Terrain(TerrainCommand::Growth(GrowthCommand::Choose(planners))))
     }),
     when(
         plain("terrain.measure", "Measure", Group::Terrain, &[keys(PLAIN, Key::M)], Scope::NotTyping, |_| {
@@ -116,6 +108,12 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
             Scope::Everywhere,
             |_| Command::Terrain(TerrainCommand::Take(Tool::Polygon)),
         ),
+        with_ground,
+    ),
+    when(
+        plain("terrain.wall", "Draw a wall", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::Take(Tool::Wall))
+        }),
         with_ground,
     ),
     when(

@@ -1,53 +1,70 @@
-//! The search for a path that is looked at, sample by sample.
+//! The searches for a path that are looked at, sample by sample.
 
 use nalgebra::Point2;
 
 use super::{Fact, Of, count, fact, measured, truth, words};
 use crate::state::AppState;
-use crate::state::growth::Shown;
+use crate::state::growth::{Counts, Planners, Shown};
+
+/// The first search, or that of a planner.
+const SEARCH: Of = Of::Maybe("rrt-star");
 
 pub(super) const FACTS: &[Fact] = &[
-    fact("samples", Of::Nothing, "how many samples are drawn of the search for a path", |state, _| {
-        count(growth(state)?.samples() as usize)
+    fact("samples", SEARCH, "how many samples are drawn of the search for a path", |state, of| {
+        count(counts(state, of)?.samples as usize)
     }),
     fact("all-samples", Of::Nothing, "how many samples the whole search draws", |state, _| {
-        count(growth(state)?.total as usize)
+        count(growth(state)?.total() as usize)
     }),
-    fact(
-        "vertices",
-        Of::Nothing,
-        "how many vertices its trees have by now, their roots included",
-        |state, _| count(growth(state)?.vertices() as usize),
-    ),
+    fact("vertices", SEARCH, "how many vertices its trees have by now, their roots included", |state, of| {
+        count(counts(state, of)?.vertices as usize)
+    }),
+    fact("checks", SEARCH, "how many straight pieces of ground it has checked for obstacles", |state, of| {
+        count(counts(state, of)?.checks as usize)
+    }),
     fact("sample", Of::Nothing, "where the last sample lies", |state, _| {
         place(growth(state)?.last()?.sample_m)
     }),
-    fact(
-        "nearest",
-        Of::Nothing,
-        "the vertex that was nearest to it, from which the tree grew",
-        |state, _| place(growth(state)?.last()?.added.first()?.from_m),
-    ),
+    fact("nearest", Of::Nothing, "the vertex that was nearest to it", |state, _| {
+        place(growth(state)?.last()?.nearest_m)
+    }),
     fact("steered", Of::Nothing, "the vertex that was added towards it", |state, _| {
-        place(growth(state)?.last()?.added.first()?.point_m)
+        place(growth(state)?.last()?.steered_m()?)
     }),
     fact("stride", Of::Nothing, "how many metres the tree grew towards it", |state, _| {
-        let grown = growth(state)?.last()?.added.first()?;
-        measured((grown.point_m - grown.from_m).norm())
+        let step = growth(state)?.last()?;
+        measured((step.steered_m()? - step.nearest_m).norm())
     }),
     fact("blocked", Of::Nothing, "whether an obstacle was in the way of the last sample", |state, _| {
         truth(growth(state)?.last()?.added.is_empty())
     }),
-    fact("path-found", Of::Nothing, "whether there is a path by now", |state, _| {
-        truth(growth(state)?.length_m().is_some())
+    fact("path-found", SEARCH, "whether there is a path by now", |state, of| {
+        truth(counts(state, of)?.length_m.is_some())
     }),
-    fact("path-length", Of::Nothing, "the metres of the best path by now", |state, _| {
-        measured(growth(state)?.length_m()?)
+    fact("path-length", SEARCH, "the metres of the best path by now", |state, of| {
+        measured(counts(state, of)?.length_m?)
+    }),
+    fact("race", Of::Nothing, "whether all planners are shown side by side", |state, _| {
+        truth(growth(state).is_some_and(Shown::is_race))
+    }),
+    fact("obstacles", Of::Nothing, "how many obstacles the mission has", |state, _| {
+        count(state.shown()?.program.world.obstacles.len())
     }),
 ];
 
 fn growth(state: &AppState) -> Option<&Shown> {
     state.terrain.growth.shown()
+}
+
+/// What a search has done: the first one, or that of the planner of this name.
+fn counts(state: &AppState, planner: &str) -> Option<Counts> {
+    let shown = growth(state)?;
+    if planner.is_empty() {
+        return Some(shown.counts());
+    }
+    let Planners::One(planner) = Planners::named(planner)? else { return None };
+    let at = shown.searches.iter().position(|search| search.planner == Some(planner))?;
+    Some(shown.counts_of(at))
 }
 
 fn place(point: Point2<f64>) -> Option<super::Value> {

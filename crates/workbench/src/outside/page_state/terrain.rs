@@ -6,6 +6,7 @@ use serde::Serialize;
 use ts_rs::TS;
 
 use crate::state::AppState;
+use crate::state::growth::{Planners, Search, Shown};
 
 /// What is done on the terrain.
 #[derive(Debug, Serialize)]
@@ -13,7 +14,9 @@ use crate::state::AppState;
 pub struct Terrain {
     #[cfg_attr(
         test,
-        ts(type = "\"look\" | \"measure\" | \"location\" | \"circle\" | \"polygon\" | \"vehicle\"")
+        ts(
+            type = "\"look\" | \"measure\" | \"location\" | \"circle\" | \"appear\" | \"polygon\" | \"wall\" | \"vehicle\""
+        )
     )]
     tool: &'static str,
     /// The places that the tool has so far, in metres east and north.
@@ -29,6 +32,7 @@ pub struct Terrain {
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct PathGrowth {
+    /// Whose searches are shown.
     planner: &'static str,
     leg: usize,
     samples: u32,
@@ -36,6 +40,27 @@ pub struct PathGrowth {
     vertices: u32,
     /// The length of the best path so far, in metres.
     length: Option<f64>,
+    /// What the last sample did, in a sentence.
+    sentence: Option<String>,
+    /// What each search has done by now; several of them race.
+    searches: Vec<PathSearch>,
+}
+
+/// A search for a path by the sample that is looked at.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct PathSearch {
+    planner: &'static str,
+    samples: u32,
+    vertices: u32,
+    /// Straight pieces of ground that were checked for obstacles.
+    checks: u32,
+    /// The length of the best path so far, in metres.
+    length: Option<f64>,
+    /// Whether the core has drawn all samples.
+    complete: bool,
+    /// Why there is no search.
+    refusal: Option<String>,
 }
 
 /// Where a vehicle is: metres, and radians counter-clockwise from east.
@@ -66,14 +91,33 @@ pub(super) fn terrain(state: &AppState) -> Terrain {
         points: terrain.points_m.iter().map(|point| [point.x, point.y]).collect(),
         clearance: state.settings.views.terrain.clearance,
         rays: rays.sum(),
-        growth: terrain.growth.shown().map(|shown| PathGrowth {
-            planner: crate::state::growth::planner_title(terrain.growth.planner),
-            leg: shown.leg,
-            samples: shown.samples(),
-            total: shown.total,
-            vertices: shown.vertices(),
-            length: shown.length_m(),
-        }),
+        growth: terrain.growth.shown().map(|shown| path_growth(terrain.growth.planners, shown)),
+    }
+}
+
+fn path_growth(planners: Planners, shown: &Shown) -> PathGrowth {
+    let counts = shown.counts();
+    let search = |(at, search): (usize, &Search)| {
+        let counts = shown.counts_of(at);
+        PathSearch {
+            planner: search.planner.map_or(Planners::AsPlanned, Planners::One).title(),
+            samples: counts.samples,
+            vertices: counts.vertices,
+            checks: counts.checks,
+            length: counts.length_m,
+            complete: search.is_complete(),
+            refusal: search.refusal().map(str::to_owned),
+        }
+    };
+    PathGrowth {
+        planner: planners.title(),
+        leg: shown.leg,
+        samples: shown.samples(),
+        total: shown.total(),
+        vertices: counts.vertices,
+        length: counts.length_m,
+        sentence: shown.sentence(),
+        searches: shown.searches.iter().enumerate().map(search).collect(),
     }
 }
 

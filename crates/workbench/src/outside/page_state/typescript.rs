@@ -195,6 +195,7 @@ fn interface() -> String {
     declare::<terrain::Vehicle>(&mut out);
     declare::<terrain::Terrain>(&mut out);
     declare::<terrain::PathGrowth>(&mut out);
+    declare::<terrain::PathSearch>(&mut out);
     declare::<execution::Execution>(&mut out);
     declare::<execution::Deadline>(&mut out);
     declare::<execution::Robustness>(&mut out);

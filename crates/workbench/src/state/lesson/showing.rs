@@ -6,7 +6,7 @@ use crate::PanelKind;
 use crate::command::ViewAction;
 use crate::lesson::{Expectation, LessonSearch, Show, StepTarget, Which};
 use crate::state::automaton::AutomatonCommand;
-use crate::state::growth::GrowthCommand;
+use crate::state::growth::{GrowthCommand, Planners};
 use crate::state::search::wording::event;
 use crate::state::search::{Recording, SearchCommand};
 use crate::state::terrain::TerrainCommand;
@@ -52,7 +52,7 @@ impl AppState {
     fn draw_samples(&mut self) {
         let Some(samples) = self.lesson.samples_due else { return };
         let is_found =
-            self.terrain.growth.shown().is_some_and(|shown| shown.total >= samples || shown.is_complete());
+            self.terrain.growth.shown().is_some_and(|shown| shown.total() >= samples || shown.is_complete());
         if is_found {
             self.lesson.samples_due = None;
             self.apply_to_terrain(TerrainCommand::Growth(GrowthCommand::GoTo(samples)));
@@ -94,7 +94,9 @@ impl AppState {
         }
         if show.samples.is_some() || show.planner.is_some() {
             self.apply_to_terrain(TerrainCommand::Growth(GrowthCommand::Toggle));
-            self.apply_to_terrain(TerrainCommand::Growth(GrowthCommand::ChoosePlanner(show.planner)));
+            self.apply_to_terrain(TerrainCommand::Growth(GrowthCommand::Choose(
+                show.planner.unwrap_or_default(),
+            )));
             self.lesson.samples_due = show.samples;
             self.draw_samples();
         }
@@ -126,7 +128,7 @@ impl AppState {
         self.time_range = None;
         self.playback.is_playing = false;
         self.playback.seek(0.0);
-        self.apply_to_terrain(TerrainCommand::Growth(GrowthCommand::ChoosePlanner(None)));
+        self.apply_to_terrain(TerrainCommand::Growth(GrowthCommand::Choose(Planners::AsPlanned)));
         self.apply_to_terrain(TerrainCommand::Growth(GrowthCommand::Close));
         if self.automaton.is_control() {
             self.automaton.apply(AutomatonCommand::Reset);
