@@ -204,6 +204,8 @@ export type Search = {
   /** How many steps are recorded; 0 if none are. */
   steps: number;
   isPlaying: boolean;
+  /** Whether stepping and playing pass over what only prepares a key step. */
+  onlyKeySteps: boolean;
   stepsPerSecond: number;
   /** Where running and playing stop. */
   breakpoints: Record<"decision" | "failure" | "threat" | "solution", boolean>;

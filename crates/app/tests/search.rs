@@ -19,8 +19,11 @@ fn opened(fragment: &str, size: [f32; 2]) -> App {
     app
 }
 
+/// The same with every step of the search, and not key steps only.
 fn lesson(fragment: &str) -> App {
-    opened(&format!("mission=backjump&workspace=teach{fragment}"), [1440.0, 900.0])
+    let mut app = opened(&format!("mission=backjump&workspace=teach{fragment}"), [1440.0, 900.0]);
+    dispatch(&mut app, "search.keySteps", &json!(null));
+    app
 }
 
 fn press(app: &mut App, key: Key) {
@@ -259,6 +262,45 @@ fn both_searches_step_together_or_apart_and_tell_their_work() {
     assert_ne!(app.json()["search"]["compare"]["side"], side);
     dispatch(&mut app, "plan.compare", &json!(null));
     assert_eq!(app.json()["search"]["compare"], json!(null));
+}
+
+#[test]
+fn two_searches_are_one_tree_with_the_share_of_each_and_apart_where_that_is_wanted() {
+    let mut app = lesson("");
+    dispatch(&mut app, "plan.compare", &json!(null));
+    app.settle();
+    let states = |app: &App, side: usize| {
+        let searches = app.json()["search"]["compare"]["searches"].clone();
+        searches[side]["states"].as_u64().expect("a number")
+    };
+    let shown = texts(&app, Rect::EVERYTHING);
+    let count = |words: &str| {
+        let text = shown.iter().find_map(|(text, _)| text.strip_prefix(words));
+        text.and_then(|count| count.parse::<u64>().ok()).unwrap_or_else(|| panic!("no {words} in {shown:?}"))
+    };
+    let both = count("by both: ");
+    assert_eq!(both + count("only Chronological: "), states(&app, 0));
+    assert_eq!(both + count("only Conflict-directed: "), states(&app, 1));
+    let trees = |app: &App| {
+        let names = std::cell::RefCell::new(std::collections::BTreeSet::new());
+        let found = app.harness.get_all_by(|node| {
+            let label = node.label().filter(|label| label.contains("search tree of"));
+            names.borrow_mut().extend(label.iter().map(ToString::to_string));
+            label.is_some()
+        });
+        assert_eq!(found.count(), names.borrow().len());
+        names.into_inner().into_iter().collect::<Vec<String>>()
+    };
+    assert_eq!(trees(&app).len(), 1);
+    assert!(trees(&app)[0].starts_with("Both searches: search tree of"), "{:?}", trees(&app));
+    for (index, (one, place)) in texts(&app, tree(&app)).iter().enumerate() {
+        for (other, at) in &texts(&app, tree(&app))[index + 1..] {
+            assert!(!place.intersects(*at), "{one} covers {other}");
+        }
+    }
+    app.harness.get_by_label("Merged").click();
+    app.settle();
+    assert_eq!(trees(&app).len(), 2, "{:?}", trees(&app));
 }
 
 #[test]

@@ -52,6 +52,7 @@ pub use trace::{
     TreeStatus,
 };
 pub use trace_lines::trace_json_lines;
+pub use wording::contradiction;
 
 use answer::answer;
 use model::Model;

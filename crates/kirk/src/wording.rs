@@ -18,12 +18,15 @@ pub(crate) struct Told<'a> {
 }
 
 /// What contradicts what along a negative cycle, in the author's terms: what needs more time than something else leaves
-/// it, and how much too much that is. `None` for an empty cycle.
+/// it, and how much too much that is where something allows a time. `None` for an empty cycle.
 pub fn contradiction(network: &Network, cycle: &[CycleMember]) -> Option<String> {
     let told = Told { network, kind: FailureKind::Temporal, choices: &[], conflict: &[], cycle };
     let bounds = told.bounds()?;
+    let allows = |member: &CycleMember| {
+        matches!(member.constraint, Constraint::Upper(_)) && is_telling(network, member)
+    };
     let total = Time::checked_sum(cycle.iter().map(|member| member.weight)).and_then(Time::checked_neg);
-    Some(match total {
+    Some(match total.filter(|_| cycle.iter().any(allows)) {
         Some(excess) => format!("{bounds}: {excess} too much"),
         None => bounds,
     })

@@ -12,6 +12,7 @@ use tpn::{ArcId, LabelId, Network, Plan, Top, compile};
 use workbench::command::Command;
 use workbench::lesson::COURSE;
 use workbench::state::lesson::LessonCommand;
+use workbench::state::search::focus::is_key;
 use workbench::state::search::wording;
 
 /// A search with what it was made of.
@@ -20,11 +21,6 @@ struct Told<'a> {
     trace: &'a Trace,
     /// Every plan that there is.
     plans: &'a [Plan],
-}
-
-/// Steps that only prepare others.
-fn is_key(event: &Event) -> bool {
-    !matches!(event, Event::Expand { .. } | Event::AddArc { .. } | Event::Propagate { .. })
 }
 
 impl Told<'_> {
@@ -59,8 +55,10 @@ impl Told<'_> {
         !self.plans.iter().any(|plan| choices.iter().all(|choice| makes(plan, choice)))
     }
 
+    /// Whose condition it is, in the author's terms.
     fn name(&self, label: LabelId) -> String {
-        self.network.label_name(label)
+        let owner = self.network.labels[label.index()].owner.expect("lessons 1 to 8 have no first values");
+        self.network.occurrences[owner.index()].name.to_string()
     }
 
     fn choice_of(&self, state: TreeNodeId) -> Option<TreeChoice> {
@@ -87,8 +85,23 @@ impl Told<'_> {
                 }
                 Event::Inconsistent { cycle } => {
                     let total = exact::Time::checked_sum(cycle.iter().map(|it| it.weight)).expect("it fits");
-                    says(&total.to_string())?;
+                    let excess = total.checked_neg().expect("it fits");
                     holds(total.is_negative(), "the cycle is not negative")?;
+                    let words: Vec<&str> = sentence.split([' ', ',', ':']).collect();
+                    let numbers = words.iter().filter_map(|word| word.parse::<exact::Time>().ok());
+                    // Before these may stand the gap that is kept.
+                    let needed = match numbers.collect::<Vec<_>>()[..] {
+                        [.., needed, allowed, told] if sentence.contains("too much") => {
+                            holds(told == excess, "it is not so much too much")?;
+                            holds(needed.checked_sub(allowed) == Some(excess), "its numbers do not add up")?;
+                            needed
+                        }
+                        [.., needed] if sentence.contains("cannot wait that long") => needed,
+                        _ => return Err("it does not say what is needed and what is allowed".to_owned()),
+                    };
+                    let lower = cycle.iter().map(|it| it.weight).filter(|weight| weight.is_negative());
+                    let needs = exact::Time::checked_sum(lower).and_then(exact::Time::checked_neg);
+                    holds(needs == Some(needed), "the bounds need another time")?;
                     for (at, member) in cycle.iter().enumerate() {
                         let next = &cycle[(at + 1) % cycle.len()];
                         holds(member.to == next.from, "the cycle is not closed")?;
@@ -128,8 +141,7 @@ impl Told<'_> {
                     holds(left.is_empty() || self.excludes(&chosen), &format!("{left:?} could carry it"))
                 }
                 Event::TryLink { link } => {
-                    says(&self.name(link.ask))?;
-                    says(&self.name(link.tell))?;
+                    says(&format!("{} gives {} its ", self.name(link.tell), self.name(link.ask)))?;
                     holds(literal(link.tell).supports(literal(link.ask)), "it carries something else")?;
                     holds(is_selected(link.ask) && is_selected(link.tell), "one of them is not selected")
                 }
@@ -140,7 +152,7 @@ impl Told<'_> {
                     holds(is_selected(*left) && is_selected(*right), "one of them is not selected")
                 }
                 Event::TryOrder { order } => {
-                    says(&format!("{} before {}", self.name(order.first), self.name(order.then)))?;
+                    says(&format!("{} comes before {}:", self.name(order.first), self.name(order.then)))?;
                     let is_threat = |event: &Event| {
                         matches!(event, Event::Threat { left, right }
                             if [(*left, *right), (*right, *left)].contains(&(order.first, order.then)))

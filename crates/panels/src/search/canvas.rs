@@ -8,8 +8,10 @@ use kirk::{Trace, TreeChoice, TreeNodeId, TreeStatus};
 use theme::size;
 use tpn::Network;
 use workbench::command::ViewAction;
+use workbench::state::search::Share;
 use workbench::state::search::focus::concerns;
 
+use super::merged::{self, Merged};
 use super::tree::{TreeDrawing, TreeIndex};
 use crate::Context;
 
@@ -57,6 +59,30 @@ pub struct Tree<'a> {
     pub goal: TreeNodeId,
     /// The name of the drawing for screen readers.
     pub name: &'a str,
+    /// Who entered which state, if these are two searches merged.
+    pub merged: Option<Merged<'a>>,
+}
+
+impl Tree<'_> {
+    fn step(&self) -> Option<usize> {
+        self.step.map(|(step, _)| step)
+    }
+
+    /// Whether a state is known at the step: at that of either search, if two are merged.
+    fn is_known(&self, id: TreeNodeId) -> bool {
+        match &self.merged {
+            Some(merged) => merged.is_known(id),
+            None => self.index.is_known(id, self.step()),
+        }
+    }
+
+    /// What has come of a state by the step.
+    fn status(&self, id: TreeNodeId) -> TreeStatus {
+        match &self.merged {
+            Some(merged) => merged.status(id),
+            None => self.index.status(self.trace, id, self.step()),
+        }
+    }
 }
 
 /// What the pointer did.
@@ -90,13 +116,15 @@ const LEAST_LABEL: f32 = 16.0;
 const LEAST_CUT: f32 = 56.0;
 
 impl View {
-    /// Zooms or fits.
+    /// Zooms, shows everything, or what matters at the step.
     pub fn follow(&mut self, action: ViewAction, rect: Rect) {
         match action {
             ViewAction::ZoomIn => self.zoom_at(rect.center(), rect, 1.25),
             ViewAction::ZoomOut => self.zoom_at(rect.center(), rect, 0.8),
             ViewAction::ZoomReset => (self.cell, self.fits, self.followed) = (CELL, false, None),
-            ViewAction::Fit | ViewAction::FitSelection => (self.fits, self.least_down) = (true, 0.0),
+            ViewAction::Fit => (self.fits, self.least_down) = (true, 0.0),
+            // As at first, and from there to the step.
+            ViewAction::FitSelection => *self = Self::default(),
             ViewAction::TopView | ViewAction::Follow => {}
         }
     }
@@ -136,7 +164,7 @@ impl View {
         let at = self.cells(rect, pointer);
         let reach = vec2(radius(self.cell).max(7.0), radius(self.cell).max(7.0)) / self.cell;
         let found = tree.drawing.nearest(at, [reach.x, reach.y.min(0.5)])?;
-        tree.index.is_known(found, tree.step.map(|(step, _)| step)).then_some(found)
+        tree.is_known(found).then_some(found)
     }
 
     fn navigate(&mut self, response: &egui::Response, rect: Rect, tree: &Tree<'_>) {
@@ -248,13 +276,13 @@ impl Scene<'_> {
         for &id in self.path {
             self.sign_of(id);
         }
-        if let Some((_, state)) = self.tree.step {
+        let states = match &self.tree.merged {
+            Some(merged) => merged.steps.map(|step| step.map(|(_, state)| state)),
+            None => [self.tree.step.map(|(_, state)| state), None],
+        };
+        for state in states.into_iter().flatten() {
             self.current(self.tree.drawing.stand_in(self.tree.trace, state));
         }
-    }
-
-    fn step(&self) -> Option<usize> {
-        self.tree.step.map(|(step, _)| step)
     }
 
     /// The states of a row that are drawn: those in view, and of those that would share a place one.
@@ -272,7 +300,7 @@ impl Scene<'_> {
             };
             // A solution stands out of those that share its place; what is not known yet gives way.
             let group = states[at..next].iter().take(64).copied();
-            let known = group.filter(|&id| self.tree.index.is_known(id, self.step()));
+            let known = group.filter(|&id| self.tree.is_known(id));
             seen.extend(known.max_by_key(|&id| {
                 (self.tree.index.has_solution[id as usize], self.tree.index.first_step[id as usize].is_some())
             }));
@@ -304,6 +332,13 @@ impl Scene<'_> {
         let parent = self.tree.trace.tree.get(id as usize).and_then(|node| node.parent);
         let (Some(to), Some(from)) = (self.at(id), parent.and_then(|parent| self.at(parent))) else { return };
         let middle = f32::midpoint(from.y, to.y);
+        if let Some(merged) = self.tree.merged {
+            return self.merged_edge(
+                merged.tree.share(id),
+                [from, pos2(from.x, middle), pos2(to.x, middle), to],
+                stroke,
+            );
+        }
         // Clipped here: a long tree has lines that are too long to be painted exactly.
         let clip = |x: f32| x.clamp(self.rect.left() - 4.0, self.rect.right() + 4.0);
         self.painter.line_segment([pos2(to.x, to.y), pos2(to.x, middle)], stroke);
@@ -311,6 +346,18 @@ impl Scene<'_> {
             self.painter.line_segment([pos2(clip(to.x), middle), pos2(clip(from.x), middle)], stroke);
         }
         self.painter.line_segment([pos2(from.x, middle), from], stroke);
+    }
+
+    /// An edge of merged trees, in the colour and the dashes of the search that alone entered its state.
+    fn merged_edge(&self, share: Share, corners: [Pos2; 4], stroke: Stroke) {
+        let is_path = stroke.color == self.context.tokens.accent;
+        let color = if is_path { stroke.color } else { merged::color(self.context, share) };
+        let clip = self.rect.expand(4.0);
+        let corners = corners.map(|corner| pos2(corner.x.clamp(clip.left(), clip.right()), corner.y));
+        let stroke = Stroke::new(stroke.width.max(1.4), color);
+        // What is smaller than its dashes is told by its colour alone.
+        let share = if self.view.cell.x < 8.0 { Share::Both } else { share };
+        self.painter.extend(merged::lines(&corners, stroke, share));
     }
 
     fn path_edges(&self, first_row: usize, last_row: usize) {
@@ -350,7 +397,7 @@ impl Scene<'_> {
 
     fn sign(&self, id: TreeNodeId, center: Pos2, radius: f32) {
         let tokens = self.context.tokens;
-        match self.tree.index.status(self.tree.trace, id, self.step()) {
+        match self.tree.status(id) {
             TreeStatus::Unexplored => {
                 let outline = Stroke::new((radius / 6.0).clamp(0.5, 1.2), tokens.text_muted);
                 self.painter.circle(center, radius * 0.8, tokens.surface, outline);
@@ -474,5 +521,26 @@ fn shortest_label(choice: Option<TreeChoice>) -> Option<String> {
     match choice {
         Some(TreeChoice::Decision { alternative, .. }) => Some(format!("={alternative}")),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stop_of_a_lesson_takes_back_how_the_tree_was_zoomed_and_moved() {
+        let room = Rect::from_min_size(Pos2::ZERO, vec2(400.0, 300.0));
+        let first = View::default();
+        let mut view = first;
+        view.followed = Some(3);
+        for _ in 0..4 {
+            view.follow(ViewAction::ZoomIn, room);
+        }
+        view.scroll += vec2(50.0, -700.0);
+        assert!(view.cell.x > 2.0 * first.cell.x && !view.fits);
+        view.follow(ViewAction::FitSelection, room);
+        assert_eq!((view.cell, view.scroll, view.fits), (first.cell, first.scroll, true));
+        assert_eq!(view.followed, None, "the step is brought into view anew");
     }
 }

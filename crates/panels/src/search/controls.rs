@@ -19,13 +19,13 @@ pub fn show(
     ui: &mut Ui,
     context: &Context<'_>,
     recordings: &[Recording],
-    folds_failed: &mut bool,
+    [folds_failed, merges]: [&mut bool; 2],
     commands: &mut CommandSender,
 ) {
     egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 4)).show(ui, |ui| {
         ui.spacing_mut().item_spacing = egui::vec2(space::XS, space::XS);
         ui.horizontal_wrapped(|ui| show_steps(ui, context, recordings, commands));
-        ui.horizontal_wrapped(|ui| show_choices(ui, context, folds_failed, commands));
+        ui.horizontal_wrapped(|ui| show_choices(ui, context, [folds_failed, merges], commands));
         ui.horizontal_wrapped(|ui| show_breakpoints(ui, context, commands));
     });
 }
@@ -93,8 +93,20 @@ fn show_speed(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) 
     }
 }
 
-fn show_choices(ui: &mut Ui, context: &Context<'_>, folds_failed: &mut bool, commands: &mut CommandSender) {
+fn show_choices(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    [folds_failed, merges]: [&mut bool; 2],
+    commands: &mut CommandSender,
+) {
     let search = &context.state.search;
+    let mut only_key = search.only_key();
+    ui.toggle_value(&mut only_key, "Key steps only").on_hover_text(
+        "Steps and plays from choice to failure to choice, and passes over what only prepares them",
+    );
+    if only_key != search.only_key() {
+        commands.send(Command::Search(SearchCommand::OnlyKey(only_key)));
+    }
     let mut compares = search.compares();
     if compares {
         let mut is_linked = search.is_linked();
@@ -102,6 +114,8 @@ fn show_choices(ui: &mut Ui, context: &Context<'_>, folds_failed: &mut bool, com
         if is_linked != search.is_linked() {
             commands.send(Command::Search(SearchCommand::Link(is_linked)));
         }
+        ui.toggle_value(merges, "Merged")
+            .on_hover_text("Both trees as one: what both searches entered is drawn once");
     } else {
         show_kind(ui, context, commands);
     }

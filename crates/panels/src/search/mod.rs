@@ -7,6 +7,7 @@ mod canvas;
 mod controls;
 mod details;
 mod keys;
+mod merged;
 mod statistics;
 mod step;
 mod tree;
@@ -18,21 +19,32 @@ use kirk::TreeNodeId;
 use mission::SearchKind;
 use theme::space;
 use workbench::PanelKind;
-use workbench::command::{Command, CommandSender};
+use workbench::command::{Command, CommandSender, ViewAction};
 use workbench::state::Selection;
 use workbench::state::search::focus::selection_of;
 use workbench::state::search::{Recording, SearchCommand};
 
 use crate::{Context, Panel};
 use canvas::{Pointed, Tree};
+use merged::MergedSide;
 use tree::{TreeDrawing, TreeIndex};
 
 /// The panel, with what concerns only it: where each tree is scrolled to and which of its states are folded.
-#[derive(Default)]
 pub struct SearchPanel {
     sides: [Side; 2],
+    /// Both trees as one, while two searches are compared.
+    merged: MergedSide,
+    /// Whether two trees are shown as one.
+    merges: bool,
     /// What this panel last said the pointer is over.
     told_hover: Selection,
+}
+
+impl Default for SearchPanel {
+    fn default() -> Self {
+        let (sides, merged) = (Default::default(), MergedSide::default());
+        Self { sides, merged, merges: true, told_hover: Selection::None }
+    }
 }
 
 /// One tree on screen.
@@ -80,7 +92,7 @@ impl Panel for SearchPanel {
             side.begin(recording);
         }
         let folds_failed = &mut self.sides[side].folds_failed;
-        controls::show(ui, context, &recordings, folds_failed, commands);
+        controls::show(ui, context, &recordings, [folds_failed, &mut self.merges], commands);
         for (number, recording) in recordings.iter().enumerate() {
             self.sides[number].follow(recording, context, number);
         }
@@ -92,16 +104,23 @@ impl Panel for SearchPanel {
         let details = DETAILS.min((room.height() - LEAST_TREE).max(room.height() * 0.3));
         let (upper, lower) = room.split_top_bottom_at_y(room.bottom() - details);
         if let Some(action) = action {
-            self.sides[side].view.follow(action, upper);
+            for (number, tree) in self.sides.iter_mut().enumerate() {
+                if number == side || action == ViewAction::FitSelection {
+                    tree.view.follow(action, upper);
+                }
+            }
+            self.merged.follow(action, upper);
         }
-        let pointed = self.show_trees(ui, context, &recordings, upper, commands);
+        let pointed = match recordings.as_slice() {
+            [first, other] if self.merges => {
+                let both = [first.clone(), other.clone()];
+                self.show_merged(ui, context, &both, upper, commands)
+            }
+            _ => self.show_trees(ui, context, &recordings, upper, commands),
+        };
         let mut below = ui.new_child(UiBuilder::new().max_rect(lower.shrink2(egui::vec2(space::M, 2.0))));
         ui.painter().hline(lower.x_range(), lower.top(), egui::Stroke::new(1.0, context.tokens.line));
-        let hovered = pointed.filter(|(_, pointed)| pointed.hovered.is_some());
-        let (shown, state) = match hovered {
-            Some((side, pointed)) => (side, pointed.hovered),
-            None => (side, None),
-        };
+        let (shown, state) = pointed.map_or((side, None), |(side, state)| (side, Some(state)));
         if let Some(drawn) = &self.sides[shown].drawn {
             details::show(&mut below, context, &drawn.recording, &drawn.index, state, commands);
         }
@@ -111,6 +130,32 @@ impl Panel for SearchPanel {
 }
 
 impl SearchPanel {
+    /// Shows both trees as one below the figures of both, and answers which state of which the pointer is over.
+    fn show_merged(
+        &mut self,
+        ui: &mut Ui,
+        context: &Context<'_>,
+        recordings: &[Recording; 2],
+        room: egui::Rect,
+        commands: &mut CommandSender,
+    ) -> Option<(usize, TreeNodeId)> {
+        let mut part = ui.new_child(UiBuilder::new().max_rect(room).id_salt("merged"));
+        let draw = |ui: &mut Ui, number: usize, commands: &mut CommandSender| {
+            statistics::show(ui, context, &recordings[number], number, commands);
+        };
+        if room.width() >= SIDE_BY_SIDE {
+            part.columns(2, |columns| {
+                for (number, column) in columns.iter_mut().enumerate() {
+                    draw(column, number, commands);
+                }
+            });
+        } else {
+            (0..2).for_each(|number| draw(&mut part, number, commands));
+        }
+        let folds_failed = self.sides.iter().any(|side| side.folds_failed);
+        self.merged.show(&mut part, context, recordings, folds_failed, commands)
+    }
+
     /// Shows the tree, or both, and answers what the pointer does in which of them.
     fn show_trees(
         &mut self,
@@ -119,7 +164,7 @@ impl SearchPanel {
         recordings: &[Recording],
         room: egui::Rect,
         commands: &mut CommandSender,
-    ) -> Option<(usize, Pointed)> {
+    ) -> Option<(usize, TreeNodeId)> {
         let mut found = None;
         for (number, recording) in recordings.iter().enumerate() {
             let place = match recordings.len() {
@@ -154,12 +199,11 @@ impl SearchPanel {
                 step: view.map(|view| (view.step.step, view.step.tree_node)),
                 goal: drawn.index.goal,
                 name: recording.kind().map_or("Search", kind_name),
+                merged: None,
             };
             let pointed = side.view.show(&mut part, context, &tree);
             side.answer(pointed, number, commands);
-            if pointed.hovered.is_some() {
-                found = Some((number, pointed));
-            }
+            found = pointed.hovered.map(|state| (number, state)).or(found);
         }
         found
     }

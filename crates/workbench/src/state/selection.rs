@@ -352,11 +352,18 @@ pub fn alternative_text(network: &Network, decision: DecisionId, alternative: u3
         .get(decision.index())
         .and_then(|decision| decision.alternative_spans.get(alternative as usize));
     let first = span.and_then(|span| {
-        network.occurrences.iter().find(|occurrence| {
-            let is_activity = matches!(occurrence.kind, OccurrenceKind::Primitive | OccurrenceKind::Activity);
-            let is_inside = occurrence.span.is_some_and(|at| span.start <= at.start && at.end <= span.end);
-            is_activity && is_inside
-        })
+        let is_inside = |occurrence: &&tpn::Occurrence| {
+            occurrence.span.is_some_and(|at| span.start <= at.start && at.end <= span.end)
+        };
+        let is_activity = |occurrence: &&tpn::Occurrence| {
+            matches!(occurrence.kind, OccurrenceKind::Primitive | OccurrenceKind::Activity)
+        };
+        let inside = || network.occurrences.iter().filter(is_inside);
+        // An alternative without activities is called by what it asserts or waits for.
+        let is_named = |occurrence: &&tpn::Occurrence| {
+            matches!(occurrence.kind, OccurrenceKind::Assertion | OccurrenceKind::Delay)
+        };
+        inside().find(is_activity).or_else(|| inside().find(is_named))
     });
     match first {
         Some(occurrence) => format!("{alternative}: {}", occurrence.name),

@@ -46,6 +46,14 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         }),
         with_comparison,
     ),
+    plain(
+        "search.keySteps",
+        "Key steps of the search only, or all",
+        Group::Play,
+        &[],
+        Scope::Everywhere,
+        |state| search(SearchCommand::OnlyKey(!state.search.only_key())),
+    ),
     when(
         plain("search.link", "Step both searches together", Group::Play, &[], Scope::Everywhere, |state| {
             search(SearchCommand::Link(!state.search.is_linked()))

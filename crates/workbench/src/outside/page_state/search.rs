@@ -20,6 +20,8 @@ pub struct Search {
     /// How many steps are recorded; 0 if none are.
     steps: usize,
     is_playing: bool,
+    /// Whether stepping and playing pass over what only prepares a key step.
+    only_key_steps: bool,
     steps_per_second: f64,
     /// Where running and playing stop.
     #[cfg_attr(test, ts(type = "Record<\"decision\" | \"failure\" | \"threat\" | \"solution\", boolean>"))]
@@ -93,6 +95,7 @@ pub(super) fn search(state: &AppState) -> Search {
         step: state.search.step().map_or(0, |step| step.step + 1),
         steps: recordings.get(side).or(recordings.first()).map_or(0, Recording::steps),
         is_playing: state.search.is_playing,
+        only_key_steps: state.search.only_key(),
         steps_per_second: state.search.steps_per_sec,
         breakpoints: state.search.breakpoints,
         known,

@@ -13,7 +13,7 @@ use crate::state::terrain::TerrainCommand;
 use crate::state::{AppState, Pins, Selection, Status, ToastKind};
 use crate::workspace::Workspace;
 
-/// The panels whose view begins anew at each stop. The search tree follows its step by itself.
+/// The panels whose view begins anew at each stop.
 const VIEWS: [PanelKind; 5] =
     [PanelKind::Network, PanelKind::Timeline, PanelKind::Terrain, PanelKind::Distances, PanelKind::Automaton];
 
@@ -113,6 +113,8 @@ impl AppState {
             let is_near = show.near.contains(&panel);
             self.request_view(panel, if is_near { ViewAction::FitSelection } else { ViewAction::Fit });
         }
+        // The whole of a large tree cannot be read: it is shown around the step.
+        self.request_view(PanelKind::Search, ViewAction::FitSelection);
         self.active_panel = PanelKind::Lesson;
     }
 

@@ -22,6 +22,11 @@ pub struct Focus {
     pub spans: Vec<Span>,
 }
 
+/// Whether a step tells what the search does: a choice, a failure, what follows from it. The others only prepare it.
+pub fn is_key(event: &Event) -> bool {
+    !matches!(event, Event::Expand { .. } | Event::AddArc { .. } | Event::Propagate { .. })
+}
+
 impl Focus {
     /// What a reason why there is no plan is about.
     pub fn of_reason(network: &Network, reason: &Reason) -> Self {

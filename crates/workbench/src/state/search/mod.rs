@@ -3,6 +3,7 @@
 
 mod counts;
 pub mod focus;
+mod merged;
 mod recording;
 pub mod wording;
 
@@ -15,6 +16,7 @@ use tpn::{Network, Plan};
 
 pub use counts::Counts;
 pub use focus::Focus;
+pub use merged::{MergedTree, Share, ShareCounts};
 pub use recording::{Recording, View, WindowChange, recorded};
 
 /// The search as it is looked at. While a step is looked at, all panels show that step instead of the plan.
@@ -29,6 +31,8 @@ pub struct SearchState {
     compares: bool,
     /// Whether both sides step together.
     is_linked: bool,
+    /// Whether stepping and playing go from one key step to the next.
+    only_key: bool,
     /// Both searches, with the network that they searched.
     comparison: Option<(Arc<BothSearches>, Arc<Network>)>,
     /// The revision whose comparison was asked for last.
@@ -82,6 +86,8 @@ pub enum SearchCommand {
     Turn(usize),
     /// Whether both step together.
     Link(bool),
+    /// Whether stepping and playing pass over what only prepares a key step ([`focus::is_key`]).
+    OnlyKey(bool),
     /// Shows the plan again.
     Close,
 }
@@ -96,6 +102,7 @@ impl Default for SearchState {
             side: 0,
             compares: false,
             is_linked: true,
+            only_key: true,
             comparison: None,
             asked: None,
             wanted_step: None,
@@ -136,6 +143,11 @@ impl SearchState {
     /// Whether both step together.
     pub fn is_linked(&self) -> bool {
         self.is_linked
+    }
+
+    /// Whether stepping and playing go from one key step to the next.
+    pub fn only_key(&self) -> bool {
+        self.only_key
     }
 
     /// What the search has selected at the step, in the form of a plan, if it is a step of the search of `snapshot`.
@@ -251,6 +263,7 @@ impl SearchState {
                 self.steps_per_sec = speed.clamp(*SPEEDS.start(), *SPEEDS.end());
             }
             SearchCommand::SetSpeed(_) => {}
+            SearchCommand::OnlyKey(only_key) => self.only_key = only_key,
             SearchCommand::Compare(compares) => self.compare(compares, snapshot),
             SearchCommand::Turn(side) => self.turn(side, snapshot),
             SearchCommand::Link(is_linked) => {
@@ -316,14 +329,17 @@ impl SearchState {
                 self.due = 0.0;
                 if starts_over { 0 } else { current.unwrap_or(0) }
             }
-            SearchCommand::Step(steps) => match current {
-                None if steps < 0 => last,
-                None => 0,
-                Some(step) => {
-                    let steps = isize::try_from(steps).unwrap_or(isize::MAX);
-                    step.saturating_add_signed(steps).min(last)
+            SearchCommand::Step(steps) => {
+                let sides = &recordings[stepping];
+                let count = usize::try_from(steps.unsigned_abs()).unwrap_or(usize::MAX);
+                if steps < 0 {
+                    let until = current.unwrap_or(last + 1);
+                    self.passing(sides, (0..until).rev(), count).unwrap_or(0)
+                } else {
+                    let from = current.map_or(0, |step| step + 1);
+                    self.passing(sides, from..=last, count).unwrap_or(last)
                 }
-            },
+            }
             SearchCommand::GoTo(step) => step.min(last),
             SearchCommand::GoToNode(node) => {
                 let trace = recordings.get(self.side)?.trace();
@@ -361,12 +377,23 @@ impl SearchState {
             return false;
         };
         let from = stepping.filter_map(|side| self.view(side).map(|view| view.step.step)).max().unwrap_or(0);
-        let until = (from + steps).min(last);
+        let until = self.passing(sides, from + 1..=last, steps).unwrap_or(last);
         let stops = |step: &usize| sides.iter().any(|it| stops_at(it.trace(), *step, self.breakpoints));
         let stop = (from + 1..=until).find(stops);
         self.is_playing = stop.is_none() && until < last;
         self.go_to(stop.unwrap_or(until), snapshot);
         true
+    }
+
+    /// The step that the `count`th step leads to over those of `way`, or the last one of them that can be stepped to.
+    fn passing(&self, sides: &[Recording], way: impl Iterator<Item = usize>, count: usize) -> Option<usize> {
+        let is_stop = |step: &usize| {
+            let is_key = |it: &Recording| {
+                it.trace().events.get(*step).is_some_and(|entry| focus::is_key(&entry.event))
+            };
+            !self.only_key || sides.iter().any(is_key)
+        };
+        way.filter(is_stop).take(count.max(1)).last()
     }
 
     /// Shows a step on the sides that step; a side with fewer steps shows its last.

@@ -3,24 +3,27 @@
 mod conflict_driven;
 
 use kirk::{Constraint, CycleMember, Event, Trace, TreeChoice, TreeNodeId};
-use tpn::{LabelId, Network};
+use tpn::Network;
 
 use crate::state::selection::{alternative_text, node_name};
 
 pub use conflict_driven::learned;
+use conflict_driven::{gives, named};
 
 /// What was chosen in a state, in words.
 pub fn choice(network: &Network, choice: Option<TreeChoice>) -> String {
-    let label = |id: LabelId| network.label_name(id);
     match choice {
         None => "Before any choice".to_owned(),
         Some(TreeChoice::Decision { decision, alternative }) => {
             let text = alternative_text(network, decision, alternative);
             format!("{} = {text}", Network::decision_name(decision))
         }
-        Some(TreeChoice::Link(link)) => format!("{} carries {}", label(link.tell), label(link.ask)),
-        Some(TreeChoice::Order(order)) => format!("{} before {}", label(order.first), label(order.then)),
-        Some(TreeChoice::NoLink { ask }) => format!("Nothing carries {}", label(ask)),
+        Some(TreeChoice::Link(link)) => gives(network, link.ask, Some(link.tell)),
+        Some(TreeChoice::Order(order)) => {
+            let [first, then] = named(network, [order.first, order.then]);
+            format!("{first} before {then}")
+        }
+        Some(TreeChoice::NoLink { ask }) => gives(network, ask, None),
         Some(choice @ (TreeChoice::UseOrder(_) | TreeChoice::Start { .. } | TreeChoice::Departure(_))) => {
             conflict_driven::fact(network, choice)
         }
@@ -29,13 +32,21 @@ pub fn choice(network: &Network, choice: Option<TreeChoice>) -> String {
 
 /// One event of a search in a sentence.
 pub fn event(network: &Network, trace: &Trace, event: &Event) -> String {
-    let own = trace.is_conflict_driven().then(|| conflict_driven::event(network, trace, event));
-    own.flatten().unwrap_or_else(|| step_by_step(network, trace, event))
+    let own = if trace.is_conflict_driven() { None } else { step_by_step(network, trace, event) };
+    own.or_else(|| conflict_driven::event(network, trace, event)).unwrap_or_else(|| plain(network, event))
 }
 
-/// One event of a search that makes one choice after the other.
-fn step_by_step(network: &Network, trace: &Trace, event: &Event) -> String {
-    let label = |id: LabelId| network.label_name(id);
+/// What a search that makes one choice after the other says in its own way.
+fn step_by_step(network: &Network, trace: &Trace, event: &Event) -> Option<String> {
+    match event {
+        Event::Backjump { to, because } => Some(backjump(network, trace, *to, because)),
+        Event::TryLink { link } => Some(format!("Try: {}.", gives(network, link.ask, Some(link.tell)))),
+        _ => None,
+    }
+}
+
+/// What both kinds of search say alike.
+fn plain(network: &Network, event: &Event) -> String {
     match event {
         Event::Expand { node } => format!("Follow all arcs out of {}.", node_name(network, *node)),
         Event::Decide { decision, alternative } => {
@@ -50,27 +61,14 @@ fn step_by_step(network: &Network, trace: &Trace, event: &Event) -> String {
         Event::Propagate { moved: 0 } => "Propagate: nothing has to move.".to_owned(),
         Event::Propagate { moved: 1 } => "Propagate: one event moves.".to_owned(),
         Event::Propagate { moved } => format!("Propagate: {moved} events move."),
-        Event::Inconsistent { cycle } => {
-            match exact::Time::checked_sum(cycle.iter().map(|member| member.weight)) {
-                Some(total) => format!("Failure: a negative cycle of {total}."),
-                None => "Failure: a negative cycle.".to_owned(),
-            }
-        }
-        Event::Unclosable { ask } => format!("Failure: nothing can carry {}.", label(*ask)),
-        Event::TryLink { link } => format!("Let {} carry {}.", label(link.tell), label(link.ask)),
-        Event::Threat { left, right } => {
-            format!("Threat: {} and {} may overlap.", label(*left), label(*right))
-        }
-        Event::TryOrder { order } => format!("Put {} before {}.", label(order.first), label(order.then)),
-        Event::Unresolvable { left, right } => {
-            format!("Failure: {} and {} fit in neither order.", label(*left), label(*right))
-        }
+        Event::Inconsistent { cycle } => match kirk::contradiction(network, cycle) {
+            Some(contradiction) => format!("Failure: {contradiction}."),
+            None => "Failure: the bounds contradict each other.".to_owned(),
+        },
         Event::Known => "Failure: these choices contain a conflict that was learned before.".to_owned(),
         Event::Backtrack { .. } => "Back to the last choice.".to_owned(),
-        Event::Backjump { to, because } => backjump(network, trace, *to, because),
-        Event::Solution { .. } => "A plan.".to_owned(),
+        Event::Solution { .. } => "This is a plan.".to_owned(),
         Event::Exhausted => "Nothing is left to try.".to_owned(),
-        // All others are only met where conflicts drive the search.
         _ => String::new(),
     }
 }

@@ -17,12 +17,7 @@ pub(super) fn event(network: &Network, trace: &Trace, event: &Event) -> Option<S
     Some(match event {
         Event::Begin(round) => begin(network, round),
         Event::TryLink { link } => {
-            format!(
-                "{} gives {} its {}.",
-                giver(network, link.tell),
-                owner(network, link.ask),
-                text(network, link.ask)
-            )
+            format!("{}.", gives(network, link.ask, Some(link.tell)))
         }
         Event::TryOrder { order } => {
             let why = reason_of_order(network, *order);
@@ -93,7 +88,9 @@ pub(super) fn event(network: &Network, trace: &Trace, event: &Event) -> Option<S
         Event::Threat { left, right } => {
             let why = reason_of_order(network, Ordering { first: *left, then: *right });
             let (left, right) = (owner(network, *left), owner(network, *right));
-            format!("{left} and {right} would be in each other's way, {why}: one must come before the other.")
+            format!(
+                "{left} and {right} would be in each other's way, for {why}: one must come before the other."
+            )
         }
         Event::Overload { uses } => format!("{}: one must wait for another.", demand(network, uses)),
         Event::OutOfRange { early, late } => out_of_range(network, early, late),
@@ -162,6 +159,18 @@ pub fn fact(network: &Network, choice: TreeChoice) -> String {
         }
         TreeChoice::NoLink { ask } => format!("nothing for {}", network.label_name(ask)),
     }
+}
+
+/// What gives somebody what it requires; without a giver, that nothing does.
+pub(super) fn gives(network: &Network, ask: LabelId, tell: Option<LabelId>) -> String {
+    let giver = tell.map_or_else(|| "Nothing".to_owned(), |tell| giver(network, tell));
+    format!("{giver} gives {} its {}", owner(network, ask), text(network, ask))
+}
+
+/// Two conditions by whose they are, or in full if both are of the same.
+pub(super) fn named(network: &Network, labels: [LabelId; 2]) -> [String; 2] {
+    let owners = labels.map(|label| owner(network, label));
+    if owners[0] == owners[1] { labels.map(|label| network.label_name(label)) } else { owners }
 }
 
 fn facts(network: &Network, choices: &[TreeChoice]) -> String {

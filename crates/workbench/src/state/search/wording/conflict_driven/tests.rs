@@ -32,7 +32,7 @@ fn a_state() {
             "Whatever is chosen, ARM=STOWED for Look#1 from the start of the mission is ruled out.",
             "Whatever is chosen: ARM=STOWED for Look#1 from Stow#1.",
             "The times fit, and what must be kept of their order follows from the choices.",
-            "A plan.",
+            "This is a plan.",
         ],
     );
 }
@@ -51,7 +51,7 @@ fn one_vehicle() {
             "Drive#1 comes before Drive#2: both move R1.",
             "From Drive#1 before Drive#2 it follows: Look#1 before Drive#2.",
             "The times fit. Of their order the plan keeps Drive#1 before Drive#2 and Look#1 before Drive#2.",
-            "A plan.",
+            "This is a plan.",
         ],
     );
 }
@@ -70,7 +70,7 @@ fn a_resource() {
             "Back to the start, with all that was learned.",
             "Heat#1 comes before Radio#1: both use Power.",
             "The times fit. Of their order the plan keeps Heat#1 before Radio#1 (Power).",
-            "A plan.",
+            "This is a plan.",
         ],
     );
 }
@@ -88,7 +88,7 @@ fn a_reservoir() {
             "Back to the start, with all that was learned.",
             "Whatever is chosen: Charge#1 before Drive#2 (Battery).",
             "The times fit. Of their order the plan keeps Charge#1 before Drive#2 (Battery).",
-            "A plan.",
+            "This is a plan.",
         ],
     );
 }
@@ -112,7 +112,7 @@ fn an_objective() {
             "Look for a plan that is better than end 2: with less end.",
             "Failure: no plan is better than the best one found.",
             "Nothing is left to try.",
-            "A plan.",
+            "This is a plan.",
         ],
     );
 }
@@ -130,7 +130,7 @@ fn nature() {
             "Whatever is chosen, D1=0 is ruled out.",
             "Whatever is chosen: D1=1.",
             "The times fit, and what must be kept of their order follows from the choices.",
-            "A plan.",
+            "This is a plan.",
         ],
     );
 }
@@ -147,13 +147,13 @@ fn too_many_drives() {
             "Drive#1 comes before Drive#2: both move R1.",
             "From Drive#1 before Drive#2 it follows: Drive#1 before Drive#3.",
             "From Drive#1 before Drive#2 it follows: Drive#3 before Drive#2.",
-            "Failure: a negative cycle of -5.",
+            "Failure: Drive#1, Drive#2 and Drive#3 need at least 30, but the scenario allows only 25: 5 too much.",
             "Learned: never Drive#1 before Drive#2.",
             "Back to the start: the failure has to do with Drive#1 before Drive#2 alone.",
             "Whatever is chosen: Drive#2 before Drive#1.",
             "Whatever is chosen: Drive#2 before Drive#3.",
             "Whatever is chosen: Drive#3 before Drive#1.",
-            "Failure: a negative cycle of -5.",
+            "Failure: Drive#1, Drive#2 and Drive#3 need at least 30, but the scenario allows only 25: 5 too much.",
             "Nothing is left to try.",
         ],
     );
