@@ -194,3 +194,49 @@ fn panel_right(app: &App) -> f64 {
     let button = app.harness.get_by_role_and_label(Role::Button, "Text as it was");
     f64::from(button.rect().right()) + 14.0
 }
+
+/// The sizes of the letters of a text on screen.
+fn sizes(galley: &egui::Galley) -> impl Iterator<Item = f32> {
+    galley.job.sections.iter().map(|section| section.format.font_id.size)
+}
+
+/// Texts on screen with letters that are smaller than `least` points.
+fn smaller(app: &App, least: f32) -> Vec<(f32, String)> {
+    fn collect(shape: &egui::Shape, clip: egui::Rect, least: f32, found: &mut Vec<(f32, String)>) {
+        match shape {
+            egui::Shape::Text(text) if clip.intersects(shape.visual_bounding_rect()) => {
+                let smallest = sizes(&text.galley).fold(f32::INFINITY, f32::min);
+                if smallest < least {
+                    found.push((smallest, text.galley.text().to_owned()));
+                }
+            }
+            egui::Shape::Vec(shapes) => {
+                for shape in shapes {
+                    collect(shape, clip, least, found);
+                }
+            }
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    for shape in &app.harness.output().shapes {
+        collect(&shape.shape, shape.clip_rect, least, &mut found);
+    }
+    found
+}
+
+#[test]
+fn no_stop_of_any_lesson_shows_letters_below_11_points() {
+    let mut app = opened("", [1280.0, 800.0]);
+    let mut small = Vec::new();
+    for lesson in COURSE.iter().flat_map(|chapter| chapter.lessons) {
+        let (read, _) = workbench::lesson::Lesson::read(lesson.name, lesson.text);
+        for stop in 0..read.stops.len() {
+            app.harness.state_mut().run(Command::Lesson(LessonCommand::Open(lesson.name.into(), stop)));
+            app.settle();
+            let place = format!("{}, stop {}", lesson.name, stop + 1);
+            small.extend(smaller(&app, 10.99).into_iter().map(|it| format!("{place}: {it:?}")));
+        }
+    }
+    assert!(small.is_empty(), "{}", small.join("\n"));
+}

@@ -5,6 +5,7 @@ mod support;
 use egui::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::{Value, json};
+use workbench::PanelKind;
 use workbench::command::Command;
 use workbench::host::{FileKind, HostEvent, Remote as _};
 use workbench::state::compare::CompareCommand;
@@ -144,7 +145,7 @@ fn a_step_of_the_search_beside_the_review_is_said_to_be_one() {
     assert!(app.harness.query_by_label(note).is_none());
     app.harness.state_mut().run(Command::SetTrace(true));
     app.settle();
-    app.harness.state_mut().run(Command::Search(SearchCommand::Step(1)));
+    app.harness.state_mut().run(Command::Search(SearchCommand::GoTo(0)));
     app.settle();
     app.harness.get_by_label(note);
     click(&mut app, "Show the plan");
@@ -497,6 +498,42 @@ fn a_pinned_plan_shows_what_an_edit_changes() {
     assert!(has(&app, "Group-Traverse-Path#1, moved: "));
     undo(&mut app);
     app.harness.get_by_label("The plans do not differ");
+}
+
+/// What is written on the drawings, which no role tells.
+fn painted(app: &App) -> Vec<String> {
+    fn collect(shape: &egui::Shape, found: &mut Vec<String>) {
+        match shape {
+            egui::Shape::Text(text) => found.push(text.galley.text().to_owned()),
+            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| collect(shape, found)),
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    for shape in &app.harness.output().shapes {
+        collect(&shape.shape, &mut found);
+    }
+    found
+}
+
+#[test]
+fn the_network_in_a_review_says_what_the_approved_plan_had_otherwise() {
+    let mut app = reviewing();
+    approve(&mut app, "Ada");
+    let says = |app: &App| painted(app).iter().any(|text| text == "end was 460");
+    let show = |app: &mut App, panel: Option<PanelKind>| {
+        app.harness.state_mut().run(Command::Maximize(panel));
+        app.settle();
+    };
+    show(&mut app, Some(PanelKind::Network));
+    assert!(!says(&app), "nothing differs from what was approved");
+    show(&mut app, None);
+    edit(&mut app);
+    click(&mut app, "Review again");
+    show(&mut app, Some(PanelKind::Network));
+    assert!(says(&app), "{:?}", painted(&app));
+    undo(&mut app);
+    assert!(!says(&app));
 }
 
 #[test]

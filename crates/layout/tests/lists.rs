@@ -455,3 +455,48 @@ fn a_rule_is_drawn_where_it_is_looked_at_and_where_it_is_broken() {
     folded.add_rules(chart.rules.clone(), &closed);
     assert_eq!(folded.rows.len(), rows + 1);
 }
+
+#[test]
+fn a_network_over_another_plan_has_words_beside_what_is_new_or_moved_and_crosses_what_is_gone() {
+    use layout::list::network_before::{NetworkChanges, changes_list};
+    let mission = |first: &str, rest: &str| {
+        format!(
+            "primitive A()[1,9]; primitive B()[1,9]; primitive C()[1,9]; scenario S[0,40] = {{ {first}; B()[3,4]; {rest} }}"
+        )
+    };
+    let (before, after) = (mission("A()[2,3]", "C()[1,2]"), mission("A()[5,6]", "A()[1,1]"));
+    let times = |text: &str| {
+        let network = network_of(text);
+        let plan = plan_of(&network);
+        let window = |node: tpn::NodeId| {
+            let window = plan.windows[node.index()].expect("it is in the plan");
+            [window.earliest.to_f64(), window.latest.to_f64()]
+        };
+        let named =
+            network.occurrences.iter().map(|it| (it.name.clone(), [window(it.start), window(it.end)]));
+        Before::new(named.collect::<Vec<_>>())
+    };
+    let network = network_of(&after);
+    let plan = plan_of(&network);
+    let measure = &display::approximate_text_width;
+    let drawing = layout::network(&network, &layout::Options::default(), measure);
+    let same = NetworkChanges::new(&times(&after), &network, &plan);
+    assert_eq!((same.changes.len(), same.gone.len()), (0, 0));
+    let nothing = changes_list(&drawing, (&network, &plan), &same, measure);
+    assert_eq!((nothing.items().len(), nothing.frame), (0, drawing.bounds));
+    let changes = NetworkChanges::new(&times(&before), &network, &plan);
+    let list = changes_list(&drawing, (&network, &plan), &changes, measure);
+    let mut words: Vec<String> = list.texts().iter().map(|text| text.text.to_string()).collect();
+    words.sort();
+    assert_eq!(words, ["C#1", "No longer in the plan", "end was 2–32", "new", "was 2–32"]);
+    // Told apart without colour: what has moved is dashed, what is new is not.
+    let dashed = |item: &&display::Item| item.stroke.is_some_and(|it| it.dash == display::Dash::Dashed);
+    let paths: Vec<_> = list.items().iter().filter(|item| matches!(item.shape, Shape::Path { .. })).collect();
+    assert_eq!(paths.iter().copied().filter(dashed).count(), 2, "A#1 and B#1 have moved");
+    // Everything is inside the frame, which goes below the drawing for what is gone.
+    assert!(list.frame.max.y > drawing.bounds.max.y && list.frame.min.y == drawing.bounds.min.y);
+    for item in list.items() {
+        let place = list.bounds_of(item);
+        assert!(list.frame.expanded(6.0).contains(place.min) && list.frame.expanded(6.0).contains(place.max));
+    }
+}

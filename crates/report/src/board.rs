@@ -107,6 +107,9 @@ pub(crate) fn changes(document: &Document<'_>, record: &Record) -> String {
         let drawing = figure::timeline_since(document.snapshot, approved);
         let caption = "Dashed: when it could be in the approved plan. “new” is not in it, and what is dashed alone is gone.";
         out.push_str(&drawing.map(|it| figure::framed(&it, caption)).unwrap_or_default());
+        let drawing = figure::network_since(document.snapshot, approved);
+        let caption = "“new” is not in the approved plan; dashed, with “was”, could start at other times in it; what is crossed below is gone.";
+        out.push_str(&drawing.map(|it| figure::framed(&it, caption)).unwrap_or_default());
     }
     if !since.lines.is_empty() {
         let rows = since.lines.iter().map(line);

@@ -368,6 +368,21 @@ fn a_report_of_an_edited_mission_says_that_the_approval_lapsed_and_what_differs(
 }
 
 #[test]
+fn a_report_draws_the_network_over_the_approved_one() {
+    let before = planned("primitive A()[1,2]; primitive B()[1,1]; scenario S[0,9] = { A(); B() }");
+    let after = planned("primitive A()[2,3]; primitive C()[4,4]; scenario S[0,9] = { A(); C() }");
+    let mut record = Record::default();
+    record.approve(who("Ada", &before.review), subject(&before), String::new());
+    assert!(!page_with(&before, &record).contains("over the approved one"), "nothing differs");
+    let page = page_with(&after, &record);
+    let drawing = page.split("Network of the plan over the approved one").nth(1).expect("the drawing");
+    let drawing = drawing.split("</svg>").next().unwrap_or_default();
+    for words in [">new<", ">end was 1–2<", "No longer in the plan", ">B#1<", "stroke-dasharray"] {
+        assert!(drawing.contains(words), "no {words} in {drawing}");
+    }
+}
+
+#[test]
 fn schedules_say_what_they_are_of_how_that_stands_and_what_is_pinned() {
     let planned = planned(SCENARIO);
     let (network, plan) =

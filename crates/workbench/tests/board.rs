@@ -90,7 +90,11 @@ fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
     app.run(Command::WriteReport);
     let page =
         String::from_utf8(app.world.saved.borrow().last().expect("a report").1.clone()).expect("a text");
-    for part in ["Timeline of the plan over the approved one", "approved: from "] {
+    for part in [
+        "Timeline of the plan over the approved one",
+        "approved: from ",
+        "Network of the plan over the approved one",
+    ] {
         assert!(page.contains(part), "{part}");
     }
     app.dispatch("edit.undo", &json!(null));

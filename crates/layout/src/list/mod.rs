@@ -6,4 +6,5 @@ pub mod automaton;
 pub mod machine;
 pub mod map;
 pub mod network;
+pub mod network_before;
 pub mod timeline;

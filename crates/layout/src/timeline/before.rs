@@ -42,6 +42,26 @@ impl Before {
     }
 }
 
+impl Before {
+    /// When something could start and end, if the plan had it.
+    pub fn times_of(&self, name: &str) -> Option<[[f64; 2]; 2]> {
+        self.times.get(name).copied()
+    }
+
+    /// What `plan` does not have, in order of time; delays are left out.
+    pub fn gone(&self, network: &Network, plan: &Plan) -> Vec<Gone> {
+        let is_selected = |it: &&tpn::Occurrence| plan.selected_nodes.get(it.start.index()) == Some(&true);
+        let present: BTreeSet<&str> =
+            network.occurrences.iter().filter(is_selected).map(|it| it.name.as_str()).collect();
+        let gone = self.times.iter().filter(|(name, _)| !present.contains(name.as_str()));
+        let gone = gone.filter(|(name, _)| !name.starts_with("delay#"));
+        let gone = gone.map(|(name, &times)| Gone { name: name.clone(), times });
+        let mut gone: Vec<Gone> = gone.take(MAX_GONE).collect();
+        gone.sort_by(|left, right| left.times[0][0].total_cmp(&right.times[0][0]));
+        gone
+    }
+}
+
 impl Chart {
     /// Lays another plan over the chart of `plan`.
     pub fn compare_with(&mut self, before: &Before, network: &Network, plan: &Plan) {
@@ -62,14 +82,7 @@ impl Chart {
                 Some(_) => {}
             }
         }
-        let is_selected = |it: &&tpn::Occurrence| plan.selected_nodes.get(it.start.index()) == Some(&true);
-        let present: BTreeSet<&str> =
-            network.occurrences.iter().filter(is_selected).map(|it| it.name.as_str()).collect();
-        let gone = before.times.iter().filter(|(name, _)| !present.contains(name.as_str()));
-        let gone = gone.filter(|(name, _)| !name.starts_with("delay#"));
-        let gone = gone.map(|(name, &times)| Gone { name: name.clone(), times });
-        self.gone = gone.take(MAX_GONE).collect();
-        self.gone.sort_by(|left, right| left.times[0][0].total_cmp(&right.times[0][0]));
+        self.gone = before.gone(network, plan);
         let end = self.bars.len();
         let row = |kind, name: SmolStr, depth| Row {
             kind,

@@ -135,7 +135,7 @@ fn ends(ui: &mut Ui, context: &Context<'_>, tally: &ProgramTally) {
         let bar = Rect::from_min_max(pos2(left + 2.0, bottom - height), pos2(left + width - 2.0, bottom));
         painter.rect_filled(bar, 2.0, tokens.accent);
         if width >= 26.0 {
-            let font = FontId::proportional(9.5);
+            let font = FontId::proportional(size::SMALL);
             let at = bar.center_top() - vec2(0.0, 1.0);
             painter.text(at, Align2::CENTER_BOTTOM, runs.to_string(), font, tokens.text_muted);
         }

@@ -11,6 +11,8 @@ use super::components::percent;
 use super::title;
 use crate::Context;
 
+/// How wide the number of a step is at most, in points.
+const NUMBER_WIDTH: f32 = 20.0;
 /// So many of the most likely states are listed.
 const MAX_LISTED: usize = 6;
 
@@ -114,9 +116,14 @@ fn history(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
             painter.rect_filled(part, 0.0, tokens.series[rank % tokens.series.len()]);
             bottom -= height;
         }
-        let color = if at == state.at() { tokens.accent } else { tokens.text_faint };
-        let place = pos2(left + width / 2.0, rect.bottom());
-        painter.text(place, Align2::CENTER_BOTTOM, (at + 1).to_string(), FontId::proportional(9.0), color);
+        // Of numbers that would touch only some are written.
+        let stride = (NUMBER_WIDTH / width).ceil().max(1.0) as usize;
+        if at % stride == 0 {
+            let color = if at == state.at() { tokens.accent } else { tokens.text_faint };
+            let place = pos2(left + width / 2.0, rect.bottom());
+            let font = FontId::proportional(size::SMALL);
+            painter.text(place, Align2::CENTER_BOTTOM, (at + 1).to_string(), font, color);
+        }
     }
     if response.clicked()
         && let Some(pointer) = response.interact_pointer_pos()

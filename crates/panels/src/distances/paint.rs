@@ -51,8 +51,13 @@ pub enum Pointed {
 const BOX_HEIGHT: f64 = 24.0;
 /// The radius of a vertex without a name.
 const DOT: f64 = 6.0;
-/// Below this size in points, texts are left out.
-const LEAST_TEXT: f32 = 6.5;
+/// Texts that would be smaller than this in points are left out; others keep a size that can be read.
+const LEAST_TEXT: f32 = 7.5;
+
+/// A size of letters that can be read, in half points so that zooming does not fill the font atlas.
+fn legible(font_size: f32) -> f32 {
+    ((font_size * 2.0).floor() / 2.0).max(size::SMALL)
+}
 
 /// How wide a vertex is drawn.
 pub fn width(vertex: &Vertex) -> f64 {
@@ -254,7 +259,7 @@ impl Scene<'_> {
         if !it.name.is_empty() && font_size >= LEAST_TEXT {
             let mut job = egui::text::LayoutJob::simple_singleline(
                 it.name.clone(),
-                FontId::proportional((font_size * 2.0).floor() / 2.0),
+                FontId::proportional(legible(font_size)),
                 tokens.text,
             );
             job.wrap = egui::text::TextWrapping::truncate_at_width(frame.width() - 4.0);
@@ -273,7 +278,7 @@ impl Scene<'_> {
         let edge = &self.graph.edges[edge];
         let color = self.color(edge, has_cycle);
         let text = time_text::time(edge.weight);
-        let font = FontId::proportional((font_size * 2.0).floor() / 2.0);
+        let font = FontId::proportional(legible(font_size));
         let galley = self.painter.layout_no_wrap(text, font, color);
         // Forward and backward edges lie side by side: their weights stand at different places along them.
         let first = if edge.weight > Time::ZERO { 0.42 } else { 0.58 };

@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use display::{DisplayList, Piece, Point, approximate_text_width};
+use layout::list::network_before::{NetworkChanges, changes_list};
 use layout::overlay::{causal_links, negative_cycle, orderings, threats, windows};
+use layout::timeline::before::Before;
 use layout::{NetworkDrawing, NetworkState, Options, OverlayCurve, TextShape};
 
 use mission::{ContentKey, Planning, Snapshot};
@@ -55,6 +57,16 @@ pub(super) struct Drawn {
     /// The display list, and what it was built for.
     pub(super) list: DisplayList,
     listed: Option<Listed>,
+    /// What differs from the plan that was last approved, over the list.
+    pub(super) changes: Option<DisplayList>,
+}
+
+/// The plan that was last approved, to be laid over the present one.
+pub(super) struct Approved<'a> {
+    /// What tells one from another.
+    pub(super) key: String,
+    /// When things could be in it, if it is another plan than the present one. Takes a while.
+    pub(super) times: &'a dyn Fn() -> Option<Before>,
 }
 
 /// What a display list was built for: the drawing, what lies over it, whether there is a plan, and what is shown.
@@ -64,6 +76,7 @@ struct Listed {
     laid_over: u64,
     has_plan: bool,
     options: NetworkView,
+    approved: Option<String>,
 }
 
 impl Drawn {
@@ -138,9 +151,17 @@ impl Drawn {
     }
 
     /// Builds the display list, unless it is that of the same content. `plan` is the one that was followed.
-    pub(super) fn list(&mut self, network: &Network, plan: Option<&Plan>, options: &NetworkView) {
+    pub(super) fn list(
+        &mut self,
+        network: &Network,
+        plan: Option<&Plan>,
+        options: &NetworkView,
+        approved: Option<&Approved<'_>>,
+    ) {
         let (version, laid_over) = (self.version, self.laid_over);
-        let wanted = Listed { version, laid_over, has_plan: plan.is_some(), options: options.clone() };
+        let key = approved.map(|approved| approved.key.clone());
+        let wanted =
+            Listed { version, laid_over, has_plan: plan.is_some(), options: options.clone(), approved: key };
         if self.listed.as_ref() == Some(&wanted) {
             return;
         }
@@ -151,7 +172,17 @@ impl Drawn {
         let notes = if options.windows { self.windows.as_slice() } else { &[] };
         let state = NetworkState { plan, overlays: &overlays, notes, parts: options.parts() };
         self.list = layout::network_list(&self.drawing, network, &state).indexed();
+        let before = approved.and_then(|approved| (approved.times)());
+        self.changes = before.zip(plan).map(|(before, plan)| {
+            let changes = NetworkChanges::new(&before, network, plan);
+            changes_list(&self.drawing, (network, plan), &changes, &approximate_text_width)
+        });
         self.listed = Some(wanted);
+    }
+
+    /// The area of the drawing, with what is laid over it.
+    pub(super) fn frame(&self) -> display::Rect {
+        self.changes.as_ref().map_or(self.drawing.bounds, |changes| changes.frame)
     }
 
     fn lay_over(&mut self, network: &Network, snapshot: &Snapshot, step: Option<&View>) {

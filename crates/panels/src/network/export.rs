@@ -32,7 +32,7 @@ pub(super) fn save(
     match format {
         PictureFormat::Svg => Command::SaveFile { name, bytes: svg.into_bytes() },
         PictureFormat::Png => {
-            let (width, height) = (drawn.drawing.bounds.width(), drawn.drawing.bounds.height());
+            let (width, height) = (drawn.frame().width(), drawn.frame().height());
             let scale = pixels_per_unit(width, height);
             let size = [width, height].map(|side| (side * scale).round().max(1.0) as u32);
             Command::SavePicture { name, svg, size }
@@ -57,7 +57,9 @@ fn svg(
 ) -> String {
     let state = NetworkState { plan, parts: view.parts(), ..NetworkState::default() };
     let progress = progress.map(|it| progress_list(&drawn.drawing, network, &state, it, None));
-    let lists: Vec<&DisplayList> = std::iter::once(&drawn.list).chain(&progress).collect();
+    let mut list = drawn.list.clone();
+    list.frame = drawn.frame();
+    let lists: Vec<&DisplayList> = std::iter::once(&list).chain(&progress).chain(&drawn.changes).collect();
     let title = format!("Network of {}", context.state.mission);
     display::svg(&lists, context.tokens.exported(), &title)
 }

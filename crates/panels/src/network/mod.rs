@@ -27,6 +27,7 @@ use workbench::command::{Command, CommandSender, ViewAction};
 use workbench::state::search::Focus;
 use workbench::state::settings::NetworkView;
 use workbench::state::{Selection, Status, Views};
+use workbench::workspace::Workspace;
 use workbench::{PanelEffect, PanelKind};
 
 use self::data::{Drawn, block_key, fits, is_collapsible};
@@ -111,6 +112,18 @@ impl NetworkPanel {
         self.search.follow(network, self.drawn.version);
     }
 
+    /// What tells which approved plan is laid over the present one: in a review, unless that is switched off or a step of
+    /// the search is looked at.
+    fn approved_key(context: &Context<'_>) -> Option<String> {
+        let state = context.state;
+        let is_wanted = state.workspace == Workspace::Review
+            && state.settings.views.timeline.approved
+            && context.step().is_none();
+        let (entry, _) = state.review.record().last_approval().filter(|_| is_wanted)?;
+        let review = state.current_review()?;
+        Some(format!("{} {} {}", entry.digest(), review.content_hash, review.plan_hash))
+    }
+
     fn answer(&mut self, asked: Asked, network: &Network, commands: &mut CommandSender) {
         let found = match asked {
             Asked::Nothing => return,
@@ -147,7 +160,9 @@ impl NetworkPanel {
         commands: &mut CommandSender,
     ) {
         let plan = context.plan().map(|(_, plan)| plan).filter(|plan| fits(plan, network));
-        self.drawn.list(network, plan, options);
+        let times = || context.state.approved_times();
+        let approved = Self::approved_key(context).map(|key| data::Approved { key, times: &times });
+        self.drawn.list(network, plan, options, approved.as_ref());
         let now = context.state.playback.time;
         let is_timed = options.now && now > 0.0 && context.step().is_none();
         let progress = plan.filter(|_| is_timed).map(|plan| Progress::at(network, plan, now));
@@ -233,7 +248,9 @@ impl NetworkPanel {
         });
         let mut drawn = Drawn::default();
         drawn.follow(snapshot, network, context.step(), &detail, None, windows_of);
-        drawn.list(network, plan, options);
+        let times = || context.state.approved_times();
+        let approved = Self::approved_key(context).map(|key| data::Approved { key, times: &times });
+        drawn.list(network, plan, options, approved.as_ref());
         for format in formats {
             commands.send(export::save(format, context, &drawn, network, plan, progress, options));
         }
@@ -290,7 +307,7 @@ impl NetworkPanel {
         self.follow_selection(panel, context, network);
         self.follow_step(panel, context, network);
         if self.view.is_fitted() {
-            self.view.fit(panel, self.drawn.drawing.bounds);
+            self.view.fit(panel, self.drawn.frame());
         }
     }
 
@@ -311,13 +328,13 @@ impl NetworkPanel {
                 if self.view.is_fitted() {
                     self.detail.reset();
                 }
-                self.view.fit(panel, self.drawn.drawing.bounds);
+                self.view.fit(panel, self.drawn.frame());
             }
             Some(ViewAction::FitSelection) => {
                 let shapes = Highlight::of(&context.state.selection, network);
                 match shapes.bounds(&self.drawn.drawing) {
                     Some(area) => self.view.show(panel, area.expanded(60.0), SELECTION_ZOOM),
-                    None => self.view.fit(panel, self.drawn.drawing.bounds),
+                    None => self.view.fit(panel, self.drawn.frame()),
                 }
             }
         }

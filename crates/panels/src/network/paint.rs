@@ -62,7 +62,8 @@ impl Scene<'_> {
         });
         let emphases: Vec<Emphasis<'_>> = emphases.collect();
         let emphasis = emphasis_list(drawing, self.network, &state, &emphases, &self.chosen());
-        let lists: Vec<_> = [&self.drawn.list, &emphasis].into_iter().chain(&progress).collect();
+        let lists: Vec<_> =
+            [&self.drawn.list, &emphasis].into_iter().chain(&progress).chain(&self.drawn.changes).collect();
         painter.paint(&lists, marks);
     }
 

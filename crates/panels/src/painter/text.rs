@@ -82,8 +82,11 @@ impl DisplayPainter<'_> {
         if text.fit == Fit::Overflow || galley.size().x <= place.width() + 1.0 {
             return (galley, used);
         }
-        let smaller = font(size * f64::from(place.width() / galley.size().x));
-        (self.painter.layout_no_wrap(text.text.to_string(), smaller.clone(), color), smaller)
+        // No smaller than it can be read: the rest is cut.
+        let smaller = font((size * f64::from(place.width() / galley.size().x)).max(LEGIBLE.min(size)));
+        let mut job = LayoutJob::simple_singleline(text.text.to_string(), smaller.clone(), color);
+        job.wrap = TextWrapping::truncate_at_width(place.width().max(12.0) + 1.0);
+        (self.painter.layout_job(job), smaller)
     }
 
     /// A name at the least legible size over the middle of its place, cut to its room, if there is any between what is

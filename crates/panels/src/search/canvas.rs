@@ -4,7 +4,7 @@
 //! states that would share a pixel one.
 
 use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, pos2, vec2};
-use kirk::{Trace, TreeChoice, TreeNodeId, TreeStatus};
+use kirk::{Event, Trace, TreeChoice, TreeNodeId, TreeStatus};
 use theme::size;
 use tpn::Network;
 use workbench::command::ViewAction;
@@ -57,6 +57,8 @@ pub struct Tree<'a> {
     /// The state that the search is for: its plan, or how far it came. The way there is marked while no step is looked
     /// at.
     pub goal: TreeNodeId,
+    /// The state that the step jumps back to, if it does.
+    pub jump: Option<TreeNodeId>,
     /// The name of the drawing for screen readers.
     pub name: &'a str,
     /// Who entered which state, if these are two searches merged.
@@ -229,6 +231,14 @@ impl View {
     }
 }
 
+/// The state that a step of `trace` jumps back to, past choices that have no part in the failure.
+pub fn jump(trace: &Trace, step: usize) -> Option<TreeNodeId> {
+    match trace.events.get(step)?.event {
+        Event::Backjump { to, .. } => Some(to),
+        _ => None,
+    }
+}
+
 /// The size of a state's sign.
 fn radius(cell: egui::Vec2) -> f32 {
     (cell.x * 0.3).min(cell.y * 0.21).clamp(1.0, RADIUS)
@@ -276,6 +286,7 @@ impl Scene<'_> {
         for &id in self.path {
             self.sign_of(id);
         }
+        self.jump();
         let states = match &self.tree.merged {
             Some(merged) => merged.steps.map(|step| step.map(|(_, state)| state)),
             None => [self.tree.step.map(|(_, state)| state), None],
@@ -358,6 +369,37 @@ impl Scene<'_> {
         // What is smaller than its dashes is told by its colour alone.
         let share = if self.view.cell.x < 8.0 { Share::Both } else { share };
         self.painter.extend(merged::lines(&corners, stroke, share));
+    }
+
+    /// The arrow of a jump, from the state of the step around all that it passes over to where it leads.
+    fn jump(&self) {
+        let ends = self.tree.step.map(|(_, state)| state).zip(self.tree.jump);
+        let stand_in = |id| self.at(self.tree.drawing.stand_in(self.tree.trace, id));
+        let Some((from, to)) = ends.and_then(|(from, to)| Some((stand_in(from)?, stand_in(to)?))) else {
+            return;
+        };
+        let stroke = Stroke::new(2.0, self.context.tokens.failure);
+        let radius = radius(self.view.cell).max(3.0);
+        // To the left of what it passes over, as far as there is room.
+        let aside = (0.35 * (from.y - to.y).abs()).clamp(24.0, 120.0);
+        let left = (from.x.min(to.x) - aside).max(self.rect.left() + 6.0);
+        let [start, end] = [from - vec2(radius * 1.6, 0.0), to - vec2(radius * 1.6, 0.0)];
+        let control = [pos2(left, start.y), pos2(left, end.y)];
+        let curve = egui::epaint::CubicBezierShape::from_points_stroke(
+            [start, control[0], control[1], end],
+            false,
+            Color32::TRANSPARENT,
+            stroke,
+        );
+        let points = curve.flatten(Some(0.5));
+        self.painter.extend(Shape::dashed_line(&points, stroke, 6.0, 3.0));
+        let along = (end
+            - points.iter().rev().find(|it| it.distance(end) > 6.0).copied().unwrap_or(control[1]))
+        .normalized();
+        let across = along.rot90() * 4.5;
+        let back = end - along * 9.0;
+        let head = vec![end, back + across, back - across];
+        self.painter.add(Shape::convex_polygon(head, stroke.color, Stroke::NONE));
     }
 
     fn path_edges(&self, first_row: usize, last_row: usize) {

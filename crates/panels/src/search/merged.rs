@@ -105,6 +105,7 @@ impl MergedSide {
             let here = drawn.tree.here[side].get(step.tree_node as usize)?;
             Some((step.step, *here))
         });
+        let jump = search.step().and_then(|step| canvas::jump(recordings[side].trace(), step.step));
         let goal = drawn.tree.here[side].get(drawn.own[side].goal as usize).copied().unwrap_or(0);
         let tree = Tree {
             network: recordings[side].network(),
@@ -113,6 +114,7 @@ impl MergedSide {
             drawing: &drawn.drawing,
             step: steps[side],
             goal,
+            jump: jump.and_then(|to| drawn.tree.here[side].get(to as usize).copied()),
             name: "Both searches",
             merged: Some(Merged { tree: &drawn.tree, recordings, own: &drawn.own, steps }),
         };
@@ -207,7 +209,8 @@ fn legend(ui: &mut Ui, context: &Context<'_>, drawn: &Drawn) {
 /// The colour of lines to the states that a search entered.
 pub fn color(context: &Context<'_>, share: Share) -> egui::Color32 {
     match share {
-        Share::Only(side) => context.tokens.series(side),
+        // Not the first colour, which is that of the way to the step.
+        Share::Only(side) => context.tokens.series(side + 1),
         Share::Both | Share::Neither => context.tokens.line_strong,
     }
 }

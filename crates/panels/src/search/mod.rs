@@ -198,6 +198,7 @@ impl SearchPanel {
                 drawing: &drawn.drawing,
                 step: view.map(|view| (view.step.step, view.step.tree_node)),
                 goal: drawn.index.goal,
+                jump: view.and_then(|view| canvas::jump(recording.trace(), view.step.step)),
                 name: recording.kind().map_or("Search", kind_name),
                 merged: None,
             };

@@ -148,7 +148,11 @@ fn switches(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         && context.state.review.record().last_approval().is_some();
     if has_approved {
         let button = Button::selectable(view.approved, RichText::new("Approved").small());
-        if ui.add(button).on_hover_text("Where bars were in the plan that was last approved").clicked() {
+        if ui
+            .add(button)
+            .on_hover_text("Where things were in the plan that was last approved, here and on the network")
+            .clicked()
+        {
             view.approved = !view.approved;
             changed = true;
         }

@@ -4,7 +4,10 @@ mod map;
 mod timeline;
 
 use display::Theme;
+use layout::list::network_before::{NetworkChanges, changes_list};
+use layout::timeline::before::Before;
 use mission::Snapshot;
+use mission::review::record::Subject;
 
 use crate::escape::escaped;
 
@@ -21,6 +24,16 @@ pub(crate) fn framed(drawing: &str, caption: &str) -> String {
 
 /// The network with the plan marked in it; `None` without a network.
 pub(crate) fn network(snapshot: &Snapshot) -> Option<String> {
+    drawn(snapshot, None, "Temporal plan network")
+}
+
+/// The network with the plan marked in it and an approved one laid over it; `None` without one of them.
+pub(crate) fn network_since(snapshot: &Snapshot, approved: &Subject) -> Option<String> {
+    let before = windows_before(approved)?;
+    drawn(snapshot, Some(&before), "Network of the plan over the approved one")
+}
+
+fn drawn(snapshot: &Snapshot, before: Option<&Before>, title: &str) -> Option<String> {
     let network = snapshot.network.as_deref()?;
     let measure = &display::approximate_text_width;
     let options = layout::Options::default();
@@ -34,6 +47,12 @@ pub(crate) fn network(snapshot: &Snapshot) -> Option<String> {
     }
     let state =
         layout::NetworkState { plan, overlays: &overlays, notes: &notes, parts: layout::Parts::default() };
-    let list = layout::network_list(&drawing, network, &state);
-    Some(display::svg(&[&list], Theme::Light, "Temporal plan network"))
+    let mut list = layout::network_list(&drawing, network, &state);
+    let Some((before, plan)) = before.zip(plan) else {
+        return Some(display::svg(&[&list], Theme::Light, title));
+    };
+    let changes = NetworkChanges::new(before, network, plan);
+    let changes = changes_list(&drawing, (network, plan), &changes, measure);
+    list.frame = changes.frame;
+    Some(display::svg(&[&list, &changes], Theme::Light, title))
 }

@@ -1,0 +1,217 @@
+//! Another plan of the same mission, such as the one that was approved, laid over the drawing of a network: an outline
+//! around what it does not have, dashes and a word along what it did at other times, and crossed names for what is gone.
+
+use display::{
+    Anchor, ColorRole, Dash, Detail, DisplayList, Fit, Group, Measure, PathEnd, Point, Rect, Stroke, Text,
+    Weight, text_width_at,
+};
+use smol_str::SmolStr;
+use tpn::{ArcId, Network, Occurrence, OccurrenceId, OccurrenceKind, Plan};
+
+use crate::drawing::NetworkDrawing;
+use crate::timeline::before::{BarChange, Before, Gone};
+
+/// What differs of a network's plan from another plan, by the activities, assertions and delays in it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NetworkChanges {
+    /// What is new, or was at other times, in the order of the text.
+    pub changes: Vec<(OccurrenceId, BarChange)>,
+    /// What is gone, in order of time.
+    pub gone: Vec<Gone>,
+}
+
+/// Below this zoom, words along arcs would run together.
+const FAR_ZOOM: f64 = 0.42;
+/// Layers of the list: under the arcs of the network's own, and over its texts.
+const LAYERS: [u8; 2] = [2, 8];
+/// How broad the glow along an arc is, and how far an outline stands off its box.
+const GLOW: f64 = 9.0;
+const OFF_BOX: f64 = 5.0;
+/// The size of words, the height of their line, and what is around them.
+const WORDS: (f64, f64, f64) = (11.0, 15.0, 4.0);
+/// From the drawing down to the names of what is gone, and between two of them.
+const BELOW: f64 = 26.0;
+const BETWEEN: f64 = 12.0;
+
+impl NetworkChanges {
+    /// What differs of `plan` from `before`.
+    pub fn new(before: &Before, network: &Network, plan: &Plan) -> Self {
+        let mut changes = Vec::new();
+        for (index, occurrence) in network.occurrences.iter().enumerate() {
+            let times = times(occurrence, plan);
+            let is_drawn = matches!(occurrence.kind, OccurrenceKind::Primitive | OccurrenceKind::Assertion);
+            let (Some(times), true) = (times, is_drawn) else { continue };
+            match before.times_of(&occurrence.name) {
+                None => changes.push((OccurrenceId::from_index(index), BarChange::New)),
+                Some(former) if former != times => {
+                    changes.push((OccurrenceId::from_index(index), BarChange::Moved(former)));
+                }
+                Some(_) => {}
+            }
+        }
+        Self { changes, gone: before.gone(network, plan) }
+    }
+}
+
+/// When something of a plan can start and end, if the plan has it.
+fn times(occurrence: &Occurrence, plan: &Plan) -> Option<[[f64; 2]; 2]> {
+    let window = |node: tpn::NodeId| {
+        let window = plan.windows.get(node.index()).copied().flatten()?;
+        Some([window.earliest.to_f64(), window.latest.to_f64()])
+    };
+    let is_selected = plan.selected_nodes.get(occurrence.start.index()) == Some(&true);
+    Some([window(occurrence.start)?, window(occurrence.end)?]).filter(|_| is_selected)
+}
+
+/// The changes as a list over that of the network. Linear in the network.
+pub fn changes_list(
+    drawing: &NetworkDrawing,
+    (network, plan): (&Network, &Plan),
+    changes: &NetworkChanges,
+    measure: &dyn Measure,
+) -> DisplayList {
+    let gone = places_of_gone(drawing.bounds, &changes.gone, measure);
+    let frame = gone.iter().fold(drawing.bounds, |frame, place| frame.union(place.expanded(WORDS.2)));
+    let mut list = DisplayList::new(frame);
+    let arcs = arcs_of(network, &changes.changes);
+    list.begin(Group { layer: LAYERS[0], ..Group::default() });
+    for (arc, change) in &arcs {
+        let stroke = match change {
+            BarChange::New => Stroke::solid(ColorRole::Accent.faint(0.35), GLOW),
+            BarChange::Moved(_) => Stroke::solid(ColorRole::TextMuted.faint(0.5), GLOW).dashed(Dash::Dashed),
+        };
+        if let Some(shape) = drawing.arc(*arc) {
+            list.path(shape.start, drawing.pieces(shape), PathEnd::Open, stroke);
+        }
+    }
+    boxes(drawing, network, &arcs, &mut list);
+    list.begin(Group { layer: LAYERS[1], ..Group::default() });
+    for (arc, change) in &arcs {
+        let Some(shape) = drawing.arc(*arc) else { continue };
+        let middle = shape.bounds.center();
+        let on_line = Point::new(middle.x, height_at_middle(drawing, shape));
+        let (words, color, weight, title) = match change {
+            BarChange::New => {
+                ("new".to_owned(), ColorRole::Accent, Weight::Strong, "not in the approved plan")
+            }
+            BarChange::Moved(former) => {
+                let (words, title) = moved(*former, starts_of(network, plan, *arc));
+                (words, ColorRole::Text, Weight::Regular, title)
+            }
+        };
+        let half = text_width_at(&words, WORDS.0, measure) / 2.0 + WORDS.2;
+        let place = Rect::new(
+            on_line.x - half,
+            on_line.y - WORDS.1 / 2.0,
+            on_line.x + half,
+            on_line.y + WORDS.1 / 2.0,
+        );
+        let text = Text::new(words, WORDS.0, place).anchored(Anchor::Middle, Fit::Overflow).colored(color);
+        let plate = Some(ColorRole::Surface.into());
+        let legible = Some(shape.bounds.width());
+        list.write(Text { weight, plate, legible, ..text }).at(Detail::from(FAR_ZOOM));
+        list.entitle(title);
+    }
+    add_gone(&gone, &changes.gone, &mut list);
+    list
+}
+
+/// When what an arc stands for can start in the plan.
+fn starts_of(network: &Network, plan: &Plan, arc: ArcId) -> Option<[f64; 2]> {
+    let window = plan.windows.get(network.arcs[arc.index()].from.index()).copied().flatten()?;
+    Some([window.earliest.to_f64(), window.latest.to_f64()])
+}
+
+/// When something could start in the other plan, or end if its starts are the same, and what that means.
+fn moved([starts, ends]: [[f64; 2]; 2], now: Option<[f64; 2]>) -> (String, &'static str) {
+    if now == Some(starts) {
+        (format!("end was {}", span(ends)), "when it could end in the approved plan")
+    } else {
+        (format!("was {}", span(starts)), "when it could start in the approved plan")
+    }
+}
+
+/// The arcs that stand for what has changed.
+fn arcs_of(network: &Network, changes: &[(OccurrenceId, BarChange)]) -> Vec<(ArcId, BarChange)> {
+    let change_of = |id: OccurrenceId| {
+        let at = changes.binary_search_by_key(&id, |(id, _)| *id).ok()?;
+        Some(changes[at].1)
+    };
+    let arcs = network.arcs.iter().enumerate().filter_map(|(index, arc)| {
+        let occurrence = network.occurrences.get(arc.occurrence?.index())?;
+        // The arc that is the whole of it, and not a part of its path.
+        let is_whole = (arc.from, arc.to) == (occurrence.start, occurrence.end);
+        Some((ArcId::from_index(index), change_of(arc.occurrence?).filter(|_| is_whole)?))
+    });
+    arcs.collect()
+}
+
+/// Outlines around the boxes that changed arcs are inside of.
+fn boxes(drawing: &NetworkDrawing, network: &Network, arcs: &[(ArcId, BarChange)], list: &mut DisplayList) {
+    let hidden = arcs.iter().filter(|(arc, _)| drawing.arc(*arc).is_none());
+    let mut rects: Vec<Rect> = Vec::new();
+    for shape in hidden.filter_map(|(arc, _)| drawing.box_of(network.arcs[arc.index()].from)) {
+        if !rects.contains(&shape.rect) {
+            rects.push(shape.rect);
+        }
+    }
+    for rect in rects {
+        let dashed = Stroke::solid(ColorRole::Accent, 1.6).dashed(Dash::Dashed);
+        list.rectangle(rect.expanded(OFF_BOX), 8.0, None, Some(dashed));
+        list.entitle("something in it is other than in the approved plan");
+    }
+}
+
+/// How high an arc is where its middle is.
+fn height_at_middle(drawing: &NetworkDrawing, shape: &crate::drawing::ArcShape) -> f64 {
+    let middle = shape.bounds.center();
+    let points = display::geometry::flatten(shape.start, drawing.pieces(shape));
+    let crossing = points.windows(2).find_map(|pair| {
+        let (from, to) = (pair[0], pair[1]);
+        let share = (middle.x - from.x) / (to.x - from.x);
+        (0.0..=1.0).contains(&share).then_some(from.y + share * (to.y - from.y))
+    });
+    crossing.unwrap_or(middle.y)
+}
+
+/// Where the names of what is gone stand: in rows below the drawing.
+fn places_of_gone(bounds: Rect, gone: &[Gone], measure: &dyn Measure) -> Vec<Rect> {
+    let mut places = Vec::new();
+    let (mut left, mut top) = (bounds.min.x, bounds.max.y + BELOW);
+    for it in gone {
+        let width = text_width_at(&it.name, WORDS.0, measure) + 4.0 * WORDS.2;
+        if left > bounds.min.x && left + width > bounds.max.x {
+            (left, top) = (bounds.min.x, top + 2.0 * WORDS.1);
+        }
+        places.push(Rect::new(left, top, left + width, top + WORDS.1 + 2.0 * WORDS.2));
+        left += width + BETWEEN;
+    }
+    places
+}
+
+fn add_gone(places: &[Rect], gone: &[Gone], list: &mut DisplayList) {
+    let Some(first) = places.first() else { return };
+    let heading = Rect::new(first.min.x, first.min.y - WORDS.1 - 2.0, first.min.x + 160.0, first.min.y - 2.0);
+    let text = Text::new("No longer in the plan", WORDS.0, heading).anchored(Anchor::Start, Fit::Overflow);
+    list.write(text.colored(ColorRole::TextMuted));
+    for (place, Gone { name, times }) in places.iter().zip(gone) {
+        let dashed = Stroke::solid(ColorRole::TextMuted, 1.2).dashed(Dash::Dashed);
+        list.rectangle(*place, 3.0, None, Some(dashed));
+        list.entitle(format!("{name}: could start {} in the approved plan", span(times[0])));
+        let text = Text::new(name.clone(), WORDS.0, *place).anchored(Anchor::Middle, Fit::Overflow);
+        list.write(text.colored(ColorRole::TextMuted));
+        let middle = place.center().y;
+        let ends = [place.min.x + WORDS.2, place.max.x - WORDS.2].map(|x| Point::new(x, middle));
+        list.line(ends[0], ends[1], Stroke::solid(ColorRole::TextMuted, 1.0));
+    }
+}
+
+/// `5` or `5–9`.
+fn span([from, to]: [f64; 2]) -> SmolStr {
+    let rounded = |time: f64| (time * 1000.0).round() / 1000.0;
+    match from == to {
+        true => smol_str::format_smolstr!("{}", rounded(from)),
+        false if to.is_infinite() => smol_str::format_smolstr!("{}–∞", rounded(from)),
+        false => smol_str::format_smolstr!("{}–{}", rounded(from), rounded(to)),
+    }
+}
