@@ -142,17 +142,14 @@ fn every_sample_is_told_by_what_it_did() {
             place(step.nearest_m)
         );
         assert!(sentence.starts_with(&begin), "{sentence}");
-        match step.added.first() {
-            Some(added) => {
-                grown += 1;
-                let stride = (added.point_m - step.nearest_m).norm();
-                let end = format!(" Steered {stride:.1} m towards the sample, to {}.", place(added.point_m));
-                assert!(sentence[begin.len()..].starts_with(&end), "{sentence}");
-            }
-            None => {
-                blocked += 1;
-                assert!(sentence.ends_with("An obstacle is in the way: nothing is added."), "{sentence}");
-            }
+        if let Some(added) = step.added.first() {
+            grown += 1;
+            let stride = (added.point_m - step.nearest_m).norm();
+            let end = format!(" Steered {stride:.1} m towards the sample, to {}.", place(added.point_m));
+            assert!(sentence[begin.len()..].starts_with(&end), "{sentence}");
+        } else {
+            blocked += 1;
+            assert!(sentence.ends_with("An obstacle is in the way: nothing is added."), "{sentence}");
         }
         assert_eq!(sentence.contains("There is a way of"), step.path_m.is_some(), "{sentence}");
     }
