@@ -152,7 +152,7 @@ impl Problem<'_> {
             match self.model.decisions[decision].context {
                 None => constant += least,
                 Some(choice) => {
-                    *weights.entry(self.presence(Some(choice)).side.variable()).or_default() += least
+                    *weights.entry(self.presence(Some(choice)).side.variable()).or_default() += least;
                 }
             }
         }

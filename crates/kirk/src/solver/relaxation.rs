@@ -133,9 +133,9 @@ fn amounts(trail: &Trail, supply: ModelSupply, tasks: &[Task]) -> Vec<Row> {
     let ModelSupply::Reservoir { least, greatest, level } = supply else { return Vec::new() };
     // What is not active only gives.
     let parts = |taking: Change| {
-        tasks.iter().filter_map(move |task| match task.change == taking {
-            true => task.is_active.then_some((task.interval.presence, task.amount)),
-            false => Some((task.interval.presence, -task.amount)),
+        tasks.iter().filter_map(move |task| {
+            let amount = if task.change == taking { task.amount } else { -task.amount };
+            (task.is_active || amount < 0).then_some((task.interval.presence, amount))
         })
     };
     let used = level.checked_sub(least).and_then(|most| Row::new(trail, parts(Change::Consumes), most));
