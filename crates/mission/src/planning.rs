@@ -31,6 +31,7 @@ use crate::snapshot::{
 };
 use crate::standing;
 use crate::traverse::{self, Paths, Preference, Route, Waypoint};
+use crate::worth;
 
 /// What to plan and how.
 #[derive(Clone, Copy)]
@@ -51,6 +52,9 @@ pub struct Problem<'input> {
     pub programs: Option<&'input Programs>,
     /// Places that its traverses are led around, because other vehicles are there then.
     pub keep_outs: Option<&'input KeepOuts>,
+    /// Whether a search that is stopped still finds a first plan, and gives the best one so far its paths, if that takes
+    /// little.
+    pub finishes_best: bool,
 }
 
 impl<'input> Problem<'input> {
@@ -59,7 +63,18 @@ impl<'input> Problem<'input> {
         self.programs
             .map_or_else(|| Cow::Owned(Programs::compile(self.program, Some(self.network)).0), Cow::Borrowed)
     }
+
+    /// Stops a search when `stop` says so, or a little later.
+    fn patient(&self, stop: &mut dyn FnMut() -> bool) -> impl FnMut(&Stats) -> bool {
+        let least = if self.finishes_best { LEAST_CONFLICTS } else { 0 };
+        let most = if self.finishes_best { LEAST_DECISIONS } else { 0 };
+        move |stats| (stats.conflicts >= least || stats.expanded >= most) && stop()
+    }
 }
+
+/// What a stopped search may still do where it is to find a plan.
+const LEAST_CONFLICTS: u64 = 500;
+const LEAST_DECISIONS: u64 = 50_000;
 
 /// A mission, planned.
 #[derive(Clone, Debug)]
@@ -161,7 +176,7 @@ fn plan_paths(
         let without_limits =
             problem.ground.filter(|_| !has_limits).and_then(|_| without_upper_limits(&network, &inserted));
         let asked = without_limits.as_ref().unwrap_or(&network);
-        outcome = kirk::plan(asked, &problem.options, &mut |_: &Stats| stop());
+        outcome = kirk::plan(asked, &problem.options, &mut problem.patient(stop));
         rounds += 1;
         let (Some(ground), Some(found)) = (problem.ground, outcome.plans.first()) else { break };
         let is_new = rounds <= MAX_ROUNDS
@@ -174,10 +189,16 @@ fn plan_paths(
             break;
         }
     }
-    if let (Some(Unproven { bound }), Some(plan)) = (unproven, outcome.plans.first_mut()) {
-        // The best plan in this order of movements, but perhaps not in another one.
-        plan.quality.is_optimal = Some(false);
-        outcome.bound = bound;
+    if let Some(Unproven { bound }) = unproven {
+        match outcome.plans.first_mut() {
+            // The best plan in this order of movements, but perhaps not in another one.
+            Some(plan) if plan.quality.is_optimal.is_some() => {
+                plan.quality.is_optimal = Some(false);
+                outcome.bound = bound;
+            }
+            Some(_) => {}
+            None => (outcome.status, outcome.failure) = (Status::Limit, None),
+        }
     }
     conclude(problem, grounds, network, outcome, inserted)
 }
@@ -217,7 +238,7 @@ struct Order {
     unproven: Option<Unproven>,
 }
 
-/// A plan that was not shown to be the best.
+/// That another order may be better, or the only one.
 struct Unproven {
     /// What no plan is better than.
     bound: Option<Rational>,
@@ -244,7 +265,7 @@ fn order_movements(
     stop: &mut dyn FnMut() -> bool,
 ) -> Result<Order, Box<NoOrder>> {
     let mut departures = Departures::new(problem.network, problem.program);
-    let mut extra = LEGS_AT_FIRST;
+    let (mut extra, mut promised) = (LEGS_AT_FIRST, None);
     let mut tried: BTreeMap<OccurrenceId, Inserted> = BTreeMap::new();
     loop {
         let mut network = problem.network.as_ref().clone();
@@ -258,12 +279,12 @@ fn order_movements(
         let asked = without_upper_limits(&asked, &tried).unwrap_or(asked);
         // Without a plan, the last round tells why.
         let options = Options { all: false, best: 1, ..problem.options };
-        let outcome = kirk::plan(&asked, &options, &mut |_: &Stats| stop());
+        let outcome = kirk::plan(&asked, &options, &mut problem.patient(stop));
         let (Some(ground), Some(plan)) = (problem.ground, outcome.plans.first()) else {
             return Err(Box::new(NoOrder { network: asked, outcome, tried }));
         };
         let routes = traverse::routes(&asked, problem.program, plan, places(problem));
-        let mut is_new = false;
+        let (mut is_new, mut is_drivable) = (false, true);
         for route in &routes {
             if departures.knows(route) {
                 continue;
@@ -273,16 +294,26 @@ fn order_movements(
             let least = legs.as_ref().ok().and_then(|legs| least_duration(problem, route, legs));
             let length_m = legs.as_ref().ok().map(|legs| traverse::joined(legs).length_m());
             departures.learn(route, least, length_m.and_then(rounded_up));
+            is_drivable &= legs.is_ok();
             if legs.is_err() {
                 let (waypoints, route) = (route.waypoints.clone(), route.clone());
                 tried.insert(route.occurrence, Inserted { waypoints, legs, route });
             }
         }
-        if !is_new {
+        let is_optimal = plan.quality.is_optimal;
+        // With straight lines for what is not known no plan is worse than it is.
+        if is_optimal == Some(true) && !asked.counts_metres() {
+            let values = worth::goal_values(&asked, plan, 0.0);
+            promised = values.and_then(|values| values.first().copied()).or(promised);
+        }
+        // A search that was stopped goes no further than the order of the best plan so far.
+        let is_stopped = problem.finishes_best && is_drivable && stop();
+        if !is_new || is_stopped {
             network.departures = departures.only(&routes);
             network.distances = distances(problem, &departures);
-            let unproven = plan.quality.is_optimal == Some(false);
-            return Ok(Order { network, unproven: unproven.then_some(Unproven { bound: outcome.bound }) });
+            let is_proven = !is_new && is_optimal != Some(false);
+            let unproven = Unproven { bound: promised.or(outcome.bound).filter(|_| is_optimal.is_some()) };
+            return Ok(Order { network, unproven: (!is_proven).then_some(unproven) });
         }
         for route in departures.unknown(problem.network, problem.program, extra) {
             if stop() {
@@ -635,7 +666,7 @@ fn conclude(
         }
     }
     if let Some(plan) = outcome.plans.first_mut() {
-        plan.quality.length_m = traverses.iter().map(|traverse| traverse.length_m).sum();
+        plan.quality.length_m = traverses.iter().fold(0.0, |sum, traverse| sum + traverse.length_m);
     }
     let verdict = outcome.plans.first().map(|plan| verify::check_plan(&network, plan));
     let motions = with_parked(driving::motions(&drives), problem);

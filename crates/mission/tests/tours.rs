@@ -86,3 +86,39 @@ fn tours_are_as_quick_as_the_best_order_of_their_stops() {
         });
     }
 }
+
+#[test]
+fn a_search_that_is_stopped_keeps_its_best_plan_and_does_not_call_it_optimal() {
+    let mut random = Rng::new(5);
+    let mut is_any_unproven = false;
+    for case in 0..12 {
+        let mut number = |least: i64, most: i64| random.between(least, most) as f64;
+        let stops: Vec<Stop> = (0..6)
+            .map(|_| Stop { place: Point2::new(number(0, 1000), number(0, 1000)), release: 0.0 })
+            .collect();
+        let best = quickest_of(2, &stops);
+        let mission = Mission::read(&mission(2, &stops));
+        for most in [0, 40, 400] {
+            let mut asked = 0;
+            let mut stop = || {
+                asked += 1;
+                asked > most
+            };
+            mission.with_plan_until((kirk::Options::default(), 0), &mut stop, |_, planned, _, _| {
+                let what = format!("case {case}, {most} questions");
+                assert!(planned.planning.verdict.as_ref().is_some_and(|verdict| verdict.valid), "{what}");
+                let quality = &planned.planning.outcome.plans[0].quality;
+                let (end, is_optimal) = (quality.end.to_f64(), quality.is_optimal);
+                assert!(end > best - 0.01, "{what}: {end} where {best} is possible");
+                if is_optimal == Some(true) {
+                    assert!(end < best + 0.01, "{what}: {end} where {best} is possible");
+                } else {
+                    let bound = planned.planning.outcome.bound.expect("a bound").to_f64();
+                    assert!(bound < best + 0.01, "{what}: a bound of {bound} where {best} is possible");
+                    is_any_unproven = true;
+                }
+            });
+        }
+    }
+    assert!(is_any_unproven);
+}

@@ -183,6 +183,7 @@ impl Args {
             facts: None,
             programs: None,
             keep_outs: None,
+            finishes_best: true,
         };
         let mut stop = || deadline.is_over();
         let mut paths = Paths::default();

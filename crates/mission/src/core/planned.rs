@@ -136,6 +136,7 @@ impl Core {
             facts: None,
             programs: Some(&programs),
             keep_outs: None,
+            finishes_best: false,
         };
         let mut stop = || host.is_superseded();
         let mut planned = planning::plan(&problem, &mut self.grounds, &mut self.paths, &mut stop);

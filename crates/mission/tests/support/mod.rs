@@ -29,6 +29,16 @@ impl Mission {
         (options, seed): (Options, u64),
         work: impl FnOnce(&Problem<'_>, Planned, &mut Grounds, &mut Paths) -> T,
     ) -> T {
+        self.with_plan_until((options, seed), &mut || false, work)
+    }
+
+    /// The same with a search that finishes its best plan once `stop` says so.
+    pub(crate) fn with_plan_until<T>(
+        &self,
+        (options, seed): (Options, u64),
+        stop: &mut dyn FnMut() -> bool,
+        work: impl FnOnce(&Problem<'_>, Planned, &mut Grounds, &mut Paths) -> T,
+    ) -> T {
         let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
         let (ground, found) = grounds.resolve(&self.program.world);
         assert!(found.is_empty(), "{found:?}");
@@ -41,8 +51,9 @@ impl Mission {
             facts: None,
             programs: None,
             keep_outs: None,
+            finishes_best: true,
         };
-        let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
+        let planned = planning::plan(&problem, &mut grounds, &mut paths, stop);
         work(&problem, planned, &mut grounds, &mut paths)
     }
 }
