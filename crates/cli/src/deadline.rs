@@ -13,6 +13,9 @@ pub struct TimeLimit {
     seconds: Option<f64>,
 }
 
+/// How long the best plan so far may take to be finished.
+const GRACE: Duration = Duration::from_secs(1);
+
 /// The moment; `None` if there is none.
 #[derive(Clone, Copy, Debug)]
 pub struct Deadline(Option<Instant>);
@@ -45,6 +48,11 @@ impl Deadline {
     /// Whether the time is up.
     pub fn is_over(self) -> bool {
         self.0.is_some_and(|deadline| Instant::now() >= deadline)
+    }
+
+    /// Whether there was also some time for what the time was up in the middle of.
+    pub fn is_long_over(self) -> bool {
+        self.0.is_some_and(|deadline| Instant::now() >= deadline + GRACE)
     }
 
     /// From now on the process ends when the time is up, whatever it does, until there is an answer.

@@ -4,6 +4,7 @@
 //! the network with all paths, though none were computed for alternatives that the search never selects (SPEC 7.3).
 
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -52,9 +53,9 @@ pub struct Problem<'input> {
     pub programs: Option<&'input Programs>,
     /// Places that its traverses are led around, because other vehicles are there then.
     pub keep_outs: Option<&'input KeepOuts>,
-    /// Whether a search that is stopped still finds a first plan, and gives the best one so far its paths, if that takes
-    /// little.
-    pub finishes_best: bool,
+    /// Once this is set nothing better is looked for any more: the search still finds a first plan, if that takes little,
+    /// and gives the best one so far its paths.
+    pub enough: Option<&'input Cell<bool>>,
 }
 
 impl<'input> Problem<'input> {
@@ -64,15 +65,19 @@ impl<'input> Problem<'input> {
             .map_or_else(|| Cow::Owned(Programs::compile(self.program, Some(self.network)).0), Cow::Borrowed)
     }
 
-    /// Stops a search when `stop` says so, or a little later.
+    fn has_enough(&self) -> bool {
+        self.enough.is_some_and(Cell::get)
+    }
+
+    /// Stops a search when `stop` says so, and a little after there is enough.
     fn patient(&self, stop: &mut dyn FnMut() -> bool) -> impl FnMut(&Stats) -> bool {
-        let least = if self.finishes_best { LEAST_CONFLICTS } else { 0 };
-        let most = if self.finishes_best { LEAST_DECISIONS } else { 0 };
-        move |stats| (stats.conflicts >= least || stats.expanded >= most) && stop()
+        let has_tried =
+            |stats: &Stats| stats.conflicts >= LEAST_CONFLICTS || stats.expanded >= LEAST_DECISIONS;
+        move |stats| stop() || self.has_enough() && has_tried(stats)
     }
 }
 
-/// What a stopped search may still do where it is to find a plan.
+/// What a search may still do once there is enough.
 const LEAST_CONFLICTS: u64 = 500;
 const LEAST_DECISIONS: u64 = 50_000;
 
@@ -307,7 +312,7 @@ fn order_movements(
             promised = values.and_then(|values| values.first().copied()).or(promised);
         }
         // A search that was stopped goes no further than the order of the best plan so far.
-        let is_stopped = problem.finishes_best && is_drivable && stop();
+        let is_stopped = problem.has_enough() && is_drivable;
         if !is_new || is_stopped {
             network.departures = departures.only(&routes);
             network.distances = distances(problem, &departures);

@@ -53,6 +53,8 @@ pub struct Snapshot {
 pub enum Stage {
     /// The text is read and the network compiled, if it could be.
     Compiled,
+    /// The best plan so far, with its paths: a better one may come.
+    Improving,
     /// Planned, with paths where the plan has traverses: nothing more will come for this revision.
     Complete,
 }

@@ -47,7 +47,7 @@ impl Planner {
             facts: None,
             programs: None,
             keep_outs: None,
-            finishes_best: false,
+            enough: None,
         };
         let planned = planning::plan(&problem, &mut self.grounds, &mut self.paths, &mut || false);
         Answer { map: ground.map(|(_, map)| map), planned, program }

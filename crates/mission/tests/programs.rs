@@ -32,7 +32,7 @@ fn execute(source: &str, disturbances: &[Disturbance]) -> (Arc<Network>, Ran) {
         facts: None,
         programs: None,
         keep_outs: None,
-        finishes_best: false,
+        enough: None,
     };
     let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
@@ -201,7 +201,7 @@ fn plan_warnings(source: &str) -> Vec<String> {
         facts: None,
         programs: None,
         keep_outs: None,
-        finishes_best: false,
+        enough: None,
     };
     let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);

@@ -34,7 +34,7 @@ impl Mission {
             facts: None,
             programs: None,
             keep_outs: None,
-            finishes_best: false,
+            enough: None,
         }
     }
 

@@ -8,7 +8,7 @@ use mission::control_run::{Input, Moment};
 use mission::wire::{Reader, Writer};
 use mission::{
     ContentKey, ControlProgram, ControlRun, ControlStanding, Core, CoreHost, Execution, Goal, GrowthStanding,
-    PathGrowth, Request, Response, Snapshot, Update, WantedPlanner,
+    PathGrowth, Request, Response, Snapshot, Stage, Update, WantedPlanner,
 };
 
 /// Collects answers; gives up after so many looks.
@@ -424,4 +424,50 @@ fn a_run_that_is_kept_moves_with_an_edit_of_a_comment() {
     let moved = walked(&mut core, 2, &commented, 7);
     assert_eq!(*moved, *walked(&mut Core::default(), 2, &commented, 7));
     assert_ne!(moved.plans[0].network, first.plans[0].network, "its places are those of the new text");
+}
+
+/// A day with three times as many wishes as it has room for.
+fn wishes(count: usize) -> String {
+    let mut text = "resource Body;\n".to_owned();
+    let mut branches = Vec::new();
+    for at in 0..count {
+        let lasts = 20 + at * 37 % 61;
+        text +=
+            &format!("primitive Wish{at}()[{lasts},{lasts}] uses Body rewards {};\n", lasts + at * 13 % 7);
+        branches.push(format!("{{ delay; optional Wish{at}() }}"));
+    }
+    let room = 17 * count;
+    format!("{text}objective maximize reward;\nscenario Day[0,{room}] = {{ {} }}\n", branches.join(", "))
+}
+
+#[test]
+fn better_plans_are_shown_until_none_is_left_and_the_last_is_the_one_planned_at_once() {
+    let source = wishes(14);
+    let worth = |snapshot: &Snapshot| snapshot.plan().expect("a plan").quality.reward;
+    // A look takes so long that the first plans are answered before the best one.
+    let mut slow = Collected { pace: 40.0, ..Collected::default() };
+    let mut core = Core::default();
+    core.handle(Request::Update(update(1, &source)), &mut slow);
+    let (last, before) = slow.snapshots.split_last().expect("it is answered");
+    let improving: Vec<&Arc<Snapshot>> = before.iter().filter(|it| it.stage == Stage::Improving).collect();
+    assert!(!improving.is_empty(), "{:?}", before.iter().map(|it| it.stage).collect::<Vec<_>>());
+    for snapshot in &improving {
+        let planning = snapshot.planning.as_ref().expect("it is planned");
+        assert!(planning.verdict.as_ref().is_some_and(|verdict| verdict.valid));
+        assert_eq!(snapshot.plan().and_then(|plan| plan.quality.is_optimal), Some(false));
+        let bound = planning.outcome.bound.expect("what no plan is better than");
+        assert!(worth(snapshot) <= worth(last) && worth(last) <= bound);
+    }
+    assert_eq!(
+        (last.stage, last.plan().and_then(|plan| plan.quality.is_optimal)),
+        (Stage::Complete, Some(true))
+    );
+    let at_once = planned(&mut Core::default(), 1, &source);
+    assert_eq!(content(last).planning, content(&at_once).planning);
+    // Given up while it looks for a better one: what was answered stays, and nothing is kept as if it were the last word.
+    let mut hasty = Collected { pace: 40.0, patience: Some(60), ..Collected::default() };
+    let mut core = Core::default();
+    core.handle(Request::Update(update(1, &source)), &mut hasty);
+    assert!(hasty.snapshots.iter().all(|it| it.stage != Stage::Complete));
+    assert_eq!(content(&planned(&mut core, 2, &source)), content(&at_once));
 }

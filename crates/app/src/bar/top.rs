@@ -50,7 +50,7 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
                     ui.data_mut(|data| data.insert_temp(spare_id, (width, left)));
                     ui.ctx().request_repaint();
                 }
-                if context.state.is_long_at_work()
+                if (context.state.is_long_at_work() || context.state.is_improving())
                     && icon::button(ui, tokens, Icon::Close, "Stop planning").clicked()
                 {
                     commands.send(Command::StopWork);

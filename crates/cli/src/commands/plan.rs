@@ -1,5 +1,6 @@
 //! `enroute plan`: plans a mission or a network, and says why where there is no plan.
 
+use std::cell::Cell;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -173,6 +174,7 @@ impl Args {
         options: Options,
     ) -> anyhow::Result<Planned> {
         let deadline = self.time_limit.start();
+        let enough = Cell::new(false);
         let (mut grounds, ground) = ground(&self.target.file, &program.world)?;
         let problem = planning::Problem {
             network,
@@ -183,9 +185,12 @@ impl Args {
             facts: None,
             programs: None,
             keep_outs: None,
-            finishes_best: true,
+            enough: Some(&enough),
         };
-        let mut stop = || deadline.is_over();
+        let mut stop = || {
+            enough.set(deadline.is_over());
+            deadline.is_long_over()
+        };
         let mut paths = Paths::default();
         let mut planned = planning::plan(&problem, &mut grounds, &mut paths, &mut stop);
         let text = (source, &self.target.goal()?);

@@ -168,7 +168,7 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
         facts: None,
         programs: None,
         keep_outs: None,
-        finishes_best: true,
+        enough: None,
     };
     let deadline = args.time_limit.start();
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || deadline.is_over());

@@ -70,7 +70,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         facts: None,
         programs: Some(&programs),
         keep_outs: None,
-        finishes_best: true,
+        enough: None,
     };
     let deadline = args.time_limit.start();
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || deadline.is_over());

@@ -173,7 +173,7 @@ fn with_paths(
         facts: None,
         programs: None,
         keep_outs: None,
-        finishes_best: true,
+        enough: None,
     };
     let mut paths = Paths::default();
     let deadline = args.time_limit.start();

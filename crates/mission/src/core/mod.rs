@@ -34,6 +34,11 @@ pub trait CoreHost {
 
     /// Takes an answer.
     fn answer(&mut self, response: Response);
+
+    /// Whether plans are wanted before the best one is known.
+    fn wants_first_plans(&self) -> bool {
+        true
+    }
 }
 
 /// The planning core of one mission. Feed it requests in order.
@@ -54,6 +59,11 @@ pub struct Core {
 
 /// Planning that is done within this time is answered once, with the plan.
 const QUICK_MILLIS: f64 = 60.0;
+
+/// Looking for the best plan is begun anew after so long, and each time so many times as long, with the best plan so far
+/// shown.
+const IMPROVING_MILLIS: f64 = 1_000.0;
+const IMPROVING_FACTOR: f64 = 4.0;
 
 /// Events of a search that are kept for stepping through it.
 const TRACE_EVENTS: usize = 200_000;
@@ -169,15 +179,30 @@ impl Core {
         snapshot.keys.network = network.key;
         let waiting = Some(Arc::new(snapshot.clone()));
         let mut unhurried = Unhurried { host, waiting, due_millis: compiled + QUICK_MILLIS };
-        let Some(last) = self.plan(update, &network, ground.as_ref(), &mut unhurried) else { return };
-        let warnings = Problem::all(&last.planned.warnings, &update.source);
-        let mut problems: Vec<Problem> = snapshot.problems.iter().cloned().chain(warnings).collect();
-        problems.sort_by_key(|problem| (problem.span, problem.severity));
-        snapshot.problems = problems.into();
-        last.shown.show(&mut snapshot);
-        snapshot.stage = Stage::Complete;
-        snapshot.timings.plan_millis = host.now_millis() - compiled;
-        host.answer(Response::Snapshot(Arc::new(snapshot)));
+        let is_improved = !network.value.objective.is_empty() && unhurried.wants_first_plans();
+        let mut most_millis = if is_improved { IMPROVING_MILLIS } else { f64::INFINITY };
+        loop {
+            let most = Some(most_millis).filter(|most| most.is_finite());
+            let Some(last) = self.plan(update, &network, ground.as_ref(), most, &mut unhurried) else {
+                return;
+            };
+            let warnings = Problem::all(&last.planned.warnings, &update.source);
+            let mut snapshot = snapshot.clone();
+            let mut problems: Vec<Problem> = snapshot.problems.iter().cloned().chain(warnings).collect();
+            problems.sort_by_key(|problem| (problem.span, problem.severity));
+            snapshot.problems = problems.into();
+            last.shown.show(&mut snapshot);
+            snapshot.stage = if last.is_final { Stage::Complete } else { Stage::Improving };
+            snapshot.timings.plan_millis = unhurried.now_millis() - compiled;
+            let is_final = last.is_final;
+            if is_final || snapshot.plan().is_some() {
+                unhurried.answer(Response::Snapshot(Arc::new(snapshot)));
+            }
+            if is_final {
+                return;
+            }
+            most_millis *= IMPROVING_FACTOR;
+        }
     }
 
     /// Answers with the ground before the first snapshot that refers to it.
@@ -211,7 +236,12 @@ impl CoreHost for Unhurried<'_> {
         self.host.is_superseded()
     }
 
+    fn wants_first_plans(&self) -> bool {
+        self.host.wants_first_plans()
+    }
+
     fn answer(&mut self, response: Response) {
+        self.waiting = None;
         self.host.answer(response);
     }
 }
@@ -230,6 +260,10 @@ impl CoreHost for Quiet<'_> {
 
     fn is_superseded(&mut self) -> bool {
         self.host.is_superseded()
+    }
+
+    fn wants_first_plans(&self) -> bool {
+        false
     }
 
     fn answer(&mut self, response: Response) {

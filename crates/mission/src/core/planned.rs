@@ -1,5 +1,6 @@
 //! The plan of the last request, kept for as long as what it depends on stays the same.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 use kirk::Options;
@@ -7,7 +8,7 @@ use rmpl::Edit;
 use rmpl::program::Program;
 use rmpl::spans::Spans as _;
 use terrain::Terrain;
-use tpn::Network;
+use tpn::{Network, Plan};
 
 use super::executions::Executions;
 use super::{ContentKey, Core, CoreHost, Keyed, Keys, Reading, TRACE_EVENTS};
@@ -26,6 +27,8 @@ pub(super) struct Last {
     options: Options,
     seed: u64,
     pub(super) planned: Planned,
+    /// Whether no better plan is looked for.
+    pub(super) is_final: bool,
     pub(super) shown: Shown,
     pub(super) executions: Executions,
 }
@@ -101,12 +104,14 @@ impl Last {
 }
 
 impl Core {
-    /// Plans, unless the plan of the last request still holds: same network, world and options.
+    /// Plans, unless the plan of the last request still holds: same network, world and options. After `most_millis` the best
+    /// plan so far does.
     pub(super) fn plan(
         &mut self,
         update: &Update,
         network: &Keyed<Network>,
         ground: Option<&(MapKey, Arc<Terrain>)>,
+        most_millis: Option<f64>,
         host: &mut dyn CoreHost,
     ) -> Option<&Last> {
         let options = Options {
@@ -117,7 +122,8 @@ impl Core {
         let map = ground.map(|(key, _)| key.clone());
         let program = self.reading.program().value;
         let holds = self.last.as_ref().is_some_and(|last| {
-            (last.structure == network.key || last.network == network.value && last.program == program)
+            last.is_final
+                && (last.structure == network.key || last.network == network.value && last.program == program)
                 && (last.options, last.seed, &last.map) == (options, update.seed, &map)
         });
         if holds {
@@ -127,6 +133,7 @@ impl Core {
             return self.last.as_ref();
         }
         let programs = self.reading.programs();
+        let enough = Cell::new(false);
         let problem = planning::Problem {
             network: &network.value,
             program: &program,
@@ -136,12 +143,20 @@ impl Core {
             facts: None,
             programs: Some(&programs),
             keep_outs: None,
-            finishes_best: false,
+            enough: Some(&enough),
         };
-        let mut stop = || host.is_superseded();
+        let due_millis = most_millis.map(|most| host.now_millis() + most);
+        let mut stop = || {
+            enough.set(due_millis.is_some_and(|due| host.now_millis() >= due));
+            host.is_superseded()
+        };
         let mut planned = planning::plan(&problem, &mut self.grounds, &mut self.paths, &mut stop);
         let text = (&*update.source, &update.goal);
-        repairs::add(&mut planned, text, &problem, (&mut self.grounds, &mut self.paths), &mut stop);
+        let is_proven = |plan: &Plan| plan.quality.is_optimal == Some(true);
+        let is_final = !enough.get() || planned.planning.outcome.plans.first().is_some_and(is_proven);
+        if is_final {
+            repairs::add(&mut planned, text, &problem, (&mut self.grounds, &mut self.paths), &mut stop);
+        }
         if host.is_superseded() {
             return None;
         }
@@ -150,7 +165,8 @@ impl Core {
         let network = Arc::clone(&network.value);
         let seed = update.seed;
         let executions = Executions::default();
-        let last = Last { structure, network, program, map, options, seed, planned, shown, executions };
+        let last =
+            Last { structure, network, program, map, options, seed, planned, is_final, shown, executions };
         Some(self.last.insert(last))
     }
 }

@@ -47,7 +47,7 @@ impl Evaluated {
             facts: None,
             programs: Some(&self.programs),
             keep_outs: None,
-            finishes_best: false,
+            enough: None,
         }
     }
 }
@@ -160,7 +160,7 @@ impl Core {
         let program = self.reading.program().value;
         let programs = self.reading.programs();
         let (ground, _) = self.grounds.resolve(&program.world);
-        let planned = self.plan(update, &network, ground.as_ref(), host)?.planned.clone();
+        let planned = self.plan(update, &network, ground.as_ref(), None, host)?.planned.clone();
         Some(Ok(Evaluated { program, programs, network: network.value, ground, planned }))
     }
 }

@@ -97,7 +97,7 @@ fn plan_section(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
     };
     let Some(planning) = &snapshot.planning else {
         let why = match snapshot.stage {
-            Stage::Compiled => "planning has not finished",
+            Stage::Compiled | Stage::Improving => "planning has not finished",
             Stage::Complete => "nothing was planned",
         };
         return vec![places.plain(Status::Failed, why)];

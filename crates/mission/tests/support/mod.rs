@@ -1,5 +1,6 @@
 //! From a text to a plan with its paths, as the tests of missions need it.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 use kirk::Options;
@@ -32,16 +33,17 @@ impl Mission {
         self.with_plan_until((options, seed), &mut || false, work)
     }
 
-    /// The same with a search that finishes its best plan once `stop` says so.
+    /// The same with a search that finishes its best plan once `is_enough` says so.
     pub(crate) fn with_plan_until<T>(
         &self,
         (options, seed): (Options, u64),
-        stop: &mut dyn FnMut() -> bool,
+        is_enough: &mut dyn FnMut() -> bool,
         work: impl FnOnce(&Problem<'_>, Planned, &mut Grounds, &mut Paths) -> T,
     ) -> T {
         let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
         let (ground, found) = grounds.resolve(&self.program.world);
         assert!(found.is_empty(), "{found:?}");
+        let enough = Cell::new(false);
         let problem = Problem {
             network: &self.network,
             program: &self.program,
@@ -51,9 +53,12 @@ impl Mission {
             facts: None,
             programs: None,
             keep_outs: None,
-            finishes_best: true,
+            enough: Some(&enough),
         };
-        let planned = planning::plan(&problem, &mut grounds, &mut paths, stop);
+        let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || {
+            enough.set(is_enough());
+            false
+        });
         work(&problem, planned, &mut grounds, &mut paths)
     }
 }

@@ -41,7 +41,11 @@ pub(super) fn worth(ui: &mut Ui, context: &Context<'_>, network: &Network, plan:
             });
         }
         Some(false) => {
-            let mut text = "The best plan found; planning ended before all others were ruled out.".to_owned();
+            let mut text = if context.state.is_improving() {
+                "The best plan so far; others are not ruled out yet.".to_owned()
+            } else {
+                "The best plan found; planning ended before all others were ruled out.".to_owned()
+            };
             if let Some(bound) = planning.outcome.bound {
                 text.push_str(&format!(" None is better than {}.", bound.readable()));
             }

@@ -71,6 +71,14 @@ fn work(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
             "Leaves undecided what is not known yet",
             Command::StopWork,
         ),
+        Status::Plan if context.state.is_improving() => (
+            Icon::Working,
+            tokens.info,
+            "This is the best plan so far. A better one is looked for…",
+            "Stop",
+            "Keeps this plan",
+            Command::StopWork,
+        ),
         Status::Undecided => (
             Icon::Warning,
             tokens.warning,

@@ -39,6 +39,7 @@ impl AppState {
                 first().map_or_else(|| "No plan.".to_owned(), |it| format!("No plan. {}.", it.message))
             }
             Status::Undecided => "Not decided whether there is a plan.".to_owned(),
+            Status::Plan if self.is_improving() => "Plan found. A better one is looked for.".to_owned(),
             Status::Plan => match verdict.map(|verdict| verdict.valid) {
                 Some(true) => "Plan found and verified.".to_owned(),
                 Some(false) => "A plan was found that the checker refuses.".to_owned(),

@@ -254,6 +254,11 @@ impl AppState {
         self.status() == Status::Working && self.frame.now_secs - self.frame.asked_secs > LONG_SECS
     }
 
+    /// Whether the present text has a plan, and a better one is looked for.
+    pub fn is_improving(&self) -> bool {
+        self.snapshots.is_improving(self.document.revision())
+    }
+
     /// Asks the layout to bring a panel back, or to the front of its tabs.
     pub(crate) fn show_panel(&mut self, panel: PanelKind) {
         self.panel_effects.push(PanelEffect::Show(panel));

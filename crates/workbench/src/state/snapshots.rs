@@ -54,7 +54,7 @@ impl Snapshots {
         if is_older {
             return;
         }
-        let is_drawable = snapshot.network.is_some() && snapshot.stage == Stage::Complete;
+        let is_drawable = snapshot.network.is_some() && snapshot.stage >= Stage::Improving;
         let is_first = self.shown.is_none() && snapshot.network.is_some();
         if is_drawable || is_first || lacks_a_scenario(&snapshot) {
             self.shown = Some(Arc::clone(&snapshot));
@@ -88,6 +88,12 @@ impl Snapshots {
     /// The text of `revision` is not worked out any more.
     pub fn give_up(&mut self, revision: u64) {
         self.given_up = Some(revision);
+    }
+
+    /// Whether a better plan than the one that is shown is looked for.
+    pub fn is_improving(&self, revision: u64) -> bool {
+        let latest = self.latest.as_ref().filter(|latest| latest.revision == revision);
+        latest.is_some_and(|latest| latest.stage == Stage::Improving) && self.given_up != Some(revision)
     }
 
     /// Forgets everything: another mission was opened.

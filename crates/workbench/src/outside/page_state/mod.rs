@@ -231,7 +231,7 @@ impl PageState {
             revision: state.document.revision(),
             answered_revision: latest.map(|latest| latest.revision),
             shown_revision: shown.map(|shown| shown.revision),
-            status: status_name(state.status()),
+            status: if state.is_improving() { "working" } else { status_name(state.status()) },
             is_stale: state.snapshots.is_stale(state.document.revision()),
             mission: state.mission.to_string(),
             library: library::library(state),
