@@ -4,6 +4,7 @@
 //! turns it so that row 0 is in the south. Sizes are checked before anything is allocated for them.
 
 mod ascii_grid;
+mod foreign;
 mod moving_ai;
 mod pds;
 mod png;
@@ -45,7 +46,8 @@ pub enum FileFormat {
 pub enum FormatError {
     /// No known format begins like this.
     #[error(
-        "this is no map file that can be read: PNG, PGM, TIFF, PDS3 image, ESRI ASCII grid or MovingAI map"
+        "this is no map file that can be read; what is read: PNG (.png), PGM (.pgm), TIFF and GeoTIFF (.tif), PDS3 \
+         image with its label (.img), ESRI ASCII grid (.asc) and MovingAI map (.map)"
     )]
     Unknown,
     /// The file contradicts its format.
@@ -115,6 +117,11 @@ pub enum Meaning {
         /// The greatest grey level.
         greatest: Option<u32>,
     },
+    /// Grey levels of which 0 is white and the greatest black: heights as they are, and obstacles where they are high.
+    InvertedLevels {
+        /// The greatest grey level.
+        greatest: u32,
+    },
     /// 1 in obstacles and 0 elsewhere.
     Obstacles,
 }
@@ -147,6 +154,10 @@ impl FileFormat {
 
 /// Decodes a map file of any known format.
 pub fn read_raster(bytes: &[u8], options: &ImportOptions) -> Result<Raster, FormatError> {
+    let header = options.label.as_deref().unwrap_or(bytes);
+    if let Some(error) = foreign::refusal(header).filter(|_| options.raw.is_none()) {
+        return Err(error);
+    }
     let raster = match FileFormat::detect(bytes) {
         _ if options.raw.is_some() || options.label.is_some() => pds::read(bytes, options),
         Some(FileFormat::Png) => png::read(bytes),
@@ -184,6 +195,10 @@ impl Raster {
     pub fn obstacles(&self) -> Vec<bool> {
         let limit = match self.meaning {
             Meaning::Obstacles => return self.samples.iter().map(|&sample| sample != 0.0).collect(),
+            Meaning::InvertedLevels { greatest } => {
+                let limit = 0.5 * f64::from(greatest);
+                return self.samples.iter().map(|&it| it.is_nan() || f64::from(it) > limit).collect();
+            }
             Meaning::Levels { greatest } => greatest.map_or(0.5, |greatest| 0.5 * f64::from(greatest)),
         };
         self.samples.iter().map(|&sample| sample.is_nan() || f64::from(sample) < limit).collect()
@@ -194,7 +209,7 @@ impl Raster {
             let hole = no_data as f32;
             self.samples.iter_mut().filter(|sample| **sample == hole).for_each(|sample| *sample = f32::NAN);
         }
-        if let (Some(scale), Meaning::Levels { .. }) = (options.vertical_scale, self.meaning) {
+        if let Some(scale) = options.vertical_scale.filter(|_| self.meaning != Meaning::Obstacles) {
             self.samples.iter_mut().for_each(|sample| *sample = (f64::from(*sample) * scale) as f32);
         }
         let usable = |size: &f64| size.is_finite() && *size > 0.0;

@@ -1,0 +1,180 @@
+//! Where the cells of a `GeoTIFF` lie: their size in metres, and on which side north is (OGC 19-008r4).
+
+use ::tiff::tags::Tag;
+
+use super::{Decoder, FormatError, malformed, problem, unsupported};
+
+/// Widths and heights of cells that differ by less than this part are equal: rounded numbers of a square cell.
+const SQUARE_TOLERANCE: f64 = 1e-4;
+/// `GTModelTypeGeoKey`: 2 says that coordinates are in degrees.
+const MODEL_TYPE: u16 = 1024;
+const GEOGRAPHIC: u16 = 2;
+/// `GeodeticCRSGeoKey`: a code of the EPSG registry, which is about the Earth.
+const GEODETIC_CRS: u16 = 2048;
+/// `EllipsoidSemiMajorAxisGeoKey`, in metres.
+const SEMI_MAJOR_AXIS: u16 = 2057;
+/// `ProjLinearUnitsGeoKey` and `ProjLinearUnitSizeGeoKey`.
+const HORIZONTAL_UNIT: u16 = 3076;
+const HORIZONTAL_UNIT_SIZE: u16 = 3077;
+/// `VerticalUnitsGeoKey`.
+const VERTICAL_UNIT: u16 = 4099;
+/// The value of keys whose meaning other keys give.
+const USER_DEFINED: u16 = 32_767;
+/// The place of `GeoDoubleParams` among tags.
+const DOUBLE_PARAMETERS: u16 = 34_736;
+/// Mars' equatorial radius, for maps in degrees that don't name their body's.
+const MARS_RADIUS_M: f64 = 3_396_190.0;
+/// The Earth's.
+const EARTH_RADIUS_M: f64 = 6_378_137.0;
+
+/// How the rows and columns of an image lie on the ground.
+pub(super) struct Georeference {
+    /// Metres per cell, if the file says.
+    pub cell_size_m: Option<f64>,
+    /// Metres for each unit of heights, if the file says.
+    pub vertical_unit_m: Option<f64>,
+    rows_from_south: bool,
+    columns_from_east: bool,
+}
+
+impl Georeference {
+    /// Reads pixel scale, transformation and keys. Cells that are rotated or not square are refused.
+    pub fn read(decoder: &mut Decoder<'_>) -> Result<Self, FormatError> {
+        let keys = Keys::read(decoder)?;
+        let vertical_unit_m = keys.unit_m(VERTICAL_UNIT, None)?;
+        let Some([x, y]) = steps(decoder)? else {
+            let (rows_from_south, columns_from_east) = (false, false);
+            return Ok(Self { cell_size_m: None, vertical_unit_m, rows_from_south, columns_from_east });
+        };
+        let (width, height) = (x.abs(), y.abs());
+        if (width - height).abs() > SQUARE_TOLERANCE * width.max(height) {
+            return Err(unsupported(format!(
+                "its cells are not square: {width} × {height}; make them so, as with \
+                 `gdalwarp -tr {size} {size} IN.tif OUT.tif`",
+                size = width.max(height)
+            )));
+        }
+        let unit_m = if keys.value(MODEL_TYPE) == Some(GEOGRAPHIC) {
+            keys.radius_m().to_radians()
+        } else {
+            keys.unit_m(HORIZONTAL_UNIT, Some(HORIZONTAL_UNIT_SIZE))?.unwrap_or(1.0)
+        };
+        Ok(Self {
+            cell_size_m: Some(width * unit_m),
+            vertical_unit_m,
+            rows_from_south: y > 0.0,
+            columns_from_east: x < 0.0,
+        })
+    }
+
+    /// Puts the northernmost row first and the westernmost column left.
+    pub fn turn_north_up(&self, samples: &mut [f32], width: usize) {
+        // Half a turn is a mirror image in both directions.
+        if self.rows_from_south {
+            samples.reverse();
+        }
+        if self.rows_from_south != self.columns_from_east {
+            samples.chunks_exact_mut(width).for_each(<[f32]>::reverse);
+        }
+    }
+}
+
+/// How far east a column and how far north a row leads; `None` if the file does not say.
+fn steps(decoder: &mut Decoder<'_>) -> Result<Option<[f64; 2]>, FormatError> {
+    let scale = doubles(decoder, Tag::ModelPixelScaleTag)?;
+    if let &[x, y, ..] = scale.as_slice() {
+        if x < 0.0 || y < 0.0 {
+            return Err(unsupported(format!(
+                "its ModelPixelScale is {x} × {y}, which some programs write for north and others for south on \
+                 top; write it anew with the program that wrote it, or with `gdal_translate`"
+            )));
+        }
+        // The scale counts rows downwards.
+        return Ok(finite([x, -y]));
+    }
+    let matrix = doubles(decoder, Tag::ModelTransformationTag)?;
+    if let &[x, x_of_row, _, _, y_of_column, y, ..] = matrix.as_slice() {
+        if matrix.len() != 16 {
+            return Err(malformed(format!("its ModelTransformation has {} numbers, not 16", matrix.len())));
+        }
+        if x_of_row.abs().max(y_of_column.abs()) > SQUARE_TOLERANCE * x.abs().max(y.abs()) {
+            return Err(unsupported(
+                "its rows are not from west to east; turn them so, as with `gdalwarp IN.tif OUT.tif`",
+            ));
+        }
+        return Ok(finite([x, y]));
+    }
+    // A tie point has six numbers; one alone says only where the map is.
+    if doubles(decoder, Tag::ModelTiepointTag)?.len() > 6 {
+        return Err(unsupported(
+            "it is laid on the ground by control points; apply them, as with `gdalwarp IN.tif OUT.tif`",
+        ));
+    }
+    Ok(None)
+}
+
+fn finite(steps: [f64; 2]) -> Option<[f64; 2]> {
+    steps.iter().all(|step| step.is_finite() && *step != 0.0).then_some(steps)
+}
+
+/// The numbers of a tag; none if the file has not got it.
+fn doubles(decoder: &mut Decoder<'_>, tag: Tag) -> Result<Vec<f64>, FormatError> {
+    let value = decoder.find_tag(tag).map_err(|error| problem(&error))?;
+    let numbers = value.map(::tiff::decoder::ifd::Value::into_f64_vec).transpose();
+    Ok(numbers.map_err(|error| problem(&error))?.unwrap_or_default())
+}
+
+/// The `GeoKey` directory: after a header of four numbers, four for each key, which are its id, the tag of its value or 0,
+/// how many values, and the value or its place.
+struct Keys {
+    entries: Vec<u16>,
+    doubles: Vec<f64>,
+}
+
+impl Keys {
+    fn read(decoder: &mut Decoder<'_>) -> Result<Self, FormatError> {
+        let entries =
+            decoder.find_tag_unsigned_vec(Tag::GeoKeyDirectoryTag).map_err(|error| problem(&error))?;
+        Ok(Self { entries: entries.unwrap_or_default(), doubles: doubles(decoder, Tag::GeoDoubleParamsTag)? })
+    }
+
+    fn entry(&self, id: u16) -> Option<&[u16]> {
+        self.entries.chunks_exact(4).skip(1).find(|entry| entry[0] == id)
+    }
+
+    fn value(&self, id: u16) -> Option<u16> {
+        self.entry(id).filter(|entry| entry[1] == 0).map(|entry| entry[3])
+    }
+
+    fn double(&self, id: u16) -> Option<f64> {
+        let entry = self.entry(id).filter(|entry| entry[1] == DOUBLE_PARAMETERS)?;
+        self.doubles.get(usize::from(entry[3])).copied()
+    }
+
+    fn radius_m(&self) -> f64 {
+        let of_body = match self.value(GEODETIC_CRS) {
+            None | Some(0 | USER_DEFINED) => MARS_RADIUS_M,
+            Some(_) => EARTH_RADIUS_M,
+        };
+        self.double(SEMI_MAJOR_AXIS).unwrap_or(of_body)
+    }
+
+    /// The metres of a unit of length by its EPSG code; `None` if the file has no such key.
+    fn unit_m(&self, unit: u16, size: Option<u16>) -> Result<Option<f64>, FormatError> {
+        let metres = match self.value(unit) {
+            None | Some(0) => return Ok(None),
+            Some(9001) => Some(1.0),
+            Some(9002) => Some(0.3048),
+            Some(9003) => Some(1200.0 / 3937.0),
+            Some(9036) => Some(1000.0),
+            Some(USER_DEFINED) => size.and_then(|size| self.double(size)),
+            Some(_) => None,
+        };
+        let code = self.value(unit).unwrap_or_default();
+        metres.filter(|metres| metres.is_finite() && *metres > 0.0).map(Some).ok_or_else(|| {
+            unsupported(format!(
+                "a unit of length of it (EPSG code {code}) is neither metres, kilometres nor feet"
+            ))
+        })
+    }
+}

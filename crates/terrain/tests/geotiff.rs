@@ -1,0 +1,334 @@
+//! What `GeoTIFF` and GDAL tags say about heights, in files built here tag by tag: it is read, or refused by name.
+
+use terrain::format::{FormatError, ImportOptions, Meaning, Raster, read_raster};
+
+/// A tag's value and type.
+enum Value {
+    Shorts(Vec<u16>),
+    Doubles(Vec<f64>),
+    Text(&'static str),
+    /// A long.
+    Offset(u32),
+}
+
+/// One image: its tags, without those that say where its samples are, and the bytes of its samples.
+struct Image {
+    tags: Vec<(u16, Value)>,
+    samples: Vec<u8>,
+}
+
+const SUBFILE: u16 = 254;
+const BITS: u16 = 258;
+const COMPRESSION: u16 = 259;
+const INTERPRETATION: u16 = 262;
+const ORIENTATION: u16 = 274;
+const BANDS: u16 = 277;
+const EXTRA: u16 = 338;
+const SAMPLE_FORMAT: u16 = 339;
+const SCALE: u16 = 33_550;
+const TIE_POINTS: u16 = 33_922;
+const MATRIX: u16 = 34_264;
+const KEYS: u16 = 34_735;
+const METADATA: u16 = 42_112;
+const NO_DATA: u16 = 42_113;
+
+impl Image {
+    /// Bytes of `width` columns in two rows.
+    fn bytes(width: u16, samples: &[u8]) -> Self {
+        let tags = [(256, width), (257, 2), (BITS, 8), (COMPRESSION, 1), (INTERPRETATION, 1), (BANDS, 1)];
+        let tags = tags.into_iter().map(|(tag, value)| (tag, Value::Shorts(vec![value]))).collect();
+        Self { tags, samples: samples.to_vec() }
+    }
+
+    /// 1 2 3 over 4 5 6.
+    fn plain() -> Self {
+        Self::bytes(3, &[1, 2, 3, 4, 5, 6])
+    }
+
+    fn with(mut self, tag: u16, value: Value) -> Self {
+        self.tags.retain(|(other, _)| *other != tag);
+        self.tags.push((tag, value));
+        self
+    }
+
+    fn short(self, tag: u16, value: u16) -> Self {
+        self.with(tag, Value::Shorts(vec![value]))
+    }
+}
+
+/// A file of images one after another, in either byte order.
+fn file(images: Vec<Image>, big_endian: bool) -> Vec<u8> {
+    let short = |value: u16| if big_endian { value.to_be_bytes() } else { value.to_le_bytes() };
+    let long = |value: u32| if big_endian { value.to_be_bytes() } else { value.to_le_bytes() };
+    let double = |value: f64| if big_endian { value.to_be_bytes() } else { value.to_le_bytes() };
+    let mut bytes = if big_endian { b"MM\0*".to_vec() } else { b"II*\0".to_vec() };
+    bytes.extend(long(0));
+    let mut link = 4;
+    for mut image in images {
+        let samples_at = bytes.len() as u32;
+        bytes.extend(&image.samples);
+        image.tags.push((273, Value::Offset(samples_at)));
+        image.tags.push((279, Value::Offset(image.samples.len() as u32)));
+        image.tags.sort_by_key(|(tag, _)| *tag);
+        let mut entries = Vec::new();
+        for (tag, value) in &image.tags {
+            let (kind, count, mut content) = match value {
+                Value::Shorts(values) => (3, values.len(), values.iter().flat_map(|&it| short(it)).collect()),
+                Value::Doubles(values) => {
+                    (12, values.len(), values.iter().flat_map(|&it| double(it)).collect())
+                }
+                Value::Text(text) => (2, text.len() + 1, [text.as_bytes(), b"\0"].concat()),
+                Value::Offset(value) => (4, 1, long(*value).to_vec()),
+            };
+            if content.len() > 4 {
+                let place = bytes.len() as u32;
+                bytes.append(&mut content);
+                content = long(place).to_vec();
+            }
+            content.resize(4, 0);
+            entries.extend([&short(*tag)[..], &short(kind), &long(count as u32), &content].concat());
+        }
+        let directory = bytes.len();
+        bytes[link..link + 4].copy_from_slice(&long(directory as u32));
+        bytes.extend(short(image.tags.len() as u16));
+        bytes.extend(entries);
+        link = bytes.len();
+        bytes.extend(long(0));
+    }
+    bytes
+}
+
+fn read_all(images: Vec<Image>) -> Result<Raster, FormatError> {
+    read_raster(&file(images, false), &ImportOptions::default())
+}
+
+fn read(image: Image) -> Raster {
+    read_all(vec![image]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn refusal(image: Image) -> String {
+    let error = read_all(vec![image]).unwrap_err();
+    assert!(matches!(error, FormatError::Unsupported { .. }), "{error}");
+    error.to_string()
+}
+
+const ROWS: [f32; 6] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+const TURNED_ROWS: [f32; 6] = [4.0, 5.0, 6.0, 1.0, 2.0, 3.0];
+
+fn scale(x: f64, y: f64) -> Value {
+    Value::Doubles(vec![x, y, 0.0])
+}
+
+fn matrix(x: f64, x_of_row: f64, y_of_column: f64, y: f64) -> Value {
+    let rows = [[x, x_of_row, 0.0, 70.0], [y_of_column, y, 0.0, 80.0], [0.0; 4], [0.0, 0.0, 0.0, 1.0]];
+    Value::Doubles(rows.concat())
+}
+
+#[test]
+fn a_plain_file_is_read_in_both_byte_orders() {
+    for big_endian in [false, true] {
+        let bytes = file(vec![Image::plain()], big_endian);
+        let raster = read_raster(&bytes, &ImportOptions::default()).unwrap();
+        assert_eq!((raster.samples.as_slice(), raster.cell_size_m), (&ROWS[..], None));
+    }
+}
+
+#[test]
+fn scale_and_offset_of_gdal_make_heights_of_stored_values() {
+    let metadata = "<GDALMetadata>\n  <Item name=\"STATISTICS_MAXIMUM\" sample=\"0\">9</Item>\n  \
+        <Item name=\"SCALE\" sample=\"1\" role=\"scale\">70</Item>\n  \
+        <Item name=\"OFFSET\" sample=\"0\" role=\"offset\">-100</Item>\n  \
+        <Item role='scale' sample='0' name='SCALE'> 0.5 </Item>\n</GDALMetadata>\n";
+    let raster = read(Image::plain().with(METADATA, Value::Text(metadata)).with(NO_DATA, Value::Text("4")));
+    assert_eq!(raster.samples[..3], [-99.5, -99.0, -98.5]);
+    // What stands for no data is a stored value.
+    assert!(raster.samples[3].is_nan());
+    assert_eq!(raster.samples[4], -97.5);
+    let without_band = "<GDALMetadata><Item name=\"SCALE\" role=\"scale\">3</Item></GDALMetadata>";
+    assert_eq!(read(Image::plain().with(METADATA, Value::Text(without_band))).samples[1], 6.0);
+    for wrong in ["much", "inf", "", "0"] {
+        let text = format!("<Item role=\"scale\">{wrong}</Item>");
+        let image = Image::plain().with(METADATA, Value::Text(text.leak()));
+        let error = read_all(vec![image]).unwrap_err().to_string();
+        assert!(error.contains("its scale is"), "{error}");
+    }
+}
+
+#[test]
+fn heights_in_other_units_are_brought_to_metres_or_refused() {
+    let unit = |unit: &str| {
+        let text = format!("<Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">{unit}</Item>");
+        Image::plain().with(METADATA, Value::Text(text.leak()))
+    };
+    assert_eq!(read(unit("m")).samples, ROWS);
+    assert_eq!(read(unit("km")).samples[1], 2000.0);
+    assert!((read(unit("ft")).samples[1] - 0.6096).abs() < 1e-6);
+    assert!(refusal(unit("degree")).contains("`degree`"));
+    let keys = |id: u16, code: u16| {
+        let keys = vec![1, 1, 0, 2, 1024, 0, 1, 1, id, 0, 1, code];
+        Image::plain().with(SCALE, scale(10.0, 10.0)).with(KEYS, Value::Shorts(keys))
+    };
+    let vertical = read(keys(4099, 9002));
+    assert!((vertical.samples[0] - 0.3048).abs() < 1e-6 && vertical.cell_size_m == Some(10.0));
+    let horizontal = read(keys(3076, 9002));
+    assert!((horizontal.cell_size_m.unwrap() - 3.048).abs() < 1e-9 && horizontal.samples == ROWS);
+    assert!(refusal(keys(3076, 9014)).contains("9014"));
+}
+
+#[test]
+fn degrees_of_a_registered_system_are_degrees_of_the_earth() {
+    let keys = Value::Shorts(vec![1, 1, 0, 2, 1024, 0, 1, 2, 2048, 0, 1, 4326]);
+    let cell = read(Image::plain().with(SCALE, scale(1.0, 1.0)).with(KEYS, keys)).cell_size_m.unwrap();
+    // A degree of the Earth's equator.
+    assert!((cell - 111_319.49).abs() < 0.01, "{cell}");
+}
+
+#[test]
+fn what_stands_for_no_data_matches_single_precision() {
+    let lowest = f32::MIN.to_le_bytes();
+    let samples = [lowest, 1.5_f32.to_le_bytes()].concat();
+    let mut image = Image::bytes(1, &samples).short(BITS, 32).short(SAMPLE_FORMAT, 3);
+    // Fewer digits than the number has as a double.
+    image = image.with(NO_DATA, Value::Text("-3.40282346638529e+38"));
+    let raster = read(image);
+    assert!(raster.samples[0].is_nan());
+    assert_eq!(raster.samples[1], 1.5);
+    let error = read_all(vec![Image::plain().with(NO_DATA, Value::Text("none"))]).unwrap_err().to_string();
+    assert!(error.contains("GDAL_NODATA") && error.contains("`none`"), "{error}");
+}
+
+#[test]
+fn north_is_put_on_top_and_west_to_the_left() {
+    let north = read(Image::plain().with(MATRIX, matrix(2.5, 0.0, 0.0, -2.5)));
+    assert_eq!((north.samples.as_slice(), north.cell_size_m), (&ROWS[..], Some(2.5)));
+    let south = read(Image::plain().with(MATRIX, matrix(2.5, 0.0, 0.0, 2.5)));
+    assert_eq!((south.samples.as_slice(), south.cell_size_m), (&TURNED_ROWS[..], Some(2.5)));
+    let west = read(Image::plain().with(MATRIX, matrix(-2.5, 0.0, 0.0, -2.5)));
+    assert_eq!(west.samples, [3.0, 2.0, 1.0, 6.0, 5.0, 4.0]);
+    let both = read(Image::plain().with(MATRIX, matrix(-2.5, 0.0, 0.0, 2.5)));
+    assert_eq!(both.samples, [6.0, 5.0, 4.0, 3.0, 2.0, 1.0]);
+    // The specification and GDAL differ about these.
+    assert!(refusal(Image::plain().with(SCALE, scale(2.5, -2.5))).contains("-2.5"));
+    let rotated = Image::plain().with(MATRIX, matrix(2.0, 1.0, 1.0, -2.0));
+    assert!(refusal(rotated).contains("rows are not from west to east"));
+    let points = Image::plain().with(TIE_POINTS, Value::Doubles(vec![0.0; 18]));
+    assert!(refusal(points).contains("control points"));
+    assert!(refusal(Image::plain().short(ORIENTATION, 4)).contains("Orientation is 4"));
+}
+
+#[test]
+fn cells_that_are_not_square_are_refused() {
+    assert!(refusal(Image::plain().with(SCALE, scale(10.0, 20.0))).contains("not square: 10 × 20"));
+    assert!(refusal(Image::plain().with(MATRIX, matrix(3.0, 0.0, 0.0, -2.0))).contains("not square"));
+    // Rounded numbers of a square are one.
+    let rounded = read(Image::plain().with(SCALE, scale(463.093_5, 463.093_6)));
+    assert_eq!(rounded.cell_size_m, Some(463.093_5));
+}
+
+fn mask(width: u16, bits: u16, samples: &[u8]) -> Image {
+    Image::bytes(width, samples).short(SUBFILE, 4).short(BITS, bits).short(INTERPRETATION, 4)
+}
+
+#[test]
+fn an_internal_mask_makes_holes() {
+    let overview = || Image::bytes(1, &[1, 4]).short(SUBFILE, 1);
+    let overview_mask = || mask(1, 1, &[0, 0]).short(SUBFILE, 5);
+    for big_endian in [false, true] {
+        for (bits, samples) in [(1, &[0b1010_0000, 0b0110_0000][..]), (8, &[255, 0, 1, 0, 255, 255])] {
+            let images = vec![Image::plain(), overview(), mask(3, bits, samples), overview_mask()];
+            let raster = read_raster(&file(images, big_endian), &ImportOptions::default()).unwrap();
+            let holes: Vec<bool> = raster.samples.iter().map(|sample| sample.is_nan()).collect();
+            assert_eq!(holes, [false, true, false, true, false, false], "{bits} bits");
+            assert_eq!(raster.samples[4], 5.0);
+        }
+    }
+    assert_eq!(read_all(vec![Image::plain(), overview(), overview_mask()]).unwrap().samples, ROWS);
+    let error = read_all(vec![Image::plain(), mask(2, 1, &[0, 0])]).unwrap_err().to_string();
+    assert!(error.contains("mask has another size"), "{error}");
+    // A mask is turned with its heights.
+    let south = Image::plain().with(MATRIX, matrix(1.0, 0.0, 0.0, 1.0));
+    let turned = read_all(vec![south, mask(3, 1, &[0xff, 0])]).unwrap();
+    assert!(turned.samples[..3].iter().all(|sample| sample.is_nan()));
+    assert_eq!(turned.samples[3..], [1.0, 2.0, 3.0]);
+}
+
+#[test]
+fn directories_in_a_ring_are_refused() {
+    let mut bytes = file(vec![Image::plain(), Image::plain()], false);
+    let first: [u8; 4] = bytes[4..8].try_into().unwrap();
+    let end = bytes.len();
+    bytes[end - 4..].copy_from_slice(&first);
+    let error = read_raster(&bytes, &ImportOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("in a ring"), "{error}");
+}
+
+#[test]
+fn a_transparent_pixel_has_no_height() {
+    let image = |kind: u16| {
+        Image::bytes(1, &[7, 0, 9, 255])
+            .short(BANDS, 2)
+            .short(EXTRA, kind)
+            .with(BITS, Value::Shorts(vec![8, 8]))
+    };
+    let raster = read(image(2));
+    assert!(raster.samples[0].is_nan());
+    assert_eq!(raster.samples[1], 9.0);
+    // A second band of any other kind is left alone.
+    assert_eq!(read(image(0)).samples, [7.0, 9.0]);
+}
+
+#[test]
+fn heights_in_which_zero_is_white_are_what_is_stored() {
+    for big_endian in [false, true] {
+        let image = Image::bytes(3, &[0, 100, 255, 127, 128, 6]).short(INTERPRETATION, 0);
+        let raster = read_raster(&file(vec![image], big_endian), &ImportOptions::default()).unwrap();
+        assert_eq!(raster.samples, [0.0, 100.0, 255.0, 127.0, 128.0, 6.0]);
+        assert_eq!(raster.meaning, Meaning::InvertedLevels { greatest: 255 });
+        // As a picture it is dark where it is high.
+        assert_eq!(raster.obstacles(), [false, false, true, false, true, false]);
+    }
+    let samples: Vec<u8> = [-3_i16, 40].iter().flat_map(|it| it.to_le_bytes()).collect();
+    let signed = Image::bytes(1, &samples).short(BITS, 16).short(SAMPLE_FORMAT, 2).short(INTERPRETATION, 0);
+    assert_eq!(read(signed).samples, [-3.0, 40.0]);
+}
+
+#[test]
+fn other_compressions_and_pictures_are_refused_by_name() {
+    for (compression, name) in [
+        (50_000, "ZSTD"),
+        (50_001, "WebP"),
+        (34_887, "LERC"),
+        (34_925, "LZMA"),
+        (7, "JPEG"),
+        (12_345, "number 12345"),
+    ] {
+        let message = refusal(Image::plain().short(COMPRESSION, compression));
+        assert!(message.contains(name) && message.contains("gdal_translate -co COMPRESS"), "{message}");
+    }
+    assert!(refusal(Image::plain().short(INTERPRETATION, 3)).contains("palette"));
+    assert!(refusal(Image::bytes(8, &[0, 0]).short(BITS, 1)).contains("samples of 1 bits"));
+}
+
+#[test]
+fn no_changed_byte_makes_reading_panic() {
+    let image = || {
+        Image::plain()
+            .short(INTERPRETATION, 0)
+            .with(MATRIX, matrix(2.5, 0.0, 0.0, 2.5))
+            .with(KEYS, Value::Shorts(vec![1, 1, 0, 2, 1024, 0, 1, 1, 3076, 0, 1, 9002]))
+            .with(METADATA, Value::Text("<Item role=\"scale\" sample=\"0\">2</Item>"))
+            .with(NO_DATA, Value::Text("6"))
+    };
+    for big_endian in [false, true] {
+        let bytes = file(vec![image(), mask(3, 1, &[0xff, 0xff])], big_endian);
+        assert!(read_raster(&bytes, &ImportOptions::default()).is_ok());
+        for index in 0..bytes.len() {
+            let _ = read_raster(&bytes[..index], &ImportOptions::default());
+            for change in [0x01, 0x10, 0x80, 0xff] {
+                let mut broken = bytes.clone();
+                broken[index] ^= change;
+                let _ = read_raster(&broken, &ImportOptions::default());
+            }
+        }
+    }
+}
