@@ -167,6 +167,14 @@ fn an_ascii_grid_is_read_with_its_cell_size_and_holes() {
 }
 
 #[test]
+fn an_ascii_grid_has_square_cells() {
+    let grid = |dy: &str| format!("ncols 2\nnrows 1\ndx 2.5\ndy {dy}\n1 2\n");
+    assert_eq!(read(grid("2.5").as_bytes()).unwrap().cell_size_m, Some(2.5));
+    let message = read(grid("5").as_bytes()).unwrap_err().to_string();
+    assert!(message.contains("not square: 2.5 × 5"), "{message}");
+}
+
+#[test]
 fn a_text_grey_map_may_have_comments() {
     let raster = read(b"P2 # made by hand\n# size\n2 2\n9\n0 9 # row\n4 5").unwrap();
     assert_eq!(raster.samples, [0.0, 9.0, 4.0, 5.0]);
@@ -236,6 +244,106 @@ fn the_missing_constant_of_a_label_may_be_written_as_bits() {
         let mut bytes = label("MSB_INTEGER", 16, wrong);
         bytes.extend([0; 4]);
         assert!(read(&bytes).is_err(), "{wrong}");
+    }
+}
+
+/// A label with its image of two samples, 3 and 40, and further lines in the label.
+fn pds_with(lines: &str) -> Vec<u8> {
+    let mut bytes = format!(
+        "PDS_VERSION_ID = PDS3\r\nRECORD_BYTES = 512\r\n^IMAGE = 2\r\nLINES = 1\r\nLINE_SAMPLES = 2\r\n\
+         SAMPLE_TYPE = MSB_INTEGER\r\nSAMPLE_BITS = 16\r\n{lines}\r\nEND\r\n"
+    )
+    .into_bytes();
+    bytes.resize(512, b' ');
+    bytes.extend([0, 3, 0, 40]);
+    bytes
+}
+
+#[test]
+fn scaling_factor_offset_and_unit_of_a_label_make_metres() {
+    for (lines, expected) in [
+        ("SCALING_FACTOR = N/A", [3.0, 40.0]),
+        ("SCALING_FACTOR = 0.5<METER>\r\nOFFSET = -1.0", [0.5, 19.0]),
+        ("SCALING_FACTOR = 0.5\r\nOFFSET = 1\r\nUNIT = KILOMETER", [2500.0, 21_000.0]),
+        ("UNIT = \"METERS\"", [3.0, 40.0]),
+    ] {
+        assert_eq!(read(&pds_with(lines)).unwrap().samples, expected, "{lines}");
+    }
+    for wrong in ["SCALING_FACTOR = HALF", "OFFSET = 1E999", "UNIT = KELVIN", "LINE_DISPLAY_DIRECTION = UP"] {
+        let message = read(&pds_with(wrong)).unwrap_err().to_string();
+        let (keyword, value) = wrong.split_once(" = ").unwrap();
+        assert!(message.contains(value) && (keyword == "UNIT" || message.contains(keyword)), "{message}");
+    }
+    let compressed = read(&pds_with("ENCODING_TYPE = \"HUFFMAN_FIRST_DIFFERENCE\"")).unwrap_err().to_string();
+    assert!(compressed.contains("HUFFMAN") && compressed.contains("gdal_translate"), "{compressed}");
+}
+
+#[test]
+fn the_cells_of_a_label_have_the_size_that_its_units_say() {
+    for (lines, expected) in [
+        ("MAP_SCALE = 0.25", 250.0),
+        ("MAP_SCALE = 0.25<KM/PIXEL>", 250.0),
+        ("MAP_SCALE = 250 <METERS/PIXEL>", 250.0),
+        // A degree of a circle of 180 km around.
+        ("MAP_RESOLUTION = 2.0 <PIXEL/DEGREE>\r\nA_AXIS_RADIUS = 28.64788975654116 <KM>", 250.0),
+    ] {
+        let cell = read(&pds_with(lines)).unwrap().cell_size_m.unwrap();
+        assert!((cell - expected).abs() < 1e-9, "{lines}: {cell}");
+    }
+    for (lines, expected) in [
+        ("MAP_SCALE = 2 <DEGREE>", "the unit of its MAP_SCALE"),
+        ("TARGET_NAME = MOON\r\nMAP_RESOLUTION = 4", "A_AXIS_RADIUS of MOON"),
+    ] {
+        let message = read(&pds_with(lines)).unwrap_err().to_string();
+        assert!(message.contains(expected), "{message}");
+    }
+}
+
+#[test]
+fn a_label_without_its_image_says_where_the_image_is() {
+    let label = String::from_utf8(pds_with("")[..512].to_vec()).unwrap();
+    let message =
+        read(label.replace("^IMAGE = 2", "^IMAGE = (\"A.IMG\", 1)").as_bytes()).unwrap_err().to_string();
+    assert!(message.contains("label alone") && message.contains("\"A.IMG\""), "{message}");
+}
+
+#[test]
+fn the_missing_constant_of_single_precision_may_have_fewer_digits() {
+    let lines = "MISSING_CONSTANT = -3.40282346638529e+38";
+    let text = String::from_utf8(pds_with(lines)[..512].to_vec()).unwrap();
+    let text = text.replace("MSB_INTEGER", "IEEE_REAL  ").replace("BITS = 16", "BITS = 32");
+    let bytes = [&text.as_bytes()[..512], &f32::MIN.to_be_bytes(), &2.5_f32.to_be_bytes()].concat();
+    let raster = read(&bytes).unwrap();
+    assert!(raster.samples[0].is_nan());
+    assert_eq!(raster.samples[1], 2.5);
+}
+
+#[test]
+fn files_of_other_formats_are_refused_by_name_with_what_to_do() {
+    let pds4 = "<?xml version=\"1.0\"?>\n<Product_Observational xmlns=\"http://pds.nasa.gov/pds4/pds/v1\">";
+    let cases: [(&[u8], &str, &str); 8] = [
+        (b"Object = IsisCube\n  Object = Core\n", "ISIS cube", "gdal_translate"),
+        (b"CCSD3ZF0000100000001NJPL3IF0PDS200000001 = SFDU_LABEL\r\n", "ISIS 2", "gdal_translate"),
+        (pds4.as_bytes(), "PDS4 label", "gdal_translate LABEL.xml"),
+        (b"LBLSIZE=2048  FORMAT='HALF'", "VICAR", "gdal_translate"),
+        (b"\x89HDF\r\n\x1a\n\0\0", "HDF5", "gdal_translate"),
+        (b"\0\0\0\x0cjP  \r\n", "JPEG 2000", "gdal_translate"),
+        (b"\xff\xd8\xff\xe0", "JPEG", "PNG or GeoTIFF"),
+        (b"PK\x03\x04\x14", "ZIP", "unpack"),
+    ];
+    for (bytes, name, advice) in cases {
+        let error = read(bytes).unwrap_err();
+        assert!(matches!(error, FormatError::Unsupported { .. }), "{error}");
+        let message = error.to_string();
+        assert!(message.contains(name) && message.contains(advice), "{message}");
+    }
+    // As the label of an image, too.
+    let options = ImportOptions { label: Some(pds4.into()), ..ImportOptions::default() };
+    assert!(read_raster(&[0; 64], &options).unwrap_err().to_string().contains("PDS4"));
+    // Any other XML is unknown, and what is read is listed.
+    let message = read(b"<?xml version=\"1.0\"?><kml/>").unwrap_err().to_string();
+    for ending in [".png", ".pgm", ".tif", ".img", ".asc", ".map"] {
+        assert!(message.contains(ending), "{message}");
     }
 }
 

@@ -5,7 +5,7 @@ use terrain::format::{FileFormat, ImportOptions, read_raster};
 
 const ROUNDS: u64 = 3000;
 
-const FILES: [&[u8]; 11] = [
+const FILES: [&[u8]; 15] = [
     include_bytes!("fixtures/pillow-rgba8.png"),
     include_bytes!("fixtures/pillow-gray16.png"),
     include_bytes!("fixtures/tifffile-int32-tiled-degrees.tiff"),
@@ -16,6 +16,20 @@ const FILES: [&[u8]; 11] = [
     b"ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 5\nNODATA_value -9999\n1 2 3\n4 -9999 6\n",
     b"type octile\nheight 3\nwidth 4\nmap\n.G@T\nS.OW\n....\n",
     b"PDS_VERSION_ID = PDS3\r\nRECORD_BYTES = 128\r\n^IMAGE = 2\r\nLINES = 1\r\nLINE_SAMPLES = 2\r\nSAMPLE_TYPE = PC_REAL\r\nSAMPLE_BITS = 32\r\nMISSING_CONSTANT = 16#FF7FFFFB#\r\nEND\r\n12345678",
+    b"PDS_VERSION_ID = PDS3\r\nRECORD_BYTES = 256\r\n^IMAGE = 2\r\nLINES = 1\r\nLINE_SAMPLES = 2\r\nSAMPLE_TYPE = MSB_INTEGER\r\nSAMPLE_BITS = 16\r\nSCALING_FACTOR = 0.5<METER>\r\nOFFSET = -1\r\nUNIT = KILOMETER\r\nMAP_RESOLUTION = 4 <PIXEL/DEGREE>\r\nA_AXIS_RADIUS = 1737.4<KM>\r\nEND\r\n      0123",
+    // Heights of which 0 is white, with GDAL's metadata and a mask of one bit a cell.
+    b"II*\0\x0e\0\0\0\x05\x06\0\0\x80\0\
+        \x09\0\xfe\0\x04\0\x01\0\0\0\0\0\0\0\0\x01\x03\0\x01\0\0\0\x01\0\0\0\
+        \x01\x01\x03\0\x01\0\0\0\x02\0\0\0\x02\x01\x03\0\x01\0\0\0\x08\0\0\0\
+        \x06\x01\x03\0\x01\0\0\0\0\0\0\0\x11\x01\x04\0\x01\0\0\0\x08\0\0\0\
+        \x17\x01\x04\0\x01\0\0\0\x02\0\0\0\x80\xa4\x02\0\x04\0\0\0<It\0\
+        \x81\xa4\x02\0\x02\0\0\x006\0\0\0\x80\0\0\0\
+        \x07\0\xfe\0\x04\0\x01\0\0\0\x04\0\0\0\0\x01\x03\0\x01\0\0\0\x01\0\0\0\
+        \x01\x01\x03\0\x01\0\0\0\x02\0\0\0\x02\x01\x03\0\x01\0\0\0\x01\0\0\0\
+        \x06\x01\x03\0\x01\0\0\0\x04\0\0\0\x11\x01\x04\0\x01\0\0\0\x0b\0\0\0\
+        \x17\x01\x04\0\x01\0\0\0\x02\0\0\0\0\0\0\0",
+    b"Object = IsisCube\n  Object = Core\n    StartByte = 65537\n",
+    b"<?xml version=\"1.0\"?>\n<Product_Observational xmlns=\"http://pds.nasa.gov/pds4/pds/v1\">",
     b"",
 ];
 
@@ -69,6 +83,15 @@ fn mutated(seed: u64) -> Vec<u8> {
         }
     }
     bytes
+}
+
+#[test]
+fn the_files_are_what_they_are_meant_to_be() {
+    let refused: Vec<usize> = (0..FILES.len())
+        .filter(|&index| read_raster(FILES[index], &ImportOptions::default()).is_err())
+        .collect();
+    // The ISIS cube, the PDS4 label and the empty file.
+    assert_eq!(refused, [12, 13, 14]);
 }
 
 #[test]

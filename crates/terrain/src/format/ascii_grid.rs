@@ -7,7 +7,8 @@ const FORMAT: &str = "ESRI ASCII grid";
 pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     let text = std::str::from_utf8(bytes).map_err(|_| malformed("it is not text".into()))?;
     let mut words = text.split_ascii_whitespace().peekable();
-    let (mut width, mut height, mut cell_size_m, mut no_data) = (None, None, None, None);
+    let (mut width, mut height, mut cell_size_m, mut cell_height_m, mut no_data) =
+        (None, None, None, None, None);
     while let Some(keyword) =
         words.next_if(|word| word.starts_with(|first: char| first.is_ascii_alphabetic()))
     {
@@ -21,11 +22,18 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
             "ncols" => width = Some(number),
             "nrows" => height = Some(number),
             "cellsize" | "dx" => cell_size_m = Some(number),
+            "dy" => cell_height_m = Some(number),
             "nodata_value" => no_data = Some(number),
             // Where the map lies on its planet is up to the mission.
-            "xllcorner" | "yllcorner" | "xllcenter" | "yllcenter" | "dy" => {}
+            "xllcorner" | "yllcorner" | "xllcenter" | "yllcenter" => {}
             _ => return Err(malformed(format!("`{keyword}` is no keyword of the header"))),
         }
+    }
+    if let (Some(width), Some(height)) = (cell_size_m, cell_height_m)
+        && (width - height).abs() > 1e-4 * width.abs()
+    {
+        let problem = format!("its cells are not square: {width} × {height}");
+        return Err(FormatError::Unsupported { format: FORMAT, problem });
     }
     let size = |number: Option<f64>, keyword: &str| match number {
         Some(number) if number >= 0.0 && number.fract() == 0.0 && number < 1e15 => Ok(number as u64),

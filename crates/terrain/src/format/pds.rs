@@ -170,11 +170,14 @@ fn read_samples(bytes: &[u8], layout: &RawLayout) -> Result<Raster, FormatError>
             bytes.len()
         )));
     };
+    // What stands for no data in single precision is often written with other digits than it has.
+    let is_single = matches!(layout.sample_type, SampleType::F32BigEndian | SampleType::F32LittleEndian);
+    let no_data = layout.no_data.map(|hole| if is_single { f64::from(hole as f32) } else { hole });
     let samples = data
         .chunks_exact(size)
         .map(|sample| {
             let value = layout.sample_type.value(sample);
-            if Some(value) == layout.no_data {
+            if Some(value) == no_data {
                 f32::NAN
             } else {
                 (value * layout.scaling_factor + layout.offset_m) as f32
@@ -188,47 +191,53 @@ fn read_samples(bytes: &[u8], layout: &RawLayout) -> Result<Raster, FormatError>
 /// Reads a label; `attached` says whether the samples are in the same file.
 fn read_label(bytes: &[u8], attached: bool) -> Result<RawLayout, FormatError> {
     let label = Label::parse(bytes);
-    let number = |keyword: &str| label.number(keyword);
     let size = |keyword: &str| match label.number(keyword) {
         Some(number) if number >= 0.0 && number.fract() == 0.0 && number < 4e9 => Ok(number as u32),
         _ => Err(malformed(format!("its label does not give {keyword}"))),
     };
     let (width, height) = (size("LINE_SAMPLES")?, size("LINES")?);
     let (name, bits) = (label.value("SAMPLE_TYPE").unwrap_or_default(), size("SAMPLE_BITS")?);
-    let sample_type = SampleType::of_label(name, bits).ok_or_else(|| FormatError::Unsupported {
-        format: FORMAT,
-        problem: format!("samples of type {name} with {bits} bits"),
-    })?;
+    let sample_type = SampleType::of_label(name, bits)
+        .ok_or_else(|| unsupported(format!("samples of type {name} with {bits} bits")))?;
     let constant = |keyword: &str| match label.value(keyword) {
         None => Ok(None),
-        // Not every label has a value for it.
-        Some(written) if written.trim_matches('"').eq_ignore_ascii_case("N/A") => Ok(None),
+        Some(written) if is_absent(written) => Ok(None),
         Some(written) => (label.number(keyword).or_else(|| sample_type.of_bits(written)))
             .map(Some)
             .ok_or_else(|| malformed(format!("its {keyword} is no number: {written}"))),
     };
-    if number("BANDS").is_some_and(|bands| bands != 1.0)
-        || ["LINE_PREFIX_BYTES", "LINE_SUFFIX_BYTES"]
-            .iter()
-            .any(|&word| number(word).is_some_and(|n| n != 0.0))
-    {
-        let problem = "more than one band, or bytes between the lines".into();
-        return Err(FormatError::Unsupported { format: FORMAT, problem });
-    }
+    let factor = |keyword: &str| match label.value(keyword) {
+        Some(written) if !is_absent(written) => match label.number(keyword).filter(|it| it.is_finite()) {
+            Some(number) => Ok(Some(number)),
+            None => Err(malformed(format!("its {keyword} is no number: {written}"))),
+        },
+        _ => Ok(None),
+    };
+    label.refuse_what_is_not_rows_from_the_top()?;
+    let unit_m = label.unit_m()?;
     Ok(RawLayout {
         width,
         height,
         sample_type,
         start_byte: label.image_start(attached)?,
-        scaling_factor: number("SCALING_FACTOR").unwrap_or(1.0),
-        offset_m: number("OFFSET").unwrap_or(0.0),
+        scaling_factor: unit_m * factor("SCALING_FACTOR")?.unwrap_or(1.0),
+        offset_m: unit_m * factor("OFFSET")?.unwrap_or(0.0),
         no_data: constant("MISSING_CONSTANT")?.or(constant("CORE_NULL")?),
-        cell_size_m: label.cell_size_m(),
+        cell_size_m: label.cell_size_m()?,
     })
 }
 
 fn malformed(problem: String) -> FormatError {
     FormatError::Malformed { format: FORMAT, problem }
+}
+
+fn unsupported(problem: String) -> FormatError {
+    FormatError::Unsupported { format: FORMAT, problem }
+}
+
+/// Whether a keyword stands in a label without a value.
+fn is_absent(written: &str) -> bool {
+    ["N/A", "UNK", "NONE"].iter().any(|word| written.trim_matches('"').eq_ignore_ascii_case(word))
 }
 
 /// The keywords of a label and their values as written.
@@ -256,7 +265,8 @@ impl Label {
 
     /// The number at the beginning of a value; what follows is its unit.
     fn number(&self, keyword: &str) -> Option<f64> {
-        self.value(keyword)?.trim_matches('"').split_ascii_whitespace().next()?.parse().ok()
+        let value = self.value(keyword)?.trim_matches('"').trim_start();
+        value.split(|letter: char| letter.is_ascii_whitespace() || letter == '<').next()?.parse().ok()
     }
 
     /// The byte at which the samples begin: `^IMAGE` counts records, or bytes when it says so, from 1.
@@ -267,6 +277,9 @@ impl Label {
             }
             return Ok(0);
         };
+        if attached && pointer.contains('"') {
+            return Err(malformed(format!("this is its label alone; the image is in {pointer}")));
+        }
         // Of a file and a place in it, as in ("FILE.IMG", 3), the place counts.
         let place = pointer.trim_matches(['(', ')']).split(',').next_back().unwrap_or_default().trim();
         let in_bytes = place.contains("<BYTES>");
@@ -281,17 +294,68 @@ impl Label {
         Ok(place.saturating_sub(1).saturating_mul(unit as u64))
     }
 
-    fn cell_size_m(&self) -> Option<f64> {
-        if let Some(scale) = self.number("MAP_SCALE") {
-            let unit = self.value("MAP_SCALE").unwrap_or_default().to_ascii_uppercase();
-            return Some(if unit.contains("KM") || unit.contains("KILOMETER") {
-                1000.0 * scale
-            } else {
-                scale
-            });
+    /// A word of the label in capitals, without quotes; `None` if it has no value.
+    fn word(&self, keyword: &str) -> Option<String> {
+        let value = self.value(keyword).filter(|value| !is_absent(value))?;
+        Some(value.trim_matches('"').trim().to_ascii_uppercase())
+    }
+
+    /// Names what would be decoded to something else than one image from the top left.
+    fn refuse_what_is_not_rows_from_the_top(&self) -> Result<(), FormatError> {
+        let is_other = |keyword: &str, usual: f64| self.number(keyword).is_some_and(|it| it != usual);
+        if is_other("BANDS", 1.0) || is_other("LINE_PREFIX_BYTES", 0.0) || is_other("LINE_SUFFIX_BYTES", 0.0)
+        {
+            return Err(unsupported("more than one band, or bytes between the lines".into()));
         }
-        let pixels_per_degree = self.number("MAP_RESOLUTION")?;
-        let radius = self.number("A_AXIS_RADIUS").map_or(MARS_RADIUS_M, |kilometres| 1000.0 * kilometres);
-        Some(1.0_f64.to_radians() * radius / pixels_per_degree)
+        for (keyword, usual) in [("LINE_DISPLAY_DIRECTION", "DOWN"), ("SAMPLE_DISPLAY_DIRECTION", "RIGHT")] {
+            if let Some(direction) = self.word(keyword).filter(|direction| direction != usual) {
+                return Err(unsupported(format!("its {keyword} is {direction}, not {usual}")));
+            }
+        }
+        match self.word("ENCODING_TYPE") {
+            Some(encoding) => Err(unsupported(format!(
+                "it is compressed ({encoding}); write it as GeoTIFF, as with `gdal_translate IN.IMG OUT.tif`"
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    /// The metres of the unit of heights.
+    fn unit_m(&self) -> Result<f64, FormatError> {
+        match self.word("UNIT").as_deref() {
+            None | Some("M" | "METER" | "METERS" | "METRE" | "METRES") => Ok(1.0),
+            Some("KM" | "KILOMETER" | "KILOMETERS" | "KILOMETRE" | "KILOMETRES") => Ok(1000.0),
+            Some(unit) => Err(unsupported(format!("its values are in {unit}, which is no unit of heights"))),
+        }
+    }
+
+    /// Metres per cell by scale or resolution; `None` if the label gives neither.
+    fn cell_size_m(&self) -> Result<Option<f64>, FormatError> {
+        if let Some(scale) = self.number("MAP_SCALE") {
+            return Ok(Some(scale * self.length_unit_m("MAP_SCALE")?));
+        }
+        let Some(pixels_per_degree) = self.number("MAP_RESOLUTION") else { return Ok(None) };
+        let radius_m = match (self.number("A_AXIS_RADIUS"), self.word("TARGET_NAME").as_deref()) {
+            (Some(radius), _) => radius * self.length_unit_m("A_AXIS_RADIUS")?,
+            (None, None | Some("MARS")) => MARS_RADIUS_M,
+            (None, Some(body)) => {
+                let problem = format!("it gives pixels per degree without the A_AXIS_RADIUS of {body}");
+                return Err(unsupported(problem));
+            }
+        };
+        Ok(Some(1.0_f64.to_radians() * radius_m / pixels_per_degree))
+    }
+
+    /// The metres of the unit that follows a length in angle brackets. Without one it is the kilometre, which the
+    /// PDS data dictionary gives these lengths.
+    fn length_unit_m(&self, keyword: &str) -> Result<f64, FormatError> {
+        let value = self.value(keyword).unwrap_or_default();
+        let unit = value.split_once('<').map_or("KM", |(_, unit)| unit.trim_end_matches('>'));
+        match unit.split('/').next().unwrap_or_default().trim().to_ascii_uppercase().as_str() {
+            "KM" | "KILOMETER" | "KILOMETERS" => Ok(1000.0),
+            "M" | "METER" | "METERS" => Ok(1.0),
+            "CM" | "CENTIMETER" | "CENTIMETERS" => Ok(0.01),
+            _ => Err(unsupported(format!("the unit of its {keyword} is unknown: {value}"))),
+        }
     }
 }
