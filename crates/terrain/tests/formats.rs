@@ -337,6 +337,10 @@ fn files_of_other_formats_are_refused_by_name_with_what_to_do() {
         let message = error.to_string();
         assert!(message.contains(name) && message.contains(advice), "{message}");
     }
+    // A raw map of a whole planet may begin with the bytes of a JPEG image: -40 m and -32 m.
+    let mut raw = vec![0; 4 * 90 * 90];
+    raw[..4].copy_from_slice(b"\xff\xd8\xff\xe0");
+    assert_eq!(read(&raw).unwrap().samples[..3], [-40.0, -32.0, 0.0]);
     // As the label of an image, too.
     let options = ImportOptions { label: Some(pds4.into()), ..ImportOptions::default() };
     assert!(read_raster(&[0; 64], &options).unwrap_err().to_string().contains("PDS4"));

@@ -154,8 +154,7 @@ impl FileFormat {
 
 /// Decodes a map file of any known format.
 pub fn read_raster(bytes: &[u8], options: &ImportOptions) -> Result<Raster, FormatError> {
-    let header = options.label.as_deref().unwrap_or(bytes);
-    if let Some(error) = foreign::refusal(header).filter(|_| options.raw.is_none()) {
+    if let Some(error) = options.label.as_deref().and_then(foreign::refusal) {
         return Err(error);
     }
     let raster = match FileFormat::detect(bytes) {
@@ -166,7 +165,11 @@ pub fn read_raster(bytes: &[u8], options: &ImportOptions) -> Result<Raster, Form
         Some(FileFormat::Pds) => pds::read(bytes, options),
         Some(FileFormat::AsciiGrid) => ascii_grid::read(bytes),
         Some(FileFormat::MovingAi) => moving_ai::read(bytes),
-        None => pds::read_without_label(bytes),
+        // Two heights of a raw image may look like the beginning of anything, so that its size counts first.
+        None => pds::read_without_label(bytes).map_err(|error| match error {
+            FormatError::Unknown => foreign::refusal(bytes).unwrap_or(error),
+            _ => error,
+        }),
     }?;
     Ok(raster.with_options(options))
 }
