@@ -6,7 +6,7 @@ use std::{
     path::Path,
 };
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, ensure};
 use serde_json::json;
 
 use crate::{
@@ -45,7 +45,20 @@ impl Disturbance {
 struct Tally {
     runs: u32,
     keys: usize,
+    /// Pressed, but never told to the page: its tab was closed first.
+    undelivered: usize,
     lost: usize,
+}
+
+impl Tally {
+    const fn with(self, other: Self) -> Self {
+        Self {
+            runs: self.runs + other.runs,
+            keys: self.keys + other.keys,
+            undelivered: self.undelivered + other.undelivered,
+            lost: self.lost + other.lost,
+        }
+    }
 }
 
 /// What came of all disturbances. Displays as a table in Markdown.
@@ -61,7 +74,7 @@ impl Losses {
         self.tallies.iter().map(|tally| tally.runs).sum()
     }
 
-    /// How many key presses were lost.
+    /// How many key presses that the page was told of were lost.
     pub fn lost(&self) -> usize {
         self.tallies.iter().map(|tally| tally.lost).sum()
     }
@@ -69,13 +82,16 @@ impl Losses {
 
 impl Display for Losses {
     fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
-        out.write_str("| disturbance | runs | key presses | lost |\n|---|---|---|---|\n")?;
+        out.write_str(
+            "| disturbance | runs | key presses | not told to the page | lost |\n|---|---|---|---|---|\n",
+        )?;
         let mut sum = Tally::default();
-        for (kind, &Tally { runs, keys, lost }) in Disturbance::ALL.iter().zip(&self.tallies) {
-            writeln!(out, "| {} | {runs} | {keys} | {lost} |", kind.words())?;
-            sum = Tally { runs: sum.runs + runs, keys: sum.keys + keys, lost: sum.lost + lost };
+        for (kind, &tally) in Disturbance::ALL.iter().zip(&self.tallies) {
+            let Tally { runs, keys, undelivered, lost } = tally;
+            writeln!(out, "| {} | {runs} | {keys} | {undelivered} | {lost} |", kind.words())?;
+            sum = sum.with(tally);
         }
-        writeln!(out, "| all | {} | {} | {} |", sum.runs, sum.keys, sum.lost)
+        writeln!(out, "| all | {} | {} | {} | {} |", sum.runs, sum.keys, sum.undelivered, sum.lost)
     }
 }
 
@@ -92,9 +108,11 @@ const RUNS_OF_A_BROWSER: u32 = 100;
 const SIZE: [u32; 2] = [560, 420];
 /// Bytes that a full storage has room for.
 const NO_ROOM: u64 = 1;
-/// Collects the workers that the page starts, so that they can be ended.
-const COLLECT_WORKERS: &str = "window.startedWorkers = []; window.Worker = class extends Worker { \
-    constructor(...all) { super(...all); window.startedWorkers.push(this); } };";
+/// Collects the workers that the page starts, so that they can be ended, and writes down which keys the page is told of.
+const COLLECT: &str = "window.startedWorkers = []; window.Worker = class extends Worker { \
+    constructor(...all) { super(...all); window.startedWorkers.push(this); } }; \
+    addEventListener('keydown', ({ key }) => { if (key.length === 1) \
+    localStorage.setItem('told-keys', (localStorage.getItem('told-keys') ?? '') + key); }, true);";
 
 /// Disturbs the page of a site `runs` times; `seed` decides what is typed and what happens then. `tell` hears of each
 /// run that has been made.
@@ -116,11 +134,11 @@ pub fn disturb(site: &Path, runs: u32, seed: u64, mut tell: impl FnMut(u32)) -> 
         if page.expected.len() > LONGEST_TEXT {
             page.begin(&format!("// {run} "))?;
         }
-        let lost = page
+        let (undelivered, lost) = page
             .disturbed(Disturbance::ALL[kind], &typed, &browser, &server)
             .with_context(|| format!("run {run}, {}", Disturbance::ALL[kind].words()))?;
         let tally = &mut losses.tallies[kind];
-        *tally = Tally { runs: tally.runs + 1, keys: tally.keys + typed.len(), lost: tally.lost + lost };
+        *tally = tally.with(Tally { runs: 1, keys: typed.len(), undelivered, lost });
         tell(run + 1);
     }
     losses.differences = page.differences;
@@ -129,7 +147,7 @@ pub fn disturb(site: &Path, runs: u32, seed: u64, mut tell: impl FnMut(u32)) -> 
 
 fn opened(browser: &Browser, server: &SiteServer) -> Result<Tab> {
     let tab = browser.open_tab(SIZE[0], SIZE[1])?;
-    tab.call("Page.addScriptToEvaluateOnNewDocument", &json!({ "source": COLLECT_WORKERS }))?;
+    tab.call("Page.addScriptToEvaluateOnNewDocument", &json!({ "source": COLLECT }))?;
     tab.go_to(server.url())?;
     tab.wait_until_ready()?;
     Ok(tab)
@@ -152,15 +170,17 @@ impl Page {
         Ok(())
     }
 
-    /// Types at the end while something happens. Returns how many key presses are missing afterwards.
+    /// Types at the end while something happens. Returns how many key presses the page was not told of, and how many of the
+    /// others are missing afterwards.
     fn disturbed(
         &mut self,
         kind: Disturbance,
         typed: &str,
         browser: &Browser,
         server: &SiteServer,
-    ) -> Result<usize> {
+    ) -> Result<(usize, usize)> {
         self.tab.wait_until(FOCUS_TEXT)?;
+        self.tab.evaluate("localStorage.removeItem('told-keys')")?;
         self.tab.evaluate(&format!("enroute.dispatch('edit.select', {{ start: {} }})", 1 << 20))?;
         let origin = server.url().trim_end_matches('/').to_owned();
         let (first, rest) = typed.split_at(typed.len() / 2);
@@ -180,7 +200,6 @@ impl Page {
                 self.tab.type_text(rest)?;
             }
         }
-        self.expected.push_str(typed);
         if kind == Disturbance::CloseTab {
             self.tab.call("Page.close", &json!({}))?;
             self.tab = opened(browser, server)?;
@@ -189,6 +208,10 @@ impl Page {
             self.tab.wait_until("!('isOldPage' in window) && 'enroute' in window")?;
             self.tab.wait_until_ready()?;
         }
+        let told = self.tab.evaluate("localStorage.getItem('told-keys') ?? ''")?;
+        let told = told.as_str().unwrap_or_default();
+        ensure!(typed.starts_with(told), "`{typed}` was typed, and the page was told of `{told}`");
+        self.expected.push_str(told);
         // What is kept may come a moment after the page itself.
         let text = json!(self.expected);
         let outcome = self.tab.evaluate(&format!(
@@ -200,7 +223,7 @@ impl Page {
         if found != self.expected {
             self.differences.push([found.clone(), std::mem::replace(&mut self.expected, found)]);
         }
-        Ok(lost)
+        Ok((typed.len() - told.len(), lost))
     }
 }
 
@@ -242,10 +265,10 @@ mod tests {
 
     #[test]
     fn the_table_sums_what_happened() {
-        let tally = Tally { runs: 2, keys: 10, lost: 1 };
+        let tally = Tally { runs: 2, keys: 10, undelivered: 2, lost: 1 };
         let losses = Losses { tallies: [tally; 4], differences: Vec::new() };
         assert_eq!((losses.runs(), losses.lost()), (8, 4));
         let text = losses.to_string();
-        assert!(text.ends_with("| all | 8 | 40 | 4 |\n"), "{text}");
+        assert!(text.ends_with("| all | 8 | 40 | 8 | 4 |\n"), "{text}");
     }
 }
