@@ -71,8 +71,11 @@ impl<'input> Problem<'input> {
 
     /// Stops a search when `stop` says so, and a little after there is enough.
     fn patient(&self, stop: &mut dyn FnMut() -> bool) -> impl FnMut(&Stats) -> bool {
-        let has_tried =
-            |stats: &Stats| stats.conflicts >= LEAST_CONFLICTS || stats.expanded >= LEAST_DECISIONS;
+        // Without an objective there is nothing better to look for, and no plan before the last.
+        let is_over = self.network.objective.is_empty();
+        let has_tried = move |stats: &Stats| {
+            is_over || stats.conflicts >= LEAST_CONFLICTS || stats.expanded >= LEAST_DECISIONS
+        };
         move |stats| stop() || self.has_enough() && has_tried(stats)
     }
 }

@@ -13,6 +13,9 @@ fn lesson(more: &str) -> Result<Opened> {
     Ok(page)
 }
 
+/// Steps over every step of the search, not over key steps only.
+const EVERY_STEP: &str = "enroute.dispatch('search.keySteps')";
+
 /// Presses a key and answers the search once it has come to another step.
 fn stepped(page: &Opened, key: Key, modifiers: Modifiers) -> Result<Value> {
     let before = page.state()?["search"]["step"].clone();
@@ -25,6 +28,10 @@ fn stepped(page: &Opened, key: Key, modifiers: Modifiers) -> Result<Value> {
 fn a_search_is_stepped_back_and_forth_with_the_keyboard() -> Result<()> {
     let page = lesson("")?;
     let planned = page.look()?;
+    let key_step = stepped(&page, Key::Character('.'), Modifiers::NONE)?["step"].as_u64();
+    assert!(key_step > Some(1), "adding arcs is no key step: {key_step:?}");
+    stepped(&page, Key::Character(','), Modifiers::NONE)?;
+    page.tab.evaluate(EVERY_STEP)?;
     let mut forth = Vec::new();
     for _ in 0..6 {
         forth.push(stepped(&page, Key::Character('.'), Modifiers::NONE)?);
@@ -71,6 +78,7 @@ fn arrows_walk_the_search_tree_and_select_in_all_panels() -> Result<()> {
 fn a_link_brings_the_step_back() -> Result<()> {
     let page = lesson("&step=60")?;
     page.wait_for("state.search.step === 60 && state.search.known.event === 'add-arc'")?;
+    page.tab.evaluate(EVERY_STEP)?;
     stepped(&page, Key::Character('.'), Modifiers::NONE)?;
     assert_eq!(page.state()?["search"]["step"], 61);
     Ok(())
@@ -84,7 +92,7 @@ fn both_searches_are_compared_step_by_step() -> Result<()> {
     let compared = page.state()?["search"]["compare"]["searches"].clone();
     assert!(compared[0]["backtracks"].as_u64() > compared[1]["backtracks"].as_u64(), "{compared}");
     page.tab.press(Key::Character('.'), Modifiers::NONE)?;
-    page.wait_for("state.search.compare.searches.every((it) => it.step === 1)")?;
+    page.wait_for("state.search.compare.searches.every((it) => it.step > 0)")?;
     page.tab.press(Key::End, Modifiers::NONE)?;
     page.wait_for("state.search.compare.searches.every((it) => it.step === it.steps)")
 }

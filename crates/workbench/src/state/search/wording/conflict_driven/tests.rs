@@ -110,6 +110,8 @@ fn an_objective() {
             "The times fit, and what must be kept of their order follows from the choices.",
             "The best plan so far: end 2.",
             "Look for a plan that is better than end 2: with less end.",
+            "Whatever is chosen, D1=0 is ruled out.",
+            "Whatever is chosen: D1=1.",
             "Failure: no plan is better than the best one found.",
             "Nothing is left to try.",
             "This is a plan.",
