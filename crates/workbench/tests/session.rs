@@ -179,6 +179,27 @@ fn work_that_was_stopped_leaves_its_text_undecided_until_it_is_planned_again() {
 }
 
 #[test]
+fn the_best_plan_so_far_is_kept_when_looking_for_a_better_one_is_stopped() {
+    let mut planned = support::start();
+    planned.session.set_source("scenario S[0,10] = { delay[5,5] }");
+    planned.settle();
+    let mut snapshot = planned.session.state().shown().expect("it is planned").as_ref().clone();
+    let mut app = at_work();
+    snapshot.revision = app.json()["revision"].as_u64().expect("a number");
+    snapshot.stage = mission::Stage::Improving;
+    let answer = mission::Response::Snapshot(std::sync::Arc::new(snapshot));
+    app.world.news.borrow_mut().push_back(HostEvent::Answer(answer));
+    app.settle();
+    assert_eq!(app.json()["status"], "working", "a better one may come");
+    assert!(app.session.state().is_improving());
+    assert!(app.json()["plan"].is_object(), "and this one is shown");
+    app.dispatch("plan.stop", &json!(null));
+    assert_eq!((app.world.stopped.get(), &app.json()["status"]), (1, &json!("plan")));
+    assert!(app.json()["plan"].is_object());
+    assert!(app.session.dispatch("plan.stop", &json!(null)).is_err(), "there is nothing to stop any more");
+}
+
+#[test]
 fn an_edit_is_planned_after_a_stop() {
     let mut app = at_work();
     app.dispatch("plan.stop", &json!(null));

@@ -13,6 +13,7 @@ pub(super) fn always(_: &AppState) -> Availability {
 /// Whether the planning core works on something.
 pub(super) fn while_working(state: &AppState) -> Availability {
     let is_working = state.status() == Status::Working
+        || state.is_improving()
         || state.review.is_running()
         || state.chance.is_running()
         || state.execution.is_working()
