@@ -327,23 +327,14 @@ fn order_movements(
             if stop() {
                 break;
             }
-            let (least, length_m) = measured(problem, ground, grounds, paths, &route);
-            departures.learn(&route, least, length_m);
+            // Where none is found, the vehicles may stand at other spots in a plan: that asks by itself.
+            if let Ok(legs) = legs(problem, ground, grounds, paths, &route) {
+                let length_m = traverse::joined(&legs).length_m();
+                departures.learn(&route, least_duration(problem, &route, &legs), rounded_up(length_m));
+            }
         }
         extra *= 2;
     }
-}
-
-/// How long a route takes at least, if it can be driven, and its metres.
-fn measured(
-    problem: &Problem<'_>,
-    ground: (&MapKey, &Arc<Terrain>),
-    grounds: &mut Grounds,
-    paths: &mut Paths,
-    route: &Route,
-) -> (Option<Time>, Option<Rational>) {
-    let Ok(legs) = legs(problem, ground, grounds, paths, route) else { return (None, None) };
-    (least_duration(problem, route, &legs), rounded_up(traverse::joined(&legs).length_m()))
 }
 
 /// The metres that movements drive at least, where the objective counts them.
