@@ -15,7 +15,7 @@ use tpn::{Network, Plan, Top};
 #[test]
 fn every_mission_case_holds_unless_it_is_listed_as_not_built() {
     for (_, case) in cases("mission-plan") {
-        for search in [Search::Chronological, Search::ConflictDirected] {
+        for search in [Search::Chronological, Search::ConflictDirected, Search::BestFirst] {
             expect_as_listed(&case, check(&case, search));
         }
     }

@@ -5,7 +5,7 @@ use acceptance::lasting_missions::{Kind, lasting_mission};
 use acceptance::mission::compile;
 use exact::{Bound, Time};
 use kirk::{
-    Departing, Event, Options, Outcome, Replay, ReplayStep, SearchRound, Status, Trace, TreeChoice,
+    Departing, Event, Options, Outcome, Replay, ReplayStep, Search, SearchRound, Status, Trace, TreeChoice,
     TreeStatus, Unlimited,
 };
 use rmpl::program::Change;
@@ -22,6 +22,8 @@ const MISSIONS: u64 = 400;
 enum Addition {
     Nothing,
     Objective,
+    /// An objective, and a search that goes on with the best open state.
+    BestFirst,
     /// Nature chooses some durations.
     Nature,
 }
@@ -47,6 +49,12 @@ fn objectives() {
 }
 
 #[test]
+fn best_first() {
+    check_all(Kind::BOTH, Addition::BestFirst);
+    check_all(Kind::STATES, Addition::BestFirst);
+}
+
+#[test]
 fn durations_that_nature_chooses() {
     check_all(Kind::STATES, Addition::Nature);
     check_all(Kind::RESOURCES, Addition::Nature);
@@ -56,15 +64,16 @@ fn check_all(kind: Kind, addition: Addition) {
     let (mut plans, mut learned, mut failures) = (0, 0, 0);
     for seed in 0..MISSIONS {
         let mut text = lasting_mission(seed, kind);
-        if addition == Addition::Objective {
+        if matches!(addition, Addition::Objective | Addition::BestFirst) {
             text = text.replace("scenario S", "objective minimize end;\nscenario S");
         }
         let (Some(mut network), _) = compile(&text, &Top::Scenario(None)) else { continue };
         if addition == Addition::Nature {
             give_to_nature(&mut network, seed);
         }
-        let (outcome, trace) = recorded(&network, 100_000);
-        check_agreement(&network, &outcome, &format!("seed {seed}\n{text}"));
+        let search = addition.search();
+        let (outcome, trace) = recorded(&network, search, 100_000);
+        check_agreement(&network, search, &outcome, &format!("seed {seed}\n{text}"));
         if trace.events.is_empty() || !trace.is_conflict_driven() {
             continue;
         }
@@ -81,6 +90,15 @@ fn check_all(kind: Kind, addition: Addition) {
     assert!(learned > 15 && failures > 100, "{learned} learned from {failures} failures");
 }
 
+impl Addition {
+    const fn search(self) -> Search {
+        match self {
+            Self::BestFirst => Search::BestFirst,
+            Self::Nothing | Self::Objective | Self::Nature => Search::ConflictDirected,
+        }
+    }
+}
+
 /// Lets nature choose some of the durations that have a range.
 fn give_to_nature(network: &mut Network, seed: u64) {
     for (id, arc) in (0_u64..).zip(&mut network.arcs) {
@@ -92,22 +110,22 @@ fn give_to_nature(network: &mut Network, seed: u64) {
     }
 }
 
-fn options(trace_events: Option<usize>) -> Options {
-    Options { trace_events, explain: false, relax: false, ..Options::default() }
+fn options(search: Search, trace_events: Option<usize>) -> Options {
+    Options { search, trace_events, explain: false, relax: false, ..Options::default() }
 }
 
-fn recorded(network: &Network, events: usize) -> (Outcome, Trace) {
-    let mut outcome = kirk::plan(network, &options(Some(events)), &mut Unlimited);
+fn recorded(network: &Network, search: Search, events: usize) -> (Outcome, Trace) {
+    let mut outcome = kirk::plan(network, &options(search, Some(events)), &mut Unlimited);
     let trace = outcome.trace.take().expect("it was asked for");
     (outcome, trace)
 }
 
 /// With a record, with a short one and without the same is searched in as many steps.
-fn check_agreement(network: &Network, outcome: &Outcome, told: &str) {
-    let unrecorded = kirk::plan(network, &options(None), &mut Unlimited);
+fn check_agreement(network: &Network, search: Search, outcome: &Outcome, told: &str) {
+    let unrecorded = kirk::plan(network, &options(search, None), &mut Unlimited);
     assert_eq!(unrecorded.status, outcome.status, "{told}");
     assert_eq!(unrecorded.plans, outcome.plans, "{told}");
-    let (cut, trace) = recorded(network, 7);
+    let (cut, trace) = recorded(network, search, 7);
     assert_eq!(cut.plans, outcome.plans, "{told}");
     assert!(trace.events.len() <= 7 && trace.tree.len() <= 7, "{told}");
     if trace.is_conflict_driven() {
@@ -173,7 +191,7 @@ fn check_end(network: &Network, trace: &Trace, plan: &Plan, told: &str) {
 
 /// No plan has choices that the search has learned never to make together. Returns how many it has learned.
 fn check_learned(network: &Network, trace: &Trace, addition: Addition, told: &str) -> usize {
-    let all = Options { all: true, max_plans: 300, ..options(None) };
+    let all = Options { all: true, max_plans: 300, ..options(Search::ConflictDirected, None) };
     let all = kirk::plan(network, &all, &mut Unlimited);
     let mut round = &SearchRound::default();
     let mut learned = 0;
@@ -237,7 +255,7 @@ fn contains(network: &Network, plan: &Plan, choices: &[TreeChoice], round: &Sear
             plan.selected_arcs[used.arc.index()]
                 && insert(&mut stn, network.start, used.start, most).is_some()
         }
-        TreeChoice::NoLink { .. } | TreeChoice::Departure(_) => false,
+        TreeChoice::NoLink { .. } | TreeChoice::Later { .. } | TreeChoice::Departure(_) => false,
     })
 }
 
@@ -290,7 +308,7 @@ fn what_is_told_of_resources_is_what_the_mission_says() {
     for seed in 0..MISSIONS {
         let text = lasting_mission(seed, Kind::RESOURCES);
         let (Some(network), _) = compile(&text, &Top::Scenario(None)) else { continue };
-        let (_, trace) = recorded(&network, 100_000);
+        let (_, trace) = recorded(&network, Search::ConflictDirected, 100_000);
         for entry in &trace.events {
             match &entry.event {
                 Event::Overload { uses } => {
@@ -344,7 +362,7 @@ scenario S[0,500] = { free { delay; Drive(B) }, free { delay; Drive(C) } }";
         })
     });
     network.departures = departures.collect();
-    let (outcome, trace) = recorded(&network, 1_000);
+    let (outcome, trace) = recorded(&network, Search::ConflictDirected, 1_000);
     let replay = Replay::new(&network, None, &trace).expect("small numbers");
     let last = replay.at(&trace, trace.events.len());
     assert_eq!(last.windows, outcome.plans[0].windows);

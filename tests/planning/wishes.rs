@@ -1,7 +1,7 @@
 //! Days with more wishes than there is room for: the most that can be had, against all selections in all orders.
 
 use acceptance::mission::network;
-use kirk::{Options, Outcome};
+use kirk::{Event, Options, Outcome, Search, TreeStatus};
 use tpn::generate::Rng;
 
 /// Missions that are compared.
@@ -102,12 +102,39 @@ fn the_most_is_made_of_every_day() {
         let day = Day::random(seed);
         let text = day.text();
         let best = day.best(&mut vec![true; day.wishes.len()], 0, day.energy);
-        let outcome = planned(&text, &Options::default());
-        let quality = &outcome.plans[0].quality;
-        assert_eq!(
-            (quality.reward.to_f64(), quality.is_optimal),
-            (best as f64, Some(true)),
-            "seed {seed}\n{text}"
+        for search in [Search::ConflictDirected, Search::BestFirst] {
+            let outcome = planned(&text, &Options { search, ..Options::default() });
+            let quality = &outcome.plans[0].quality;
+            assert_eq!(
+                (quality.reward.to_f64(), quality.is_optimal),
+                (best as f64, Some(true)),
+                "seed {seed}, {search:?}\n{text}"
+            );
+        }
+    }
+}
+
+/// Of the states that a best-first search goes on with none may become better than the one after it, and none is worse than
+/// the best.
+#[test]
+fn the_best_open_state_goes_on() {
+    for seed in 0..60 {
+        let day = Day::random(seed);
+        let best = day.best(&mut vec![true; day.wishes.len()], 0, day.energy) as f64;
+        let options =
+            Options { search: Search::BestFirst, trace_events: Some(1_000_000), ..Options::default() };
+        let trace = planned(&day.text(), &options).trace.expect("it was asked for");
+        let visited = trace.events.iter().filter_map(|entry| match &entry.event {
+            Event::Visit { values, .. } => Some(values[0].to_f64()),
+            _ => None,
+        });
+        let visited: Vec<f64> = visited.collect();
+        assert!(visited.is_sorted_by(|before, after| before >= after), "seed {seed}: {visited:?}");
+        assert!(visited.last().is_some_and(|&last| last >= best), "seed {seed}: {visited:?}");
+        let is_open = |node: &kirk::TreeNode| node.status == TreeStatus::Unexplored;
+        assert!(
+            !trace.tree.iter().any(is_open),
+            "seed {seed}: nothing that is left unexplored is unexplained"
         );
     }
 }

@@ -72,7 +72,7 @@ fn searched(
     options: &Options,
     termination: &mut dyn Termination,
 ) -> Result<(Outcome, bool), TimeOverflow> {
-    if options.search == Search::ConflictDirected && !options.all {
+    if options.search.learns() && !options.all {
         first_plan(model, options, termination)
     } else {
         run(model, options, (Gaps::Exact, Stats::default()), termination)
@@ -288,7 +288,7 @@ fn run(
     (gaps, stats): (Gaps, Stats),
     termination: &mut dyn Termination,
 ) -> Result<(Outcome, bool), TimeOverflow> {
-    let jumps = options.search == Search::ConflictDirected;
+    let jumps = options.search.learns();
     let setup = Setup {
         jumps,
         gaps,

@@ -54,4 +54,6 @@ ids! {
     EventId;
     /// A reason that was noted on the solver's trail.
     NoteId;
+    /// A state of a best-first search.
+    StateId;
 }

@@ -19,6 +19,29 @@ pub enum Search {
     /// a solver that learns about links, orderings and times as well finds a valid plan, the same one each time.
     #[default]
     ConflictDirected,
+    /// Of all states that are open the one goes on whose goals may still become best (A*, SPEC 12), so that the first plan is an
+    /// optimal one. Keeps all open states: for missions small enough to look on. Without an objective, or where there
+    /// are too many states, and for lists of plans, as [`Search::ConflictDirected`].
+    BestFirst,
+}
+
+impl Search {
+    /// All of them, the paper's first.
+    pub const ALL: [Self; 3] = [Self::Chronological, Self::ConflictDirected, Self::BestFirst];
+
+    /// Its name on the command line and in documents.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Chronological => "chronological",
+            Self::ConflictDirected => "conflict-directed",
+            Self::BestFirst => "best-first",
+        }
+    }
+
+    /// Whether it learns from failures.
+    pub(crate) const fn learns(self) -> bool {
+        matches!(self, Self::ConflictDirected | Self::BestFirst)
+    }
 }
 
 /// What planning is asked for.

@@ -13,7 +13,7 @@ pub(crate) type StnEdge = (PointId, PointId, i64);
 /// What a choice says about times. `may_touch` is whether conflicting intervals need no gap between them.
 pub(crate) fn edges(model: &Model, choice: TreeChoice, may_touch: bool) -> Vec<StnEdge> {
     match choice {
-        TreeChoice::Decision { .. } | TreeChoice::NoLink { .. } => Vec::new(),
+        TreeChoice::Decision { .. } | TreeChoice::NoLink { .. } | TreeChoice::Later { .. } => Vec::new(),
         TreeChoice::Link(link) => {
             let (ask_start, ask_end) = model.interval(link.ask);
             let (tell_start, tell_end) = model.interval(link.tell);

@@ -6,6 +6,7 @@
 //! A conflict-driven search adds no arcs one by one: whatever the choices at a step do not exclude counts as soon as they
 //! select it.
 
+use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 
 use exact::{Bound, Time};
@@ -174,7 +175,10 @@ impl Replay {
 
     fn collect(&self, trace: &Trace, frames: &[Frame], result: &mut ReplayStep) {
         result.tree_node = frames.last().map_or(0, |frame| frame.tree_node);
-        for choice in frames.iter().flat_map(|frame| &frame.choices) {
+        // What was learned later may say in a state what was chosen below it.
+        let mut known = BTreeSet::new();
+        let choices = frames.iter().flat_map(|frame| &frame.choices);
+        for choice in choices.filter(|&&choice| known.insert(choice)) {
             match *choice {
                 TreeChoice::Decision { decision, alternative } => {
                     result.choices.push(Choice { decision, alternative });
@@ -184,7 +188,7 @@ impl Replay {
                 TreeChoice::UseOrder(order) => result.uses.push(order),
                 TreeChoice::Start { used, by } => result.starts.push((used, by)),
                 TreeChoice::Departure(departing) => result.departures.push(departing),
-                TreeChoice::NoLink { .. } => {}
+                TreeChoice::NoLink { .. } | TreeChoice::Later { .. } => {}
             }
         }
         if self.rounds.is_empty() {

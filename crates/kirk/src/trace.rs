@@ -196,6 +196,19 @@ pub enum Event {
         /// Orders of uses, as in [`tpn::Plan::uses_ordered`].
         uses: Vec<UseOrdering>,
     },
+    /// A best-first search opens the state, to go on with it if none is better: what no plan with its choices is better
+    /// than, by goal.
+    Bound {
+        /// The values, in the order of the goals.
+        values: Vec<Rational>,
+    },
+    /// A best-first search goes on with the state, for of those that are open none can become better.
+    Visit {
+        /// What no plan with its choices is better than, in the order of the goals.
+        values: Vec<Rational>,
+        /// How many other states are open.
+        waiting: u32,
+    },
     /// A plan that is better than those before, by the value of each goal.
     Improve {
         /// The values, in the order of the goals.
@@ -208,10 +221,14 @@ pub enum Event {
 pub struct SearchRound {
     /// Whether choices are made in the order of the text; otherwise what has to do with conflicts comes first.
     pub is_in_textual_order: bool,
+    /// Whether the state that may lead to the best plan goes on, and not what was decided last.
+    pub is_best_first: bool,
     /// Whether conflicting intervals may touch: there is no plan with a gap between all of them (SPEC 5.3).
     pub may_touch: bool,
     /// The values of the first goals in the best plan so far: the last one of these is to be better, the others as good.
     pub values: Vec<Rational>,
+    /// What no plan makes better of the last of these, whatever is chosen.
+    pub bound: Option<Rational>,
 }
 
 /// A movement and what leaves its vehicle where it sets out, with no other movement between (SPEC 10.3).
@@ -294,6 +311,13 @@ pub enum TreeChoice {
         /// When it starts, at the latest.
         by: Time,
     },
+    /// A use of a resource starts later than another state of the same search has it.
+    Later {
+        /// The use.
+        used: UseId,
+        /// It starts after this.
+        than: Time,
+    },
     /// Where a movement sets out. This is never chosen; it follows from the order of movements.
     Departure(Departing),
 }
@@ -350,6 +374,9 @@ impl Trace {
                 format!("{} < {}", network.use_name(order.first), network.use_name(order.then))
             }
             Some(TreeChoice::Start { used, by }) => format!("{} by {by}", network.use_name(used)),
+            Some(TreeChoice::Later { used, than }) => {
+                format!("{} after {than}", network.use_name(used))
+            }
             Some(TreeChoice::Departure(Departing { movement, before })) => {
                 format!("{} from {}", network.label_name(movement), network.label_name(before))
             }

@@ -96,8 +96,13 @@ fn conflict_driven_json(network: &Network, event: &Event) -> Value {
     };
     let uses = |uses: &[UseId]| -> Vec<String> { uses.iter().map(|&used| network.use_name(used)).collect() };
     match event {
-        Event::Begin(SearchRound { is_in_textual_order, may_touch, values }) => json!({
-            "event": "begin", "textual": is_in_textual_order, "touching": may_touch, "values": values,
+        Event::Begin(SearchRound { is_in_textual_order, is_best_first, may_touch, values, bound }) => json!({
+            "event": "begin",
+            "textual": is_in_textual_order,
+            "best-first": is_best_first,
+            "touching": may_touch,
+            "values": values,
+            "bound": bound,
         }),
         Event::TryUseOrder { order } => json!({
             "event": "try-use-order",
@@ -135,13 +140,15 @@ fn conflict_driven_json(network: &Network, event: &Event) -> Value {
             "orders": orders.iter().map(|&order| choice_json(network, TreeChoice::Order(order))).collect::<Vec<_>>(),
             "uses": uses.iter().map(|&order| choice_json(network, TreeChoice::UseOrder(order))).collect::<Vec<_>>(),
         }),
+        Event::Bound { values } => json!({ "event": "bound", "values": values }),
+        Event::Visit { values, waiting } => json!({ "event": "visit", "values": values, "waiting": waiting }),
         Event::Improve { values } => json!({ "event": "improve", "values": values }),
         _ => Value::Null,
     }
 }
 
 /// A choice: `{"decision","alternative"}`, `{"ask","tell"}`, `{"first","then"}` of conditions or of uses,
-/// `{"use","by"}`, and `{"movement","before"}`.
+/// `{"use","by"}`, `{"use","after"}`, and `{"movement","before"}`.
 fn choice_json(network: &Network, choice: TreeChoice) -> Value {
     let label = |id| network.label_name(id);
     match choice {
@@ -155,6 +162,7 @@ fn choice_json(network: &Network, choice: TreeChoice) -> Value {
             json!({ "first": network.use_name(order.first), "then": network.use_name(order.then) })
         }
         TreeChoice::Start { used, by } => json!({ "use": network.use_name(used), "by": by }),
+        TreeChoice::Later { used, than } => json!({ "use": network.use_name(used), "after": than }),
         TreeChoice::Departure(Departing { movement, before }) => {
             json!({ "movement": label(movement), "before": label(before) })
         }

@@ -79,6 +79,8 @@ enum SearchName {
     /// Learns from each failure and jumps back; finds a valid plan, not always the first one in the text's order.
     #[default]
     ConflictDirected,
+    /// Goes on with what may still become best (A*): the first plan is an optimal one. Keeps everything that is open.
+    BestFirst,
 }
 
 /// Events of a search that `--trace` writes at most.
@@ -149,6 +151,7 @@ impl Args {
             search: match self.search {
                 SearchName::Chronological => Search::Chronological,
                 SearchName::ConflictDirected => Search::ConflictDirected,
+                SearchName::BestFirst => Search::BestFirst,
             },
             threat_gap,
             all: self.all,

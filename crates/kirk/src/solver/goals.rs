@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use exact::Rational;
 use tpn::{Choice, DecisionId, LabelId};
 
 use super::encode::{Problem, TooLarge};
@@ -68,6 +69,16 @@ impl Problem<'_> {
         };
         let sums = self.sums(solver, goal, &relaxation.rows).unwrap_or_default();
         sums.into_iter().map(least).max().unwrap_or(i64::MIN)
+    }
+
+    /// The same of all goals.
+    pub(super) fn goal_bounds(&self, solver: &Solver) -> Vec<i64> {
+        self.model.demands.goals.iter().map(|goal| self.goal_bound(solver, goal)).collect()
+    }
+
+    /// Sums as values of the goals.
+    pub(super) fn goal_values(&self, sums: &[i64]) -> Vec<Rational> {
+        self.model.demands.goals.iter().zip(sums).map(|(goal, &sum)| goal.value(sum)).collect()
     }
 
     /// Tries these choices first.

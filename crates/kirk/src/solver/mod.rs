@@ -19,6 +19,7 @@
 mod activity;
 mod alternatives;
 mod analysis;
+mod best_first;
 mod clauses;
 mod control;
 mod cumulative;
@@ -59,6 +60,7 @@ use resources::Sharing;
 use tours::Tours;
 use trail::{Conflict, Trail};
 
+pub(crate) use best_first::{Frontier, LeastSums, Visit};
 pub(crate) use encode::{Part, Problem, TooLarge};
 pub(crate) use goals::GoalSums;
 pub(crate) use lasting::Kept;

@@ -6,7 +6,7 @@
 //! Recording decides nothing: with and without it the same is searched in the same steps.
 
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 
 use exact::{Rational, Time};
 use stn::{Inconsistency, Stn};
@@ -42,6 +42,8 @@ pub(crate) struct Record {
     solution: TreeNodeId,
     /// Whether better and better plans are looked for, in searches of their own.
     has_goals: bool,
+    /// Of a best-first search, which comes to a state more than once: what has been told in each.
+    told: Option<BTreeMap<TreeNodeId, BTreeSet<Side>>>,
 }
 
 /// What a conflict comes from, where that is not told by its literals.
@@ -64,6 +66,7 @@ impl Record {
             may_touch: false,
             solution: 0,
             has_goals,
+            told: None,
         }
     }
 
@@ -111,6 +114,15 @@ impl Record {
         }
     }
 
+    /// Takes note that it is told in the present state what a side says; `false` if that is known there.
+    fn is_news(&mut self, side: Side) -> bool {
+        let at = self.at();
+        let Some(told) = &mut self.told else { return true };
+        let is_known =
+            self.path.iter().any(|state| told.get(state).is_some_and(|sides| sides.contains(&side)));
+        !is_known && told.entry(at).or_default().insert(side)
+    }
+
     /// Events of levels above this one are gone, and those of the trail beyond `num_events`.
     pub(super) fn retract(&mut self, level: u32, num_events: usize) {
         self.path.truncate(level as usize + 1);
@@ -156,6 +168,7 @@ impl Solver {
         record.path.truncate(1);
         record.seen = 0;
         record.may_touch = round.may_touch;
+        record.told = round.is_best_first.then(BTreeMap::new);
         record.tell(Event::Begin(round));
         self.name_choices(problem);
         let given = Literal::TRUE.side;
@@ -206,7 +219,9 @@ impl Solver {
             Some(TreeChoice::UseOrder(order)) => Event::TryUseOrder { order },
             // All that is decided is one of these.
             Some(TreeChoice::Start { used, by }) => Event::TryStart { used, by },
-            Some(TreeChoice::NoLink { .. } | TreeChoice::Departure(_)) | None => return,
+            Some(TreeChoice::NoLink { .. } | TreeChoice::Later { .. } | TreeChoice::Departure(_)) | None => {
+                return;
+            }
         };
         record.tell(event);
     }
@@ -241,6 +256,9 @@ impl Solver {
                 is_told && own.is_empty() && !matches!(event.cause, Cause::Implied(_))
             });
             if own.is_empty() && ruled_out.is_none() {
+                continue;
+            }
+            if !self.recording().is_some_and(|record| record.is_news(event.side)) {
                 continue;
             }
             let literal = Literal::new(event.side, event.most);
@@ -322,7 +340,58 @@ impl Solver {
         let because = levels.into_iter().map(state).collect();
         let to = state(level);
         record.tell(Event::Learn { choices });
-        record.tell(Event::Backjump { to, because });
+        // A best-first search goes on where it is best.
+        if record.told.is_none() {
+            record.tell(Event::Backjump { to, because });
+        }
+    }
+
+    /// The present state, if there is room for it.
+    pub(super) fn recorded_state(&self) -> Option<TreeNodeId> {
+        self.record.as_ref().filter(|record| !record.is_full()).map(|record| record.at())
+    }
+
+    /// A state beside the present one, in which the use starts later than it does here.
+    pub(super) fn record_later(&mut self, start: Literal) -> Option<TreeNodeId> {
+        let record = self.recording()?;
+        let Some(&TreeChoice::Start { used, by }) = record.starts.get(&start) else { return None };
+        let later = TreeChoice::Later { used, than: by };
+        record.starts.insert(!start, later);
+        let beside = record.path.iter().rev().nth(1).copied().unwrap_or(0);
+        let state = record.recorder.enter(beside, Some(later))?;
+        record.recorder.set_status(state, TreeStatus::Unexplored);
+        Some(state)
+    }
+
+    /// Takes note that a decision is made again.
+    pub(super) fn record_again(&mut self, state: Option<TreeNodeId>) {
+        if let Some(record) = self.recording() {
+            record.path.extend(state);
+        }
+    }
+
+    /// Tells that the search goes on with the present state, what the goals may become in it, and how many others wait.
+    pub(super) fn record_visit(&mut self, problem: &Problem<'_>, least: &[i64], waiting: usize) {
+        if let Some(record) = self.recording() {
+            record.set_status(TreeStatus::Decision);
+            record.tell(Event::Visit { values: problem.goal_values(least), waiting: waiting as u32 });
+        }
+    }
+
+    /// Tells what the goals may become in the present state, which now waits.
+    pub(super) fn record_bound(&mut self, problem: &Problem<'_>, least: &[i64]) {
+        if let Some(record) = self.recording() {
+            record.set_status(TreeStatus::Unexplored);
+            record.tell(Event::Bound { values: problem.goal_values(least) });
+        }
+    }
+
+    /// Tells why nothing is looked for in a state.
+    pub(super) fn record_refused(&mut self, state: TreeNodeId, event: Event) {
+        if let Some(record) = self.recording() {
+            record.recorder.record(state, event);
+            record.recorder.set_status(state, TreeStatus::Failed);
+        }
     }
 
     /// Tells that there is no further solution.
@@ -502,7 +571,10 @@ fn told(model: &Model, constraints: &[Constraint], edge: &stn::CycleEdge) -> Opt
 /// What a choice adds to the network.
 const fn constraint(choice: TreeChoice) -> Option<Constraint> {
     match choice {
-        TreeChoice::Decision { .. } | TreeChoice::NoLink { .. } | TreeChoice::Start { .. } => None,
+        TreeChoice::Decision { .. }
+        | TreeChoice::NoLink { .. }
+        | TreeChoice::Start { .. }
+        | TreeChoice::Later { .. } => None,
         TreeChoice::Link(link) => Some(Constraint::Link(link)),
         TreeChoice::Order(order) => Some(Constraint::Order(order)),
         TreeChoice::UseOrder(order) => Some(Constraint::UseOrder(order)),

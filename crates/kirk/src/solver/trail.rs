@@ -113,6 +113,13 @@ impl Trail {
         self.levels.push((self.events.len() as u32, self.noted.len() as u32));
     }
 
+    /// What was decided last, where a level begins with a decision.
+    pub(crate) fn last_decision(&self) -> Option<Literal> {
+        let &(first, _) = self.levels.last()?;
+        let event = self.events.get(EventId::from(first as usize))?;
+        Some(Literal::new(event.side, event.most))
+    }
+
     /// Keeps a reason for [`Cause::Noted`] until the present level is left.
     pub(crate) fn note(&mut self, reason: Vec<Literal>) -> Cause {
         let note = Note { reason: reason.into_boxed_slice(), is_of_goal: false };

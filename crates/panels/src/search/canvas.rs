@@ -497,6 +497,9 @@ impl Scene<'_> {
         }
         let choice = self.tree.trace.tree[id as usize].choice;
         let mut text = short_label(self.tree.network, choice);
+        if let Some(bound) = self.bound(id) {
+            text = format!("{text} · {bound}");
+        }
         if self.is_folded(id) {
             text = format!("{text} +{}", self.tree.index.below[id as usize]);
         }
@@ -511,6 +514,16 @@ impl Scene<'_> {
         }
         let at = Align2::LEFT_CENTER.anchor_size(pos2(left, center.y), galley.size());
         self.painter.galley(at.min, galley, color);
+    }
+
+    /// What the goals may become in a state, where the search goes by that.
+    fn bound(&self, id: TreeNodeId) -> Option<String> {
+        let values = match self.tree.index.bounded(self.tree.trace, id, self.tree.step())? {
+            Event::Bound { values } | Event::Visit { values, .. } => values,
+            _ => return None,
+        };
+        let values: Vec<String> = values.iter().map(ToString::to_string).collect();
+        Some(values.join(", "))
     }
 
     fn one_line(&self, text: &str, color: Color32, room: f32) -> std::sync::Arc<egui::Galley> {
@@ -533,6 +546,11 @@ pub fn short_label(network: &Network, choice: Option<TreeChoice>) -> String {
         let owner = label.and_then(|label| network.occurrences.get(label.owner?.index()));
         owner.map_or_else(|| network.label_name(id), |owner| owner.name.to_string())
     };
+    let user = |id: tpn::UseId| {
+        let used = network.uses.get(id.index());
+        let owner = used.and_then(|used| network.occurrences.get(used.owner?.index()));
+        owner.map_or_else(|| network.use_name(id), |owner| owner.name.to_string())
+    };
     match choice {
         None => "start".to_owned(),
         Some(TreeChoice::Decision { decision, alternative }) => {
@@ -541,19 +559,9 @@ pub fn short_label(network: &Network, choice: Option<TreeChoice>) -> String {
         Some(TreeChoice::Link(link)) => format!("← {}", owner(link.tell)),
         Some(TreeChoice::Order(order)) => format!("{} ≺ {}", owner(order.first), owner(order.then)),
         Some(TreeChoice::NoLink { ask }) => format!("{} ← nothing", condition(ask)),
-        Some(TreeChoice::UseOrder(order)) => {
-            let user = |id: tpn::UseId| {
-                let used = network.uses.get(id.index());
-                let owner = used.and_then(|used| network.occurrences.get(used.owner?.index()));
-                owner.map_or_else(|| network.use_name(id), |owner| owner.name.to_string())
-            };
-            format!("{} ≺ {}", user(order.first), user(order.then))
-        }
-        Some(TreeChoice::Start { used, by }) => {
-            let used = network.uses.get(used.index());
-            let owner = used.and_then(|used| network.occurrences.get(used.owner?.index()));
-            format!("{} by {by}", owner.map_or("?", |owner| owner.name.as_str()))
-        }
+        Some(TreeChoice::UseOrder(order)) => format!("{} ≺ {}", user(order.first), user(order.then)),
+        Some(TreeChoice::Start { used, by }) => format!("{} by {by}", user(used)),
+        Some(TreeChoice::Later { used, than }) => format!("{} after {than}", user(used)),
         Some(TreeChoice::Departure(it)) => format!("{} → {}", owner(it.before), owner(it.movement)),
     }
 }

@@ -8,7 +8,7 @@ use workbench::PanelKind;
 use workbench::command::{Command, CommandSender};
 use workbench::state::search::{Recording, SearchCommand};
 
-use super::kind_name;
+use super::{kind_help, kind_name};
 use crate::Context;
 
 /// Speeds that can be chosen, in steps a second.
@@ -153,8 +153,8 @@ fn show_kind(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     ComboBox::from_id_salt("search-kind")
         .selected_text(kind_name(kind))
         .show_ui(ui, |ui| {
-            for choice in [SearchKind::Chronological, SearchKind::ConflictDirected] {
-                ui.selectable_value(&mut kind, choice, kind_name(choice));
+            for choice in SearchKind::ALL {
+                ui.selectable_value(&mut kind, choice, kind_name(choice)).on_hover_text(kind_help(choice));
             }
         })
         .response

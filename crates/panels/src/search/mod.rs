@@ -311,6 +311,18 @@ fn kind_name(kind: SearchKind) -> &'static str {
     match kind {
         SearchKind::Chronological => "Chronological",
         SearchKind::ConflictDirected => "Conflict-directed",
+        SearchKind::BestFirst => "Best first",
+    }
+}
+
+/// What a search does, in a sentence.
+fn kind_help(kind: SearchKind) -> &'static str {
+    match kind {
+        SearchKind::Chronological => "On failure it undoes the last choice",
+        SearchKind::ConflictDirected => "It learns from each failure, and jumps back to what caused it",
+        SearchKind::BestFirst => {
+            "It goes on where the objective may still become best (A*); without an objective as Conflict-directed"
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Coordinates for the search tree: the root on top, children in the order of their alternatives, subtrees as close
 //! together as they fit, after Reingold and Tilford (1981). Distances are in cells; linear in the size of the search.
 
-use kirk::{Trace, TreeNodeId, TreeStatus};
+use kirk::{Event, Trace, TreeNodeId, TreeStatus};
 
 /// The tree as it is drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -24,6 +24,8 @@ pub struct TreeIndex {
     pub first_step: Vec<Option<usize>>,
     /// The last step in it or below it.
     pub last_step: Vec<Option<usize>>,
+    /// The steps in which a best-first search opens each state or goes on with it.
+    pub bounded: Vec<Vec<u32>>,
     /// The step from which on each state is known: when it or another alternative of its choice point is entered.
     known_from: Vec<usize>,
     /// How many states are below each.
@@ -46,6 +48,7 @@ impl TreeIndex {
             child_start: vec![0; count + 1],
             first_step: vec![None; count],
             last_step: vec![None; count],
+            bounded: vec![Vec::new(); count],
             known_from: vec![usize::MAX; count],
             below: vec![0; count],
             failures: vec![0; count],
@@ -60,6 +63,9 @@ impl TreeIndex {
                     index.entered.push(entry.tree_node);
                 }
                 index.last_step[id] = Some(step);
+                if matches!(entry.event, Event::Bound { .. } | Event::Visit { .. }) {
+                    index.bounded[id].push(step as u32);
+                }
             }
         }
         index.find_children(trace);
@@ -145,13 +151,25 @@ impl TreeIndex {
         else {
             return status;
         };
-        if *first > step {
+        let is_open = || {
+            let bounded = self.bounded(trace, id, Some(step));
+            bounded.is_some_and(|event| matches!(event, Event::Bound { .. }))
+        };
+        if *first > step || (*last > step && is_open()) {
             TreeStatus::Unexplored
         } else if *last > step {
             TreeStatus::Decision
         } else {
             status
         }
+    }
+
+    /// What a best-first search has last said of a state by `step`, or at all: what it may lead to.
+    pub fn bounded<'t>(&self, trace: &'t Trace, id: TreeNodeId, step: Option<usize>) -> Option<&'t Event> {
+        let steps = self.bounded.get(id as usize)?;
+        let count = step.map_or(steps.len(), |step| steps.partition_point(|&at| at as usize <= step));
+        let last = *steps.get(count.checked_sub(1)?)?;
+        trace.events.get(last as usize).map(|entry| &entry.event)
     }
 
     /// Whether all that was tried below a state failed, so that it can be folded.

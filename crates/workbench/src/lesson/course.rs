@@ -45,19 +45,19 @@ pub const COURSE: &[Chapter] = &[
     },
     Chapter {
         title: "Time and means",
-        lessons: lessons!["09" "dispatching", "10" "states", "11" "resources", "12" "controllability"],
+        lessons: lessons!["09" "dispatching", "10" "states", "11" "resources", "12" "objectives", "13" "controllability"],
     },
-    Chapter { title: "Paths", lessons: lessons!["13" "rrt"] },
+    Chapter { title: "Paths", lessons: lessons!["14" "rrt"] },
     Chapter {
         title: "Control",
         lessons: lessons![
-            "14" "automata",
-            "15" "esterel-pause",
-            "16" "esterel-preempt",
-            "17" "estimation",
+            "15" "automata",
+            "16" "esterel-pause",
+            "17" "esterel-preempt",
+            "18" "estimation",
         ],
     },
-    Chapter { title: "All together", lessons: lessons!["18" "whole-mission"] },
+    Chapter { title: "All together", lessons: lessons!["19" "whole-mission"] },
 ];
 
 /// The lesson of this name.

@@ -53,12 +53,10 @@ pub(super) fn read(lesson: &mut Lesson, head: Option<&Head>, errors: &mut Vec<Le
 }
 
 fn search(value: &str) -> Option<LessonSearch> {
-    match value {
-        "chronological" => Some(LessonSearch::One(SearchKind::Chronological)),
-        "conflict-directed" => Some(LessonSearch::One(SearchKind::ConflictDirected)),
-        "both" => Some(LessonSearch::Both),
-        _ => None,
+    if value == "both" {
+        return Some(LessonSearch::Both);
     }
+    SearchKind::ALL.into_iter().find(|kind| kind.name() == value).map(LessonSearch::One)
 }
 
 fn expectation(value: &str) -> Option<Expectation> {

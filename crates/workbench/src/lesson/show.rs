@@ -82,12 +82,14 @@ pub enum StepKind {
     Jump,
     Lesson,
     Consequence,
+    Bound,
+    Visit,
     Plan,
 }
 
 impl StepKind {
     /// All of them, with the words for them.
-    pub const ALL: [(&'static str, Self); 14] = [
+    pub const ALL: [(&'static str, Self); 16] = [
         ("decision", Self::Decision),
         ("expansion", Self::Expansion),
         ("arc", Self::Arc),
@@ -101,6 +103,8 @@ impl StepKind {
         ("jump", Self::Jump),
         ("lesson", Self::Lesson),
         ("consequence", Self::Consequence),
+        ("bound", Self::Bound),
+        ("visit", Self::Visit),
         ("plan", Self::Plan),
     ];
 
@@ -126,6 +130,8 @@ impl StepKind {
             Self::Jump => matches!(event, Event::Backjump { .. }),
             Self::Lesson => matches!(event, Event::Learn { .. }),
             Self::Consequence => matches!(event, Event::Imply { .. }),
+            Self::Bound => matches!(event, Event::Bound { .. }),
+            Self::Visit => matches!(event, Event::Visit { .. }),
             Self::Plan => matches!(event, Event::Solution { .. } | Event::Improve { .. }),
         }
     }

@@ -20,6 +20,9 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         Scope::Everywhere,
         |_| Command::SetSearch(mission::SearchKind::ConflictDirected),
     ),
+    plain("plan.bestFirst", "Search best first", Group::Plan, &[], Scope::Everywhere, |_| {
+        Command::SetSearch(mission::SearchKind::BestFirst)
+    }),
     plain("plan.compare", "Compare both searches", Group::Plan, &[], Scope::Everywhere, |state| {
         Command::Search(SearchCommand::Compare(!state.search.compares()))
     }),

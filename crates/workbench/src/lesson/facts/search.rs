@@ -4,7 +4,7 @@ use kirk::Event;
 use mission::SearchKind;
 
 use super::{Fact, Of, count, fact, plan, time, truth, words};
-use crate::lesson::StepKind;
+use crate::lesson::{StepKind, Value};
 use crate::state::AppState;
 use crate::state::search::wording::event;
 use crate::state::search::{Counts, Recording};
@@ -60,6 +60,17 @@ pub(super) const FACTS: &[Fact] = &[
             time(total.checked_neg()?)
         },
     ),
+    fact(
+        "bound",
+        Of::Nothing,
+        "what the first goal may become at best with the choices of the step, in a best-first search",
+        |state, _| {
+            let (_, Event::Bound { values } | Event::Visit { values, .. }) = looked_at(state)? else {
+                return None;
+            };
+            values.first().copied().map(Value::Number)
+        },
+    ),
     fact("cycle", Of::Nothing, "the events of the negative cycle of the step, in order", |state, _| {
         let (recording, event) = looked_at(state)?;
         let Event::Inconsistent { cycle } = event else { return None };
@@ -84,12 +95,10 @@ pub(super) const FACTS: &[Fact] = &[
 fn recording(state: &AppState, which: &str) -> Option<Recording> {
     plan::fresh(state)?;
     let recordings = state.search.recordings(state.shown());
-    let kind = match which {
-        "" => return recordings.into_iter().nth(state.search.side()),
-        "chronological" => SearchKind::Chronological,
-        "conflict-directed" => SearchKind::ConflictDirected,
-        _ => return None,
-    };
+    if which.is_empty() {
+        return recordings.into_iter().nth(state.search.side());
+    }
+    let kind = SearchKind::ALL.into_iter().find(|kind| kind.name() == which)?;
     recordings.into_iter().find(|recording| recording.kind().unwrap_or(state.settings.plan.search) == kind)
 }
 

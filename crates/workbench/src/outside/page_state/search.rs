@@ -154,6 +154,8 @@ fn event_name(event: &kirk::Event) -> &'static str {
         Event::OutOfRange { .. } => "out-of-range",
         Event::Restart => "restart",
         Event::Keep { .. } => "keep",
+        Event::Bound { .. } => "bound",
+        Event::Visit { .. } => "visit",
         Event::Improve { .. } => "improve",
     }
 }

@@ -107,6 +107,8 @@ impl Focus {
             | Event::Begin(_)
             | Event::NoRoomForGap
             | Event::Restart
+            | Event::Bound { .. }
+            | Event::Visit { .. }
             | Event::Improve { .. } => {}
         }
         focus.spans.sort_unstable();
@@ -156,7 +158,9 @@ impl Focus {
                 TreeChoice::Order(order) => self.add_labels(network, [order.first, order.then]),
                 TreeChoice::NoLink { ask } => self.add_label(network, ask),
                 TreeChoice::UseOrder(order) => self.add_uses(network, &[order.first, order.then]),
-                TreeChoice::Start { used, .. } => self.add_uses(network, &[used]),
+                TreeChoice::Start { used, .. } | TreeChoice::Later { used, .. } => {
+                    self.add_uses(network, &[used]);
+                }
                 TreeChoice::Departure(Departing { movement, before }) => {
                     self.add_labels(network, [before, movement]);
                 }
@@ -218,7 +222,11 @@ pub fn selection_of(network: &Network, choice: Option<TreeChoice>) -> Selection 
         Some(TreeChoice::Link(link)) => Selection::Link(link),
         Some(TreeChoice::Order(order)) => Selection::Ordering(order),
         Some(TreeChoice::NoLink { ask }) => Selection::Label(ask),
-        Some(TreeChoice::UseOrder(UseOrdering { then: used, .. }) | TreeChoice::Start { used, .. }) => {
+        Some(
+            TreeChoice::UseOrder(UseOrdering { then: used, .. })
+            | TreeChoice::Start { used, .. }
+            | TreeChoice::Later { used, .. },
+        ) => {
             let owner = network.uses.get(used.index()).and_then(|used| used.owner);
             owner.map_or(Selection::None, Selection::Occurrence)
         }

@@ -24,9 +24,12 @@ pub fn choice(network: &Network, choice: Option<TreeChoice>) -> String {
             format!("{first} before {then}")
         }
         Some(TreeChoice::NoLink { ask }) => gives(network, ask, None),
-        Some(choice @ (TreeChoice::UseOrder(_) | TreeChoice::Start { .. } | TreeChoice::Departure(_))) => {
-            conflict_driven::fact(network, choice)
-        }
+        Some(
+            choice @ (TreeChoice::UseOrder(_)
+            | TreeChoice::Start { .. }
+            | TreeChoice::Later { .. }
+            | TreeChoice::Departure(_)),
+        ) => conflict_driven::fact(network, choice),
     }
 }
 

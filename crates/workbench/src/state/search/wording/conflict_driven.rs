@@ -61,6 +61,9 @@ pub(super) fn event(network: &Network, trace: &Trace, event: &Event) -> Option<S
         Event::Unsharable { uses } => {
             format!("Failure: {}, and none of them can wait any more.", demand(network, uses))
         }
+        Event::NotBetter { choices } if choices.is_empty() && is_best_first(trace) => {
+            "Closed: no plan with this is better than the one that was found.".to_owned()
+        }
         Event::NotBetter { choices } if choices.is_empty() => {
             "Failure: no plan is better than the best one found.".to_owned()
         }
@@ -106,9 +109,33 @@ pub(super) fn event(network: &Network, trace: &Trace, event: &Event) -> Option<S
                 format!("The times fit. Of their order the plan keeps {}.", facts(network, &kept))
             }
         }
+        Event::Bound { values } => {
+            format!("Open: with this no plan is better than {}.", goals(network, values))
+        }
+        Event::Visit { values, waiting: 0 } => {
+            format!(
+                "Go on here, where no plan is better than {}; nothing else is open.",
+                goals(network, values)
+            )
+        }
+        Event::Visit { values, waiting } => {
+            let others = if *waiting == 1 {
+                "one other state is".to_owned()
+            } else {
+                format!("{waiting} other states are")
+            };
+            format!(
+                "Go on here: of all that is open this may become best, with {}; {others} open.",
+                goals(network, values)
+            )
+        }
         Event::Improve { values } => format!("The best plan so far: {}.", goals(network, values)),
         _ => return None,
     })
+}
+
+fn is_best_first(trace: &Trace) -> bool {
+    matches!(trace.events.first().map(|entry| &entry.event), Some(Event::Begin(round)) if round.is_best_first)
 }
 
 /// What was learned, in a sentence.
@@ -148,6 +175,9 @@ pub fn fact(network: &Network, choice: TreeChoice) -> String {
         }
         TreeChoice::Start { used, by } => {
             format!("{} by {by} ({})", user(network, used), resource(network, used))
+        }
+        TreeChoice::Later { used, than } => {
+            format!("{} after {than} ({})", user(network, used), resource(network, used))
         }
         TreeChoice::Departure(Departing { movement, before }) => {
             let (movement, label) = (owner(network, movement), &network.labels[before.index()]);
@@ -192,14 +222,19 @@ fn joined(names: &[String]) -> String {
 }
 
 fn begin(network: &Network, round: &SearchRound) -> String {
-    let SearchRound { is_in_textual_order, may_touch, values } = round;
+    let SearchRound { is_in_textual_order, is_best_first, may_touch, values, bound } = round;
     if let Some(goal) = values.len().checked_sub(1).and_then(|last| network.objective.get(last)) {
         let more = if goal.is_maximized { "more" } else { "less" };
         let measure = measure(goal);
+        let proven = bound.map_or_else(String::new, |bound| format!(" None has {more} than {bound}."));
         return format!(
-            "Look for a plan that is better than {}: with {more} {measure}.",
+            "Look for a plan that is better than {}: with {more} {measure}.{proven}",
             goals(network, values)
         );
+    }
+    if *is_best_first && !*may_touch {
+        return "Always go on where the best plan may still be. The first plan that is finished is the best one."
+            .to_owned();
     }
     match (may_touch, is_in_textual_order, network.objective.is_empty()) {
         (true, ..) => {

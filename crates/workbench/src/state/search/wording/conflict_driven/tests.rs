@@ -1,21 +1,26 @@
 //! What records of small missions say, sentence by sentence.
 
-use kirk::{Options, Unlimited};
+use kirk::{Options, Search, Unlimited};
 use tpn::{Top, compile};
 
 use super::super::event;
 
-fn sentences(text: &str) -> Vec<String> {
+fn sentences(text: &str, search: Search) -> Vec<String> {
     let (network, diagnostics) = compile(&rmpl::parse(text).program(), &Top::Scenario(None));
     let network = network.unwrap_or_else(|| panic!("{diagnostics:?}"));
-    let options = Options { trace_events: Some(1_000), ..Options::default() };
+    let options = Options { search, trace_events: Some(1_000), ..Options::default() };
     let trace = kirk::plan(&network, &options, &mut Unlimited).trace.expect("it was asked for");
     trace.events.iter().map(|entry| event(&network, &trace, &entry.event)).collect()
 }
 
 #[track_caller]
 fn check(text: &str, expected: &[&str]) {
-    let sentences = sentences(text);
+    check_search(text, Search::default(), expected);
+}
+
+#[track_caller]
+fn check_search(text: &str, search: Search, expected: &[&str]) {
+    let sentences = sentences(text, search);
     assert_eq!(sentences, expected, "{sentences:#?}");
 }
 
@@ -104,16 +109,47 @@ fn an_objective() {
             "Decide D1 = 0: Long#1.",
             "The times fit, and what must be kept of their order follows from the choices.",
             "The best plan so far: end 5.",
-            "Look for a plan that is better than end 5: with less end.",
+            "Look for a plan that is better than end 5: with less end. None has less than 2.",
             "Whatever is chosen, D1=0 is ruled out.",
             "Whatever is chosen: D1=1.",
             "The times fit, and what must be kept of their order follows from the choices.",
             "The best plan so far: end 2.",
-            "Look for a plan that is better than end 2: with less end.",
+            "Look for a plan that is better than end 2: with less end. None has less than 2.",
             "Whatever is chosen, D1=0 is ruled out.",
             "Whatever is chosen: D1=1.",
             "Failure: no plan is better than the best one found.",
             "Nothing is left to try.",
+            "This is a plan.",
+        ],
+    );
+}
+
+#[test]
+fn best_first() {
+    check_search(
+        "primitive Long()[5,9] costs 3; primitive Short()[2,3] costs 4; primitive Walk()[8,8] costs 1; primitive Ride()[2,2] costs 5;
+         objective minimize cost;
+         scenario S[0,10] = { choose { Long(), Short() }; choose { Walk(), Ride() } }",
+        Search::BestFirst,
+        &[
+            "Always go on where the best plan may still be. The first plan that is finished is the best one.",
+            "Go on here, where no plan is better than cost 4; nothing else is open.",
+            "Decide D1 = 0: Long#1.",
+            "D1=0 rules out D2=0.",
+            "From D1=0 it follows: D2=1.",
+            "Open: with this no plan is better than cost 8.",
+            "Decide D1 = 1: Short#1.",
+            "Open: with this no plan is better than cost 5.",
+            "Go on here: of all that is open this may become best, with cost 5; one other state is open.",
+            "Decide D2 = 0: Walk#1.",
+            "Open: with this no plan is better than cost 5.",
+            "Decide D2 = 1: Ride#1.",
+            "Open: with this no plan is better than cost 9.",
+            "Go on here: of all that is open this may become best, with cost 5; 2 other states are open.",
+            "The times fit, and what must be kept of their order follows from the choices.",
+            "Closed: no plan with this is better than the one that was found.",
+            "Closed: no plan with this is better than the one that was found.",
+            "The best plan so far: cost 5.",
             "This is a plan.",
         ],
     );

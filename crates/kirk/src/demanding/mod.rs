@@ -5,13 +5,15 @@
 //! choice points are decided in the order of the text, each with its first option that is left, so that the first
 //! solution is the first in that order. With an objective better and better plans are looked for, goal by goal.
 
+mod best_first;
+
 use exact::Rational;
 use tpn::{Choice, LabelId, Network, Ordering, Plan};
 
 use crate::controllable;
 use crate::demands::{LastingVariable, ModelGoal, lasting_variables};
 use crate::model::Model;
-use crate::options::{Options, Outcome, Stats, Status, Termination};
+use crate::options::{Options, Outcome, Search, Stats, Status, Termination};
 use crate::overflow::TimeOverflow;
 use crate::partial_order;
 use crate::search::Gaps;
@@ -108,6 +110,7 @@ pub(crate) fn search(
         found: Vec::new(),
         incumbent: None,
         record: options.trace_events.map(|limit| Box::new(Record::new(limit, has_goals))),
+        is_best_first: options.search == Search::BestFirst,
     };
     searching.stats.nodes = model.num_nodes as u64;
     searching.stats.arcs = model.arcs.len() as u64;
@@ -139,6 +142,7 @@ struct Searching<'a> {
     incumbent: Option<Vec<Choice>>,
     /// What is told of all searches; the solver has it while it searches.
     record: Option<Box<Record>>,
+    is_best_first: bool,
 }
 
 /// What came of looking for the next plan of a problem.
@@ -173,14 +177,14 @@ impl<'a> Searching<'a> {
         gaps: Gaps,
         limits: &Limits,
         is_in_order: bool,
-    ) -> Result<Asked<'a>, TooLarge> {
-        let mut asked = self.problem(gaps, limits, is_in_order)?;
-        self.begin_record(&mut asked, gaps, limits);
-        Ok(asked)
+    ) -> Result<Attempt<'a>, TooLarge> {
+        let mut attempt = self.problem(gaps, limits, is_in_order)?;
+        self.begin_record(&mut attempt, gaps, limits);
+        Ok(attempt)
     }
 
     /// Goes on with the record in a solver that begins to search within these limits.
-    fn begin_record(&mut self, asked: &mut Asked<'a>, gaps: Gaps, limits: &Limits) {
+    fn begin_record(&mut self, attempt: &mut Attempt<'a>, gaps: Gaps, limits: &Limits) {
         let Some(record) = self.record.take() else { return };
         let goals = self.model.demands.goals.iter().zip(limits);
         let values = goals.map_while(|(goal, limit)| limit.map(|limit| (goal, limit)));
@@ -190,14 +194,18 @@ impl<'a> Searching<'a> {
             *limit += 1;
         }
         let round = SearchRound {
-            is_in_textual_order: asked.solver.is_in_textual_order,
+            is_in_textual_order: attempt.solver.is_in_textual_order,
+            is_best_first: self.is_best_first,
             may_touch: gaps == Gaps::Ignored && self.gaps().len() > 1,
+            bound: values
+                .last()
+                .map(|(goal, _)| goal.value(attempt.problem.goal_bound(&attempt.solver, goal))),
             values: values.into_iter().map(|(goal, value)| goal.value(value)).collect(),
         };
-        asked.solver.begin_record(&asked.problem, Some(record), round);
+        attempt.solver.begin_record(&attempt.problem, Some(record), round);
     }
 
-    fn problem(&self, gaps: Gaps, limits: &Limits, is_in_order: bool) -> Result<Asked<'a>, TooLarge> {
+    fn problem(&self, gaps: Gaps, limits: &Limits, is_in_order: bool) -> Result<Attempt<'a>, TooLarge> {
         let (problem, mut solver) = Problem::new(self.model, gaps, Part::default())?;
         solver.is_in_textual_order = is_in_order;
         for choices in &self.found {
@@ -213,7 +221,7 @@ impl<'a> Searching<'a> {
                 sums = problem.add_goal(&mut solver, goal, limit, sought == Some(at))?;
             }
         }
-        Ok(Asked { problem, solver, sums })
+        Ok(Attempt { problem, solver, sums })
     }
 
     /// Solves, with at most so many conflicts where a number is given. `None` if these are spent, or the search was stopped.
@@ -285,10 +293,10 @@ impl<'a> Searching<'a> {
         let model = self.model;
         for &gaps in self.gaps() {
             for most in [Some(MAX_CONFLICTS_IN_ORDER), None] {
-                let Ok(asked) = self.recorded_problem(gaps, &Vec::new(), most.is_some()) else {
+                let Ok(attempt) = self.recorded_problem(gaps, &Vec::new(), most.is_some()) else {
                     return Err(TimeOverflow::at(model.start));
                 };
-                let Asked { mut problem, mut solver, .. } = asked;
+                let Attempt { mut problem, mut solver, .. } = attempt;
                 let next = self.next_plan(model, &mut problem, &mut solver, most)?;
                 self.record = solver.record.take();
                 match next {
@@ -307,10 +315,10 @@ impl<'a> Searching<'a> {
         let model = self.model;
         let mut plans: Vec<Plan> = Vec::new();
         for &gaps in self.gaps() {
-            let Ok(asked) = self.recorded_problem(gaps, &Vec::new(), true) else {
+            let Ok(attempt) = self.recorded_problem(gaps, &Vec::new(), true) else {
                 return Err(TimeOverflow::at(model.start));
             };
-            let Asked { mut problem, mut solver, .. } = asked;
+            let Attempt { mut problem, mut solver, .. } = attempt;
             problem.order_all_pairs(&mut solver);
             solver.record_choice_points(&problem);
             loop {
@@ -348,6 +356,13 @@ impl<'a> Searching<'a> {
 
     /// A plan that no other one is better than, goal by goal; the best one found where the search is stopped before.
     fn best(&mut self) -> Result<Option<Plan>, TimeOverflow> {
+        if self.is_best_first {
+            if let Some(plan) = self.best_first()? {
+                return Ok(plan);
+            }
+            // Better and better plans need not keep what is open.
+            self.is_best_first = false;
+        }
         let model = self.model;
         let mut limits: Limits = vec![None; model.demands.goals.len()];
         self.incumbent = None;
@@ -391,7 +406,7 @@ impl<'a> Searching<'a> {
     /// What follows for a goal from the limits of those before it, whatever is decided.
     fn proven_bound(&self, goal: usize, limits: &Limits) -> Option<Rational> {
         let gaps = if self.model.gap == 0 { Gaps::Ignored } else { Gaps::Trusted };
-        let Asked { problem, solver, .. } = self.problem(gaps, limits, false).ok()?;
+        let Attempt { problem, solver, .. } = self.problem(gaps, limits, false).ok()?;
         let goal = &self.model.demands.goals[goal];
         Some(goal.value(problem.goal_bound(&solver, goal)))
     }
@@ -406,22 +421,22 @@ impl<'a> Searching<'a> {
         let model = self.model;
         let limit = limits.iter().rev().find_map(|limit| *limit).unwrap_or(0);
         while let Some(&gaps) = self.gaps().get(improving.exhausted) {
-            let mut asked = match improving.asked.take() {
-                Some((mut asked, last_limit)) => {
-                    Problem::lower_goal(&mut asked.solver, &asked.sums, last_limit - limit);
-                    self.begin_record(&mut asked, gaps, limits);
-                    asked
+            let mut attempt = match improving.attempt.take() {
+                Some((mut attempt, last_limit)) => {
+                    Problem::lower_goal(&mut attempt.solver, &attempt.sums, last_limit - limit);
+                    self.begin_record(&mut attempt, gaps, limits);
+                    attempt
                 }
                 None => match self.recorded_problem(gaps, limits, false) {
-                    Ok(asked) => asked,
+                    Ok(attempt) => attempt,
                     Err(TooLarge) => return Err(TimeOverflow::at(model.start)),
                 },
             };
-            let next = self.next_plan(model, &mut asked.problem, &mut asked.solver, None)?;
-            self.record = asked.solver.record.take();
+            let next = self.next_plan(model, &mut attempt.problem, &mut attempt.solver, None)?;
+            self.record = attempt.solver.record.take();
             match next {
                 Next::Plan(found) => {
-                    improving.asked = Some((asked, limit));
+                    improving.attempt = Some((attempt, limit));
                     return Ok(Some(*found));
                 }
                 Next::Nothing => improving.exhausted += 1,
@@ -433,7 +448,7 @@ impl<'a> Searching<'a> {
 }
 
 /// A problem that is being solved.
-struct Asked<'m> {
+struct Attempt<'m> {
     problem: Problem<'m>,
     solver: Solver,
     /// Of the last goal that has a limit.
@@ -446,7 +461,7 @@ struct Improving<'m> {
     /// How many ways to treat gaps have nothing better to give.
     exhausted: usize,
     /// What the last attempt was at, with its limit.
-    asked: Option<(Asked<'m>, i64)>,
+    attempt: Option<(Attempt<'m>, i64)>,
 }
 
 #[cfg(test)]
