@@ -240,3 +240,17 @@ fn no_stop_of_any_lesson_shows_letters_below_11_points() {
     }
     assert!(small.is_empty(), "{}", small.join("\n"));
 }
+
+#[test]
+fn a_best_first_search_shows_what_each_state_may_lead_to() {
+    let shown = |stop: u32, words: &str| {
+        let app = opened(&format!("lesson=objectives&stop={stop}"), [1280.0, 800.0]);
+        app.texts(egui::Rect::EVERYTHING).iter().any(|(text, _)| text.contains(words))
+    };
+    assert!(shown(2, "start · 4") && !shown(2, "D1=0 · 9"), "nothing is opened below the start");
+    assert!(shown(3, "D1=1 · 10") && !shown(3, "D2=0 · 12"));
+    assert!(shown(5, "D1=0 · 9") && shown(5, "D2=0 · 12") && shown(5, "2 other states are open"));
+    // A step of the search is not worth anything yet.
+    assert!(shown(6, "3 of 3 decisions reached") && !shown(6, "Worth"));
+    assert!(shown(7, "cost 10") && shown(7, "Worth"));
+}

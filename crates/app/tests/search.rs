@@ -44,27 +44,6 @@ fn dispatch(app: &mut App, command: &str, arguments: &serde_json::Value) {
     app.settle();
 }
 
-/// The texts on screen inside a place, with the room they take.
-fn texts(app: &App, place: Rect) -> Vec<(String, Rect)> {
-    fn collect(shape: &egui::Shape, place: Rect, clip: Rect, found: &mut Vec<(String, Rect)>) {
-        match shape {
-            egui::Shape::Text(text) => {
-                let rect = Rect::from_min_size(text.pos, text.galley.size());
-                if place.contains_rect(rect) && clip.intersects(rect) {
-                    found.push((text.galley.text().to_owned(), rect));
-                }
-            }
-            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| collect(shape, place, clip, found)),
-            _ => {}
-        }
-    }
-    let mut found = Vec::new();
-    for shape in &app.harness.output().shapes {
-        collect(&shape.shape, place, shape.clip_rect, &mut found);
-    }
-    found
-}
-
 /// Where the search tree is drawn.
 fn tree(app: &App) -> Rect {
     let is_tree = |node: &egui_kittest::kittest::AccessKitNode<'_>| {
@@ -203,7 +182,7 @@ fn a_failure_shows_its_negative_cycle_in_every_panel() {
     let is_graph = |label: &str| label.starts_with("Distance graph") && label.contains("negative cycle");
     app.harness.get_by(|node| node.label().is_some_and(|label| is_graph(&label)));
     let screen = Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1440.0, 900.0));
-    let shown = texts(&app, screen);
+    let shown = app.texts(screen);
     let step = state["search"]["step"].as_u64().expect("a number");
     let says = |what: &str| shown.iter().any(|(text, _)| text.contains(what));
     assert!(says("✗ Negative cycle"), "the distances name it");
@@ -273,7 +252,7 @@ fn two_searches_are_one_tree_with_the_share_of_each_and_apart_where_that_is_want
         let searches = app.json()["search"]["compare"]["searches"].clone();
         searches[side]["states"].as_u64().expect("a number")
     };
-    let shown = texts(&app, Rect::EVERYTHING);
+    let shown = app.texts(Rect::EVERYTHING);
     let count = |words: &str| {
         let text = shown.iter().find_map(|(text, _)| text.strip_prefix(words));
         text.and_then(|count| count.parse::<u64>().ok()).unwrap_or_else(|| panic!("no {words} in {shown:?}"))
@@ -293,8 +272,8 @@ fn two_searches_are_one_tree_with_the_share_of_each_and_apart_where_that_is_want
     };
     assert_eq!(trees(&app).len(), 1);
     assert!(trees(&app)[0].starts_with("Both searches: search tree of"), "{:?}", trees(&app));
-    for (index, (one, place)) in texts(&app, tree(&app)).iter().enumerate() {
-        for (other, at) in &texts(&app, tree(&app))[index + 1..] {
+    for (index, (one, place)) in app.texts(tree(&app)).iter().enumerate() {
+        for (other, at) in &app.texts(tree(&app))[index + 1..] {
             assert!(!place.intersects(*at), "{one} covers {other}");
         }
     }
@@ -309,7 +288,7 @@ fn labels_of_the_tree_never_overlap_at_any_size() {
         for mission in ["backjump", "threats", "causal-links", "enroute"] {
             let mut app = opened(&format!("mission={mission}&workspace=teach"), size);
             for zooms in 0..3 {
-                let shown = texts(&app, tree(&app));
+                let shown = app.texts(tree(&app));
                 for (index, (one, place)) in shown.iter().enumerate() {
                     for (other, at) in &shown[index + 1..] {
                         assert!(!place.intersects(*at), "{mission} {size:?} {zooms}: {one} covers {other}");
@@ -353,7 +332,7 @@ fn a_search_of_a_hundred_thousand_steps_is_painted_with_bounded_work() {
     // The solution is found at the end, with all failures before it folded.
     press(&mut app, Key::End);
     assert_eq!(app.json()["search"]["known"]["event"], "solution");
-    let folded = texts(&app, tree(&app));
+    let folded = app.texts(tree(&app));
     assert!(folded.iter().any(|(text, _)| text.contains('+')), "counts of folded subtrees: {folded:?}");
 }
 

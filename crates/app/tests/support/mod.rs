@@ -7,6 +7,7 @@ mod host;
 use std::rc::Rc;
 
 use app::Enroute;
+use egui::{Rect, Shape};
 use egui_kittest::{Harness, HarnessBuilder};
 use workbench::host::{FileKind, HostEvent};
 
@@ -62,5 +63,27 @@ impl App {
     /// The app's state as a host page sees it.
     pub fn json(&self) -> serde_json::Value {
         serde_json::to_value(workbench::host::Remote::state(self.harness.state())).expect("plain data")
+    }
+
+    /// The texts that are drawn in a place, and where.
+    pub fn texts(&self, place: Rect) -> Vec<(String, Rect)> {
+        let mut found = Vec::new();
+        for shape in &self.harness.output().shapes {
+            collect_texts(&shape.shape, place, shape.clip_rect, &mut found);
+        }
+        found
+    }
+}
+
+fn collect_texts(shape: &Shape, place: Rect, clip: Rect, found: &mut Vec<(String, Rect)>) {
+    match shape {
+        Shape::Text(text) => {
+            let rect = Rect::from_min_size(text.pos, text.galley.size());
+            if place.contains_rect(rect) && clip.intersects(rect) {
+                found.push((text.galley.text().to_owned(), rect));
+            }
+        }
+        Shape::Vec(shapes) => shapes.iter().for_each(|shape| collect_texts(shape, place, clip, found)),
+        _ => {}
     }
 }

@@ -43,9 +43,11 @@ impl Panel for PlanPanel {
                     Some((network, plan)) => {
                         match context.step() {
                             Some(view) => show_step(ui, context, view),
-                            None => show_verdict(ui, context, planning),
+                            None => {
+                                show_verdict(ui, context, planning);
+                                demands::worth(ui, context, network, plan, planning);
+                            }
                         }
-                        demands::worth(ui, context, network, plan, planning);
                         show_choices(ui, context, network, plan, commands);
                         show_links(ui, context, network, plan, commands);
                         show_orderings(ui, context, network, plan, commands);

@@ -518,10 +518,8 @@ impl Scene<'_> {
 
     /// What the goals may become in a state, where the search goes by that.
     fn bound(&self, id: TreeNodeId) -> Option<String> {
-        let values = match self.tree.index.bounded(self.tree.trace, id, self.tree.step())? {
-            Event::Bound { values } | Event::Visit { values, .. } => values,
-            _ => return None,
-        };
+        let bounded = self.tree.index.bounded(self.tree.trace, id, self.tree.step())?;
+        let (Event::Bound { values } | Event::Visit { values, .. }) = bounded else { return None };
         let values: Vec<String> = values.iter().map(ToString::to_string).collect();
         Some(values.join(", "))
     }
