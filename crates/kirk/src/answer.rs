@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use tpn::{Network, Plan};
+use tpn::{Choice, Network, Plan};
 
 use crate::failure::{Failure, FailureKind, Reason};
 use crate::model::Model;
@@ -19,12 +19,14 @@ pub(crate) fn answer(
     network: &Network,
     model: &Model,
     options: &Options,
+    excluded: &[Vec<Choice>],
     termination: &mut dyn Termination,
 ) -> Result<(Outcome, bool), TimeOverflow> {
-    let is_demanding = demanding::has_demands(model) || (options.best > 1 && model.has_contexts);
+    let is_list = options.best > 1 || !excluded.is_empty();
+    let is_demanding = demanding::has_demands(model) || (is_list && model.has_contexts);
     let (mut outcome, mut has_doubts) = if is_demanding {
         // Nothing that was chosen before is tried again with other bounds.
-        (demanding::search(network, model, options, termination)?, true)
+        (demanding::search(network, model, options, excluded, termination)?, true)
     } else {
         searched(model, options, termination)?
     };
@@ -37,7 +39,7 @@ pub(crate) fn answer(
         (outcome, has_doubts) = searched(model, &unrecorded, termination)?;
         outcome.trace = trace;
     }
-    if outcome.status == Status::NoPlan && options.explain {
+    if outcome.status == Status::NoPlan && options.explain && excluded.is_empty() {
         let mut failure = explain::explain(network, model, termination)?;
         if options.relax {
             failure.relaxations = relax::relaxations(network, model, &failure, termination)?;

@@ -39,7 +39,7 @@ mod trace_lines;
 mod whole;
 mod wording;
 
-use tpn::Network;
+use tpn::{Choice, Network};
 
 pub use demanding::has_open_order;
 pub use explain::is_conflict;
@@ -68,7 +68,17 @@ use model::Model;
 /// assert_eq!(plan["windows"]["Dig#1.start"].to_string(), "[20,55]");
 /// ```
 pub fn plan(network: &Network, options: &Options, termination: &mut dyn Termination) -> Outcome {
+    plan_except(network, options, &[], termination)
+}
+
+/// The same without the plans that make all the choices of one of `excluded`, such as those that are listed already.
+pub fn plan_except(
+    network: &Network,
+    options: &Options,
+    excluded: &[Vec<Choice>],
+    termination: &mut dyn Termination,
+) -> Outcome {
     let model = Model::new(network, options.threat_gap);
-    let outcome = model.and_then(|model| answer(network, &model, options, termination));
+    let outcome = model.and_then(|model| answer(network, &model, options, excluded, termination));
     outcome.map_or_else(Outcome::of_overflow, |(outcome, _)| outcome)
 }

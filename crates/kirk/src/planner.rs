@@ -89,7 +89,7 @@ impl Planner {
         {
             return outcome;
         }
-        let (outcome, has_doubts) = match answer::answer(&self.network, model, options, termination) {
+        let (outcome, has_doubts) = match answer::answer(&self.network, model, options, &[], termination) {
             Ok(answer) => answer,
             Err(overflow) => {
                 self.last = None;

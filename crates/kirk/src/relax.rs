@@ -68,7 +68,7 @@ pub(crate) fn has_plan_without_gap(
         termination.should_stop(stats) || stats.conflicts.max(stats.backtracks) > MAX_CONFLICTS
     };
     let without = Model::new(network, options.threat_gap)?;
-    let (outcome, _) = answer::answer(network, &without, &options, &mut enough)?;
+    let (outcome, _) = answer::answer(network, &without, &options, &[], &mut enough)?;
     Ok(outcome.status == Status::Plan)
 }
 

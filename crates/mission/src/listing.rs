@@ -17,6 +17,7 @@ use crate::departures::Departures;
 use crate::ground::Grounds;
 use crate::planning::{self, Inserted, Planned, Problem};
 use crate::traverse::{self, Paths, Route};
+use crate::worth;
 
 /// A plan beside the first one, with its own paths.
 #[derive(Clone, Debug)]
@@ -49,7 +50,7 @@ pub(crate) fn is_listing(problem: &Problem<'_>) -> bool {
         && problem.network.occurrences.iter().any(is_moving)
 }
 
-/// Adds to `planned`, which has the first plan, all others that `problem` asks for.
+/// Adds to `planned`, which has the first plan, all others.
 pub(crate) fn add_plans(
     problem: &Problem<'_>,
     planned: &mut Planned,
@@ -81,7 +82,7 @@ pub(crate) fn add_plans(
             break;
         }
         let mut known = first.iter().chain(listed.iter().map(|listed| &listed.plan));
-        if known.any(|known| is_same(&problem.options, known, plan)) {
+        if known.any(|known| is_same(known, plan)) {
             continue;
         }
         match listing.driven(plan, grounds, paths, stop) {
@@ -98,11 +99,39 @@ pub(crate) fn add_plans(
     }
 }
 
-/// Whether a list has two plans as one: with `--best` those of the same choices.
-fn is_same(options: &Options, one: &Plan, other: &Plan) -> bool {
-    let is_alike =
-        one.causal_links == other.causal_links && one.conflict_order == other.conflict_order || !options.all;
-    one.choices == other.choices && is_alike
+/// Adds to `planned`, which has the best plan, the next best ones that `problem` asks for: each is the best of those whose choices
+/// are not listed yet, as `plan` finds it with its own paths.
+pub(crate) fn add_best(
+    problem: &Problem<'_>,
+    planned: &mut Planned,
+    plan: &mut dyn FnMut(&Problem<'_>) -> Planned,
+) {
+    let options = Options { best: 1, explain: false, relax: false, trace_events: None, ..problem.options };
+    let mut excluded: Vec<Vec<Choice>> = problem.excluded.to_vec();
+    excluded.extend(planned.planning.outcome.plans.first().map(|plan| plan.choices.clone()));
+    // A plan without choices is the only one.
+    while planned.others.len() + 1 < problem.options.best
+        && excluded.last().is_some_and(|last| !last.is_empty())
+    {
+        let mut next = plan(&Problem { options, excluded: &excluded, ..*problem });
+        let planning = Arc::make_mut(&mut next.planning);
+        let Some(plan) = planning.outcome.plans.pop() else {
+            if planning.outcome.status == Status::Limit {
+                Arc::make_mut(&mut planned.planning).outcome.status = Status::Limit;
+            }
+            break;
+        };
+        excluded.push(plan.choices.clone());
+        planned.others.push(Listed { network: next.network, plan });
+    }
+    // Where vehicles must keep apart a plan is worth less than it was chosen for.
+    planned.others.sort_by(|one, other| worth::compare(problem.network, &one.plan, &other.plan));
+}
+
+fn is_same(one: &Plan, other: &Plan) -> bool {
+    one.choices == other.choices
+        && one.causal_links == other.causal_links
+        && one.conflict_order == other.conflict_order
 }
 
 /// What tells ways to drive from each other: the choices, and the places that each traverse passes.
@@ -143,10 +172,9 @@ impl Listing<'_, '_> {
             let plans = self.plans_of_way(plan, routes, grounds, paths, stop);
             self.ways.insert(way.clone(), plans);
         }
-        let options = &self.problem.options;
         Some(match self.ways.get(&way)? {
             Ok((network, plans)) => {
-                let same = plans.iter().find(|known| is_same(options, known, plan));
+                let same = plans.iter().find(|known| is_same(known, plan));
                 let listed = |plan: &Plan| Listed { network: Arc::clone(network), plan: plan.clone() };
                 same.map(listed).ok_or_else(|| "in this order there is no time for its drives".to_owned())
             }

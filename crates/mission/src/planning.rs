@@ -17,7 +17,7 @@ use rmpl::Diagnostic;
 use rmpl::program::{Change, Program, World};
 use terrain::{ConfigurationSpace, Terrain};
 use tpn::path::{PathLeg, TraversePath};
-use tpn::{ArcId, ArcKind, Network, OccurrenceId, Plan, Supply};
+use tpn::{ArcId, ArcKind, Choice, Network, OccurrenceId, Plan, Supply};
 
 use crate::departures::{self, Departures, rounded_up};
 use crate::driving::{self, Drive};
@@ -53,6 +53,8 @@ pub struct Problem<'input> {
     pub programs: Option<&'input Programs>,
     /// Places that its traverses are led around, because other vehicles are there then.
     pub keep_outs: Option<&'input KeepOuts>,
+    /// The choices of plans that are not looked for, such as those that are listed already.
+    pub excluded: &'input [Vec<Choice>],
     /// Once this is set nothing better is looked for any more: the search still finds a first plan, if that takes little,
     /// and gives the best one so far its paths.
     pub enough: Option<&'input Cell<bool>>,
@@ -67,6 +69,11 @@ impl<'input> Problem<'input> {
 
     fn has_enough(&self) -> bool {
         self.enough.is_some_and(Cell::get)
+    }
+
+    /// Searches a network that its own has become.
+    fn searched(&self, network: &Network, options: &Options, stop: &mut dyn FnMut() -> bool) -> Outcome {
+        kirk::plan_except(network, options, self.excluded, &mut self.patient(stop))
     }
 
     /// Stops a search when `stop` says so, and a little after there is enough.
@@ -130,7 +137,13 @@ pub fn plan(
     let options = Options { all: false, best: 1, ..problem.options };
     let mut planned = plan_first(&Problem { options, ..*problem }, grounds, paths, stop);
     if has_plan(&planned.planning.outcome) {
-        listing::add_plans(problem, &mut planned, grounds, paths, stop);
+        if problem.options.all {
+            listing::add_plans(problem, &mut planned, grounds, paths, stop);
+        } else {
+            listing::add_best(problem, &mut planned, &mut |problem| {
+                plan_first(problem, grounds, paths, stop)
+            });
+        }
     }
     planned
 }
@@ -184,7 +197,7 @@ fn plan_paths(
         let without_limits =
             problem.ground.filter(|_| !has_limits).and_then(|_| without_upper_limits(&network, &inserted));
         let asked = without_limits.as_ref().unwrap_or(&network);
-        outcome = kirk::plan(asked, &problem.options, &mut problem.patient(stop));
+        outcome = problem.searched(asked, &problem.options, stop);
         rounds += 1;
         let (Some(ground), Some(found)) = (problem.ground, outcome.plans.first()) else { break };
         let is_new = rounds <= MAX_ROUNDS
@@ -287,7 +300,7 @@ fn order_movements(
         let asked = without_upper_limits(&asked, &tried).unwrap_or(asked);
         // Without a plan, the last round tells why.
         let options = Options { all: false, best: 1, ..problem.options };
-        let outcome = kirk::plan(&asked, &options, &mut problem.patient(stop));
+        let outcome = problem.searched(&asked, &options, stop);
         let (Some(ground), Some(plan)) = (problem.ground, outcome.plans.first()) else {
             return Err(Box::new(NoOrder { network: asked, outcome, tried }));
         };

@@ -1,5 +1,7 @@
 //! What a plan is worth, in the words of people (SPEC 12): its cost, its reward and what its mission's objective counts.
 
+use std::cmp::Ordering;
+
 use exact::Rational;
 use rmpl::program::Measure;
 use tpn::{Network, Plan};
@@ -53,6 +55,16 @@ pub fn goal_values(network: &Network, plan: &Plan, driven_m: f64) -> Option<Vec<
         sum.checked_add(factor.checked_mul(value(measure)?)?)
     };
     network.objective.iter().map(|goal| goal.terms.iter().try_fold(Rational::ZERO, add)).collect()
+}
+
+/// Whether one plan is better than another by its mission's objective, with the metres that each drives.
+pub fn compare(network: &Network, one: &Plan, other: &Plan) -> Ordering {
+    let [left, right] = [one, other].map(|plan| goal_values(network, plan, plan.quality.length_m));
+    let (Some(left), Some(right)) = (left, right) else { return Ordering::Equal };
+    let each = network.objective.iter().zip(left).zip(right);
+    let orders =
+        each.map(|((goal, left), right)| if goal.is_maximized { right.cmp(&left) } else { left.cmp(&right) });
+    orders.fold(Ordering::Equal, Ordering::then)
 }
 
 /// Whether a plan is known to be the best, in words; `None` without an objective.

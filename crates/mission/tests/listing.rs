@@ -126,3 +126,27 @@ fn the_best_plans_that_differ_in_their_choices_have_their_paths() {
     let planned = plan("scenario S[0,60] = { choose { Drive(A), Drive(B), Drive(C) } }", best);
     assert_about(&lengths(&planned), &[BASE_A, BASE_B, BASE_C]);
 }
+
+/// By straight lines B is nearer than C, and on the way there is a wall.
+const BEHIND_A_WALL: &str = "obstacle BAR polygon (34, 20, 38, 20, 38, 60, 34, 60);
+    objective minimize length;
+    location HOLE (100, 100);
+    ";
+
+#[test]
+fn the_best_plans_are_listed_by_their_own_paths() {
+    let scenario = "scenario S[0,60] = { choose { Drive(B), Drive(FAR), Drive(HOLE), Drive(A) } }";
+    let text = format!("{BEHIND_A_WALL}location FAR (10, 61); {scenario}");
+    for (best, expected) in [(2, vec![3, 1]), (3, vec![3, 1, 0]), (9, vec![3, 1, 0])] {
+        let planned = plan(&text, Options { best, ..Options::default() });
+        let plans = plans(&planned);
+        let choices: Vec<u32> = plans.iter().map(|plan| plan.choices[0].alternative).collect();
+        let lengths: Vec<f64> = plans.iter().map(|plan| plan.quality.length_m).collect();
+        assert_eq!(choices, expected, "{lengths:?}");
+        assert!(lengths.is_sorted(), "{lengths:?}");
+        assert_eq!(planned.planning.outcome.status, Status::Plan);
+        assert!(plans.iter().all(|plan| plan.quality.is_optimal == Some(true)));
+        // By straight lines it is the other way round.
+        assert!(plans.len() < 3 || BASE_B < 51.0 && lengths[2] > 51.5);
+    }
+}

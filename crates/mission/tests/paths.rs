@@ -47,6 +47,7 @@ impl Planner {
             facts: None,
             programs: None,
             keep_outs: None,
+            excluded: &[],
             enough: None,
         };
         let planned = planning::plan(&problem, &mut self.grounds, &mut self.paths, &mut || false);

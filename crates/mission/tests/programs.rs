@@ -32,6 +32,7 @@ fn execute(source: &str, disturbances: &[Disturbance]) -> (Arc<Network>, Ran) {
         facts: None,
         programs: None,
         keep_outs: None,
+        excluded: &[],
         enough: None,
     };
     let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
@@ -201,6 +202,7 @@ fn plan_warnings(source: &str) -> Vec<String> {
         facts: None,
         programs: None,
         keep_outs: None,
+        excluded: &[],
         enough: None,
     };
     let (mut grounds, mut paths) = (Grounds::default(), Paths::default());

@@ -34,6 +34,7 @@ impl Mission {
             facts: None,
             programs: None,
             keep_outs: None,
+            excluded: &[],
             enough: None,
         }
     }

@@ -90,6 +90,7 @@ fn check(file: &Path, source: &str, deadline: Deadline) -> anyhow::Result<Vec<Pr
                 facts: None,
                 programs: None,
                 keep_outs: None,
+                excluded: &[],
                 enough: None,
             };
             let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || deadline.is_over());

@@ -188,6 +188,7 @@ impl Args {
             facts: None,
             programs: None,
             keep_outs: None,
+            excluded: &[],
             enough: Some(&enough),
         };
         let mut stop = || {

@@ -168,6 +168,7 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
         facts: None,
         programs: None,
         keep_outs: None,
+        excluded: &[],
         enough: None,
     };
     let deadline = args.time_limit.start();

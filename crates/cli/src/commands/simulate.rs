@@ -70,6 +70,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         facts: None,
         programs: Some(&programs),
         keep_outs: None,
+        excluded: &[],
         enough: None,
     };
     let deadline = args.time_limit.start();

@@ -173,6 +173,7 @@ fn with_paths(
         facts: None,
         programs: None,
         keep_outs: None,
+        excluded: &[],
         enough: None,
     };
     let mut paths = Paths::default();

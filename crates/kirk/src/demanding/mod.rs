@@ -94,9 +94,12 @@ pub(crate) fn search(
     network: &Network,
     model: &Model,
     options: &Options,
+    excluded: &[Vec<Choice>],
     termination: &mut dyn Termination,
 ) -> Result<Outcome, TimeOverflow> {
-    if let Some(outcome) = controllable::first_plan(network, model, options, termination)? {
+    if excluded.is_empty()
+        && let Some(outcome) = controllable::first_plan(network, model, options, termination)?
+    {
         return Ok(outcome);
     }
     let has_goals = !model.demands.goals.is_empty();
@@ -107,7 +110,7 @@ pub(crate) fn search(
         stats: Stats::default(),
         is_stopped: false,
         bound: None,
-        found: Vec::new(),
+        excluded: excluded.to_vec(),
         incumbent: None,
         record: options.trace_events.map(|limit| Box::new(Record::new(limit, has_goals))),
         is_best_first: options.search == Search::BestFirst,
@@ -136,8 +139,8 @@ struct Searching<'a> {
     is_stopped: bool,
     /// What no plan is better than, of the first goal that is not at its optimum yet.
     bound: Option<Rational>,
-    /// The choices of plans that have been found, where others are looked for.
-    found: Vec<Vec<Choice>>,
+    /// The choices of plans that are not looked for: of those that have been found, where others are.
+    excluded: Vec<Vec<Choice>>,
     /// The choices of the best plan so far, where a better one is looked for.
     incumbent: Option<Vec<Choice>>,
     /// What is told of all searches; the solver has it while it searches.
@@ -208,7 +211,7 @@ impl<'a> Searching<'a> {
     fn problem(&self, gaps: Gaps, limits: &Limits, is_in_order: bool) -> Result<Attempt<'a>, TooLarge> {
         let (problem, mut solver) = Problem::new(self.model, gaps, Part::default())?;
         solver.is_in_textual_order = is_in_order;
-        for choices in &self.found {
+        for choices in &self.excluded {
             problem.forbid_choices(&mut solver, choices);
         }
         if let Some(incumbent) = &self.incumbent {
@@ -279,7 +282,7 @@ impl<'a> Searching<'a> {
             if let Some(record) = &mut self.record {
                 record.tell_plan(plans.len() as u32);
             }
-            self.found.push(plan.choices.clone());
+            self.excluded.push(plan.choices.clone());
             let is_last = plan.choices.is_empty();
             plans.push(plan);
             if is_last {

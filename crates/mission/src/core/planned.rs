@@ -143,6 +143,7 @@ impl Core {
             facts: None,
             programs: Some(&programs),
             keep_outs: None,
+            excluded: &[],
             enough: Some(&enough),
         };
         let due_millis = most_millis.map(|most| host.now_millis() + most);

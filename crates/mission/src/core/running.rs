@@ -47,6 +47,7 @@ impl Evaluated {
             facts: None,
             programs: Some(&self.programs),
             keep_outs: None,
+            excluded: &[],
             enough: None,
         }
     }

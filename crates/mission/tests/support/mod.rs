@@ -53,6 +53,7 @@ impl Mission {
             facts: None,
             programs: None,
             keep_outs: None,
+            excluded: &[],
             enough: Some(&enough),
         };
         let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || {
