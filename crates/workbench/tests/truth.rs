@@ -207,7 +207,7 @@ fn a_mission_that_is_being_written_shows_its_places_and_not_the_mission_before()
     assert!(!app.session.state().shown().expect("an example").traverses.is_empty());
     let source = "location BASE (24, 52);\nvehicle Rover1 : ATRV at BASE;\n";
     app.run(Command::SetSource(source.to_owned()));
-    assert_eq!((&app.json()["status"], &app.json()["isStale"]), (&json!("broken"), &json!(false)));
+    assert_eq!((&app.json()["status"], &app.json()["isStale"]), (&json!("empty"), &json!(false)));
     let shown = app.session.state().shown().expect("what is written so far");
     let names: Vec<&str> = shown.program.world.locations.iter().map(|it| it.name.text.as_str()).collect();
     assert_eq!(names, ["BASE"]);

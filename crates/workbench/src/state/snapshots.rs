@@ -29,7 +29,7 @@ pub enum Status {
     Working,
     /// The text has errors; what is drawn belongs to an older text.
     Broken,
-    /// There is no network to plan, though nothing is wrong: an empty text.
+    /// There is no network to plan, though nothing is wrong: an empty text, or one that only lacks a scenario.
     Empty,
     /// A control program, which is not planned but run.
     Program,
@@ -127,7 +127,7 @@ impl Snapshots {
         }
         let has_errors = latest.problems.iter().any(|problem| problem.severity == Severity::Error);
         match (&latest.network, &latest.planning) {
-            (None, _) if latest.source.trim().is_empty() => Status::Empty,
+            (None, _) if latest.source.trim().is_empty() || lacks_a_scenario(latest) => Status::Empty,
             _ if has_errors => Status::Broken,
             (_, None) if latest.stage == Stage::Compiled => unfinished,
             (None, _) => Status::Empty,
