@@ -103,6 +103,9 @@ fn choices(alternatives: &Alternatives) -> Vec<Choice> {
         .collect()
 }
 
+/// With more uses of one resource all distances from one of them are found at once.
+const MANY_USES: usize = 32;
+
 struct Making<'a> {
     network: &'a Network,
     model: &'a Model,
@@ -483,15 +486,27 @@ impl Making<'_> {
     fn extreme(&mut self, uses: &[ModelUse], used: &ModelUse, level: i64) -> Result<i64, TimeOverflow> {
         let mut extreme = level;
         let now = used.moment();
+        let (mut until_now, mut since_now) = (Vec::new(), Vec::new());
+        if uses.len() > MANY_USES {
+            self.stn.distances_to(point(now), &mut until_now)?;
+            self.stn.distances_from(point(now), &mut since_now)?;
+        }
         for other in uses {
             let then = other.moment();
+            let mut is_before = |earlier: NodeId, later: NodeId| match (
+                until_now.get(then.index()),
+                since_now.get(then.index()),
+            ) {
+                (Some(&until), Some(&since)) => Ok(if earlier == now { until <= 0 } else { since <= 0 }),
+                _ => self.is_entailed(earlier, later, 0),
+            };
             let counts = if other.id == used.id {
                 true
             } else if other.change == used.change {
                 // Unless it comes after.
-                !self.is_entailed(now, then, 0)? || self.is_entailed(then, now, 0)?
+                !is_before(now, then)? || is_before(then, now)?
             } else {
-                self.is_entailed(then, now, 0)?
+                is_before(then, now)?
             };
             if counts {
                 extreme += if other.change == Change::Produces { other.amount } else { -other.amount };

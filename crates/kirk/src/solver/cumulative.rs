@@ -13,7 +13,7 @@ use super::trail::{Conflict, Trail};
 use crate::ids::CumulativeId;
 
 /// Larger sets are left to the orders of those that are too much together.
-const MAX_TASKS: usize = 500;
+const MAX_TASKS: usize = 4_000;
 
 #[derive(Clone, Debug)]
 struct Shared {

@@ -43,6 +43,8 @@ struct Shared {
     tasks: Vec<Task>,
     /// Whether uses that exclude each other are known to.
     has_exclusion: bool,
+    /// Whether these are so many that not all orders of two are choice points.
+    is_crowded: bool,
 }
 
 /// What the solver knows of resources.
@@ -92,7 +94,12 @@ impl Problem<'_> {
                 Task { id: used.id, interval, change: used.change, amount: used.amount, is_active }
             });
             let tasks: Vec<Task> = tasks.filter(|task| !solver.trail.fails(task.interval.presence)).collect();
-            self.shares.all.push(Shared { supply: resource.supply, tasks, has_exclusion: false });
+            self.shares.all.push(Shared {
+                supply: resource.supply,
+                tasks,
+                has_exclusion: false,
+                is_crowded: false,
+            });
         }
     }
 
@@ -113,7 +120,8 @@ impl Problem<'_> {
                     if !critical.is_empty() && !shared.has_exclusion {
                         excluding.push(index);
                     }
-                    found.extend(critical.into_iter().map(Critical::Overload));
+                    let is_crowded = shared.is_crowded;
+                    found.extend(critical.into_iter().map(|tasks| Critical::Overload { tasks, is_crowded }));
                 }
                 ModelSupply::Reservoir { least, greatest, level } => {
                     found.extend(out_of_range(solver, &shared.tasks, (least, greatest), level));
@@ -140,7 +148,7 @@ impl Problem<'_> {
         }
         for critical in found {
             match critical {
-                Critical::Overload(tasks) => self.resolve_overload(solver, &tasks),
+                Critical::Overload { tasks, .. } => self.resolve_overload(solver, &tasks),
                 Critical::Late { early, late } => self.resolve_late(solver, &early, &late),
             }
         }
@@ -180,6 +188,7 @@ impl Problem<'_> {
             solver.disjunctives.add_tasks(large.iter().map(|task| task.interval).collect());
         }
         if large.len() * large.len() / 2 > MAX_PAIRS {
+            self.shares.all[index].is_crowded = true;
             return;
         }
         for (position, left) in large.iter().enumerate() {
@@ -289,12 +298,12 @@ pub(super) enum Sharing {
     Restarted,
 }
 
-/// The task that can start first of those that are too much together, if starts are to be decided: not of two that exclude
-/// each other, nor of what has no time-table. Every other time between restarts orders are chosen instead: starts soon give
-/// a plan where there is room, orders prove where there is none.
+/// The task that can start first of those that are too much together, if starts are to be decided: not of two whose orders
+/// are choice points, nor of what has no time-table. Every other time between restarts orders are chosen instead, where
+/// there are not too many: starts soon give a plan where there is room, orders prove where there is none.
 fn first_to_start(solver: &Solver, critical: &Critical) -> Option<Task> {
-    let Critical::Overload(tasks) = critical else { return None };
-    if tasks.len() < 3 || solver.restarts % 2 == 1 {
+    let Critical::Overload { tasks, is_crowded } = critical else { return None };
+    if !is_crowded && (tasks.len() < 3 || solver.restarts % 2 == 1) {
         return None;
     }
     let times =
@@ -306,7 +315,7 @@ fn first_to_start(solver: &Solver, critical: &Critical) -> Option<Task> {
 /// What is wrong with a solution.
 enum Critical {
     /// These uses are too much together.
-    Overload(Vec<Task>),
+    Overload { tasks: Vec<Task>, is_crowded: bool },
     /// Unless one of the late ones comes before one of the early ones, the early ones are too much.
     Late { early: Vec<Task>, late: Vec<Task> },
 }
@@ -314,7 +323,7 @@ enum Critical {
 impl Critical {
     fn event(&self) -> Event {
         match self {
-            Self::Overload(tasks) => Event::Overload { uses: ids(tasks) },
+            Self::Overload { tasks, .. } => Event::Overload { uses: ids(tasks) },
             Self::Late { early, late } => Event::OutOfRange { early: ids(early), late: ids(late) },
         }
     }
