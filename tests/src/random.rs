@@ -48,6 +48,38 @@ pub fn crowded_mission(seed: u64) -> String {
     format!("var MODE : {{A, B, C}};\nscenario S{bounds} = {{ {} }}\n", threads.join(", "))
 }
 
+/// The text of mission number `seed` without any condition, state or resource: activities, sequences, parallel blocks and
+/// choices, with bounds of which about half leave too little time.
+pub fn timed_mission(seed: u64) -> String {
+    let mut rng = Rng::new(seed ^ 0x71_3D);
+    let body = timed_block(&mut rng, 3);
+    let horizon = rng.between(4, 24);
+    format!("scenario S[0,{horizon}] = {body}\n")
+}
+
+fn timed_block(rng: &mut Rng, depth: u32) -> String {
+    let (open, separator) = match rng.below(4) {
+        0 => ("{", ", "),
+        1 => ("{", "; "),
+        _ => ("choose {", ", "),
+    };
+    let count = rng.between(2, 3);
+    let items: Vec<String> = (0..count)
+        .map(|_| {
+            if depth > 0 && rng.chance(60) {
+                return timed_block(rng, depth - 1);
+            }
+            let shortest = rng.between(0, 9);
+            let bounds = format!("[{shortest},{}]", shortest + rng.between(0, 4));
+            if rng.chance(20) { format!("delay{bounds}") } else { format!("P{}(){bounds}", rng.below(4)) }
+        })
+        .collect();
+    let shortest = rng.between(0, 6);
+    let bounds =
+        if rng.chance(30) { format!("[{shortest},{}]", shortest + rng.between(0, 9)) } else { String::new() };
+    format!("{open} {} }}{bounds}", items.join(separator))
+}
+
 /// What comes before an interval that begins at `time` in the schedule that a mission is built around: that time, any
 /// time, or a choice.
 fn lead(rng: &mut Rng, time: i64) -> String {

@@ -51,6 +51,11 @@ pub(crate) struct VariableIndex {
 }
 
 impl VariableIndex {
+    /// Whether any two labels of a variable that does not last cannot hold together, so that there is a gap to keep.
+    pub(crate) fn has_conflict(&self) -> bool {
+        !self.labels.is_empty() && self.conflicts.contains(&true)
+    }
+
     /// Where the squares have a pair of literals.
     fn cell(&self, left: LiteralId, right: LiteralId) -> usize {
         usize::from(left) * self.num_literals + usize::from(right)

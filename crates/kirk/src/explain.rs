@@ -86,15 +86,27 @@ pub fn is_conflict(network: &Network, choices: &[Choice], members: &[Member]) ->
     part.fails(&mut effort).ok()?
 }
 
-/// Explains why there is no plan.
+/// Why no plan makes `choices`, where none does: reasons that rest on these choices and on any others, and on nothing
+/// that `choices` leave out. Empty if that takes too long to find out, times do not fit, or there is a plan.
+pub fn explain_choices(
+    network: &Network,
+    choices: &[Choice],
+    termination: &mut dyn Termination,
+) -> Vec<Reason> {
+    let Ok(model) = Model::new(network, None) else { return Vec::new() };
+    explain(network, &model, choices, termination).map_or_else(|_| Vec::new(), |failure| failure.reasons)
+}
+
+/// Explains why there is no plan that makes the choices given.
 pub(crate) fn explain(
     network: &Network,
     model: &Model,
+    given: &[Choice],
     termination: &mut dyn Termination,
 ) -> Result<Failure, TimeOverflow> {
     let mut effort = Effort::for_size(model.num_nodes, termination);
     if demanding::has_demands(model) {
-        let reasons: Vec<Reason> = whole::reason(network, model, &mut effort).into_iter().collect();
+        let reasons: Vec<Reason> = whole::reason(network, model, given, &mut effort).into_iter().collect();
         return Ok(Failure {
             is_complete: !reasons.is_empty(),
             reasons,
@@ -102,7 +114,8 @@ pub(crate) fn explain(
             is_of_gap: false,
         });
     }
-    let setup = Setup { jumps: true, records_failures: true, ..Setup::default() };
+    let assumed = (!given.is_empty()).then(|| assumed(model, given));
+    let setup = Setup { jumps: true, records_failures: true, assumed, ..Setup::default() };
     let mut engine = Engine::new(model, setup);
     let mut enough = |stats: &Stats| effort.is_spent(stats) || stats.backtracks > MAX_REASONS;
     let is_complete = engine.run(&mut enough)? == Halt::Exhausted;
@@ -115,7 +128,7 @@ pub(crate) fn explain(
             reasons.push(reason);
         }
     }
-    if !is_complete && let Some(reason) = whole::reason(network, model, &mut effort) {
+    if !is_complete && let Some(reason) = whole::reason(network, model, given, &mut effort) {
         reasons.insert(0, reason);
         return Ok(Failure { reasons, is_complete: true, relaxations: Vec::new(), is_of_gap: false });
     }
@@ -205,6 +218,17 @@ pub(crate) fn spans(network: &Network, members: &[Member], cycle: &[CycleMember]
     spans
 }
 
+/// Choices of alternatives as a search takes them; those that the network has not are left out.
+fn assumed(model: &Model, choices: &[Choice]) -> Choices {
+    let mut alternatives: TiVec<DecisionId, Option<u32>> = vec![None; model.decisions.len()].into();
+    for choice in choices {
+        if let Some(taken) = alternatives.get_mut(choice.decision) {
+            *taken = Some(choice.alternative);
+        }
+    }
+    Choices { alternatives, ..Choices::default() }
+}
+
 /// The planning problem that has only some of the bounds and conditions of another.
 pub(crate) struct Part {
     model: Model,
@@ -223,15 +247,11 @@ impl Part {
         for arc in &mut model.arcs {
             (arc.lower, arc.upper) = (UNBOUNDED_BELOW, INFINITE);
         }
-        let mut assumed: TiVec<DecisionId, Option<u32>> = vec![None; model.decisions.len()].into();
-        for choice in choices {
-            assumed[choice.decision] = Some(choice.alternative);
-        }
         Self {
             active_labels: vec![false; model.conditions.labels.len()].into(),
             active_uses: vec![false; model.demands.num_uses()],
+            assumed: assumed(whole, choices).alternatives,
             model,
-            assumed,
             ignores_nature: false,
         }
     }
@@ -253,6 +273,11 @@ impl Part {
                 | Constraint::Departure(_),
             ) => {}
         }
+    }
+
+    /// Leaves the alternative of a decision open, or gives it.
+    pub(crate) fn assume(&mut self, decision: DecisionId, alternative: Option<u32>) {
+        self.assumed[decision] = alternative;
     }
 
     /// Whether the part has no plan; `None` if that takes too long to find out.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use rmpl::program::LabelMode;
 use stn::{Inconsistency, Stn};
-use tpn::{LabelId, Network, ResourceId, UseId, VariableId};
+use tpn::{Choice, LabelId, Network, ResourceId, UseId, VariableId};
 
 use crate::explain::{Effort, Part, spans};
 use crate::failure::{FailureKind, Member, Reason};
@@ -17,9 +17,14 @@ use crate::wording;
 /// A reason that stays larger than this tells nobody anything.
 const MAX_MEMBERS: usize = 400;
 
-/// The reason, if the solver proves it within the effort.
-pub(crate) fn reason(network: &Network, model: &Model, effort: &mut Effort<'_>) -> Option<Reason> {
-    let mut search = Shrinking { model, part: Part::new(model, &[]), members: Vec::new(), effort };
+/// The reason why no plan makes `choices`, if the solver proves it within the effort.
+pub(crate) fn reason(
+    network: &Network,
+    model: &Model,
+    choices: &[Choice],
+    effort: &mut Effort<'_>,
+) -> Option<Reason> {
+    let mut search = Shrinking { model, part: Part::new(model, choices), members: Vec::new(), effort };
     search.members = members(model);
     for &member in &search.members {
         search.part.set(model, member, true);
@@ -47,16 +52,17 @@ pub(crate) fn reason(network: &Network, model: &Model, effort: &mut Effort<'_>) 
     if search.members.len() > MAX_MEMBERS {
         return None;
     }
+    let choices: Vec<Choice> = choices.iter().copied().filter(|&choice| !search.leave_open(choice)).collect();
     search.part.ignores_nature = true;
     let is_natures = model.has_uncertainty && search.part.is_refuted(search.effort) == Some(false);
     let members = search.members;
     let kind = if is_natures { FailureKind::Controllability } else { kind(network, &members) };
     let cycle = if kind == FailureKind::Temporal { cycle(model, &members) } else { Vec::new() };
-    let told = wording::Told { network, kind, choices: &[], conflict: &members, cycle: &cycle };
+    let told = wording::Told { network, kind, choices: &choices, conflict: &members, cycle: &cycle };
     Some(Reason {
         message: told.message(),
         spans: spans(network, &members, &cycle),
-        choices: Vec::new(),
+        choices,
         kind,
         conflict: members,
         cycle,
@@ -85,6 +91,16 @@ impl Shrinking<'_, '_> {
             for &member in chunk.iter().filter(|member| self.members.contains(member)) {
                 self.part.set(self.model, member, true);
             }
+        }
+        is_refuted
+    }
+
+    /// Leaves a choice open if what remains is a contradiction whatever is chosen there. Whether it did.
+    fn leave_open(&mut self, choice: Choice) -> bool {
+        self.part.assume(choice.decision, None);
+        let is_refuted = self.part.is_refuted(self.effort) == Some(true);
+        if !is_refuted {
+            self.part.assume(choice.decision, Some(choice.alternative));
         }
         is_refuted
     }

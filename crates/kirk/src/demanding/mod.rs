@@ -10,6 +10,7 @@ mod best_first;
 use exact::Rational;
 use tpn::{Choice, LabelId, Network, Ordering, Plan};
 
+use crate::conditions::VariableIndex;
 use crate::controllable;
 use crate::demands::{LastingVariable, ModelGoal, lasting_variables};
 use crate::model::Model;
@@ -170,7 +171,7 @@ impl<'a> Searching<'a> {
     /// The ways to treat gaps, in the order in which they are tried: a plan in which intervals are forced to touch is
     /// found where none is that leaves room (SPEC 5.3).
     fn gaps(&self) -> &'static [Gaps] {
-        let has_conflicts = self.model.conditions.variables.iter().any(|variable| variable.labels.len() > 1);
+        let has_conflicts = self.model.conditions.variables.iter().any(VariableIndex::has_conflict);
         if self.model.gap == 0 || !has_conflicts { &[Gaps::Ignored] } else { &[Gaps::Trusted, Gaps::Ignored] }
     }
 

@@ -2,11 +2,11 @@
 //! the reason.
 
 use exact::{Bound, Time};
-use kirk::{Failure, Options, Outcome, Stats, Status};
+use kirk::{Options, Stats, Status};
 use rmpl::Span;
 use rmpl::program::Measure;
 use serde::{Deserialize, Serialize};
-use tpn::{Choice, DecisionId, Network, Plan};
+use tpn::{Choice, Network, Plan};
 
 use crate::snapshot::Undrivable;
 use crate::{planning, worth};
@@ -73,6 +73,8 @@ const MAX_EXAMINED: usize = 64;
 const MAX_EXPANDED: u64 = 20_000;
 /// Explaining takes many searches; a larger network is asked only whether there is a plan.
 const MAX_EXPLAINED_NODES: usize = 4_000;
+/// Reasons that are told of one alternative.
+const MAX_REASONS: usize = 3;
 /// Characters of an alternative that are shown.
 const LONGEST_BEGINNING: usize = 60;
 
@@ -134,30 +136,60 @@ impl<'input> Examiner<'input> {
             return Fate::NotExamined;
         }
         let network = self.restricted(other);
-        let options = Options {
-            relax: false,
-            explain: network.nodes.len() <= MAX_EXPLAINED_NODES,
-            ..Options::default()
-        };
-        let mut outcome =
-            kirk::plan(&network, &options, &mut |stats: &Stats| stats.expanded >= MAX_EXPANDED || stop());
-        planning::name_blocked(&mut outcome, &network, self.undrivable);
+        let options = Options { relax: false, explain: false, ..Options::default() };
+        let mut enough = |stats: &Stats| stats.expanded >= MAX_EXPANDED || stop();
+        let outcome = kirk::plan(&network, &options, &mut enough);
         match outcome.status {
             Status::Plan if self.plan.quality.is_optimal == Some(true) => {
                 Fate::NoBetter { at_best: outcome.plans.first().and_then(|plan| at_best(&network, plan)) }
             }
             Status::Plan => Fate::AlsoPossible,
-            Status::NoPlan => impossible(&outcome, other),
+            Status::NoPlan => self.impossible(other, &mut enough),
             Status::Limit | Status::Error => Fate::NotExamined,
         }
+    }
+
+    /// Why no plan makes a choice together with the earlier ones of the plan. Where that depends on later choices, each
+    /// way to make these has its reason.
+    fn impossible(&self, other: Choice, enough: &mut dyn FnMut(&Stats) -> bool) -> Fate {
+        let choices: Vec<Choice> = self.earlier(other).chain([other]).collect();
+        let mut reasons = if self.network.nodes.len() <= MAX_EXPLAINED_NODES {
+            kirk::explain_choices(self.network, &choices, &mut &mut *enough)
+        } else {
+            Vec::new()
+        };
+        if let Some(whole) = reasons.iter().position(|it| it.choices.iter().all(|it| choices.contains(it))) {
+            reasons = vec![reasons.swap_remove(whole)];
+        }
+        // That it is about this alternative goes without saying.
+        let itself = format!("with {}={}: ", Network::decision_name(other.decision), other.alternative);
+        let more = reasons.len().saturating_sub(MAX_REASONS);
+        reasons.truncate(MAX_REASONS);
+        let (mut told, mut spans) = (Vec::new(), Vec::new());
+        for mut reason in reasons {
+            planning::name_blocked_in(&mut reason, self.network, self.undrivable);
+            told.push(reason.message.strip_prefix(&itself).unwrap_or(&reason.message).to_owned());
+            spans.extend(reason.spans);
+        }
+        match more {
+            0 if told.is_empty() => told.push("there is no plan with it".to_owned()),
+            0 => {}
+            1 => told.push("and one other".to_owned()),
+            _ => told.push(format!("and {more} others")),
+        }
+        Fate::Impossible { reason: told.join("; "), spans }
+    }
+
+    /// What the plan chose before another choice, in textual order.
+    fn earlier(&self, other: Choice) -> impl Iterator<Item = Choice> {
+        self.plan.choices.iter().copied().filter(move |choice| choice.decision < other.decision)
     }
 
     /// The network in which earlier decisions are as in the plan and this one is `other`: the arcs to their other
     /// alternatives would have to take at least one unit and at most none.
     fn restricted(&self, other: Choice) -> Network {
         let mut network = self.network.clone();
-        let earlier = self.plan.choices.iter().filter(|choice| choice.decision < other.decision);
-        for choice in earlier.copied().chain([other]) {
+        for choice in self.earlier(other).chain([other]) {
             let arcs = self.network.decisions[choice.decision.index()].alternatives.iter();
             for (_, arc) in arcs.enumerate().filter(|&(number, _)| number != choice.alternative as usize) {
                 network.arcs[arc.index()].lower = Time::ONE;
@@ -172,24 +204,4 @@ impl<'input> Examiner<'input> {
 fn at_best(network: &Network, plan: &Plan) -> Option<String> {
     let needs_paths = worth::measures(network).contains(&Measure::Length);
     worth::words(network, plan).filter(|_| plan.quality.is_optimal == Some(true) && !needs_paths)
-}
-
-fn impossible(outcome: &Outcome, other: Choice) -> Fate {
-    let takes = |choices: &[Choice], decision: DecisionId| {
-        choices.iter().find(|choice| choice.decision == decision).map(|choice| choice.alternative)
-    };
-    let reasons = outcome.failure.as_ref().map_or(&[][..], |failure: &Failure| &failure.reasons);
-    // Reasons that name another alternative of this decision are about what was shut out.
-    let reason = reasons.iter().find(|reason| {
-        takes(&reason.choices, other.decision).is_none_or(|alternative| alternative == other.alternative)
-    });
-    match reason {
-        Some(reason) => {
-            // That it is about this alternative goes without saying.
-            let itself = format!("with {}={}: ", Network::decision_name(other.decision), other.alternative);
-            let message = reason.message.strip_prefix(&itself).unwrap_or(&reason.message);
-            Fate::Impossible { reason: message.to_owned(), spans: reason.spans.clone() }
-        }
-        None => Fate::Impossible { reason: "there is no plan with it".to_owned(), spans: Vec::new() },
-    }
 }

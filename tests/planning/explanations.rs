@@ -1,0 +1,235 @@
+//! Every sentence that explains is about the mission at hand: of conditions, states, resources, vehicles and nature only
+//! those speak whose mission has them, and no name is in a sentence that is not in the text. Held against the examples,
+//! the conformance cases and many random missions, by both searches.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use acceptance::cases;
+use acceptance::lasting_missions::{Kind, lasting_mission};
+use acceptance::mission::compile;
+use acceptance::random::{crowded_mission, small_mission, timed_mission};
+use kirk::{Event, ExpansionLimit, Options, Search};
+use mission::review::{Fate, review};
+use mission::{Core, CoreHost, Goal, Request, Response, SearchKind, Snapshot, Update};
+use rmpl::program::LabelMode;
+use tpn::generate::{Recipe, Tightness};
+use tpn::{ArcId, LabelId, Network, Top};
+use workbench::state::search::wording;
+
+/// Random missions of each kind.
+const MISSIONS: u64 = 150;
+
+/// Words that say nothing of what a mission has.
+const PLAIN: &str = "Add Back Before Decide Each Failure Follow From Jump Learned Look No Nothing Of Propagate Search The \
+    This Together Try Whatever a after again all allow allows alone and another any arcs as at back be before besides \
+    block both bounded but can cannot choice choices choose chooses chosen come comes conflict contain contradiction do \
+    duration durations each end ends event events failed failure first fit follows for found from go greatest has have \
+    here if in inf instead is it its keeps kept last lasts learned least leave leaves left let long mission more most \
+    move moves much must need needs neither never no node none not nothing of on once one ones only order ordering other \
+    others out plan program rest rests rule ruled rules s search so some start take takes teaches text than that the \
+    their them then there these they time times to together too try up wait was what whatever which with would";
+
+/// Whether a mission has what some words are about.
+type Has = fn(&Network) -> bool;
+
+/// Words that are about something, and whether a mission has that.
+const TELLING: [(&str, Has); 9] = [
+    ("Ask asserts causal link required requires", |it| it.labels.iter().any(|it| it.mode == LabelMode::Ask)),
+    ("Set Tell hold holds set", |it| !it.labels.is_empty()),
+    ("apart way", |it| has_conflict(it, |_| true)),
+    ("between conflicting gap intervals touch", |it| has_conflict(it, |label| !it.is_lasting(label))),
+    ("above below drawn enough filled give helps level use", |it| !it.uses.is_empty()),
+    ("gives", |it| !it.labels.is_empty() || !it.uses.is_empty()),
+    ("controllable nature took", |it| (0..it.arcs.len()).any(|arc| it.is_uncertain(ArcId::from_index(arc)))),
+    ("best better far less", |it| !it.objective.is_empty()),
+    ("alternative", |it| !it.decisions.is_empty()),
+];
+
+/// Whether two conditions, of those that count, exclude each other.
+fn has_conflict(network: &Network, counts: impl Fn(LabelId) -> bool) -> bool {
+    let labels = || (0..network.labels.len()).map(LabelId::from_index).filter(|&label| counts(label));
+    labels().any(|one| labels().any(|other| network.conflict(one, other)))
+}
+
+/// Whether what needs a time needs more than what it is held against allows.
+fn adds_up(sentence: &str) -> bool {
+    let Some((needs, allows)) = sentence.split_once(", but ") else { return true };
+    let number = |words: &str| words.rsplit(' ').next().and_then(|word| word.parse::<f64>().ok());
+    let (allows, excess) = allows.split_once(": ").unwrap_or((allows, ""));
+    let excess = excess.split_once(" too much").and_then(|(excess, _)| number(excess));
+    match (number(needs).filter(|_| needs.contains("at least")), number(allows)) {
+        (Some(needed), Some(allowed)) => {
+            needed > allowed && excess.is_none_or(|excess| needed - allowed == excess)
+        }
+        _ => true,
+    }
+}
+
+/// What a sentence says that is not of the mission.
+fn strangers<'a>(network: &Network, text: &str, sentence: &'a str) -> Vec<&'a str> {
+    // `MODE_A` is another way to write `MODE=A`.
+    let own: BTreeSet<&str> = words(text).flat_map(|word| word.split('_').chain([word])).collect();
+    let is_decision = |word: &str| {
+        let number = word.strip_prefix('D').and_then(|number| number.parse::<usize>().ok());
+        number.is_some_and(|number| (1..=network.decisions.len()).contains(&number))
+    };
+    let is_telling =
+        |word: &str| TELLING.iter().any(|(all, has)| all.split(' ').any(|it| it == word) && has(network));
+    let is_plain = |word: &str| PLAIN.split_whitespace().any(|it| it == word);
+    words(sentence)
+        .filter(|word| !(own.contains(word) || is_plain(word) || is_decision(word) || is_telling(word)))
+        .collect()
+}
+
+/// The missions, by where they come from.
+fn missions() -> Vec<(String, String)> {
+    let mut all: Vec<(String, String)> = Vec::new();
+    let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/missions");
+    let mut examples: Vec<_> =
+        std::fs::read_dir(assets).expect("the examples").map(|it| it.expect("a file").path()).collect();
+    examples.sort();
+    all.extend(examples.iter().map(|path| (path.display().to_string(), cases::read(path))));
+    let with_program = cases::all().into_iter().filter(|(_, case)| case["program"].is_string());
+    all.extend(with_program.map(|(name, case)| (name, cases::program(&case))));
+    for seed in 0..MISSIONS {
+        all.push((format!("timed {seed}"), timed_mission(seed)));
+        all.push((format!("small {seed}"), small_mission(seed)));
+        all.push((format!("crowded {seed}"), crowded_mission(seed)));
+        for (name, kind) in [("states", Kind::STATES), ("resources", Kind::RESOURCES), ("both", Kind::BOTH)] {
+            all.push((format!("{name} {seed}"), lasting_mission(seed, kind)));
+        }
+    }
+    for seed in 0..20 {
+        let recipe = Recipe { nodes: 24, tightness: Tightness::Infeasible, seed };
+        all.push((format!("infeasible {seed}"), tpn::generate::mission(recipe)));
+    }
+    all
+}
+
+/// Everything that is said of a mission's planning.
+fn sentences(network: &Network) -> Vec<String> {
+    let mut told = Vec::new();
+    for search in [Search::Chronological, Search::ConflictDirected] {
+        let options = Options { search, trace_events: Some(20_000), ..Options::default() };
+        let outcome = kirk::plan(network, &options, &mut ExpansionLimit(2_000));
+        if let Some(failure) = &outcome.failure {
+            told.extend(failure.reasons.iter().map(|reason| reason.message.clone()));
+            told.extend(failure.reasons.iter().flat_map(|reason| reason.failing_run_in_words(network)));
+            told.extend(failure.relaxations.iter().map(|relaxation| relaxation.label.clone()));
+        }
+        if let Some(trace) = &outcome.trace {
+            told.extend(trace.events.iter().map(|entry| wording::event(network, trace, &entry.event)));
+            told.extend(trace.tree.iter().map(|state| wording::choice(network, state.choice)));
+            for entry in &trace.events {
+                if let Event::Inconsistent { cycle } = &entry.event {
+                    told.extend(cycle.iter().map(|member| wording::cycle_step(network, member)));
+                }
+            }
+        }
+    }
+    told
+}
+
+/// The words of a text, names in one piece and without the number of their occurrence.
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    let is_part = |it: char| it.is_alphanumeric() || it == '_';
+    text.split(move |it: char| !is_part(it)).filter(|word| word.chars().any(|it| !it.is_ascii_digit()))
+}
+
+#[test]
+fn no_explanation_speaks_of_what_the_mission_has_not() {
+    let mut strange: Vec<String> = Vec::new();
+    let (mut told, mut reasons_without_conditions) = (0, 0);
+    for (name, text) in missions() {
+        let (Some(network), _) = compile(&text, &Top::Scenario(None)) else { continue };
+        let sentences: BTreeSet<String> = sentences(&network).into_iter().collect();
+        told += sentences.len();
+        let is_reason = |sentence: &&String| sentence.contains("need");
+        if network.labels.is_empty() && network.uses.is_empty() {
+            reasons_without_conditions += sentences.iter().filter(is_reason).count();
+        }
+        for sentence in sentences {
+            let found = strangers(&network, &text, &sentence);
+            if !found.is_empty() || !adds_up(&sentence) {
+                strange.push(format!("{name}: {sentence} {found:?}"));
+            }
+        }
+    }
+    assert!(strange.is_empty(), "{}", strange.join("\n"));
+    assert!(told > 10_000, "{told} sentences");
+    assert!(reasons_without_conditions > 150, "{reasons_without_conditions} reasons");
+}
+
+#[derive(Default)]
+struct Answers(Option<Arc<Snapshot>>);
+
+impl CoreHost for Answers {
+    fn now_millis(&self) -> f64 {
+        0.0
+    }
+
+    fn is_superseded(&mut self) -> bool {
+        false
+    }
+
+    fn answer(&mut self, response: Response) {
+        if let Response::Snapshot(snapshot) = response {
+            self.0 = Some(snapshot);
+        }
+    }
+}
+
+fn snapshot(source: &str) -> Arc<Snapshot> {
+    let update = Update {
+        revision: 1,
+        source: source.into(),
+        goal: Goal::Default,
+        search: SearchKind::default(),
+        seed: 0,
+        trace: false,
+    };
+    let mut answers = Answers::default();
+    Core::default().handle(Request::Update(update), &mut answers);
+    answers.0.expect("an update is always answered")
+}
+
+#[test]
+fn why_an_alternative_was_not_taken_rests_on_the_choices_of_the_plan() {
+    let mut wrong: Vec<String> = Vec::new();
+    let mut reasons = 0;
+    for (name, text) in missions() {
+        let snapshot = snapshot(&text);
+        let (Some(plan), Some(network)) = (snapshot.plan(), &snapshot.network) else { continue };
+        let made: Vec<String> = (plan.choices.iter())
+            .map(|it| format!("{}={}", Network::decision_name(it.decision), it.alternative))
+            .collect();
+        for choice in &review(&snapshot, &Goal::Default, 0, &mut || false).choices {
+            for alternative in &choice.alternatives {
+                let Fate::Impossible { reason, .. } = &alternative.fate else { continue };
+                reasons += 1;
+                let itself = format!("{}={}", choice.name, alternative.number);
+                let number = |name: &str| name.split('=').next()?.strip_prefix('D')?.parse::<usize>().ok();
+                let told: Vec<&str> = reason.split("; ").collect();
+                let rest_on: Vec<&str> = (told.iter())
+                    .filter_map(|it| it.strip_prefix("with ")?.split(": ").next())
+                    .flat_map(|it| it.split(", "))
+                    .collect();
+                let is_given = |it: &&str| **it == itself || made.iter().any(|made| made == *it);
+                let is_later = |it: &&str| number(it) > number(&itself);
+                // What depends on a later choice is told of each way to make it.
+                let is_of_plan = rest_on.iter().all(is_given)
+                    || (rest_on.iter().all(|it| is_given(it) || is_later(it)) && told.len() > 1);
+                // The order of the program alone never takes time.
+                let is_glue =
+                    ["order in the program", "there is no plan"].iter().any(|it| reason.contains(it));
+                let has_strangers = !strangers(network, &text, reason).is_empty();
+                if !is_of_plan || is_glue || has_strangers || !told.iter().all(|it| adds_up(it)) {
+                    wrong.push(format!("{name}, {itself} (plan {made:?}): {reason}"));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(reasons > 200, "{reasons} reasons");
+}
