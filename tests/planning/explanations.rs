@@ -5,15 +5,12 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use acceptance::cases;
-use acceptance::lasting_missions::{Kind, lasting_mission};
 use acceptance::mission::compile;
-use acceptance::random::{crowded_mission, small_mission, timed_mission};
+use acceptance::missions::missions;
 use kirk::{Event, ExpansionLimit, Options, Search};
 use mission::review::{Fate, review};
 use mission::{Core, CoreHost, Goal, Request, Response, SearchKind, Snapshot, Update};
 use rmpl::program::LabelMode;
-use tpn::generate::{Recipe, Tightness};
 use tpn::{ArcId, LabelId, Network, Top};
 use workbench::state::search::wording;
 
@@ -82,31 +79,6 @@ fn strangers<'a>(network: &Network, text: &str, sentence: &'a str) -> Vec<&'a st
         .collect()
 }
 
-/// The missions, by where they come from.
-fn missions() -> Vec<(String, String)> {
-    let mut all: Vec<(String, String)> = Vec::new();
-    let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/missions");
-    let mut examples: Vec<_> =
-        std::fs::read_dir(assets).expect("the examples").map(|it| it.expect("a file").path()).collect();
-    examples.sort();
-    all.extend(examples.iter().map(|path| (path.display().to_string(), cases::read(path))));
-    let with_program = cases::all().into_iter().filter(|(_, case)| case["program"].is_string());
-    all.extend(with_program.map(|(name, case)| (name, cases::program(&case))));
-    for seed in 0..MISSIONS {
-        all.push((format!("timed {seed}"), timed_mission(seed)));
-        all.push((format!("small {seed}"), small_mission(seed)));
-        all.push((format!("crowded {seed}"), crowded_mission(seed)));
-        for (name, kind) in [("states", Kind::STATES), ("resources", Kind::RESOURCES), ("both", Kind::BOTH)] {
-            all.push((format!("{name} {seed}"), lasting_mission(seed, kind)));
-        }
-    }
-    for seed in 0..20 {
-        let recipe = Recipe { nodes: 24, tightness: Tightness::Infeasible, seed };
-        all.push((format!("infeasible {seed}"), tpn::generate::mission(recipe)));
-    }
-    all
-}
-
 /// Everything that is said of a mission's planning.
 fn sentences(network: &Network) -> Vec<String> {
     let mut told = Vec::new();
@@ -141,7 +113,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
 fn no_explanation_speaks_of_what_the_mission_has_not() {
     let mut strange: Vec<String> = Vec::new();
     let (mut told, mut reasons_without_conditions) = (0, 0);
-    for (name, text) in missions() {
+    for (name, text) in missions(MISSIONS) {
         let (Some(network), _) = compile(&text, &Top::Scenario(None)) else { continue };
         let sentences: BTreeSet<String> = sentences(&network).into_iter().collect();
         told += sentences.len();
@@ -198,7 +170,7 @@ fn snapshot(source: &str) -> Arc<Snapshot> {
 fn why_an_alternative_was_not_taken_rests_on_the_choices_of_the_plan() {
     let mut wrong: Vec<String> = Vec::new();
     let mut reasons = 0;
-    for (name, text) in missions() {
+    for (name, text) in missions(MISSIONS) {
         let snapshot = snapshot(&text);
         let (Some(plan), Some(network)) = (snapshot.plan(), &snapshot.network) else { continue };
         let made: Vec<String> = (plan.choices.iter())

@@ -6,5 +6,6 @@ pub mod distances;
 pub mod lasting;
 pub mod lasting_missions;
 pub mod mission;
+pub mod missions;
 pub mod random;
 pub mod reference;

@@ -343,8 +343,10 @@ impl TreeChoice {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TreeStatus {
-    /// Never entered.
+    /// Not entered: the search has not come so far, or found a plan before.
     Unexplored,
+    /// Not entered, and never to be: what failed fails with it as well.
+    Excluded,
     /// Entered, and left for the states below.
     Decision,
     /// A failure.
@@ -466,6 +468,19 @@ impl Recorder {
         }
         self.trace.tree.push(TreeNode { parent: Some(parent), choice, status: TreeStatus::Decision });
         Some(self.trace.tree.len() as TreeNodeId - 1)
+    }
+
+    /// The search leaves the alternatives of a choice point, `first` and those after it, of which `entered` were entered,
+    /// for a failure that has nothing to do with it.
+    pub(crate) fn leave(&mut self, first: TreeNodeId, entered: u32, count: u32) {
+        for alternative in 0..count {
+            let Some(node) = self.trace.tree.get_mut((first + alternative) as usize) else { return };
+            match node.status {
+                TreeStatus::Decision => node.status = TreeStatus::Failed,
+                TreeStatus::Unexplored if alternative >= entered => node.status = TreeStatus::Excluded,
+                _ => {}
+            }
+        }
     }
 
     pub(crate) fn set_status(&mut self, node: TreeNodeId, status: TreeStatus) {

@@ -184,6 +184,7 @@ fn member_json(network: &Network, member: &CycleMember) -> Value {
 fn status_name(status: TreeStatus) -> &'static str {
     match status {
         TreeStatus::Unexplored => "unexplored",
+        TreeStatus::Excluded => "excluded",
         TreeStatus::Decision => "decision",
         TreeStatus::Failed => "failed",
         TreeStatus::Solution => "solution",

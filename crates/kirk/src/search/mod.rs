@@ -240,6 +240,9 @@ impl<'m> Engine<'m> {
 
     fn exhausted(&mut self) -> Halt {
         self.log(|_| Event::Exhausted);
+        if !self.setup.is_enumerating {
+            self.set_status(0, TreeStatus::Failed);
+        }
         Halt::Exhausted
     }
 

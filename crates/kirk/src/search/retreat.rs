@@ -73,10 +73,14 @@ impl Engine<'_> {
             let last = self.levels.last_key();
             let target = if self.setup.jumps { self.conflict.highest() } else { last };
             self.learn(target);
-            let Some(target) = target else { return Ok(false) };
+            let Some(target) = target else {
+                self.record_left_levels(None);
+                return Ok(false);
+            };
             self.stats.backtracks += 1;
             self.stats.jumped_over += (self.levels.len() - usize::from(target)) as u64 - 1;
             self.log_retreat(target);
+            self.record_left_levels(Some(target));
             while let Some(depth) = self.levels.last_key().filter(|&depth| depth > target) {
                 self.undo_alternative(depth);
                 self.drop_level();
@@ -88,6 +92,16 @@ impl Engine<'_> {
             if self.try_alternatives()? {
                 return Ok(true);
             }
+        }
+    }
+
+    /// Records that the present alternative of a level has failed, and that no alternative of the levels above it avoids
+    /// that failure; without a level, that none of any level does.
+    fn record_left_levels(&mut self, target: Option<LevelId>) {
+        let Some(recorder) = self.recorder.as_mut().filter(|_| !self.setup.is_enumerating) else { return };
+        for (depth, level) in self.levels.iter_enumerated().filter(|(depth, _)| Some(*depth) >= target) {
+            let count = if Some(depth) == target { level.next } else { level.end };
+            recorder.leave(level.first_child, level.next, count);
         }
     }
 

@@ -444,6 +444,12 @@ impl Scene<'_> {
                 let outline = Stroke::new((radius / 6.0).clamp(0.5, 1.2), tokens.text_muted);
                 self.painter.circle(center, radius * 0.8, tokens.surface, outline);
             }
+            // A failure that was never entered.
+            TreeStatus::Excluded => {
+                let square = Rect::from_center_size(center, vec2(radius, radius) * 1.5);
+                let outline = Stroke::new((radius / 5.0).clamp(0.6, 1.5), tokens.failure);
+                self.painter.rect(square, 1.5, tokens.surface, outline, StrokeKind::Middle);
+            }
             TreeStatus::Decision => {
                 self.painter.circle_filled(center, radius, tokens.decision);
             }

@@ -79,6 +79,8 @@ fn show_state(
     let step = context.state.search.shown().filter(|it| it.recording.is(recording)).map(|it| it.step.step);
     let (what, color) = match index.status(trace, state, step) {
         TreeStatus::Unexplored => ("not tried", tokens.text_muted),
+        TreeStatus::Excluded => ("excluded", tokens.failure),
+        TreeStatus::Decision if index.is_left(state, step) => ("left", tokens.text_muted),
         TreeStatus::Decision => ("open", tokens.decision),
         TreeStatus::Failed => ("failed", tokens.failure),
         TreeStatus::Solution => ("a plan", tokens.solution),
@@ -100,6 +102,15 @@ fn show_state(
             ui.label(RichText::new(text).small().color(tokens.text_muted));
         }
     });
+    if what == "excluded" {
+        let text = match index.excluded_by(trace, state) {
+            Some(step) => {
+                format!("Not tried: the failure of step {} does not depend on this choice.", step + 1)
+            }
+            None => "Not tried: what failed does not depend on this choice.".to_owned(),
+        };
+        ui.label(RichText::new(text).small().color(tokens.failure));
+    }
     if let Some(failure) = failure_of(trace, index, state).filter(|_| what == "failed") {
         let text = wording::event(recording.network(), trace, failure);
         ui.label(RichText::new(text).small().color(tokens.failure));

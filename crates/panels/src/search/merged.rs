@@ -64,7 +64,13 @@ impl Merged<'_> {
             let step = self.steps[side].map(|(step, _)| step);
             Some(self.own[side].status(self.recordings[side].trace(), own[side]?, step))
         });
-        let order = [TreeStatus::Solution, TreeStatus::Failed, TreeStatus::Decision, TreeStatus::Unexplored];
+        let order = [
+            TreeStatus::Solution,
+            TreeStatus::Failed,
+            TreeStatus::Decision,
+            TreeStatus::Excluded,
+            TreeStatus::Unexplored,
+        ];
         let known: Vec<TreeStatus> = known.collect();
         order.into_iter().find(|status| known.contains(status)).unwrap_or(TreeStatus::Unexplored)
     }

@@ -146,6 +146,9 @@ impl TreeIndex {
     pub fn status(&self, trace: &Trace, id: TreeNodeId, step: Option<usize>) -> TreeStatus {
         let at = id as usize;
         let status = trace.tree.get(at).map_or(TreeStatus::Unexplored, |node| node.status);
+        if status == TreeStatus::Excluded && step.is_some() && self.excluded_by(trace, id) > step {
+            return TreeStatus::Unexplored;
+        }
         let (Some(step), Some(Some(first)), Some(Some(last))) =
             (step, self.first_step.get(at), self.last_step.get(at))
         else {
@@ -170,6 +173,21 @@ impl TreeIndex {
         let count = step.map_or(steps.len(), |step| steps.partition_point(|&at| at as usize <= step));
         let last = *steps.get(count.checked_sub(1)?)?;
         trace.events.get(last as usize).map(|entry| &entry.event)
+    }
+
+    /// The step in which it became known that an excluded state fails, too: the last one in the alternatives beside it.
+    pub fn excluded_by(&self, trace: &Trace, id: TreeNodeId) -> Option<usize> {
+        let parent = trace.tree.get(id as usize)?.parent?;
+        let beside = self.children(parent).iter().filter(|&&other| trace.are_alternatives(other, id));
+        beside.filter_map(|&other| self.last_step.get(other as usize).copied().flatten()).max()
+    }
+
+    /// Whether the search went elsewhere from a state without a plan, and without having tried all that is below it.
+    pub fn is_left(&self, id: TreeNodeId, step: Option<usize>) -> bool {
+        let at = id as usize;
+        let last = self.last_step.get(at).copied().flatten();
+        self.has_solution.get(at) == Some(&false)
+            && step.is_none_or(|step| last.is_some_and(|last| last < step))
     }
 
     /// Whether all that was tried below a state failed, so that it can be folded.

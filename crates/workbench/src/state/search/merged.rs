@@ -107,9 +107,10 @@ impl MergedTree {
 const fn progress(status: TreeStatus) -> u8 {
     match status {
         TreeStatus::Unexplored => 0,
-        TreeStatus::Decision => 1,
-        TreeStatus::Failed => 2,
-        TreeStatus::Solution => 3,
+        TreeStatus::Excluded => 1,
+        TreeStatus::Decision => 2,
+        TreeStatus::Failed => 3,
+        TreeStatus::Solution => 4,
     }
 }
 
