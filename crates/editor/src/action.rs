@@ -20,6 +20,8 @@ pub enum EditorAction {
     Focus,
     /// The pointer went down in the text.
     Press,
+    /// The pointer is over a place that something is known of, or over none any more.
+    Hover(Option<usize>),
     /// Folds what begins in this line, or unfolds it. Lines count from 0.
     ToggleFold(usize),
     /// The view has room for so many columns and breaks longer lines into rows, or breaks none.

@@ -6,19 +6,20 @@ use theme::show_markdown;
 
 use crate::{Diagnostic, EditorView, LanguageService};
 
-/// Shows what is known at `offset` beside the pointer, unless a list is open at the caret.
+/// Shows what is known at `offset` beside the pointer, unless a list is open at the caret. Returns the place that something
+/// is known of.
 pub(crate) fn show(
     view: &EditorView<'_>,
     language: &mut dyn LanguageService,
     response: &Response,
     offset: Option<usize>,
-) {
-    let Some(offset) = offset.filter(|_| view.popup.is_none()) else { return };
+) -> Option<usize> {
+    let offset = offset.filter(|_| view.popup.is_none())?;
     let touching: Vec<&Diagnostic<'_>> =
         view.diagnostics.iter().filter(|it| it.bytes.start <= offset && offset <= it.bytes.end).collect();
     let markdown = language.hover(offset);
     if touching.is_empty() && markdown.is_none() {
-        return;
+        return None;
     }
     response.clone().on_hover_ui_at_pointer(|ui| {
         ui.set_max_width(460.0);
@@ -31,7 +32,12 @@ pub(crate) fn show(
             }
             show_markdown(ui, view.tokens, markdown);
         }
+        if let Some(keys) = view.manual_keys {
+            let text = format!("{keys}: in the manual");
+            ui.label(RichText::new(text).small().color(view.tokens.text_muted));
+        }
     });
+    Some(offset)
 }
 
 fn show_diagnostic(ui: &mut Ui, view: &EditorView<'_>, diagnostic: &Diagnostic<'_>) {

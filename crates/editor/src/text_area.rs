@@ -23,6 +23,8 @@ pub(crate) struct TextArea {
     offset: egui::Vec2,
     /// Where the list at the caret was on screen in the last frame, if it was open.
     popup: Option<Rect>,
+    /// The place under the pointer that something is known of, as its owner was told.
+    hovered: Option<usize>,
 }
 
 /// The rows that lines are broken into, and what they were worked out for.
@@ -100,7 +102,11 @@ impl TextArea {
             paint(ui, view, language, &geometry, &response, &shown);
             describe(ui, view, &response);
             let offset = pointer::offset_under(view, &geometry, &response, &shown);
-            hover::show(view, language, &response, offset);
+            let hovered = hover::show(view, language, &response, offset);
+            if self.hovered != hovered {
+                self.hovered = hovered;
+                actions.push(EditorAction::Hover(hovered));
+            }
             if let Some(caret) = caret::rect(view, &geometry, &shown).filter(|_| response.has_focus()) {
                 let to_global = ui.ctx().layer_transform_to_global(ui.layer_id()).unwrap_or_default();
                 self.popup = popup::show(ui, view, to_global * caret, actions);

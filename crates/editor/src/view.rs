@@ -22,6 +22,8 @@ pub struct EditorView<'a> {
     pub wraps: bool,
     /// What an input method is composing at the caret.
     pub composition: &'a str,
+    /// The keys that open what a manual says of the place under the pointer, if there is one.
+    pub manual_keys: Option<&'a str>,
     /// The find bar, when it is open.
     pub find: Option<&'a Find>,
     /// The list at the caret, when it is open.

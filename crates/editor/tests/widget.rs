@@ -101,6 +101,7 @@ fn open(told: Told) -> Window {
         let items = told.completions.iter().map(|label| PopupItem { label, detail: "", sign: None });
         let popup = Popup { items: items.collect(), chosen: 0, is_code: true, prefix: "Take: " };
         let view = EditorView {
+            manual_keys: Some("F10"),
             id,
             name: "Some text",
             document: &told.document,
@@ -262,6 +263,7 @@ fn what_is_wrong_is_told_under_the_pointer_with_what_the_language_says() {
     window.harness.get_by_label("This is wrong");
     window.harness.get_by_label("Make it right");
     window.harness.get_by_label("E-WRONG   F9 to fix");
+    window.harness.get_by_label("F10: in the manual");
     assert!(window.harness.query_by_label_contains("byte ").is_some());
 }
 

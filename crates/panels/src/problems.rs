@@ -10,6 +10,8 @@ use theme::space;
 use workbench::Dialog;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, EditorCommand};
+use workbench::manual;
+use workbench::state::manual::ManualCommand;
 use workbench::state::no_plan::NO_PLAN;
 
 use crate::{Context, Panel, keyboard_navigation, show_empty};
@@ -129,6 +131,12 @@ fn show_details(
             } else {
                 Command::ShowDialog(Dialog::Explain(problem.code.clone()))
             });
+        }
+        if is_of_plan
+            && ui.add(egui::Button::new("In the manual").frame_when_inactive(false)).clicked()
+            && let Some((page, section)) = manual::about_code(&problem.code)
+        {
+            commands.send(Command::Manual(ManualCommand::Open(page, section)));
         }
         for fix in &problem.fixes {
             let button = ui.add_enabled(is_current, egui::Button::new(&fix.label));

@@ -3,9 +3,11 @@
 use std::sync::LazyLock;
 
 use markdown::{Block, Content, Document, anchor, plain};
+use rmpl::editor::Topic;
 
 use crate::PanelKind;
 use crate::lesson::Glossary;
+use crate::state::no_plan::NO_PLAN;
 
 /// A page of the manual.
 #[derive(Debug)]
@@ -129,6 +131,36 @@ pub fn target(link: &str, here: &str) -> Option<(&'static str, String)> {
 pub fn section_of_code(code: &str) -> Option<String> {
     let explanation = rmpl::explain(code)?;
     Some(anchor(&format!("{}: {}", explanation.code, explanation.title)))
+}
+
+/// The page and the section about a kind of problem, which the app itself may find.
+pub fn about_code(code: &str) -> Option<(&'static str, String)> {
+    if code == NO_PLAN {
+        return Some(("specification", "5-planning".to_owned()));
+    }
+    section_of_code(code).map(|section| ("diagnostics", section))
+}
+
+/// The page and the section about a part of the language.
+pub const fn about_topic(topic: Topic) -> (&'static str, &'static str) {
+    let section = match topic {
+        Topic::Declarations => "declarations",
+        Topic::Options => "options",
+        Topic::Statements => "statements",
+        Topic::Conditions => "conditions",
+        Topic::States => "state-that-lasts",
+        Topic::Resources => "resources",
+        Topic::EarlyEnds => "activities-that-can-be-ended-early",
+        Topic::Objectives => "objectives",
+        Topic::Bounds => "bounds",
+        Topic::ThreadBounds => "bounds-between-threads",
+        Topic::Files => "missions-of-several-files",
+        Topic::Nature => "what-nature-chooses",
+        Topic::Parameters => "parameters",
+        Topic::World => "the-world",
+        Topic::Programs => "activities-that-run-programs",
+    };
+    ("language", section)
 }
 
 /// The page and the section that tell about a panel.
@@ -269,6 +301,11 @@ mod tests {
                 "{panel:?}: {name}#{section}"
             );
         }
+        for topic in Topic::ALL {
+            let (name, section) = about_topic(topic);
+            let page = page_named(name).expect("a page");
+            assert!(page.document.heading(section).is_some(), "{topic:?}: {name}#{section}");
+        }
         let page = page_named("diagnostics").expect("a page of diagnostics");
         for explanation in rmpl::diagnostics::EXPLANATIONS {
             let section = section_of_code(explanation.code.0).expect("a section");
@@ -277,8 +314,47 @@ mod tests {
     }
 
     #[test]
+    fn every_code_that_a_problem_of_the_page_can_have_has_its_section() {
+        let crates = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let mut codes = std::collections::BTreeSet::from([NO_PLAN.to_owned()]);
+        // The page reads no files of networks, whose problems the command line alone tells.
+        for name in
+            ["rmpl", "tpn", "kirk", "hca", "plant", "executive", "motion", "terrain", "mission", "workbench"]
+        {
+            collect_codes(&crates.join(name).join("src"), &mut codes);
+        }
+        assert!(codes.len() > 25, "{codes:?}");
+        for code in codes {
+            let (name, section) = about_code(&code).unwrap_or_else(|| panic!("nothing tells about {code}"));
+            let page = page_named(name).expect("a page");
+            assert!(page.document.heading(&section).is_some(), "{code}: {name}#{section}");
+        }
+    }
+
+    /// The codes in the sources below a folder, as they are made there.
+    fn collect_codes(folder: &std::path::Path, codes: &mut std::collections::BTreeSet<String>) {
+        for entry in std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path())
+        {
+            if entry.is_dir() {
+                collect_codes(&entry, codes);
+            } else if entry.extension().is_some_and(|extension| extension == "rs") {
+                let text = std::fs::read_to_string(&entry).expect("a source");
+                let found = text.split("Code(\"").skip(1).filter_map(|rest| rest.split('"').next());
+                let is_of_problem = |code: &&str| {
+                    let name = code.strip_prefix("E-").or_else(|| code.strip_prefix("W-"));
+                    name.is_some_and(|name| name.chars().all(|it| it.is_ascii_uppercase()))
+                };
+                codes.extend(found.filter(is_of_problem).map(str::to_owned));
+            }
+        }
+    }
+
+    #[test]
     fn links_of_the_glossary_lead_somewhere() {
         for term in &Glossary::get().terms {
+            let mut links = 0;
+            visit_links(&term.meaning, &mut |_| links += 1);
+            assert!(links > 0, "{:?} leads nowhere", term.names);
             assert_eq!(broken_links(&term.meaning, "glossary"), Vec::<String>::new(), "{:?}", term.names);
         }
         assert_eq!(target("../docs/language.md#bounds", "glossary"), Some(("language", "bounds".to_owned())));

@@ -4,8 +4,10 @@ mod support;
 
 use support::App;
 use text_editing::{Motion, TextCommand};
+use workbench::PanelKind;
 use workbench::command::{Command, EditorCommand};
 use workbench::host::Remote as _;
+use workbench::state::manual::ManualCommand;
 
 fn showing(source: &str) -> App {
     let mut app = support::start();
@@ -138,4 +140,43 @@ fn a_line_that_was_copied_without_selecting_is_pasted_as_a_line_above() {
     app.run(Command::Text(TextCommand::Select { anchor: 1, head: 1 }));
     app.run(paste("one\n"));
     assert_eq!(text(&app), "oone\n|ne\ntwo\ntwother\no\nthree\n");
+}
+
+#[test]
+fn the_manual_is_asked_about_the_word_at_the_caret_and_about_the_place_under_the_pointer() {
+    let source = "var C : {ON, OFF};\nstate S : {A, B} = A;\nresource R capacity 2;\nprimitive P()[2,1] requires S=A uses R;\n\
+        scenario S1[0,2*10] = { choose { P(), delay }; do { delay } maintaining C=ON }\n";
+    let mut app = support::start();
+    app.run(Command::OpenSource { name: "test".into(), source: source.to_owned() });
+    app.settle();
+    let place = |app: &App| {
+        let manual = app.json()["manual"].clone();
+        format!(
+            "{}#{}",
+            manual["page"].as_str().unwrap_or_default(),
+            manual["section"].as_str().unwrap_or_default()
+        )
+    };
+    let at = |word: &str| source.find(word).expect("a word") + 1;
+    for (word, expected) in [
+        ("maintaining", "language#conditions"),
+        ("S : {A", "language#state-that-lasts"),
+        ("capacity", "language#resources"),
+        ("choose", "language#statements"),
+        ("2*10", "language#bounds"),
+        ("2,1]", "diagnostics#e-bounds"),
+    ] {
+        // By the caret, and by the pointer, wherever the caret is then.
+        for hovered in [None, Some(at(word))] {
+            let caret = if hovered.is_some() { 0 } else { at(word) };
+            app.run(Command::Text(TextCommand::Select { anchor: caret, head: caret }));
+            app.run(Command::Editor(EditorCommand::Hover(hovered)));
+            app.run(Command::Manual(ManualCommand::About(PanelKind::Editor)));
+            let shown = place(&app);
+            assert!(shown.starts_with(expected), "{word}, {hovered:?}: {shown}");
+        }
+    }
+    app.run(Command::Editor(EditorCommand::Hover(None)));
+    app.run(Command::Manual(ManualCommand::About(PanelKind::Timeline)));
+    assert_eq!(place(&app), "timeline#");
 }

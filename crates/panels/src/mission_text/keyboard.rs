@@ -31,6 +31,7 @@ pub(super) fn command(action: EditorAction) -> Command {
         EditorAction::Compose(text) => EditorCommand::Compose(text),
         EditorAction::Copy { cut } => EditorCommand::CopySelection { cut },
         EditorAction::Focus => EditorCommand::Focus,
+        EditorAction::Hover(place) => EditorCommand::Hover(place),
         EditorAction::ToggleFold(line) => EditorCommand::ToggleFold(line),
         EditorAction::WrapAt(columns) => EditorCommand::WrapAt(columns),
         EditorAction::MoveInPopup(steps) => EditorCommand::MoveInPopup(steps),

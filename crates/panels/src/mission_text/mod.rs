@@ -41,6 +41,7 @@ impl Panel for EditorPanel {
         let takes_focus = context
             .take_last(|effect| (effect == PanelEffect::FocusEditor && state.dialog.is_none()).then_some(()));
         let view = EditorView {
+            manual_keys: Some("Shift+F1"),
             id: editor_id(),
             name: "Mission text",
             document: &state.document,

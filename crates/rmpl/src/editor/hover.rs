@@ -5,6 +5,7 @@ use smol_str::SmolStr;
 
 use super::definition::references_of;
 use super::name::{NameKind, NameUse, name_at};
+use super::topic::Topic;
 use super::users::{users_of_resource, users_of_state, users_of_vehicle};
 use crate::analysis::constant::Constants;
 use crate::lower::bounds::{contingent_in, expression};
@@ -53,6 +54,8 @@ pub struct EventWindow {
 pub struct Hover {
     /// What it is about.
     pub span: Span,
+    /// The part of the language that it belongs to.
+    pub topic: Topic,
     /// The text, in Markdown.
     pub markdown: String,
 }
@@ -63,15 +66,16 @@ pub fn hover(parse: &Parse, offset: u32, evaluation: &Evaluation) -> Option<Hove
         return Some(found);
     }
     if let Some(name) = name_at(parse, offset) {
-        return Some(Hover { span: name.span, markdown: describe(parse, &name, evaluation) });
+        let topic = Topic::of_name(parse, &name);
+        return Some(Hover { span: name.span, topic, markdown: describe(parse, &name, evaluation) });
     }
     let root = parse.declaration_at(offset)?;
     let token = root.tokens().find(|token| token.span.start <= offset && offset < token.span.end)?;
     if let Some(markdown) = contingent(parse, root, token, evaluation) {
-        return Some(Hover { span: token.span, markdown });
+        return Some(Hover { span: token.span, topic: Topic::Nature, markdown });
     }
     let markdown = word(token)?.to_owned();
-    Some(Hover { span: token.span, markdown })
+    Some(Hover { span: token.span, topic: Topic::of_word(token.kind, token.text), markdown })
 }
 
 /// What nature may do within the bounds whose word `token` is, and what is left to the executive.
@@ -163,7 +167,7 @@ fn hover_bound(parse: &Parse, offset: u32, evaluation: &Evaluation) -> Option<Ho
             }
         }
     }
-    Some(Hover { span: shown.span(), markdown: lines.join("  \n") })
+    Some(Hover { span: shown.span(), topic: Topic::Bounds, markdown: lines.join("  \n") })
 }
 
 /// The name that an operand is; what stands behind a number is a unit.
@@ -259,7 +263,7 @@ fn named(parse: &Parse, place: Span) -> Option<String> {
 /// How many characters of a statement a hover shows.
 const MAX_STATEMENT: usize = 120;
 
-fn is_state(parse: &Parse, name: &str) -> bool {
+pub(super) fn is_state(parse: &Parse, name: &str) -> bool {
     let meaning = parse.meaning();
     meaning.names.find(name).is_some_and(|symbol| meaning.is_state(symbol))
 }

@@ -21,6 +21,7 @@ mod outline;
 mod rename;
 mod selection;
 mod signature;
+mod topic;
 mod users;
 
 pub use brackets::matching_bracket;
@@ -37,3 +38,4 @@ pub use outline::{OutlineItem, OutlineKind, outline};
 pub use rename::{RenameProblem, prepare_rename, rename};
 pub use selection::wider_selection;
 pub use signature::{Signature, signature_at};
+pub use topic::Topic;

@@ -220,6 +220,8 @@ impl PictureFormat {
 pub enum EditorCommand {
     /// Gives the editor the keyboard.
     Focus,
+    /// The pointer is over a place of the text that something is known of, or over none any more.
+    Hover(Option<usize>),
     /// Text that an input method is composing.
     Compose(String),
     /// Opens the find bar, with the replacement row or without.

@@ -99,6 +99,7 @@ impl AppState {
                 self.show_panel(PanelKind::Editor);
                 self.focus_editor();
             }
+            EditorCommand::Hover(place) => self.editor.hovered = place,
             EditorCommand::Compose(text) => self.editor.composition = text,
             EditorCommand::Find { replacing } => self.open_find(replacing),
             EditorCommand::SetFind(find) => self.editor.find = Some(find),

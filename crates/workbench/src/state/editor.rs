@@ -21,6 +21,8 @@ pub struct EditorState {
     pub places: Places,
     /// Text that an input method is composing at the caret; it is not part of the document yet.
     pub composition: String,
+    /// The place under the pointer that something is known of.
+    pub hovered: Option<usize>,
     /// When the caret last moved or the text last changed, in seconds on the host's clock: the caret blinks from then.
     pub active_secs: f64,
 }

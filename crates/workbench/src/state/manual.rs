@@ -20,7 +20,7 @@ pub struct ManualState {
 pub enum ManualCommand {
     /// Opens a page at a section; an empty section is its beginning.
     Open(&'static str, String),
-    /// Opens what tells about a panel.
+    /// Opens what tells about the part of the text under the pointer, or else about a panel.
     About(PanelKind),
     /// Looks for words; nothing shows the page again.
     Search(String),
@@ -65,6 +65,21 @@ impl ManualState {
 }
 
 impl AppState {
+    /// The page and the section about what the pointer is over in the text, or else about what the caret is at while the
+    /// text is the panel asked about: a problem there, or the part of the language.
+    fn about_text(&self, panel: PanelKind) -> Option<(&'static str, String)> {
+        let caret = || (panel == PanelKind::Editor).then(|| self.document.caret().head);
+        let place = self.editor.hovered.or_else(caret)? as u32;
+        let is_there = |span: rmpl::Span| span.start <= place && place <= span.end;
+        let problem = self.snapshots.problems().iter().find(|problem| is_there(problem.span));
+        problem.and_then(|problem| manual::about_code(&problem.code)).or_else(|| {
+            let hover =
+                rmpl::editor::hover(self.language.parse()?, place, &rmpl::editor::Evaluation::default())?;
+            let (page, section) = manual::about_topic(hover.topic);
+            Some((page, section.to_owned()))
+        })
+    }
+
     pub(super) fn apply_to_manual(&mut self, command: ManualCommand) {
         let manual = &mut self.manual;
         match command {
@@ -73,8 +88,12 @@ impl AppState {
                 manual.go(Some((page, section)));
             }
             ManualCommand::About(panel) => {
-                let (page, section) = manual::about_panel(panel);
-                return self.apply_to_manual(ManualCommand::Open(page, section.to_owned()));
+                let about_text = self.about_text(panel);
+                let (page, section) = about_text.unwrap_or_else(|| {
+                    let (page, section) = manual::about_panel(panel);
+                    (page, section.to_owned())
+                });
+                return self.apply_to_manual(ManualCommand::Open(page, section));
             }
             ManualCommand::Search(query) => {
                 manual.found = manual::search(&query);
