@@ -254,3 +254,67 @@ fn a_best_first_search_shows_what_each_state_may_lead_to() {
     assert!(shown(6, "3 of 3 decisions reached") && !shown(6, "Worth"));
     assert!(shown(7, "cost 10") && shown(7, "Worth"));
 }
+
+/// Texts on screen that are cut off at the left or at the right, where nothing scrolls; rows of lists come and go at the
+/// top and at the bottom. Each with the part of the screen that cuts it.
+fn cut_off(app: &App) -> Vec<(String, egui::Rect)> {
+    fn collect(shape: &egui::Shape, clip: egui::Rect, found: &mut Vec<(String, egui::Rect)>) {
+        match shape {
+            egui::Shape::Text(text) => {
+                let area = shape.visual_bounding_rect();
+                // A point more or less of what is around letters is no loss.
+                let is_whole = clip.x_range().expand(1.5).contains(area.left())
+                    && clip.x_range().expand(1.5).contains(area.right());
+                if clip.shrink(1.0).intersects(area) && !is_whole {
+                    found.push((text.galley.text().to_owned(), clip));
+                }
+            }
+            egui::Shape::Vec(shapes) => {
+                for shape in shapes {
+                    collect(shape, clip, found);
+                }
+            }
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    let screen = app.harness.ctx.content_rect();
+    for shape in &app.harness.output().shapes {
+        collect(&shape.shape, shape.clip_rect.intersect(screen), &mut found);
+    }
+    found
+}
+
+#[test]
+fn no_stop_of_any_lesson_cuts_off_what_is_to_be_read() {
+    let mut app = opened("", [1280.0, 800.0]);
+    let mut cut = Vec::new();
+    for lesson in COURSE.iter().flat_map(|chapter| chapter.lessons) {
+        let (read, _) = workbench::lesson::Lesson::read(lesson.name, lesson.text);
+        for stop in 0..read.stops.len() {
+            app.harness.state_mut().run(Command::Lesson(LessonCommand::Open(lesson.name.into(), stop)));
+            app.settle();
+            let place = format!("{}, stop {}", lesson.name, stop + 1);
+            let nodes = app.harness.root().children_recursive();
+            let drawn: Vec<egui::Rect> = nodes
+                .filter(|node| {
+                    node.accesskit_node().label().is_some_and(|it| it.ends_with(" in the network"))
+                })
+                .map(|node| node.rect())
+                .collect();
+            // Of a network that is larger than its panel, what the stop is about has to be there.
+            let json = app.json();
+            let selected = json["selection"]["name"].as_str().unwrap_or("nothing");
+            let selected = selected.split('#').next().unwrap_or(selected);
+            let bar_bottom =
+                app.harness.get_by_role_and_label(Role::TextInput, "Mission name").rect().bottom();
+            for (text, clip) in cut_off(&app).into_iter().filter(|(_, clip)| clip.bottom() > bar_bottom) {
+                let is_of_network = drawn.iter().any(|node| clip.contains(node.center()));
+                if !is_of_network || text.contains(selected) {
+                    cut.push(format!("{place}: {text}"));
+                }
+            }
+        }
+    }
+    assert!(cut.is_empty(), "{}", cut.join("\n"));
+}

@@ -45,6 +45,54 @@ fn last_act(app: &App) -> (String, String) {
     (text("by"), text("act"))
 }
 
+/// The report as it is written now: how it says that the plan stands, and where the board signs.
+fn report(app: &mut App) -> (String, String) {
+    app.run(Command::WriteReport);
+    let page =
+        String::from_utf8(app.world.saved.borrow().last().expect("a report").1.clone()).expect("a text");
+    let part = |from: &str, to: &str| {
+        let rest = page.split_once(from).unwrap_or_else(|| panic!("no {from}")).1;
+        rest.split(to).next().unwrap_or_default().to_owned()
+    };
+    let hash = app.json()["review"]["hash"].as_str().expect("a hash").to_owned();
+    assert!(part("<dd class=\"hash\">", "</dd>").contains(&hash), "the report is of another content");
+    let short: String = hash.chars().filter(char::is_ascii_hexdigit).collect();
+    assert!(part("@bottom-left", "}").contains(&short), "its pages are of another content");
+    (part("<dt>Board</dt>", "</dd>"), part("<h2>Signatures</h2>", "<h2"))
+}
+
+#[test]
+fn a_report_has_only_the_signatures_that_hold_for_its_content() {
+    let mut app = before_the_board();
+    let named = |(_, signed): &(String, String)| {
+        ["Ada", "Grace"].map(|name| signed.contains(&format!("<td>{name}</td>")))
+    };
+    let draft = report(&mut app);
+    assert!(draft.0.contains("draft") && named(&draft) == [false, false], "{draft:?}");
+    app.acknowledge_all("Ada");
+    app.dispatch("review.approve", &json!({ "name": "Ada", "role": "Science" }));
+    let half = report(&mut app);
+    assert!(half.0.contains("in review") && named(&half) == [true, false], "{half:?}");
+    app.dispatch("review.approve", &json!({ "name": "Grace", "role": "Mobility" }));
+    let whole = report(&mut app);
+    assert!(whole.0.contains("approved") && named(&whole) == [true, true], "{whole:?}");
+    // One of them takes it back: the seat is empty again, in the report of the same content.
+    let given = app.json()["review"]["history"].as_array().and_then(|all| all.last().cloned());
+    let id = given.expect("an entry")["id"].clone();
+    let back = json!({ "name": "Grace", "role": "Mobility", "id": id, "text": "Not read to the end." });
+    app.dispatch("review.withdraw", &back);
+    let taken = report(&mut app);
+    assert!(taken.0.contains("in review") && named(&taken) == [true, false], "{taken:?}");
+    app.dispatch("review.approve", &json!({ "name": "Grace", "role": "Mobility" }));
+    assert_eq!(named(&report(&mut app)), [true, true]);
+    // An edit: no signature is of this content, and the report says whose approval lapsed, and why.
+    edit(&mut app, "PATH1=OK [450,450]", "PATH1=OK [460,460]");
+    let lapsed = report(&mut app);
+    assert!(lapsed.0.contains("lapsed") && lapsed.0.contains("Grace approved"), "{lapsed:?}");
+    assert_eq!(named(&lapsed), [false, false], "{lapsed:?}");
+    assert!(lapsed.1.contains("In the way of an approval"), "{lapsed:?}");
+}
+
 #[test]
 fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
     let mut app = before_the_board();

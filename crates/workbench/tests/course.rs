@@ -181,3 +181,18 @@ fn every_lesson_marks_terms_that_the_glossary_knows() {
     }
     assert!(is_used > 40, "{is_used} stops");
 }
+
+#[test]
+fn the_text_is_wrapped_beside_prose_and_as_it_was_after_the_lesson() {
+    let mut app = start();
+    let wraps = |app: &App| app.session.state().settings.views.editor.wraps;
+    for before in [false, true] {
+        app.session.state_mut().settings.views.editor.wraps = before;
+        open(&mut app, "states", 0);
+        assert!(wraps(&app));
+        open(&mut app, "resources", 1);
+        assert!(wraps(&app));
+        app.run(Command::OpenExample("enroute".into()));
+        assert_eq!(wraps(&app), before);
+    }
+}

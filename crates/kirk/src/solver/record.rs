@@ -389,8 +389,10 @@ impl Solver {
     /// Tells why nothing is looked for in a state.
     pub(super) fn record_refused(&mut self, state: TreeNodeId, event: Event) {
         if let Some(record) = self.recording() {
+            let is_left_out = matches!(event, Event::NotBetter { .. });
+            let status = if is_left_out { TreeStatus::Excluded } else { TreeStatus::Failed };
             record.recorder.record(state, event);
-            record.recorder.set_status(state, TreeStatus::Failed);
+            record.recorder.set_status(state, status);
         }
     }
 

@@ -13,6 +13,10 @@ use crate::Context;
 const COLUMNS: [(&str, bool); 5] =
     [("Marked", false), ("Goals", false), ("Commands", true), ("What came of it", false), ("Observed", true)];
 
+/// Widths in points: of the column of step numbers, and the least that any other has.
+const STEP_WIDTH: f32 = 48.0;
+const LEAST_CELL: f32 = 84.0;
+
 /// Shows the table; `in_view` is the step that was scrolled to last.
 pub(super) fn show(
     ui: &mut Ui,
@@ -26,7 +30,10 @@ pub(super) fn show(
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
         let has_plant = shown.moment.plant.is_some();
         let is_told = |(_, needs_plant): (&str, bool)| has_plant || !needs_plant;
-        Grid::new("automaton-steps").striped(true).show(ui, |ui| {
+        // Cells break their lines rather than leave the panel, while there is room for a few words in each.
+        let columns = if has_plant { COLUMNS.len() } else { COLUMNS.len() - 2 };
+        let room = (ui.available_width() - STEP_WIDTH) / columns as f32 - ui.spacing().item_spacing.x;
+        Grid::new("automaton-steps").striped(true).max_col_width(room.max(LEAST_CELL)).show(ui, |ui| {
             theme::structure::part(ui, egui::accesskit::Role::Table, "Steps");
             let headings = COLUMNS.into_iter().filter(|column| is_told(*column)).map(|(heading, _)| heading);
             for heading in std::iter::once("Step").chain(headings) {

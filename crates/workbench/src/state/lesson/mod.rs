@@ -67,6 +67,8 @@ pub struct LessonState {
     own: BTreeMap<SmolStr, (Arc<Lesson>, Arc<[LessonError]>)>,
     /// How planning was set before the lesson, which sets it for itself.
     plan_settings: Option<PlanSettings>,
+    /// Whether long lines of text were wrapped before the lesson, which wraps them.
+    wraps_before: Option<bool>,
 }
 
 /// An answer that was given.
@@ -196,10 +198,12 @@ impl AppState {
         self.settings.learned.contains(&learned_key(lesson, stop))
     }
 
-    /// What is remembered: how planning is set while no lesson sets it.
+    /// What is remembered: how planning and the text are set while no lesson sets them.
     pub(crate) fn settings_to_keep(&self) -> Settings {
         let plan = self.lesson.plan_settings.as_ref().unwrap_or(&self.settings.plan);
-        Settings { plan: plan.clone(), ..self.settings.clone() }
+        let mut kept = Settings { plan: plan.clone(), ..self.settings.clone() };
+        kept.views.editor.wraps = self.lesson.wraps_before.unwrap_or(kept.views.editor.wraps);
+        kept
     }
 
     /// Opens a file as a lesson, whatever is wrong in it: the panel says what that is, by line.
@@ -271,6 +275,10 @@ impl AppState {
     /// The lesson is about the mission that is open, as it stands.
     fn attach_lesson(&mut self, lesson: Arc<Lesson>, errors: Arc<[LessonError]>, kept: PlanSettings) {
         self.lesson.plan_settings = Some(kept);
+        // Beside prose there is less room for the text.
+        let wraps = &mut self.settings.views.editor.wraps;
+        self.lesson.wraps_before.get_or_insert(*wraps);
+        *wraps = true;
         showing::set_search(self, lesson.search);
         (self.lesson.open, self.lesson.errors) = (Some(lesson), errors);
         self.lesson.stop = 0;
@@ -338,6 +346,9 @@ impl AppState {
         self.lesson.leave_mission();
         if let Some(kept) = self.lesson.plan_settings.take() {
             self.settings.plan = PlanSettings { goal: self.settings.plan.goal.clone(), ..kept };
+        }
+        if let Some(wraps) = self.lesson.wraps_before.take() {
+            self.settings.views.editor.wraps = wraps;
         }
     }
 
