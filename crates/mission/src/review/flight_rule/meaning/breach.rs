@@ -1,0 +1,116 @@
+//! The cases that break a rule: when they are, and with which level of a resource.
+
+use exact::Rational;
+use tpn::NodeId;
+
+use super::super::Stretch;
+use super::super::cases::Case;
+use super::super::cut::{Edge, Times};
+use super::super::level::{Change, Resource};
+
+/// A case that breaks a rule, and from when to when.
+pub(super) struct Breach {
+    pub(super) case: Case,
+    pub(super) stretch: Stretch,
+    pub(super) level: Option<Level>,
+}
+
+/// A level that breaks a rule.
+#[derive(Clone)]
+pub(super) struct Level {
+    pub(super) resource: usize,
+    pub(super) amount: Rational,
+    /// What has led to it.
+    pub(super) by: Vec<NodeId>,
+}
+
+/// Resources with more changes than this are not drawn change by change.
+const MAX_DRAWN: usize = 120;
+
+pub(super) fn earliest(breaches: impl IntoIterator<Item = Breach>) -> Option<Breach> {
+    breaches.into_iter().min_by_key(|it| (it.stretch.from, it.stretch.to))
+}
+
+/// Where the levels of a case are as it wants them, and when; `None` if that cannot be told.
+pub(super) fn at_levels(times: &mut Times, resources: &[Resource], case: &Case) -> Option<Vec<Breach>> {
+    let range = times.range(&case.past, &case.future);
+    let Some(level) = met(times, resources, case)? else { return Some(Vec::new()) };
+    let whole = |times: &Times| {
+        vec![Breach { case: case.clone(), stretch: times.stretch(range), level: level.clone() }]
+    };
+    let Some(Level { resource, .. }) = &level else { return Some(whole(times)) };
+    let changes = &resources[*resource].changes;
+    if changes.len() > MAX_DRAWN {
+        return Some(whole(times));
+    }
+    // The level that can be reached changes only where an event can come, or has to have come.
+    let start = times.start();
+    let mut bounds = vec![range.0];
+    bounds.extend(range.1);
+    for change in changes {
+        bounds.push(times.earliest(change.node));
+        bounds.extend(times.latest(change.node));
+    }
+    bounds.retain(|&at| at >= range.0 && range.1.is_none_or(|to| at <= to));
+    bounds.sort_unstable();
+    bounds.dedup();
+    let mut found = Vec::new();
+    for (index, &at) in bounds.iter().enumerate() {
+        let next = bounds.get(index + 1).copied();
+        let point = [Edge::past(start, true).after(at), Edge::future(start, true).after(at)];
+        let behind: Vec<Edge> = std::iter::once(Edge::past(start, false).after(at))
+            .chain(next.map(|next| Edge::future(start, false).after(next)))
+            .collect();
+        for (edges, stretch) in [(point.to_vec(), (at, Some(at))), (behind, (at, next))] {
+            let Some(case) = narrowed(times, case, &edges) else { continue };
+            if let Some(level) = met(times, resources, &case)? {
+                let stretch = times.stretch(stretch);
+                found.push(Breach { case, stretch, level });
+            }
+        }
+    }
+    Some(found)
+}
+
+/// The case with more said of its events, if an instant still fits.
+fn narrowed(times: &mut Times, case: &Case, edges: &[Edge]) -> Option<Case> {
+    let mut narrow = case.clone();
+    for &edge in edges {
+        let others = if edge.is_past { &narrow.future } else { &narrow.past };
+        let fits = |other: &Edge| {
+            if edge.is_past { times.fits(edge, *other) } else { times.fits(*other, edge) }
+        };
+        if !others.iter().all(fits) {
+            return None;
+        }
+        if edge.is_past { narrow.past.push(edge) } else { narrow.future.push(edge) }
+    }
+    Some(narrow)
+}
+
+/// Whether the levels of a case can be as it wants them, with one of them; `None` if that cannot be told.
+#[expect(clippy::option_option, reason = "the outer one is what cannot be told")]
+fn met(times: &mut Times, resources: &[Resource], case: &Case) -> Option<Option<Option<Level>>> {
+    let mut is_met_together = case.levels.is_empty();
+    let mut shown = None;
+    for wanted in &case.levels {
+        let resource = &resources[wanted.resource];
+        let (level, has_come) = resource.furthest(times, case, wanted)?;
+        if !wanted.is_met_by(level) {
+            return Some(None);
+        }
+        shown = shown.or_else(|| {
+            let leads = |change: &Change| change.more.is_positive() == wanted.is_above;
+            let come = resource.changes.iter().zip(&has_come);
+            let by = come.filter(|(change, has_come)| **has_come && leads(change));
+            let by = by.map(|(change, _)| change.node).collect();
+            Some(Level { resource: wanted.resource, amount: level, by })
+        });
+        // What several levels want at one instant is met if the same events meet all of them.
+        is_met_together |= case.levels.iter().all(|other| {
+            other.resource == wanted.resource
+                && resource.level(&has_come).is_some_and(|level| other.is_met_by(level))
+        });
+    }
+    is_met_together.then_some(Some(shown))
+}

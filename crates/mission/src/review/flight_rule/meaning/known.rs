@@ -1,0 +1,193 @@
+//! What a plan lets one know of conditions: which events must have come, and which must not have, for something to hold,
+//! not to hold, or to be open.
+
+use exact::Time;
+use rmpl::program::LabelMode;
+use rmpl::rule::{Formula, Order};
+use tpn::{Extent, LabelId, NodeId, ValueSet};
+
+use super::super::cases::Condition;
+use super::super::cut::Edge;
+use super::super::level::Wanted;
+use super::Meaning;
+
+/// What is asked of a condition: what holds is known, or not known, or the contrary is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Asked {
+    Known,
+    NotKnown,
+    Denied,
+    NotDenied,
+}
+
+impl Asked {
+    /// What is asked of a condition when this is asked of its negation.
+    const fn of_negation(self) -> Self {
+        match self {
+            Self::Known => Self::Denied,
+            Self::NotKnown => Self::NotDenied,
+            Self::Denied => Self::Known,
+            Self::NotDenied => Self::NotKnown,
+        }
+    }
+}
+
+impl Meaning<'_> {
+    pub(super) fn condition(&self, formula: &Formula, asked: Asked, is_instant: bool) -> Condition {
+        let all = |parts: &[Formula]| parts.iter().map(|it| self.condition(it, asked, is_instant)).collect();
+        match formula {
+            Formula::Not(inner) => self.condition(inner, asked.of_negation(), is_instant),
+            Formula::All(parts) => match asked {
+                Asked::Known | Asked::NotDenied => Condition::All(all(parts)),
+                Asked::NotKnown | Asked::Denied => Condition::Any(all(parts)),
+            },
+            Formula::Any(parts) => match asked {
+                Asked::Known | Asked::NotDenied => Condition::Any(all(parts)),
+                Asked::NotKnown | Asked::Denied => Condition::All(all(parts)),
+            },
+            Formula::Is { variable, values } => {
+                let known = |is_among: bool| self.is_one_of(variable, values, is_among, is_instant);
+                match asked {
+                    Asked::Known => known(true),
+                    Asked::NotKnown => known(true).negated(),
+                    Asked::Denied => known(false),
+                    Asked::NotDenied => known(false).negated(),
+                }
+            }
+            Formula::Underway(activity) => {
+                let inside = |(start, end)| between(start, end, is_instant);
+                let outside = |(start, end)| {
+                    Condition::Any(vec![
+                        Condition::Edge(Edge::future(start, is_instant)),
+                        Condition::Edge(Edge::past(end, true)),
+                    ])
+                };
+                match asked {
+                    Asked::Known => Condition::Any(self.occurrences(activity).map(inside).collect()),
+                    Asked::NotDenied => {
+                        Condition::All(self.occurrences(activity).map(outside).collect()).negated()
+                    }
+                    Asked::NotKnown => {
+                        Condition::Any(self.occurrences(activity).map(inside).collect()).negated()
+                    }
+                    Asked::Denied => Condition::All(self.occurrences(activity).map(outside).collect()),
+                }
+            }
+            Formula::Amount { resource, order, amount } => {
+                let Some(resource) = self.network.resources.iter().position(|it| it.name == *resource) else {
+                    return Condition::Any(Vec::new());
+                };
+                let (is_above, may_equal) = match order {
+                    Order::Below => (false, false),
+                    Order::AtMost => (false, true),
+                    Order::Above => (true, false),
+                    Order::AtLeast => (true, true),
+                };
+                let wanted = Wanted { resource, is_above, amount: *amount, may_equal, is_instant };
+                Condition::Level(match asked {
+                    Asked::Known | Asked::NotDenied => wanted,
+                    Asked::NotKnown | Asked::Denied => wanted.negated(),
+                })
+            }
+        }
+    }
+
+    /// It is known that a variable has one of these values, or that it has another.
+    fn is_one_of(
+        &self,
+        variable: &str,
+        values: &[smol_str::SmolStr],
+        is_among: bool,
+        is_instant: bool,
+    ) -> Condition {
+        let Some(index) = self.network.variables.iter().position(|it| it.name == variable) else {
+            return Condition::Any(Vec::new());
+        };
+        let declared = &self.network.variables[index];
+        let is_meant = |value: tpn::ValueId| {
+            declared.values.get(value.index()).is_some_and(|name| values.contains(name))
+        };
+        let is_told = |set: &ValueSet| match set {
+            ValueSet::In(ids) => ids.iter().all(|&id| is_meant(id) == is_among),
+            ValueSet::NotIn(ids) if declared.closed => {
+                let left = (0..declared.values.len()).map(tpn::ValueId::from_index);
+                left.filter(|id| !ids.contains(id)).all(|id| is_meant(id) == is_among)
+            }
+            // Of all that it may be besides, only that it is none of these is known.
+            ValueSet::NotIn(ids) => {
+                let named = |value: &smol_str::SmolStr| declared.values.iter().position(|it| it == value);
+                let is_excluded =
+                    |value| named(value).is_some_and(|at| ids.contains(&tpn::ValueId::from_index(at)));
+                !is_among && values.iter().all(is_excluded)
+            }
+        };
+        let mut told: Vec<LabelId> = (self.network.labels.iter().enumerate())
+            .filter(|(_, label)| {
+                label.literal.variable.index() == index
+                    && label.mode == LabelMode::Tell
+                    && self.plan.selected_arcs.get(label.arc.index()) == Some(&true)
+            })
+            .map(|(at, _)| LabelId::from_index(at))
+            .collect();
+        let is_meant = |label: &LabelId| is_told(&self.network.labels[label.index()].literal.values);
+        if !declared.is_lasting {
+            let parts = told.into_iter().filter(is_meant).map(|label| {
+                let (start, end) = self.network.interval(label);
+                between(start, end, is_instant)
+            });
+            return Condition::Any(parts.collect());
+        }
+        told.sort_by_key(|&label| self.begins(label));
+        let parts = (0..told.len()).filter(|&at| is_meant(&told[at])).map(|at| {
+            let mut edges = vec![Condition::Edge(Edge::past(self.network.ready(told[at]), true))];
+            let next = self.next_changes(&told, at);
+            edges.extend(
+                next.into_iter()
+                    .map(|next| Condition::Edge(Edge::future(self.network.interval(next).0, is_instant))),
+            );
+            Condition::All(edges)
+        });
+        Condition::Any(parts.collect())
+    }
+
+    /// What sorts changes of one variable: the first value, then by when they can begin.
+    fn begins(&self, label: LabelId) -> (bool, Option<Time>, Option<Time>) {
+        let earliest = |node: NodeId| {
+            self.plan.windows.get(node.index()).copied().flatten().map(|window| window.earliest)
+        };
+        let is_first = self.network.labels[label.index()].extent == Extent::Initial;
+        (!is_first, earliest(self.network.interval(label).0), earliest(self.network.ready(label)))
+    }
+
+    /// Those of the sorted changes of a variable that may be the first to end what the one at `at` has made.
+    fn next_changes(&self, told: &[LabelId], at: usize) -> Vec<LabelId> {
+        let own = &self.network.labels[told[at].index()];
+        let mut next: Vec<LabelId> = Vec::new();
+        for &label in &told[at + 1..] {
+            let other = &self.network.labels[label.index()];
+            // What gives the same value at once ends nothing.
+            let is_change = other.is_changing() || own.is_changing() || other.literal != own.literal;
+            let is_after = own.extent == Extent::Initial || self.is_ordered(told[at], label);
+            if !is_change || !is_after {
+                continue;
+            }
+            if next.iter().any(|&earlier| self.is_ordered(earlier, label)) {
+                break;
+            }
+            next.push(label);
+        }
+        next
+    }
+
+    fn is_ordered(&self, first: LabelId, then: LabelId) -> bool {
+        self.orders.contains(&(first, then))
+    }
+}
+
+/// Between two events; at an instant, what touches it counts.
+pub(super) fn between(start: NodeId, end: NodeId, is_instant: bool) -> Condition {
+    Condition::All(vec![
+        Condition::Edge(Edge::past(start, true)),
+        Condition::Edge(Edge::future(end, is_instant)),
+    ])
+}
