@@ -6,7 +6,7 @@ use std::path::Path;
 use terrain::Cell;
 use terrain::format::{
     FileFormat, FormatError, ImportOptions, MAX_CELL_COUNT, Meaning, Raster, RawLayout, SampleType,
-    read_raster, read_terrain,
+    attach_label, image_of_label, read_raster, read_terrain,
 };
 
 fn fixture(name: &str) -> Raster {
@@ -214,6 +214,29 @@ fn a_pds_label_says_where_the_samples_are_and_what_they_mean() {
     let options = ImportOptions { label: Some(label.into_bytes()), ..ImportOptions::default() };
     let detached = read_raster(&bytes[512..], &options).unwrap();
     assert_eq!(detached.samples[..3], raster.samples[..3]);
+}
+
+#[test]
+fn a_label_of_its_own_and_its_image_become_one_file() {
+    let bytes = pds_image();
+    let whole = read(&bytes).unwrap();
+    let label = |pointer: &str| {
+        let label =
+            String::from_utf8_lossy(&bytes[..512]).replace("^IMAGE = 2", &format!("^IMAGE = {pointer}"));
+        label.into_bytes()
+    };
+    assert_eq!(image_of_label(&bytes), None, "the image follows the label");
+    assert_eq!(image_of_label(&bytes[512..]), None);
+    for (pointer, skipped) in
+        [("\"DATA.IMG\"", 0), ("(\"DATA.IMG\", 2)", 512), ("(\"DATA.IMG\", 11 <BYTES>)", 10)]
+    {
+        assert_eq!(image_of_label(&label(pointer)).as_deref(), Some("DATA.IMG"), "{pointer}");
+        let mut image = vec![7; skipped];
+        image.extend_from_slice(&bytes[512..]);
+        let joined = read(&attach_label(&label(pointer), &image).unwrap()).unwrap();
+        assert_eq!((joined.width, joined.cell_size_m), (whole.width, whole.cell_size_m), "{pointer}");
+        assert_eq!(joined.samples[..3], whole.samples[..3], "{pointer}");
+    }
 }
 
 #[test]

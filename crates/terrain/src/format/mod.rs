@@ -4,6 +4,7 @@
 //! turns it so that row 0 is in the south. Sizes are checked before anything is allocated for them.
 
 mod ascii_grid;
+mod detached;
 mod foreign;
 mod moving_ai;
 mod pds;
@@ -16,6 +17,7 @@ use serde::{Deserialize, Serialize};
 use crate::frame::GridFrame;
 use crate::heightfield::Terrain;
 
+pub use detached::{attach_label, image_of_label};
 pub use pds::{RawLayout, SampleType};
 
 /// The most cells that a map may have: 33 million, or 5800 × 5800.

@@ -241,12 +241,12 @@ fn is_absent(written: &str) -> bool {
 }
 
 /// The keywords of a label and their values as written.
-struct Label {
+pub(super) struct Label {
     entries: Vec<(String, String)>,
 }
 
 impl Label {
-    fn parse(bytes: &[u8]) -> Self {
+    pub(super) fn parse(bytes: &[u8]) -> Self {
         const MAX_LABEL_BYTES: usize = 1 << 20;
         let text = String::from_utf8_lossy(&bytes[..bytes.len().min(MAX_LABEL_BYTES)]);
         let entries = text
@@ -259,7 +259,7 @@ impl Label {
         Self { entries }
     }
 
-    fn value(&self, keyword: &str) -> Option<&str> {
+    pub(super) fn value(&self, keyword: &str) -> Option<&str> {
         self.entries.iter().find(|(word, _)| word == keyword).map(|(_, value)| value.as_str())
     }
 
@@ -270,7 +270,7 @@ impl Label {
     }
 
     /// The byte at which the samples begin: `^IMAGE` counts records, or bytes when it says so, from 1.
-    fn image_start(&self, attached: bool) -> Result<u64, FormatError> {
+    pub(super) fn image_start(&self, attached: bool) -> Result<u64, FormatError> {
         let Some(pointer) = self.value("^IMAGE") else {
             if attached {
                 return Err(malformed("its label does not say where ^IMAGE is".into()));
