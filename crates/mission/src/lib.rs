@@ -20,6 +20,7 @@ pub mod link;
 pub mod listing;
 pub mod meetings;
 mod nature;
+mod network_text;
 pub mod path_growth;
 pub mod paths_json;
 pub mod planning;

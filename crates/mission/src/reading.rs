@@ -10,9 +10,11 @@ use rmpl::program::{ControlDecl, Program, Runs};
 use rmpl::spans::{Spans as _, difference};
 use rmpl::{Diagnostic, Edit, Parse, Severity};
 use smol_str::SmolStr;
+use tpn::interchange::is_network_text;
 use tpn::{Network, Top};
 
 use crate::content::{ContentKey, Keyed, Keys};
+use crate::network_text::NetworkText;
 use crate::programs::Programs;
 use crate::request::Goal;
 
@@ -30,6 +32,8 @@ pub(crate) enum Followed {
 /// A text with what was made of it.
 #[derive(Debug, Default)]
 pub(crate) struct Reading {
+    /// Instead of a mission, if the text is a network.
+    network_text: Option<NetworkText>,
     parse: Parse,
     program: Option<Keyed<Program>>,
     compiled: Option<Compiled>,
@@ -64,6 +68,12 @@ struct CompiledPrograms {
 impl Reading {
     /// Reads `text`, as an edit of the text before.
     pub(crate) fn follow(&mut self, text: &str, keys: &mut Keys) -> Followed {
+        if is_network_text(text) {
+            return self.follow_network(text, keys);
+        }
+        if self.network_text.take().is_some() {
+            self.compiled = None;
+        }
         let edit = difference(self.parse.text(), text);
         if let (true, true, Some(_)) = (edit.span.range().is_empty(), edit.text.is_empty(), &self.program) {
             return Followed::Same;
@@ -103,6 +113,22 @@ impl Reading {
             compiled.tell(&self.parse, self.programs.as_ref());
         }
         Followed::Moved(edit)
+    }
+
+    /// Reads the text of a network; any change of it gives another one.
+    fn follow_network(&mut self, text: &str, keys: &mut Keys) -> Followed {
+        if self.network_text.as_ref().is_some_and(|known| known.is_of(text)) {
+            return Followed::Same;
+        }
+        let read = NetworkText::read(text);
+        let network = read.network.clone().map(|value| Keyed { key: keys.fresh(), value });
+        *self = Self::default();
+        self.program = Some(Keyed { key: keys.fresh(), value: Arc::default() });
+        let diagnostics = read.found.clone();
+        let (is_sound, found) = (read.is_sound(), Vec::new());
+        self.compiled = Some(Compiled { goal: Goal::Default, network, is_sound, found, diagnostics });
+        self.network_text = Some(read);
+        Followed::Changed
     }
 
     /// The program of the text, and its key.
@@ -161,7 +187,9 @@ impl Reading {
         goal: &Goal,
         keys: &mut Keys,
     ) -> (Option<Keyed<Network>>, Vec<Diagnostic>) {
-        let known = self.compiled.as_ref().filter(|known| known.goal == *goal);
+        // A network is one thing to plan, whatever the goal.
+        let is_network = self.network_text.is_some();
+        let known = self.compiled.as_ref().filter(|known| is_network || known.goal == *goal);
         if let Some(known) = known {
             return known.answer();
         }

@@ -12,8 +12,16 @@ fn codes(text: &str) -> Vec<&'static str> {
 }
 
 /// Kinds that only compiling or planning can report.
-const LATER: [&str; 7] =
-    ["E-NOSCENARIO", "E-LIMIT", "E-RESOURCE", "W-ENCOUNTER", "W-EXOGENOUS", "W-PLANT", "W-NETWORK"];
+const LATER: [&str; 8] = [
+    "E-NOSCENARIO",
+    "E-LIMIT",
+    "E-RESOURCE",
+    "W-ENCOUNTER",
+    "W-EXOGENOUS",
+    "W-PLANT",
+    "W-NETWORK",
+    "E-NETWORK",
+];
 
 #[test]
 fn the_example_of_a_page_has_its_one_problem_and_the_mended_text_has_none() {

@@ -129,6 +129,7 @@ fn every_kind_of_diagnostic_occurs_in_the_manual() {
         "W-EXOGENOUS",
         "W-PLANT",
         "W-NETWORK",
+        "E-NETWORK",
     ];
     for page in rmpl::diagnostics::EXPLANATIONS {
         assert!(

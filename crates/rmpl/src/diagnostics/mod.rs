@@ -27,6 +27,7 @@ pub mod together;
 pub mod traverse;
 pub mod undefined;
 pub mod unknown_name;
+pub mod unreadable_network;
 pub mod unused;
 pub mod value;
 pub mod window;
@@ -50,6 +51,7 @@ pub const EXPLANATIONS: &[&Explanation] = &[
     &resource::EXPLANATION,
     &constraint::EXPLANATION,
     &form::EXPLANATION,
+    &unreadable_network::EXPLANATION,
     &undefined::WARNING_EXPLANATION,
     &similar::EXPLANATION,
     &mixed::EXPLANATION,
