@@ -28,6 +28,10 @@ pub struct Document<'a> {
     pub ground: Option<&'a Terrain>,
 }
 
+/// What a report may do wherever it is opened: look as its own style sheet says, and nothing else. It runs no script, loads
+/// nothing and sends nothing, whatever a mission's names say.
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
+
 /// Writes the report.
 pub fn html(document: &Document<'_>) -> String {
     let title = format!("Mission review: {}", document.name);
@@ -35,6 +39,7 @@ pub fn html(document: &Document<'_>) -> String {
     let record = document.record.unwrap_or(&nothing);
     let mut out = format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <title>{0}</title>\n<style>{STYLE}{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
         escaped(&title),
