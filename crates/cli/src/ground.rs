@@ -7,6 +7,7 @@ use anyhow::Context as _;
 use mission::{Grounds, MapKey};
 use rmpl::program::World;
 use terrain::Terrain;
+use terrain::format::{FileFormat, attach_label, image_of_label};
 
 use crate::input::{folder_of, inside, read_bytes};
 
@@ -15,6 +16,9 @@ pub type Ground = Option<(MapKey, Arc<Terrain>)>;
 
 /// A larger map file is refused before it is read.
 const LARGEST_MAP_BYTES: u64 = 512 << 20;
+
+/// Labels are short texts.
+const LARGEST_LABEL_BYTES: u64 = 1 << 20;
 
 /// The ground that a mission names, read from the folder of the mission's file unless it comes with Enroute. Fails when
 /// it is nowhere, or the file is no map.
@@ -43,7 +47,29 @@ pub fn map_file(mission: &Path, world: &World) -> anyhow::Result<Option<(String,
     let found = inside(folder_of(mission), name);
     let Some(file) = found.filter(|file| file.is_file()) else { return Ok(None) };
     let bytes = read_bytes(&file, LARGEST_MAP_BYTES).with_context(|| cannot_read(name))?;
+    let bytes = with_label(&file, bytes).with_context(|| cannot_read(name))?;
     Ok(Some((name.to_owned(), bytes)))
+}
+
+/// A raw image with the PDS3 label that lies beside it, if there is one.
+fn with_label(image: &Path, bytes: Vec<u8>) -> anyhow::Result<Vec<u8>> {
+    if FileFormat::detect(&bytes).is_some() {
+        return Ok(bytes);
+    }
+    for extension in ["lbl", "LBL"] {
+        let beside = image.with_extension(extension);
+        if !beside.is_file() {
+            continue;
+        }
+        let label = read_bytes(&beside, LARGEST_LABEL_BYTES)?;
+        let of_it = |name: &std::ffi::OsStr| {
+            image_of_label(&label).is_some_and(|named| name.eq_ignore_ascii_case(named.as_str()))
+        };
+        if image.file_name().is_some_and(of_it) {
+            return Ok(attach_label(&label, &bytes)?);
+        }
+    }
+    Ok(bytes)
 }
 
 fn cannot_read(name: &str) -> String {

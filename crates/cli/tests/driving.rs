@@ -161,3 +161,24 @@ fn a_disturbed_level_is_in_the_log_and_one_out_of_range_is_refused() {
     assert_eq!(refused.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&refused.stderr).contains("the level of Battery is from 0 to 100"));
 }
+
+#[test]
+fn a_raw_image_is_read_with_the_label_that_lies_beside_it() {
+    let heights: Vec<u8> = (0..40_i16 * 40).flat_map(|at| ((at / 40 - 20).abs() * 2).to_be_bytes()).collect();
+    let label = "PDS_VERSION_ID = PDS3\r\n^IMAGE = \"RAVINE.IMG\"\r\nLINES = 40\r\nLINE_SAMPLES = 40\r\n\
+        SAMPLE_TYPE = MSB_INTEGER\r\nSAMPLE_BITS = 16\r\nSCALING_FACTOR = 0.5\r\nMAP_SCALE = 5 <M/PIXEL>\r\nEND\r\n";
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
+    std::fs::write(folder.join("ravine.img"), heights).expect("the folder can be written to");
+    let text = "terrain \"ravine.img\";\nlocation A (20, 100);\nlocation B (180, 100);\n\
+        vehicle R : ATRV at A;\nprimitive Go(to) moves R;\nscenario S[0,60] = { Go(B)[0,60] }\n";
+    let mission = file("ravine.rmpl", text);
+    let beside = folder.join("ravine.lbl");
+    std::fs::write(&beside, label.replace("RAVINE", "OTHER")).expect("the folder can be written to");
+    let refused = enroute(&["plan", &mission]);
+    assert_eq!(refused.status.code(), Some(2), "the label is of another image: {refused:?}");
+    std::fs::write(&beside, label).expect("the folder can be written to");
+    let output = enroute(&["plan", &mission, "--format", "json"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let length = answer(&output)["traverses"][0]["legs"][0]["length_m"].as_f64();
+    assert!(length.is_some_and(|length| (length - 160.0).abs() < 1.0), "{length:?}");
+}
